@@ -1,0 +1,39 @@
+//! The planner's parameters, with meaning, range and default.
+
+use heapless::Vec;
+
+/// Where a laser sits and how it sweeps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Laser {
+    /// Metres ahead of the robot's centre.
+    pub x_m: f32,
+    /// Metres to its left.
+    pub y_m: f32,
+    /// Metres above the ground under it.
+    pub z_m: f32,
+    /// Radians; positive looks down.
+    pub pitch_rad: f32,
+    /// Bearing of the first beam, radians; negative is to the right.
+    pub first_bearing_rad: f32,
+    /// Radians from one beam to the next.
+    pub bearing_step_rad: f32,
+    /// Beams in a sweep.
+    pub beams: u16,
+    /// Range limit, millimetres: a beam beyond it returned from nothing.
+    pub range_limit_mm: u16,
+}
+
+/// Everything that stays the same during a session.
+#[derive(Clone, Debug)]
+pub struct Config {
+    /// The laser scanners; the first one is level.
+    pub lasers: Vec<Laser, 2>,
+    /// The map's box in tiles of 3.2 m, across and up.
+    pub box_tiles: (u8, u8),
+    /// Radius that the robot needs, metres. Default: 0.30.
+    pub robot_radius_m: f32,
+    /// Greatest speed, metres a second. Default: 0.7 (Pioneer 3-AT).
+    pub max_linear_mps: f32,
+    /// Greatest turn rate, radians a second. Default: 2.44 (140°/s).
+    pub max_angular_radps: f32,
+}

@@ -1,0 +1,18 @@
+//! Exploration by harmonic potential in a skeleton-charged window: a pure planner without heap, clock, I/O or log.
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+pub mod config;
+pub mod field;
+pub mod geometry;
+pub mod map;
+pub mod math;
+pub mod planner;
+pub mod skeleton;
+pub mod status;
+
+pub use config::Config;
+pub use planner::{Input, Output, State, Workspace, step};

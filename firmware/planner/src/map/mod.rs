@@ -1,0 +1,1 @@
+//! The map: occupancy of the known space.

@@ -1,0 +1,1 @@
+//! The skeleton of the traversable space and distances along it.

@@ -1,0 +1,2 @@
+//! The image for an STM32F405.
+fn main() {}

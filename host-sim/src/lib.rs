@@ -1,0 +1,4 @@
+//! Everything the robot is not: worlds, the 3-AT, its lasers and odometry, links, trials, metrics, pictures.
+#![forbid(unsafe_code)]
+
+pub mod link;

@@ -1,0 +1,377 @@
+//! The messages: plain data, postcard-encoded, physical quantities in `fixed` types.
+//!
+//! Units: metres, radians, seconds, milliseconds where the name says `_ms`, millimetres where it says `_mm`.
+//! Frames: x forward (or east), y left (or north), z up, angles counter-clockwise.
+//!
+//! | message | from | answered by |
+//! | --- | --- | --- |
+//! | [`Request::Hello`] | host | [`Reply::Hello`] |
+//! | [`Request::Control`] | host | [`Reply::Control`] |
+//! | [`Request::Observation`] | host | [`Reply::Command`] |
+//! | [`Request::Tile`] | host | [`Reply::Tile`] |
+//! | [`Request::FieldRow`] | host | [`Reply::FieldRow`] |
+//! | [`Request::Frontiers`] | host | [`Reply::Frontiers`] |
+
+use fixed::types::{I4F12, I16F16};
+use heapless::Vec;
+use serde::{Deserialize, Serialize};
+
+/// Beams a scan may have at the most.
+pub const MAX_BEAMS: usize = 181;
+/// Laser scanners an observation may carry at the most.
+pub const MAX_SCANS: usize = 2;
+/// Range code of a beam that came back from nothing: free up to the range limit. It is the largest two-byte varint.
+pub const NO_RETURN_MM: u16 = 16_383;
+/// Range code of a beam that carries no information.
+pub const INVALID_MM: u16 = 0;
+/// Residual frontiers a reply lists at the most.
+pub const MAX_FRONTIERS: usize = 16;
+/// Bytes of a map tile: 32 × 32 cells of two bits, row by row from the least y, least x in the low bits.
+pub const TILE_BYTES: usize = 256;
+/// Bytes of a tile's skeleton: 16 × 16 coarse cells of one bit, row by row from the least y.
+pub const TILE_SKELETON_BYTES: usize = 32;
+/// Cells in a row of the field's window.
+pub const FIELD_SIDE: usize = 61;
+
+/// A pose in the odometry frame, metres and radians.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Pose {
+    /// Metres.
+    pub x: I16F16,
+    /// Metres.
+    pub y: I16F16,
+    /// Metres above the start.
+    pub z: I16F16,
+    /// Radians about the forward axis.
+    pub roll: I16F16,
+    /// Radians about the left axis; positive is nose down.
+    pub pitch: I16F16,
+    /// Radians about the up axis, in [−π, π].
+    pub yaw: I16F16,
+}
+
+/// A planar velocity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Twist {
+    /// Metres a second, forward.
+    pub linear: I4F12,
+    /// Radians a second, counter-clockwise.
+    pub angular: I4F12,
+}
+
+/// One sweep of one laser. Its geometry is in [`Start::lasers`].
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Scan {
+    /// Ranges in millimetres, or [`NO_RETURN_MM`], or [`INVALID_MM`].
+    pub ranges_mm: Vec<u16, MAX_BEAMS>,
+}
+
+/// What the robot sensed at one instant.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Observation {
+    /// The host's clock, milliseconds since the start of the session.
+    pub time_ms: u32,
+    /// Odometry.
+    pub pose: Pose,
+    /// Measured velocity.
+    pub velocity: Twist,
+    /// One scan per laser of [`Start::lasers`], in that order.
+    pub scans: Vec<Scan, MAX_SCANS>,
+}
+
+/// Where a laser sits and how it sweeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Laser {
+    /// Metres ahead of the robot's centre.
+    pub x: I4F12,
+    /// Metres to its left.
+    pub y: I4F12,
+    /// Metres above the ground under it.
+    pub z: I4F12,
+    /// Radians; positive looks down.
+    pub pitch: I4F12,
+    /// Radians, bearing of the first beam (negative is to the right).
+    pub first_bearing: I16F16,
+    /// Radians from one beam to the next.
+    pub bearing_step: I16F16,
+    /// Beams in a sweep, at most [`MAX_BEAMS`].
+    pub beams: u16,
+    /// Nothing farther than this is reported.
+    pub range_limit_mm: u16,
+}
+
+/// Which strategy plans.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Strategy {
+    /// Nearest unexplored centre cell.
+    #[default]
+    Frontier,
+}
+
+/// The session's parameters.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Start {
+    /// Which strategy plans.
+    pub strategy: Strategy,
+    /// The map's box in tiles of 3.2 m, across and up; their product is at most the device's tile slots.
+    pub box_tiles: (u8, u8),
+    /// The laser scanners.
+    pub lasers: Vec<Laser, MAX_SCANS>,
+    /// Radius that the planner keeps clear, millimetres.
+    pub robot_radius_mm: u16,
+    /// Greatest speed, metres a second.
+    pub max_linear: I4F12,
+    /// Greatest turn rate, radians a second.
+    pub max_angular: I4F12,
+}
+
+/// What the host wants of the session.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "no heap to box into; one lives at a time"
+)]
+pub enum Control {
+    /// Forget the map and begin.
+    Start(Start),
+    /// Hold still until resumed.
+    Pause,
+    /// Go on after a pause.
+    Resume,
+    /// End the session; the map stays readable.
+    Stop,
+    /// Reboot the device.
+    Reset,
+}
+
+/// From the host.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "no heap to box into; one lives at a time"
+)]
+pub enum Request {
+    /// Who are you? Carries our protocol version and schema hash.
+    Hello {
+        /// Protocol version.
+        version: u16,
+        /// Hash of the message schema.
+        schema: u32,
+    },
+    /// Change the session's state.
+    Control(Control),
+    /// What was sensed; asks for a command.
+    Observation(Observation),
+    /// Read one map tile, by tile coordinates (cell / 32, rounded down).
+    Tile {
+        /// Tile column.
+        x: i16,
+        /// Tile row.
+        y: i16,
+    },
+    /// Read one row of the last window's field.
+    FieldRow {
+        /// Row, 0 is the least y.
+        row: u8,
+    },
+    /// Read the residual frontiers.
+    Frontiers,
+}
+
+/// What the planner is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Status {
+    /// No session yet.
+    #[default]
+    Idle,
+    /// Driving to unexplored space.
+    Exploring,
+    /// Held by the host.
+    Paused,
+    /// Held by the e-stop input.
+    EmergencyStop,
+    /// Done.
+    Finished(Finish),
+    /// Cannot go on.
+    Fault(Fault),
+}
+
+/// Why an exploration ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Finish {
+    /// No reachable frontier is left.
+    Explored,
+    /// The robot has no free way out of where it stands.
+    BoxedIn,
+    /// The host stopped it.
+    Stopped,
+}
+
+/// Why the planner cannot go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Fault {
+    /// The start pose lies in an obstacle.
+    StartBlocked,
+    /// Every tile of the map's pool is in use.
+    MapFull,
+    /// The known extent would not fit the map's box.
+    OutOfBox,
+    /// An observation did not match the session's lasers.
+    BadObservation,
+    /// The robot did not move for too long although commanded.
+    Stuck,
+}
+
+/// Counters of the device since boot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counters {
+    /// Frames received and accepted.
+    pub received: u32,
+    /// Frames dropped for a bad checksum.
+    pub crc_errors: u32,
+    /// Frames dropped for anything else: framing, length, format, order.
+    pub dropped: u32,
+    /// Requests answered again from the stored reply.
+    pub duplicates: u32,
+}
+
+/// What one step cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cost {
+    /// Instructions of the whole step (exact in the emulator, timer ticks on silicon, 0 on a host).
+    pub instructions: u32,
+    /// Deepest stack so far, bytes; 0 where not measured.
+    pub stack_bytes: u32,
+    /// Multigrid cycles or sweeps spent on the window.
+    pub cycles: u16,
+    /// The solver's budget ran out before its stop rule held.
+    pub budget_exhausted: bool,
+}
+
+/// The answer to an observation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Command {
+    /// What to drive.
+    pub velocity: Twist,
+    /// What the planner is doing.
+    pub status: Status,
+    /// Robot heading that the field asks for, radians; meaningful while exploring.
+    pub heading: I16F16,
+    /// Counters of the link.
+    pub counters: Counters,
+    /// Cost of the step.
+    pub cost: Cost,
+}
+
+/// Who the device is.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Identity {
+    /// Protocol version.
+    pub version: u16,
+    /// Hash of the message schema.
+    pub schema: u32,
+    /// Build identifier.
+    pub build: heapless::String<24>,
+    /// Boots since power-on.
+    pub boots: u32,
+    /// Slots of the map's box, in tiles.
+    pub tile_slots: u16,
+    /// Tiles in the map's pool.
+    pub tile_pool: u16,
+    /// Largest frame accepted, bytes.
+    pub max_frame: u16,
+    /// Silence after which the device considers its command stale, milliseconds.
+    pub stale_ms: u16,
+}
+
+/// Why a request was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Refusal {
+    /// Another protocol version or schema.
+    Incompatible,
+    /// No session is running.
+    NotStarted,
+    /// The box's shape does not fit the device's slots.
+    BadBox,
+    /// A laser or limit out of range.
+    BadParameter,
+    /// That strategy is not in this image.
+    UnknownStrategy,
+}
+
+/// One map tile.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Tile {
+    /// Tile column.
+    pub x: i16,
+    /// Tile row.
+    pub y: i16,
+    /// Two bits a cell: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle.
+    pub cells: Vec<u8, TILE_BYTES>,
+    /// One bit a coarse cell: on the skeleton.
+    pub skeleton: Vec<u8, TILE_SKELETON_BYTES>,
+}
+
+/// One row of the last window's field.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FieldRow {
+    /// Row, 0 is the least y.
+    pub row: u8,
+    /// Cell column of the window's first cell, in units of the window's cell.
+    pub origin_x: i16,
+    /// Cell row of the window's first cell.
+    pub origin_y: i16,
+    /// Side of a window cell in map cells of 10 cm.
+    pub scale: u8,
+    /// q = 1 − p, scaled so that a goal is 1; 0 on obstacles.
+    pub q: Vec<f32, FIELD_SIDE>,
+}
+
+/// Why a frontier was left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Residue {
+    /// No way for this radius.
+    Unreachable,
+    /// Reached, and still not seen.
+    Unobservable,
+    /// Beyond the map's box.
+    OutOfBounds,
+    /// The robot could not get there.
+    NoProgress,
+}
+
+/// A frontier left over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Frontier {
+    /// A cell of it.
+    pub x: i16,
+    /// A cell of it.
+    pub y: i16,
+    /// Cells in it.
+    pub cells: u16,
+    /// Why it was left.
+    pub reason: Residue,
+}
+
+/// From the device.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "no heap to box into; one lives at a time"
+)]
+pub enum Reply {
+    /// Who it is.
+    Hello(Identity),
+    /// The session changed state.
+    Control(Status),
+    /// What to drive.
+    Command(Command),
+    /// A map tile; `None` where nothing was ever seen.
+    Tile(Option<Tile>),
+    /// A row of the field; `None` before the first window.
+    FieldRow(Option<FieldRow>),
+    /// Residual frontiers.
+    Frontiers(Vec<Frontier, MAX_FRONTIERS>),
+    /// The request was refused.
+    Refused(Refusal),
+}
