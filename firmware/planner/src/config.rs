@@ -36,4 +36,10 @@ pub struct Config {
     pub max_linear_mps: f32,
     /// Greatest turn rate, radians a second. Default: 2.44 (140°/s).
     pub max_angular_radps: f32,
+    /// Acceleration and braking of the robot, metres a second squared. Default: 0.3 (Pioneer 3-AT).
+    pub linear_accel_mps2: f32,
+    /// Angular acceleration, radians a second squared. Default: 1.75 (100°/s²).
+    pub angular_accel_radps2: f32,
+    /// Time from one step to the next, seconds. Default: 0.2.
+    pub period_s: f32,
 }

@@ -6,10 +6,12 @@
 extern crate std;
 
 pub mod config;
+pub mod drive;
 pub mod field;
 pub mod geometry;
 pub mod map;
 pub mod math;
+pub mod near;
 pub mod planner;
 pub mod skeleton;
 pub mod status;
