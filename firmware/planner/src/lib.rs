@@ -5,6 +5,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod clearance;
 pub mod config;
 pub mod drive;
 pub mod field;

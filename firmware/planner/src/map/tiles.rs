@@ -156,6 +156,18 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.extent
     }
 
+    /// Tiles across and up that the box holds.
+    #[must_use]
+    pub const fn box_tiles(&self) -> (i32, i32) {
+        (self.width, self.height)
+    }
+
+    /// Whether anything was ever stored in this tile.
+    #[must_use]
+    pub fn is_touched(&self, tile_x: i32, tile_y: i32) -> bool {
+        self.rows(tile_x, tile_y).is_some()
+    }
+
     /// Tiles in use.
     #[must_use]
     pub const fn used(&self) -> usize {
