@@ -12,12 +12,11 @@
 //! Units: coarse cells of 20 cm; a tile is 16 × 16 of them.
 
 use crate::clearance::{Disc, for_each_strip};
-use crate::field::SCRATCH_FLOATS;
 use crate::geometry::Cell;
 use crate::grid::{Plane, PlaneMut, Shape, Site};
 use crate::map::Tiles;
 use crate::map::tiles::Extent;
-use crate::skeleton::{Progress, Residues, Thinning, Wavefront};
+use crate::skeleton::{Progress, Thinning};
 
 /// Where a plane lies in the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

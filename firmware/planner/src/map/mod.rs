@@ -10,7 +10,12 @@ pub mod tiles;
 pub use evidence::Evidence;
 pub use tiles::{Class, Tiles};
 
+use crate::config::Config;
 use crate::geometry::Cell;
+use crate::planner::Input;
+
+/// The robot stands where it is, so this much around it is free, metres.
+const FOOTPRINT_M: f32 = 0.25;
 
 /// Everything known of the space. `TILES` tiles in the pool, `SLOTS` places in the box.
 #[derive(Debug)]
@@ -36,9 +41,14 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         self.pool_full = false;
     }
 
-    /// Keep the evidence window around the robot.
-    pub fn follow(&mut self, centre: Cell) {
-        self.evidence.follow(centre);
+    /// Enter everything that an input says of the space.
+    pub fn observe(&mut self, config: &Config, input: &Input<'_>) {
+        let robot = input.pose.point();
+        self.evidence.follow(robot.cell());
+        self.free_footprint(robot, FOOTPRINT_M);
+        for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
+            self.integrate(&input.pose, laser, ranges_mm);
+        }
     }
 
     /// What is known of a cell.
