@@ -5,9 +5,11 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod bits;
 pub mod config;
 pub mod field;
 pub mod geometry;
+pub mod grid;
 pub mod map;
 pub mod math;
 pub mod planner;
