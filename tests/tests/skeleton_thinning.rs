@@ -161,3 +161,45 @@ fn a_thinning_that_was_not_started_is_done_and_touches_nothing() {
     assert_eq!(progress, Progress::Done { left: 5 });
     assert_eq!(words, [u32::MAX]);
 }
+
+/// The maps of `fixtures/skeleton.txt`: name, map, and `opencv_contrib`'s skeleton of it (see the script).
+fn fixtures() -> Vec<(String, Map, Map)> {
+    let text = include_str!("../fixtures/skeleton.txt");
+    let mut lines = text.lines();
+    let mut maps = Vec::new();
+    while let Some(head) = lines.next() {
+        let words: Vec<&str> = head.split(' ').collect();
+        let ["map", name, columns, rows] = words[..] else {
+            panic!("not the head of a map: {head}");
+        };
+        let (columns, rows) = (columns.parse().unwrap(), rows.parse().unwrap());
+        let mut map = Map::new(columns, rows, false);
+        let mut skeleton = map.clone();
+        for y in 0..rows {
+            let line = lines.next().unwrap();
+            assert_eq!(line.len(), columns, "{name}, row {y}");
+            for (x, cell) in line.bytes().enumerate() {
+                map.set(x, y, cell != b'.');
+                skeleton.set(x, y, cell == b'#');
+            }
+        }
+        maps.push((name.to_owned(), map, skeleton));
+    }
+    maps
+}
+
+#[test]
+fn gives_opencv_s_skeletons_bit_for_bit() {
+    let fixtures = fixtures();
+    assert_eq!(fixtures.len(), 9);
+    for (name, map, expected) in fixtures {
+        let (skeleton, _) = thin(&map);
+        assert!(
+            skeleton == expected,
+            "{name}: ours\n{}\nexpected\n{}",
+            skeleton.print(),
+            expected.print()
+        );
+        assert!(map.cells.iter().filter(|c| **c).count() > 600);
+    }
+}
