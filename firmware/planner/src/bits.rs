@@ -148,3 +148,154 @@ fn halve(word: u32) -> u16 {
     bits = (bits | bits >> 4) & 0x00ff_00ff;
     (bits | bits >> 8) as u16
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::VecDeque;
+    use std::vec;
+    use std::vec::Vec;
+
+    use super::{Adjacency, Met, dilate, flood, halve_or};
+    use crate::grid::Site;
+
+    /// A xorshift generator.
+    struct Rng(u64);
+
+    impl Rng {
+        fn next(&mut self) -> u64 {
+            self.0 ^= self.0 << 13;
+            self.0 ^= self.0 >> 7;
+            self.0 ^= self.0 << 17;
+            self.0
+        }
+
+        /// Rows with some 1 in 2^`sparsity` cells set.
+        fn rows<const N: usize>(&mut self, sparsity: u32) -> [u64; N] {
+            core::array::from_fn(|_| (0..sparsity).fold(u64::MAX, |bits, _| bits & self.next()))
+        }
+    }
+
+    fn get(rows: &[u64], x: i32, y: i32) -> bool {
+        (0..64).contains(&x) && rows.get(y as usize).is_some_and(|row| row >> x & 1 == 1)
+    }
+
+    #[test]
+    fn a_disc_of_three_cells_as_drawn() {
+        let mut rows = [0_u64; 7];
+        rows[3] = 1 << 3;
+        dilate(&mut rows, 9);
+        let expected = [
+            0b000_0000, 0b011_1110, 0b011_1110, 0b011_1110, 0b011_1110, 0b011_1110, 0b000_0000,
+        ];
+        assert_eq!(rows, expected, "(3, 0) is not nearer than 3, (2, 2) is");
+    }
+
+    #[test]
+    fn dilation_equals_its_definition() {
+        let mut rng = Rng(7);
+        for radius2 in 0..=25 {
+            for sparsity in [3, 6, 9] {
+                let rows: [u64; 41] = rng.rows(sparsity);
+                let mut grown = rows;
+                dilate(&mut grown, radius2);
+                for y in 0..41 {
+                    for x in 0..64 {
+                        let near = (-5..=5).any(|dy| {
+                            (-5..=5).any(|dx| {
+                                dx * dx + dy * dy < radius2 as i32 && get(&rows, x + dx, y + dy)
+                            })
+                        });
+                        assert_eq!(get(&grown, x, y), near, "({x}, {y}), radius² {radius2}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// Steps from the nearest seed inside the mask.
+    fn steps(mask: &[u64], seeds: &[u64], adjacency: Adjacency) -> Vec<Option<u16>> {
+        let mut steps = vec![None; mask.len() * 64];
+        let mut queue = VecDeque::new();
+        for (i, steps) in steps.iter_mut().enumerate() {
+            let (x, y) = ((i % 64) as i32, (i / 64) as i32);
+            if get(mask, x, y) && get(seeds, x, y) {
+                *steps = Some(0);
+                queue.push_back(i);
+            }
+        }
+        while let Some(i) = queue.pop_front() {
+            let (x, y) = ((i % 64) as i32, (i / 64) as i32);
+            for (dy, dx) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dy, dx))) {
+                let side = dx * dy == 0;
+                let near = ((y + dy) * 64 + x + dx) as usize;
+                if (side || adjacency == Adjacency::Eight)
+                    && get(mask, x + dx, y + dy)
+                    && steps[near].is_none()
+                {
+                    steps[near] = steps[i].map(|s: u16| s + 1);
+                    queue.push_back(near);
+                }
+            }
+        }
+        steps
+    }
+
+    fn check_flood(rng: &mut Rng, adjacency: Adjacency, density: u32) -> bool {
+        let mask: [u64; 24] = rng.rows::<24>(density).map(|row| !row);
+        let mut seeds: [u64; 24] = rng.rows(8);
+        let targets: [u64; 24] = rng.rows(9);
+        let steps = steps(&mask, &seeds, adjacency);
+        let nearest = (0..steps.len())
+            .filter(|i| targets[i / 64] >> (i % 64) & 1 == 1)
+            .filter_map(|i| Some((steps[i]?, i)))
+            .min();
+        let expected = nearest.map(|(steps, i)| Met {
+            site: Site {
+                x: (i % 64) as u16,
+                y: (i / 64) as u16,
+            },
+            steps,
+        });
+        assert_eq!(flood(&mask, &mut seeds, &targets, adjacency), expected);
+        let until = expected.map_or(u16::MAX, |met| met.steps);
+        for (i, steps) in steps.iter().enumerate() {
+            let reached = seeds[i / 64] >> (i % 64) & 1 == 1;
+            assert_eq!(reached, steps.is_some_and(|s| s <= until), "cell {i}");
+        }
+        expected.is_some_and(|met| met.steps > 2)
+    }
+
+    #[test]
+    fn flood_meets_the_nearest_target_by_steps() {
+        let mut rng = Rng(9);
+        for adjacency in [Adjacency::Four, Adjacency::Eight] {
+            let far = (0..300)
+                .filter(|k| check_flood(&mut rng, adjacency, 1 + k % 3))
+                .count();
+            assert!(far > 10, "only {far} floods went three steps or more");
+        }
+    }
+
+    #[test]
+    fn flood_without_a_target_reaches_all_it_can() {
+        let mut mask = [u64::MAX; 5];
+        mask[2] = 0;
+        let mut seeds = [0, 1 << 63, 1, 0, 0];
+        let met = flood(&mask, &mut seeds, &[0; 5], Adjacency::Eight);
+        assert_eq!(met, None);
+        assert_eq!(seeds, [u64::MAX, u64::MAX, 0, 0, 0]);
+    }
+
+    #[test]
+    fn half_the_resolution_joins_two_by_two_cells() {
+        let mut rng = Rng(5);
+        for _ in 0..200 {
+            let [upper, lower] = rng.rows(2);
+            let half = halve_or(upper, lower);
+            for k in 0..32 {
+                let any = (upper | lower) >> (2 * k) & 3 != 0;
+                assert_eq!(half >> k & 1 == 1, any, "column {k}");
+            }
+        }
+    }
+}

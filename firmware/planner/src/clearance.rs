@@ -83,7 +83,11 @@ pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
         }
         let mut blocked = 0;
         for dy in -disc.reach..=disc.reach {
-            let half = disc.half_widths.get(dy.unsigned_abs() as usize).copied().flatten();
+            let half = disc
+                .half_widths
+                .get(dy.unsigned_abs() as usize)
+                .copied()
+                .flatten();
             if let (Some(half), Some(&near)) = (half, ring.get(slot(row + dy)))
                 && near != 0
             {
@@ -110,10 +114,17 @@ pub fn is_passable<const TILES: usize, const SLOTS: usize>(
     cell: crate::geometry::Cell,
 ) -> bool {
     (-disc.reach..=disc.reach).all(|dy| {
-        let half = disc.half_widths.get(dy.unsigned_abs() as usize).copied().flatten();
+        let half = disc
+            .half_widths
+            .get(dy.unsigned_abs() as usize)
+            .copied()
+            .flatten();
         half.is_none_or(|half| {
             (-i32::from(half)..=i32::from(half)).all(|dx| {
-                let near = crate::geometry::Cell { x: cell.x + dx, y: cell.y + dy };
+                let near = crate::geometry::Cell {
+                    x: cell.x + dx,
+                    y: cell.y + dy,
+                };
                 !matches!(tiles.class(near), Class::Obstacle | Class::Negative)
             })
         })
@@ -131,8 +142,15 @@ mod tests {
         let mut seed = 1u32;
         for _ in 0..300 {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            let cell = Cell { x: (seed >> 8) as i32 % 90 - 40, y: (seed >> 20) as i32 % 60 - 30 };
-            let class = if seed >> 4 & 3 == 0 { Class::Obstacle } else { Class::Free };
+            let cell = Cell {
+                x: (seed >> 8) as i32 % 90 - 40,
+                y: (seed >> 20) as i32 % 60 - 30,
+            };
+            let class = if seed >> 4 & 3 == 0 {
+                Class::Obstacle
+            } else {
+                Class::Free
+            };
             let _ = tiles.set(cell, class);
         }
         tiles
@@ -152,7 +170,10 @@ mod tests {
                             is_passable(&tiles, &disc, cell),
                             "radius {radius}, {cell:?}"
                         );
-                        assert_eq!(strip.unknown >> k & 1 == 1, tiles.class(cell) == Class::Unknown);
+                        assert_eq!(
+                            strip.unknown >> k & 1 == 1,
+                            tiles.class(cell) == Class::Unknown
+                        );
                     }
                 });
             }
@@ -167,7 +188,12 @@ mod tests {
             tiles.reset(6, 4);
             for x in 0..30 {
                 let open = (10..10 + gap).contains(&x);
-                tiles.set(Cell { x, y: 5 }, if open { Class::Free } else { Class::Obstacle }).unwrap();
+                tiles
+                    .set(
+                        Cell { x, y: 5 },
+                        if open { Class::Free } else { Class::Obstacle },
+                    )
+                    .unwrap();
             }
             let mut lanes = 0;
             for_each_strip(&tiles, &Disc::new(0.30), (0, 5), 1, |_, strip| {

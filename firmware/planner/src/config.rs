@@ -63,7 +63,10 @@ impl Config {
             linear_accel_mps2: 0.3,
             angular_accel_radps2: 1.75,
             period_s: 0.2,
-            solver: SolverConfig { max_cycles: 4, ..SolverConfig::default() },
+            solver: SolverConfig {
+                max_cycles: 4,
+                ..SolverConfig::default()
+            },
             topology_units: 15_000,
         }
     }

@@ -58,8 +58,14 @@ impl Surround {
             .take(MOST_POINTS)
             .map(|point| {
                 let (dx, dy) = (point.x_m - pose.x_m, point.y_m - pose.y_m);
-                let at = Point { x_m: dx * cos + dy * sin, y_m: dy * cos - dx * sin };
-                Threat { at, clearance_m: overhang(at.x_m, at.y_m) }
+                let at = Point {
+                    x_m: dx * cos + dy * sin,
+                    y_m: dy * cos - dx * sin,
+                };
+                Threat {
+                    at,
+                    clearance_m: overhang(at.x_m, at.y_m),
+                }
             })
             // A point inside the robot is a false echo or a passing hand; it cannot be avoided any more.
             .filter(|threat| threat.clearance_m > -0.02)
@@ -82,10 +88,17 @@ impl Surround {
     /// Whether the arc of `twist`, for one period and the braking after it, is clear.
     fn admissible(&self, twist: Twist, config: &Config) -> bool {
         let (v, w) = (twist.linear_mps, twist.angular_radps);
-        let margin = if v.abs() > CREEP_MPS { MARGIN_M } else { CREEP_MARGIN_M };
+        let margin = if v.abs() > CREEP_MPS {
+            MARGIN_M
+        } else {
+            CREEP_MARGIN_M
+        };
         let period = config.period_s;
         let (length, turn) = if v.abs() < 1e-3 {
-            (0.0, w * period + w * w.abs() / (2.0 * config.angular_accel_radps2))
+            (
+                0.0,
+                w * period + w * w.abs() / (2.0 * config.angular_accel_radps2),
+            )
         } else {
             let length = v * period + v * v.abs() / (2.0 * config.linear_accel_mps2);
             (length, w * length / v)
@@ -130,7 +143,10 @@ fn wish(config: &Config, error: f32) -> Twist {
         let (_, cos) = math::sin_cos(error);
         config.max_linear_mps * cos * cos
     };
-    Twist { linear_mps, angular_radps }
+    Twist {
+        linear_mps,
+        angular_radps,
+    }
 }
 
 /// Where the way ahead is taken: turn on the spot, creep, or back out.
@@ -151,7 +167,10 @@ fn evade(config: &Config, wish: Twist, surround: &Surround) -> Twist {
     ];
     candidates
         .iter()
-        .map(|&(linear_mps, angular_radps)| Twist { linear_mps, angular_radps })
+        .map(|&(linear_mps, angular_radps)| Twist {
+            linear_mps,
+            angular_radps,
+        })
         .find(|&twist| surround.admissible(twist, config))
         .unwrap_or_default()
 }

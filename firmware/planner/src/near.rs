@@ -58,7 +58,8 @@ impl NearField {
     pub fn update(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
         let (from, centre) = (sensor_point(pose, laser), pose.point());
         self.points.retain(|&point| {
-            distance2(point, centre) < REACH_M * REACH_M && !looked_at(pose, laser, ranges_mm, from, point)
+            distance2(point, centre) < REACH_M * REACH_M
+                && !looked_at(pose, laser, ranges_mm, from, point)
         });
         let mut last: Option<Point> = None;
         for beam in level_beams(pose, laser, ranges_mm).filter(|beam| beam.hit) {
@@ -123,7 +124,10 @@ mod tests {
         let here = Pose::default();
         near.update(&here, &laser(), &thing(0, 800));
         assert!(!near.points().is_empty());
-        let turned = Pose { yaw_rad: math::PI, ..here };
+        let turned = Pose {
+            yaw_rad: math::PI,
+            ..here
+        };
         near.update(&turned, &laser(), &[NO_RETURN_MM; 181]);
         assert!(!near.points().is_empty(), "out of view");
         near.update(&here, &laser(), &[NO_RETURN_MM; 181]);
@@ -137,7 +141,10 @@ mod tests {
         near.update(&here, &laser(), &thing(0, 1000));
         let count = near.points().len();
         near.update(&here, &laser(), &thing(0, 500));
-        assert!(near.points().len() > count, "hidden behind the nearer thing");
+        assert!(
+            near.points().len() > count,
+            "hidden behind the nearer thing"
+        );
         let away = Pose { x_m: -2.0, ..here };
         near.update(&away, &laser(), &[INVALID_MM; 181]);
         assert!(near.points().is_empty());
@@ -147,7 +154,10 @@ mod tests {
     fn a_wall_is_thinned_and_the_store_never_overflows() {
         let mut near = NearField::new();
         for k in 0..400 {
-            let pose = Pose { yaw_rad: k as f32 * 0.7, ..Pose::default() };
+            let pose = Pose {
+                yaw_rad: k as f32 * 0.7,
+                ..Pose::default()
+            };
             near.update(&pose, &laser(), &[400 + (k % 7) as u16 * 100; 181]);
             assert!(near.points().len() <= MOST_POINTS);
         }

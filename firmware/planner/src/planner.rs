@@ -19,8 +19,8 @@ use crate::config::Config;
 use crate::drive::{Surround, drive};
 use crate::field::{SCRATCH_FLOATS, SIDE, Solution, Window, descent, solve};
 use crate::geometry::{Cell, Pose, Twist};
-use crate::map::integrate::is_level;
 use crate::map::Map;
+use crate::map::integrate::is_level;
 use crate::near::NearField;
 use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::Outlook;
@@ -159,9 +159,14 @@ impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> State<TILES, SL
     pub fn tile_skeleton(&self, x: i16, y: i16) -> [u16; 16] {
         let frame = self.topology.frame();
         let mut rows = [0; 16];
-        let Some(plane) = self.topology.skeleton() else { return rows };
+        let Some(plane) = self.topology.skeleton() else {
+            return rows;
+        };
         for (dy, row) in rows.iter_mut().enumerate() {
-            let cell = Cell { x: i32::from(x) * 32, y: i32::from(y) * 32 + 2 * dy as i32 };
+            let cell = Cell {
+                x: i32::from(x) * 32,
+                y: i32::from(y) * 32 + 2 * dy as i32,
+            };
             if let Some(site) = frame.site(cell) {
                 let word = plane.word(usize::from(site.y), usize::from(site.x / 32));
                 *row = (word >> (site.x & 16)) as u16;
@@ -177,7 +182,9 @@ impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> State<TILES, SL
     }
 }
 
-impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> Default for State<TILES, SLOTS, MARKS> {
+impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> Default
+    for State<TILES, SLOTS, MARKS>
+{
     fn default() -> Self {
         Self::new()
     }
@@ -187,7 +194,10 @@ impl Workspace {
     /// Cleared.
     #[must_use]
     pub const fn new() -> Self {
-        Self { window: Window::new(), scratch: [0.0; SCRATCH] }
+        Self {
+            window: Window::new(),
+            scratch: [0.0; SCRATCH],
+        }
     }
 
     /// The last window's field.
@@ -211,15 +221,24 @@ pub fn step<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
     input: Input<'_>,
 ) -> Output {
     if state.status != Status::Exploring {
-        return Output { status: state.status, ..Output::default() };
+        return Output {
+            status: state.status,
+            ..Output::default()
+        };
     }
     sense(config, state, &input);
     let disc = Disc::new(config.robot_radius_m);
-    if state.topology.advance(state.map.tiles(), &disc, config.topology_units) {
+    if state
+        .topology
+        .advance(state.map.tiles(), &disc, config.topology_units)
+    {
         replan(state, workspace, &disc, &input);
     }
     if state.status != Status::Exploring {
-        return Output { status: state.status, ..Output::default() };
+        return Output {
+            status: state.status,
+            ..Output::default()
+        };
     }
     follow(config, state, workspace, &disc, &input)
 }
@@ -247,10 +266,15 @@ fn sense<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
 
 /// Whether the level laser sees something closer than the robot's own hull in nearly every beam.
 fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
-    let level = config.lasers.iter().zip(input.scans).find(|(laser, _)| is_level(laser));
+    let level = config
+        .lasers
+        .iter()
+        .zip(input.scans)
+        .find(|(laser, _)| is_level(laser));
     level.is_some_and(|(_, ranges_mm)| {
         let blocked = |&&range: &&u16| f32::from(range) * 1e-3 < BLOCKED_M;
-        !ranges_mm.is_empty() && ranges_mm.iter().filter(blocked).count() * 10 >= ranges_mm.len() * 9
+        !ranges_mm.is_empty()
+            && ranges_mm.iter().filter(blocked).count() * 10 >= ranges_mm.len() * 9
     })
 }
 
@@ -306,15 +330,25 @@ fn follow<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
         return Output::default();
     };
     charge(&mut workspace.window, &mut state.window_at, &view, &goal);
-    let solution = solve(&mut workspace.window, &mut workspace.scratch, &config.solver);
+    let solution = solve(
+        &mut workspace.window,
+        &mut workspace.scratch,
+        &config.solver,
+    );
     let (x, y) = view.position(input.pose.point());
     let heading = descent::heading_at(&workspace.window, x, y);
     let surround = Surround::new(&input.pose, state.near.points());
     let velocity = match heading {
         Some(heading_rad) => drive(config, &input.pose, heading_rad, &surround),
         // In the goal's own cell there is no slope: look around until it is explored.
-        None if view.place(robot).is_some_and(|place| View::has(&goal, place)) => {
-            Twist { linear_mps: 0.0, angular_radps: LOOK_AROUND_RADPS }
+        None if view
+            .place(robot)
+            .is_some_and(|place| View::has(&goal, place)) =>
+        {
+            Twist {
+                linear_mps: 0.0,
+                angular_radps: LOOK_AROUND_RADPS,
+            }
         }
         None => Twist::default(),
     };
@@ -344,7 +378,9 @@ fn local_goal<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
     SCALES.iter().find_map(|&scale| {
         let mut view = View::around(state.map.tiles(), disc, robot.cell(), scale);
         view.free_robot(robot.cell());
-        let goal = road.local_goals(robot).find_map(|cell| goal_cells(&view, cell))?;
+        let goal = road
+            .local_goals(robot)
+            .find_map(|cell| goal_cells(&view, cell))?;
         Some((view, goal))
     })
 }
@@ -354,8 +390,14 @@ fn goal_cells(view: &View, cell: Cell) -> Option<Rows> {
     let mut rows: Rows = [0; SIDE];
     let mut any = false;
     for k in 0..4 {
-        let part = Cell { x: cell.x + (k & 1), y: cell.y + (k >> 1) };
-        if let Some(place) = view.place(part).filter(|&place| View::has(&view.passable, place)) {
+        let part = Cell {
+            x: cell.x + (k & 1),
+            y: cell.y + (k >> 1),
+        };
+        if let Some(place) = view
+            .place(part)
+            .filter(|&place| View::has(&view.passable, place))
+        {
             View::put(&mut rows, place);
             any = true;
         }
@@ -368,7 +410,10 @@ fn charge(window: &mut Window, at: &mut Option<(Cell, i32)>, view: &View, goal: 
     match *at {
         Some((origin, scale)) if scale == view.scale => {
             let steps = |to: i32, from: i32| (to - from) / scale;
-            window.shift(steps(view.origin.x, origin.x), steps(view.origin.y, origin.y));
+            window.shift(
+                steps(view.origin.x, origin.x),
+                steps(view.origin.y, origin.y),
+            );
             window.set_boundary(&view.passable, goal);
         }
         _ => {

@@ -28,7 +28,10 @@ pub struct Frame {
 }
 
 impl Frame {
-    const NONE: Self = Self { origin: Cell { x: 0, y: 0 }, shape: Shape::UNIT };
+    const NONE: Self = Self {
+        origin: Cell { x: 0, y: 0 },
+        shape: Shape::UNIT,
+    };
 
     /// The frame of a map's extent, a tile larger on every side where the box (in tiles) has room: paths may run
     /// outside the known area.
@@ -42,8 +45,15 @@ impl Frame {
         let (x, across) = widen(extent.least.0, extent.greatest.0, width);
         let (y, up) = widen(extent.least.1, extent.greatest.1, height);
         // Two tiles are a word across. Sides within the box are within the limits of a shape.
-        let shape = Shape::new((across as usize).div_ceil(2), up as usize * 16).unwrap_or(Shape::UNIT);
-        Self { origin: Cell { x: x * 32, y: y * 32 }, shape }
+        let shape =
+            Shape::new((across as usize).div_ceil(2), up as usize * 16).unwrap_or(Shape::UNIT);
+        Self {
+            origin: Cell {
+                x: x * 32,
+                y: y * 32,
+            },
+            shape,
+        }
     }
 
     /// The coarse cell of a map cell, if it is in the plane.
@@ -58,7 +68,10 @@ impl Frame {
     /// The least of a coarse cell's four map cells.
     #[must_use]
     pub fn cell(&self, site: Site) -> Cell {
-        Cell { x: self.origin.x + i32::from(site.x) * 2, y: self.origin.y + i32::from(site.y) * 2 }
+        Cell {
+            x: self.origin.x + i32::from(site.x) * 2,
+            y: self.origin.y + i32::from(site.y) * 2,
+        }
     }
 
     /// Tiles across, counting the spare half of the last word.
@@ -154,7 +167,9 @@ impl<const SLOTS: usize, const MARKS: usize> Topology<SLOTS, MARKS> {
     ) -> bool {
         let mut left = budget;
         if self.stage == Stage::Load(0) {
-            let Some(extent) = tiles.extent() else { return false };
+            let Some(extent) = tiles.extent() else {
+                return false;
+            };
             self.next_frame = Frame::around(extent, tiles.box_tiles());
         }
         while let Stage::Load(tile) = self.stage {
@@ -179,8 +194,10 @@ impl<const SLOTS: usize, const MARKS: usize> Topology<SLOTS, MARKS> {
     ) -> u32 {
         let frame = self.next_frame;
         let (across, up) = (tile % frame.tiles_across(), tile / frame.tiles_across());
-        let corner =
-            (frame.origin.x + across as i32 * 32, frame.origin.y + up as i32 * 32);
+        let corner = (
+            frame.origin.x + across as i32 * 32,
+            frame.origin.y + up as i32 * 32,
+        );
         // Where nothing was ever stored, everything is unexplored.
         let mut rows = [[0, u16::MAX]; 16];
         let seen = tiles.is_touched(corner.0 >> 5, corner.1 >> 5);
@@ -197,7 +214,10 @@ impl<const SLOTS: usize, const MARKS: usize> Topology<SLOTS, MARKS> {
         let (word, shift) = (across / 2, across % 2 * 16);
         for (k, [open, unexplored]) in rows.into_iter().enumerate() {
             let index = (up * 16 + k) * frame.shape.words_per_row() + word;
-            for (plane, half) in [(&mut self.next, open), (&mut self.next_frontier, unexplored)] {
+            for (plane, half) in [
+                (&mut self.next, open),
+                (&mut self.next_frontier, unexplored),
+            ] {
                 if let Some(out) = plane.as_flattened_mut().get_mut(index) {
                     *out = *out & !(0xffff << shift) | u32::from(half) << shift;
                 }
@@ -222,7 +242,9 @@ impl<const SLOTS: usize, const MARKS: usize> Topology<SLOTS, MARKS> {
     fn thin(&mut self, budget: u32) -> bool {
         let shape = self.next_frame.shape;
         let keep = self.next_frontier.as_flattened();
-        let Ok(mut plane) = PlaneMut::new(shape, self.next.as_flattened_mut()) else { return false };
+        let Ok(mut plane) = PlaneMut::new(shape, self.next.as_flattened_mut()) else {
+            return false;
+        };
         match self.thinning.advance(&mut plane, keep, budget) {
             Progress::Pending => false,
             Progress::Done { .. } => {
@@ -270,8 +292,16 @@ fn mark_frontier(open: &[u32], marks: &mut [u32], per_row: usize, rows: usize) {
             let index = row * per_row + word;
             let read = |words: &[u32], index: usize| words.get(index).copied().unwrap_or(0);
             let here = read(marks, index);
-            let above = if row + 1 < rows { read(marks, index + per_row) } else { 0 };
-            let after = if word + 1 < per_row { read(marks, index + 1) } else { 0 };
+            let above = if row + 1 < rows {
+                read(marks, index + per_row)
+            } else {
+                0
+            };
+            let after = if word + 1 < per_row {
+                read(marks, index + 1)
+            } else {
+                0
+            };
             let beside = here << 1 | before >> 31 | here >> 1 | after << 31 | *below | above;
             let frontier = beside & read(open, index);
             if let Some(mark) = marks.get_mut(index) {

@@ -61,9 +61,17 @@ impl View {
     ) -> Self {
         let half = SIDE as i32 / 2;
         let least = |at: i32| (at.div_euclid(scale) - half) * scale;
-        let origin = Cell { x: least(centre.x), y: least(centre.y) };
-        let mut view =
-            Self { origin, scale, passable: [0; SIDE], obstacle: [0; SIDE], unknown: [0; SIDE] };
+        let origin = Cell {
+            x: least(centre.x),
+            y: least(centre.y),
+        };
+        let mut view = Self {
+            origin,
+            scale,
+            passable: [0; SIDE],
+            obstacle: [0; SIDE],
+            unknown: [0; SIDE],
+        };
         let mut known: Rows = [0; SIDE];
         let across = SIDE as i32 * scale;
         for block in 0..(across + 31) / 32 {
@@ -105,7 +113,10 @@ impl View {
     pub fn position(&self, point: Point) -> (f32, f32) {
         let side = CELL_M * self.scale as f32;
         let along = |at: f32, origin: i32| (at - origin as f32 * CELL_M) / side;
-        (along(point.x_m, self.origin.x), along(point.y_m, self.origin.y))
+        (
+            along(point.x_m, self.origin.x),
+            along(point.y_m, self.origin.y),
+        )
     }
 
     /// The map cell of a window cell (its middle).
@@ -135,7 +146,9 @@ impl View {
     /// wrong by a cell): within four cells of it, whatever does not touch an obstacle counts as passable; failing
     /// that, whatever is no obstacle.
     pub fn free_robot(&mut self, robot: Cell) {
-        let Some(place) = self.place(robot) else { return };
+        let Some(place) = self.place(robot) else {
+            return;
+        };
         if Self::has(&self.passable, place) {
             return;
         }
@@ -144,7 +157,11 @@ impl View {
         let touched = |rows: &Rows, row: usize| {
             let here = rows.get(row).copied().unwrap_or(0);
             let above = rows.get(row + 1).copied().unwrap_or(0);
-            let below = row.checked_sub(1).and_then(|row| rows.get(row)).copied().unwrap_or(0);
+            let below = row
+                .checked_sub(1)
+                .and_then(|row| rows.get(row))
+                .copied()
+                .unwrap_or(0);
             here | here << 1 | here >> 1 | above | below
         };
         let roomy = touched(&self.obstacle, y) >> x & 1 == 0;
@@ -178,7 +195,12 @@ mod tests {
         for y in -40..40 {
             for x in -40..40 {
                 let wall = x == -30 || y == 21 || (x == 7 && y % 9 != 0);
-                tiles.set(Cell { x, y }, if wall { Class::Obstacle } else { Class::Free }).unwrap();
+                tiles
+                    .set(
+                        Cell { x, y },
+                        if wall { Class::Obstacle } else { Class::Free },
+                    )
+                    .unwrap();
             }
         }
         tiles
@@ -192,8 +214,14 @@ mod tests {
             for x in 0..SIDE {
                 let cell = view.cell(x, y);
                 assert_eq!(view.place(cell), Some((x, y)));
-                assert_eq!(View::has(&view.passable, (x, y)), is_passable(&tiles, &disc, cell));
-                assert_eq!(View::has(&view.obstacle, (x, y)), tiles.class(cell) == Class::Obstacle);
+                assert_eq!(
+                    View::has(&view.passable, (x, y)),
+                    is_passable(&tiles, &disc, cell)
+                );
+                assert_eq!(
+                    View::has(&view.obstacle, (x, y)),
+                    tiles.class(cell) == Class::Obstacle
+                );
             }
         }
     }
@@ -211,10 +239,17 @@ mod tests {
                     };
                     let mut any = false;
                     for k in 0..scale * scale {
-                        let cell = Cell { x: least.x + k % scale, y: least.y + k / scale };
+                        let cell = Cell {
+                            x: least.x + k % scale,
+                            y: least.y + k / scale,
+                        };
                         any |= is_passable(&tiles, &disc, cell);
                     }
-                    assert_eq!(View::has(&view.passable, (x, y)), any, "scale {scale} ({x}, {y})");
+                    assert_eq!(
+                        View::has(&view.passable, (x, y)),
+                        any,
+                        "scale {scale} ({x}, {y})"
+                    );
                 }
             }
         }
@@ -229,6 +264,9 @@ mod tests {
         assert!(!View::has(&view.passable, place));
         view.free_robot(robot);
         assert!(View::has(&view.passable, place));
-        assert!(!View::has(&view.passable, (place.0 - 2, place.1)), "not into the wall");
+        assert!(
+            !View::has(&view.passable, (place.0 - 2, place.1)),
+            "not into the wall"
+        );
     }
 }

@@ -57,7 +57,10 @@ impl Evidence {
 
     const fn origin_around(centre: Cell) -> Cell {
         let half = EVIDENCE_SIDE / 2;
-        Cell { x: (centre.x - half) & !(STRIDE - 1), y: (centre.y - half) & !(STRIDE - 1) }
+        Cell {
+            x: (centre.x - half) & !(STRIDE - 1),
+            y: (centre.y - half) & !(STRIDE - 1),
+        }
     }
 
     /// Keep the window around `centre`; cells that enter have no evidence.
@@ -70,12 +73,20 @@ impl Evidence {
         }
         let (old, side) = (self.origin, EVIDENCE_SIDE);
         self.origin = next;
-        for y in if dy >= 0 { old.y + side..next.y + side } else { next.y..old.y } {
+        for y in if dy >= 0 {
+            old.y + side..next.y + side
+        } else {
+            next.y..old.y
+        } {
             if let Some(row) = self.counts.get_mut((y & (side - 1)) as usize) {
                 row.fill(0);
             }
         }
-        let columns = if dx >= 0 { old.x + side..next.x + side } else { next.x..old.x };
+        let columns = if dx >= 0 {
+            old.x + side..next.x + side
+        } else {
+            next.x..old.x
+        };
         for row in &mut self.counts {
             for x in columns.clone().step_by(2) {
                 if let Some(pair) = row.get_mut(((x & (side - 1)) / 2) as usize) {
@@ -94,7 +105,10 @@ impl Evidence {
 
     fn update(&mut self, cell: Cell, class: Class, change: impl Fn(u8) -> u8) -> Class {
         let (x, y) = (cell.x & (EVIDENCE_SIDE - 1), cell.y & (EVIDENCE_SIDE - 1));
-        let pair = self.counts.get_mut(y as usize).and_then(|row| row.get_mut(x as usize / 2));
+        let pair = self
+            .counts
+            .get_mut(y as usize)
+            .and_then(|row| row.get_mut(x as usize / 2));
         let Some(pair) = pair else { return class };
         let shift = (x & 1) * 4;
         let count = match *pair >> shift & 15 {
@@ -189,6 +203,10 @@ mod tests {
         evidence.follow(Cell { x: 200, y: 0 });
         assert!(!evidence.covers(CELL));
         evidence.follow(Cell { x: 0, y: 0 });
-        assert_eq!(evidence.pass(CELL, Class::Unknown), Class::Free, "begins anew");
+        assert_eq!(
+            evidence.pass(CELL, Class::Unknown),
+            Class::Free,
+            "begins anew"
+        );
     }
 }

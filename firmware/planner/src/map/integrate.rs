@@ -67,7 +67,11 @@ pub(crate) fn is_level(laser: &Laser) -> bool {
 }
 
 /// The level laser's beams that carry information.
-pub(crate) fn level_beams<'a>(pose: &Pose, laser: &'a Laser, ranges_mm: &'a [u16]) -> impl Iterator<Item = Beam> + 'a {
+pub(crate) fn level_beams<'a>(
+    pose: &Pose,
+    laser: &'a Laser,
+    ranges_mm: &'a [u16],
+) -> impl Iterator<Item = Beam> + 'a {
     let from = sensor_point(pose, laser);
     let first = pose.yaw_rad + laser.first_bearing_rad;
     ranges_mm.iter().enumerate().filter_map(move |(i, &range)| {
@@ -82,13 +86,23 @@ pub(crate) fn level_beams<'a>(pose: &Pose, laser: &'a Laser, ranges_mm: &'a [u16
             return None;
         }
         let (sin, cos) = math::sin_cos(first + i as f32 * laser.bearing_step_rad);
-        let length_m = if missing { f32::from(limit) } else { f32::from(range) } * 1e-3;
+        let length_m = if missing {
+            f32::from(limit)
+        } else {
+            f32::from(range)
+        } * 1e-3;
         let free_from_m = match i & 3 {
             0 => 0.0,
             2 => 1.2,
             _ => 2.4,
         };
-        Some(Beam { from, direction: (cos, sin), length_m, hit: !missing, free_from_m })
+        Some(Beam {
+            from,
+            direction: (cos, sin),
+            length_m,
+            hit: !missing,
+            free_from_m,
+        })
     })
 }
 
@@ -102,9 +116,17 @@ fn traverse(beam: &Beam, from_m: f32, mut visit: impl FnMut(Cell, f32) -> bool) 
     let mut cell = start.cell();
     let axis = |position: f32, index: i32, direction: f32| {
         if direction > 1e-6 {
-            (1, ((index + 1) as f32 * CELL_M - position) / direction, CELL_M / direction)
+            (
+                1,
+                ((index + 1) as f32 * CELL_M - position) / direction,
+                CELL_M / direction,
+            )
         } else if direction < -1e-6 {
-            (-1, (index as f32 * CELL_M - position) / direction, -CELL_M / direction)
+            (
+                -1,
+                (index as f32 * CELL_M - position) / direction,
+                -CELL_M / direction,
+            )
         } else {
             (0, f32::MAX, 0.0)
         }
@@ -150,8 +172,13 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         for y in middle.y - reach..=middle.y + reach {
             for x in middle.x - reach..=middle.x + reach {
                 let cell = Cell { x, y };
-                let (dx, dy) = (cell.centre().x_m - centre.x_m, cell.centre().y_m - centre.y_m);
-                if dx * dx + dy * dy <= radius_m * radius_m && self.tiles.class(cell) == Class::Unknown {
+                let (dx, dy) = (
+                    cell.centre().x_m - centre.x_m,
+                    cell.centre().y_m - centre.y_m,
+                );
+                if dx * dx + dy * dy <= radius_m * radius_m
+                    && self.tiles.class(cell) == Class::Unknown
+                {
                     self.store(cell, Class::Free);
                 }
             }
@@ -162,7 +189,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         if beam.length_m <= beam.free_from_m {
             return;
         }
-        let guard_from = if beam.hit { beam.length_m - GUARD_M } else { f32::MAX };
+        let guard_from = if beam.hit {
+            beam.length_m - GUARD_M
+        } else {
+            f32::MAX
+        };
         traverse(beam, beam.free_from_m, |cell, leaves_m| {
             if beam.hit && leaves_m >= beam.length_m {
                 return false;
@@ -193,8 +224,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 
     fn hit(&mut self, cell: Cell) {
         let class = self.tiles.class(cell);
-        let now =
-            if self.evidence.covers(cell) { self.evidence.hit(cell, class) } else { Class::Obstacle };
+        let now = if self.evidence.covers(cell) {
+            self.evidence.hit(cell, class)
+        } else {
+            Class::Obstacle
+        };
         if now != class {
             self.store(cell, now);
         }
@@ -224,7 +258,8 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             if range == INVALID_MM || range == NO_RETURN_MM || range >= laser.range_limit_mm {
                 continue;
             }
-            let (sin, cos) = math::sin_cos(laser.first_bearing_rad + i as f32 * laser.bearing_step_rad);
+            let (sin, cos) =
+                math::sin_cos(laser.first_bearing_rad + i as f32 * laser.bearing_step_rad);
             let range_m = f32::from(range) * 1e-3;
             let (ahead, left) = (range_m * cos * cos_tilt, range_m * sin);
             let height = laser.z_m - range_m * cos * sin_tilt + left * sin_roll;
@@ -246,26 +281,43 @@ mod tests {
 
     fn beam(x_m: f32, y_m: f32, angle: f32, length_m: f32) -> Beam {
         let (sin, cos) = math::sin_cos(angle);
-        Beam { from: Point { x_m, y_m }, direction: (cos, sin), length_m, hit: true, free_from_m: 0.0 }
+        Beam {
+            from: Point { x_m, y_m },
+            direction: (cos, sin),
+            length_m,
+            hit: true,
+            free_from_m: 0.0,
+        }
     }
 
     /// Every cell that the segment passes more than a hair inside of must be visited, by dense sampling.
     #[test]
     fn the_traversal_visits_every_cell_of_the_segment_in_order() {
         for k in 0..200 {
-            let b = beam(0.013 * k as f32, -0.7 + 0.01 * k as f32, 0.17 * k as f32, 0.05 + 0.02 * k as f32);
+            let b = beam(
+                0.013 * k as f32,
+                -0.7 + 0.01 * k as f32,
+                0.17 * k as f32,
+                0.05 + 0.02 * k as f32,
+            );
             let mut cells = std::vec::Vec::new();
             traverse(&b, 0.0, |cell, _| {
                 cells.push(cell);
                 true
             });
             for pair in cells.windows(2) {
-                assert_eq!((pair[0].x - pair[1].x).abs() + (pair[0].y - pair[1].y).abs(), 1);
+                assert_eq!(
+                    (pair[0].x - pair[1].x).abs() + (pair[0].y - pair[1].y).abs(),
+                    1
+                );
             }
             let mut at = 0;
             for i in 0..=2000 {
                 let s = b.length_m * i as f32 / 2000.0;
-                let p = Point { x_m: b.from.x_m + b.direction.0 * s, y_m: b.from.y_m + b.direction.1 * s };
+                let p = Point {
+                    x_m: b.from.x_m + b.direction.0 * s,
+                    y_m: b.from.y_m + b.direction.1 * s,
+                };
                 let inside = |v: f32| (v / CELL_M - (v / CELL_M).round()).abs() > 1e-3;
                 if inside(p.x_m) && inside(p.y_m) {
                     while at < cells.len() && cells[at] != p.cell() {

@@ -30,7 +30,12 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// An empty map without a box.
     #[must_use]
     pub const fn new() -> Self {
-        Self { tiles: Tiles::new(), evidence: Evidence::new(), out_of_box: false, pool_full: false }
+        Self {
+            tiles: Tiles::new(),
+            evidence: Evidence::new(),
+            out_of_box: false,
+            pool_full: false,
+        }
     }
 
     /// Forget everything; the box is `width` × `height` tiles.

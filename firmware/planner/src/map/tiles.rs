@@ -186,7 +186,10 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
 
     fn in_extent(&self, tile_x: i32, tile_y: i32) -> bool {
         self.extent.is_some_and(|e| {
-            tile_x >= e.least.0 && tile_x <= e.greatest.0 && tile_y >= e.least.1 && tile_y <= e.greatest.1
+            tile_x >= e.least.0
+                && tile_x <= e.greatest.0
+                && tile_y >= e.least.1
+                && tile_y <= e.greatest.1
         })
     }
 
@@ -203,7 +206,10 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         if !self.in_extent(tile_x, tile_y) {
             let grown = match self.extent {
                 Some(extent) => extent.with(tile_x, tile_y),
-                None => Extent { least: (tile_x, tile_y), greatest: (tile_x, tile_y) },
+                None => Extent {
+                    least: (tile_x, tile_y),
+                    greatest: (tile_x, tile_y),
+                },
             };
             if grown.width() > self.width || grown.height() > self.height {
                 return Err(NoRoom::Box);
@@ -216,7 +222,10 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         let slot = self.slot(tile_x, tile_y);
         let entry = self.directory.get_mut(slot).ok_or(NoRoom::Box)?;
         if *entry == 0 {
-            let fresh = self.pool.get_mut(usize::from(self.used)).ok_or(NoRoom::Pool)?;
+            let fresh = self
+                .pool
+                .get_mut(usize::from(self.used))
+                .ok_or(NoRoom::Pool)?;
             *fresh = [[0; 2]; TILE_SIDE as usize];
             self.used += 1;
             *entry = self.used;
@@ -227,8 +236,12 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// What is known of a cell.
     #[must_use]
     pub fn class(&self, cell: Cell) -> Class {
-        let Some(rows) = self.rows(cell.x >> 5, cell.y >> 5) else { return Class::Unknown };
-        let Some([low, high]) = rows.get((cell.y & 31) as usize) else { return Class::Unknown };
+        let Some(rows) = self.rows(cell.x >> 5, cell.y >> 5) else {
+            return Class::Unknown;
+        };
+        let Some([low, high]) = rows.get((cell.y & 31) as usize) else {
+            return Class::Unknown;
+        };
         let bit = cell.x & 31;
         match (low >> bit & 1, high >> bit & 1) {
             (0, 0) => Class::Unknown,
@@ -244,13 +257,26 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// [`NoRoom`] where the box or the pool cannot hold it; the map is then unchanged.
     pub fn set(&mut self, cell: Cell, class: Class) -> Result<(), NoRoom> {
         let index = self.touch(cell.x >> 5, cell.y >> 5)?;
-        let row = self.pool.get_mut(index).and_then(|rows| rows.get_mut((cell.y & 31) as usize));
-        let Some([low, high]) = row else { return Err(NoRoom::Pool) };
+        let row = self
+            .pool
+            .get_mut(index)
+            .and_then(|rows| rows.get_mut((cell.y & 31) as usize));
+        let Some([low, high]) = row else {
+            return Err(NoRoom::Pool);
+        };
         let bit = 1u32 << (cell.x & 31);
         let code = class as u8;
         let old = (*low, *high);
-        *low = if code & 1 == 0 { *low & !bit } else { *low | bit };
-        *high = if code & 2 == 0 { *high & !bit } else { *high | bit };
+        *low = if code & 1 == 0 {
+            *low & !bit
+        } else {
+            *low | bit
+        };
+        *high = if code & 2 == 0 {
+            *high & !bit
+        } else {
+            *high | bit
+        };
         if old != (*low, *high) {
             self.edits = self.edits.wrapping_add(1);
         }
@@ -263,8 +289,12 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         let (tile_x, shift) = (x >> 5, (x & 31) as u32);
         let mut row = Row::default();
         for k in 0..3 {
-            let Some(rows) = self.rows(tile_x + k, y >> 5) else { continue };
-            let Some(&[low, high]) = rows.get((y & 31) as usize) else { continue };
+            let Some(rows) = self.rows(tile_x + k, y >> 5) else {
+                continue;
+            };
+            let Some(&[low, high]) = rows.get((y & 31) as usize) else {
+                continue;
+            };
             let place = |word: u32| match k {
                 0 => u64::from(word) >> shift,
                 1 => u64::from(word) << 32 >> shift,
@@ -316,7 +346,11 @@ mod tests {
     #[test]
     fn a_cell_reads_back_and_its_neighbours_stay_unknown() {
         let mut tiles = small();
-        for (x, class) in [(-33, Class::Free), (-32, Class::Obstacle), (31, Class::Negative)] {
+        for (x, class) in [
+            (-33, Class::Free),
+            (-32, Class::Obstacle),
+            (31, Class::Negative),
+        ] {
             let cell = Cell { x, y: -5 };
             tiles.set(cell, class).unwrap();
             assert_eq!(tiles.class(cell), class);
@@ -330,14 +364,21 @@ mod tests {
     fn a_row_spans_three_tiles() {
         let mut tiles = small();
         for x in -40..40 {
-            let class = if x % 3 == 0 { Class::Obstacle } else { Class::Free };
+            let class = if x % 3 == 0 {
+                Class::Obstacle
+            } else {
+                Class::Free
+            };
             tiles.set(Cell { x, y: 7 }, class).unwrap();
         }
         for start in [-40, -33, -32, -31, -24] {
             let row = tiles.row(start, 7);
             for k in 0..64 {
                 let cell = Cell { x: start + k, y: 7 };
-                assert_eq!(row.obstacle() >> k & 1 == 1, tiles.class(cell) == Class::Obstacle);
+                assert_eq!(
+                    row.obstacle() >> k & 1 == 1,
+                    tiles.class(cell) == Class::Obstacle
+                );
                 assert_eq!(row.free() >> k & 1 == 1, tiles.class(cell) == Class::Free);
             }
         }
@@ -349,9 +390,33 @@ mod tests {
         let mut tiles = small();
         let origin = Cell { x: 1000, y: -1000 };
         tiles.set(origin, Class::Free).unwrap();
-        assert_eq!(tiles.set(Cell { x: 1000, y: -1000 + 128 }, Class::Free), Err(NoRoom::Box));
-        tiles.set(Cell { x: 1000, y: -1000 + 32 }, Class::Free).unwrap();
-        assert_eq!(tiles.class(Cell { x: 1000, y: -1000 + 128 }), Class::Unknown, "no ghost across the torus");
+        assert_eq!(
+            tiles.set(
+                Cell {
+                    x: 1000,
+                    y: -1000 + 128
+                },
+                Class::Free
+            ),
+            Err(NoRoom::Box)
+        );
+        tiles
+            .set(
+                Cell {
+                    x: 1000,
+                    y: -1000 + 32,
+                },
+                Class::Free,
+            )
+            .unwrap();
+        assert_eq!(
+            tiles.class(Cell {
+                x: 1000,
+                y: -1000 + 128
+            }),
+            Class::Unknown,
+            "no ghost across the torus"
+        );
     }
 
     #[test]
@@ -360,22 +425,37 @@ mod tests {
         for k in 0..4 {
             tiles.set(Cell { x: 32 * k, y: 0 }, Class::Free).unwrap();
         }
-        assert_eq!(tiles.set(Cell { x: 0, y: 32 }, Class::Free), Err(NoRoom::Pool));
-        assert_eq!((tiles.used(), tiles.class(Cell { x: 96, y: 0 })), (4, Class::Free));
+        assert_eq!(
+            tiles.set(Cell { x: 0, y: 32 }, Class::Free),
+            Err(NoRoom::Pool)
+        );
+        assert_eq!(
+            (tiles.used(), tiles.class(Cell { x: 96, y: 0 })),
+            (4, Class::Free)
+        );
     }
 
     #[test]
     fn the_packed_tile_agrees_with_the_cells() {
         let mut tiles = small();
         for i in 0..300 {
-            let cell = Cell { x: i * 7 % 32, y: i * 11 % 32 };
+            let cell = Cell {
+                x: i * 7 % 32,
+                y: i * 11 % 32,
+            };
             let class = [Class::Free, Class::Obstacle, Class::Negative][i as usize % 3];
             tiles.set(cell, class).unwrap();
         }
         let bytes = tiles.packed(0, 0).unwrap();
         for i in 0..1024usize {
             let code = bytes[i / 4] >> (i % 4 * 2) & 3;
-            assert_eq!(code, tiles.class(Cell { x: i as i32 % 32, y: i as i32 / 32 }) as u8);
+            assert_eq!(
+                code,
+                tiles.class(Cell {
+                    x: i as i32 % 32,
+                    y: i as i32 / 32
+                }) as u8
+            );
         }
         assert!(tiles.packed(1, 0).is_none());
     }

@@ -1,7 +1,7 @@
 //! Guo–Hall thinning, 32 cells at a time, in place and in instalments [Guo & Hall 1989].
 //!
 //! All cells of a subiteration are judged before any is deleted. North is towards row 0, so a plane is seen as an
-//! image with row 0 on top; OpenCV's `THINNING_GUOHALL` does the same and gives the same bits. The two subiterations
+//! image with row 0 on top; `opencv_contrib`'s `THINNING_GUOHALL` does too, and gives the same bits. The two subiterations
 //! of the rule alternate until two in a row delete nothing.
 //!
 //! Only words that may change are looked at: a word can delete only if a word of its 3 × 3 block changed in one of the
@@ -11,7 +11,7 @@
 
 use super::Progress;
 use super::rule::{Edges, deletions_at};
-use crate::grid::{at, MAX_WORDS_PER_ROW, PlaneMut, Region, Shape, ShapeError};
+use crate::grid::{MAX_WORDS_PER_ROW, PlaneMut, Region, Shape, ShapeError, at};
 
 /// Words of marks that a [`Thinning`] needs for a plane of this many words.
 #[must_use]
@@ -152,7 +152,12 @@ impl<const M: usize> Thinning<M> {
     }
 
     /// One subiteration, as far as the budget lasts; whether it is through.
-    fn pass<const SECOND: bool>(&mut self, words: &mut [u32], anchors: &[u32], left: &mut u32) -> bool {
+    fn pass<const SECOND: bool>(
+        &mut self,
+        words: &mut [u32],
+        anchors: &[u32],
+        left: &mut u32,
+    ) -> bool {
         let groups = marks_for(self.region.size());
         loop {
             if !self.look::<SECOND>(words, anchors, left) {
@@ -172,7 +177,12 @@ impl<const M: usize> Thinning<M> {
     }
 
     /// Look at the words of the present group; whether all were looked at.
-    fn look<const SECOND: bool>(&mut self, words: &mut [u32], anchors: &[u32], left: &mut u32) -> bool {
+    fn look<const SECOND: bool>(
+        &mut self,
+        words: &mut [u32],
+        anchors: &[u32],
+        left: &mut u32,
+    ) -> bool {
         let mut todo = self.todo;
         if todo == 0 {
             return true;
@@ -199,7 +209,8 @@ impl<const M: usize> Thinning<M> {
                 right: word + 1 == per_row,
             };
             let index = self.index(row, word);
-            let deletions = deletions_at::<SECOND>(words, index, self.shape.words_per_row(), edges) & !at(anchors, index);
+            let deletions = deletions_at::<SECOND>(words, index, self.shape.words_per_row(), edges)
+                & !at(anchors, index);
             if deletions == 0 {
                 idle |= bit;
             } else {

@@ -11,6 +11,7 @@ use heapless::Vec;
 use super::Road;
 use crate::bits::{Adjacency, flood};
 use crate::clearance::Disc;
+use crate::field::SIDE;
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::{Plane, Site};
 use crate::map::Tiles;
@@ -18,7 +19,6 @@ use crate::skeleton::{Residues, WaveSpace, Wavefront};
 use crate::status::{Frontier as Leftover, Residue};
 use crate::topology::{Frame, Topology};
 use crate::view::{Rows, SCALES, View};
-use crate::field::SIDE;
 
 /// Goals dropped at the most; the list is the report's too.
 pub const MOST_DROPPED: usize = 32;
@@ -112,12 +112,20 @@ impl Frontier {
     ) -> Outlook {
         let frame = topology.frame();
         let road = match (topology.skeleton(), topology.frontier()) {
-            (Some(way), Some(goals)) => Residues::new(frame.shape, residues).ok().and_then(|residues| {
-                let mut space = WaveSpace { way, residues, ring };
-                self.spread(&mut space, goals, frame);
-                let entry = entry(&space, frame, tiles, disc, robot.cell())?;
-                Some(walk_down(&space, frame, tiles, entry))
-            }),
+            (Some(way), Some(goals)) => {
+                Residues::new(frame.shape, residues)
+                    .ok()
+                    .and_then(|residues| {
+                        let mut space = WaveSpace {
+                            way,
+                            residues,
+                            ring,
+                        };
+                        self.spread(&mut space, goals, frame);
+                        let entry = entry(&space, frame, tiles, disc, robot.cell())?;
+                        Some(walk_down(&space, frame, tiles, entry))
+                    })
+            }
             _ => None,
         };
         self.adopt(road, time_ms)
@@ -129,7 +137,11 @@ impl Frontier {
         wave.start(space);
         for site in goals.sites() {
             let cell = frame.cell(site);
-            if !self.dropped.iter().any(|dropped| near(dropped.cell, cell, DROP_RADIUS_M)) {
+            if !self
+                .dropped
+                .iter()
+                .any(|dropped| near(dropped.cell, cell, DROP_RADIUS_M))
+            {
                 wave.seed(space, site);
             }
         }
@@ -142,11 +154,16 @@ impl Frontier {
             self.road.clear();
             self.fewest = u32::MAX;
             self.empty_rounds = self.empty_rounds.saturating_add(1);
-            return if self.empty_rounds >= EMPTY_ROUNDS { Outlook::Nothing } else { Outlook::Unsure };
+            return if self.empty_rounds >= EMPTY_ROUNDS {
+                Outlook::Nothing
+            } else {
+                Outlook::Unsure
+            };
         };
         self.empty_rounds = 0;
         self.had_road = true;
-        let same = !self.road.is_empty() && near(road.goal(), self.road.goal(), 2.0 * DROP_RADIUS_M);
+        let same =
+            !self.road.is_empty() && near(road.goal(), self.road.goal(), 2.0 * DROP_RADIUS_M);
         if !same || road.steps() < self.fewest {
             self.fewest = road.steps();
             self.since_ms = time_ms;
@@ -164,9 +181,17 @@ impl Frontier {
             if self.dropped.is_full() {
                 self.dropped.remove(0);
             }
-            let reason = if reached { Residue::Unobservable } else { Residue::NoProgress };
+            let reason = if reached {
+                Residue::Unobservable
+            } else {
+                Residue::NoProgress
+            };
             // There is room now.
-            let _ = self.dropped.push(Leftover { cell: self.road.goal(), cells: 1, reason });
+            let _ = self.dropped.push(Leftover {
+                cell: self.road.goal(),
+                cells: 1,
+                reason,
+            });
             self.road.clear();
             self.fewest = u32::MAX;
         }
@@ -205,16 +230,32 @@ fn entry<const TILES: usize, const SLOTS: usize>(
         let mut seeds: Rows = [0; SIDE];
         View::put(&mut seeds, view.place(robot)?);
         let met = flood(&view.passable, &mut seeds, &targets, Adjacency::Four)?;
-        reached_site(space, frame, &view, (usize::from(met.site.x), usize::from(met.site.y)))
+        reached_site(
+            space,
+            frame,
+            &view,
+            (usize::from(met.site.x), usize::from(met.site.y)),
+        )
     })
 }
 
 /// A centre cell in a window cell that the wave came to.
-fn reached_site(space: &WaveSpace<'_>, frame: Frame, view: &View, (x, y): (usize, usize)) -> Option<Site> {
-    let least = Cell { x: view.origin.x + x as i32 * view.scale, y: view.origin.y + y as i32 * view.scale };
+fn reached_site(
+    space: &WaveSpace<'_>,
+    frame: Frame,
+    view: &View,
+    (x, y): (usize, usize),
+) -> Option<Site> {
+    let least = Cell {
+        x: view.origin.x + x as i32 * view.scale,
+        y: view.origin.y + y as i32 * view.scale,
+    };
     let coarse = (view.scale / 2).max(1);
     (0..coarse * coarse).find_map(|k| {
-        let cell = Cell { x: least.x + k % coarse * 2, y: least.y + k / coarse * 2 };
+        let cell = Cell {
+            x: least.x + k % coarse * 2,
+            y: least.y + k / coarse * 2,
+        };
         let site = frame.site(cell)?;
         (space.way.get(site) && space.residues.get(site).is_some()).then_some(site)
     })
@@ -244,11 +285,16 @@ fn unexplored_beside<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
 ) -> Option<Cell> {
     let unknown = |cell: Cell| {
-        (0..2).map(|dy| (tiles.row(cell.x, cell.y + dy).unknown() & 3).count_ones()).sum::<u32>()
+        (0..2)
+            .map(|dy| (tiles.row(cell.x, cell.y + dy).unknown() & 3).count_ones())
+            .sum::<u32>()
     };
     [(2, 0), (-2, 0), (0, 2), (0, -2)]
         .into_iter()
-        .map(|(dx, dy)| Cell { x: cell.x + dx, y: cell.y + dy })
+        .map(|(dx, dy)| Cell {
+            x: cell.x + dx,
+            y: cell.y + dy,
+        })
         .max_by_key(|&beside| unknown(beside))
         .filter(|&beside| unknown(beside) > 0)
 }

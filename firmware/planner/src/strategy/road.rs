@@ -28,7 +28,11 @@ pub struct Road {
 
 /// The middle of a coarse cell.
 fn middle(cell: Cell) -> Point {
-    Cell { x: cell.x + 1, y: cell.y + 1 }.corner()
+    Cell {
+        x: cell.x + 1,
+        y: cell.y + 1,
+    }
+    .corner()
 }
 
 fn distance2(a: Point, b: Point) -> f32 {
@@ -40,7 +44,11 @@ impl Road {
     /// No road.
     #[must_use]
     pub const fn new() -> Self {
-        Self { cells: Vec::new(), steps: 0, goal: Cell { x: 0, y: 0 } }
+        Self {
+            cells: Vec::new(),
+            steps: 0,
+            goal: Cell { x: 0, y: 0 },
+        }
     }
 
     /// The road along these cells, the robot's end first.
@@ -96,15 +104,32 @@ impl Road {
     /// nearest to the robot.
     pub fn local_goals(&self, robot: Point) -> impl Iterator<Item = Cell> + '_ {
         let near = |cell: &Cell| distance2(middle(*cell), robot);
-        let ahead = self.cells.get(..self.cells.len().min(MOST_STEPS_AHEAD)).unwrap_or_default();
+        let ahead = self
+            .cells
+            .get(..self.cells.len().min(MOST_STEPS_AHEAD))
+            .unwrap_or_default();
         let nearest = ahead
             .iter()
             .enumerate()
-            .fold((0, f32::MAX), |best, (k, cell)| if near(cell) < best.1 { (k, near(cell)) } else { best })
+            .fold((0, f32::MAX), |best, (k, cell)| {
+                if near(cell) < best.1 {
+                    (k, near(cell))
+                } else {
+                    best
+                }
+            })
             .0;
         let end = (nearest + MOST_STEPS_AHEAD).min(self.cells.len());
         let beyond = self.cells.get(nearest..end).unwrap_or_default();
-        let within = beyond.iter().take_while(move |cell| near(cell) <= LOCAL_GOAL_M * LOCAL_GOAL_M).count();
-        beyond.get(..within.max(1)).unwrap_or(beyond).iter().rev().copied()
+        let within = beyond
+            .iter()
+            .take_while(move |cell| near(cell) <= LOCAL_GOAL_M * LOCAL_GOAL_M)
+            .count();
+        beyond
+            .get(..within.max(1))
+            .unwrap_or(beyond)
+            .iter()
+            .rev()
+            .copied()
     }
 }
