@@ -16,11 +16,12 @@
 
 use crate::clearance::Disc;
 use crate::config::Config;
-use crate::drive::{Surround, drive};
+use crate::drive::{Drive, Place, Surround};
 use crate::field::{SCRATCH_FLOATS, SIDE, Solution, Window, descent, solve};
-use crate::geometry::{Cell, Pose, Twist};
+use crate::geometry::{Cell, Point, Pose, Twist};
 use crate::map::Map;
 use crate::map::integrate::is_level;
+use crate::math;
 use crate::near::NearField;
 use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::Outlook;
@@ -73,6 +74,7 @@ pub struct State<const TILES: usize, const SLOTS: usize, const MARKS: usize> {
     near: NearField,
     topology: Topology<SLOTS, MARKS>,
     strategy: strategy::Frontier,
+    drive: Drive,
     status: Status,
     started: bool,
     /// Where the robot began.
@@ -105,6 +107,7 @@ impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> State<TILES, SL
             near: NearField::new(),
             topology: Topology::new(),
             strategy: strategy::Frontier::new(),
+            drive: Drive::new(),
             status: Status::Exploring,
             started: false,
             start: Cell { x: 0, y: 0 },
@@ -118,6 +121,7 @@ impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> State<TILES, SL
         self.near.clear();
         self.topology.reset();
         self.strategy.reset();
+        self.drive = Drive::new();
         self.status = Status::Exploring;
         self.started = false;
         self.window_at = None;
@@ -339,7 +343,13 @@ fn follow<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
     let heading = descent::heading_at(&workspace.window, x, y);
     let surround = Surround::new(&input.pose, state.near.points());
     let velocity = match heading {
-        Some(heading_rad) => drive(config, &input.pose, heading_rad, &surround),
+        Some(_) => {
+            let heading_there =
+                |place: Place| heading_at(&workspace.window, &view, &input.pose, place);
+            state
+                .drive
+                .follow(config, heading_there, input.velocity, &surround)
+        }
         // In the goal's own cell there is no slope: look around until it is explored.
         None if view
             .place(robot)
@@ -353,6 +363,17 @@ fn follow<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
         None => Twist::default(),
     };
     output(velocity, heading.unwrap_or(input.pose.yaw_rad), &solution)
+}
+
+/// The field's heading at a place near the robot, radians to the left of the robot's own.
+fn heading_at(window: &Window, view: &View, pose: &Pose, place: Place) -> Option<f32> {
+    let (sin, cos) = math::sin_cos(pose.yaw_rad);
+    let there = Point {
+        x_m: pose.x_m + place.x_m * cos - place.y_m * sin,
+        y_m: pose.y_m + place.x_m * sin + place.y_m * cos,
+    };
+    let (x, y) = view.position(there);
+    descent::heading_at(window, x, y).map(|heading| math::wrap(heading - pose.yaw_rad))
 }
 
 fn output(velocity: Twist, heading_rad: f32, solution: &Solution) -> Output {
