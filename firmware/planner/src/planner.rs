@@ -17,7 +17,7 @@
 use crate::clearance::Disc;
 use crate::config::Config;
 use crate::drive::{Drive, Place, Surround};
-use crate::field::{SCRATCH_FLOATS, SIDE, Solution, Window, descent, solve};
+use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, Solution, Window, descent, solve};
 use crate::geometry::{Cell, Point, Pose, Twist};
 use crate::map::Map;
 use crate::map::integrate::is_level;
@@ -66,21 +66,18 @@ pub struct Output {
     pub budget_exhausted: bool,
 }
 
-/// What a planner remembers from step to step. `TILES` map tiles in the pool, `SLOTS` tile places in the box, `MARKS` words of
-/// thinning marks (a quarter of the slots).
+/// What a planner remembers from step to step. `TILES` map tiles in the pool, `SLOTS` tile places in the box.
 #[derive(Debug)]
-pub struct State<const TILES: usize, const SLOTS: usize, const MARKS: usize> {
+pub struct State<const TILES: usize, const SLOTS: usize> {
     map: Map<TILES, SLOTS>,
     near: NearField,
-    topology: Topology<SLOTS, MARKS>,
+    topology: Topology<SLOTS>,
     strategy: strategy::Frontier,
     drive: Drive,
     status: Status,
     started: bool,
     /// Where the robot began.
     start: Cell,
-    /// The last window's place and scale.
-    window_at: Option<(Cell, i32)>,
 }
 
 /// Words of scratch.
@@ -92,10 +89,12 @@ const RING: usize = 1024;
 #[derive(Debug)]
 pub struct Workspace {
     window: Window,
+    /// Its least map cell and its scale.
+    window_at: Option<(Cell, i32)>,
     scratch: [f32; SCRATCH],
 }
 
-impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> State<TILES, SLOTS, MARKS> {
+impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     const CHECK: () = assert!(SLOTS * 16 + RING <= SCRATCH, "the wave fits the scratch");
 
     /// An empty planner.
@@ -111,7 +110,6 @@ impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> State<TILES, SL
             status: Status::Exploring,
             started: false,
             start: Cell { x: 0, y: 0 },
-            window_at: None,
         }
     }
 
@@ -124,7 +122,6 @@ impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> State<TILES, SL
         self.drive = Drive::new();
         self.status = Status::Exploring;
         self.started = false;
-        self.window_at = None;
     }
 
     /// The map.
@@ -135,7 +132,7 @@ impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> State<TILES, SL
 
     /// The centre cells.
     #[must_use]
-    pub const fn topology(&self) -> &Topology<SLOTS, MARKS> {
+    pub const fn topology(&self) -> &Topology<SLOTS> {
         &self.topology
     }
 
@@ -143,12 +140,6 @@ impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> State<TILES, SL
     #[must_use]
     pub const fn road(&self) -> &Road {
         self.strategy.road()
-    }
-
-    /// Least map cell and scale of the last window.
-    #[must_use]
-    pub const fn window_at(&self) -> Option<(Cell, i32)> {
-        self.window_at
     }
 
     /// The cells of a tile (two bits each: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle), or `None` where
@@ -186,9 +177,7 @@ impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> State<TILES, SL
     }
 }
 
-impl<const TILES: usize, const SLOTS: usize, const MARKS: usize> Default
-    for State<TILES, SLOTS, MARKS>
-{
+impl<const TILES: usize, const SLOTS: usize> Default for State<TILES, SLOTS> {
     fn default() -> Self {
         Self::new()
     }
@@ -200,6 +189,7 @@ impl Workspace {
     pub const fn new() -> Self {
         Self {
             window: Window::new(),
+            window_at: None,
             scratch: [0.0; SCRATCH],
         }
     }
@@ -217,33 +207,58 @@ impl Default for Workspace {
     }
 }
 
-/// Where the window of the last step lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Window {
-    /// Cell column of the window's first cell, in units of the window's cell.
-    pub origin_x: i16,
-    /// Cell row of the window's first cell.
-    pub origin_y: i16,
-    /// Side of a window cell in map cells.
+/// One row of the last step's window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldRow {
+    /// Least map cell of the window.
+    pub origin: Cell,
+    /// Map cells along a window cell.
     pub scale: u8,
+    /// q = 1 − p, scaled so that a goal is 1; 0 on obstacles and where no goal can be reached from.
+    pub q: [f32; SIDE],
+    /// What each cell is in the boundary-value problem.
+    pub kinds: [CellKind; SIDE],
 }
 
-/// Cells in a row of the window.
-pub const WINDOW_SIDE: usize = 61;
+/// What a cell is in the window's boundary-value problem.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CellKind {
+    /// Relaxed.
+    Free,
+    /// p = 1, or without a way to a goal.
+    #[default]
+    Obstacle,
+    /// p = 0.
+    Goal,
+}
 
 impl Workspace {
-    /// One row of the last step's field (row 0 has the least y) into `q`, scaled so that a goal is 1, and where the window lies;
-    /// `None` before the first window and beyond the last row.
+    /// One row of the last step's field, row 0 the least y; `None` before the first window and beyond the last row.
     #[must_use]
-    pub fn field_row(&self, _row: u8, _q: &mut [f32; WINDOW_SIDE]) -> Option<Window> {
-        None
+    pub fn field_row(&self, row: u8) -> Option<FieldRow> {
+        let (origin, scale) = self.window_at?;
+        let y = usize::from(row);
+        (y < SIDE).then(|| FieldRow {
+            origin,
+            scale: scale as u8,
+            q: core::array::from_fn(|x| self.window.q(x, y) / GOAL),
+            kinds: core::array::from_fn(|x| {
+                if self.window.is_goal(x, y) {
+                    CellKind::Goal
+                } else if self.window.is_reached(x, y) {
+                    CellKind::Free
+                } else {
+                    CellKind::Obstacle
+                }
+            }),
+        })
     }
 }
 
 /// One step: what was sensed in, what to drive out.
-pub fn step<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
+pub fn step<const TILES: usize, const SLOTS: usize>(
     config: &Config,
-    state: &mut State<TILES, SLOTS, MARKS>,
+    state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     input: Input<'_>,
 ) -> Output {
@@ -271,9 +286,9 @@ pub fn step<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
 }
 
 /// Scans and odometry into the map and the near field.
-fn sense<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
+fn sense<const TILES: usize, const SLOTS: usize>(
     config: &Config,
-    state: &mut State<TILES, SLOTS, MARKS>,
+    state: &mut State<TILES, SLOTS>,
     input: &Input<'_>,
 ) {
     if !state.started {
@@ -306,8 +321,8 @@ fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
 }
 
 /// A new skeleton: find the way to the nearest frontier, or find that there is none.
-fn replan<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
-    state: &mut State<TILES, SLOTS, MARKS>,
+fn replan<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     disc: &Disc,
     input: &Input<'_>,
@@ -330,9 +345,7 @@ fn replan<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
 }
 
 /// Why there is no frontier left within reach.
-fn conclude<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
-    state: &State<TILES, SLOTS, MARKS>,
-) -> Status {
+fn conclude<const TILES: usize, const SLOTS: usize>(state: &State<TILES, SLOTS>) -> Status {
     if state.map.pool_full() {
         Status::Fault(Fault::MapFull)
     } else if state.map.out_of_box() {
@@ -345,9 +358,9 @@ fn conclude<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
 }
 
 /// Local goal, local potential, descent, drive.
-fn follow<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
+fn follow<const TILES: usize, const SLOTS: usize>(
     config: &Config,
-    state: &mut State<TILES, SLOTS, MARKS>,
+    state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     disc: &Disc,
     input: &Input<'_>,
@@ -356,7 +369,12 @@ fn follow<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
     let Some((view, goal)) = local_goal(state, disc, input) else {
         return Output::default();
     };
-    charge(&mut workspace.window, &mut state.window_at, &view, &goal);
+    charge(
+        &mut workspace.window,
+        &mut workspace.window_at,
+        &view,
+        &goal,
+    );
     let solution = solve(
         &mut workspace.window,
         &mut workspace.scratch,
@@ -410,8 +428,8 @@ fn output(velocity: Twist, heading_rad: f32, solution: &Solution) -> Output {
 }
 
 /// The smallest window that holds a local goal, and the goal's cells in it.
-fn local_goal<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
-    state: &State<TILES, SLOTS, MARKS>,
+fn local_goal<const TILES: usize, const SLOTS: usize>(
+    state: &State<TILES, SLOTS>,
     disc: &Disc,
     input: &Input<'_>,
 ) -> Option<(View, Rows)> {

@@ -98,9 +98,9 @@ const TILE_UNITS: u32 = 60;
 
 type Words<const SLOTS: usize> = [[u32; 8]; SLOTS];
 
-/// The planes and the round in progress. `SLOTS` tiles of 16 × 16 coarse cells; `MARKS` words of thinning marks.
+/// The planes and the round in progress. `SLOTS` tiles of 16 × 16 coarse cells.
 #[derive(Debug)]
-pub struct Topology<const SLOTS: usize, const MARKS: usize> {
+pub struct Topology<const SLOTS: usize> {
     /// The published skeleton and its frontier cells.
     skeleton: Words<SLOTS>,
     frontier: Words<SLOTS>,
@@ -110,16 +110,13 @@ pub struct Topology<const SLOTS: usize, const MARKS: usize> {
     next_frontier: Words<SLOTS>,
     next_frame: Frame,
     stage: Stage,
-    thinning: Thinning<MARKS>,
+    thinning: Thinning<SLOTS>,
 }
 
-impl<const SLOTS: usize, const MARKS: usize> Topology<SLOTS, MARKS> {
-    const CHECK: () = assert!(MARKS * 4 >= SLOTS, "a mark bit for each of 8 words a slot");
-
+impl<const SLOTS: usize> Topology<SLOTS> {
     /// Nothing known.
     #[must_use]
     pub const fn new() -> Self {
-        let () = Self::CHECK;
         Self {
             skeleton: [[0; 8]; SLOTS],
             frontier: [[0; 8]; SLOTS],
@@ -258,7 +255,7 @@ impl<const SLOTS: usize, const MARKS: usize> Topology<SLOTS, MARKS> {
     }
 }
 
-impl<const SLOTS: usize, const MARKS: usize> Default for Topology<SLOTS, MARKS> {
+impl<const SLOTS: usize> Default for Topology<SLOTS> {
     fn default() -> Self {
         Self::new()
     }

@@ -101,9 +101,9 @@ impl Frontier {
 
     /// A new skeleton is there: spread the wave from its frontier cells, move the robot to the skeleton, and walk down
     /// [Ouroboros, Algorithm 1, lines 3, 4, 24].
-    pub fn replan<const TILES: usize, const SLOTS: usize, const MARKS: usize>(
+    pub fn replan<const TILES: usize, const SLOTS: usize>(
         &mut self,
-        topology: &Topology<SLOTS, MARKS>,
+        topology: &Topology<SLOTS>,
         tiles: &Tiles<TILES, SLOTS>,
         disc: &Disc,
         robot: Point,
