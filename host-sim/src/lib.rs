@@ -2,5 +2,6 @@
 #![forbid(unsafe_code)]
 
 pub mod link;
+pub mod picture;
 pub mod report;
 pub mod trial;

@@ -3,7 +3,7 @@
 //! Columns: `time_s, x_m, y_m, yaw_rad` (the estimate), `v_mps, w_radps` (the command), `heading_rad` (the direction that
 //! the field asks for), `cycles` (solver), `status`.
 
-use std::fmt::Write as _;
+use core::fmt::Write as _;
 
 use fieldline_protocol::message::Command;
 

@@ -2,7 +2,7 @@
 //!
 //! Trinary: 254 free, 0 occupied (obstacles of both kinds), 205 unknown; `origin` is the outer corner of the least cell.
 
-use std::fmt::Write as _;
+use core::fmt::Write as _;
 
 use super::grid_map::{CELL_M, GridMap, MapCell};
 

@@ -1,9 +1,9 @@
 //! Trajectories in the TUM format: `timestamp tx ty tz qx qy qz qw`, one pose a line, seconds and metres.
 //!
 //! The orientation is the unit quaternion of yaw about z, then pitch about the new y, then roll about the new x:
-//! q = q_z(yaw) q_y(pitch) q_x(roll).
+//! `q = q_z(yaw) q_y(pitch) q_x(roll)`.
 
-use std::fmt::Write as _;
+use core::fmt::Write as _;
 
 /// A pose at a time, in the frame of the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -47,8 +47,8 @@ pub fn solve(cells: &[WindowCell]) -> Vec<f64> {
         for near in neighbours(cell) {
             match near.and_then(|near| Some((*cells.get(near)?, order[near]))) {
                 Some((_, Some(j))) => system.couple(i, j),
-                Some((WindowCell::Goal, None)) => system.to_goal(i),
-                _ => system.to_obstacle(i),
+                Some((WindowCell::Goal, None)) => system.lead_to_goal(i),
+                _ => system.lead_to_obstacle(i),
             }
         }
     }
@@ -154,11 +154,11 @@ impl System {
         self.band[i][BAND + j - i] += 1.0;
     }
 
-    fn to_goal(&mut self, i: usize) {
+    fn lead_to_goal(&mut self, i: usize) {
         self.goal[i] += 1.0;
     }
 
-    fn to_obstacle(&mut self, i: usize) {
+    fn lead_to_obstacle(&mut self, i: usize) {
         self.obstacle[i] += 1.0;
     }
 
