@@ -5,15 +5,22 @@
 //!
 //! | message | from | answered by |
 //! | --- | --- | --- |
-//! | [`Request::Hello`] | host | [`Reply::Hello`] |
-//! | [`Request::Control`] | host | [`Reply::Control`] |
-//! | [`Request::Observation`] | host | [`Reply::Command`] |
-//! | [`Request::Tile`] | host | [`Reply::Tile`] |
-//! | [`Request::FieldRow`] | host | [`Reply::FieldRow`] |
-//! | [`Request::Frontiers`] | host | [`Reply::Frontiers`] |
+//! | [`Request::Hello`] | host | [`Reply::Hello`] or [`Reply::Incompatible`] |
+//! | [`Request::Control`] | host | [`Reply::Control`] or [`Reply::Refused`] |
+//! | [`Request::Observation`] | host | [`Reply::Command`] or [`Reply::Refused`] |
+//! | [`Request::Tile`] | host | [`Reply::Tile`] or [`Reply::Refused`] |
+//! | [`Request::FieldRow`] | host | [`Reply::FieldRow`] or [`Reply::Refused`] |
+//! | [`Request::Frontiers`] | host | [`Reply::Frontiers`] or [`Reply::Refused`] |
+//!
+//! The device says two things unasked: [`Reply::Hello`] after it booted, and [`Reply::Crash`] before it reboots.
+//!
+//! Every quantity of 32 bits is an `I16F16` and every one of 16 bits an `I4F12`; the exact-byte tests hold that.
+
+use core::fmt;
 
 use fixed::types::{I4F12, I16F16};
 use heapless::Vec;
+use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 /// Beams a scan may have at the most.
@@ -34,9 +41,13 @@ pub const TILE_SKELETON_BYTES: usize = 32;
 pub const FIELD_SIDE: usize = 61;
 /// Bytes of a row's cell kinds: 61 cells of two bits.
 pub const FIELD_CELL_BYTES: usize = 16;
+/// Bytes of a build identifier.
+pub const BUILD_BYTES: usize = 24;
+/// Bytes of a source file's name in a crash report.
+pub const CRASH_FILE_BYTES: usize = 24;
 
 /// A pose in the odometry frame, metres and radians.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Pose {
     /// Metres.
     pub x: I16F16,
@@ -53,7 +64,7 @@ pub struct Pose {
 }
 
 /// A planar velocity.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Twist {
     /// Metres a second, forward.
     pub linear: I4F12,
@@ -62,14 +73,14 @@ pub struct Twist {
 }
 
 /// One sweep of one laser. Its geometry is in [`Start::lasers`].
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Scan {
     /// Ranges in millimetres, or [`NO_RETURN_MM`], or [`INVALID_MM`].
     pub ranges_mm: Vec<u16, MAX_BEAMS>,
 }
 
 /// What the robot sensed at one instant.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Observation {
     /// The host's clock, milliseconds since the start of the session.
     pub time_ms: u32,
@@ -82,7 +93,7 @@ pub struct Observation {
 }
 
 /// Where a laser sits and how it sweeps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Laser {
     /// Metres ahead of the robot's centre.
     pub x: I4F12,
@@ -103,7 +114,7 @@ pub struct Laser {
 }
 
 /// Which strategy plans.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Strategy {
     /// Nearest unexplored centre cell.
     #[default]
@@ -111,7 +122,7 @@ pub enum Strategy {
 }
 
 /// The session's parameters.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Start {
     /// Which strategy plans.
     pub strategy: Strategy,
@@ -128,7 +139,7 @@ pub struct Start {
 }
 
 /// What the host wants of the session.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[allow(
     clippy::large_enum_variant,
     reason = "no heap to box into; one lives at a time"
@@ -147,18 +158,20 @@ pub enum Control {
 }
 
 /// From the host.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[allow(
     clippy::large_enum_variant,
     reason = "no heap to box into; one lives at a time"
 )]
 pub enum Request {
-    /// Who are you? Carries our protocol version and schema hash.
+    /// Who are you? Its number and first two fields never change, so that any two versions can refuse each other.
     Hello {
         /// Protocol version.
         version: u16,
         /// Hash of the message schema.
         schema: u32,
+        /// The host's own choice: a new one makes the device forget the sequence numbers that it answered.
+        nonce: u32,
     },
     /// Change the session's state.
     Control(Control),
@@ -181,7 +194,7 @@ pub enum Request {
 }
 
 /// What the planner is doing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Status {
     /// No session yet.
     #[default]
@@ -199,7 +212,7 @@ pub enum Status {
 }
 
 /// Why an exploration ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Finish {
     /// No reachable frontier is left.
     Explored,
@@ -210,7 +223,7 @@ pub enum Finish {
 }
 
 /// Why the planner cannot go on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Fault {
     /// The start pose lies in an obstacle.
     StartBlocked,
@@ -225,7 +238,7 @@ pub enum Fault {
 }
 
 /// Counters of the device since boot.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Counters {
     /// Frames received and accepted.
     pub received: u32,
@@ -235,10 +248,12 @@ pub struct Counters {
     pub dropped: u32,
     /// Requests answered again from the stored reply.
     pub duplicates: u32,
+    /// Times that the host fell silent for longer than [`Identity::stale_ms`] while driving.
+    pub stale_stops: u32,
 }
 
 /// What one step cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Cost {
     /// Instructions of the whole step (exact in the emulator, timer ticks on silicon, 0 on a host).
     pub instructions: u32,
@@ -251,7 +266,7 @@ pub struct Cost {
 }
 
 /// The answer to an observation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Command {
     /// What to drive.
     pub velocity: Twist,
@@ -265,15 +280,36 @@ pub struct Command {
     pub cost: Cost,
 }
 
+/// What ended the program before the last reboot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum Cause {
+    /// A panic; [`Crash::at`] is the line.
+    #[default]
+    Panic,
+    /// A processor fault; [`Crash::at`] is the program counter.
+    Fault,
+}
+
+/// A crash: the program stopped, commands zero velocity and reboots.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Crash {
+    /// What happened.
+    pub cause: Cause,
+    /// Source line or program counter.
+    pub at: u32,
+    /// The last letters of the source file's path; empty for a fault.
+    pub file: heapless::String<CRASH_FILE_BYTES>,
+}
+
 /// Who the device is.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Identity {
     /// Protocol version.
     pub version: u16,
     /// Hash of the message schema.
     pub schema: u32,
     /// Build identifier.
-    pub build: heapless::String<24>,
+    pub build: heapless::String<BUILD_BYTES>,
     /// Boots since power-on.
     pub boots: u32,
     /// Slots of the map's box, in tiles.
@@ -284,25 +320,52 @@ pub struct Identity {
     pub max_frame: u16,
     /// Silence after which the device considers its command stale, milliseconds.
     pub stale_ms: u16,
+    /// The crash that caused the last reboot.
+    pub crash: Option<Crash>,
+}
+
+/// A parameter of [`Start`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum Parameter {
+    /// [`Start::lasers`]: one or two.
+    Lasers,
+    /// [`Laser::beams`]: 1 to [`MAX_BEAMS`].
+    Beams,
+    /// [`Laser::range_limit_mm`]: 1 to [`NO_RETURN_MM`] − 1.
+    RangeLimit,
+    /// [`Laser::first_bearing`] and [`Laser::bearing_step`]: within one turn, the step positive.
+    Bearing,
+    /// [`Laser::pitch`]: the first laser is level, the second looks down by less than 90°.
+    Pitch,
+    /// [`Laser::x`], [`Laser::y`] and [`Laser::z`]: at most 2 m from the centre, above the ground.
+    Mount,
+    /// [`Start::robot_radius_mm`]: 50 to 2000.
+    Radius,
+    /// [`Start::max_linear`]: positive.
+    MaxLinear,
+    /// [`Start::max_angular`]: positive.
+    MaxAngular,
 }
 
 /// Why a request was refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Refusal {
-    /// Another protocol version or schema.
-    Incompatible,
+    /// No hello since the device booted.
+    NotGreeted,
     /// No session is running.
     NotStarted,
+    /// An older sequence number than the last one answered.
+    OutOfOrder,
     /// The box's shape does not fit the device's slots.
     BadBox,
     /// A laser or limit out of range.
-    BadParameter,
+    BadParameter(Parameter),
     /// That strategy is not in this image.
     UnknownStrategy,
 }
 
 /// One map tile.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Tile {
     /// Tile column.
     pub x: i16,
@@ -315,7 +378,7 @@ pub struct Tile {
 }
 
 /// One row of the last window's field.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 pub struct FieldRow {
     /// Row, 0 is the least y.
     pub row: u8,
@@ -332,7 +395,7 @@ pub struct FieldRow {
 }
 
 /// Why a frontier was left.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Residue {
     /// No way for this radius.
     Unreachable,
@@ -345,7 +408,7 @@ pub enum Residue {
 }
 
 /// A frontier left over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Frontier {
     /// A cell of it.
     pub x: i16,
@@ -358,14 +421,21 @@ pub struct Frontier {
 }
 
 /// From the device.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Schema)]
 #[allow(
     clippy::large_enum_variant,
     reason = "no heap to box into; one lives at a time"
 )]
 pub enum Reply {
-    /// Who it is.
+    /// Who it is. Its number and first two fields (version, schema) never change.
     Hello(Identity),
+    /// It speaks another protocol and will not talk. Its number and first two fields never change.
+    Incompatible {
+        /// The device's protocol version.
+        version: u16,
+        /// Hash of the device's message schema.
+        schema: u32,
+    },
     /// The session changed state.
     Control(Status),
     /// What to drive.
@@ -378,4 +448,52 @@ pub enum Reply {
     Frontiers(Vec<Frontier, MAX_FRONTIERS>),
     /// The request was refused.
     Refused(Refusal),
+    /// The program crashed; it stands still and reboots.
+    Crash(Crash),
+}
+
+impl fmt::Display for Parameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Lasers => "lasers must be one or two",
+            Self::Beams => "a laser's beams must be 1 to 181",
+            Self::RangeLimit => "a laser's range limit must be 1 to 16382 mm",
+            Self::Bearing => {
+                "a laser's beams must lie within one turn, at a positive step of bearing"
+            }
+            Self::Pitch => {
+                "the first laser must be level and the second look down by less than 90°"
+            }
+            Self::Mount => "a laser must sit above the ground, at most 2 m from the centre",
+            Self::Radius => "the robot's radius must be 50 to 2000 mm",
+            Self::MaxLinear => "the greatest speed must be positive",
+            Self::MaxAngular => "the greatest turn rate must be positive",
+        })
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotGreeted => f.write_str("no hello since it booted; say hello first"),
+            Self::NotStarted => f.write_str("no session is running; start one first"),
+            Self::OutOfOrder => f.write_str("a request older than the last one answered"),
+            Self::BadBox => {
+                f.write_str("the map's box does not fit its tile slots; ask for a smaller box")
+            }
+            Self::BadParameter(parameter) => write!(f, "bad parameter: {parameter}"),
+            Self::UnknownStrategy => f.write_str("the strategy is not in this image"),
+        }
+    }
+}
+
+impl core::error::Error for Refusal {}
+
+impl fmt::Display for Crash {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.cause {
+            Cause::Panic => write!(f, "panic at {}:{}", self.file, self.at),
+            Cause::Fault => write!(f, "processor fault at {:#010x}", self.at),
+        }
+    }
 }

@@ -209,7 +209,7 @@ pub(super) fn head(canvas: &mut Canvas, (x, y): Spot, yaw_rad: f64, size: f32) {
     let shape = [
         point(0.0, size),
         point(2.5, size * 0.9),
-        point(std::f64::consts::PI, size * 0.35),
+        point(core::f64::consts::PI, size * 0.35),
         point(-2.5, size * 0.9),
     ];
     canvas.outline(&shape, 4.0, palette::PAGE.alpha(1.0));

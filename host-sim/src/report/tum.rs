@@ -59,7 +59,7 @@ fn quaternion(pose: &Stamped) -> [f64; 4] {
 #[cfg(test)]
 mod tests {
     use super::{Stamped, quaternion, text};
-    use std::f64::consts::FRAC_PI_2;
+    use core::f64::consts::FRAC_PI_2;
 
     #[test]
     fn lines_are_exact() {

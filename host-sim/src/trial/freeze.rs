@@ -76,7 +76,16 @@ mod tests {
 
     #[test]
     fn half_a_turn_across_pi_is_a_turn() {
-        let flip = |t: u32| (0.0, if t / 30_000 % 2 == 0 { 3.1 } else { -3.1 });
+        let flip = |t: u32| {
+            (
+                0.0,
+                if (t / 30_000).is_multiple_of(2) {
+                    3.1
+                } else {
+                    -3.1
+                },
+            )
+        };
         assert_eq!(
             fires(flip, |_| true),
             Some(PATIENCE_MS),

@@ -293,7 +293,7 @@ mod tests {
         let east = heading(50, 30, 30.5, 30.5).unwrap();
         assert!(east.abs() < 1e-12, "{east}");
         let north_west = heading(10, 50, 30.5, 30.5).unwrap();
-        assert!((north_west - 0.75 * std::f64::consts::PI).abs() < 1e-12);
+        assert!((north_west - 0.75 * core::f64::consts::PI).abs() < 1e-12);
         assert_eq!(
             heading_at(&solve(&window(|_, _| WindowCell::Free)), 30.5, 30.5),
             None

@@ -1,0 +1,67 @@
+//! Do two ends mean the same? A version for people and a hash for machines.
+//!
+//! The hash is FNV-1a over the shape of [`Request`] and [`Reply`] (field names, variant names and order, types), then over
+//! what the shape does not show: the version, the capacities of the bounded lists and the fraction bits of the two
+//! fixed-point types. It is computed at compile time from the types themselves, so it cannot be forgotten.
+
+use fixed::types::{I4F12, I16F16};
+use postcard_schema::key::hash::fnv1a64::hash_ty_path;
+
+use crate::message::{
+    BUILD_BYTES, CRASH_FILE_BYTES, FIELD_SIDE, MAX_BEAMS, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM,
+    Reply, Request, TILE_BYTES, TILE_SKELETON_BYTES,
+};
+
+/// The protocol's version. It grows when the meaning of a message changes, or the framing; the schema hash sees the rest.
+pub const VERSION: u16 = 1;
+
+/// Hash of everything that both ends must agree on.
+pub const SCHEMA: u32 = {
+    let shapes = fold(
+        u64::from_le_bytes(hash_ty_path::<Request>("fieldline/request")),
+        u64::from_le_bytes(hash_ty_path::<Reply>("fieldline/reply")),
+    );
+    let mut hash = shapes;
+    let limits = [
+        VERSION as usize,
+        MAX_BEAMS,
+        MAX_SCANS,
+        MAX_FRONTIERS,
+        TILE_BYTES,
+        TILE_SKELETON_BYTES,
+        FIELD_SIDE,
+        BUILD_BYTES,
+        CRASH_FILE_BYTES,
+        NO_RETURN_MM as usize,
+        I16F16::FRAC_NBITS as usize,
+        I4F12::FRAC_NBITS as usize,
+    ];
+    let mut rest: &[usize] = &limits;
+    while let [limit, tail @ ..] = rest {
+        hash = fold(hash, *limit as u64);
+        rest = tail;
+    }
+    (hash ^ (hash >> 32)) as u32
+};
+
+/// FNV-1a over the eight bytes of `word`, from `hash` on.
+pub(crate) const fn fold(hash: u64, word: u64) -> u64 {
+    let mut hash = hash;
+    let mut shift = 0;
+    while shift < 64 {
+        hash = (hash ^ ((word >> shift) & 0xff)).wrapping_mul(0x0100_0000_01b3);
+        shift += 8;
+    }
+    hash
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{SCHEMA, VERSION};
+
+    /// A changed hash is a changed wire: bless it here, and raise [`VERSION`] if a meaning changed without it.
+    #[test]
+    fn the_schema_is_the_one_we_know() {
+        assert_eq!((VERSION, SCHEMA), (1, 0xe439_3ee5));
+    }
+}

@@ -1,0 +1,348 @@
+//! What the wire tests share: receivers fed at once, and strategies for arbitrary messages.
+#![allow(dead_code, reason = "each test file uses its part")]
+
+use fieldline_protocol::frame::{
+    MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, Tally, encode_reply, encode_request,
+};
+use fieldline_protocol::message::{
+    Cause, Command, Control, Cost, Counters, Crash, Fault, FieldRow, Finish, Frontier, Identity,
+    Laser, MAX_BEAMS, Observation, Parameter, Pose, Refusal, Reply, Request, Residue, Scan, Start,
+    Status, Strategy as Plan, Tile, Twist,
+};
+use fixed::types::{I4F12, I16F16};
+use proptest::prelude::*;
+
+/// The frame of a request.
+pub(crate) fn request_frame(sequence: u16, request: &Request) -> Vec<u8> {
+    let mut out = [0; MAX_REQUEST_FRAME];
+    let length = encode_request(sequence, request, &mut out).expect("every request fits");
+    out[..length].to_vec()
+}
+
+/// The frame of a reply.
+pub(crate) fn reply_frame(sequence: u16, reply: &Reply) -> Vec<u8> {
+    let mut out = [0; MAX_REPLY_FRAME];
+    let length = encode_reply(sequence, reply, &mut out).expect("every reply fits");
+    out[..length].to_vec()
+}
+
+/// The requests that a device hears in `bytes`, and its counters.
+pub(crate) fn requests(bytes: &[u8]) -> (Vec<(u16, Request)>, Tally) {
+    let mut receiver = Receiver::<MAX_REQUEST_FRAME>::new(Side::Device);
+    let mut heard = Vec::new();
+    for byte in bytes {
+        if let Some(frame) = receiver.push(*byte)
+            && let Ok(request) = frame.request()
+        {
+            heard.push((frame.sequence, request));
+        }
+    }
+    (heard, receiver.tally())
+}
+
+/// The replies that a host hears in `bytes`, and its counters.
+pub(crate) fn replies(bytes: &[u8]) -> (Vec<(u16, Reply)>, Tally) {
+    let mut receiver = Receiver::<MAX_REPLY_FRAME>::new(Side::Host);
+    let mut heard = Vec::new();
+    for byte in bytes {
+        if let Some(frame) = receiver.push(*byte)
+            && let Ok(reply) = frame.reply()
+        {
+            heard.push((frame.sequence, reply));
+        }
+    }
+    (heard, receiver.tally())
+}
+
+/// An observation with two full scans of `range_mm` and everything else at the far end of its type.
+pub(crate) fn largest_observation(range_mm: u16) -> Observation {
+    let far = I16F16::MIN;
+    let scan = Scan {
+        ranges_mm: [range_mm; MAX_BEAMS].into_iter().collect(),
+    };
+    Observation {
+        time_ms: u32::MAX,
+        pose: Pose {
+            x: far,
+            y: far,
+            z: far,
+            roll: far,
+            pitch: far,
+            yaw: far,
+        },
+        velocity: Twist {
+            linear: I4F12::MIN,
+            angular: I4F12::MIN,
+        },
+        scans: [scan.clone(), scan].into_iter().collect(),
+    }
+}
+
+fn long() -> impl Strategy<Value = I16F16> {
+    any::<i32>().prop_map(I16F16::from_bits)
+}
+
+fn short() -> impl Strategy<Value = I4F12> {
+    any::<i16>().prop_map(I4F12::from_bits)
+}
+
+fn list<T: core::fmt::Debug, const N: usize>(
+    item: impl Strategy<Value = T>,
+) -> impl Strategy<Value = heapless::Vec<T, N>> {
+    prop::collection::vec(item, 0..=N).prop_map(|items| items.into_iter().collect())
+}
+
+fn text<const N: usize>() -> impl Strategy<Value = heapless::String<N>> {
+    "[ -~é]{0,12}".prop_map(|text| {
+        let mut short = heapless::String::new();
+        for letter in text.chars() {
+            let _ = short.push(letter);
+        }
+        short
+    })
+}
+
+fn laser() -> impl Strategy<Value = Laser> {
+    (
+        short(),
+        short(),
+        short(),
+        short(),
+        long(),
+        long(),
+        any::<(u16, u16)>(),
+    )
+        .prop_map(
+            |(x, y, z, pitch, first_bearing, bearing_step, (beams, range_limit_mm))| Laser {
+                x,
+                y,
+                z,
+                pitch,
+                first_bearing,
+                bearing_step,
+                beams,
+                range_limit_mm,
+            },
+        )
+}
+
+fn start() -> impl Strategy<Value = Start> {
+    (
+        any::<(u8, u8)>(),
+        list(laser()),
+        any::<u16>(),
+        short(),
+        short(),
+    )
+        .prop_map(
+            |(box_tiles, lasers, robot_radius_mm, max_linear, max_angular)| Start {
+                strategy: Plan::Frontier,
+                box_tiles,
+                lasers,
+                robot_radius_mm,
+                max_linear,
+                max_angular,
+            },
+        )
+}
+
+fn control() -> impl Strategy<Value = Control> {
+    prop_oneof![
+        start().prop_map(Control::Start),
+        Just(Control::Pause),
+        Just(Control::Resume),
+        Just(Control::Stop),
+        Just(Control::Reset),
+    ]
+}
+
+fn twist() -> impl Strategy<Value = Twist> {
+    (short(), short()).prop_map(|(linear, angular)| Twist { linear, angular })
+}
+
+fn pose() -> impl Strategy<Value = Pose> {
+    (long(), long(), long(), long(), long(), long()).prop_map(|(x, y, z, roll, pitch, yaw)| Pose {
+        x,
+        y,
+        z,
+        roll,
+        pitch,
+        yaw,
+    })
+}
+
+fn observation() -> impl Strategy<Value = Observation> {
+    let scan = list(any::<u16>()).prop_map(|ranges_mm| Scan { ranges_mm });
+    (any::<u32>(), pose(), twist(), list(scan)).prop_map(|(time_ms, pose, velocity, scans)| {
+        Observation {
+            time_ms,
+            pose,
+            velocity,
+            scans,
+        }
+    })
+}
+
+/// Any request but a hello of another version.
+pub(crate) fn request() -> impl Strategy<Value = Request> {
+    prop_oneof![
+        any::<u32>().prop_map(hello),
+        control().prop_map(Request::Control),
+        observation().prop_map(Request::Observation),
+        any::<(i16, i16)>().prop_map(|(x, y)| Request::Tile { x, y }),
+        any::<u8>().prop_map(|row| Request::FieldRow { row }),
+        Just(Request::Frontiers),
+    ]
+}
+
+/// Our hello.
+pub(crate) fn hello(nonce: u32) -> Request {
+    Request::Hello {
+        version: fieldline_protocol::VERSION,
+        schema: fieldline_protocol::SCHEMA,
+        nonce,
+    }
+}
+
+fn status() -> impl Strategy<Value = Status> {
+    let finish = prop::sample::select(vec![Finish::Explored, Finish::BoxedIn, Finish::Stopped]);
+    let fault = prop::sample::select(vec![
+        Fault::StartBlocked,
+        Fault::MapFull,
+        Fault::OutOfBox,
+        Fault::BadObservation,
+        Fault::Stuck,
+    ]);
+    prop_oneof![
+        Just(Status::Idle),
+        Just(Status::Exploring),
+        Just(Status::Paused),
+        Just(Status::EmergencyStop),
+        finish.prop_map(Status::Finished),
+        fault.prop_map(Status::Fault),
+    ]
+}
+
+fn crash() -> impl Strategy<Value = Crash> {
+    let cause = prop::sample::select(vec![Cause::Panic, Cause::Fault]);
+    (cause, any::<u32>(), text()).prop_map(|(cause, at, file)| Crash { cause, at, file })
+}
+
+fn identity() -> impl Strategy<Value = Identity> {
+    (
+        text(),
+        any::<(u32, u16, u16, u16, u16)>(),
+        prop::option::of(crash()),
+    )
+        .prop_map(
+            |(build, (boots, tile_slots, tile_pool, max_frame, stale_ms), crash)| Identity {
+                version: fieldline_protocol::VERSION,
+                schema: fieldline_protocol::SCHEMA,
+                build,
+                boots,
+                tile_slots,
+                tile_pool,
+                max_frame,
+                stale_ms,
+                crash,
+            },
+        )
+}
+
+fn command() -> impl Strategy<Value = Command> {
+    (
+        twist(),
+        status(),
+        long(),
+        any::<(u32, u32, u32, u32, u32)>(),
+        any::<(u32, u32, u16, bool)>(),
+    )
+        .prop_map(|(velocity, status, heading, counters, cost)| Command {
+            velocity,
+            status,
+            heading,
+            counters: Counters {
+                received: counters.0,
+                crc_errors: counters.1,
+                dropped: counters.2,
+                duplicates: counters.3,
+                stale_stops: counters.4,
+            },
+            cost: Cost {
+                instructions: cost.0,
+                stack_bytes: cost.1,
+                cycles: cost.2,
+                budget_exhausted: cost.3,
+            },
+        })
+}
+
+fn tile() -> impl Strategy<Value = Tile> {
+    (any::<(i16, i16)>(), list(any::<u8>()), list(any::<u8>())).prop_map(
+        |((x, y), cells, skeleton)| Tile {
+            x,
+            y,
+            cells,
+            skeleton,
+        },
+    )
+}
+
+fn field_row() -> impl Strategy<Value = FieldRow> {
+    let place = any::<(u8, i16, i16, u8)>();
+    (place, list(prop::num::f32::NORMAL), list(any::<u8>())).prop_map(
+        |((row, origin_x, origin_y, scale), q, cells)| FieldRow {
+            row,
+            origin_x,
+            origin_y,
+            scale,
+            q,
+            cells,
+        },
+    )
+}
+
+fn frontier() -> impl Strategy<Value = Frontier> {
+    let reason = prop::sample::select(vec![
+        Residue::Unreachable,
+        Residue::Unobservable,
+        Residue::OutOfBounds,
+        Residue::NoProgress,
+    ]);
+    (any::<(i16, i16, u16)>(), reason).prop_map(|((x, y, cells), reason)| Frontier {
+        x,
+        y,
+        cells,
+        reason,
+    })
+}
+
+fn refusal() -> impl Strategy<Value = Refusal> {
+    prop::sample::select(vec![
+        Refusal::NotGreeted,
+        Refusal::NotStarted,
+        Refusal::OutOfOrder,
+        Refusal::BadBox,
+        Refusal::BadParameter(Parameter::Beams),
+        Refusal::BadParameter(Parameter::MaxAngular),
+        Refusal::UnknownStrategy,
+    ])
+}
+
+/// Any reply.
+pub(crate) fn reply() -> impl Strategy<Value = Reply> {
+    prop_oneof![
+        identity().prop_map(Reply::Hello),
+        Just(Reply::Incompatible {
+            version: fieldline_protocol::VERSION,
+            schema: fieldline_protocol::SCHEMA,
+        }),
+        status().prop_map(Reply::Control),
+        command().prop_map(Reply::Command),
+        prop::option::of(tile()).prop_map(Reply::Tile),
+        prop::option::of(field_row()).prop_map(Reply::FieldRow),
+        list(frontier()).prop_map(Reply::Frontiers),
+        refusal().prop_map(Reply::Refused),
+        crash().prop_map(Reply::Crash),
+    ]
+}

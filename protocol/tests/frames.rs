@@ -1,0 +1,230 @@
+//! Round trips of arbitrary messages, the sizes of the largest ones, and what a frame costs.
+
+mod common;
+
+use common::{
+    hello, largest_observation, replies, reply, reply_frame, request, request_frame, requests,
+};
+use fieldline_protocol::frame::{
+    BodyError, MAX_LOG_BYTES, MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, TooLong,
+    encode_log, encode_reply, encode_request, overhead,
+};
+use fieldline_protocol::message::{
+    BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Crash, FIELD_CELL_BYTES, FIELD_SIDE, FieldRow,
+    Frontier, Identity, Laser, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM, Reply, Request, Residue,
+    Start, Strategy as Plan, TILE_BYTES, TILE_SKELETON_BYTES, Tile,
+};
+use fieldline_protocol::{SCHEMA, VERSION};
+use proptest::prelude::*;
+
+proptest! {
+    #[test]
+    fn every_request_comes_back(sequence in any::<u16>(), request in request()) {
+        let (heard, tally) = requests(&request_frame(sequence, &request));
+        prop_assert_eq!(heard, [(sequence, request)]);
+        prop_assert_eq!((tally.received, tally.crc_errors, tally.dropped), (1, 0, 0));
+    }
+
+    #[test]
+    fn every_reply_comes_back(sequence in any::<u16>(), reply in reply()) {
+        let (heard, tally) = replies(&reply_frame(sequence, &reply));
+        prop_assert_eq!(heard, [(sequence, reply)]);
+        prop_assert_eq!((tally.received, tally.crc_errors, tally.dropped), (1, 0, 0));
+    }
+
+    #[test]
+    fn every_log_comes_back(log in prop::collection::vec(any::<u8>(), 0..=MAX_LOG_BYTES)) {
+        let mut out = [0; MAX_REPLY_FRAME];
+        let length = encode_log(3, &log, &mut out).unwrap();
+        let mut receiver = Receiver::<MAX_REPLY_FRAME>::new(Side::Host);
+        let mut heard = Vec::new();
+        for byte in &out[..length] {
+            heard.extend(receiver.push(*byte).map(|frame| frame.body.to_vec()));
+        }
+        prop_assert_eq!(heard, [log]);
+    }
+
+    #[test]
+    fn frames_back_to_back_are_told_apart(requests_in in prop::collection::vec(request(), 0..6)) {
+        let bytes: Vec<u8> = requests_in.iter().flat_map(|request| request_frame(1, request)).collect();
+        let heard: Vec<Request> = requests(&bytes).0.into_iter().map(|(_, request)| request).collect();
+        prop_assert_eq!(heard, requests_in);
+    }
+
+    #[test]
+    fn no_room_is_told(request in request(), room in 0usize..64) {
+        let length = request_frame(1, &request).len();
+        let mut out = vec![0; room];
+        let fits = encode_request(1, &request, &mut out);
+        prop_assert_eq!(fits, if length <= room { Ok(length) } else { Err(TooLong) });
+    }
+}
+
+/// The largest of each kind, by hand.
+#[test]
+fn the_largest_messages_fit_and_fill_their_frames() {
+    let worst = request_frame(
+        u16::MAX,
+        &Request::Observation(largest_observation(u16::MAX)),
+    );
+    assert_eq!(worst.len(), MAX_REQUEST_FRAME);
+    let tile = Reply::Tile(Some(Tile {
+        x: i16::MIN,
+        y: i16::MIN,
+        cells: [0xff; TILE_BYTES].into_iter().collect(),
+        skeleton: [0xff; TILE_SKELETON_BYTES].into_iter().collect(),
+    }));
+    assert_eq!(reply_frame(u16::MAX, &tile).len(), MAX_REPLY_FRAME);
+
+    let far = fixed::types::I4F12::MIN;
+    let laser = Laser {
+        x: far,
+        y: far,
+        z: far,
+        pitch: far,
+        first_bearing: fixed::types::I16F16::MIN,
+        bearing_step: fixed::types::I16F16::MIN,
+        beams: u16::MAX,
+        range_limit_mm: u16::MAX,
+    };
+    let start = Request::Control(Control::Start(Start {
+        strategy: Plan::Frontier,
+        box_tiles: (255, 255),
+        lasers: [laser; MAX_SCANS].into_iter().collect(),
+        robot_radius_mm: u16::MAX,
+        max_linear: far,
+        max_angular: far,
+    }));
+    let file = "f".repeat(CRASH_FILE_BYTES).as_str().try_into().unwrap();
+    let crash = Crash {
+        cause: Cause::Fault,
+        at: u32::MAX,
+        file,
+    };
+    let others = [
+        Reply::Hello(Identity {
+            version: u16::MAX,
+            schema: u32::MAX,
+            build: "b".repeat(BUILD_BYTES).as_str().try_into().unwrap(),
+            boots: u32::MAX,
+            tile_slots: u16::MAX,
+            tile_pool: u16::MAX,
+            max_frame: u16::MAX,
+            stale_ms: u16::MAX,
+            crash: Some(crash.clone()),
+        }),
+        Reply::Crash(crash),
+        Reply::FieldRow(Some(FieldRow {
+            row: 255,
+            origin_x: i16::MIN,
+            origin_y: i16::MIN,
+            scale: 255,
+            q: [f32::MAX; FIELD_SIDE].into_iter().collect(),
+            cells: [u8::MAX; FIELD_CELL_BYTES].into_iter().collect(),
+        })),
+        Reply::Frontiers(
+            [Frontier {
+                x: i16::MIN,
+                y: i16::MIN,
+                cells: u16::MAX,
+                reason: Residue::NoProgress,
+            }; MAX_FRONTIERS]
+                .into_iter()
+                .collect(),
+        ),
+    ];
+    assert!(request_frame(1, &start).len() <= MAX_REQUEST_FRAME);
+    for reply in others {
+        assert!(reply_frame(1, &reply).len() <= MAX_REPLY_FRAME);
+    }
+    let mut out = [0; MAX_REPLY_FRAME];
+    assert!(encode_log(1, &[0xff; MAX_LOG_BYTES], &mut out).is_ok());
+}
+
+#[test]
+fn a_frame_costs_at_most_ten_bytes() {
+    let full = Request::Observation(largest_observation(NO_RETURN_MM));
+    let body = postcard::to_allocvec(&full).unwrap().len();
+    let cost = request_frame(0xffff, &full).len() - body;
+    assert_eq!((body, cost), (771, 10));
+    assert_eq!(overhead(body), 10);
+    assert_eq!(MAX_REPLY_FRAME - overhead(299), 299);
+    assert!(overhead(299) <= 10);
+    let small = request_frame(0xffff, &Request::Frontiers);
+    assert_eq!(small.len() - 1, 7);
+}
+
+#[test]
+fn a_hello_of_another_version_is_foreign_on_both_sides() {
+    let foreign = BodyError::Foreign {
+        version: VERSION + 1,
+        schema: SCHEMA ^ 1,
+    };
+    let request = Request::Hello {
+        version: VERSION + 1,
+        schema: SCHEMA ^ 1,
+        nonce: 0,
+    };
+    let mut device = Receiver::<MAX_REQUEST_FRAME>::new(Side::Device);
+    let mut heard = None;
+    for byte in request_frame(1, &request) {
+        heard = device.push(byte).map(|frame| frame.request()).or(heard);
+    }
+    assert_eq!(heard, Some(Err(foreign)));
+
+    let mut out = [0; MAX_REPLY_FRAME];
+    let reply = Reply::Incompatible {
+        version: VERSION + 1,
+        schema: SCHEMA ^ 1,
+    };
+    let length = encode_reply(1, &reply, &mut out).unwrap();
+    let mut host = Receiver::<MAX_REPLY_FRAME>::new(Side::Host);
+    let mut heard = None;
+    for byte in &out[..length] {
+        heard = host.push(*byte).map(|frame| frame.reply()).or(heard);
+    }
+    assert_eq!(heard, Some(Err(foreign)));
+    let text = foreign.to_string();
+    assert!(
+        text.contains("protocol 2") && text.contains("not 1"),
+        "{text}"
+    );
+}
+
+/// A looped-back line answers nobody: each end is deaf to its own kind.
+#[test]
+fn nobody_hears_himself() {
+    assert_eq!(replies(&request_frame(1, &hello(1))).0, []);
+    assert_eq!(
+        requests(&reply_frame(1, &Reply::Hello(Identity::default()))).0,
+        []
+    );
+}
+
+/// A right checksum does not make a message: left-over bytes and a hello among the requests are malformed.
+#[test]
+fn checked_nonsense_is_malformed() {
+    use fieldline_protocol::check::{Kind, sum};
+    let frame = |kind: Kind, body: &[u8]| {
+        let mut content = [&[0, 0][..], body].concat();
+        let check = sum(&content) ^ kind.key();
+        content.extend(&check.to_le_bytes()[..3]);
+        [cobs::encode_vec(&content), vec![0]].concat()
+    };
+    let hello_body = postcard::to_allocvec(&hello(1)).unwrap();
+    for (kind, body) in [
+        (Kind::Request, &[5, 0][..]),
+        (Kind::Request, &[99]),
+        (Kind::Request, &[]),
+        (Kind::Request, &hello_body),
+        (Kind::Greeting, &[5]),
+        (Kind::Greeting, &[0, 1]),
+    ] {
+        let mut device = Receiver::<MAX_REQUEST_FRAME>::new(Side::Device);
+        let mut heard = None;
+        for byte in frame(kind, body) {
+            heard = device.push(byte).map(|frame| frame.request()).or(heard);
+        }
+        assert_eq!(heard, Some(Err(BodyError::Malformed)), "{kind:?} {body:?}");
+    }
+}
