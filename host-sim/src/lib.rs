@@ -4,4 +4,5 @@
 pub mod link;
 pub mod picture;
 pub mod report;
+pub mod solve;
 pub mod trial;
