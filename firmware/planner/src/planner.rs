@@ -95,6 +95,29 @@ impl Default for Workspace {
     }
 }
 
+/// Where the window of the last step lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Cell column of the window's first cell, in units of the window's cell.
+    pub origin_x: i16,
+    /// Cell row of the window's first cell.
+    pub origin_y: i16,
+    /// Side of a window cell in map cells.
+    pub scale: u8,
+}
+
+/// Cells in a row of the window.
+pub const WINDOW_SIDE: usize = 61;
+
+impl Workspace {
+    /// One row of the last step's field (row 0 has the least y) into `q`, scaled so that a goal is 1, and where the window lies;
+    /// `None` before the first window and beyond the last row.
+    #[must_use]
+    pub fn field_row(&self, _row: u8, _q: &mut [f32; WINDOW_SIDE]) -> Option<Window> {
+        None
+    }
+}
+
 /// One step: what was sensed in, what to drive out.
 pub fn step<const TILES: usize, const SLOTS: usize>(
     _config: &Config,

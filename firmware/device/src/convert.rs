@@ -1,0 +1,182 @@
+//! Wire quantities to the planner's and back: the only place where `fixed` meets `f32`.
+//!
+//! To the planner the conversion is exact (an `I4F12` has 16 bits, f32 keeps 24) or rounds to nearest (`I16F16` beyond ±128 m: to
+//! 2⁻¹⁶ m or better up to 256 m). To the wire it rounds to nearest and saturates; what is not a number becomes zero. Both
+//! directions are integer arithmetic and the same bits on every machine.
+
+use fieldline_planner::config::{self, Config};
+use fieldline_planner::geometry::{Pose, Twist};
+use fieldline_planner::status::{self, Frontier, Residue};
+use fieldline_protocol::message as wire;
+use fixed::traits::{Fixed, LossyInto};
+
+/// A wire quantity as f32.
+fn float(quantity: impl LossyInto<f32>) -> f32 {
+    quantity.lossy_into()
+}
+
+/// The nearest wire quantity; zero for what is not a number.
+#[must_use]
+pub fn quantity<F: Fixed>(value: f32) -> F {
+    if value.is_nan() {
+        F::ZERO
+    } else {
+        F::saturating_from_num(value)
+    }
+}
+
+/// A pose off the wire.
+#[must_use]
+pub fn pose(pose: &wire::Pose) -> Pose {
+    Pose {
+        x_m: float(pose.x),
+        y_m: float(pose.y),
+        z_m: float(pose.z),
+        roll_rad: float(pose.roll),
+        pitch_rad: float(pose.pitch),
+        yaw_rad: float(pose.yaw),
+    }
+}
+
+/// A velocity off the wire.
+#[must_use]
+pub fn twist(twist: &wire::Twist) -> Twist {
+    Twist {
+        linear_mps: float(twist.linear),
+        angular_radps: float(twist.angular),
+    }
+}
+
+/// A velocity onto the wire.
+#[must_use]
+pub fn wire_twist(twist: &Twist) -> wire::Twist {
+    wire::Twist {
+        linear: quantity(twist.linear_mps),
+        angular: quantity(twist.angular_radps),
+    }
+}
+
+fn laser(laser: &wire::Laser) -> config::Laser {
+    config::Laser {
+        x_m: float(laser.x),
+        y_m: float(laser.y),
+        z_m: float(laser.z),
+        pitch_rad: float(laser.pitch),
+        first_bearing_rad: float(laser.first_bearing),
+        bearing_step_rad: float(laser.bearing_step),
+        beams: laser.beams,
+        range_limit_mm: laser.range_limit_mm,
+    }
+}
+
+/// A session's parameters off the wire.
+#[must_use]
+pub fn config(start: &wire::Start) -> Config {
+    Config {
+        lasers: start.lasers.iter().map(laser).collect(),
+        box_tiles: start.box_tiles,
+        robot_radius_m: f32::from(start.robot_radius_mm) / 1000.0,
+        max_linear_mps: float(start.max_linear),
+        max_angular_radps: float(start.max_angular),
+    }
+}
+
+/// The planner's status onto the wire.
+#[must_use]
+pub fn wire_status(status: status::Status) -> wire::Status {
+    match status {
+        status::Status::Exploring => wire::Status::Exploring,
+        status::Status::Finished(finish) => wire::Status::Finished(match finish {
+            status::Finish::Explored => wire::Finish::Explored,
+            status::Finish::BoxedIn => wire::Finish::BoxedIn,
+        }),
+        status::Status::Fault(fault) => wire::Status::Fault(match fault {
+            status::Fault::StartBlocked => wire::Fault::StartBlocked,
+            status::Fault::MapFull => wire::Fault::MapFull,
+            status::Fault::OutOfBox => wire::Fault::OutOfBox,
+            status::Fault::BadObservation => wire::Fault::BadObservation,
+            status::Fault::Stuck => wire::Fault::Stuck,
+        }),
+    }
+}
+
+/// A residual frontier onto the wire.
+#[must_use]
+pub fn wire_frontier(frontier: &Frontier) -> wire::Frontier {
+    let short = |cell: i32| cell.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
+    wire::Frontier {
+        x: short(frontier.cell.x),
+        y: short(frontier.cell.y),
+        cells: frontier.cells,
+        reason: match frontier.reason {
+            Residue::Unreachable => wire::Residue::Unreachable,
+            Residue::Unobservable => wire::Residue::Unobservable,
+            Residue::OutOfBounds => wire::Residue::OutOfBounds,
+            Residue::NoProgress => wire::Residue::NoProgress,
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fieldline_planner::geometry::{Cell, Twist};
+    use fieldline_planner::status::{Frontier, Residue};
+    use fieldline_protocol::message as wire;
+    use fixed::types::{I4F12, I16F16};
+
+    use super::{float, quantity, wire_frontier, wire_twist};
+
+    #[test]
+    fn every_short_quantity_survives_both_ways() {
+        for bits in i16::MIN..=i16::MAX {
+            let short = I4F12::from_bits(bits);
+            assert_eq!(quantity::<I4F12>(float(short)), short);
+        }
+    }
+
+    #[test]
+    fn long_quantities_survive_within_128_m() {
+        for bits in (-(1 << 23)..=1 << 23).step_by(997) {
+            let long = I16F16::from_bits(bits);
+            assert_eq!(quantity::<I16F16>(float(long)), long);
+        }
+    }
+
+    #[test]
+    fn what_does_not_fit_saturates_and_what_is_no_number_is_zero() {
+        let twist = |linear_mps, angular_radps| {
+            let twist = wire_twist(&Twist {
+                linear_mps,
+                angular_radps,
+            });
+            (twist.linear, twist.angular)
+        };
+        assert_eq!(twist(9.0, -9.0), (I4F12::MAX, I4F12::MIN));
+        assert_eq!(
+            twist(f32::INFINITY, f32::NEG_INFINITY),
+            (I4F12::MAX, I4F12::MIN)
+        );
+        assert_eq!(twist(f32::NAN, -f32::NAN), (I4F12::ZERO, I4F12::ZERO));
+    }
+
+    #[test]
+    fn far_cells_saturate() {
+        let frontier = Frontier {
+            cell: Cell {
+                x: 40_000,
+                y: -40_000,
+            },
+            cells: 7,
+            reason: Residue::OutOfBounds,
+        };
+        assert_eq!(
+            wire_frontier(&frontier),
+            wire::Frontier {
+                x: i16::MAX,
+                y: i16::MIN,
+                cells: 7,
+                reason: wire::Residue::OutOfBounds,
+            }
+        );
+    }
+}

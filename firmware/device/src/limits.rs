@@ -1,0 +1,235 @@
+//! Which parameters a session may have.
+
+use fieldline_protocol::message::{
+    Laser, MAX_BEAMS, NO_RETURN_MM, Observation, Parameter, Refusal, Start,
+};
+use fixed::types::{I4F12, I16F16};
+
+/// A turn, radians, rounded up.
+const TURN: I16F16 = I16F16::lit("6.2832");
+/// A right angle, radians, rounded down.
+const RIGHT_ANGLE: I4F12 = I4F12::lit("1.5705");
+/// How far a level laser may tilt, radians: 12 m away it then looks 0.6 m off.
+const LEVEL: I4F12 = I4F12::lit("0.05");
+/// How far from the centre a laser may sit, metres.
+const REACH: I4F12 = I4F12::lit("2");
+/// Radii that a robot may have, millimetres.
+const RADII_MM: core::ops::RangeInclusive<u16> = 50..=2000;
+
+/// Whether a session may run with these parameters in `slots` tile places.
+///
+/// # Errors
+/// The first parameter that is out of its range.
+pub fn check_start(start: &Start, slots: usize) -> Result<(), Refusal> {
+    let (across, up) = start.box_tiles;
+    if across == 0 || up == 0 || usize::from(across) * usize::from(up) > slots {
+        return Err(Refusal::BadBox);
+    }
+    let limits = [
+        (!start.lasers.is_empty(), Parameter::Lasers),
+        (RADII_MM.contains(&start.robot_radius_mm), Parameter::Radius),
+        (start.max_linear > I4F12::ZERO, Parameter::MaxLinear),
+        (start.max_angular > I4F12::ZERO, Parameter::MaxAngular),
+    ];
+    first_broken(&limits)?;
+    for (number, laser) in start.lasers.iter().enumerate() {
+        check_laser(laser, number == 0)?;
+    }
+    Ok(())
+}
+
+fn check_laser(laser: &Laser, level: bool) -> Result<(), Refusal> {
+    let beams = (1..=MAX_BEAMS).contains(&usize::from(laser.beams));
+    let sweep = i64::from(laser.bearing_step.to_bits()) * i64::from(laser.beams.saturating_sub(1));
+    let within_reach = |offset: I4F12| (-REACH..=REACH).contains(&offset);
+    let pitch = if level {
+        (-LEVEL..=LEVEL).contains(&laser.pitch)
+    } else {
+        (I4F12::ZERO..RIGHT_ANGLE).contains(&laser.pitch)
+    };
+    first_broken(&[
+        (beams, Parameter::Beams),
+        (
+            (1..NO_RETURN_MM).contains(&laser.range_limit_mm),
+            Parameter::RangeLimit,
+        ),
+        (
+            laser.bearing_step > I16F16::ZERO
+                && (-TURN..=TURN).contains(&laser.first_bearing)
+                && sweep <= i64::from(TURN.to_bits()),
+            Parameter::Bearing,
+        ),
+        (pitch, Parameter::Pitch),
+        (
+            within_reach(laser.x)
+                && within_reach(laser.y)
+                && laser.z > I4F12::ZERO
+                && laser.z <= REACH,
+            Parameter::Mount,
+        ),
+    ])
+}
+
+fn first_broken(limits: &[(bool, Parameter)]) -> Result<(), Refusal> {
+    match limits.iter().find(|(kept, _)| !kept) {
+        Some((_, parameter)) => Err(Refusal::BadParameter(*parameter)),
+        None => Ok(()),
+    }
+}
+
+/// Whether an observation has one scan for each laser, of as many ranges as it has beams.
+#[must_use]
+pub fn matches(observation: &Observation, beams: impl ExactSizeIterator<Item = u16>) -> bool {
+    observation.scans.len() == beams.len()
+        && observation
+            .scans
+            .iter()
+            .zip(beams)
+            .all(|(scan, beams)| scan.ranges_mm.len() == usize::from(beams))
+}
+
+#[cfg(test)]
+mod tests {
+    use fieldline_protocol::message::{Laser, Observation, Parameter, Refusal, Scan, Start};
+    use fixed::types::{I4F12, I16F16};
+
+    use super::{check_start, matches};
+    use crate::pilot::tests::start;
+
+    fn with_laser(change: impl Fn(&mut Laser)) -> Start {
+        let mut start = start();
+        change(&mut start.lasers[1]);
+        start
+    }
+
+    #[test]
+    fn good_parameters_pass() {
+        assert_eq!(check_start(&start(), 400), Ok(()));
+        let upward = |laser: &mut Laser| laser.bearing_step = I16F16::lit("0.0349");
+        assert_eq!(check_start(&with_laser(upward), 400), Ok(()));
+    }
+
+    #[test]
+    fn every_limit_is_kept() {
+        let bad = |parameter| Err(Refusal::BadParameter(parameter));
+        let cases: &[(Start, Parameter)] = &[
+            (
+                Start {
+                    lasers: heapless::Vec::new(),
+                    ..start()
+                },
+                Parameter::Lasers,
+            ),
+            (
+                Start {
+                    robot_radius_mm: 49,
+                    ..start()
+                },
+                Parameter::Radius,
+            ),
+            (
+                Start {
+                    robot_radius_mm: 2001,
+                    ..start()
+                },
+                Parameter::Radius,
+            ),
+            (
+                Start {
+                    max_linear: I4F12::ZERO,
+                    ..start()
+                },
+                Parameter::MaxLinear,
+            ),
+            (
+                Start {
+                    max_angular: -I4F12::DELTA,
+                    ..start()
+                },
+                Parameter::MaxAngular,
+            ),
+            (with_laser(|laser| laser.beams = 0), Parameter::Beams),
+            (with_laser(|laser| laser.beams = 182), Parameter::Beams),
+            (
+                with_laser(|laser| laser.range_limit_mm = 0),
+                Parameter::RangeLimit,
+            ),
+            (
+                with_laser(|laser| laser.range_limit_mm = 16_383),
+                Parameter::RangeLimit,
+            ),
+            (
+                with_laser(|laser| laser.bearing_step = I16F16::ZERO),
+                Parameter::Bearing,
+            ),
+            (
+                with_laser(|laser| laser.bearing_step = I16F16::lit("0.04")),
+                Parameter::Bearing,
+            ),
+            (
+                with_laser(|laser| laser.bearing_step = I16F16::MAX),
+                Parameter::Bearing,
+            ),
+            (
+                with_laser(|laser| laser.first_bearing = I16F16::lit("-7")),
+                Parameter::Bearing,
+            ),
+            (
+                with_laser(|laser| laser.pitch = I4F12::lit("-0.1")),
+                Parameter::Pitch,
+            ),
+            (
+                with_laser(|laser| laser.pitch = I4F12::lit("1.6")),
+                Parameter::Pitch,
+            ),
+            (with_laser(|laser| laser.z = I4F12::ZERO), Parameter::Mount),
+            (with_laser(|laser| laser.x = I4F12::MIN), Parameter::Mount),
+        ];
+        for (start, parameter) in cases {
+            assert_eq!(check_start(start, 400), bad(*parameter), "{start:?}");
+        }
+        let mut tilted = start();
+        tilted.lasers[0].pitch = I4F12::lit("0.35");
+        assert_eq!(check_start(&tilted, 400), bad(Parameter::Pitch));
+    }
+
+    #[test]
+    fn the_box_fits_the_slots() {
+        for (box_tiles, slots, fits) in [
+            ((20, 20), 400, true),
+            ((30, 12), 400, true),
+            ((21, 20), 400, false),
+            ((0, 20), 400, false),
+            ((20, 0), 400, false),
+            ((255, 255), 400, false),
+            ((1, 1), 1, true),
+        ] {
+            let start = Start {
+                box_tiles,
+                ..start()
+            };
+            let expected = if fits { Ok(()) } else { Err(Refusal::BadBox) };
+            assert_eq!(check_start(&start, slots), expected, "{box_tiles:?}");
+        }
+    }
+
+    #[test]
+    fn scans_must_match_the_lasers() {
+        let scan = |beams: usize| Scan {
+            ranges_mm: (0..beams).map(|_| 1000).collect(),
+        };
+        let seen = |scans: &[usize], beams: &[u16]| {
+            let observation = Observation {
+                scans: scans.iter().map(|beams| scan(*beams)).collect(),
+                ..Observation::default()
+            };
+            matches(&observation, beams.iter().copied())
+        };
+        assert!(seen(&[3, 4], &[3, 4]));
+        assert!(!seen(&[3, 4], &[4, 3]));
+        assert!(!seen(&[3], &[3, 4]));
+        assert!(!seen(&[3, 4], &[3]));
+        assert!(!seen(&[2], &[3]));
+        assert!(!seen(&[], &[3]));
+    }
+}

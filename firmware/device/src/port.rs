@@ -1,0 +1,392 @@
+//! The session on a board: serial line, emergency stop and LED through the embedded traits.
+//!
+//! The emergency stop is a normally closed contact to ground with a pull-up: high means pressed or a broken wire. A pin that cannot be
+//! read counts as pressed.
+
+use embedded_hal::digital::{InputPin, OutputPin};
+use embedded_io::{Error, ErrorKind, Read, ReadReady, Write};
+use fieldline_protocol::frame::MAX_LOG_BYTES;
+
+use crate::meter::Meter;
+use crate::pilot::Memory;
+use crate::session::Session;
+
+/// What a board offers beside its pins and its line.
+pub trait Board: Meter {
+    /// Milliseconds of any origin, wrapping.
+    fn now_ms(&mut self) -> u32;
+    /// Takes waiting log bytes into `out` and gives how many.
+    fn take_log(&mut self, out: &mut [u8]) -> usize;
+}
+
+/// The serial line or the LED failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PortError {
+    /// The line, while reading.
+    Read(ErrorKind),
+    /// The line, while writing.
+    Write(ErrorKind),
+}
+
+impl core::fmt::Display for PortError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let (what, kind) = match self {
+            Self::Read(kind) => ("reading from", kind),
+            Self::Write(kind) => ("writing to", kind),
+        };
+        write!(
+            f,
+            "{what} the serial line failed ({kind:?}); check the wiring"
+        )
+    }
+}
+
+impl core::error::Error for PortError {}
+
+/// What a turn did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// Nothing to do until a byte comes: the board may sleep.
+    Idle,
+    /// Bytes moved.
+    Busy,
+    /// Everything is sent and the host wants a reboot.
+    Reset,
+}
+
+/// The pins and the line of a board.
+#[derive(Debug)]
+pub struct Port<S, P, L> {
+    /// The serial line. Reading must not block when [`ReadReady`] says that something is there.
+    pub serial: S,
+    /// The emergency stop; high is pressed.
+    pub emergency_stop: P,
+    /// The status LED; high is lit.
+    pub led: L,
+}
+
+impl<S: Read + ReadReady + Write, P: InputPin, L: OutputPin> Port<S, P, L> {
+    /// Moves what there is to move: pins, bytes in, requests answered, bytes out, log.
+    ///
+    /// # Errors
+    /// [`PortError`]; the session is intact and the next turn may be tried.
+    pub fn turn<B: Board, const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        session: &mut Session,
+        memory: &mut Memory<'_, TILES, SLOTS>,
+        board: &mut B,
+    ) -> Result<Turn, PortError> {
+        let now_ms = board.now_ms();
+        session.set_emergency_stop(self.emergency_stop.is_high().unwrap_or(true));
+        session.tick(now_ms);
+        // A dead LED must not stop the robot's planner.
+        let _ = self.led.set_state(session.signal().lit(now_ms).into());
+
+        let read = self.read(session, memory, board)?;
+        take_log(session, board);
+        let wrote = self.write(session)?;
+        Ok(match (read || wrote, session.wants_reset()) {
+            (_, true) => Turn::Reset,
+            (true, false) => Turn::Busy,
+            (false, false) => Turn::Idle,
+        })
+    }
+
+    fn read<B: Board, const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        session: &mut Session,
+        memory: &mut Memory<'_, TILES, SLOTS>,
+        board: &mut B,
+    ) -> Result<bool, PortError> {
+        let failed = |error: S::Error| PortError::Read(error.kind());
+        if !self.serial.read_ready().map_err(failed)? {
+            return Ok(false);
+        }
+        let mut bytes = [0; 64];
+        let count = self.serial.read(&mut bytes).map_err(failed)?;
+        for byte in bytes.iter().take(count) {
+            session.receive(*byte, memory, board);
+        }
+        Ok(count > 0)
+    }
+
+    fn write(&mut self, session: &mut Session) -> Result<bool, PortError> {
+        let failed = |error: S::Error| PortError::Write(error.kind());
+        let mut wrote = false;
+        while !session.pending().is_empty() {
+            let count = self.serial.write(session.pending()).map_err(failed)?;
+            session.sent(count);
+            wrote = true;
+        }
+        self.serial.flush().map_err(failed)?;
+        Ok(wrote)
+    }
+}
+
+fn take_log<B: Board>(session: &mut Session, board: &mut B) {
+    let mut log = [0; MAX_LOG_BYTES];
+    let room = session.log_room();
+    if let Some(log) = log.get_mut(..room) {
+        let count = board.take_log(log);
+        if let Some(log) = log.get(..count) {
+            session.log(log);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::VecDeque;
+    use std::vec;
+    use std::vec::Vec;
+
+    use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction};
+    use embedded_io::{ErrorKind, ErrorType, Read, ReadReady, Write};
+    use fieldline_protocol::check::Kind;
+    use fieldline_protocol::frame::{
+        MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_request,
+    };
+    use fieldline_protocol::message::{Control, Reply, Request, Status};
+    use fieldline_protocol::{SCHEMA, VERSION};
+
+    use super::{Board, Port, PortError, Turn};
+    use crate::meter::{Meter, NoMeter};
+    use crate::pilot::tests::Bench;
+    use crate::session::{Boot, Session};
+
+    /// A line with what the host sent, what it hears, and a fault to come.
+    #[derive(Default)]
+    struct Line {
+        to_device: VecDeque<u8>,
+        to_host: Vec<u8>,
+        broken: bool,
+    }
+
+    impl ErrorType for Line {
+        type Error = ErrorKind;
+    }
+
+    impl ReadReady for Line {
+        fn read_ready(&mut self) -> Result<bool, ErrorKind> {
+            Ok(!self.to_device.is_empty())
+        }
+    }
+
+    impl Read for Line {
+        fn read(&mut self, out: &mut [u8]) -> Result<usize, ErrorKind> {
+            if self.broken {
+                return Err(ErrorKind::InvalidData);
+            }
+            let count = out.len().min(self.to_device.len()).min(7);
+            for (place, byte) in out.iter_mut().zip(self.to_device.drain(..count)) {
+                *place = byte;
+            }
+            Ok(count)
+        }
+    }
+
+    impl Write for Line {
+        fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
+            if self.broken {
+                return Err(ErrorKind::BrokenPipe);
+            }
+            let count = bytes.len().min(5);
+            self.to_host.extend_from_slice(&bytes[..count]);
+            Ok(count)
+        }
+
+        fn flush(&mut self) -> Result<(), ErrorKind> {
+            Ok(())
+        }
+    }
+
+    #[derive(Default)]
+    struct Bare {
+        now_ms: u32,
+        log: Vec<u8>,
+    }
+
+    impl Meter for Bare {
+        fn start(&mut self) {
+            NoMeter.start();
+        }
+        fn stop(&mut self) -> u32 {
+            NoMeter.stop()
+        }
+        fn stack_bytes(&self) -> u32 {
+            NoMeter.stack_bytes()
+        }
+    }
+
+    impl Board for Bare {
+        fn now_ms(&mut self) -> u32 {
+            self.now_ms
+        }
+        fn take_log(&mut self, out: &mut [u8]) -> usize {
+            let count = out.len().min(self.log.len());
+            out[..count].copy_from_slice(&self.log[..count]);
+            self.log.drain(..count);
+            count
+        }
+    }
+
+    fn frame(sequence: u16, request: &Request) -> Vec<u8> {
+        let mut out = [0; MAX_REQUEST_FRAME];
+        let length = encode_request(sequence, request, &mut out).unwrap();
+        out[..length].to_vec()
+    }
+
+    fn greeting() -> Vec<u8> {
+        let hello = Request::Hello {
+            version: VERSION,
+            schema: SCHEMA,
+            nonce: 1,
+        };
+        frame(0, &hello)
+    }
+
+    /// Turns until idle or reset; each turn reads the stop and sets the LED once.
+    fn turn_through(
+        line: Line,
+        session: &mut Session,
+        board: &mut Bare,
+        pins: &[(State, State)],
+    ) -> (Line, Vec<Turn>) {
+        let stops: Vec<_> = pins
+            .iter()
+            .map(|(stop, _)| Transaction::get(*stop))
+            .collect();
+        let leds: Vec<_> = pins.iter().map(|(_, led)| Transaction::set(*led)).collect();
+        let (mut stop, mut led) = (Pin::new(&stops), Pin::new(&leds));
+        let mut port = Port {
+            serial: line,
+            emergency_stop: stop.clone(),
+            led: led.clone(),
+        };
+        let mut bench = Bench::new();
+        let turns = pins
+            .iter()
+            .map(|_| port.turn(session, &mut bench.memory(), board).unwrap())
+            .collect();
+        stop.done();
+        led.done();
+        (port.serial, turns)
+    }
+
+    fn kinds(bytes: &[u8]) -> Vec<Kind> {
+        let mut host = Receiver::<MAX_REPLY_FRAME>::new(Side::Host);
+        let mut kinds = vec![];
+        for byte in bytes {
+            kinds.extend(host.push(*byte).map(|frame| frame.kind));
+        }
+        kinds
+    }
+
+    #[test]
+    fn bytes_go_through_and_the_board_may_sleep() {
+        let mut session = Session::new(Boot::default(), 4, 400);
+        let mut board = Bare {
+            log: vec![1, 2, 3],
+            ..Bare::default()
+        };
+        let line = Line {
+            to_device: greeting().into(),
+            ..Line::default()
+        };
+        // Released; the LED flashes once for "waiting", the greeting takes two reads of seven bytes.
+        let pins = [(State::Low, State::High); 4];
+        let (line, turns) = turn_through(line, &mut session, &mut board, &pins);
+        assert_eq!(turns, [Turn::Busy, Turn::Busy, Turn::Idle, Turn::Idle]);
+        assert_eq!(
+            kinds(&line.to_host),
+            [Kind::Welcome, Kind::Log, Kind::Welcome]
+        );
+    }
+
+    #[test]
+    fn a_pressed_or_broken_stop_stops() {
+        let mut session = Session::new(Boot::default(), 4, 400);
+        let mut board = Bare::default();
+        let pins = [(State::High, State::High), (State::High, State::High)];
+        turn_through(Line::default(), &mut session, &mut board, &pins);
+        board.now_ms = 1000;
+        // Only the emergency stop lights the LED a second into the cycle.
+        turn_through(
+            Line::default(),
+            &mut session,
+            &mut board,
+            &[(State::High, State::High)],
+        );
+    }
+
+    #[test]
+    fn the_led_follows_the_clock() {
+        let mut session = Session::new(Boot::default(), 4, 400);
+        let mut board = Bare {
+            now_ms: 125,
+            ..Bare::default()
+        };
+        turn_through(
+            Line::default(),
+            &mut session,
+            &mut board,
+            &[(State::Low, State::Low)],
+        );
+    }
+
+    #[test]
+    fn a_reset_is_reported_once_its_answer_is_out() {
+        let mut session = Session::new(Boot::default(), 4, 400);
+        let mut board = Bare::default();
+        let mut bytes = greeting();
+        bytes.extend(frame(1, &Request::Control(Control::Reset)));
+        let line = Line {
+            to_device: bytes.into(),
+            ..Line::default()
+        };
+        let pins = [(State::Low, State::High); 4];
+        let (line, turns) = turn_through(line, &mut session, &mut board, &pins);
+        assert_eq!(turns.last(), Some(&Turn::Reset));
+        let mut host = Receiver::<MAX_REPLY_FRAME>::new(Side::Host);
+        let mut last = None;
+        for byte in &line.to_host {
+            last = host.push(*byte).map(|frame| frame.reply()).or(last);
+        }
+        assert_eq!(last, Some(Ok(Reply::Control(Status::Idle))));
+    }
+
+    #[test]
+    fn a_broken_line_is_an_error_with_a_name() {
+        let mut session = Session::new(Boot::default(), 4, 400);
+        let mut bench = Bench::new();
+        let turn = |line: Line, session: &mut Session, bench: &mut Bench| {
+            let (mut stop, mut led) = (
+                Pin::new(&[Transaction::get(State::Low)]),
+                Pin::new(&[Transaction::set(State::High)]),
+            );
+            let mut port = Port {
+                serial: line,
+                emergency_stop: stop.clone(),
+                led: led.clone(),
+            };
+            let result = port.turn(session, &mut bench.memory(), &mut Bare::default());
+            stop.done();
+            led.done();
+            result
+        };
+        let broken = Line {
+            broken: true,
+            ..Line::default()
+        };
+        let error = turn(broken, &mut session, &mut bench).unwrap_err();
+        assert_eq!(error, PortError::Write(ErrorKind::BrokenPipe));
+        let noisy = Line {
+            broken: true,
+            to_device: [1].into(),
+            ..Line::default()
+        };
+        let error = turn(noisy, &mut session, &mut bench).unwrap_err();
+        assert_eq!(error, PortError::Read(ErrorKind::InvalidData));
+        assert!(std::format!("{error}").contains("check the wiring"));
+    }
+}

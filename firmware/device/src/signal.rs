@@ -1,0 +1,93 @@
+//! What the status LED shows: sixteen slots of an eighth of a second, over and over.
+
+use fieldline_protocol::message::Status;
+
+/// Length of a slot, milliseconds.
+pub const SLOT_MS: u32 = 125;
+
+/// What the device wants seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Signal {
+    /// No host yet: one flash.
+    #[default]
+    Waiting,
+    /// A host, no session: two flashes.
+    Ready,
+    /// Exploring: half a second on, half a second off.
+    Exploring,
+    /// Held by the host: a second on, a second off.
+    Paused,
+    /// Exploration ended: three flashes.
+    Finished,
+    /// The emergency stop: on.
+    EmergencyStop,
+    /// The host fell silent, or the planner cannot go on, or the host is incompatible: four blinks a second.
+    Trouble,
+    /// Rebooted after a crash, and no host yet: on, with two gaps.
+    Crashed,
+}
+
+impl Signal {
+    /// The signal of a session's status.
+    #[must_use]
+    pub const fn of(status: Status) -> Self {
+        match status {
+            Status::Idle => Self::Ready,
+            Status::Exploring => Self::Exploring,
+            Status::Paused => Self::Paused,
+            Status::EmergencyStop => Self::EmergencyStop,
+            Status::Finished(_) => Self::Finished,
+            Status::Fault(_) => Self::Trouble,
+        }
+    }
+
+    const fn pattern(self) -> u16 {
+        match self {
+            Self::Waiting => 0b1000_0000_0000_0000,
+            Self::Ready => 0b1010_0000_0000_0000,
+            Self::Exploring => 0b1111_0000_1111_0000,
+            Self::Paused => 0b1111_1111_0000_0000,
+            Self::Finished => 0b1010_1000_0000_0000,
+            Self::EmergencyStop => 0b1111_1111_1111_1111,
+            Self::Trouble => 0b1010_1010_1010_1010,
+            Self::Crashed => 0b1111_1111_1111_0101,
+        }
+    }
+
+    /// Whether the LED is on at `now_ms`.
+    #[must_use]
+    pub const fn lit(self, now_ms: u32) -> bool {
+        self.pattern() << ((now_ms / SLOT_MS) % 16) & 0x8000 != 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::String;
+
+    use super::{SLOT_MS, Signal};
+
+    fn seen(signal: Signal) -> String {
+        (0..16)
+            .map(|slot| if signal.lit(slot * SLOT_MS) { '#' } else { '.' })
+            .collect()
+    }
+
+    #[test]
+    fn the_patterns_as_they_look() {
+        for (signal, picture) in [
+            (Signal::Waiting, "#..............."),
+            (Signal::Ready, "#.#............."),
+            (Signal::Exploring, "####....####...."),
+            (Signal::Paused, "########........"),
+            (Signal::Finished, "#.#.#..........."),
+            (Signal::EmergencyStop, "################"),
+            (Signal::Trouble, "#.#.#.#.#.#.#.#."),
+            (Signal::Crashed, "############.#.#"),
+        ] {
+            assert_eq!(seen(signal), picture, "{signal:?}");
+            assert_eq!(signal.lit(2000), signal.lit(0), "every two seconds");
+            assert_eq!(signal.lit(SLOT_MS - 1), signal.lit(0));
+        }
+    }
+}
