@@ -2,3 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod link;
+pub mod metrics;
+pub mod robot;
+pub mod sim;
+pub mod world;
