@@ -7,7 +7,7 @@
 use fieldline_protocol::message::{Observation, Start, Strategy, Twist};
 use fixed::types::I4F12;
 
-use crate::metrics::{Localization, Safety};
+use crate::metrics::{Localization, Overlap, Safety};
 use crate::robot::{
     Drive, DriveLimits, Footprint, LaserNoise, LaserScanner, Odometry, OdometryModel, Pose,
     RADIUS_M, Source, Velocity, laser,
@@ -69,6 +69,7 @@ pub struct Simulator<'w> {
     in_contact: bool,
     safety: Safety,
     localization: Localization,
+    overlap: Overlap,
 }
 
 impl<'w> Simulator<'w> {
@@ -111,7 +112,9 @@ impl<'w> Simulator<'w> {
             in_contact: false,
             safety: Safety::default(),
             localization: Localization::default(),
+            overlap: Overlap::default(),
         };
+        simulator.overlap.add(pose.x_m, pose.y_m);
         simulator.track_clearance();
         Ok(simulator)
     }
@@ -154,6 +157,7 @@ impl<'w> Simulator<'w> {
             }
             self.time_ms += step_ms;
         }
+        self.overlap.add(self.pose.x_m, self.pose.y_m);
         let velocity = self.drive.velocity();
         self.odometry
             .advance(&self.pose, forward_m, turn_rad, velocity);
@@ -271,6 +275,12 @@ impl<'w> Simulator<'w> {
     #[must_use]
     pub fn safety(&self) -> Safety {
         self.safety
+    }
+
+    /// Share of the path that was driven again.
+    #[must_use]
+    pub fn overlap(&self) -> f64 {
+        self.overlap.fraction()
     }
 
     /// The odometry's error so far.

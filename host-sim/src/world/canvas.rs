@@ -5,6 +5,39 @@
 
 use super::occupancy::{Class, GridCell, Occupancy};
 
+/// A number that looks random, of two numbers: multiply, shift and mix.
+pub(super) fn hash(a: u32, b: u32) -> u32 {
+    let mut value = a
+        .wrapping_mul(0x9e37_79b1)
+        .wrapping_add(b.wrapping_mul(0x85eb_ca77));
+    for _ in 0..2 {
+        value ^= value >> 15;
+        value = value.wrapping_mul(0xd168_aaad);
+        value ^= value >> 13;
+        value = value.wrapping_mul(0xaf72_3597);
+    }
+    value ^ value >> 16
+}
+
+/// Smooth noise in [−1, 1] over the plane, with features of about 1 m and half as much of about 0.4 m.
+pub(super) fn roughness(x_m: f64, y_m: f64) -> f64 {
+    (value_noise(x_m, y_m) + 0.5 * value_noise(2.5 * x_m + 17.0, 2.5 * y_m + 31.0)) / 1.5
+}
+
+/// Random values on the whole numbers, smoothly joined.
+fn value_noise(x: f64, y: f64) -> f64 {
+    let (i, j) = (x.floor(), y.floor());
+    let smooth = |t: f64| t * t * (3.0 - 2.0 * t);
+    let (fx, fy) = (smooth(x - i), smooth(y - j));
+    let at = |di: f64, dj: f64| {
+        let bits = hash((i + di) as i64 as u32, (j + dj) as i64 as u32);
+        f64::from(bits) / f64::from(u32::MAX) * 2.0 - 1.0
+    };
+    let low = at(0.0, 0.0) * (1.0 - fx) + at(1.0, 0.0) * fx;
+    let high = at(0.0, 1.0) * (1.0 - fx) + at(1.0, 1.0) * fx;
+    low * (1.0 - fy) + high * fy
+}
+
 /// The grid being drawn.
 pub(super) struct Canvas {
     grid: Occupancy,
@@ -60,6 +93,15 @@ impl Canvas {
     pub(super) fn disc(&mut self, class: Class, [cx, cy]: [f64; 2], radius: f64) {
         self.fill(class, |x, y| {
             (x - cx) * (x - cx) + (y - cy) * (y - cy) < radius * radius
+        });
+    }
+
+    /// A wall all around the plan.
+    pub(super) fn border(&mut self, thickness: f64) {
+        let [width, height] =
+            [self.grid.width(), self.grid.height()].map(|cells| cells as f64 * Self::RESOLUTION_M);
+        self.fill(Class::Wall, |x, y| {
+            x < thickness || y < thickness || x > width - thickness || y > height - thickness
         });
     }
 

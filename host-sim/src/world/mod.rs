@@ -28,6 +28,7 @@ pub use error::WorldError;
 pub use image::{Image, ImageError, MAX_PIXELS};
 pub use occupancy::{Class, GridCell, Occupancy, Thresholds};
 pub use ray::{Hit, Ray, Surface};
+pub(crate) use walk::Walk;
 
 use crate::robot::Footprint;
 

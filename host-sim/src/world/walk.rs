@@ -10,21 +10,21 @@ const PARALLEL: f64 = 1e-12;
 
 /// Where the walk is.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Walk {
+pub(crate) struct Walk {
     start: [f64; 2],
     speed: [f64; 2],
     inverse: [f64; 2],
     /// The present cell.
-    pub(super) cell: [i64; 2],
+    pub(crate) cell: [i64; 2],
     /// Metres along the ray where it was entered.
-    pub(super) entered_m: f64,
+    pub(crate) entered_m: f64,
     /// Metres along the ray to the next crossing, by axis.
     next_m: [f64; 2],
 }
 
 impl Walk {
     /// Begins at `start` (cells), going `speed` cells a metre.
-    pub(super) fn new(start: [f64; 2], speed: [f64; 2]) -> Self {
+    pub(crate) fn new(start: [f64; 2], speed: [f64; 2]) -> Self {
         let mut walk = Self {
             start,
             speed,
@@ -48,13 +48,13 @@ impl Walk {
 
     /// Metres along the ray where the present cell is left.
     #[inline(always)]
-    pub(super) fn left_m(&self) -> f64 {
+    pub(crate) fn left_m(&self) -> f64 {
         self.next_m[0].min(self.next_m[1])
     }
 
     /// Goes on to the next cell; through a corner, across x first.
     #[inline(always)]
-    pub(super) fn advance(&mut self) {
+    pub(crate) fn advance(&mut self) {
         let axis = usize::from(self.next_m[1] < self.next_m[0]);
         self.entered_m = self.next_m[axis];
         self.cell[axis] += if self.speed[axis] > 0.0 { 1 } else { -1 };
@@ -63,7 +63,7 @@ impl Walk {
 
     /// Goes on to the cell at `at_m` metres along the ray.
     #[inline(always)]
-    pub(super) fn jump(&mut self, at_m: f64) {
+    pub(crate) fn jump(&mut self, at_m: f64) {
         self.entered_m = at_m;
         self.cell = [0, 1].map(|axis| (self.start[axis] + self.speed[axis] * at_m).floor() as i64);
         self.next_m = [self.crossing(0), self.crossing(1)];
