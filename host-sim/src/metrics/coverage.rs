@@ -1,0 +1,216 @@
+//! How much of what could be known is known.
+//!
+//! The denominator is honest: the map cells of 10 cm that a disc of the robot's radius, driven wherever it can get from the
+//! start ([`CellSet::reach`]), could have seen. A cell counts if its centre is free and
+//! - lies in a reached cell, or
+//! - one of [`DIRECTIONS`] level rays from it meets a reached cell within the laser's range before anything solid.
+//!
+//! The numerator counts only cells of the denominator, so that a map smeared beyond the walls earns nothing. Once
+//! known, a cell stays counted until [`Coverage::recount`].
+//!
+//! [`CellSet::reach`]: super::CellSet::reach
+
+use fieldline_planner::geometry::Cell;
+
+use super::reach::CellSet;
+use crate::world::{GridCell, Start, Walk, World};
+
+/// Side of a map cell, metres; `fieldline_planner::geometry::CELL_M` in double precision.
+pub const MAP_CELL_M: f64 = 0.1;
+/// Rays cast from a cell before it is called invisible.
+pub const DIRECTIONS: u32 = 360;
+/// Coprime to [`DIRECTIONS`] and near its golden section: consecutive rays go far apart.
+const STRIDE: u32 = 223;
+
+/// What the true world has in a map cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Truth {
+    /// Nothing solid anywhere in it.
+    Free,
+    /// Solid in part: an edge of something.
+    Edge,
+    /// Solid throughout, or outside of the world.
+    Solid,
+}
+
+/// The measure of an exploration.
+#[derive(Clone, Debug)]
+pub struct Coverage {
+    /// Cells that can be seen, those already known first.
+    cells: Vec<Cell>,
+    known: usize,
+    seen_at_s: [Option<f64>; 2],
+}
+
+/// Fractions whose times are kept: T90 and T99.
+const MILESTONES: [f64; 2] = [0.90, 0.99];
+
+impl Coverage {
+    /// Finds everything that a disc of `radius_m`, driven from `start`, could have seen within `range_m`.
+    #[must_use]
+    pub fn new(world: &World, start: Start, radius_m: f64, range_m: f64) -> Self {
+        let reach = CellSet::reach(world, start, radius_m);
+        let free = CellSet::free(world, start);
+        let grid = world.occupancy();
+        let cells = map_cells(world)
+            .filter(|cell| {
+                let [x, y] = centre_m(*cell);
+                let place = grid.cell_at(x, y);
+                // A line of sight is free all along, so it cannot leave the free cells around the start.
+                reach.contains(place)
+                    || (free.contains(place) && visible(world, &reach, [x, y], range_m))
+            })
+            .collect();
+        Self {
+            cells,
+            known: 0,
+            seen_at_s: [None; 2],
+        }
+    }
+
+    /// Asks about the cells not known so far, at a simulated time in seconds, and returns the fraction.
+    pub fn update(&mut self, time_s: f64, is_known: impl Fn(Cell) -> bool) -> f64 {
+        for index in self.known..self.cells.len() {
+            if is_known(self.cells[index]) {
+                self.cells.swap(index, self.known);
+                self.known += 1;
+            }
+        }
+        let fraction = self.fraction();
+        for (seen, milestone) in self.seen_at_s.iter_mut().zip(MILESTONES) {
+            if fraction >= milestone {
+                seen.get_or_insert(time_s);
+            }
+        }
+        fraction
+    }
+
+    /// Asks about every cell anew, the known ones too, and returns the fraction.
+    pub fn recount(&mut self, time_s: f64, is_known: impl Fn(Cell) -> bool) -> f64 {
+        self.known = 0;
+        self.update(time_s, is_known)
+    }
+
+    /// Known cells over cells that can be seen; 1 where there are none.
+    #[must_use]
+    pub fn fraction(&self) -> f64 {
+        if self.cells.is_empty() {
+            1.0
+        } else {
+            self.known as f64 / self.cells.len() as f64
+        }
+    }
+
+    /// Area known of what can be seen, m².
+    #[must_use]
+    pub fn known_m2(&self) -> f64 {
+        self.known as f64 * MAP_CELL_M * MAP_CELL_M
+    }
+
+    /// Area that can be seen, m².
+    #[must_use]
+    pub fn reachable_m2(&self) -> f64 {
+        self.cells.len() as f64 * MAP_CELL_M * MAP_CELL_M
+    }
+
+    /// When 90 % were known, simulated seconds.
+    #[must_use]
+    pub fn t90_s(&self) -> Option<f64> {
+        self.seen_at_s[0]
+    }
+
+    /// When 99 % were known, simulated seconds.
+    #[must_use]
+    pub fn t99_s(&self) -> Option<f64> {
+        self.seen_at_s[1]
+    }
+
+    /// Cells that can be seen but are not known.
+    #[must_use]
+    pub fn missing(&self) -> &[Cell] {
+        &self.cells[self.known..]
+    }
+
+    /// All cells that can be seen, in no particular order.
+    #[must_use]
+    pub fn cells(&self) -> &[Cell] {
+        &self.cells
+    }
+}
+
+/// The map cells that lie at least partly in the world, row by row.
+pub fn map_cells(world: &World) -> impl Iterator<Item = Cell> {
+    let [x0, y0] = world.occupancy().origin_m();
+    let [width, height] = world.size_m();
+    let first = |m: f64| (m / MAP_CELL_M).floor() as i32;
+    let last = |m: f64| (m / MAP_CELL_M).ceil() as i32;
+    let columns = first(x0)..last(x0 + width);
+    (first(y0)..last(y0 + height)).flat_map(move |y| columns.clone().map(move |x| Cell { x, y }))
+}
+
+/// What the true world has in a map cell.
+#[must_use]
+pub fn truth(world: &World, cell: Cell) -> Truth {
+    // A border that is shared with the next cell, give or take rounding, does not count.
+    let slack_m = 1e-6;
+    let [x, y] = centre_m(cell);
+    let half = 0.5 * MAP_CELL_M - slack_m;
+    let grid = world.occupancy();
+    let (low, high) = (
+        grid.cell_at(x - half, y - half),
+        grid.cell_at(x + half, y + half),
+    );
+    let (mut solid, mut free) = (false, false);
+    for j in low.j..=high.j {
+        for i in low.i..=high.i {
+            let here = grid.is_solid(GridCell { i, j });
+            solid |= here;
+            free |= !here;
+        }
+    }
+    match (solid, free) {
+        (false, _) => Truth::Free,
+        (true, true) => Truth::Edge,
+        (true, false) => Truth::Solid,
+    }
+}
+
+/// The centre of a map cell, metres.
+fn centre_m(cell: Cell) -> [f64; 2] {
+    [cell.x, cell.y].map(|k| (f64::from(k) + 0.5) * MAP_CELL_M)
+}
+
+/// Does some ray from a point meet a reached cell before anything solid?
+fn visible(world: &World, reach: &CellSet, from_m: [f64; 2], range_m: f64) -> bool {
+    let step = core::f64::consts::TAU / f64::from(DIRECTIONS);
+    (0..DIRECTIONS).any(|k| {
+        let bearing = f64::from(k * STRIDE % DIRECTIONS) * step;
+        let direction = [libm::cos(bearing), libm::sin(bearing)];
+        meets(world, reach, (from_m, direction), range_m)
+    })
+}
+
+/// Does this ray?
+fn meets(
+    world: &World,
+    reach: &CellSet,
+    (from_m, direction): ([f64; 2], [f64; 2]),
+    range_m: f64,
+) -> bool {
+    let grid = world.occupancy();
+    let origin_m = grid.origin_m();
+    let start = [0, 1].map(|k| (from_m[k] - origin_m[k]) / grid.resolution_m());
+    let mut walk = Walk::new(start, direction.map(|d| d / grid.resolution_m()));
+    while walk.entered_m <= range_m {
+        let [i, j] = walk.cell;
+        let cell = GridCell { i, j };
+        if grid.is_solid(cell) {
+            return false;
+        }
+        if reach.contains(cell) {
+            return true;
+        }
+        walk.advance();
+    }
+    false
+}

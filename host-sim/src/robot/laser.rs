@@ -1,0 +1,169 @@
+//! The two laser scanners: where they sit, how they sweep, how they err.
+//!
+//! A beam at bearing b leaves along `(cos b, sin b, 0)`, turned by the mount's pitch and then by the robot's attitude. The
+//! simulated geometry is the announced one: mount and bearings are first rounded to the wire's fixed-point numbers.
+//!
+//! Error of a range r: `r + σ·N(0,1)`, rounded to millimetres; with a small probability nothing comes back (dark or
+//! shiny surfaces), with a smaller one something does from nearer than the wall (dust, an edge hit by half).
+
+use fieldline_protocol::message::{self, INVALID_MM, MAX_BEAMS, NO_RETURN_MM, Scan};
+use fixed::types::{I4F12, I16F16};
+
+use super::noise::{Noise, Source};
+use super::pose::Pose;
+use crate::world::{Ray, World};
+
+/// How lasers err.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaserNoise {
+    /// Standard deviation of a range, metres. Default: 0.01.
+    pub sigma_m: f64,
+    /// Probability that a return is lost. Default: 0.001.
+    pub lost: f64,
+    /// Probability of a false return, uniform between the laser and the wall. Default: 0.0005.
+    pub false_return: f64,
+}
+
+impl Default for LaserNoise {
+    fn default() -> Self {
+        Self {
+            sigma_m: 0.01,
+            lost: 0.001,
+            false_return: 0.0005,
+        }
+    }
+}
+
+impl LaserNoise {
+    /// Perfect lasers but for the rounding to millimetres.
+    pub const NONE: Self = Self {
+        sigma_m: 0.0,
+        lost: 0.0,
+        false_return: 0.0,
+    };
+}
+
+/// Nothing is reported from nearer, metres: the laser's own housing.
+const NEAREST_M: f64 = 0.02;
+
+/// The level scanner: 0.10 m ahead of the centre, 0.40 m up.
+#[must_use]
+pub fn level() -> message::Laser {
+    mount(0.10, 0.40, 0.0)
+}
+
+/// The tilted scanner: 0.15 m ahead of the centre, 0.45 m up, 20° down.
+#[must_use]
+pub fn tilted() -> message::Laser {
+    mount(0.15, 0.45, 20.0)
+}
+
+/// 181 beams from −90° to +90°, 12 m.
+fn mount(x_m: f64, z_m: f64, down_deg: f64) -> message::Laser {
+    message::Laser {
+        x: I4F12::from_num(x_m),
+        y: I4F12::ZERO,
+        z: I4F12::from_num(z_m),
+        pitch: I4F12::from_num(down_deg.to_radians()),
+        first_bearing: I16F16::from_num(-core::f64::consts::FRAC_PI_2),
+        bearing_step: I16F16::from_num(1.0_f64.to_radians()),
+        beams: MAX_BEAMS as u16,
+        range_limit_mm: 12_000,
+    }
+}
+
+/// One scanner at work.
+#[derive(Clone, Debug)]
+pub struct LaserScanner {
+    /// Where the beams leave, in the robot's frame, metres.
+    position_m: [f64; 3],
+    /// Where they go, in the robot's frame.
+    directions: Vec<[f64; 3]>,
+    limit_m: f64,
+    errors: LaserNoise,
+    range: Noise,
+    fault: Noise,
+}
+
+impl LaserScanner {
+    /// A scanner as announced by `laser`, erring as `errors` says, with `sources` of noise for ranges and faults.
+    #[must_use]
+    pub fn new(
+        laser: &message::Laser,
+        errors: LaserNoise,
+        seed: u64,
+        [range, fault]: [Source; 2],
+    ) -> Self {
+        let pitch: f64 = laser.pitch.to_num();
+        let (first, step): (f64, f64) = (laser.first_bearing.to_num(), laser.bearing_step.to_num());
+        let directions = (0..laser.beams.min(MAX_BEAMS as u16))
+            .map(|beam| {
+                let bearing = first + step * f64::from(beam);
+                let (cos, sin) = (libm::cos(bearing), libm::sin(bearing));
+                [cos * libm::cos(pitch), sin, -cos * libm::sin(pitch)]
+            })
+            .collect();
+        Self {
+            position_m: [laser.x.to_num(), laser.y.to_num(), laser.z.to_num()],
+            directions,
+            limit_m: f64::from(laser.range_limit_mm) / 1000.0,
+            errors,
+            range: Noise::new(seed, range),
+            fault: Noise::new(seed, fault),
+        }
+    }
+
+    /// One sweep from a pose.
+    pub fn scan(&mut self, world: &World, pose: &Pose) -> Scan {
+        let axes = pose.axes();
+        let rotate = |v: &[f64; 3]| {
+            [0, 1, 2].map(|k| axes[0][k] * v[0] + axes[1][k] * v[1] + axes[2][k] * v[2])
+        };
+        let offset = rotate(&self.position_m);
+        let origin_m = [
+            pose.x_m + offset[0],
+            pose.y_m + offset[1],
+            pose.z_m + offset[2],
+        ];
+        let mut scan = Scan::default();
+        for beam in 0..self.directions.len() {
+            let ray = Ray {
+                origin_m,
+                direction: rotate(&self.directions[beam]),
+            };
+            let hit = world.cast(&ray, self.limit_m);
+            let code = self.measure(hit.map(|hit| hit.range_m));
+            // The vector holds MAX_BEAMS, and there are no more directions.
+            let _ = scan.ranges_mm.push(code);
+        }
+        scan
+    }
+
+    /// What the scanner makes of a true range.
+    fn measure(&mut self, range_m: Option<f64>) -> u16 {
+        // All draws happen for every beam, so that no beam shifts the next.
+        let error_m = self.errors.sigma_m * self.range.normal();
+        let (fate, place) = (self.fault.uniform(), self.fault.uniform());
+        let reach_m = range_m.unwrap_or(self.limit_m);
+        if fate < self.errors.false_return {
+            return code(NEAREST_M + place * (reach_m - NEAREST_M).max(0.0));
+        }
+        match range_m {
+            Some(range_m) if fate < 1.0 - self.errors.lost => {
+                let measured_m = range_m + error_m;
+                if measured_m > self.limit_m {
+                    NO_RETURN_MM
+                } else {
+                    code(measured_m)
+                }
+            }
+            _ => NO_RETURN_MM,
+        }
+    }
+}
+
+/// A range in millimetres, kept clear of the two codes.
+fn code(range_m: f64) -> u16 {
+    let millimetres = (range_m.max(NEAREST_M) * 1000.0).round() as u16;
+    millimetres.clamp(INVALID_MM + 1, NO_RETURN_MM - 1)
+}

@@ -1,0 +1,18 @@
+//! The Pioneer 3-AT: its footprint, its drive, its lasers and its odometry.
+
+mod drive;
+mod footprint;
+pub mod laser;
+mod noise;
+mod odometry;
+mod pose;
+
+pub use drive::{Drive, DriveLimits};
+pub use footprint::Footprint;
+pub use laser::{LaserNoise, LaserScanner};
+pub use noise::{Noise, Source};
+pub use odometry::{Odometry, OdometryModel, OdometryNoise};
+pub use pose::{Pose, Velocity, wrap};
+
+/// Radius of the disc that the planner is told to keep clear and that coverage is judged by, metres.
+pub const RADIUS_M: f64 = 0.30;
