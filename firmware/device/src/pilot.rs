@@ -11,11 +11,12 @@
 //! input nor a new observation ends it, only the host's word (Resume or Start) with the input released. Used directly, a
 //! pilot is the link without bytes: the session calls the same functions, so the stream of commands is the same.
 
-use fieldline_planner::planner::{Input, Output, WINDOW_SIDE};
+use fieldline_planner::field::SIDE;
+use fieldline_planner::planner::{Input, Output};
 use fieldline_planner::{Config, State, Workspace, step};
 use fieldline_protocol::message::{
-    Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, Frontier, MAX_FRONTIERS,
-    MAX_SCANS, Observation, Refusal, Start, Status, Tile, Twist,
+    Command, Control, Cost, FIELD_CELL_BYTES, FIELD_SIDE, Fault, FieldRow, Finish, Frontier,
+    MAX_FRONTIERS, MAX_SCANS, Observation, Refusal, Start, Status, Tile, Twist,
 };
 use heapless::Vec;
 
@@ -23,7 +24,7 @@ use crate::convert;
 use crate::limits;
 
 // What is collected into the wire's bounded lists must fit them.
-const _: () = assert!(WINDOW_SIDE == FIELD_SIDE && MAX_SCANS == 2);
+const _: () = assert!(SIDE == FIELD_SIDE && MAX_SCANS == 2);
 
 /// The planner's memories, lent by whoever has room for them.
 #[derive(Debug)]
@@ -188,14 +189,21 @@ impl Pilot {
         memory: &Memory<'_, TILES, SLOTS>,
         row: u8,
     ) -> Option<FieldRow> {
-        let mut q = [0.0; WINDOW_SIDE];
-        let window = memory.workspace.field_row(row, &mut q)?;
+        let field = memory.workspace.field_row(row)?;
+        let scale = i32::from(field.scale);
+        let mut cells = [0u8; FIELD_CELL_BYTES];
+        for (x, kind) in field.kinds.into_iter().enumerate() {
+            if let Some(byte) = cells.get_mut(x / 4) {
+                *byte |= (kind as u8) << (x % 4 * 2);
+            }
+        }
         Some(FieldRow {
             row,
-            origin_x: window.origin_x,
-            origin_y: window.origin_y,
-            scale: window.scale,
-            q: q.into_iter().collect(),
+            origin_x: (field.origin.x / scale) as i16,
+            origin_y: (field.origin.y / scale) as i16,
+            scale: field.scale,
+            q: field.q.into_iter().collect(),
+            cells: cells.into_iter().collect(),
         })
     }
 
