@@ -196,6 +196,7 @@ impl Pilot {
             origin_y: window.origin_y,
             scale: window.scale,
             q: q.into_iter().collect(),
+            cells: window.kinds.into_iter().collect(),
         })
     }
 

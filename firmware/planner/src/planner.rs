@@ -95,7 +95,7 @@ impl Default for Workspace {
     }
 }
 
-/// Where the window of the last step lies.
+/// Where the window of the last step lies, and the boundary of one of its rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     /// Cell column of the window's first cell, in units of the window's cell.
@@ -104,7 +104,12 @@ pub struct Window {
     pub origin_y: i16,
     /// Side of a window cell in map cells.
     pub scale: u8,
+    /// What the row's cells are, two bits a cell, least x in the low bits: 0 free, 1 obstacle, 2 goal.
+    pub kinds: [u8; KIND_BYTES],
 }
+
+/// Bytes of a row's cell kinds.
+pub const KIND_BYTES: usize = WINDOW_SIDE.div_ceil(4);
 
 /// Cells in a row of the window.
 pub const WINDOW_SIDE: usize = 61;
