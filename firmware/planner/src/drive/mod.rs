@@ -1,0 +1,135 @@
+//! From the field's heading to a velocity of a skid-steer robot that touches nothing.
+//!
+//! The wish is: turn towards the heading with rate `k·error`, go forward with `v_max·cos²(error)`. The wish is then tried
+//! against the near field: a candidate (v, ω) is admissible if the robot's rectangle stays clear of every point while the
+//! robot, from its measured velocity and within its acceleration limits, follows the candidate for one period and then
+//! brakes to a stop. The first admissible one, in order of distance from the wish, is driven; where none is, the robot
+//! turns on the spot, and where it cannot, a [`manoeuvre`] leads out.
+//!
+//! Invariant: whatever is driven can be followed by a stop that touches nothing known, so the zero command is always safe.
+//! Units: metres, seconds, radians; robot frame, x forward.
+
+pub mod manoeuvre;
+pub mod surround;
+
+pub use manoeuvre::Leg;
+pub use surround::{Place, Surround};
+
+use crate::config::Config;
+use crate::geometry::Twist;
+use crate::math;
+
+/// Clearance kept at speed, metres: three sigma of a range and one of the odometry between two scans.
+const MARGIN_M: f32 = 0.06;
+/// Clearance kept when creeping through a narrow place, metres: two sigma of a range.
+const CREEP_MARGIN_M: f32 = 0.025;
+/// Speed at and below which the robot creeps, metres a second.
+const CREEP_MPS: f32 = 0.15;
+/// Turn rate wished for a radian of error, 1/s.
+const TURN_GAIN: f32 = 2.0;
+/// Beyond this error the robot turns on the spot, radians.
+const TURN_FIRST_RAD: f32 = 0.9;
+/// An error smaller than this is none, radians.
+const ALIGNED_RAD: f32 = 0.12;
+
+/// What the drive remembers: the leg of a manoeuvre in progress.
+#[derive(Debug, Default)]
+pub struct Drive {
+    leg: Option<Leg>,
+}
+
+impl Drive {
+    /// At rest.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { leg: None }
+    }
+
+    /// The velocity for the heading that `heading_at` gives for the robot's place (radians to the left), from the velocity
+    /// `now`; zero where nothing is admissible.
+    pub fn follow(
+        &mut self,
+        config: &Config,
+        heading_at: impl Fn(Place) -> Option<f32>,
+        now: Twist,
+        surround: &Surround,
+    ) -> Twist {
+        let admits = |twist: Twist| {
+            let creeps = twist.linear_mps.abs() <= CREEP_MPS;
+            surround.admits(
+                twist,
+                now,
+                config,
+                if creeps { CREEP_MARGIN_M } else { MARGIN_M },
+            )
+        };
+        if let Some(twist) = self.go_on().filter(|&twist| admits(twist)) {
+            return twist;
+        }
+        self.leg = None;
+        let Some(error) = heading_at(Place::default()) else {
+            return Twist::default();
+        };
+        let ahead = ahead(config, error);
+        if let Some(twist) = ahead.into_iter().flatten().find(|&twist| admits(twist)) {
+            return twist;
+        }
+        if let Some(twist) = turns(config, error)
+            .into_iter()
+            .flatten()
+            .find(|&twist| admits(twist))
+        {
+            return twist;
+        }
+        self.leg = manoeuvre::find(surround, heading_at, config.period_s, CREEP_MARGIN_M);
+        self.go_on()
+            .filter(|&twist| admits(twist))
+            .unwrap_or_default()
+    }
+
+    /// One more period of the leg in progress.
+    fn go_on(&mut self) -> Option<Twist> {
+        let leg = self.leg.as_mut()?;
+        leg.periods = leg.periods.checked_sub(1)?;
+        Some(leg.twist)
+    }
+}
+
+/// Ways forward, the wish first.
+fn ahead(config: &Config, error: f32) -> [Option<Twist>; 15] {
+    let wish_w = turn_rate(config, error);
+    let (_, cos) = math::sin_cos(error);
+    let wish_v = if error.abs() > TURN_FIRST_RAD {
+        0.0
+    } else {
+        config.max_linear_mps * cos * cos
+    };
+    core::array::from_fn(|i| {
+        let part = [1.0, 0.5, 0.2].get(i / 5).copied().unwrap_or(0.0);
+        let offset = [0.0, 0.25, -0.25, 0.6, -0.6]
+            .get(i % 5)
+            .copied()
+            .unwrap_or(0.0);
+        let most = config.max_angular_radps;
+        (wish_v > 0.0).then(|| Twist {
+            linear_mps: wish_v * part,
+            angular_radps: (wish_w + offset).clamp(-most, most),
+        })
+    })
+}
+
+/// Turns on the spot towards the heading, the quick one first.
+fn turns(config: &Config, error: f32) -> [Option<Twist>; 2] {
+    let quick = turn_rate(config, error);
+    [quick, 0.4 * quick].map(|angular_radps| {
+        (error.abs() > ALIGNED_RAD).then_some(Twist {
+            linear_mps: 0.0,
+            angular_radps,
+        })
+    })
+}
+
+fn turn_rate(config: &Config, error: f32) -> f32 {
+    let most = 0.6 * config.max_angular_radps;
+    (TURN_GAIN * error).clamp(-most, most)
+}
