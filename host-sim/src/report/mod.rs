@@ -8,6 +8,7 @@ pub mod commands;
 pub mod folder;
 pub mod grid_map;
 pub mod ros_map;
+mod text;
 pub mod tum;
 
 use serde::{Deserialize, Serialize};
