@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use host_sim::link::fault::Faults;
+use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
 
 use super::baselines;
@@ -62,7 +62,7 @@ pub(super) struct ExploreArgs {
     pub(super) realtime: bool,
     /// Break the link on purpose, as in drop=0.02,duplicate=0.02,corrupt=0.02,truncate=0.01,delay=0.01,reset@900
     #[arg(long, value_name = "SPEC")]
-    pub(super) fault: Option<Faults>,
+    pub(super) fault: Option<FaultArg>,
     /// Extent that the device's map can hold, in metres across and up, as in 128x32 [default: chosen for the world]
     #[arg(long, value_name = "AxB", value_parser = map_shape)]
     pub(super) map_shape: Option<(u8, u8)>,
@@ -91,6 +91,24 @@ impl Default for ExploreArgs {
             check_field: false,
             json: false,
         }
+    }
+}
+
+/// Faults, and the words they were asked for with.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct FaultArg {
+    pub(super) words: String,
+    pub(super) faults: Faults,
+}
+
+impl core::str::FromStr for FaultArg {
+    type Err = FaultsError;
+
+    fn from_str(words: &str) -> Result<Self, FaultsError> {
+        Ok(Self {
+            words: words.into(),
+            faults: words.parse()?,
+        })
     }
 }
 

@@ -87,7 +87,10 @@ fn explore(
     interrupt: &Interrupt,
 ) -> Result<bool> {
     let options = Options {
-        faults: args.fault.unwrap_or_default(),
+        faults: args
+            .fault
+            .as_ref()
+            .map_or_else(Default::default, |f| f.faults),
         seed: args.seed,
         real_time: args.realtime,
     };
@@ -112,7 +115,7 @@ fn mission(args: &ExploreArgs, link: &LinkSpec) -> Mission {
     Mission {
         strategy: args.strategy.clone(),
         link: link.to_string(),
-        fault: args.fault.map(|_| fault_words(args)),
+        fault: args.fault.as_ref().map(|fault| fault.words.clone()),
         seed: args.seed,
         start: args.start,
         noisy_odometry: args.odometry == OdometryArg::Noisy,

@@ -4,7 +4,6 @@
 //! drives (any [`Body`]). It is lockstep: simulated time passes only in [`Body::drive`], so that the commands do not depend
 //! on how long an answer takes; the wall clock is only measured. Same link, same body, same seed: same record.
 
-pub mod digest;
 pub mod ending;
 pub mod freeze;
 pub mod mirror;
