@@ -8,8 +8,9 @@
 //! direction fails the check, without a byte spent on saying what it is. Why 24 bits: a full observation needs four bytes of
 //! stuffing, two of sequence and a delimiter, and ten bytes of overhead are what a frame may cost. The polynomial is divisible
 //! by x + 1 and of an order far beyond our longest frame, so up to three wrong bits anywhere are always found, and so is a burst
-//! of up to 24, but for those few that turn the key of one kind into that of another. What is left passes once in 2²⁴, and must
-//! then still be a well-formed message of the right kind with the awaited sequence number.
+//! of up to 24, but for those few that turn the key of one kind into that of another. What is left (damage to
+//! the stuffing moves everything behind it) passes once in 2²⁴, and must then still be a well-formed message of the right
+//! kind with the awaited sequence number.
 
 use crc::{CRC_24_OPENPGP, Crc};
 

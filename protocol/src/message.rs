@@ -322,6 +322,8 @@ pub struct Identity {
     pub stale_ms: u16,
     /// The crash that caused the last reboot.
     pub crash: Option<Crash>,
+    /// Counters since the boot.
+    pub counters: Counters,
 }
 
 /// A parameter of [`Start`].

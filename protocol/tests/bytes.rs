@@ -190,6 +190,13 @@ fn reply_hello() {
         max_frame: 1144,
         stale_ms: 500,
         crash: None,
+        counters: Counters {
+            received: 1,
+            crc_errors: 2,
+            dropped: 3,
+            duplicates: 4,
+            stale_stops: 5,
+        },
     };
     let body = [
         &[0, 1][..],
@@ -198,7 +205,10 @@ fn reply_hello() {
         &[3, 0x90, 0x03, 0xc0, 0x01, 0xf8, 0x08, 0xf4, 0x03],
     ]
     .concat();
-    reply_is(Reply::Hello(identity.clone()), &[&body[..], &[0]].concat());
+    reply_is(
+        Reply::Hello(identity.clone()),
+        &[&body[..], &[0, 1, 2, 3, 4, 5]].concat(),
+    );
     reply_is(
         Reply::Hello(Identity {
             crash: Some(Crash {
@@ -208,7 +218,7 @@ fn reply_hello() {
             }),
             ..identity
         }),
-        &[&body[..], &[1, 1, 0x82, 0x82, 0x80, 0x40, 0]].concat(),
+        &[&body[..], &[1, 1, 0x82, 0x82, 0x80, 0x40, 0, 1, 2, 3, 4, 5]].concat(),
     );
 }
 

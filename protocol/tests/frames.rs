@@ -10,9 +10,9 @@ use fieldline_protocol::frame::{
     encode_log, encode_reply, encode_request, overhead,
 };
 use fieldline_protocol::message::{
-    BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Crash, FIELD_CELL_BYTES, FIELD_SIDE, FieldRow,
-    Frontier, Identity, Laser, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM, Reply, Request, Residue,
-    Start, Strategy as Plan, TILE_BYTES, TILE_SKELETON_BYTES, Tile,
+    BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Counters, Crash, FIELD_CELL_BYTES, FIELD_SIDE,
+    FieldRow, Frontier, Identity, Laser, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM, Reply, Request,
+    Residue, Start, Strategy as Plan, TILE_BYTES, TILE_SKELETON_BYTES, Tile,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use proptest::prelude::*;
@@ -112,6 +112,13 @@ fn the_largest_messages_fit_and_fill_their_frames() {
             max_frame: u16::MAX,
             stale_ms: u16::MAX,
             crash: Some(crash.clone()),
+            counters: Counters {
+                received: u32::MAX,
+                crc_errors: u32::MAX,
+                dropped: u32::MAX,
+                duplicates: u32::MAX,
+                stale_stops: u32::MAX,
+            },
         }),
         Reply::Crash(crash),
         Reply::FieldRow(Some(FieldRow {

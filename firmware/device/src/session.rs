@@ -66,18 +66,7 @@ impl Session {
     /// A device that just booted, with `tile_pool` tiles and `tile_slots` places for them. Its hello waits to be sent.
     #[must_use]
     pub fn new(boot: Boot, tile_pool: usize, tile_slots: usize) -> Self {
-        let short = |count: usize| u16::try_from(count).unwrap_or(u16::MAX);
-        let identity = Identity {
-            version: VERSION,
-            schema: SCHEMA,
-            build: build(),
-            boots: boot.boots,
-            tile_slots: short(tile_slots),
-            tile_pool: short(tile_pool),
-            max_frame: short(MAX_REQUEST_FRAME),
-            stale_ms: STALE_MS,
-            crash: boot.crash,
-        };
+        let identity = identity(boot, tile_pool, tile_slots);
         info!("boot {=u32}", identity.boots);
         let mut session = Self {
             identity,
@@ -94,7 +83,7 @@ impl Session {
             stale: false,
             reset: false,
         };
-        session.say(0, &Reply::Hello(session.identity.clone()));
+        session.say_who(0);
         session
     }
 
@@ -267,6 +256,11 @@ impl Session {
             self.answered = None;
         }
         self.incompatible = false;
+        self.say_who(sequence);
+    }
+
+    fn say_who(&mut self, sequence: u16) {
+        self.identity.counters = self.counters();
         self.say(sequence, &Reply::Hello(self.identity.clone()));
     }
 
@@ -360,6 +354,24 @@ fn put(outbox: &mut Deque<u8, OUTBOX>, counters: &mut Counters, frame: &[u8], le
     }
 }
 
+/// Who a device is that just booted, with `tile_pool` tiles and `tile_slots` places for them.
+#[must_use]
+pub fn identity(boot: Boot, tile_pool: usize, tile_slots: usize) -> Identity {
+    let short = |count: usize| u16::try_from(count).unwrap_or(u16::MAX);
+    Identity {
+        version: VERSION,
+        schema: SCHEMA,
+        build: build(),
+        boots: boot.boots,
+        tile_slots: short(tile_slots),
+        tile_pool: short(tile_pool),
+        max_frame: short(MAX_REQUEST_FRAME),
+        stale_ms: STALE_MS,
+        crash: boot.crash,
+        counters: Counters::default(),
+    }
+}
+
 /// What was built: the name that the builder gave it, or else the version.
 fn build() -> heapless::String<{ fieldline_protocol::message::BUILD_BYTES }> {
     let name = option_env!("FIELDLINE_BUILD").unwrap_or(env!("CARGO_PKG_VERSION"));
@@ -373,399 +385,4 @@ fn build() -> heapless::String<{ fieldline_protocol::message::BUILD_BYTES }> {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::vec;
-    use std::vec::Vec;
-
-    use fieldline_protocol::check::Kind;
-    use fieldline_protocol::frame::{
-        MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_request,
-    };
-    use fieldline_protocol::message::{
-        Command, Control, Counters, Crash, Refusal, Reply, Request, Status, Twist,
-    };
-    use fieldline_protocol::{SCHEMA, VERSION};
-
-    use super::{Boot, Session};
-    use crate::meter::Meter;
-    use crate::pilot::tests::{Bench, observation, start};
-    use crate::signal::Signal;
-
-    /// Counts the steps that it measured.
-    #[derive(Default)]
-    struct Steps(u32);
-
-    impl Meter for Steps {
-        fn start(&mut self) {
-            self.0 += 1;
-        }
-        fn stop(&mut self) -> u32 {
-            1000 + self.0
-        }
-        fn stack_bytes(&self) -> u32 {
-            77
-        }
-    }
-
-    /// A host that talks in frames to a device.
-    struct Talk {
-        session: Session,
-        bench: Bench,
-        steps: Steps,
-        host: Receiver<MAX_REPLY_FRAME>,
-    }
-
-    impl Talk {
-        fn booted(boot: Boot) -> Self {
-            Self {
-                session: Session::new(boot, 192, 400),
-                bench: Bench::new(),
-                steps: Steps::default(),
-                host: Receiver::new(Side::Host),
-            }
-        }
-
-        /// Greeted and started, with sequence numbers up to 1 used.
-        fn started() -> Self {
-            let mut talk = Self::booted(Boot::default());
-            talk.hear();
-            talk.say(0, &hello(7));
-            let started = talk.say(1, &Request::Control(Control::Start(start())));
-            assert_eq!(started, [(1, Reply::Control(Status::Exploring))]);
-            talk
-        }
-
-        fn feed(&mut self, bytes: &[u8]) {
-            let mut memory = self.bench.memory();
-            for byte in bytes {
-                self.session.receive(*byte, &mut memory, &mut self.steps);
-            }
-        }
-
-        fn bytes(&mut self) -> Vec<u8> {
-            let mut bytes = vec![];
-            while !self.session.pending().is_empty() {
-                bytes.extend_from_slice(self.session.pending());
-                self.session.sent(self.session.pending().len());
-            }
-            bytes
-        }
-
-        fn hear(&mut self) -> Vec<(u16, Reply)> {
-            let mut heard = vec![];
-            for byte in self.bytes() {
-                if let Some(frame) = self.host.push(byte) {
-                    heard.push((frame.sequence, frame.reply().unwrap()));
-                }
-            }
-            heard
-        }
-
-        fn say(&mut self, sequence: u16, request: &Request) -> Vec<(u16, Reply)> {
-            self.feed(&frame(sequence, request));
-            self.hear()
-        }
-
-        fn observe(&mut self, sequence: u16) -> Command {
-            let observation = Request::Observation(observation(u32::from(sequence) * 100));
-            match self.say(sequence, &observation).as_slice() {
-                [(heard, Reply::Command(command))] if *heard == sequence => *command,
-                other => panic!("{other:?}"),
-            }
-        }
-    }
-
-    fn frame(sequence: u16, request: &Request) -> Vec<u8> {
-        let mut out = [0; MAX_REQUEST_FRAME];
-        let length = encode_request(sequence, request, &mut out).unwrap();
-        out[..length].to_vec()
-    }
-
-    fn hello(nonce: u32) -> Request {
-        Request::Hello {
-            version: VERSION,
-            schema: SCHEMA,
-            nonce,
-        }
-    }
-
-    fn refused(sequence: u16, refusal: Refusal) -> Vec<(u16, Reply)> {
-        vec![(sequence, Reply::Refused(refusal))]
-    }
-
-    #[test]
-    fn a_booted_device_says_who_it_is() {
-        let crash = Crash {
-            at: 12,
-            ..Crash::default()
-        };
-        let boot = Boot {
-            boots: 3,
-            crash: Some(crash.clone()),
-        };
-        let mut talk = Talk::booted(boot);
-        assert_eq!(talk.session.signal(), Signal::Crashed);
-        let heard = talk.hear();
-        let [(0, Reply::Hello(identity))] = heard.as_slice() else {
-            panic!("{heard:?}");
-        };
-        assert_eq!((identity.version, identity.schema), (VERSION, SCHEMA));
-        assert_eq!((identity.boots, identity.crash.as_ref()), (3, Some(&crash)));
-        assert_eq!((identity.tile_pool, identity.tile_slots), (192, 400));
-        assert_eq!(usize::from(identity.max_frame), MAX_REQUEST_FRAME);
-        assert_eq!(talk.say(9, &hello(1)), [(9, heard[0].1.clone())]);
-        assert_eq!(talk.session.signal(), Signal::Ready);
-    }
-
-    #[test]
-    fn nothing_before_a_hello() {
-        let mut talk = Talk::booted(Boot::default());
-        talk.hear();
-        assert_eq!(talk.session.signal(), Signal::Waiting);
-        for request in [
-            Request::Frontiers,
-            Request::Control(Control::Start(start())),
-            Request::Observation(observation(0)),
-        ] {
-            assert_eq!(talk.say(4, &request), refused(4, Refusal::NotGreeted));
-        }
-        assert_eq!(talk.steps.0, 0);
-    }
-
-    #[test]
-    fn another_protocol_is_turned_away_until_a_right_hello() {
-        let mut talk = Talk::started();
-        for (version, schema) in [(VERSION + 1, SCHEMA), (VERSION, SCHEMA ^ 1)] {
-            let foreign = Request::Hello {
-                version,
-                schema,
-                nonce: 9,
-            };
-            let ours = Reply::Incompatible {
-                version: VERSION,
-                schema: SCHEMA,
-            };
-            assert_eq!(talk.say(5, &foreign), [(5, ours)]);
-            assert_eq!(talk.session.signal(), Signal::Trouble);
-            assert_eq!(
-                talk.say(6, &Request::Frontiers),
-                refused(6, Refusal::NotGreeted)
-            );
-        }
-        assert!(matches!(
-            talk.say(7, &hello(9)).as_slice(),
-            [(7, Reply::Hello(_))]
-        ));
-        assert_eq!(talk.session.signal(), Signal::Exploring);
-    }
-
-    #[test]
-    fn an_observation_is_answered_with_a_command_and_its_cost() {
-        let mut talk = Talk::started();
-        let command = talk.observe(2);
-        assert_eq!(talk.steps.0, 1);
-        assert_eq!(
-            (command.cost.instructions, command.cost.stack_bytes),
-            (1001, 77)
-        );
-        let counters = Counters {
-            received: 3,
-            ..Counters::default()
-        };
-        assert_eq!(command.counters, counters);
-    }
-
-    #[test]
-    fn a_repeated_number_gets_the_same_reply_and_no_step() {
-        let mut talk = Talk::started();
-        let request = frame(2, &Request::Observation(observation(200)));
-        talk.feed(&request);
-        let first = talk.bytes();
-        talk.feed(&request);
-        assert_eq!(talk.bytes(), first, "bit for bit, counters and all");
-        assert_eq!(talk.steps.0, 1);
-        // Even if the bytes of the request differ: the number decides.
-        talk.feed(&frame(2, &Request::Frontiers));
-        assert_eq!(talk.bytes(), first);
-        assert_eq!(talk.session.counters().duplicates, 2);
-    }
-
-    #[test]
-    fn an_older_number_is_refused_and_steps_nothing() {
-        let mut talk = Talk::started();
-        talk.observe(2);
-        talk.observe(3);
-        let late = talk.say(2, &Request::Observation(observation(200)));
-        assert_eq!(late, refused(2, Refusal::OutOfOrder));
-        assert_eq!(talk.steps.0, 2);
-        // The last reply is still there to be repeated.
-        let repeated = talk.observe(3);
-        assert_eq!((talk.steps.0, repeated.counters.duplicates), (2, 0));
-        assert_eq!(talk.session.counters().duplicates, 1);
-        assert_eq!(talk.session.counters().dropped, 1);
-    }
-
-    #[test]
-    fn numbers_wrap() {
-        let mut talk = Talk::started();
-        for sequence in [0x7000, 0xe000, 0xffff, 0, 1] {
-            talk.observe(sequence);
-        }
-        assert_eq!(talk.steps.0, 5);
-    }
-
-    #[test]
-    fn a_late_hello_does_not_disturb_the_numbers_but_a_new_host_does() {
-        let mut talk = Talk::started();
-        talk.observe(500);
-        assert!(matches!(
-            talk.say(0, &hello(7)).as_slice(),
-            [(0, Reply::Hello(_))]
-        ));
-        let late = talk.say(499, &Request::Frontiers);
-        assert_eq!(late, refused(499, Refusal::OutOfOrder));
-        talk.say(0, &hello(8));
-        assert_eq!(
-            talk.say(1, &Request::Tile { x: 100, y: 100 }),
-            [(1, Reply::Tile(None))]
-        );
-    }
-
-    #[test]
-    fn refusals_are_kept_and_repeated_as_well() {
-        let mut talk = Talk::booted(Boot::default());
-        talk.hear();
-        talk.say(0, &hello(7));
-        let observation = Request::Observation(observation(0));
-        for _ in 0..2 {
-            assert_eq!(talk.say(1, &observation), refused(1, Refusal::NotStarted));
-        }
-        assert_eq!(talk.session.counters().duplicates, 1);
-    }
-
-    #[test]
-    fn noise_costs_counters_and_nothing_else() {
-        let mut talk = Talk::started();
-        let mut broken = frame(2, &Request::Frontiers);
-        broken[3] ^= 0x10;
-        talk.feed(&broken);
-        talk.feed(&[3, 1, 0]);
-        assert_eq!(talk.hear(), []);
-        let counters = talk.observe(2).counters;
-        assert_eq!((counters.crc_errors, counters.dropped), (1, 1));
-    }
-
-    #[test]
-    fn silence_is_a_stale_stop_once_and_an_observation_ends_it() {
-        let mut talk = Talk::started();
-        talk.session.tick(500);
-        assert!(!talk.session.is_stale());
-        talk.session.tick(501);
-        assert!(talk.session.is_stale());
-        assert_eq!(talk.session.signal(), Signal::Trouble);
-        talk.session.tick(5000);
-        assert_eq!(talk.session.counters().stale_stops, 1);
-        talk.observe(2);
-        assert!(!talk.session.is_stale());
-        talk.session.tick(5500);
-        assert_eq!(talk.session.counters().stale_stops, 1);
-        talk.session.tick(5501);
-        assert_eq!(talk.session.counters().stale_stops, 2);
-    }
-
-    #[test]
-    fn the_clock_wraps_without_a_stop() {
-        let mut talk = Talk::started();
-        talk.session.tick(u32::MAX - 100);
-        talk.observe(2);
-        talk.session.tick(300);
-        assert!(!talk.session.is_stale());
-        talk.session.tick(500);
-        assert!(talk.session.is_stale());
-    }
-
-    #[test]
-    fn only_a_driving_session_can_be_stale() {
-        let mut talk = Talk::started();
-        talk.say(2, &Request::Control(Control::Pause));
-        talk.session.tick(10_000);
-        assert!(!talk.session.is_stale());
-    }
-
-    #[test]
-    fn the_emergency_stop_stands_until_resumed() {
-        let mut talk = Talk::started();
-        talk.session.set_emergency_stop(true);
-        let command = talk.observe(2);
-        assert_eq!(
-            (command.status, command.velocity),
-            (Status::EmergencyStop, Twist::default())
-        );
-        assert_eq!(talk.session.signal(), Signal::EmergencyStop);
-        talk.session.set_emergency_stop(false);
-        assert_eq!(talk.observe(3).status, Status::EmergencyStop);
-        let resumed = talk.say(4, &Request::Control(Control::Resume));
-        assert_eq!(resumed, [(4, Reply::Control(Status::Exploring))]);
-    }
-
-    #[test]
-    fn a_reset_is_acknowledged_and_wanted() {
-        let mut talk = Talk::started();
-        assert!(!talk.session.wants_reset());
-        let reply = talk.say(2, &Request::Control(Control::Reset));
-        assert_eq!(reply, [(2, Reply::Control(Status::Idle))]);
-        assert!(talk.session.wants_reset());
-    }
-
-    #[test]
-    fn logs_go_between_replies_and_never_instead_of_one() {
-        let mut talk = Talk::started();
-        let log: Vec<u8> = (0..=255).collect();
-        let mut sent = vec![];
-        while talk.session.log_room() > 0 {
-            let count = talk.session.log(&log);
-            assert!(count > 0);
-            sent.extend_from_slice(&log[..count]);
-        }
-        assert_eq!(talk.session.log(&log), 0);
-        talk.feed(&frame(2, &Request::Frontiers));
-        let (mut logged, mut sequences, mut replies) = (vec![], vec![], 0);
-        for byte in talk.bytes() {
-            if let Some(frame) = talk.host.push(byte) {
-                match frame.kind {
-                    Kind::Log => {
-                        logged.extend_from_slice(frame.body);
-                        sequences.push(frame.sequence);
-                    }
-                    _ => replies += 1,
-                }
-            }
-        }
-        assert_eq!((logged, replies), (sent, 1));
-        assert!(
-            sequences
-                .iter()
-                .enumerate()
-                .all(|(at, sequence)| at == usize::from(*sequence))
-        );
-    }
-
-    #[test]
-    fn a_host_that_does_not_read_loses_whole_replies_only() {
-        let mut talk = Talk::started();
-        for sequence in 2..200 {
-            talk.feed(&frame(sequence, &Request::Tile { x: 90, y: 90 }));
-        }
-        assert!(talk.session.counters().dropped > 0);
-        let heard = talk.hear();
-        let numbers: Vec<u16> = heard.iter().map(|(sequence, _)| *sequence).collect();
-        let expected: Vec<u16> = (2..).take(numbers.len()).collect();
-        assert_eq!(numbers, expected);
-        assert_eq!(talk.host.tally().crc_errors + talk.host.tally().dropped, 0);
-        // The last one was dropped but kept.
-        assert_eq!(
-            talk.say(199, &Request::Frontiers),
-            [(199, Reply::Tile(None))]
-        );
-    }
-}
+mod tests;

@@ -1,16 +1,42 @@
 //! A link answers an observation with a command; only it differs between the rungs of a trial.
+//!
+//! | rung | file | what is between |
+//! | --- | --- | --- |
+//! | direct | [`direct`] | nothing: the pilot is called |
+//! | loopback | [`loopback`] | frames, to a device in this process, in virtual time |
+//! | qemu | [`qemu`] | frames, over a socket, to the image in an emulated STM32F405 |
+//! | serial | [`serial`] | frames, over a serial port or a pty, to whatever is there |
+//!
+//! All but the first are an [`endpoint::Endpoint`] over a [`line::Line`]; [`fault`] breaks lines on purpose, and [`spec`] opens
+//! what a user named.
+
+use core::fmt;
 
 use fieldline_protocol::message::{
     Command, Control, FieldRow, Frontier, Identity, Observation, Status, Tile,
 };
 
+pub mod digest;
+pub mod direct;
+pub mod endpoint;
+pub mod fault;
+pub mod image;
+pub mod line;
+pub mod loopback;
+pub mod qemu;
+pub mod serial;
+pub mod spec;
+pub mod stream;
+
 /// What can go wrong with a link; every variant ends a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkError {
-    /// Nothing answered in time, after every retry.
+    /// Nothing answered in time, after every retry. The robot must stand by now.
     Silent,
     /// The device rebooted in the middle of the run.
     Reset,
+    /// The device's program crashed, and where.
+    Crashed(String),
     /// The peer speaks another protocol or schema, or is not a Fieldline device.
     Incompatible(String),
     /// The device refused a request.
@@ -19,7 +45,26 @@ pub enum LinkError {
     Io(String),
 }
 
-/// Counters of the host's end.
+impl fmt::Display for LinkError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Silent => f.write_str(
+                "the device does not answer; check its power, the wiring and the baud rate",
+            ),
+            Self::Reset => f.write_str(
+                "the device rebooted in the middle of the run; check its supply and start again",
+            ),
+            Self::Crashed(place) => write!(f, "the device's program crashed: {place}"),
+            Self::Incompatible(why) => f.write_str(why),
+            Self::Refused(why) => write!(f, "the device refused a request: {why}"),
+            Self::Io(what) => f.write_str(what),
+        }
+    }
+}
+
+impl core::error::Error for LinkError {}
+
+/// Counters of a link since its hello.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LinkStats {
     /// Frames sent.
@@ -49,7 +94,7 @@ pub trait Link {
     /// One step.
     ///
     /// # Errors
-    /// As [`LinkError`].
+    /// As [`LinkError`]. On [`LinkError::Silent`] as much of the robot's time as the device's stale limit may have passed.
     fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError>;
     /// One map tile.
     ///
@@ -68,4 +113,8 @@ pub trait Link {
     fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError>;
     /// Counters.
     fn stats(&self) -> LinkStats;
+    /// Log bytes (defmt) of the device since the last call; empty where there is no log.
+    fn take_log(&mut self) -> Vec<u8> {
+        Vec::new()
+    }
 }

@@ -8,6 +8,7 @@ pub mod commands;
 pub mod folder;
 pub mod grid_map;
 pub mod ros_map;
+mod text;
 pub mod tum;
 
 use serde::{Deserialize, Serialize};
@@ -56,7 +57,7 @@ pub struct Report {
     pub field: Field,
     /// The link's counters, both ends.
     pub link_stats: LinkStats,
-    /// 64-bit FNV-1a of the command stream, 16 hexadecimal digits.
+    /// 128-bit FNV-1a of the command stream, 32 hexadecimal digits.
     pub digest: String,
     /// Cross-checks of the tool on itself.
     pub debug: Debug,

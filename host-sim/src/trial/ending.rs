@@ -43,6 +43,7 @@ impl Ending {
             Self::Fault(why) => wording::fault(*why),
             Self::Link(LinkError::Silent) => "link-silent",
             Self::Link(LinkError::Reset) => "device-reset",
+            Self::Link(LinkError::Crashed(_)) => "device-crashed",
             Self::Link(LinkError::Incompatible(_)) => "device-incompatible",
             Self::Link(LinkError::Refused(_)) => "request-refused",
             Self::Link(LinkError::Io(_)) => "link-io",
@@ -62,7 +63,7 @@ impl Ending {
             }
             Self::Finished(Finish::Stopped) => "the device was told to stop".into(),
             Self::Fault(why) => fault_advice(*why).into(),
-            Self::Link(why) => link_advice(why),
+            Self::Link(why) => why.to_string(),
             Self::TimeLimit => "the simulated time ran out; allow more with --time-limit".into(),
             Self::Frozen => "the robot neither moved nor turned for a minute while exploring; look at run.png".into(),
             Self::Interrupted => "stopped by the user".into(),
@@ -82,18 +83,6 @@ fn fault_advice(fault: Fault) -> &'static str {
         }
         Fault::BadObservation => "the device refused an observation that does not match its lasers",
         Fault::Stuck => "the robot did not move although commanded; look at run.png",
-    }
-}
-
-fn link_advice(error: &LinkError) -> String {
-    match error {
-        LinkError::Silent => "the device fell silent; check its power and cable".into(),
-        LinkError::Reset => "the device rebooted in the middle of the run; check its supply".into(),
-        LinkError::Incompatible(what) => {
-            format!("the device speaks another protocol ({what}); flash the image of this version")
-        }
-        LinkError::Refused(what) => format!("the device refused a request ({what})"),
-        LinkError::Io(what) => format!("the link failed ({what})"),
     }
 }
 

@@ -4,11 +4,13 @@
 //! drives (any [`Body`]). It is lockstep: simulated time passes only in [`Body::drive`], so that the commands do not depend
 //! on how long an answer takes; the wall clock is only measured. Same link, same body, same seed: same record.
 
-pub mod digest;
 pub mod ending;
 pub mod freeze;
+pub mod mirror;
+pub mod mission;
 pub mod oracle;
 pub mod record;
+pub mod shape;
 pub mod snapshot;
 pub mod wording;
 
@@ -23,8 +25,9 @@ use freeze::FreezeDetector;
 pub use ending::Ending;
 pub use record::{Record, Step};
 
-/// Time that the robot is given to come to rest after the last command, milliseconds.
-const REST_MS: u32 = 1_000;
+/// Time that the robot is given to come to rest after the last command, milliseconds: its watchdog's 500 ms and braking
+/// from full speed at 0.3 m/s².
+const REST_MS: u32 = 3_000;
 
 /// The robot in its world, as a run needs it.
 pub trait Body {
@@ -32,16 +35,16 @@ pub trait Body {
     fn period_ms(&self) -> u32;
     /// What the robot senses now.
     fn observe(&mut self) -> Observation;
-    /// Drive so for one period.
-    fn drive(&mut self, velocity: Twist);
+    /// Drive so for one period. `None` is silence: the last velocity counts until the robot's own watchdog finds it stale.
+    fn drive(&mut self, velocity: Option<Twist>);
     /// Where the robot truly is, in the frame of the observations' poses.
     fn truth(&self) -> Stamped;
 }
 
 /// Keeps account of what became known.
 pub trait Survey {
-    /// Take an observation; the fraction of the reachable world that is known now.
-    fn note(&mut self, observation: &Observation, truth: &Stamped) -> f64;
+    /// Take an observation and what the planner answered; the fraction of the reachable world that is known now.
+    fn note(&mut self, observation: &Observation, status: Status) -> f64;
 }
 
 /// Looks on, and may end the run: a progress line, a pacer, the interrupt key.
@@ -79,8 +82,6 @@ pub struct Setup {
     pub start: Start,
     /// Simulated time after which the run ends, milliseconds.
     pub time_limit_ms: u32,
-    /// Silence after which the robot's own watchdog stops it, milliseconds.
-    pub stale_ms: u32,
     /// Compare every step's heading with that of the converged window.
     pub check_field: bool,
 }
@@ -106,7 +107,7 @@ pub fn run(setup: &Setup, cast: &mut Cast<'_>) -> Record {
         Ok(_) => explore(setup, cast, &mut record),
         Err(error) => Ending::Link(error),
     };
-    bring_to_rest(setup, cast, &mut record);
+    bring_to_rest(cast, &record);
     read_out(cast, &mut record);
     record
 }
@@ -121,7 +122,7 @@ fn explore(setup: &Setup, cast: &mut Cast<'_>, record: &mut Record) -> Ending {
             Err(error) => return Ending::Link(error),
         };
         let wall_us = asked.elapsed().as_secs_f64() * 1e6;
-        let coverage = cast.survey.note(&observation, &truth);
+        let coverage = cast.survey.note(&observation, command.status);
         record.push(Step::new(&observation, truth, command, wall_us), coverage);
         if setup.check_field
             && let Err(error) = check_field(cast.link, &observation, &command, record)
@@ -131,7 +132,7 @@ fn explore(setup: &Setup, cast: &mut Cast<'_>, record: &mut Record) -> Ending {
         if let Some(ending) = ended(setup, cast.watch, &mut freeze, record, &command) {
             return ending;
         }
-        cast.body.drive(command.velocity);
+        cast.body.drive(Some(command.velocity));
     }
 }
 
@@ -156,21 +157,17 @@ fn ended(
     }
 }
 
-/// After a broken link the robot drives on as last told until its watchdog notices; otherwise it stops at once.
-fn bring_to_rest(setup: &Setup, cast: &mut Cast<'_>, record: &mut Record) {
-    let period_ms = cast.body.period_ms().max(1);
-    let last = record.steps.last().map(|step| step.command.velocity);
-    if matches!(record.ending, Ending::Link(_)) {
-        for _ in 0..setup.stale_ms.div_ceil(period_ms) {
-            cast.body.drive(last.unwrap_or_default());
-        }
-    }
-    if !matches!(record.ending, Ending::Link(_) | Ending::Finished(_)) {
+/// After a broken link nobody tells the robot anything, and it drives on until its watchdog notices; otherwise it is
+/// stopped at once.
+fn bring_to_rest(cast: &mut Cast<'_>, record: &Record) {
+    let broken = matches!(record.ending, Ending::Link(_));
+    if !broken && !matches!(record.ending, Ending::Finished(_)) {
         // The ending stands whether or not the device hears this: its own stale limit stops it.
         let _ = cast.link.control(&Control::Stop);
     }
-    for _ in 0..REST_MS.div_ceil(period_ms) {
-        cast.body.drive(Twist::default());
+    let told = (!broken).then(Twist::default);
+    for _ in 0..REST_MS.div_ceil(cast.body.period_ms().max(1)) {
+        cast.body.drive(told);
     }
 }
 

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use fieldline_protocol::message::{Command, Frontier, Observation, Pose, Status, Tile};
 
 use super::snapshot::Window;
-use super::{Ending, Progress, digest::Digest, wording};
+use super::{Ending, Progress, wording};
+use crate::link::digest::Digest;
 use crate::link::{LinkError, LinkStats};
 use crate::report::tum::Stamped;
 use crate::report::{self, GridMap, Percentiles};
@@ -111,7 +112,7 @@ impl Record {
             );
             self.path_m += dx.hypot(dy);
         }
-        self.digest.push(&step.command);
+        self.digest.add(&step.command);
         self.coverage = coverage;
         self.steps.push(step);
     }

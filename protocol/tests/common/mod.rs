@@ -233,20 +233,36 @@ fn identity() -> impl Strategy<Value = Identity> {
         text(),
         any::<(u32, u16, u16, u16, u16)>(),
         prop::option::of(crash()),
+        counters(),
     )
         .prop_map(
-            |(build, (boots, tile_slots, tile_pool, max_frame, stale_ms), crash)| Identity {
-                version: fieldline_protocol::VERSION,
-                schema: fieldline_protocol::SCHEMA,
-                build,
-                boots,
-                tile_slots,
-                tile_pool,
-                max_frame,
-                stale_ms,
-                crash,
+            |(build, (boots, tile_slots, tile_pool, max_frame, stale_ms), crash, counters)| {
+                Identity {
+                    version: fieldline_protocol::VERSION,
+                    schema: fieldline_protocol::SCHEMA,
+                    build,
+                    boots,
+                    tile_slots,
+                    tile_pool,
+                    max_frame,
+                    stale_ms,
+                    crash,
+                    counters,
+                }
             },
         )
+}
+
+fn counters() -> impl Strategy<Value = Counters> {
+    any::<(u32, u32, u32, u32, u32)>().prop_map(
+        |(received, crc_errors, dropped, duplicates, stale_stops)| Counters {
+            received,
+            crc_errors,
+            dropped,
+            duplicates,
+            stale_stops,
+        },
+    )
 }
 
 fn command() -> impl Strategy<Value = Command> {
@@ -254,20 +270,14 @@ fn command() -> impl Strategy<Value = Command> {
         twist(),
         status(),
         long(),
-        any::<(u32, u32, u32, u32, u32)>(),
+        counters(),
         any::<(u32, u32, u16, bool)>(),
     )
         .prop_map(|(velocity, status, heading, counters, cost)| Command {
             velocity,
             status,
             heading,
-            counters: Counters {
-                received: counters.0,
-                crc_errors: counters.1,
-                dropped: counters.2,
-                duplicates: counters.3,
-                stale_stops: counters.4,
-            },
+            counters,
             cost: Cost {
                 instructions: cost.0,
                 stack_bytes: cost.1,

@@ -1,0 +1,89 @@
+//! The first rung: the pilot is called, no bytes.
+
+use fieldline_device::session::{self, Boot};
+use fieldline_device::{Memory, Pilot, SLOTS, State, TILES};
+use fieldline_planner::Workspace;
+use fieldline_protocol::message::{
+    Command, Control, FieldRow, Frontier, Identity, Observation, Refusal, Status, Tile,
+};
+
+use super::{Link, LinkError, LinkStats};
+
+/// A pilot and its memories.
+#[derive(Debug)]
+pub struct Direct {
+    pilot: Pilot,
+    state: Box<State>,
+    workspace: Box<Workspace>,
+    calls: u64,
+}
+
+impl Default for Direct {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Direct {
+    /// A pilot that just woke up.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            pilot: Pilot::new(),
+            state: Box::new(State::new()),
+            workspace: Box::new(Workspace::new()),
+            calls: 0,
+        }
+    }
+
+    /// Runs `act` on the pilot and its memories.
+    fn with<T>(&mut self, act: impl FnOnce(&mut Pilot, &mut Memory<'_, TILES, SLOTS>) -> T) -> T {
+        self.calls += 1;
+        let mut memory = Memory {
+            state: &mut self.state,
+            workspace: &mut self.workspace,
+        };
+        act(&mut self.pilot, &mut memory)
+    }
+}
+
+fn refused(refusal: Refusal) -> LinkError {
+    LinkError::Refused(refusal.to_string())
+}
+
+impl Link for Direct {
+    fn hello(&mut self) -> Result<Identity, LinkError> {
+        Ok(session::identity(Boot::default(), TILES, SLOTS))
+    }
+
+    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
+        self.with(|pilot, memory| pilot.control(memory, control))
+            .map_err(refused)
+    }
+
+    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
+        self.with(|pilot, memory| pilot.observe(memory, observation))
+            .map_err(refused)
+    }
+
+    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
+        Ok(self.with(|_, memory| Pilot::tile(memory, x, y)))
+    }
+
+    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
+        Ok(self.with(|_, memory| Pilot::field_row(memory, row)))
+    }
+
+    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
+        Ok(self.with(|_, memory| Pilot::frontiers(memory).iter().copied().collect()))
+    }
+
+    /// Every call counts as a frame sent and one received.
+    fn stats(&self) -> LinkStats {
+        LinkStats {
+            sent: self.calls,
+            received: self.calls,
+            ..LinkStats::default()
+        }
+    }
+}

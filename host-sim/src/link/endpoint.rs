@@ -1,0 +1,285 @@
+//! The host's end of a conversation over any line.
+//!
+//! One request is in flight. If no answer comes in time the same bytes go out again, with the same sequence number, so the device
+//! answers without stepping twice; after the last attempt the link is [`LinkError::Silent`]. Whatever else comes in between (late answers, logs, noise)
+//! is sorted out here. A device that rebooted gives itself away by its hello or by not knowing us.
+
+use core::time::Duration;
+use std::collections::VecDeque;
+
+use fieldline_protocol::check::Kind;
+use fieldline_protocol::frame::{
+    BodyError, MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_request,
+};
+use fieldline_protocol::message::{
+    Command, Control, Counters, FieldRow, Frontier, Identity, Observation, Refusal, Reply, Request,
+    Status, Tile,
+};
+use fieldline_protocol::{SCHEMA, VERSION};
+
+use super::line::Line;
+use super::{Link, LinkError, LinkStats};
+
+/// How long to wait, and how often.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patience {
+    /// For an answer, before asking again.
+    pub attempt: Duration,
+    /// Asked in all.
+    pub attempts: u32,
+}
+
+impl Patience {
+    /// In virtual time: twelve attempts within the device's stale limit of 500 ms.
+    pub const VIRTUAL: Self = Self {
+        attempt: Duration::from_millis(40),
+        attempts: 12,
+    };
+    /// In lockstep, where the simulated robot stands still while we wait: a loaded machine that emulates a chip may take seconds.
+    pub const LOCKSTEP: Self = Self {
+        attempt: Duration::from_secs(3),
+        attempts: 10,
+    };
+    /// With a robot that moves while we wait: five attempts within the device's stale limit of 500 ms.
+    pub const REAL_TIME: Self = Self {
+        attempt: Duration::from_millis(95),
+        attempts: 5,
+    };
+}
+
+/// The host's end.
+///
+/// Invariant: `sequence` is that of the last request and never 0, which is what a device says unasked.
+#[derive(Debug)]
+pub struct Endpoint<L> {
+    line: L,
+    patience: Patience,
+    receiver: Receiver<MAX_REPLY_FRAME>,
+    inbox: VecDeque<u8>,
+    bytes: u64,
+    sequence: u16,
+    nonce: u32,
+    boots: Option<u32>,
+    started: bool,
+    stats: LinkStats,
+    before: Counters,
+    device: Counters,
+    log: Vec<u8>,
+}
+
+impl<L: Line> Endpoint<L> {
+    /// An end that has not said hello. `nonce` tells this host from the last one.
+    pub fn new(line: L, patience: Patience, nonce: u32) -> Self {
+        Self {
+            line,
+            patience,
+            receiver: Receiver::new(Side::Host),
+            inbox: VecDeque::new(),
+            bytes: 0,
+            sequence: 0,
+            nonce,
+            boots: None,
+            started: false,
+            stats: LinkStats::default(),
+            before: Counters::default(),
+            device: Counters::default(),
+            log: Vec::new(),
+        }
+    }
+
+    /// Sets how long to wait.
+    pub fn set_patience(&mut self, patience: Patience) {
+        self.patience = patience;
+    }
+
+    /// The line's clock.
+    pub fn now(&self) -> Duration {
+        self.line.now()
+    }
+
+    fn call(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        if self.boots.is_none() && !matches!(request, Request::Hello { .. }) {
+            self.hello()?;
+        }
+        self.sequence = self.sequence.wrapping_add(1).max(1);
+        let mut frame = [0; 1 + MAX_REQUEST_FRAME];
+        // A zero first, to end whatever noise is on the line; only when asking again does it cost a byte.
+        let length = encode_request(self.sequence, request, &mut frame[1..])
+            .map_err(|error| LinkError::Io(error.to_string()))?;
+        for attempt in 0..self.patience.attempts {
+            self.stats.sent += 1;
+            self.stats.retries += u64::from(attempt > 0);
+            self.line.send(&frame[usize::from(attempt == 0)..=length])?;
+            if let Some(reply) = self.await_reply()? {
+                return Ok(reply);
+            }
+        }
+        Err(LinkError::Silent)
+    }
+
+    fn await_reply(&mut self) -> Result<Option<Reply>, LinkError> {
+        let deadline = self.line.now() + self.patience.attempt;
+        loop {
+            while let Some(byte) = self.inbox.pop_front() {
+                if let Some(reply) = self.hear(byte)? {
+                    return Ok(Some(reply));
+                }
+            }
+            let wait = deadline.saturating_sub(self.line.now());
+            if wait.is_zero() {
+                return Ok(None);
+            }
+            let mut bytes = Vec::new();
+            self.line.receive(&mut bytes, wait)?;
+            self.bytes += bytes.len() as u64;
+            self.inbox.extend(bytes);
+        }
+    }
+
+    /// Takes a byte; gives the awaited reply.
+    fn hear(&mut self, byte: u8) -> Result<Option<Reply>, LinkError> {
+        let Some(frame) = self.receiver.push(byte) else {
+            return Ok(None);
+        };
+        if frame.kind == Kind::Log {
+            self.log.extend_from_slice(frame.body);
+            return Ok(None);
+        }
+        let (sequence, awaited) = (frame.sequence, frame.sequence == self.sequence);
+        match frame.reply() {
+            Ok(Reply::Crash(crash)) => Err(LinkError::Crashed(crash.to_string())),
+            Ok(Reply::Hello(identity)) => self.hear_hello(sequence, identity),
+            Ok(Reply::Refused(refusal)) if awaited => Err(self.refused(refusal)),
+            Ok(reply) if awaited => Ok(Some(reply)),
+            Err(error @ BodyError::Foreign { .. }) => {
+                Err(LinkError::Incompatible(error.to_string()))
+            }
+            // A late answer, or a chance collision.
+            Ok(_) | Err(BodyError::Malformed) => {
+                self.stats.dropped += 1;
+                Ok(None)
+            }
+        }
+    }
+
+    fn hear_hello(
+        &mut self,
+        sequence: u16,
+        identity: Identity,
+    ) -> Result<Option<Reply>, LinkError> {
+        match self.boots {
+            Some(boots) if boots != identity.boots => Err(match identity.crash {
+                Some(crash) => LinkError::Crashed(crash.to_string()),
+                None => LinkError::Reset,
+            }),
+            None if sequence == self.sequence => Ok(Some(Reply::Hello(identity))),
+            Some(_) if sequence == self.sequence => Ok(Some(Reply::Hello(identity))),
+            // It just booted and we have not met, or it answered an earlier hello twice.
+            _ => Ok(None),
+        }
+    }
+
+    /// A device that does not know us any more rebooted.
+    fn refused(&self, refusal: Refusal) -> LinkError {
+        match refusal {
+            Refusal::NotGreeted if self.boots.is_some() => LinkError::Reset,
+            Refusal::NotStarted if self.started => LinkError::Reset,
+            _ => LinkError::Refused(refusal.to_string()),
+        }
+    }
+}
+
+fn unexpected(what: &str) -> LinkError {
+    LinkError::Incompatible(format!(
+        "the device answered {what} with another kind of reply; build both ends from the same source"
+    ))
+}
+
+impl<L: Line> Link for Endpoint<L> {
+    fn hello(&mut self) -> Result<Identity, LinkError> {
+        let request = Request::Hello {
+            version: VERSION,
+            schema: SCHEMA,
+            nonce: self.nonce,
+        };
+        let identity = match self.call(&request) {
+            Ok(Reply::Hello(identity)) => identity,
+            Ok(_) => return Err(unexpected("a hello")),
+            Err(LinkError::Silent) if self.bytes > 0 && self.receiver.tally().received == 0 => {
+                return Err(LinkError::Incompatible(format!(
+                    "{} bytes came but no Fieldline frame: another device, another baud rate, or an image of another schema",
+                    self.bytes
+                )));
+            }
+            Err(error) => return Err(error),
+        };
+        if self.boots.is_none() {
+            self.boots = Some(identity.boots);
+            (self.before, self.device) = (identity.counters, identity.counters);
+        }
+        Ok(identity)
+    }
+
+    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
+        match self.call(&Request::Control(control.clone()))? {
+            Reply::Control(status) => {
+                self.started |= matches!(control, Control::Start(_));
+                if matches!(control, Control::Reset) {
+                    // It reboots at our word: that is no accident, and it will not know us.
+                    (self.boots, self.started) = (None, false);
+                }
+                Ok(status)
+            }
+            _ => Err(unexpected("a control request")),
+        }
+    }
+
+    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
+        match self.call(&Request::Observation(observation.clone()))? {
+            Reply::Command(command) => {
+                self.device = command.counters;
+                Ok(command)
+            }
+            _ => Err(unexpected("an observation")),
+        }
+    }
+
+    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
+        match self.call(&Request::Tile { x, y })? {
+            Reply::Tile(tile) => Ok(tile),
+            _ => Err(unexpected("a request for a tile")),
+        }
+    }
+
+    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
+        match self.call(&Request::FieldRow { row })? {
+            Reply::FieldRow(row) => Ok(row),
+            _ => Err(unexpected("a request for a field row")),
+        }
+    }
+
+    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
+        match self.call(&Request::Frontiers)? {
+            Reply::Frontiers(frontiers) => Ok(frontiers.iter().copied().collect()),
+            _ => Err(unexpected("a request for frontiers")),
+        }
+    }
+
+    fn stats(&self) -> LinkStats {
+        let tally = self.receiver.tally();
+        let there = |now: u32, before: u32| u64::from(now.wrapping_sub(before));
+        LinkStats {
+            received: u64::from(tally.received),
+            dropped: self.stats.dropped
+                + u64::from(tally.dropped)
+                + there(self.device.dropped, self.before.dropped),
+            crc_errors: u64::from(tally.crc_errors)
+                + there(self.device.crc_errors, self.before.crc_errors),
+            ..self.stats
+        }
+    }
+
+    fn take_log(&mut self) -> Vec<u8> {
+        core::mem::take(&mut self.log)
+    }
+}

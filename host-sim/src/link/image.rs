@@ -1,0 +1,126 @@
+//! The firmware image: found where the environment says, or else built from the source tree.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use super::LinkError;
+
+/// Names an image to use instead of building one.
+pub const IMAGE_VARIABLE: &str = "FIELDLINE_IMAGE";
+
+const TARGET: &str = "thumbv7em-none-eabihf";
+const PACKAGE: &str = "fieldline-stm32f405";
+
+/// The image's ELF file: [`IMAGE_VARIABLE`]'s, or else built now (once a process), which costs nothing where it is fresh.
+///
+/// # Errors
+/// [`LinkError::Io`] naming what is missing and what to type.
+pub fn image() -> Result<PathBuf, LinkError> {
+    static IMAGE: OnceLock<Result<PathBuf, LinkError>> = OnceLock::new();
+    match std::env::var_os(IMAGE_VARIABLE) {
+        Some(path) => existing(PathBuf::from(path)),
+        None => IMAGE.get_or_init(|| build(&[])).clone(),
+    }
+}
+
+fn existing(path: PathBuf) -> Result<PathBuf, LinkError> {
+    if path.is_file() {
+        return Ok(path);
+    }
+    Err(LinkError::Io(format!(
+        "there is no image at {}; {IMAGE_VARIABLE} must name one, or be unset to build it",
+        path.display()
+    )))
+}
+
+/// Builds the image with further arguments for cargo and gives its path.
+///
+/// # Errors
+/// [`LinkError::Io`] naming what is missing and what to type.
+pub fn build(arguments: &[&str]) -> Result<PathBuf, LinkError> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    if !root.join("firmware/stm32f405/Cargo.toml").is_file() {
+        return Err(LinkError::Io(format!(
+            "there is no source tree at {} to build the image from; set {IMAGE_VARIABLE} to an ELF file",
+            root.display()
+        )));
+    }
+    let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .current_dir(&root)
+        .args(["build", "--package", PACKAGE, "--profile", "firmware"])
+        .args(["--target", TARGET, "--message-format", "json-render-diagnostics"])
+        .args(arguments)
+        .output()
+        .map_err(|error| {
+            LinkError::Io(format!(
+                "cannot run cargo to build the image: {error}; install Rust, or set {IMAGE_VARIABLE} to an ELF file"
+            ))
+        })?;
+    if !output.status.success() {
+        return Err(LinkError::Io(explain(&String::from_utf8_lossy(
+            &output.stderr,
+        ))));
+    }
+    executable(&String::from_utf8_lossy(&output.stdout)).ok_or_else(|| {
+        LinkError::Io("cargo built the image but did not say where; run `cargo image`".into())
+    })
+}
+
+fn explain(log: &str) -> String {
+    if log.contains("can't find crate for `core`") || log.contains("may not be installed") {
+        return format!("the image's target is not installed; type: rustup target add {TARGET}");
+    }
+    let first = log
+        .lines()
+        .find(|line| line.starts_with("error"))
+        .unwrap_or("no error line");
+    format!("building the image failed: {first}; type `cargo image` to see all of it")
+}
+
+/// The path in cargo's message `{"reason":"compiler-artifact",…,"executable":"…"}`.
+fn executable(messages: &str) -> Option<PathBuf> {
+    const KEY: &str = "\"executable\":\"";
+    let line = messages
+        .lines()
+        .filter(|line| line.contains(KEY))
+        .next_back()?;
+    let rest = &line[line.find(KEY)? + KEY.len()..];
+    let path = &rest[..rest.find('"')?];
+    Some(PathBuf::from(
+        path.replace("\\\\", "\\").replace("\\/", "/"),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::{executable, existing, explain};
+
+    #[test]
+    fn the_last_executable_of_cargos_messages_is_ours() {
+        let messages = concat!(
+            r#"{"reason":"compiler-artifact","target":{"name":"a"},"executable":null,"fresh":true}"#,
+            "\n",
+            r#"{"reason":"compiler-artifact","executable":"/t/fieldline-stm32f405","fresh":true}"#,
+            "\n",
+            r#"{"reason":"build-finished","success":true}"#,
+        );
+        assert_eq!(
+            executable(messages),
+            Some(PathBuf::from("/t/fieldline-stm32f405"))
+        );
+        assert_eq!(executable("{}"), None);
+    }
+
+    #[test]
+    fn what_is_missing_is_said_with_what_to_type() {
+        let missing = "error[E0463]: can't find crate for `core`\n  = note: the `thumbv7em-none-eabihf` target may not be installed";
+        assert!(explain(missing).contains("rustup target add thumbv7em-none-eabihf"));
+        let broken = "warning: x\nerror[E0308]: mismatched types\n --> a.rs";
+        assert!(explain(broken).contains("error[E0308]: mismatched types"));
+        let error = existing(PathBuf::from("/no/image")).unwrap_err();
+        assert!(error.to_string().contains("/no/image"), "{error}");
+    }
+}

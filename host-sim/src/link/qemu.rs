@@ -1,0 +1,218 @@
+//! The third rung: the image in an emulated STM32F405, over a socket; or on a pty, as if it were a board on a serial port.
+//!
+//! QEMU connects to a socket that is bound before it starts, so that not even the boot's hello is lost. `-icount
+//! shift=0,sleep=off` makes an instruction one tick of the virtual clock, which counts a step's instructions exactly.
+
+use core::time::Duration;
+use std::io::{BufRead, BufReader, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::Instant;
+
+#[cfg(unix)]
+use std::os::unix::net::{UnixListener, UnixStream};
+
+use super::LinkError;
+use super::endpoint::{Endpoint, Patience};
+use super::image::image;
+use super::line::Line;
+use super::stream::{POLL, Stream, fresh_nonce};
+
+const PROGRAM: &str = "qemu-system-arm";
+/// A loaded machine takes its time to start a process.
+const START_LIMIT: Duration = Duration::from_secs(30);
+
+/// A running emulator; it ends with this value.
+#[derive(Debug)]
+struct Emulator(Child);
+
+impl Drop for Emulator {
+    fn drop(&mut self) {
+        // It may have ended by itself, which is as good.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+impl Emulator {
+    fn start(image: &Path, serial: &str) -> Result<Self, LinkError> {
+        let child = Command::new(PROGRAM)
+            .args([
+                "-M",
+                "netduinoplus2",
+                "-display",
+                "none",
+                "-monitor",
+                "none",
+            ])
+            .args([
+                "-nodefaults",
+                "-icount",
+                "shift=0,sleep=off",
+                "-serial",
+                serial,
+            ])
+            .arg("-kernel")
+            .arg(image)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn();
+        child.map(Self).map_err(|error| {
+            LinkError::Io(match error.kind() {
+                ErrorKind::NotFound => format!(
+                    "{PROGRAM} is not installed; type: apt-get install qemu-system-arm (or your system's package)"
+                ),
+                _ => format!("cannot start {PROGRAM}: {error}"),
+            })
+        })
+    }
+
+    /// Fails if it ended, with what it said last.
+    fn check(&mut self) -> Result<(), LinkError> {
+        let ended = self
+            .0
+            .try_wait()
+            .map_err(|error| LinkError::Io(format!("cannot look after {PROGRAM}: {error}")))?;
+        let Some(status) = ended else { return Ok(()) };
+        let said = self.0.stderr.take().map(BufReader::new);
+        let last = said.and_then(|said| said.lines().map_while(Result::ok).last());
+        Err(LinkError::Io(format!(
+            "{PROGRAM} ended ({status}): {}",
+            last.unwrap_or_default()
+        )))
+    }
+}
+
+/// A line to an emulated board.
+#[cfg(unix)]
+#[derive(Debug)]
+pub struct QemuLine {
+    stream: Stream<UnixStream>,
+    emulator: Emulator,
+}
+
+#[cfg(unix)]
+impl Line for QemuLine {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        let sent = self.stream.send(bytes);
+        sent.or_else(|error| self.emulator.check().and(Err(error)))
+    }
+
+    fn receive(&mut self, into: &mut Vec<u8>, wait: Duration) -> Result<(), LinkError> {
+        let received = self.stream.receive(into, wait);
+        received.or_else(|error| self.emulator.check().and(Err(error)))
+    }
+
+    fn now(&self) -> Duration {
+        self.stream.now()
+    }
+}
+
+/// Starts `image` in the emulator.
+///
+/// # Errors
+/// [`LinkError::Io`] naming what is missing and what to type.
+#[cfg(unix)]
+pub fn open_line(image: &Path) -> Result<QemuLine, LinkError> {
+    let path = socket_path();
+    let io = |what: &str, error: &std::io::Error| {
+        LinkError::Io(format!("{what} {} failed: {error}", path.display()))
+    };
+    let listener = UnixListener::bind(&path).map_err(|error| io("binding socket", &error))?;
+    let started = Emulator::start(image, &format!("unix:{}", path.display()));
+    let stream = started.and_then(|mut emulator| {
+        let stream = accept(&listener, &mut emulator)?;
+        Ok((stream, emulator))
+    });
+    // Both ends are open or there is no use for it.
+    let _ = std::fs::remove_file(&path);
+    let (stream, emulator) = stream?;
+    stream
+        .set_nonblocking(false)
+        .and_then(|()| stream.set_read_timeout(Some(POLL)))
+        .map_err(|error| io("setting up socket", &error))?;
+    Ok(QemuLine {
+        stream: Stream::new(stream, "the emulator"),
+        emulator,
+    })
+}
+
+#[cfg(unix)]
+fn socket_path() -> PathBuf {
+    use std::sync::atomic::{AtomicU32, Ordering};
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    let name = format!("fieldline-{}-{count}.sock", std::process::id());
+    std::env::temp_dir().join(name)
+}
+
+#[cfg(unix)]
+fn accept(listener: &UnixListener, emulator: &mut Emulator) -> Result<UnixStream, LinkError> {
+    let io =
+        |error: std::io::Error| LinkError::Io(format!("waiting for {PROGRAM} failed: {error}"));
+    listener.set_nonblocking(true).map_err(io)?;
+    let began = Instant::now();
+    loop {
+        match listener.accept() {
+            Ok((stream, _)) => return Ok(stream),
+            Err(error) if error.kind() == ErrorKind::WouldBlock => emulator.check()?,
+            Err(error) => return Err(io(error)),
+        }
+        if began.elapsed() > START_LIMIT {
+            return Err(LinkError::Io(format!(
+                "{PROGRAM} did not connect in {START_LIMIT:?}"
+            )));
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Builds the image and starts it in the emulator.
+///
+/// # Errors
+/// [`LinkError::Io`] naming what is missing and what to type.
+#[cfg(unix)]
+pub fn qemu() -> Result<Endpoint<QemuLine>, LinkError> {
+    let line = open_line(&image()?)?;
+    Ok(Endpoint::new(line, Patience::LOCKSTEP, fresh_nonce()))
+}
+
+/// An emulated board on a pty, to be opened as a serial port. It ends with this value.
+#[derive(Debug)]
+pub struct PtyBoard {
+    _emulator: Emulator,
+    device: String,
+}
+
+impl PtyBoard {
+    /// Starts `image` in the emulator.
+    ///
+    /// # Errors
+    /// [`LinkError::Io`] naming what is missing and what to type.
+    pub fn start(image: &Path) -> Result<Self, LinkError> {
+        let mut emulator = Emulator::start(image, "pty")?;
+        let silent = || LinkError::Io(format!("{PROGRAM} did not say which pty it opened"));
+        let said = emulator.0.stdout.take().ok_or_else(silent)?;
+        let mut line = String::new();
+        let _ = BufReader::new(said).read_line(&mut line);
+        // "char device redirected to /dev/pts/0 (label serial0)"
+        let device = line
+            .split_whitespace()
+            .find(|word| word.starts_with("/dev/"));
+        let Some(device) = device.map(str::to_owned) else {
+            emulator.check()?;
+            return Err(silent());
+        };
+        Ok(Self {
+            _emulator: emulator,
+            device,
+        })
+    }
+
+    /// The port to open.
+    #[must_use]
+    pub fn device(&self) -> &str {
+        &self.device
+    }
+}

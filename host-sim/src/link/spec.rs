@@ -1,0 +1,218 @@
+//! Links by name: `direct`, `loopback`, `qemu`, `serial:DEVICE[@BAUD]`.
+
+use core::fmt;
+use core::str::FromStr;
+
+use fieldline_protocol::BAUD;
+
+use super::direct::Direct;
+use super::endpoint::{Endpoint, Patience};
+use super::fault::{Faults, Faulty};
+use super::image::image;
+use super::line::Line;
+use super::loopback::LocalDevice;
+use super::stream::fresh_nonce;
+use super::{Link, LinkError, qemu, serial};
+
+/// Which rung.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum LinkSpec {
+    /// The pilot by call.
+    Direct,
+    /// Frames to a device in this process.
+    #[default]
+    Loopback,
+    /// Frames to the emulated chip.
+    Qemu,
+    /// Frames over a serial port.
+    Serial {
+        /// The port.
+        device: String,
+        /// Bits a second.
+        baud: u32,
+    },
+}
+
+/// Why a link's name was not understood.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LinkSpecError {
+    /// No such link.
+    Unknown(String),
+    /// `serial:` without a port.
+    NoDevice,
+    /// Not a baud rate.
+    BadBaud(String),
+}
+
+impl fmt::Display for LinkSpecError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(name) => write!(
+                f,
+                "unknown link '{name}'; use direct, loopback, qemu or serial:DEVICE[@BAUD]"
+            ),
+            Self::NoDevice => f.write_str(
+                "which serial port? use serial:DEVICE[@BAUD], as in serial:/dev/ttyUSB0",
+            ),
+            Self::BadBaud(baud) => {
+                write!(
+                    f,
+                    "bad baud rate '{baud}'; leave it out for the image's {BAUD}"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for LinkSpecError {}
+
+impl FromStr for LinkSpec {
+    type Err = LinkSpecError;
+
+    fn from_str(text: &str) -> Result<Self, LinkSpecError> {
+        match text {
+            "direct" => return Ok(Self::Direct),
+            "loopback" => return Ok(Self::Loopback),
+            "qemu" => return Ok(Self::Qemu),
+            _ => {}
+        }
+        let port = text
+            .strip_prefix("serial:")
+            .ok_or_else(|| LinkSpecError::Unknown(text.into()))?;
+        let (device, baud) = port.rsplit_once('@').unwrap_or((port, ""));
+        if device.is_empty() {
+            return Err(LinkSpecError::NoDevice);
+        }
+        let baud = match (port.contains('@'), baud.parse()) {
+            (false, _) => BAUD,
+            (true, Ok(baud)) if baud > 0 => baud,
+            _ => return Err(LinkSpecError::BadBaud(baud.into())),
+        };
+        Ok(Self::Serial {
+            device: device.into(),
+            baud,
+        })
+    }
+}
+
+impl fmt::Display for LinkSpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Direct => f.write_str("direct"),
+            Self::Loopback => f.write_str("loopback"),
+            Self::Qemu => f.write_str("qemu"),
+            Self::Serial { device, baud } => write!(f, "serial:{device}@{baud}"),
+        }
+    }
+}
+
+/// How to open a link.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Options {
+    /// Faults to make on the line.
+    pub faults: Faults,
+    /// Seed of the faults.
+    pub seed: u64,
+    /// The robot moves while we wait for an answer.
+    pub real_time: bool,
+}
+
+impl LinkSpec {
+    /// Opens the link.
+    ///
+    /// # Errors
+    /// As [`LinkError`]; faults on a direct link, which has no bytes to break, are [`LinkError::Io`].
+    pub fn open(&self, options: &Options) -> Result<Box<dyn Link>, LinkError> {
+        let patience = if options.real_time {
+            Patience::REAL_TIME
+        } else {
+            Patience::LOCKSTEP
+        };
+        match self {
+            Self::Direct if options.faults == Faults::default() => Ok(Box::new(Direct::new())),
+            Self::Direct => Err(LinkError::Io(
+                "a direct link has no bytes to break; use --link loopback with --fault".into(),
+            )),
+            Self::Loopback => Ok(end(LocalDevice::new(), Patience::VIRTUAL, 1, options)),
+            Self::Qemu => {
+                let line = qemu::open_line(&image()?)?;
+                Ok(end(line, patience, fresh_nonce(), options))
+            }
+            Self::Serial { device, baud } => {
+                let line = serial::open_line(device, *baud)?;
+                Ok(end(line, patience, fresh_nonce(), options))
+            }
+        }
+    }
+}
+
+fn end<L: Line + 'static>(
+    line: L,
+    patience: Patience,
+    nonce: u32,
+    options: &Options,
+) -> Box<dyn Link> {
+    if options.faults == Faults::default() {
+        return Box::new(Endpoint::new(line, patience, nonce));
+    }
+    let faulty = Faulty::new(line, options.faults, options.seed);
+    Box::new(Endpoint::new(faulty, patience, nonce))
+}
+
+#[cfg(test)]
+mod tests {
+    use fieldline_protocol::BAUD;
+
+    use super::{LinkSpec, LinkSpecError, Options};
+    use crate::link::LinkError;
+    use crate::link::fault::Faults;
+
+    fn port(device: &str, baud: u32) -> Result<LinkSpec, LinkSpecError> {
+        Ok(LinkSpec::Serial {
+            device: device.into(),
+            baud,
+        })
+    }
+
+    #[test]
+    fn names_are_read_and_written() {
+        assert_eq!("direct".parse(), Ok(LinkSpec::Direct));
+        assert_eq!("loopback".parse(), Ok(LinkSpec::Loopback));
+        assert_eq!("qemu".parse(), Ok(LinkSpec::Qemu));
+        assert_eq!("serial:/dev/ttyUSB0".parse(), port("/dev/ttyUSB0", BAUD));
+        assert_eq!("serial:COM3@9600".parse(), port("COM3", 9600));
+        let spec: LinkSpec = "serial:/dev/a@1@57600".parse().unwrap();
+        assert_eq!(spec.to_string(), "serial:/dev/a@1@57600");
+    }
+
+    #[test]
+    fn what_is_not_understood_is_named() {
+        let error = |text: &str| text.parse::<LinkSpec>().unwrap_err();
+        assert_eq!(error("tcp"), LinkSpecError::Unknown("tcp".into()));
+        assert_eq!(error(""), LinkSpecError::Unknown(String::new()));
+        assert_eq!(error("serial:"), LinkSpecError::NoDevice);
+        assert_eq!(error("serial:@9600"), LinkSpecError::NoDevice);
+        assert_eq!(
+            error("serial:/dev/a@fast"),
+            LinkSpecError::BadBaud("fast".into())
+        );
+        assert_eq!(error("serial:/dev/a@0"), LinkSpecError::BadBaud("0".into()));
+        assert_eq!(
+            error("serial:/dev/a@"),
+            LinkSpecError::BadBaud(String::new())
+        );
+    }
+
+    #[test]
+    fn a_direct_link_cannot_be_broken() {
+        let options = Options {
+            faults: Faults {
+                drop: 0.1,
+                ..Faults::default()
+            },
+            ..Options::default()
+        };
+        let error = LinkSpec::Direct.open(&options).err();
+        assert!(matches!(error, Some(LinkError::Io(_))), "{error:?}");
+    }
+}
