@@ -6,6 +6,9 @@
 
 use crate::world::{GridCell, World};
 
+/// Clearance is not measured beyond this, metres.
+pub const FARTHEST_M: f64 = 1.0;
+
 /// A rectangle around the robot's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
@@ -48,16 +51,13 @@ impl Footprint {
         solid_cells(world, x_m, y_m, self.circumradius_m()).any(|square| placed.overlaps(square))
     }
 
-    /// Metres between the footprint's outline and the nearest solid cell; 0 where they overlap.
+    /// Metres between the footprint's outline and the nearest solid cell: 0 where they overlap, and at most
+    /// [`FARTHEST_M`].
     #[must_use]
     pub fn clearance_m(&self, world: &World, x_m: f64, y_m: f64, yaw_rad: f64) -> f64 {
         let placed = self.place(x_m, y_m, yaw_rad);
-        let grid = world.occupancy();
-        // The nearest solid cell of the centre's cell cannot be farther from the outline than this.
-        let centre = world.distance().from_centre_m(grid.cell_at(x_m, y_m));
-        let reach_m = centre + grid.resolution_m() + self.circumradius_m();
-        let mut nearest_m = f64::INFINITY;
-        for square in solid_cells(world, x_m, y_m, reach_m) {
+        let mut nearest_m = FARTHEST_M;
+        for square in solid_cells(world, x_m, y_m, FARTHEST_M + self.circumradius_m()) {
             if placed.overlaps(square) {
                 return 0.0;
             }
