@@ -18,6 +18,7 @@ mod pgm;
 mod png_file;
 mod ray;
 mod walk;
+mod yaml;
 
 use std::path::Path;
 
