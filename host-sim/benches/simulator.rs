@@ -3,7 +3,7 @@
 //! `cargo bench -p host-sim --bench simulator [WORLD..]` prints a table over the built-in worlds, or the ones named. Poses
 //! are spread over the whole world by a fixed sequence; the robot drives a fixed wiggle without a planner.
 
-use std::hint::black_box;
+use core::hint::black_box;
 use std::time::Instant;
 
 use host_sim::robot::{LaserNoise, LaserScanner, Pose, Source, Velocity, laser};
