@@ -77,34 +77,34 @@ pub(super) fn cycle(window: &mut Window, scratch: &mut [f32; SCRATCH_FLOATS]) ->
 fn assemble<const PREFERRED: bool>(window: &Window, equations: &mut [Equation]) {
     for (y, equations) in equations.chunks_exact_mut(FINEST).enumerate() {
         let row = BlockRow::new(window, y);
-        let mut reached = row.reached;
-        let mut beside_goal = row.beside_goal();
+        let (mut reached, mut beside_goal) = (row.reached, row.beside_goal());
+        let mut west = [0.0; 2];
         for (x, equation) in equations.iter_mut().enumerate() {
-            *equation = EMPTY;
-            if (reached[0] | reached[1]) & 0b11 != 0 {
-                let goals = if beside_goal & 0b11 == 0 {
-                    None
+            let block = row.block(x, west);
+            *equation = if reached[0] & reached[1] & !beside_goal & 0b11 == 0b11 {
+                block.full::<PREFERRED>()
+            } else if (reached[0] | reached[1]) & 0b11 != 0 {
+                let goals = if beside_goal & 0b11 != 0 {
+                    row.goal
                 } else {
-                    Some(&row.goal)
+                    [0; 4]
                 };
-                for (upper, right) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                    if reached[upper] >> right & 1 == 1 {
-                        row.add_cell::<PREFERRED>(equation, goals, x, upper, right);
-                    }
-                }
-                pyramid::bound_outflow(equation);
-            }
-            reached = reached.map(|bits| bits >> 2);
+                block.partial::<PREFERRED>(reached, goals.map(|row| row >> (2 * x)))
+            } else {
+                EMPTY
+            };
+            west = [block.q[1][1], block.q[2][1]];
+            reached = reached.map(|row| row >> 2);
             beside_goal >>= 2;
         }
     }
 }
 
-/// Two rows of cells and those below and above them, aligned so that block X has columns 2X and 2X + 1.
+/// Two rows of cells with those below and above them, aligned so that block X has columns 2X and 2X + 1.
 struct BlockRow<'a> {
     /// The row below, the lower one, the upper one, the row above.
     q: [&'a Pairs<f32>; 4],
-    /// Goals in those rows.
+    /// Goals in those rows, one column further to the left.
     goal: [u64; 4],
     /// The lower row's preferences, the upper one's.
     preference: [&'a Pairs<Preference>; 2],
@@ -116,94 +116,48 @@ impl<'a> BlockRow<'a> {
     fn new(window: &'a Window, y: usize) -> Self {
         let offset = window.origin.offset();
         let start = window.origin.start(y);
-        // Rows in units from the window's lowest margin; rows beyond the margins are nobody's neighbours.
+        // Rows outside the window have no cells; rows outside its margins are never looked at.
         let mask = |rows: &[u64; SIDE], row: usize| {
-            let inside = (2 * y + row).checked_sub(1 + offset);
-            inside
-                .and_then(|row| rows.get(row))
+            let row = (2 * y + row).checked_sub(1 + offset);
+            row.and_then(|row| rows.get(row))
                 .map_or(0, |bits| bits << offset)
         };
         let q = |row: usize| {
-            pairs(
-                &window.q,
-                (start + row * STRIDE).checked_sub(STRIDE),
-                &[[0.0; 2]; 32],
-            )
+            let start = (start + row * STRIDE).checked_sub(STRIDE);
+            pairs(&window.q, start, &[[0.0; 2]; STRIDE / 2])
         };
         let preference = |row: usize| {
+            let start = Some(start + row * STRIDE);
             pairs(
                 &window.preference,
-                Some(start + row * STRIDE),
-                &[[Preference::NONE; 2]; 32],
+                start,
+                &[[Preference::NONE; 2]; STRIDE / 2],
             )
         };
         Self {
             q: [q(0), q(1), q(2), q(3)],
-            goal: [0, 1, 2, 3].map(|row| mask(&window.goal, row)),
+            goal: [0, 1, 2, 3].map(|row| mask(&window.goal, row) << 1),
             preference: [preference(0), preference(1)],
             reached: [1, 2].map(|row| mask(&window.reached, row)),
         }
     }
 
-    /// Columns with a cell beside a goal in either row.
+    /// Columns with a reached cell beside a goal in either row.
     fn beside_goal(&self) -> u64 {
-        let [south, lower, upper, north] = self.goal;
-        let beside_lower = south | upper | lower << 1 | lower >> 1;
-        let beside_upper = lower | north | upper << 1 | upper >> 1;
+        let [below, lower, upper, above] = self.goal;
+        let beside_lower = (below | upper) >> 1 | lower | lower >> 2;
+        let beside_upper = (lower | above) >> 1 | upper | upper >> 2;
         (self.reached[0] & beside_lower) | (self.reached[1] & beside_upper)
     }
 
-    /// Add the equation of block x's cell in the (`upper`, `right`) corner. `goals` may be left out where none is near.
+    /// Block x, given its western neighbours.
     #[inline(always)]
-    fn add_cell<const PREFERRED: bool>(
-        &self,
-        equation: &mut Equation,
-        goals: Option<&[u64; 4]>,
-        x: usize,
-        upper: usize,
-        right: usize,
-    ) {
-        let [below, row, above] = [self.q[upper], self.q[upper + 1], self.q[upper + 2]];
-        let (south, north) = (below[x][right], above[x][right]);
-        let west = if right == 1 {
-            row[x][0]
-        } else if x > 0 {
-            row[x - 1][1]
-        } else {
-            0.0
-        };
-        let east = if right == 0 { row[x][1] } else { row[x + 1][0] };
-        let mut inflow = [south, north, west, east];
-        if PREFERRED {
-            let half = self.preference[upper][x][right].half();
-            let upright = if north >= south { half } else { -half };
-            let level = if west >= east { half } else { -half };
-            inflow[0] -= upright * south;
-            inflow[1] += upright * north;
-            inflow[2] += level * west;
-            inflow[3] -= level * east;
-        }
-        // Out of the block on this corner's two sides, and across the block on the two others.
-        let outer = [upper == 0, upper == 1, right == 0, right == 1];
-        equation[OUT] += 4.0 * row[x][right];
-        for (side, towards) in [SOUTH, NORTH, WEST, EAST].into_iter().enumerate() {
-            let is_goal = goals.is_some_and(|goals| {
-                let bit = 2 * x + right;
-                let bits = [
-                    goals[upper],
-                    goals[upper + 2],
-                    goals[upper + 1] << 1,
-                    goals[upper + 1] >> 1,
-                ];
-                bits[side] >> bit & 1 == 1
-            });
-            if is_goal {
-                equation[SOURCE] += inflow[side];
-            } else if outer[side] {
-                equation[towards] += inflow[side];
-            } else {
-                equation[OUT] -= inflow[side];
-            }
+    fn block(&self, x: usize, west: [f32; 2]) -> Block {
+        Block {
+            q: self.q.map(|row| row[x]),
+            west,
+            east: [self.q[1][x + 1][0], self.q[2][x + 1][0]],
+            preference: self.preference.map(|row| row[x]),
         }
     }
 }
@@ -213,6 +167,99 @@ fn pairs<'a, T>(cells: &'a [T], start: Option<usize>, outside: &'a Pairs<T>) -> 
     let row = start.and_then(|start| cells.get(start..));
     row.and_then(|row| row.as_chunks().0.first_chunk())
         .unwrap_or(outside)
+}
+
+/// A block's cells and the eight around them.
+struct Block {
+    /// By rows: below, lower, upper, above.
+    q: [[f32; 2]; 4],
+    /// To the left of the lower cells and of the upper ones.
+    west: [f32; 2],
+    /// To their right.
+    east: [f32; 2],
+    /// Lower and upper.
+    preference: [[Preference; 2]; 2],
+}
+
+impl Block {
+    /// The equation of a block of free cells without a goal beside.
+    #[inline(always)]
+    fn full<const PREFERRED: bool>(&self) -> Equation {
+        let mut sum = EMPTY;
+        self.add_cell::<PREFERRED, 0, 0>(&mut sum, [false; 4]);
+        self.add_cell::<PREFERRED, 0, 1>(&mut sum, [false; 4]);
+        self.add_cell::<PREFERRED, 1, 0>(&mut sum, [false; 4]);
+        self.add_cell::<PREFERRED, 1, 1>(&mut sum, [false; 4]);
+        pyramid::bound_outflow(&mut sum);
+        sum
+    }
+
+    /// The equation of any block, from the lowest bits of the rows' masks: `reached` the lower and the upper,
+    /// `goal` all four, one column further to the left.
+    fn partial<const PREFERRED: bool>(&self, reached: [u64; 2], goal: [u64; 4]) -> Equation {
+        let mut sum = EMPTY;
+        // A goal below, above, left, right of the cell in column `right` of row `upper`?
+        let goals = |upper: usize, right: usize| {
+            [
+                goal[upper] >> 1,
+                goal[upper + 2] >> 1,
+                goal[upper + 1],
+                goal[upper + 1] >> 2,
+            ]
+            .map(|row| row >> right & 1 == 1)
+        };
+        if reached[0] & 0b01 != 0 {
+            self.add_cell::<PREFERRED, 0, 0>(&mut sum, goals(0, 0));
+        }
+        if reached[0] & 0b10 != 0 {
+            self.add_cell::<PREFERRED, 0, 1>(&mut sum, goals(0, 1));
+        }
+        if reached[1] & 0b01 != 0 {
+            self.add_cell::<PREFERRED, 1, 0>(&mut sum, goals(1, 0));
+        }
+        if reached[1] & 0b10 != 0 {
+            self.add_cell::<PREFERRED, 1, 1>(&mut sum, goals(1, 1));
+        }
+        pyramid::bound_outflow(&mut sum);
+        sum
+    }
+
+    /// Add one cell's equation: 4 q against what flows in from below, above, left and right, where `goals` may be.
+    #[inline(always)]
+    fn add_cell<const PREFERRED: bool, const UPPER: usize, const RIGHT: usize>(
+        &self,
+        sum: &mut Equation,
+        goals: [bool; 4],
+    ) {
+        let row = self.q[UPPER + 1];
+        let [mut south, mut north] = [self.q[UPPER][RIGHT], self.q[UPPER + 2][RIGHT]];
+        let mut west = if RIGHT == 0 { self.west[UPPER] } else { row[0] };
+        let mut east = if RIGHT == 0 { row[1] } else { self.east[UPPER] };
+        if PREFERRED {
+            let half = self.preference[UPPER][RIGHT].half();
+            let tilt = if north >= south { half } else { -half };
+            (south, north) = (south - tilt * south, north + tilt * north);
+            let tilt = if west >= east { half } else { -half };
+            (west, east) = (west + tilt * west, east - tilt * east);
+        }
+        sum[OUT] += 4.0 * row[RIGHT];
+        add_inflow(sum, SOUTH, south, UPPER == 1, goals[0]);
+        add_inflow(sum, NORTH, north, UPPER == 0, goals[1]);
+        add_inflow(sum, WEST, west, RIGHT == 1, goals[2]);
+        add_inflow(sum, EAST, east, RIGHT == 0, goals[3]);
+    }
+}
+
+/// Add what flows into a cell from one side: from a goal, from the same block, or from the block on that side.
+#[inline(always)]
+fn add_inflow(sum: &mut Equation, side: usize, inflow: f32, inside: bool, goal: bool) {
+    if goal {
+        sum[SOURCE] += inflow;
+    } else if inside {
+        sum[OUT] -= inflow;
+    } else {
+        sum[side] += inflow;
+    }
 }
 
 /// Multiply the field by the over-corrected factors. Answers max |x − 1|.

@@ -45,6 +45,9 @@ pub(super) const EAST: usize = 5;
 /// goals, so that where nothing is known x = 1.
 pub(super) const FAINT: f32 = f32::from_bits((127 - 120) << 23);
 
+/// No block at all.
+const NOTHING: Equation = [0.0; EQUATION_FLOATS];
+
 /// A block without a free cell.
 pub(super) const EMPTY: Equation = [FAINT, FAINT, 0.0, 0.0, 0.0, 0.0];
 
@@ -77,9 +80,9 @@ const EQUATIONS: usize = {
 };
 
 const FACTORS: usize = {
-    let (mut side, mut sum) = (FINEST, COARSEST * (COARSEST + 2));
+    let (mut side, mut sum) = (FINEST, COARSEST * (COARSEST + 2) + 1);
     while side > COARSEST {
-        sum += side * (side + 2);
+        sum += side * (side + 2) + 1;
         side = side.div_ceil(2);
     }
     sum
@@ -141,7 +144,7 @@ impl<'a> Pyramid<'a> {
     fn split(&mut self) -> (Level<'_>, Pyramid<'_>) {
         let side = self.side;
         let (equations, coarser_equations) = self.equations.split_at_mut(side * side);
-        let (factors, coarser_factors) = self.factors.split_at_mut(side * (side + 2));
+        let (factors, coarser_factors) = self.factors.split_at_mut(side * (side + 2) + 1);
         let level = Level {
             side,
             equations,
@@ -165,7 +168,7 @@ struct Level<'a> {
     side: usize,
     /// Row by row.
     equations: &'a mut [Equation],
-    /// Row by row, between two margins as long as a row.
+    /// Row by row, between two margins as long as a row, and one to spare.
     factors: &'a mut [f32],
 }
 
@@ -179,64 +182,42 @@ impl Level<'_> {
         let here = &factors[side..][..count];
         let east = &factors[side + 1..][..count];
         let north = &factors[2 * side..][..count];
-        let relax = |i: usize, equation: &Equation| {
-            let upright = equation[SOUTH] * south[i].get() + equation[NORTH] * north[i].get();
-            let level = equation[WEST] * west[i].get() + equation[EAST] * east[i].get();
-            let factor = (equation[SOURCE] + (upright + level)) / equation[OUT];
-            here[i].set(if factor > MOST { MOST } else { factor });
-        };
-        for (i, equation) in self.equations.iter().enumerate().rev() {
-            relax(i, equation);
-        }
-        for (i, equation) in self.equations.iter().enumerate() {
-            relax(i, equation);
-        }
+        let around = south.iter().zip(north).zip(west.iter().zip(east));
+        let cells = self.equations.iter().zip(here).zip(around);
+        cells.clone().rev().for_each(relax);
+        cells.for_each(relax);
     }
 
     /// Add up the equations, their factors absorbed, over blocks of 2 × 2.
     fn aggregate(&self, coarse: &mut [Equation]) {
-        let coarse_side = self.side.div_ceil(2);
-        for (y, row) in self.equations.chunks_exact(self.side).enumerate() {
-            let coarse_row = &mut coarse[y / 2 * coarse_side..][..coarse_side];
-            for (x, block) in coarse_row.iter_mut().enumerate() {
-                let west = self.absorbed(row, 2 * x, y);
-                let east = self.absorbed(row, 2 * x + 1, y);
-                // What flows between the two stays inside, and so does what flows between their row and the other.
-                let out = (west[OUT] + east[OUT]) - (west[EAST] + east[WEST]);
-                let source = west[SOURCE] + east[SOURCE];
-                let (south, north) = (west[SOUTH] + east[SOUTH], west[NORTH] + east[NORTH]);
-                if y % 2 == 0 {
-                    *block = [out - north, source, south, 0.0, west[WEST], east[EAST]];
-                } else {
-                    block[OUT] += out - south;
-                    block[SOURCE] += source;
-                    block[NORTH] = north;
-                    block[WEST] += west[WEST];
-                    block[EAST] += east[EAST];
+        let side = self.side;
+        let coarse_rows = side.div_ceil(2);
+        for (y, row) in self.equations.chunks_exact(side).enumerate() {
+            let coarse_row = &mut coarse[y / 2 * coarse_rows..][..coarse_rows];
+            let [below, above] = [y * side, (y + 2) * side].map(|start| self.factor_pairs(start));
+            let [left, right] =
+                [(y + 1) * side - 1, (y + 1) * side + 1].map(|start| self.factor_pairs(start));
+            let factors = below.iter().zip(above).zip(left.iter().zip(right));
+            let blocks = coarse_row.iter_mut().zip(row.chunks(2)).zip(factors);
+            let (lower, last) = (y % 2 == 0, y % 2 == 1 || y + 1 == side);
+            for ((block, children), ((below, above), (left, right))) in blocks {
+                let [child, more @ ..] = children else {
+                    continue;
+                };
+                let west = absorb(child, [left[1], below[0], above[0], left[0], right[0]]);
+                let east = more.first().unwrap_or(&NOTHING);
+                let east = absorb(east, [right[0], below[1], above[1], left[1], right[1]]);
+                add_pair(block, &west, &east, lower);
+                if last {
+                    bound_outflow(block);
                 }
             }
         }
-        for block in coarse {
-            bound_outflow(block);
-        }
     }
 
-    /// Equation x of row y with the factors multiplied in, or nothing beyond the row's end.
-    #[inline(always)]
-    fn absorbed(&self, row: &[Equation], x: usize, y: usize) -> Equation {
-        let Some(&[out, source, south, north, west, east]) = row.get(x) else {
-            return [0.0; EQUATION_FLOATS];
-        };
-        let at = (y + 1) * self.side + x;
-        let x = &self.factors;
-        [
-            out * x[at],
-            source,
-            south * x[at - self.side],
-            north * x[at + self.side],
-            west * x[at - 1],
-            east * x[at + 1],
-        ]
+    /// The factors from `start` on, two by two.
+    fn factor_pairs(&self, start: usize) -> &[[f32; 2]] {
+        self.factors[start..].as_chunks().0
     }
 
     /// Multiply the factors by those of the blocks they lie in, over-corrected.
@@ -252,6 +233,54 @@ impl Level<'_> {
                 }
             }
         }
+    }
+}
+
+/// A cell beside others: south and north, west and east.
+type Around<'a> = (
+    (&'a Cell<f32>, &'a Cell<f32>),
+    (&'a Cell<f32>, &'a Cell<f32>),
+);
+
+/// x ← (b + Σ A x) / D.
+#[inline(always)]
+fn relax(
+    ((equation, here), ((south, north), (west, east))): ((&Equation, &Cell<f32>), Around<'_>),
+) {
+    let upright = equation[SOUTH] * south.get() + equation[NORTH] * north.get();
+    let level = equation[WEST] * west.get() + equation[EAST] * east.get();
+    let factor = (equation[SOURCE] + (upright + level)) / equation[OUT];
+    here.set(if factor > MOST { MOST } else { factor });
+}
+
+/// An equation with its factors multiplied in: the block's own, and those below, above, left and right of it.
+#[inline(always)]
+fn absorb(equation: &Equation, [here, south, north, west, east]: [f32; 5]) -> Equation {
+    [
+        equation[OUT] * here,
+        equation[SOURCE],
+        equation[SOUTH] * south,
+        equation[NORTH] * north,
+        equation[WEST] * west,
+        equation[EAST] * east,
+    ]
+}
+
+/// Add two equations side by side to a block's, as its lower row or its upper one; the lower comes first.
+#[inline(always)]
+fn add_pair(block: &mut Equation, west: &Equation, east: &Equation, lower: bool) {
+    // What flows between the two stays inside, and so does what flows between the rows.
+    let out = (west[OUT] + east[OUT]) - (west[EAST] + east[WEST]);
+    let source = west[SOURCE] + east[SOURCE];
+    let (south, north) = (west[SOUTH] + east[SOUTH], west[NORTH] + east[NORTH]);
+    if lower {
+        *block = [out - north, source, south, 0.0, west[WEST], east[EAST]];
+    } else {
+        block[OUT] += out - south;
+        block[SOURCE] += source;
+        block[NORTH] = north;
+        block[WEST] += west[WEST];
+        block[EAST] += east[EAST];
     }
 }
 
