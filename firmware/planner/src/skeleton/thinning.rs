@@ -238,9 +238,7 @@ impl<const M: usize> Thinning<M> {
         };
         let losses = of_group(&mut self.losses, group);
         let before = u32::from(self.touched_from_before);
-        let touched = losses.words
-            | (losses.first_cells >> 1 | losses.last_cells << 1)
-            | before;
+        let touched = losses.words | (losses.first_cells >> 1 | losses.last_cells << 1) | before;
         let [first, second] = &mut self.marks;
         let marks = if self.second { second } else { first };
         if let Some(mark) = marks.get_mut(group) {
