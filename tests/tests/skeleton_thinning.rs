@@ -140,6 +140,29 @@ fn the_widest_plane_wraps_nowhere() {
 }
 
 #[test]
+fn looks_only_where_something_may_change() {
+    let mut map = Map::new(320, 320, false);
+    map.rect(100, 100, 120, 120, true);
+    let mut words = map.words();
+    let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
+    let mut thinning = Thinning::<100>::new();
+    thinning.start(map.shape(), map.shape().whole()).unwrap();
+    let Progress::Done { left } = thinning.advance(&mut plane, u32::MAX) else {
+        panic!("an endless budget was spent");
+    };
+    let (work, passes) = (u32::MAX - left, u32::from(thinning.passes()));
+    assert_eq!(
+        passes, 121,
+        "one side a pass, and one to see that it is over"
+    );
+    // At most a hall's outline of two rows and 240 words, and 100 groups, a pass; all words in the first two.
+    assert!(
+        work < passes * (2 * 5 + 240 + 100) + 2 * 3200,
+        "{work} units"
+    );
+}
+
+#[test]
 fn a_region_beyond_the_marks_is_refused() {
     let map = Map::new(64, 257, true);
     let error = AnyThinning::new()

@@ -334,7 +334,7 @@ fn words_of_group(size: usize, group: usize) -> u32 {
 
 /// The losses of a group, one of the last two.
 fn of_group([even, odd]: &mut [Losses; 2], group: usize) -> &mut Losses {
-    if group % 2 == 0 { even } else { odd }
+    if group.is_multiple_of(2) { even } else { odd }
 }
 
 /// The marks of both subiterations.
