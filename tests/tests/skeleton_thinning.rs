@@ -85,6 +85,24 @@ fn instalments_change_nothing() {
 }
 
 #[test]
+fn starting_anew_forgets_what_was_half_done() {
+    let mut rng = Rng::new(7);
+    let mut thinning = AnyThinning::new();
+    for round in 0..300 {
+        let map = any_map(&mut rng);
+        let mut words = map.words();
+        let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
+        thinning.start(map.shape(), map.shape().whole()).unwrap();
+        if round % 3 == 0 {
+            while thinning.advance(&mut plane, 50) == Progress::Pending {}
+            assert_eq!(map.with_words(&words), map.thinned(), "map {round}");
+        } else {
+            let _ = thinning.advance(&mut plane, rng.below(400) as u32);
+        }
+    }
+}
+
+#[test]
 fn a_region_is_thinned_as_if_it_were_alone_and_nothing_else_is_touched() {
     let mut rng = Rng::new(4);
     for _ in 0..300 {
