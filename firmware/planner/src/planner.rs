@@ -423,6 +423,7 @@ fn steer<const TILES: usize, const SLOTS: usize>(
             angular_radps: LOOK_AROUND_RADPS,
         }
     } else {
+        state.strategy.note_flat();
         Twist::default()
     };
     Output {

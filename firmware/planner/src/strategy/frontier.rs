@@ -39,6 +39,8 @@ const MOVED_M: f32 = 0.3;
 const STUCK_DROPS: u8 = 3;
 /// Head start of the present goal, coarse steps: what turning about costs.
 const HEAD_START: u32 = 10;
+/// Rounds in a row without a field at the robot after which a goal is dropped.
+const FLAT_ROUNDS: u8 = 4;
 /// Rounds in a row that must find nothing before the exploration is over: the second one began after the first was found
 /// empty, so it saw everything there is.
 const EMPTY_ROUNDS: u8 = 2;
@@ -55,6 +57,9 @@ pub struct Frontier {
     stood: Point,
     stood_ms: u32,
     stood_drops: u8,
+    /// The window had no way to the local goal since the last round, and in how many rounds before.
+    flat: bool,
+    flat_rounds: u8,
     empty_rounds: u8,
     had_road: bool,
     second_chance: bool,
@@ -90,6 +95,8 @@ impl Frontier {
             stood: Point { x_m: 0.0, y_m: 0.0 },
             stood_ms: 0,
             stood_drops: 0,
+            flat: false,
+            flat_rounds: 0,
             empty_rounds: 0,
             had_road: false,
             second_chance: false,
@@ -178,6 +185,11 @@ impl Frontier {
         let _ = wave.advance(space, None, u32::MAX);
     }
 
+    /// The window has no way from the robot to its local goal, though the skeleton, coarser, had one.
+    pub fn note_flat(&mut self) {
+        self.flat = true;
+    }
+
     fn note_motion(&mut self, robot: Point, time_ms: u32) {
         let (dx, dy) = (robot.x_m - self.stood.x_m, robot.y_m - self.stood.y_m);
         if dx * dx + dy * dy > MOVED_M * MOVED_M {
@@ -219,8 +231,15 @@ impl Frontier {
         }
     }
 
-    /// Drop a goal that was reached and stays unexplored, or that comes no nearer.
+    /// Drop a goal that was reached and stays unexplored, that has no field, or that comes no nearer.
     fn give_up_if_idle(&mut self, time_ms: u32) {
+        self.flat_rounds = if self.flat { self.flat_rounds + 1 } else { 0 };
+        self.flat = false;
+        if self.flat_rounds >= FLAT_ROUNDS {
+            self.flat_rounds = 0;
+            self.drop_goal(Residue::Unreachable);
+            return;
+        }
         let idle_ms = time_ms.wrapping_sub(self.since_ms);
         let stood_ms = time_ms.wrapping_sub(self.stood_ms);
         let reached = self.road.steps() <= REACHED_STEPS;
@@ -236,14 +255,17 @@ impl Frontier {
             self.stood_ms = time_ms;
             self.stood_drops += 1;
         }
-        if self.dropped.is_full() {
-            self.dropped.remove(0);
-        }
-        let reason = if reached {
+        self.drop_goal(if reached {
             Residue::Unobservable
         } else {
             Residue::NoProgress
-        };
+        });
+    }
+
+    fn drop_goal(&mut self, reason: Residue) {
+        if self.dropped.is_full() {
+            self.dropped.remove(0);
+        }
         // There is room now.
         let _ = self.dropped.push(Leftover {
             cell: self.road.goal(),
