@@ -2,24 +2,24 @@
 //!
 //! A door of 0.65 m leaves 8 cm beside a 3-AT, less than a map cell. So the points within [`REACH_M`] are kept as measured, also
 //! those that have left the field of view: a point is dropped when the scan that replaces it looks at or beyond its place,
-//! and kept while it is out of view or hidden.
+//! and kept while it is out of view or hidden. Behind the robot, where it only turns and backs out, less is kept.
 //!
-//! Invariant: at most [`MOST_POINTS`] points, the oldest give way.
+//! Invariant: at most [`MOST_POINTS`] points, the farthest give way.
 //! Units: metres, odometry frame.
 
 use heapless::Vec;
 
 use crate::config::Laser;
 use crate::geometry::{Point, Pose};
-use crate::map::integrate::{level_beams, sensor_point};
+use crate::map::integrate::{informative_range_mm, level_beams, sensor_point};
 use crate::math;
-use crate::planner::INVALID_MM;
 
 /// Points kept at the most.
 pub const MOST_POINTS: usize = 256;
-/// Distance from the robot's centre within which points are kept, metres: half a robot beyond its braking distance at
-/// 0.5 m/s.
+/// Distance from the robot's centre within which points ahead are kept, metres: half the robot and its braking distance.
 pub const REACH_M: f32 = 1.2;
+/// The same to the sides and behind, metres: half its diagonal and the longest leg backwards.
+const REACH_BEHIND_M: f32 = 0.8;
 /// Least distance between neighbours of one scan, metres.
 const SPACING_M: f32 = 0.03;
 /// A beam that ends this little short of a point still looked at it, metres: five sigma of a range.
@@ -56,26 +56,44 @@ impl NearField {
 
     /// Enter the level laser's scan, taken at `pose`.
     pub fn update(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
-        let (from, centre) = (sensor_point(pose, laser), pose.point());
+        let from = sensor_point(pose, laser);
         self.points.retain(|&point| {
-            distance2(point, centre) < REACH_M * REACH_M
-                && !looked_at(pose, laser, ranges_mm, from, point)
+            within_reach(pose, point) && !looked_at(pose, laser, ranges_mm, from, point)
         });
         let mut last: Option<Point> = None;
         for beam in level_beams(pose, laser, ranges_mm).filter(|beam| beam.hit) {
             let end = beam.end();
             let crowded = last.is_some_and(|last| distance2(last, end) < SPACING_M * SPACING_M);
-            if crowded || distance2(end, centre) >= REACH_M * REACH_M {
-                continue;
+            if !crowded && within_reach(pose, end) {
+                self.insert(pose.point(), end);
+                last = Some(end);
             }
-            if self.points.is_full() {
-                self.points.remove(0);
-            }
-            // There is room now, so this cannot fail.
-            let _ = self.points.push(end);
-            last = Some(end);
         }
     }
+
+    fn insert(&mut self, centre: Point, point: Point) {
+        if self.points.is_full() {
+            let farther = |best: (usize, f32), (k, &point): (usize, &Point)| {
+                let far = distance2(point, centre);
+                if far > best.1 { (k, far) } else { best }
+            };
+            let (farthest, far) = self.points.iter().enumerate().fold((0, 0.0), farther);
+            if far < distance2(point, centre) {
+                return;
+            }
+            self.points.swap_remove(farthest);
+        }
+        // There is room now, so this cannot fail.
+        let _ = self.points.push(point);
+    }
+}
+
+fn within_reach(pose: &Pose, point: Point) -> bool {
+    let far2 = distance2(point, pose.point());
+    let (sin, cos) = math::sin_cos(pose.yaw_rad);
+    let ahead = (point.x_m - pose.x_m) * cos + (point.y_m - pose.y_m) * sin > 0.0;
+    let reach = if ahead { REACH_M } else { REACH_BEHIND_M };
+    far2 < reach * reach
 }
 
 /// Whether this scan saw the place of `point`: in its view, and not hidden behind something nearer.
@@ -86,15 +104,15 @@ fn looked_at(pose: &Pose, laser: &Laser, ranges_mm: &[u16], from: Point, point: 
     if index < 0 || index >= ranges_mm.len() as i32 {
         return false;
     }
-    let range = ranges_mm.get(index as usize).copied().unwrap_or(INVALID_MM);
     let distance = math::sqrt(dx * dx + dy * dy);
-    range != INVALID_MM && f32::from(range) * 1e-3 + LOOKED_AT_M >= distance
+    informative_range_mm(ranges_mm, index as usize, laser.range_limit_mm)
+        .is_some_and(|range| f32::from(range) * 1e-3 + LOOKED_AT_M >= distance)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planner::NO_RETURN_MM;
+    use crate::planner::{INVALID_MM, NO_RETURN_MM};
 
     fn laser() -> Laser {
         Laser {

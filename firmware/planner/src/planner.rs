@@ -387,9 +387,9 @@ fn follow<const TILES: usize, const SLOTS: usize>(
         Some(_) => {
             let heading_there =
                 |place: Place| heading_at(&workspace.window, &view, &input.pose, place);
-            state
-                .drive
-                .follow(config, heading_there, input.velocity, &surround)
+            let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
+            let drive = &mut state.drive;
+            drive.follow(config, heading_there, input.velocity, &surround, scratch)
         }
         // In the goal's own cell there is no slope: look around until it is explored.
         None if view

@@ -12,7 +12,7 @@
 pub mod manoeuvre;
 pub mod surround;
 
-pub use manoeuvre::Leg;
+pub use manoeuvre::Plan;
 pub use surround::{Place, Surround};
 
 use crate::config::Config;
@@ -23,6 +23,8 @@ use crate::math;
 const MARGIN_M: f32 = 0.06;
 /// Clearance kept when creeping through a narrow place, metres: two sigma of a range.
 const CREEP_MARGIN_M: f32 = 0.025;
+/// Clearance planned for in a manoeuvre, metres; driving it may use some up.
+const PLAN_MARGIN_M: f32 = 0.03;
 /// Speed at and below which the robot creeps, metres a second.
 const CREEP_MPS: f32 = 0.15;
 /// Turn rate wished for a radian of error, 1/s.
@@ -32,17 +34,17 @@ const TURN_FIRST_RAD: f32 = 0.9;
 /// An error smaller than this is none, radians.
 const ALIGNED_RAD: f32 = 0.12;
 
-/// What the drive remembers: the leg of a manoeuvre in progress.
+/// What the drive remembers: the manoeuvre in progress.
 #[derive(Debug, Default)]
 pub struct Drive {
-    leg: Option<Leg>,
+    plan: Plan,
 }
 
 impl Drive {
     /// At rest.
     #[must_use]
     pub const fn new() -> Self {
-        Self { leg: None }
+        Self { plan: Plan::new() }
     }
 
     /// The velocity for the heading that `heading_at` gives for the robot's place (radians to the left), from the velocity
@@ -53,6 +55,7 @@ impl Drive {
         heading_at: impl Fn(Place) -> Option<f32>,
         now: Twist,
         surround: &Surround,
+        scratch: &mut [u32],
     ) -> Twist {
         let admits = |twist: Twist| {
             let creeps = twist.linear_mps.abs() <= CREEP_MPS;
@@ -63,10 +66,14 @@ impl Drive {
                 if creeps { CREEP_MARGIN_M } else { MARGIN_M },
             )
         };
-        if let Some(twist) = self.go_on().filter(|&twist| admits(twist)) {
+        if let Some(twist) = self
+            .plan
+            .next(config.period_s)
+            .filter(|&twist| admits(twist))
+        {
             return twist;
         }
-        self.leg = None;
+        self.plan.clear();
         let Some(error) = heading_at(Place::default()) else {
             return Twist::default();
         };
@@ -81,17 +88,12 @@ impl Drive {
         {
             return twist;
         }
-        self.leg = manoeuvre::find(surround, heading_at, config.period_s, CREEP_MARGIN_M);
-        self.go_on()
+        self.plan =
+            manoeuvre::search(surround, heading_at, PLAN_MARGIN_M, scratch).unwrap_or_default();
+        self.plan
+            .next(config.period_s)
             .filter(|&twist| admits(twist))
             .unwrap_or_default()
-    }
-
-    /// One more period of the leg in progress.
-    fn go_on(&mut self) -> Option<Twist> {
-        let leg = self.leg.as_mut()?;
-        leg.periods = leg.periods.checked_sub(1)?;
-        Some(leg.twist)
     }
 }
 

@@ -66,6 +66,18 @@ pub(crate) fn is_level(laser: &Laser) -> bool {
     laser.pitch_rad.abs() < LEVEL_RAD
 }
 
+/// The range of beam `i` if it says anything: not if it is invalid, nor if it is a dropout, a lone no-return between two
+/// returns.
+pub(crate) fn informative_range_mm(ranges_mm: &[u16], i: usize, limit_mm: u16) -> Option<u16> {
+    let range = *ranges_mm.get(i)?;
+    let returned = |k: Option<usize>| {
+        k.and_then(|k| ranges_mm.get(k))
+            .is_some_and(|&range| range != INVALID_MM && range < limit_mm)
+    };
+    let dropout = range >= limit_mm && returned(i.checked_sub(1)) && returned(Some(i + 1));
+    (range != INVALID_MM && !dropout).then_some(range)
+}
+
 /// The level laser's beams that carry information.
 pub(crate) fn level_beams<'a>(
     pose: &Pose,
@@ -74,17 +86,10 @@ pub(crate) fn level_beams<'a>(
 ) -> impl Iterator<Item = Beam> + 'a {
     let from = sensor_point(pose, laser);
     let first = pose.yaw_rad + laser.first_bearing_rad;
-    ranges_mm.iter().enumerate().filter_map(move |(i, &range)| {
+    (0..ranges_mm.len()).filter_map(move |i| {
         let limit = laser.range_limit_mm;
-        let returned = |r: u16| r != INVALID_MM && r < limit;
-        let neighbour = |k: Option<usize>| k.and_then(|k| ranges_mm.get(k)).copied();
+        let range = informative_range_mm(ranges_mm, i, limit)?;
         let missing = range >= limit;
-        let dropout = missing
-            && neighbour(i.checked_sub(1)).is_some_and(returned)
-            && neighbour(Some(i + 1)).is_some_and(returned);
-        if range == INVALID_MM || dropout {
-            return None;
-        }
         let (sin, cos) = math::sin_cos(first + i as f32 * laser.bearing_step_rad);
         let length_m = if missing {
             f32::from(limit)
