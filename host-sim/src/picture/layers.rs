@@ -72,7 +72,9 @@ pub(super) fn arrows(canvas: &mut Canvas, frame: &Frame, window: &Window) {
             let (column, row) = window_cell(window, y * FIELD_SIDE + x);
             let centre = |cell: i32| (f64::from(cell) + 0.5) * cells;
             let middle = frame.spot(centre(column), centre(row));
-            arrow(canvas, middle, (dx, -dy), length, thickness);
+            if frame.holds(middle) {
+                arrow(canvas, middle, (dx, -dy), length, thickness);
+            }
         }
     }
     let corner = |x: i32, y: i32| frame.spot(f64::from(x) * cells, f64::from(y) * cells);

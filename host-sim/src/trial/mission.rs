@@ -234,7 +234,7 @@ fn assemble(
         debug: report::Debug {
             map_matches_mirror: (!record.tiles.is_empty())
                 .then(|| account.mirror.equals(&record.tiles)),
-            checked_windows: record.checked_windows,
+            checked_windows: record.heading_errors_deg.len() as u64,
         },
     }
 }
