@@ -128,15 +128,38 @@ fn a_region_is_thinned_as_if_it_were_alone_and_nothing_else_is_touched() {
 #[test]
 fn the_widest_plane_wraps_nowhere() {
     let mut rng = Rng::new(5);
-    let mut map = skeleton_common::rooms(&mut rng, 1024, 20);
+    let mut map = skeleton_common::rooms(&mut rng, 992, 20);
     map.rect(0, 0, 3, 20, true);
-    map.rect(1021, 0, 3, 20, true);
+    map.rect(989, 0, 3, 20, true);
     let mut words = map.words();
-    let mut thinning = Thinning::<{ marks_for(32 * 20) }>::new();
+    let mut thinning = Thinning::<{ marks_for(31 * 20) }>::new();
     thinning.start(map.shape(), map.shape().whole()).unwrap();
     let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
     while thinning.advance(&mut plane, &[], 1000) == Progress::Pending {}
     assert_eq!(map.with_words(&words), map.thinned());
+}
+
+#[test]
+fn looks_only_where_something_may_change() {
+    let mut map = Map::new(320, 320, false);
+    map.rect(100, 100, 120, 120, true);
+    let mut words = map.words();
+    let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
+    let mut thinning = Thinning::<100>::new();
+    thinning.start(map.shape(), map.shape().whole()).unwrap();
+    let Progress::Done { left } = thinning.advance(&mut plane, &[], u32::MAX) else {
+        panic!("an endless budget was spent");
+    };
+    let (work, passes) = (u32::MAX - left, u32::from(thinning.passes()));
+    assert_eq!(
+        passes, 121,
+        "one side a pass, and one to see that it is over"
+    );
+    // At most a hall's outline of two rows and 240 words, and 100 groups, a pass; all words in the first two.
+    assert!(
+        work < passes * (2 * 5 + 240 + 100) + 2 * 3200,
+        "{work} units"
+    );
 }
 
 #[test]

@@ -12,11 +12,11 @@
 //! pilot is the link without bytes: the session calls the same functions, so the stream of commands is the same.
 
 use fieldline_planner::field::SIDE;
-use fieldline_planner::planner::{Input, Output};
+use fieldline_planner::planner::{self, CellKind, Input, Output};
 use fieldline_planner::{Config, State, Workspace, step};
 use fieldline_protocol::message::{
-    Command, Control, Cost, FIELD_CELL_BYTES, FIELD_SIDE, Fault, FieldRow, Finish, Frontier,
-    MAX_FRONTIERS, MAX_SCANS, Observation, Refusal, Start, Status, Tile, Twist,
+    Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, Frontier, MAX_FRONTIERS,
+    MAX_SCANS, Observation, Refusal, Start, Status, Tile, Twist,
 };
 use heapless::Vec;
 
@@ -189,22 +189,10 @@ impl Pilot {
         memory: &Memory<'_, TILES, SLOTS>,
         row: u8,
     ) -> Option<FieldRow> {
-        let field = memory.workspace.field_row(row)?;
-        let scale = i32::from(field.scale);
-        let mut cells = [0u8; FIELD_CELL_BYTES];
-        for (x, kind) in field.kinds.into_iter().enumerate() {
-            if let Some(byte) = cells.get_mut(x / 4) {
-                *byte |= (kind as u8) << (x % 4 * 2);
-            }
-        }
-        Some(FieldRow {
-            row,
-            origin_x: (field.origin.x / scale) as i16,
-            origin_y: (field.origin.y / scale) as i16,
-            scale: field.scale,
-            q: field.q.into_iter().collect(),
-            cells: cells.into_iter().collect(),
-        })
+        memory
+            .workspace
+            .field_row(row)
+            .map(|found| field_row(row, &found))
     }
 
     /// The residual frontiers, the first [`MAX_FRONTIERS`] of them.
@@ -217,6 +205,29 @@ impl Pilot {
             .take(MAX_FRONTIERS)
             .map(convert::wire_frontier)
             .collect()
+    }
+}
+
+/// Window cells on the wire count in their own side, and their kinds take two bits each.
+fn field_row(row: u8, found: &planner::FieldRow) -> FieldRow {
+    let scale = i32::from(found.scale.max(1));
+    let short = |cell: i32| cell.div_euclid(scale) as i16;
+    let kind = |kind: &CellKind| match kind {
+        CellKind::Free => 0,
+        CellKind::Obstacle => 1,
+        CellKind::Goal => 2,
+    };
+    let pack = |four: &[CellKind]| {
+        let bits = four.iter().enumerate();
+        bits.fold(0, |byte, (i, cell)| byte | kind(cell) << (2 * i))
+    };
+    FieldRow {
+        row,
+        origin_x: short(found.origin.x),
+        origin_y: short(found.origin.y),
+        scale: found.scale,
+        q: found.q.into_iter().collect(),
+        cells: found.kinds.chunks(4).map(pack).collect(),
     }
 }
 

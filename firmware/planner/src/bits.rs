@@ -5,6 +5,8 @@
 //!
 //! Units: cells.
 
+use core::ops::Range;
+
 use crate::grid::Site;
 
 /// Greatest reach of [`dilate`] in cells, along a row or a column.
@@ -81,42 +83,53 @@ pub fn flood<const N: usize>(
     for (seed, mask) in seeds.iter_mut().zip(mask) {
         *seed &= mask;
     }
+    let eight = adjacency == Adjacency::Eight;
+    // The rows that changed in the last step: only they and those beside them can change in the next.
+    let mut changed = 0..N;
     let mut steps = 0;
-    loop {
-        if let Some(site) = first_common(seeds, targets) {
+    while !changed.is_empty() {
+        if let Some(site) = first_common(seeds, targets, changed.clone()) {
             return Some(Met { site, steps });
         }
-        if !grow(mask, seeds, adjacency) {
-            return None;
-        }
+        let wider = changed.start.saturating_sub(1)..(changed.end + 1).min(N);
+        changed = if eight {
+            grow::<N, true>(mask, seeds, wider)
+        } else {
+            grow::<N, false>(mask, seeds, wider)
+        };
         steps += 1;
     }
+    None
 }
 
-/// One step of a flood; whether anything was added.
-fn grow<const N: usize>(mask: &[u64; N], reached: &mut [u64; N], adjacency: Adjacency) -> bool {
-    let mut added = 0;
-    let mut above = 0;
-    for y in 0..N {
-        let here = row(reached, y);
+/// One step of a flood in some of the rows; the span of those that changed, empty if none did.
+fn grow<const N: usize, const EIGHT: bool>(
+    mask: &[u64; N],
+    reached: &mut [u64; N],
+    rows: Range<usize>,
+) -> Range<usize> {
+    let mut changed = N..0;
+    let mut above = row(reached, rows.start.wrapping_sub(1));
+    let mut here = row(reached, rows.start);
+    for y in rows {
         let below = row(reached, y + 1);
-        let open = row(mask, y) & !here;
-        if open != 0 && above | here | below != 0 {
-            let grown = match adjacency {
-                Adjacency::Four => above | below | here << 1 | here >> 1,
-                Adjacency::Eight => {
-                    let column = above | here | below;
-                    column | column << 1 | column >> 1
-                }
-            } & open;
+        let sides = here << 1 | here >> 1;
+        let near = if EIGHT {
+            let column = above | below;
+            column | column << 1 | column >> 1 | sides
+        } else {
+            above | below | sides
+        };
+        let grown = near & row(mask, y) & !here;
+        if grown != 0 {
             if let Some(out) = reached.get_mut(y) {
-                *out |= grown;
+                *out = here | grown;
             }
-            added |= grown;
+            changed = changed.start.min(y)..y + 1;
         }
-        above = here;
+        (above, here) = (here, below);
     }
-    added != 0
+    changed
 }
 
 #[inline]
@@ -124,12 +137,14 @@ fn row(rows: &[u64], y: usize) -> u64 {
     rows.get(y).copied().unwrap_or(0)
 }
 
-fn first_common(one: &[u64], other: &[u64]) -> Option<Site> {
-    let common = one.iter().zip(other).map(|(a, b)| a & b);
-    let (y, bits) = (0_u16..).zip(common).find(|(_, bits)| *bits != 0)?;
-    Some(Site {
-        x: bits.trailing_zeros() as u16,
-        y,
+/// The first cell, row by row, that both have in some of the rows.
+fn first_common(one: &[u64], other: &[u64], mut rows: Range<usize>) -> Option<Site> {
+    rows.find_map(|y| {
+        let common = row(one, y) & row(other, y);
+        (common != 0).then(|| Site {
+            x: common.trailing_zeros() as u16,
+            y: y as u16,
+        })
     })
 }
 

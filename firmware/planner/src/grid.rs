@@ -14,10 +14,12 @@ use core::fmt;
 mod sites;
 pub use sites::{Site, Sites};
 
-/// Greatest number of words in a row: a row's words then have one bit each in a `u32`.
-pub const MAX_WORDS_PER_ROW: usize = 32;
-/// Greatest number of rows.
-pub const MAX_ROWS: usize = 4096;
+/// Greatest number of words in a row: a row and a word more then have one bit each in a `u32`.
+pub const MAX_WORDS_PER_ROW: usize = 31;
+/// Greatest number of rows: the index of a word then fits in a `u16`.
+pub const MAX_ROWS: usize = 2048;
+
+const _: () = assert!(MAX_WORDS_PER_ROW * MAX_ROWS <= 1 << 16);
 
 /// Rows and words of a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -430,7 +432,7 @@ mod tests {
     #[test]
     fn shapes_that_cannot_be_are_refused() {
         assert_eq!(Shape::new(0, 4), Err(ShapeError::Empty));
-        assert_eq!(Shape::new(33, 4), Err(ShapeError::TooWide(33)));
+        assert_eq!(Shape::new(32, 4), Err(ShapeError::TooWide(32)));
         assert_eq!(Shape::new(1, 5000), Err(ShapeError::TooTall(5000)));
         let shape = Shape::new(2, 3).unwrap();
         let error = Plane::new(shape, &[0; 5]).unwrap_err();

@@ -143,7 +143,8 @@ pub fn map_cells(world: &World) -> impl Iterator<Item = Cell> {
     let [x0, y0] = world.occupancy().origin_m();
     let [width, height] = world.size_m();
     let first = |m: f64| (m / MAP_CELL_M).floor() as i32;
-    let last = |m: f64| (m / MAP_CELL_M).ceil() as i32;
+    // A world that ends with a cell, give or take rounding, does not reach into the next.
+    let last = |m: f64| (m / MAP_CELL_M - 1e-6).ceil() as i32;
     let columns = first(x0)..last(x0 + width);
     (first(y0)..last(y0 + height)).flat_map(move |y| columns.clone().map(move |x| Cell { x, y }))
 }
@@ -213,4 +214,145 @@ fn meets(
         walk.advance();
     }
     false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::{Class, Occupancy, Ray};
+    use std::collections::BTreeSet;
+
+    const RANGE_M: f64 = 12.0;
+
+    /// Map cells seen, of a world whose corner lies at the origin, with a margin of one cell.
+    struct Seen {
+        columns: i32,
+        cells: Vec<bool>,
+    }
+
+    impl Seen {
+        /// What perfect beams see from every fifth cell of reach in both directions.
+        fn from_everywhere(world: &World, start: Start) -> Self {
+            let [columns, rows] = world.size_m().map(|m| (m / MAP_CELL_M) as i32 + 3);
+            let mut seen = Self {
+                columns,
+                cells: vec![false; (columns * rows) as usize],
+            };
+            let reach = CellSet::reach(world, start, 0.3);
+            let grid = world.occupancy();
+            for j in (0..grid.height() as i64).step_by(5) {
+                for i in (0..grid.width() as i64).step_by(5) {
+                    let cell = GridCell { i, j };
+                    if reach.contains(cell) {
+                        seen.look_around(world, grid.centre(cell));
+                    }
+                }
+            }
+            seen
+        }
+
+        fn look_around(&mut self, world: &World, [x, y]: [f64; 2]) {
+            for k in 0..360 {
+                let bearing = f64::from(k).to_radians();
+                let direction = [libm::cos(bearing), libm::sin(bearing), 0.0];
+                let ray = Ray {
+                    origin_m: [x, y, 0.4],
+                    direction,
+                };
+                let end_m = world.cast(&ray, RANGE_M).map_or(RANGE_M, |hit| hit.range_m);
+                let steps = (end_m / 0.03) as u32;
+                let ways = (0..=steps).map(|k| f64::from(k) * 0.03);
+                for at_m in ways.chain([end_m + 1e-6]) {
+                    let map = |k: usize| {
+                        ((ray.origin_m[k] + at_m * direction[k]) / MAP_CELL_M).floor() as i32
+                    };
+                    let index = self.index(Cell {
+                        x: map(0),
+                        y: map(1),
+                    });
+                    self.cells[index] = true;
+                }
+            }
+        }
+
+        fn index(&self, cell: Cell) -> usize {
+            ((cell.y + 1) * self.columns + cell.x + 1) as usize
+        }
+
+        fn contains(&self, cell: Cell) -> bool {
+            self.cells[self.index(cell)]
+        }
+    }
+
+    #[test]
+    fn the_denominator_can_be_reached_and_not_exceeded() {
+        for name in ["cave", "narrow-doors", "unreachable-room", "boxed-in"] {
+            let world = World::builtin(name).expect("built in");
+            let start = world.starts()[0];
+            let seen = Seen::from_everywhere(&world, start);
+            let mut coverage = Coverage::new(&world, start, 0.3, RANGE_M);
+            let fraction = coverage.update(1.0, |cell| seen.contains(cell));
+            assert!(fraction > 0.995, "{name}: {fraction}");
+            // What is seen and free is in the denominator, but for cells whose centre hides behind an edge.
+            let cells: BTreeSet<_> = coverage.cells().iter().map(|c| (c.x, c.y)).collect();
+            let beyond = map_cells(&world)
+                .filter(|cell| seen.contains(*cell) && truth(&world, *cell) == Truth::Free)
+                .filter(|cell| !cells.contains(&(cell.x, cell.y)))
+                .count();
+            assert!(beyond * 100 <= cells.len(), "{name}: {beyond} cells beyond");
+        }
+    }
+
+    #[test]
+    fn a_room_seen_through_a_gap_counts_as_far_as_it_is_seen() {
+        let world = World::builtin("unreachable-room").expect("built in");
+        let coverage = Coverage::new(&world, world.starts()[0], 0.3, RANGE_M);
+        let counts = |x0: i32, x1: i32| {
+            let inside = |c: &&Cell| (x0..x1).contains(&c.x) && (54..102).contains(&c.y);
+            coverage.cells().iter().filter(inside).count()
+        };
+        // 42 × 48 cells each: nothing of the sealed room, most of the one behind the gap, all of the open one.
+        assert_eq!(counts(2, 44), 0);
+        assert!((1500..2016).contains(&counts(46, 88)), "{}", counts(46, 88));
+        assert_eq!(counts(90, 132), 2016);
+    }
+
+    #[test]
+    fn milestones_are_kept_and_a_recount_forgets() {
+        let row = ".".repeat(20);
+        let world = World::picture("room", 0.1, &[row.as_str(); 20]);
+        let start = Start {
+            x_m: 1.0,
+            y_m: 1.0,
+            yaw_rad: 0.0,
+        };
+        let mut coverage = Coverage::new(&world, start, 0.3, RANGE_M);
+        assert!((coverage.reachable_m2() - 4.0).abs() < 1e-9);
+        assert_eq!(coverage.update(1.0, |cell| cell.y < 10), 0.5);
+        assert_eq!((coverage.t90_s(), coverage.t99_s()), (None, None));
+        assert_eq!(coverage.update(2.0, |cell| cell.y < 18), 0.9);
+        assert_eq!(coverage.update(3.0, |_| true), 1.0);
+        assert_eq!((coverage.t90_s(), coverage.t99_s()), (Some(2.0), Some(3.0)));
+        assert!(coverage.missing().is_empty());
+        assert_eq!(coverage.recount(4.0, |cell| cell.x < 10), 0.5);
+        assert!((coverage.known_m2() - 2.0).abs() < 1e-9);
+        assert_eq!(coverage.missing().len(), 200);
+    }
+
+    #[test]
+    fn truth_of_cells_that_do_not_match_the_worlds_grid() {
+        let mut grid = Occupancy::filled(4, 1, 0.075, [0.0, 0.0], Class::Free);
+        grid.set(GridCell { i: 3, j: 0 }, Class::Wall);
+        let world = World::flat("strip", grid, Vec::new());
+        // Columns end at 0.075, 0.15, 0.225 (wall from there) and 0.3; above 0.075 everything is outside.
+        let truths = [0, 1, 2, 3].map(|x| truth(&world, Cell { x, y: 0 }));
+        assert_eq!(
+            truths,
+            [Truth::Edge, Truth::Edge, Truth::Edge, Truth::Solid]
+        );
+        let row = World::picture("row", 0.05, &["....##", "....##"]);
+        let truths = [0, 1, 2].map(|x| truth(&row, Cell { x, y: 0 }));
+        assert_eq!(truths, [Truth::Free, Truth::Free, Truth::Solid]);
+        assert_eq!(map_cells(&row).count(), 3);
+    }
 }

@@ -97,3 +97,61 @@ impl CellSet {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::{Class, Occupancy};
+
+    /// Two rooms of 2 × 2 m, with a gap of `gap` cells of 5 cm between them.
+    fn two_rooms(gap: i64) -> World {
+        let mut grid = Occupancy::filled(84, 40, 0.05, [0.0, 0.0], Class::Free);
+        for j in (0..40).filter(|j| !(20..20 + gap).contains(j)) {
+            for i in 40..44 {
+                grid.set(GridCell { i, j }, Class::Wall);
+            }
+        }
+        World::flat("two rooms", grid, Vec::new())
+    }
+
+    fn at(x_m: f64, y_m: f64) -> Start {
+        Start {
+            x_m,
+            y_m,
+            yaw_rad: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_disc_passes_a_gap_as_wide_as_itself_and_no_narrower() {
+        let other_room = GridCell { i: 70, j: 20 };
+        for (gap, radius_m, passes) in [(13, 0.3, true), (13, 0.325, true), (12, 0.3, false)] {
+            let reach = CellSet::reach(&two_rooms(gap), at(1.0, 1.0), radius_m);
+            assert_eq!(
+                reach.contains(other_room),
+                passes,
+                "{gap} cells, {radius_m} m"
+            );
+            assert!(!reach.contains(GridCell { i: 2, j: 2 }));
+        }
+        // Centres from 0.325 m to 1.675 m: 28 × 28 cells.
+        assert_eq!(
+            CellSet::reach(&two_rooms(0), at(1.0, 1.0), 0.3).count(),
+            28 * 28
+        );
+        assert_eq!(CellSet::free(&two_rooms(0), at(1.0, 1.0)).count(), 40 * 40);
+        assert_eq!(
+            CellSet::free(&two_rooms(1), at(1.0, 1.0)).count(),
+            2 * 40 * 40 + 4
+        );
+    }
+
+    #[test]
+    fn a_start_a_little_too_close_to_a_wall_still_counts() {
+        let reach = CellSet::reach(&two_rooms(0), at(0.26, 1.0), 0.3);
+        assert!(reach.count() > 28 * 28 && reach.contains(GridCell { i: 20, j: 20 }));
+        // Too close by more: the start's own neighbourhood and no more.
+        let stuck = CellSet::reach(&two_rooms(0), at(0.15, 1.0), 0.3);
+        assert!(stuck.count() < 20, "{}", stuck.count());
+    }
+}

@@ -1,5 +1,7 @@
 //! What went wrong, judged by the true footprint on the true world.
 
+use crate::robot::FARTHEST_M;
+
 /// Counts of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Safety {
@@ -9,7 +11,8 @@ pub struct Safety {
     pub falls: u32,
     /// Times the robot tipped over.
     pub tips: u32,
-    /// Least distance between the footprint's outline and anything solid, metres; 0 after a collision.
+    /// Least distance between the footprint's outline and anything solid, metres: 0 after a collision, and at
+    /// most [`FARTHEST_M`].
     pub min_clearance_m: f64,
 }
 
@@ -19,7 +22,7 @@ impl Default for Safety {
             collisions: 0,
             falls: 0,
             tips: 0,
-            min_clearance_m: f64::INFINITY,
+            min_clearance_m: FARTHEST_M,
         }
     }
 }

@@ -6,6 +6,9 @@
 
 use crate::world::{GridCell, World};
 
+/// Clearance is not measured beyond this, metres.
+pub const FARTHEST_M: f64 = 1.0;
+
 /// A rectangle around the robot's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
@@ -48,16 +51,13 @@ impl Footprint {
         solid_cells(world, x_m, y_m, self.circumradius_m()).any(|square| placed.overlaps(square))
     }
 
-    /// Metres between the footprint's outline and the nearest solid cell; 0 where they overlap.
+    /// Metres between the footprint's outline and the nearest solid cell: 0 where they overlap, and at most
+    /// [`FARTHEST_M`].
     #[must_use]
     pub fn clearance_m(&self, world: &World, x_m: f64, y_m: f64, yaw_rad: f64) -> f64 {
         let placed = self.place(x_m, y_m, yaw_rad);
-        let grid = world.occupancy();
-        // The nearest solid cell of the centre's cell cannot be farther from the outline than this.
-        let centre = world.distance().from_centre_m(grid.cell_at(x_m, y_m));
-        let reach_m = centre + grid.resolution_m() + self.circumradius_m();
-        let mut nearest_m = f64::INFINITY;
-        for square in solid_cells(world, x_m, y_m, reach_m) {
+        let mut nearest_m = FARTHEST_M;
+        for square in solid_cells(world, x_m, y_m, FARTHEST_M + self.circumradius_m()) {
             if placed.overlaps(square) {
                 return 0.0;
             }
@@ -163,4 +163,96 @@ fn solid_cells(world: &World, x_m: f64, y_m: f64, reach_m: f64) -> impl Iterator
             let half = 0.5 * grid.resolution_m();
             [x - half, y - half, x + half, y + half]
         })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::{Class, Occupancy};
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    const ROBOT: Footprint = Footprint::PIONEER_3AT;
+
+    fn random_world(rng: &mut ChaCha8Rng) -> World {
+        let mut grid = Occupancy::filled(60, 50, 0.06, [-1.0, 0.5], Class::Free);
+        for _ in 0..8 {
+            let cell = GridCell {
+                i: i64::from(rng.next_u32() % 60),
+                j: i64::from(rng.next_u32() % 50),
+            };
+            grid.set(cell, Class::Wall);
+        }
+        World::flat("random", grid, Vec::new())
+    }
+
+    /// Least distance between points spread over both outlines and insides, 0.02 m apart.
+    fn sampled_m(world: &World, pose: [f64; 3]) -> f64 {
+        let placed = ROBOT.place(pose[0], pose[1], pose[2]);
+        let mut nearest = FARTHEST_M;
+        for square in solid_cells(world, pose[0], pose[1], FARTHEST_M + 0.4) {
+            for a in -13..=13 {
+                for b in -13..=13 {
+                    let (x, y) = (
+                        f64::from(a) / 13.0 * placed.half[0],
+                        f64::from(b) / 13.0 * placed.half[1],
+                    );
+                    let point = [
+                        pose[0] + x * placed.cos - y * placed.sin,
+                        pose[1] + x * placed.sin + y * placed.cos,
+                    ];
+                    nearest = nearest.min(point_to_box(point, square));
+                }
+            }
+        }
+        nearest
+    }
+
+    #[test]
+    fn clearance_is_what_sampling_finds() {
+        let mut rng = ChaCha8Rng::seed_from_u64(31);
+        let (mut touching, mut near, mut far) = (0, 0, 0);
+        for _ in 0..15 {
+            let world = random_world(&mut rng);
+            for _ in 0..16 {
+                let mut uniform = |low: f64, high: f64| {
+                    low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX)
+                };
+                let pose = [uniform(-1.0, 2.6), uniform(0.5, 3.5), uniform(-4.0, 4.0)];
+                let exact = ROBOT.clearance_m(&world, pose[0], pose[1], pose[2]);
+                let sampled = sampled_m(&world, pose);
+                // Samples are at most 14 mm from any point of the rectangle.
+                assert!(exact <= sampled + 1e-12, "{pose:?}: {exact} > {sampled}");
+                assert!(sampled <= exact + 0.0138, "{pose:?}: {exact}, {sampled}");
+                assert_eq!(
+                    ROBOT.overlaps(&world, pose[0], pose[1], pose[2]),
+                    exact == 0.0
+                );
+                assert!(ROBOT.clearance_bound_m(&world, pose[0], pose[1]) <= exact.max(0.0));
+                touching += u32::from(exact == 0.0);
+                near += u32::from(exact > 0.0 && exact < 0.2);
+                far += u32::from(exact >= 0.2);
+            }
+        }
+        assert!(
+            touching > 30 && near > 30 && far > 5,
+            "{touching} {near} {far}"
+        );
+    }
+
+    #[test]
+    fn a_door_just_wider_than_the_robot_lets_it_pass_straight_only() {
+        // A gap of 0.6 m at y in [0.7, 1.3].
+        let mut grid = Occupancy::filled(60, 40, 0.05, [0.0, 0.0], Class::Free);
+        for j in (0..14).chain(26..40) {
+            for i in 28..32 {
+                grid.set(GridCell { i, j }, Class::Wall);
+            }
+        }
+        let world = World::flat("door", grid, Vec::new());
+        let clearance = ROBOT.clearance_m(&world, 1.5, 1.0, 0.0);
+        assert!((clearance - (0.3 - 0.2485)).abs() < 1e-9, "{clearance}");
+        assert!(ROBOT.overlaps(&world, 1.5, 1.0, 0.6));
+        assert!(!ROBOT.overlaps(&world, 1.5, 1.0, 0.1));
+    }
 }

@@ -8,7 +8,7 @@ mod odometry;
 mod pose;
 
 pub use drive::{Drive, DriveLimits};
-pub use footprint::Footprint;
+pub use footprint::{FARTHEST_M, Footprint};
 pub use laser::{LaserNoise, LaserScanner};
 pub use noise::{Noise, Source};
 pub use odometry::{Odometry, OdometryModel, OdometryNoise};

@@ -128,3 +128,72 @@ impl Odometry {
         self.pose.pitch_rad = truth.pitch_rad + noise.attitude_rad * self.inertial.normal();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The error of the believed pose after `periods` steps that each go `forward_m` and turn `turn_rad`.
+    fn errors(noise: OdometryNoise, periods: u32, forward_m: f64, turn_rad: f64) -> Vec<[f64; 2]> {
+        (0..400)
+            .map(|seed| {
+                let mut truth = Pose::default();
+                let mut odometry = Odometry::new(OdometryModel::Noisy(noise), truth, seed);
+                for _ in 0..periods {
+                    truth = truth.moved(forward_m, turn_rad);
+                    odometry.advance(&truth, forward_m, turn_rad, Velocity::default());
+                }
+                let believed = odometry.pose();
+                let yaw = super::super::pose::wrap(believed.yaw_rad - truth.yaw_rad);
+                [believed.x_m - truth.x_m, yaw]
+            })
+            .collect()
+    }
+
+    fn deviation(errors: &[[f64; 2]], which: usize) -> f64 {
+        (errors.iter().map(|e| e[which] * e[which]).sum::<f64>() / errors.len() as f64).sqrt()
+    }
+
+    #[test]
+    fn truth_is_exact() {
+        let mut odometry = Odometry::new(OdometryModel::Truth, Pose::default(), 1);
+        let truth = Pose::default().moved(1.3, 0.4);
+        odometry.advance(&truth, 1.3, 0.4, Velocity::default());
+        assert_eq!(*odometry.pose(), truth);
+    }
+
+    #[test]
+    fn spread_is_the_stated_one_however_the_way_is_cut() {
+        let walk = OdometryNoise {
+            distance_scale: 0.0,
+            turn_scale: 0.0,
+            ..OdometryNoise::default()
+        };
+        // 10 m straight: 2° of heading and 5 cm of distance; 15 % is four standard errors of 400 runs.
+        for (periods, forward_m) in [(100, 0.1), (20, 0.5)] {
+            let errors = errors(walk, periods, forward_m, 0.0);
+            let heading = deviation(&errors, 1).to_degrees();
+            assert!((heading - 1.98).abs() < 0.3, "{heading}");
+            assert!((deviation(&errors, 0) - 0.05).abs() < 0.0075);
+        }
+        // One full turn on the spot: 3°.
+        let heading = deviation(&errors(walk, 50, 0.0, core::f64::consts::TAU / 50.0), 1);
+        assert!((heading.to_degrees() - 3.01).abs() < 0.45, "{heading}");
+    }
+
+    #[test]
+    fn scale_errors_last_for_the_whole_run() {
+        let scale = OdometryNoise {
+            turn_by_turn: 0.0,
+            turn_by_distance: 0.0,
+            distance_by_distance: 0.0,
+            distance_by_turn: 0.0,
+            ..OdometryNoise::default()
+        };
+        let (short, long) = (errors(scale, 10, 0.1, 0.0), errors(scale, 100, 0.1, 0.0));
+        for (short, long) in short.iter().zip(&long) {
+            assert!((10.0 * short[0] - long[0]).abs() < 1e-9);
+        }
+        assert!((deviation(&long, 0) - 0.1).abs() < 0.015);
+    }
+}

@@ -121,3 +121,66 @@ impl From<message::Twist> for Velocity {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::{FRAC_PI_2, PI};
+
+    #[test]
+    fn an_arc_is_the_sum_of_many_small_ones() {
+        let start = Pose {
+            x_m: 1.0,
+            yaw_rad: 2.0,
+            ..Pose::default()
+        };
+        let velocity = Velocity {
+            linear_mps: 0.5,
+            angular_radps: -1.1,
+        };
+        let whole = start.driven(velocity, 3.0);
+        let mut parts = start;
+        for _ in 0..300 {
+            parts = parts.driven(velocity, 0.01);
+        }
+        assert!(whole.distance_m(&parts) < 1e-12);
+        assert!((whole.yaw_rad - parts.yaw_rad).abs() < 1e-12);
+        // A quarter turn to the left on a circle of 1 m around (0, 1).
+        let quarter = Pose::default().moved(FRAC_PI_2, FRAC_PI_2);
+        assert!((quarter.x_m - 1.0).abs() < 1e-12 && (quarter.y_m - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn angles_wrap_into_one_turn() {
+        for (angle, wrapped) in [(0.5, 0.5), (PI, -PI), (-PI, -PI), (7.0, 7.0 - 2.0 * PI)] {
+            assert!((wrap(angle) - wrapped).abs() < 1e-12, "{angle}");
+        }
+        assert!((-PI..=PI).contains(&wrap(-PI - 1e-17)));
+    }
+
+    #[test]
+    fn axes_follow_the_signs_of_the_wire() {
+        let pose = |roll_rad, pitch_rad, yaw_rad| Pose {
+            roll_rad,
+            pitch_rad,
+            yaw_rad,
+            ..Pose::default()
+        };
+        // Nose down: forward points below the horizon. Yaw left: forward points to +y.
+        let [forward, ..] = pose(0.0, 0.3, 0.0).axes();
+        assert!(forward[2] < 0.0 && forward[0] > 0.0);
+        let [forward, left, up] = pose(0.0, 0.0, FRAC_PI_2).axes();
+        assert!((forward[1] - 1.0).abs() < 1e-12 && (left[0] + 1.0).abs() < 1e-12);
+        assert!((up[2] - 1.0).abs() < 1e-12);
+        // Rolling about the forward axis lifts the left side.
+        assert!(pose(0.3, 0.0, 0.0).axes()[1][2] > 0.0);
+        // Always orthonormal and right-handed: forward × left = up.
+        let [f, l, u] = pose(0.3, -0.8, 2.1).axes();
+        let cross = [
+            f[1] * l[2] - f[2] * l[1],
+            f[2] * l[0] - f[0] * l[2],
+            f[0] * l[1] - f[1] * l[0],
+        ];
+        assert!((0..3).all(|k| (cross[k] - u[k]).abs() < 1e-12));
+    }
+}

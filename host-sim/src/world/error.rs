@@ -14,19 +14,19 @@ pub enum WorldError {
         /// What the system said.
         reason: String,
     },
-    /// Not YAML, or a key that is unknown, missing, doubled or of the wrong type.
+    /// Not YAML, or not one document of it.
     Syntax {
         /// The world file.
         file: String,
         /// Line, column and what was found.
         reason: String,
     },
-    /// A key with an impossible value.
+    /// A key that is unknown or missing, or whose value is impossible.
     Value {
         /// The world file.
         file: String,
-        /// The key.
-        key: &'static str,
+        /// The key, with the tables it lies in; empty for the whole document.
+        key: String,
         /// What is wrong and what would be right.
         reason: String,
     },
@@ -58,7 +58,10 @@ impl fmt::Display for WorldError {
                 "{file}: cannot read this world ({reason}); give a world file or a built-in world: {}",
                 builtin::names().join(", ")
             ),
-            Self::Syntax { file, reason } => write!(f, "{file}: {reason}"),
+            Self::Syntax { file, reason } => {
+                write!(f, "{file}: {reason}; correct the YAML there")
+            }
+            Self::Value { file, key, reason } if key.is_empty() => write!(f, "{file}: {reason}"),
             Self::Value { file, key, reason } => write!(f, "{file}: {key}: {reason}"),
             Self::Image {
                 file,

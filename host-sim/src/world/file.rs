@@ -15,86 +15,44 @@
 //!
 //! Any other key is an error: a key misspelt would otherwise be a setting ignored.
 
-use serde::Deserialize;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::elevation::{Elevation, HeightScale};
 use super::image::Image;
 use super::occupancy::{Class, GridCell, Occupancy, Thresholds};
+use super::yaml::{self, BadKey, Node, Table};
 use super::{Start, WALL_HEIGHT_M, World, WorldError};
 use crate::robot::Footprint;
 
-/// The file as written.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Description {
-    image: Option<String>,
-    resolution: f64,
-    origin: Vec<f64>,
-    #[serde(default)]
-    negate: Flag,
-    #[serde(default = "default_occupied")]
-    occupied_thresh: f64,
-    #[serde(default = "default_free")]
-    free_thresh: f64,
-    mode: Option<String>,
-    #[serde(default = "default_wall_height")]
-    wall_height: f64,
-    elevation: Option<HeightDescription>,
-    robots: Option<Vec<Vec<f64>>>,
-}
-
-/// The `elevation` key as written.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct HeightDescription {
-    image: String,
-    z_min: f64,
-    z_max: f64,
-    no_data: Option<u32>,
-    resolution: Option<f64>,
-    origin: Option<Vec<f64>>,
-}
-
-/// `negate` is 0 or 1 in most files, and a word in some.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(untagged)]
-enum Flag {
-    Word(bool),
-    Number(i64),
-}
-
-impl Default for Flag {
-    fn default() -> Self {
-        Self::Number(0)
-    }
-}
-
-fn default_occupied() -> f64 {
-    0.65
-}
-
-fn default_free() -> f64 {
-    0.196
-}
-
-fn default_wall_height() -> f64 {
-    WALL_HEIGHT_M
-}
+/// Keys of a world file.
+const KEYS: [&str; 10] = [
+    "image",
+    "resolution",
+    "origin",
+    "negate",
+    "occupied_thresh",
+    "free_thresh",
+    "mode",
+    "wall_height",
+    "elevation",
+    "robots",
+];
+/// Keys of its `elevation`.
+const ELEVATION_KEYS: [&str; 6] = ["image", "z_min", "z_max", "no_data", "resolution", "origin"];
 
 /// Reads, checks and builds.
 pub(super) fn load(path: &Path) -> Result<World, WorldError> {
+    let file = path.display().to_string();
     let text = fs::read_to_string(path).map_err(|e| WorldError::Unreadable {
-        file: path.display().to_string(),
+        file: file.clone(),
         reason: e.to_string(),
     })?;
-    let loader = Loader {
-        path,
-        file: path.display().to_string(),
-    };
-    let description = loader.parse(&text)?;
-    loader.build(&description)
+    let document = yaml::parse(&text).map_err(|reason| WorldError::Syntax {
+        file: file.clone(),
+        reason,
+    })?;
+    Loader { path, file }.build(&document)
 }
 
 /// The file being read, for paths and messages.
@@ -104,29 +62,17 @@ struct Loader<'a> {
 }
 
 impl Loader<'_> {
-    fn parse(&self, text: &str) -> Result<Description, WorldError> {
-        serde_saphyr::from_str(text).map_err(|e| WorldError::Syntax {
-            file: self.file.clone(),
-            reason: e.without_snippet().to_string().replace('\n', " "),
-        })
-    }
-
-    fn build(&self, file: &Description) -> Result<World, WorldError> {
-        self.check(file)?;
-        let origin_m = self.origin("origin", &file.origin)?;
-        let elevation = match &file.elevation {
-            Some(heights) => Some(self.elevation(heights, file.resolution, origin_m)?),
+    fn build(&self, document: &Node) -> Result<World, WorldError> {
+        let keys = Table::new("", document, &KEYS).map_err(|bad| self.value(bad))?;
+        let plan = Plan::read(&keys).map_err(|bad| self.value(bad))?;
+        let elevation = match &plan.heights {
+            Some(heights) => Some(self.elevation(heights)?),
             None => None,
         };
-        let occupancy = match (&file.image, &elevation) {
+        let occupancy = match (plan.image, &elevation) {
             (Some(image), _) => {
                 let image = self.image(image)?;
-                let thresholds = Thresholds {
-                    occupied: file.occupied_thresh,
-                    free: file.free_thresh,
-                    negate: self.negate(file.negate)?,
-                };
-                Occupancy::from_image(&image, thresholds, file.resolution, origin_m)
+                Occupancy::from_image(&image, plan.thresholds, plan.resolution_m, plan.origin_m)
             }
             (None, Some(ground)) => Occupancy::filled(
                 ground.width(),
@@ -136,167 +82,212 @@ impl Loader<'_> {
                 Class::Free,
             ),
             (None, None) => {
-                return Err(self.value("image", "missing; give an image, an elevation, or both"));
+                let reason = "missing; give an image, an elevation, or both";
+                return Err(self.value(keys.bad("image", reason)));
             }
         };
         let name = self.path.file_stem().unwrap_or_default().to_string_lossy();
-        let mut world = World::new(&name, occupancy, elevation, file.wall_height, Vec::new());
-        world.starts = self.starts(&world, file.robots.as_deref())?;
+        let mut world = World::new(&name, occupancy, elevation, plan.wall_height_m, Vec::new());
+        world.starts = match plan.starts {
+            Some(starts) => starts,
+            None => vec![default_start(&world)],
+        };
+        for (index, start) in world.starts.iter().enumerate() {
+            world.check_start(&self.file, index, *start)?;
+        }
         Ok(world)
     }
 
-    fn check(&self, file: &Description) -> Result<(), WorldError> {
-        self.length("resolution", file.resolution)?;
-        self.length("wall_height", file.wall_height)?;
-        let (free, occupied) = (file.free_thresh, file.occupied_thresh);
-        if !(0.0 < free && free < 1.0) {
-            return Err(self.value("free_thresh", &format!("{free} is not between 0 and 1")));
-        }
-        if !(free < occupied && occupied < 1.0) {
-            return Err(self.value(
-                "occupied_thresh",
-                &format!("{occupied} is not between free_thresh ({free}) and 1"),
-            ));
-        }
-        match file.mode.as_deref() {
-            None | Some("trinary" | "scale") => Ok(()),
-            Some(mode) => Err(self.value("mode", &format!("{mode} is not supported; use trinary"))),
-        }
-    }
-
-    fn negate(&self, flag: Flag) -> Result<bool, WorldError> {
-        match flag {
-            Flag::Word(word) => Ok(word),
-            Flag::Number(0) => Ok(false),
-            Flag::Number(1) => Ok(true),
-            Flag::Number(other) => Err(self.value("negate", &format!("{other} is not 0 or 1"))),
-        }
-    }
-
-    fn length(&self, key: &'static str, metres: f64) -> Result<(), WorldError> {
-        if metres.is_finite() && metres > 0.0 {
-            return Ok(());
-        }
-        Err(self.value(key, &format!("{metres} is not a length above 0 m")))
-    }
-
-    fn origin(&self, key: &'static str, numbers: &[f64]) -> Result<[f64; 2], WorldError> {
-        let (x, y, yaw) = match *numbers {
-            [x, y] => (x, y, 0.0),
-            [x, y, yaw] => (x, y, yaw),
-            _ => return Err(self.value(key, "it must be [x, y, yaw]")),
-        };
-        if !(x.is_finite() && y.is_finite()) {
-            return Err(self.value(key, "it must be [x, y, yaw] in finite metres"));
-        }
-        if yaw != 0.0 {
-            return Err(self.value(
-                key,
-                &format!("a yaw of {yaw} is not supported; rotate the image and set it to 0"),
-            ));
-        }
-        Ok([x, y])
-    }
-
-    fn elevation(
-        &self,
-        heights: &HeightDescription,
-        resolution_m: f64,
-        origin_m: [f64; 2],
-    ) -> Result<Elevation, WorldError> {
-        let key = "elevation";
-        let (z_min_m, z_max_m) = (heights.z_min, heights.z_max);
-        if !(z_min_m.is_finite() && z_max_m.is_finite() && z_min_m < z_max_m) {
-            return Err(self.value(
-                key,
-                &format!("z_min {z_min_m} must be below z_max {z_max_m}, both finite"),
-            ));
-        }
-        let resolution_m = heights.resolution.unwrap_or(resolution_m);
-        self.length(key, resolution_m)?;
-        let origin_m = match &heights.origin {
-            Some(origin) => self.origin(key, origin)?,
-            None => origin_m,
-        };
-        let image = self.image(&heights.image)?;
+    fn elevation(&self, heights: &Heights<'_>) -> Result<Elevation, WorldError> {
+        let image = self.image(heights.image)?;
         if image.channels != 1 {
-            return Err(self.image_error(
-                &heights.image,
-                "heights must be grey, and this image has colours; convert it",
-            ));
+            let reason = "heights must be grey, and this image has colours; convert it";
+            return Err(self.image_error(heights.image, reason));
         }
-        let scale = HeightScale {
-            z_min_m,
-            z_max_m,
-            no_data: heights.no_data,
-        };
-        Ok(Elevation::from_image(&image, scale, resolution_m, origin_m))
-    }
-
-    fn starts(&self, world: &World, robots: Option<&[Vec<f64>]>) -> Result<Vec<Start>, WorldError> {
-        let Some(robots) = robots else {
-            return self.default_start(world).map(|start| vec![start]);
-        };
-        if robots.is_empty() {
-            return Err(self.value(
-                "robots",
-                "empty; give at least one [x, y, yaw], or leave it out",
-            ));
-        }
-        let mut starts = Vec::with_capacity(robots.len());
-        for (index, numbers) in robots.iter().enumerate() {
-            let start = match **numbers {
-                [x_m, y_m] => Start {
-                    x_m,
-                    y_m,
-                    yaw_rad: 0.0,
-                },
-                [x_m, y_m, yaw_rad] => Start { x_m, y_m, yaw_rad },
-                _ => return Err(self.value("robots", "each must be [x, y, yaw]")),
-            };
-            if ![start.x_m, start.y_m, start.yaw_rad]
-                .iter()
-                .all(|n| n.is_finite())
-            {
-                return Err(self.value("robots", "each must be [x, y, yaw], all finite"));
-            }
-            world.check_start(&self.file, index, start)?;
-            starts.push(start);
-        }
-        Ok(starts)
-    }
-
-    /// The origin of the frame if the robot fits there, else the cell with most room around it.
-    fn default_start(&self, world: &World) -> Result<Start, WorldError> {
-        let origin = Start::default();
-        if world.clearance_m(&Footprint::PIONEER_3AT, origin) > 0.0 {
-            return Ok(origin);
-        }
-        let widest = world.widest_place();
-        world.check_start(&self.file, 0, widest)?;
-        Ok(widest)
+        Ok(Elevation::from_image(
+            &image,
+            heights.scale,
+            heights.resolution_m,
+            heights.origin_m,
+        ))
     }
 
     fn image(&self, name: &str) -> Result<Image, WorldError> {
-        let folder = self.path.parent().unwrap_or(Path::new(""));
-        Image::load(&folder.join(name)).map_err(|e| self.image_error(name, &e.to_string()))
+        Image::load(&self.beside(name)).map_err(|e| self.image_error(name, &e.to_string()))
     }
 
     fn image_error(&self, name: &str, reason: &str) -> WorldError {
-        let folder = self.path.parent().unwrap_or(Path::new(""));
         WorldError::Image {
             file: self.file.clone(),
-            image: folder.join(name).display().to_string(),
+            image: self.beside(name).display().to_string(),
             reason: reason.to_owned(),
         }
     }
 
-    fn value(&self, key: &'static str, reason: &str) -> WorldError {
+    /// A path relative to the file.
+    fn beside(&self, name: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(name)
+    }
+
+    fn value(&self, BadKey { key, reason }: BadKey) -> WorldError {
         WorldError::Value {
             file: self.file.clone(),
             key,
-            reason: reason.to_owned(),
+            reason,
         }
+    }
+}
+
+/// What the file says, checked but for the images.
+struct Plan<'a> {
+    image: Option<&'a str>,
+    resolution_m: f64,
+    origin_m: [f64; 2],
+    thresholds: Thresholds,
+    wall_height_m: f64,
+    heights: Option<Heights<'a>>,
+    starts: Option<Vec<Start>>,
+}
+
+/// What the file says of the ground.
+struct Heights<'a> {
+    image: &'a str,
+    scale: HeightScale,
+    resolution_m: f64,
+    origin_m: [f64; 2],
+}
+
+impl<'a> Plan<'a> {
+    fn read(keys: &Table<'a>) -> Result<Self, BadKey> {
+        let resolution_m = keys.required("resolution", length(keys, "resolution")?, "0.05")?;
+        let origin_m = keys.required("origin", origin(keys)?, "[0, 0, 0]")?;
+        match keys.text("mode")? {
+            None | Some("trinary" | "scale") => {}
+            Some(mode) => {
+                return Err(keys.bad("mode", &format!("{mode} is not supported; use trinary")));
+            }
+        }
+        Ok(Self {
+            image: keys.text("image")?,
+            resolution_m,
+            origin_m,
+            thresholds: thresholds(keys)?,
+            wall_height_m: length(keys, "wall_height")?.unwrap_or(WALL_HEIGHT_M),
+            heights: match keys.node("elevation") {
+                Some(node) => Some(Heights::read(node, resolution_m, origin_m)?),
+                None => None,
+            },
+            starts: starts(keys)?,
+        })
+    }
+}
+
+impl<'a> Heights<'a> {
+    fn read(node: &'a Node, resolution_m: f64, origin_m: [f64; 2]) -> Result<Self, BadKey> {
+        let keys = Table::new("elevation", node, &ELEVATION_KEYS)?;
+        let z_min_m = keys.required("z_min", keys.number("z_min")?, "-2.0")?;
+        let z_max_m = keys.required("z_max", keys.number("z_max")?, "3.0")?;
+        if !(z_min_m.is_finite() && z_max_m.is_finite() && z_min_m < z_max_m) {
+            let reason = format!("{z_max_m} is not above z_min ({z_min_m})");
+            return Err(keys.bad("z_max", &reason));
+        }
+        let no_data = match keys.number("no_data")? {
+            None => None,
+            Some(value) if (0.0..=65_535.0).contains(&value) && value.fract() == 0.0 => {
+                Some(value as u32)
+            }
+            Some(value) => {
+                let reason = format!("{value} is not a grey value from 0 to 65535");
+                return Err(keys.bad("no_data", &reason));
+            }
+        };
+        Ok(Self {
+            image: keys.required("image", keys.text("image")?, "heights.png")?,
+            scale: HeightScale {
+                z_min_m,
+                z_max_m,
+                no_data,
+            },
+            resolution_m: length(&keys, "resolution")?.unwrap_or(resolution_m),
+            origin_m: origin(&keys)?.unwrap_or(origin_m),
+        })
+    }
+}
+
+fn length(keys: &Table<'_>, key: &str) -> Result<Option<f64>, BadKey> {
+    match keys.number(key)? {
+        Some(metres) if !(metres.is_finite() && metres > 0.0) => {
+            Err(keys.bad(key, &format!("{metres} is not a length above 0 m")))
+        }
+        other => Ok(other),
+    }
+}
+
+fn origin(keys: &Table<'_>) -> Result<Option<[f64; 2]>, BadKey> {
+    let Some(node) = keys.node("origin") else {
+        return Ok(None);
+    };
+    let Some(numbers) = node.numbers(2..=3) else {
+        return Err(keys.bad("origin", &format!("{node} is not [x, y, yaw]")));
+    };
+    match numbers.get(2) {
+        Some(yaw) if *yaw != 0.0 => {
+            let reason =
+                format!("a yaw of {yaw} is not supported; rotate the image and set it to 0");
+            Err(keys.bad("origin", &reason))
+        }
+        _ => Ok(Some([numbers[0], numbers[1]])),
+    }
+}
+
+fn thresholds(keys: &Table<'_>) -> Result<Thresholds, BadKey> {
+    let free = keys.number("free_thresh")?.unwrap_or(0.196);
+    let occupied = keys.number("occupied_thresh")?.unwrap_or(0.65);
+    if !(0.0 < free && free < 1.0) {
+        return Err(keys.bad("free_thresh", &format!("{free} is not between 0 and 1")));
+    }
+    if !(free < occupied && occupied < 1.0) {
+        let reason = format!("{occupied} is not between free_thresh ({free}) and 1");
+        return Err(keys.bad("occupied_thresh", &reason));
+    }
+    Ok(Thresholds {
+        occupied,
+        free,
+        negate: keys.flag("negate")?.unwrap_or(false),
+    })
+}
+
+fn starts(keys: &Table<'_>) -> Result<Option<Vec<Start>>, BadKey> {
+    let list = match keys.node("robots") {
+        None => return Ok(None),
+        Some(Node::List(list)) if !list.is_empty() => list,
+        Some(other) => {
+            let reason = format!("{other} is not a list of [x, y, yaw], at least one");
+            return Err(keys.bad("robots", &reason));
+        }
+    };
+    let mut starts = Vec::with_capacity(list.len());
+    for (index, node) in list.iter().enumerate() {
+        let Some(numbers) = node.numbers(2..=3) else {
+            let key = format!("robots[{index}]");
+            return Err(keys.bad(&key, &format!("{node} is not [x, y, yaw]")));
+        };
+        starts.push(Start {
+            x_m: numbers[0],
+            y_m: numbers[1],
+            yaw_rad: numbers.get(2).copied().unwrap_or(0.0),
+        });
+    }
+    Ok(Some(starts))
+}
+
+/// The origin of the frame if the robot fits there, else the cell with most room around it.
+fn default_start(world: &World) -> Start {
+    let origin = Start::default();
+    if world.check_start("", 0, origin).is_ok() {
+        origin
+    } else {
+        world.widest_place()
     }
 }
 
@@ -309,23 +300,27 @@ impl World {
         start: Start,
     ) -> Result<(), WorldError> {
         let (x, y) = (start.x_m, start.y_m);
-        if self.clearance_m(&Footprint::PIONEER_3AT, start) > 0.0 {
-            return Ok(());
-        }
-        let place = match self.occupancy.index(self.occupancy.cell_at(x, y)) {
+        let inside = self.occupancy.index(self.occupancy.cell_at(x, y));
+        let place = match inside.map(|index| self.occupancy.classes()[index]) {
             None => "lies outside of the map",
-            Some(_) if self.is_solid(x, y) => "lies in a wall or unknown space",
-            Some(_) => "is too close to a wall, the robot overlaps it",
+            Some(Class::Wall) => "lies in a wall",
+            Some(Class::Unknown) => "lies in unknown space",
+            Some(Class::Free) if self.clearance_m(&Footprint::PIONEER_3AT, start) > 0.0 => {
+                return Ok(());
+            }
+            Some(Class::Free) => "is too close to a wall, the robot overlaps it",
+        };
+        let best = self.widest_place();
+        let remedy = if self.is_solid(best.x_m, best.y_m) {
+            "nothing is free anywhere, check negate and the thresholds".to_owned()
+        } else {
+            format!("most room is at ({:.2}, {:.2})", best.x_m, best.y_m)
         };
         let room_m = self.distance.from_centre_m(self.occupancy.cell_at(x, y));
-        let best = self.widest_place();
         Err(WorldError::Start {
             file: file.to_owned(),
             index,
-            reason: format!(
-                "({x:.2}, {y:.2}) {place} (clearance {room_m:.2} m); most room is at ({:.2}, {:.2})",
-                best.x_m, best.y_m
-            ),
+            reason: format!("({x:.2}, {y:.2}) {place} ({room_m:.2} m from its centre); {remedy}"),
         })
     }
 

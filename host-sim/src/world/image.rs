@@ -43,6 +43,8 @@ pub enum ImageError {
         /// Pixels there are.
         found: usize,
     },
+    /// The file ends before its pixels, or before its trailer.
+    EndsEarly,
     /// More pixels than the header promises.
     Surplus {
         /// Pixels the header promises.
@@ -70,6 +72,7 @@ impl fmt::Display for ImageError {
                 f,
                 "truncated, {found} of {expected} pixels; copy the whole file"
             ),
+            Self::EndsEarly => write!(f, "truncated; copy the whole file"),
             Self::Surplus { expected } => write!(
                 f,
                 "more data than the {expected} pixels of its header; correct the width and height"

@@ -18,6 +18,7 @@ mod pgm;
 mod png_file;
 mod ray;
 mod walk;
+mod yaml;
 
 use std::path::Path;
 
@@ -206,7 +207,8 @@ impl World {
         self.ground_m(x_m, y_m).unwrap_or(0.0) + self.wall_height_m
     }
 
-    /// Metres between a footprint at a pose and the nearest solid cell; 0 where they overlap.
+    /// Metres between a footprint at a pose and the nearest solid cell: 0 where they overlap, and
+    /// at most [`crate::robot::FARTHEST_M`].
     #[must_use]
     pub fn clearance_m(&self, footprint: &Footprint, start: Start) -> f64 {
         footprint.clearance_m(self, start.x_m, start.y_m, start.yaw_rad)

@@ -13,18 +13,16 @@ use super::image::{Image, ImageError};
 pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
     let mut decoder = Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(Transformations::EXPAND);
-    let mut reader = decoder.read_info().map_err(|e| explain(&e, 0))?;
+    let mut reader = decoder.read_info().map_err(|e| explain(&e))?;
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
     let pixels = Image::check_size(width, height)?;
     let size = reader
         .output_buffer_size()
         .ok_or(ImageError::Size { width, height })?;
     let mut data = vec![0; size];
-    let frame = reader
-        .next_frame(&mut data)
-        .map_err(|e| explain(&e, pixels))?;
+    let frame = reader.next_frame(&mut data).map_err(|e| explain(&e))?;
     // The trailer is read too: a file cut after its last row is still a truncated file.
-    reader.finish().map_err(|e| explain(&e, pixels))?;
+    reader.finish().map_err(|e| explain(&e))?;
     let (channels, alpha) = match frame.color_type {
         ColorType::Grayscale => (1, false),
         ColorType::GrayscaleAlpha => (1, true),
@@ -60,10 +58,10 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
 }
 
 /// Our words for the decoder's; a file that ends early is told apart from one that is damaged.
-fn explain(error: &DecodingError, expected: usize) -> ImageError {
+fn explain(error: &DecodingError) -> ImageError {
     match error {
         DecodingError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {
-            ImageError::Truncated { expected, found: 0 }
+            ImageError::EndsEarly
         }
         other => ImageError::Malformed(other.to_string().replace('\n', " ")),
     }

@@ -162,12 +162,14 @@ pub(super) fn ground(elevation: &Elevation, ray: &Ray, limit_m: f64) -> Option<H
     // Patches lie between the samples, which sit at the centres of the pixels.
     let start = [0, 1].map(|k| (ray.origin_m[k] - origin_m[k]) / resolution_m - 0.5);
     let speed = [0, 1].map(|k| ray.direction[k] / resolution_m);
-    let last = [elevation.width() as i64, elevation.height() as i64];
+    let size = [elevation.width() as f64, elevation.height() as f64];
+    let (enter_m, leave_m) = within(start.map(|s| s + 0.5), speed, size);
+    let limit_m = leave_m.min(limit_m);
     let mut walk = Walk::new(start, speed);
+    if enter_m > 0.0 {
+        walk.jump(enter_m);
+    }
     while walk.entered_m <= limit_m {
-        if (0..2).any(|k| walk.cell[k] < -1 || walk.cell[k] >= last[k]) {
-            return None;
-        }
         let corners = elevation.patch(walk.cell[0], walk.cell[1]);
         let left_m = walk.left_m().min(limit_m);
         let place = [0, 1].map(|k| start[k] - walk.cell[k] as f64);
@@ -183,6 +185,23 @@ pub(super) fn ground(elevation: &Elevation, ray: &Ray, limit_m: f64) -> Option<H
         walk.advance();
     }
     None
+}
+
+/// From where to where a line is within the box [0, size]; the end lies before the beginning where it never is.
+fn within(start: [f64; 2], speed: [f64; 2], size: [f64; 2]) -> (f64, f64) {
+    let mut inside = (0.0_f64, f64::INFINITY);
+    for axis in 0..2 {
+        let (from, to) = if speed[axis].abs() > 1e-12 {
+            let ends = [0.0, size[axis]].map(|edge| (edge - start[axis]) / speed[axis]);
+            (ends[0].min(ends[1]), ends[0].max(ends[1]))
+        } else if (0.0..=size[axis]).contains(&start[axis]) {
+            continue;
+        } else {
+            (0.0, -1.0)
+        };
+        inside = (inside.0.max(from), inside.1.min(to));
+    }
+    inside
 }
 
 /// First t in [from, to] at which a ray is on or below a bilinear patch.
@@ -229,4 +248,137 @@ fn first_root(a: f64, b: f64, c: f64, from: f64) -> Option<f64> {
         .into_iter()
         .filter(|t| *t > from)
         .min_by(f64::total_cmp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::{HeightScale, Image, World};
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    fn ray(origin_m: [f64; 3], direction: [f64; 3]) -> Ray {
+        let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+        Ray {
+            origin_m,
+            direction: direction.map(|d| d / length),
+        }
+    }
+
+    #[test]
+    fn rays_meet_sides_tops_and_ground_and_the_border() {
+        // A wall of 0.5 m at x in [1, 1.5), 1.5 m high, in a world of 3 × 0.5 m.
+        let world = World::picture("wall", 0.5, &["..#..."]);
+        let met = |origin, direction| {
+            let hit = world.cast(&ray(origin, direction), 12.0);
+            hit.map(|hit| ((hit.range_m * 1e9).round() / 1e9, hit.surface))
+        };
+        let (start, high) = ([0.25, 0.25, 0.4], [0.25, 0.25, 2.0]);
+        assert_eq!(met(start, [1.0, 0.0, 0.0]), Some((0.75, Surface::Wall)));
+        assert_eq!(met(start, [-1.0, 0.0, 0.0]), Some((0.25, Surface::Wall)));
+        // Over the wall, and on to the border, which is endlessly high.
+        assert_eq!(met(high, [1.0, 0.0, 0.0]), Some((2.75, Surface::Wall)));
+        assert_eq!(met(high, [0.0, 0.0, 1.0]), None);
+        assert_eq!(met(start, [0.0, 0.0, -1.0]), Some((0.4, Surface::Ground)));
+        // From above, down by 0.5 m over 1 m: the top.
+        let slant = (1.25_f64).sqrt();
+        let top = met(high, [1.0, 0.0, -0.5]).expect("meets the top");
+        assert_eq!(top.1, Surface::Top);
+        assert!((top.0 - slant).abs() < 1e-9, "{top:?}");
+        // From within something solid nothing is seen.
+        assert_eq!(
+            met([1.2, 0.2, 0.4], [1.0, 0.0, 0.0]),
+            Some((0.0, Surface::Wall))
+        );
+        assert_eq!(
+            met([-5.0, 0.2, 0.4], [1.0, 0.0, 0.0]),
+            Some((0.0, Surface::Wall))
+        );
+    }
+
+    #[test]
+    fn a_jump_crosses_the_wall_at_the_same_bits_as_steps() {
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let mut grid = Occupancy::filled(90, 70, 0.05, [-1.3, 2.2], crate::world::Class::Free);
+        for _ in 0..12 {
+            let (i, j) = (rng.next_u32() % 90, rng.next_u32() % 70);
+            let cell = GridCell {
+                i: i.into(),
+                j: j.into(),
+            };
+            grid.set(cell, crate::world::Class::Wall);
+        }
+        let distance = DistanceField::new(&grid);
+        let jumping = Walls::new(&grid, &distance);
+        let mut stepping = jumping.clone();
+        for free in &mut stepping.free_cells {
+            *free = if *free == SOLID { SOLID } else { 0 };
+        }
+        for k in 0..20_000 {
+            let bearing = f64::from(k) * 0.001;
+            let beam = ray([0.7, 3.9, 0.4], [bearing.cos(), bearing.sin(), 0.0]);
+            let [a, b] = [&jumping, &stepping].map(|walls| walls.cast(&beam, 12.0, |_| 1.5));
+            assert_eq!(a, b, "bearing {bearing}");
+        }
+    }
+
+    /// Rough hills with a hole.
+    fn hills() -> Elevation {
+        let mut rng = ChaCha8Rng::seed_from_u64(9);
+        let image = Image {
+            width: 30,
+            height: 24,
+            samples: (0..30 * 24)
+                .map(|_| 1 + rng.next_u32() % 65_535)
+                .map(|v| if v < 900 { 0 } else { v })
+                .collect(),
+            full: 65_535,
+            channels: 1,
+            transparent: Vec::new(),
+        };
+        let scale = HeightScale {
+            z_min_m: -0.4,
+            z_max_m: 0.6,
+            no_data: Some(0),
+        };
+        Elevation::from_image(&image, scale, 0.3, [-2.0, 1.0])
+    }
+
+    #[test]
+    fn the_ground_is_met_where_a_fine_march_meets_it() {
+        let elevation = hills();
+        let mut rng = ChaCha8Rng::seed_from_u64(11);
+        let mut uniform =
+            |low: f64, high: f64| low + (high - low) * f64::from(rng.next_u32()) / 4_294_967_295.0;
+        let mut met = 0;
+        for _ in 0..3000 {
+            let beam = ray(
+                [uniform(-1.5, 6.5), uniform(1.5, 7.5), 1.0],
+                [uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-1.0, 0.0)],
+            );
+            let at = |t: f64| [0, 1, 2].map(|k| beam.origin_m[k] + t * beam.direction[k]);
+            let below = |t: f64| {
+                let [x, y, z] = at(t);
+                elevation.ground_m(x, y).is_some_and(|ground| z <= ground)
+            };
+            let step_m = 5e-4;
+            let marched = (0..20_000)
+                .map(|k| f64::from(k) * step_m)
+                .find(|t| below(*t));
+            match (ground(&elevation, &beam, 10.0), marched) {
+                // The march may step over the very tip of a hill, never the other way round.
+                (Some(hit), Some(t)) => {
+                    assert!(hit.range_m <= t + 1e-9, "{beam:?} {hit:?} {t}");
+                    if t - hit.range_m > step_m {
+                        assert!(below(hit.range_m + 1e-9), "{beam:?} {hit:?} {t}");
+                    }
+                    met += 1;
+                }
+                (Some(hit), None) => assert!(below(hit.range_m + 1e-9), "{beam:?} {hit:?}"),
+                (None, Some(t)) => panic!("{beam:?} passed the ground at {t}"),
+                (None, None) => {}
+            }
+        }
+        assert!(met > 2000, "{met}");
+    }
 }

@@ -24,11 +24,11 @@ pub(super) fn sweep(window: &mut Window) {
 }
 
 fn sweep_rows<const PREFERRED: bool>(window: &mut Window) {
-    let rows = window.reached.iter().zip(&window.preference).enumerate();
-    for (y, (&reached, preference)) in rows {
+    for (y, &reached) in window.reached.iter().enumerate() {
         for run in Runs(reached) {
-            let around = &mut window.q[index(run.start, y) - STRIDE..][..run.len() + 2 * STRIDE];
-            relax_run::<PREFERRED>(around, &preference[run]);
+            let start = index(run.start, y);
+            let around = &mut window.q[start - STRIDE..][..run.len() + 2 * STRIDE];
+            relax_run::<PREFERRED>(around, &window.preference[start..][..run.len()]);
         }
     }
 }
@@ -66,7 +66,7 @@ pub(super) fn residual(window: &Window) -> f32 {
             let (north, south) = (window.q[at + STRIDE], window.q[at - STRIDE]);
             let (west, east) = (window.q[at - 1], window.q[at + 1]);
             let bend = (north - south).abs() + (west - east).abs();
-            let sum = (north + south) + (west + east) + window.preference[y][x].half() * bend;
+            let sum = (north + south) + (west + east) + window.preference[at].half() * bend;
             // Below the least normal number a relative change means nothing.
             let change = (sum * 0.25 - q).abs() / q.max(f32::MIN_POSITIVE);
             worst = worst.max(change);

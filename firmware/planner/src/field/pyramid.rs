@@ -1,32 +1,32 @@
 //! The coarse levels of the multigrid: blocks of 2 × 2 blocks, and one correction factor for each.
 //!
-//! Multiply all values of block J by a factor x_J and ask that the sum of the block's equations holds:
+//! Multiply all values of block J by a factor x_J, and ask that the sum of the block's equations holds:
 //!
 //! ```text
 //! D_J x_J = Σ_K A_JK x_K + b_J        K: the four blocks beside J
-//! A_JK = Σ w_ik q_k over cells i of J beside cells k of K      what flows in from K
-//! b_J  = Σ w_ik GOAL over cells i of J beside goals            what flows in from goals
-//! D_J  = Σ 4 q_i − Σ w_ik q_k over cells i, k of J             what flows out
+//!
+//! A_JK = Σ w_ik q_k,  i ∈ J, k ∈ K              what flows in from block K
+//! b_J  = Σ w_ik GOAL, i ∈ J, k a goal           what flows in from goals
+//! D_J  = Σ 4 q_i − Σ w_ik q_k,  i, k ∈ J        what flows out
 //! ```
 //!
-//! At the solution every x is 1, so max |x − 1| measures the error that is left. The system has the shape of the
-//! fine one, so a block of blocks is again a block: A, b and D add up, with each x absorbed into the q beside it.
-//! A factor keeps small values small: far from the goals, where q falls by e every few cells, an additive correction
+//! At the solution every x is 1, so max |x − 1| tells the error that is left. The system looks like the fine one, so a
+//! block of blocks is a block again: A, b and D add up, with each x absorbed into the q beside it. A *factor* keeps
+//! small values small: far from the goals, where q falls by a fixed part every few cells, an added correction
 //! would bury the field under the near side's rounding.
 //!
-//! A level lies row by row between margins as long as a row, so that the neighbours of block i are i ± 1 and i ± side
-//! without a test; whatever is read across a border meets a coupling of zero. Levels overlap in their margins.
+//! The factors of a level lie row by row between two margins as long as a row, so that the neighbours of factor i are
+//! i ± 1 and i ± side without a test: what is read across a border meets a coupling of zero.
 //!
-//! Invariant: factors are finite and non-negative; D ≥ [`LEAST_OUTFLOW`] (ΣA + b), so that one relaxation changes a
-//! factor at most 1/0.7 times its neighbours' greatest.
+//! Invariants: 0 ≤ x ≤ [`MOST`]; D ≥ 0.7 (ΣA + b) ≥ 0.7 [`FAINT`]. So nothing divides by zero, and nothing overflows:
+//! A and D stay below 2¹¹⁸.
 
 use core::cell::Cell;
 
-/// One block's equation and factor, by the constants below.
-pub(super) type Block = [f32; BLOCK_FLOATS];
+/// One block's equation: D, b and A from the four sides, by the constants below.
+pub(super) type Equation = [f32; EQUATION_FLOATS];
 
-/// Floats of a block.
-pub(super) const BLOCK_FLOATS: usize = 7;
+const EQUATION_FLOATS: usize = 6;
 
 /// D: what flows out, for a factor of one.
 pub(super) const OUT: usize = 0;
@@ -40,11 +40,16 @@ pub(super) const NORTH: usize = 3;
 pub(super) const WEST: usize = 4;
 /// A: what flows in from the block to the right.
 pub(super) const EAST: usize = 5;
-/// x: the block's factor.
-pub(super) const FACTOR: usize = 6;
+
+/// A flow far below that of any value the field can tell from zero. Every block gets that much out and as much from
+/// goals, so that where nothing is known x = 1.
+pub(super) const FAINT: f32 = f32::from_bits((127 - 120) << 23);
+
+/// No block at all.
+const NOTHING: Equation = [0.0; EQUATION_FLOATS];
 
 /// A block without a free cell.
-pub(super) const EMPTY: Block = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+pub(super) const EMPTY: Equation = [FAINT, FAINT, 0.0, 0.0, 0.0, 0.0];
 
 /// Blocks along a side of the finest level.
 pub(super) const FINEST: usize = 31;
@@ -52,187 +57,252 @@ pub(super) const FINEST: usize = 31;
 /// Blocks along a side of the coarsest level.
 const COARSEST: usize = 2;
 
-/// Sweeps that solve the coarsest level.
-const COARSEST_SWEEPS: usize = 4;
+/// Double sweeps that solve the coarsest level.
+const COARSEST_SWEEPS: usize = 2;
 
-/// Least outflow in parts of the inflow. A field far from its solution can have blocks that keep all that flows in.
+/// Least outflow in parts of the inflow: a field far from its solution has blocks that keep all that flows in.
 const LEAST_OUTFLOW: f32 = 0.7;
 
-/// Over-correction: 2 × 2 blocks of constants underestimate a smooth correction.
-const OVERCORRECTION: f32 = 1.3;
+/// Over-correction: blocks of equal factors answer a smooth error with too little, for they pay for its slope in steps
+/// at their borders. 1.6 and more diverges; 1.3 takes a third more cycles.
+const OVERCORRECTION: f32 = 1.5;
 
-/// Blocks of all levels with their margins.
-pub(super) const BLOCKS: usize = {
-    let mut side = FINEST;
-    let mut blocks = side;
-    loop {
-        blocks += side * side + side;
-        if side == COARSEST {
-            break blocks;
-        }
+/// Floats of all levels: equations, and factors with their margins.
+pub(super) const FLOATS: usize = EQUATIONS * EQUATION_FLOATS + FACTORS;
+
+const EQUATIONS: usize = {
+    let (mut side, mut sum) = (FINEST, COARSEST * COARSEST);
+    while side > COARSEST {
+        sum += side * side;
         side = side.div_ceil(2);
     }
+    sum
 };
 
-/// The finest level's blocks, row by row.
-pub(super) fn finest(levels: &mut [Block]) -> &mut [Block] {
-    &mut levels[FINEST..][..FINEST * FINEST]
+const FACTORS: usize = {
+    let (mut side, mut sum) = (FINEST, COARSEST * (COARSEST + 2) + 1);
+    while side > COARSEST {
+        sum += side * (side + 2) + 1;
+        side = side.div_ceil(2);
+    }
+    sum
+};
+
+/// The greatest factor of one relaxation.
+const MOST: f32 = 4.0;
+
+/// A level and the coarser ones behind it.
+#[derive(Debug)]
+pub(super) struct Pyramid<'a> {
+    side: usize,
+    equations: &'a mut [Equation],
+    factors: &'a mut [f32],
 }
 
-/// Find the finest level's factors: a W cycle over the levels below it. Its equations must be set, its factors one.
-pub(super) fn solve(levels: &mut [Block]) {
-    descend(levels, FINEST);
-}
-
-/// Improve the factors of the first level in `levels`, of `side` blocks, by those of the coarser ones behind it.
-fn descend(levels: &mut [Block], side: usize) {
-    if side == COARSEST {
-        for sweep in 0..COARSEST_SWEEPS {
-            relax(levels, side, sweep % 2 == 1);
+impl<'a> Pyramid<'a> {
+    /// All levels, in scratch memory of any content.
+    pub(super) fn new(scratch: &'a mut [f32; FLOATS]) -> Self {
+        let (equations, factors) = scratch.split_at_mut(EQUATIONS * EQUATION_FLOATS);
+        factors.fill(1.0);
+        let (equations, _) = equations.as_chunks_mut();
+        Self {
+            side: FINEST,
+            equations,
+            factors,
         }
-        return;
     }
-    let coarse_side = side.div_ceil(2);
-    let coarse_start = side + side * side + side;
-    let turns = if side == FINEST { 1 } else { 2 };
-    for _ in 0..turns {
-        let (level, coarse) = levels.split_at_mut(coarse_start);
-        aggregate(level, side, &mut coarse[..coarse_side * coarse_side]);
-        descend(&mut levels[coarse_start - coarse_side..], coarse_side);
-        let (level, coarse) = levels.split_at_mut(coarse_start);
-        spread(
-            &mut level[side..][..side * side],
-            side,
-            &coarse[..coarse_side * coarse_side],
-        );
-        relax(levels, side, true);
-    }
-}
 
-/// One Gauss–Seidel sweep over a level's factors.
-fn relax(levels: &mut [Block], side: usize, backward: bool) {
-    let count = side * side;
-    let blocks = Cell::from_mut(levels).as_slice_of_cells();
-    let rows = blocks[..count].iter().zip(&blocks[2 * side..][..count]);
-    let columns = blocks[side - 1..][..count]
-        .iter()
-        .zip(&blocks[side + 1..][..count]);
-    let all = blocks[side..][..count].iter().zip(rows.zip(columns));
-    let relax =
-        |(block, ((south, north), (west, east)))| relax_block(block, [south, north, west, east]);
-    if backward {
-        all.rev().for_each(relax);
-    } else {
-        all.for_each(relax);
+    /// The finest level's equations, row by row, to be set before [`Pyramid::solve`].
+    pub(super) fn equations(&mut self) -> &mut [Equation] {
+        &mut self.equations[..self.side * self.side]
     }
-}
 
-/// x = (b + Σ A x) / D.
-#[inline(always)]
-fn relax_block(block: &Cell<Block>, neighbours: [&Cell<Block>; 4]) {
-    let equation = block.as_array_of_cells();
-    let out = equation[OUT].get();
-    if out > 0.0 {
-        let [south, north, west, east] = neighbours.map(|n| n.as_array_of_cells()[FACTOR].get());
-        let up_and_down = equation[SOUTH].get() * south + equation[NORTH].get() * north;
-        let sideways = equation[WEST].get() * west + equation[EAST].get() * east;
-        equation[FACTOR].set((equation[SOURCE].get() + up_and_down + sideways) / out);
+    /// The finest level's factors, row by row.
+    pub(super) fn factors(&self) -> &[f32] {
+        &self.factors[self.side..][..self.side * self.side]
     }
-}
 
-/// Add up a level's equations, with their factors absorbed, into blocks of 2 × 2, with factors of one.
-fn aggregate(level: &[Block], side: usize, coarse: &mut [Block]) {
-    let coarse_side = side.div_ceil(2);
-    for y in 0..side {
-        let row = &level[(y + 1) * side..];
-        let below = &level[y * side..];
-        let above = &level[(y + 2) * side..];
-        let coarse = &mut coarse[y / 2 * coarse_side..][..coarse_side];
-        for (x, coarse) in coarse.iter_mut().enumerate() {
-            let west = 2 * x;
-            let mut sum = EMPTY;
-            add_child(
-                &mut sum,
-                &row[west],
-                [
-                    below[west][FACTOR],
-                    above[west][FACTOR],
-                    level[(y + 1) * side + west - 1][FACTOR],
-                    row[west + 1][FACTOR],
-                ],
-                y % 2,
-                0,
-            );
-            if west + 1 < side {
-                let east = west + 1;
-                add_child(
-                    &mut sum,
-                    &row[east],
-                    [
-                        below[east][FACTOR],
-                        above[east][FACTOR],
-                        row[west][FACTOR],
-                        row[east + 1][FACTOR],
-                    ],
-                    y % 2,
-                    1,
-                );
+    /// Find this level's factors: a W cycle, of one turn on the finest level and two on the others.
+    pub(super) fn solve(&mut self) {
+        let (mut level, mut coarser) = self.split();
+        level.factors.fill(1.0);
+        if level.side == COARSEST {
+            for _ in 0..COARSEST_SWEEPS {
+                level.relax();
             }
-            if y % 2 == 0 {
-                *coarse = sum;
-            } else {
-                for i in 0..FACTOR {
-                    coarse[i] += sum[i];
+            return;
+        }
+        for _ in 0..if level.side == FINEST { 1 } else { 2 } {
+            level.aggregate(coarser.equations());
+            coarser.solve();
+            level.spread(coarser.factors());
+            level.relax();
+        }
+    }
+
+    /// This level alone, and the rest.
+    fn split(&mut self) -> (Level<'_>, Pyramid<'_>) {
+        let side = self.side;
+        let (equations, coarser_equations) = self.equations.split_at_mut(side * side);
+        let (factors, coarser_factors) = self.factors.split_at_mut(side * (side + 2) + 1);
+        let level = Level {
+            side,
+            equations,
+            factors,
+        };
+        let side = side.div_ceil(2);
+        (
+            level,
+            Pyramid {
+                side,
+                equations: coarser_equations,
+                factors: coarser_factors,
+            },
+        )
+    }
+}
+
+/// One level.
+#[derive(Debug)]
+struct Level<'a> {
+    side: usize,
+    /// Row by row.
+    equations: &'a mut [Equation],
+    /// Row by row, between two margins as long as a row, and one to spare.
+    factors: &'a mut [f32],
+}
+
+impl Level<'_> {
+    /// Two Gauss–Seidel sweeps, back and forth: x ← (b + Σ A x) / D.
+    fn relax(&mut self) {
+        let (side, count) = (self.side, self.side * self.side);
+        let factors = Cell::from_mut(&mut *self.factors).as_slice_of_cells();
+        let south = &factors[..count];
+        let west = &factors[side - 1..][..count];
+        let here = &factors[side..][..count];
+        let east = &factors[side + 1..][..count];
+        let north = &factors[2 * side..][..count];
+        let around = south.iter().zip(north).zip(west.iter().zip(east));
+        let cells = self.equations.iter().zip(here).zip(around);
+        cells.clone().rev().for_each(relax);
+        cells.for_each(relax);
+    }
+
+    /// Add up the equations, their factors absorbed, over blocks of 2 × 2.
+    fn aggregate(&self, coarse: &mut [Equation]) {
+        let side = self.side;
+        let coarse_rows = side.div_ceil(2);
+        for (y, row) in self.equations.chunks_exact(side).enumerate() {
+            let coarse_row = &mut coarse[y / 2 * coarse_rows..][..coarse_rows];
+            let [below, above] = [y * side, (y + 2) * side].map(|start| self.factor_pairs(start));
+            let [left, right] =
+                [(y + 1) * side - 1, (y + 1) * side + 1].map(|start| self.factor_pairs(start));
+            let factors = below.iter().zip(above).zip(left.iter().zip(right));
+            let blocks = coarse_row.iter_mut().zip(row.chunks(2)).zip(factors);
+            let (lower, last) = (y % 2 == 0, y % 2 == 1 || y + 1 == side);
+            for ((block, children), ((below, above), (left, right))) in blocks {
+                let [child, more @ ..] = children else {
+                    continue;
+                };
+                let west = absorb(child, [left[1], below[0], above[0], left[0], right[0]]);
+                let east = more.first().unwrap_or(&NOTHING);
+                let east = absorb(east, [right[0], below[1], above[1], left[1], right[1]]);
+                add_pair(block, &west, &east, lower);
+                if last {
+                    bound_outflow(block);
                 }
             }
-            if y % 2 == 1 || y + 1 == side {
-                bound_outflow(coarse);
+        }
+    }
+
+    /// The factors from `start` on, two by two.
+    fn factor_pairs(&self, start: usize) -> &[[f32; 2]] {
+        self.factors[start..].as_chunks().0
+    }
+
+    /// Multiply the factors by those of the blocks they lie in, over-corrected.
+    fn spread(&mut self, coarse: &[f32]) {
+        let (side, coarse_side) = (self.side, self.side.div_ceil(2));
+        let rows = self.factors[side..][..side * side].chunks_exact_mut(side);
+        for (y, row) in rows.enumerate() {
+            let coarse_row = &coarse[y / 2 * coarse_side..][..coarse_side];
+            for (pair, &x) in row.chunks_mut(2).zip(coarse_row) {
+                let factor = overcorrect(x);
+                for x in pair {
+                    *x *= factor;
+                }
             }
         }
+    }
+}
+
+/// A cell beside others: south and north, west and east.
+type Around<'a> = (
+    (&'a Cell<f32>, &'a Cell<f32>),
+    (&'a Cell<f32>, &'a Cell<f32>),
+);
+
+/// x ← (b + Σ A x) / D.
+#[inline(always)]
+fn relax(
+    ((equation, here), ((south, north), (west, east))): ((&Equation, &Cell<f32>), Around<'_>),
+) {
+    let upright = equation[SOUTH] * south.get() + equation[NORTH] * north.get();
+    let level = equation[WEST] * west.get() + equation[EAST] * east.get();
+    let factor = (equation[SOURCE] + (upright + level)) / equation[OUT];
+    here.set(if factor > MOST { MOST } else { factor });
+}
+
+/// An equation with its factors multiplied in: the block's own, and those below, above, left and right of it.
+#[inline(always)]
+fn absorb(equation: &Equation, [here, south, north, west, east]: [f32; 5]) -> Equation {
+    [
+        equation[OUT] * here,
+        equation[SOURCE],
+        equation[SOUTH] * south,
+        equation[NORTH] * north,
+        equation[WEST] * west,
+        equation[EAST] * east,
+    ]
+}
+
+/// Add two equations side by side to a block's, as its lower row or its upper one; the lower comes first.
+#[inline(always)]
+fn add_pair(block: &mut Equation, west: &Equation, east: &Equation, lower: bool) {
+    // What flows between the two stays inside, and so does what flows between the rows.
+    let out = (west[OUT] + east[OUT]) - (west[EAST] + east[WEST]);
+    let source = west[SOURCE] + east[SOURCE];
+    let (south, north) = (west[SOUTH] + east[SOUTH], west[NORTH] + east[NORTH]);
+    if lower {
+        *block = [out - north, source, south, 0.0, west[WEST], east[EAST]];
+    } else {
+        block[OUT] += out - south;
+        block[SOURCE] += source;
+        block[NORTH] = north;
+        block[WEST] += west[WEST];
+        block[EAST] += east[EAST];
     }
 }
 
 /// D ≥ 0.7 (ΣA + b).
 #[inline(always)]
-pub(super) fn bound_outflow(block: &mut Block) {
-    let inflow = (block[SOUTH] + block[NORTH]) + (block[WEST] + block[EAST]) + block[SOURCE];
-    block[OUT] = block[OUT].max(LEAST_OUTFLOW * inflow);
-}
-
-#[inline(always)]
-fn add_child(sum: &mut Block, child: &Block, factors: [f32; 4], odd_row: usize, odd_column: usize) {
-    let flow = [
-        child[SOUTH] * factors[0],
-        child[NORTH] * factors[1],
-        child[WEST] * factors[2],
-        child[EAST] * factors[3],
-    ];
-    let mut out = child[OUT] * child[FACTOR];
-    sum[SOUTH + odd_row] += flow[odd_row];
-    out -= flow[1 - odd_row];
-    sum[WEST + odd_column] += flow[2 + odd_column];
-    out -= flow[3 - odd_column];
-    sum[OUT] += out;
-    sum[SOURCE] += child[SOURCE];
-}
-
-/// Multiply a level's factors by their coarse block's.
-fn spread(level: &mut [Block], side: usize, coarse: &[Block]) {
-    let coarse_side = side.div_ceil(2);
-    for (y, row) in level.chunks_exact_mut(side).enumerate() {
-        let coarse = &coarse[y / 2 * coarse_side..][..coarse_side];
-        for (pair, coarse) in row.chunks_mut(2).zip(coarse) {
-            let factor = overcorrect(coarse[FACTOR]);
-            for block in pair {
-                block[FACTOR] *= factor;
-            }
-        }
+pub(super) fn bound_outflow(equation: &mut Equation) {
+    let [out, source, south, north, west, east] = equation;
+    let least = LEAST_OUTFLOW * ((*south + *north) + (*west + *east) + *source);
+    if *out < least {
+        *out = least;
     }
 }
 
-/// 1 + 1.3 (x − 1), but within half and twice x.
+/// 1 + 1.5 (x − 1), within half and twice x.
 #[inline(always)]
 pub(super) fn overcorrect(x: f32) -> f32 {
     let y = 1.0 + OVERCORRECTION * (x - 1.0);
-    y.clamp(0.5 * x, x + x)
+    if y < 0.5 * x {
+        0.5 * x
+    } else if y > 2.0 * x {
+        2.0 * x
+    } else {
+        y
+    }
 }

@@ -10,7 +10,7 @@
 use super::gauss_seidel;
 use super::multigrid::{self, SCRATCH_FLOATS};
 use super::runs::Runs;
-use super::window::{GOAL, SIDE, STRIDE, Window, index};
+use super::window::{SIDE, STRIDE, Window, index};
 
 /// Gauss–Seidel sweeps that cost about as much as a multigrid cycle.
 pub const SWEEPS_PER_CYCLE: u16 = 5;
@@ -24,6 +24,10 @@ const PATIENCE: u16 = 8;
 
 /// Relative change in a block of sweeps, per sweep, below which Gauss–Seidel has converged.
 const SWEEP_TOLERANCE: f32 = 1e-5;
+
+/// What a blank cell takes of its best neighbour's value: about the field's fall from cell to cell indoors, so that a
+/// cold start begins with the right shape. 1 would do, with a third more cycles behind doors.
+const FILL: f32 = 0.85;
 
 /// How to solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -165,43 +169,41 @@ fn mean_preference(window: &Window) -> f32 {
         return 0.0;
     }
     let (mut sum, mut cells) = (0.0, 0.0);
-    for (&reached, preference) in window.reached.iter().zip(&window.preference) {
+    for (y, &reached) in window.reached.iter().enumerate() {
         for run in Runs(reached) {
             cells += run.len() as f32;
-            sum += preference[run].iter().map(|p| 2.0 * p.half()).sum::<f32>();
+            let preferences = &window.preference[index(run.start, y)..][..run.len()];
+            sum += preferences.iter().map(|p| 2.0 * p.half()).sum::<f32>();
         }
     }
     sum / cells
 }
 
-/// Give blank cells a value, which the multigrid could never raise from zero: wave by wave, each takes a part of its
-/// best neighbour's.
+/// Give each blank cell a part of its best neighbour's value, which the multigrid could never raise from zero: sweeps
+/// up and down the window until all have one. Cold, this makes about 0.85 to the power of the distance.
 fn fill_blanks(window: &mut Window) {
-    loop {
-        let mut wave = [0; SIDE];
-        let mut any = 0;
-        for y in 0..SIDE {
-            let valued = |y: usize| (window.reached[y] | window.goal[y]) & !window.blank[y];
-            let below = if y > 0 { valued(y - 1) } else { 0 };
-            let above = if y + 1 < SIDE { valued(y + 1) } else { 0 };
-            let here = valued(y);
-            wave[y] = window.blank[y] & (here << 1 | here >> 1 | below | above);
-            any |= wave[y];
+    for upward in [true, false].into_iter().cycle() {
+        let (mut missing, mut changed) = (false, false);
+        for step in 0..SIDE {
+            let y = if upward { step } else { SIDE - 1 - step };
+            for run in Runs(window.blank[y]) {
+                let around = &mut window.q[index(run.start, y) - STRIDE..];
+                for i in 0..run.len() {
+                    let i = if upward { i } else { run.len() - 1 - i };
+                    let upright = around[i].max(around[i + 2 * STRIDE]);
+                    let level = around[i + STRIDE - 1].max(around[i + STRIDE + 1]);
+                    let value = FILL * upright.max(level);
+                    let q = &mut around[i + STRIDE];
+                    changed |= value > *q;
+                    *q = q.max(value);
+                    missing |= *q == 0.0;
+                }
+            }
         }
-        if any == 0 {
+        // Beside a value that has underflowed, zero it stays.
+        if !missing || !changed {
             break;
         }
-        for (y, &row) in wave.iter().enumerate() {
-            for x in Runs(row).flatten() {
-                let at = index(x, y);
-                let q = &window.q;
-                let best = q[at - 1]
-                    .max(q[at + 1])
-                    .max(q[at - STRIDE])
-                    .max(q[at + STRIDE]);
-                window.q[at] = best.min(GOAL);
-            }
-            window.blank[y] &= !row;
-        }
     }
+    window.blank = [0; SIDE];
 }

@@ -106,8 +106,8 @@ impl Preference {
 pub struct Window {
     /// q, row by row with a border of zeros; see [`index`].
     pub(super) q: [f32; FLOATS],
-    /// ε, by row and column.
-    pub(super) preference: [[Preference; SIDE]; SIDE],
+    /// ε, in the same places.
+    pub(super) preference: [Preference; FLOATS],
     /// Some preference is not none.
     pub(super) preferred: bool,
     /// Free cells that a goal can be reached from.
@@ -128,7 +128,7 @@ impl Window {
     pub const fn new() -> Self {
         Self {
             q: [0.0; FLOATS],
-            preference: [[Preference::NONE; SIDE]; SIDE],
+            preference: [Preference::NONE; FLOATS],
             preferred: false,
             reached: [0; SIDE],
             goal: [0; SIDE],
@@ -173,51 +173,30 @@ impl Window {
             *self = Self::new();
             return;
         }
-        slide(&mut self.q, dx as isize + dy as isize * STRIDE as isize);
-        let preferences = self.preference.as_flattened_mut();
-        slide(preferences, dx as isize + dy as isize * SIDE as isize);
+        slide(&mut self.q, dx, dy);
+        slide(&mut self.preference, dx, dy);
         for mask in [&mut self.reached, &mut self.goal, &mut self.blank] {
-            slide(mask, dy as isize);
-            for (y, row) in mask.iter_mut().enumerate() {
-                *row = if dx >= 0 {
-                    *row >> across
+            let bits = |y: usize| {
+                y.checked_add_signed(dy as isize)
+                    .and_then(|y| mask.get(y))
+                    .copied()
+                    .unwrap_or(0)
+            };
+            let moved = |bits: u64| {
+                if dx >= 0 {
+                    bits >> across
                 } else {
-                    *row << across
-                } & ROW;
-                if !(0..SIDE as i32).contains(&(y as i32 + dy)) {
-                    *row = 0;
+                    bits << across & ROW
                 }
-            }
-        }
-        self.wipe_incoming(dx, dy);
-    }
-
-    /// After a slide, values that wrapped round an edge are nobody's.
-    fn wipe_incoming(&mut self, dx: i32, dy: i32) {
-        for y in 0..SIDE {
-            let valued = self.valued(y);
-            self.fill(y, !valued & ROW, 0.0);
-            let row_came_in = !(0..SIDE as i32).contains(&(y as i32 + dy));
-            for (x, preference) in self.preference[y].iter_mut().enumerate() {
-                if row_came_in || !(0..SIDE as i32).contains(&(x as i32 + dx)) {
-                    *preference = Preference::NONE;
-                }
-            }
-        }
-        let (below, rows) = self.q.split_at_mut(STRIDE);
-        let (rows, above) = rows.split_at_mut(SIDE * STRIDE);
-        below.fill(0.0);
-        above.fill(0.0);
-        for row in rows.as_chunks_mut::<STRIDE>().0 {
-            let [west, .., east, spare] = row;
-            (*west, *east, *spare) = (0.0, 0.0, 0.0);
+            };
+            *mask = core::array::from_fn(|y| moved(bits(y)));
         }
     }
 
     /// Give cell (x, y) a preference; outside the window nothing happens.
     pub fn set_preference(&mut self, x: usize, y: usize, preference: Preference) {
-        if let Some(cell) = self.preference.get_mut(y).and_then(|row| row.get_mut(x)) {
-            *cell = preference;
+        if x < SIDE && y < SIDE {
+            self.preference[index(x, y)] = preference;
             self.preferred |= preference != Preference::NONE;
         }
     }
@@ -225,7 +204,8 @@ impl Window {
     /// Give every cell (x, y) the preference `of(x, y)`.
     pub fn set_preferences(&mut self, mut of: impl FnMut(usize, usize) -> Preference) {
         self.preferred = false;
-        for (y, row) in self.preference.iter_mut().enumerate() {
+        for y in 0..SIDE {
+            let row = &mut self.preference[index(0, y)..][..SIDE];
             for (x, cell) in row.iter_mut().enumerate() {
                 *cell = of(x, y);
                 self.preferred |= *cell != Preference::NONE;
@@ -236,8 +216,11 @@ impl Window {
     /// The preference of cell (x, y); none outside the window.
     #[must_use]
     pub fn preference(&self, x: usize, y: usize) -> Preference {
-        let row = self.preference.get(y);
-        row.and_then(|row| row.get(x)).copied().unwrap_or_default()
+        if x < SIDE && y < SIDE {
+            self.preference[index(x, y)]
+        } else {
+            Preference::NONE
+        }
     }
 
     /// q of cell (x, y), from 0 to [`GOAL`]; 0 outside the window.
@@ -300,12 +283,25 @@ impl Default for Window {
     }
 }
 
-/// Move items so that `items[i]` becomes what `items[i + by]` was; the rest is left to be wiped.
-fn slide<T: Copy>(items: &mut [T], by: isize) {
-    let distance = by.unsigned_abs();
+/// Move a window's worth of items so that cell (x, y) gets what was at (x + dx, y + dy), and clear what came in.
+fn slide<T: Copy + Default>(cells: &mut [T; FLOATS], dx: i32, dy: i32) {
+    let (across, up) = (dx.unsigned_abs() as usize, dy.unsigned_abs() as usize);
+    let by = dx + dy * STRIDE as i32;
+    let distance = by.unsigned_abs() as usize;
     if by >= 0 {
-        items.copy_within(distance.., 0);
+        cells.copy_within(distance.., 0);
     } else {
-        items.copy_within(..items.len() - distance, distance);
+        cells.copy_within(..FLOATS - distance, distance);
     }
+    // What crossed an edge wrapped round to the other side, or came from a margin.
+    let blank = T::default();
+    let (rows, _) = cells.as_chunks_mut::<STRIDE>();
+    let (incoming, outgoing) = if dx >= 0 { (across, 0) } else { (0, across) };
+    for row in rows.iter_mut() {
+        row[..=outgoing].fill(blank);
+        row[SIDE + 1 - incoming..].fill(blank);
+    }
+    let (incoming, outgoing) = if dy >= 0 { (up, 0) } else { (0, up) };
+    rows[..=outgoing].as_flattened_mut().fill(blank);
+    rows[SIDE + 1 - incoming..].as_flattened_mut().fill(blank);
 }

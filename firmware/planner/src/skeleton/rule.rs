@@ -16,15 +16,100 @@
 //!
 //! North is towards row 0, east towards greater columns.
 
-use crate::grid::triple;
+use core::num::NonZeroU32;
 
-/// Which neighbours of a word lie outside of what is thinned, and read 0.
+use crate::grid::{Region, Shape, triple};
+
+/// Where the words of a region are in its plane.
+///
+/// Words of the region are counted row by row. All numbers are below 2¹⁶, the most words a plane has.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edges {
-    pub(super) top: bool,
-    pub(super) bottom: bool,
-    pub(super) left: bool,
-    pub(super) right: bool,
+pub(super) struct Patch {
+    /// Index of the region's first word.
+    origin: u32,
+    per_row: NonZeroU32,
+    rows: u32,
+    /// Words from a row to the next.
+    stride: u16,
+}
+
+impl Patch {
+    pub(super) const fn new(shape: Shape, region: Region) -> Self {
+        let stride = shape.words_per_row() as u16;
+        let (per_row, rows) = match NonZeroU32::new(region.words as u32) {
+            Some(words) => (words, region.rows as u32),
+            None => (NonZeroU32::MIN, 0),
+        };
+        Self {
+            origin: region.first_row as u32 * stride as u32 + region.first_word as u32,
+            per_row,
+            rows,
+            stride,
+        }
+    }
+
+    pub(super) const fn words_per_row(&self) -> u32 {
+        self.per_row.get()
+    }
+
+    /// Words in the region.
+    pub(super) const fn size(&self) -> usize {
+        (self.rows * self.per_row.get()) as usize
+    }
+
+    /// Where word number `count` is in the plane.
+    #[inline(always)]
+    pub(super) fn index(&self, count: u32) -> usize {
+        let gap = u32::from(self.stride) - self.per_row.get();
+        (self.origin + count + count / self.per_row * gap) as usize
+    }
+
+    /// The cells of word number `count` that the first (or second) subiteration deletes.
+    #[inline(always)]
+    pub(super) fn deletions<const SECOND: bool>(&self, words: &[u32], count: u32) -> u32 {
+        let row = count / self.per_row;
+        let word = count - row * self.per_row.get();
+        let sides = sides(word, self.per_row.get());
+        let index = self.origin + word + row * u32::from(self.stride);
+        if row.wrapping_sub(1) < self.rows.wrapping_sub(2)
+            && let Some([above, here, below]) = self.rows_around(words, index)
+        {
+            return judge::<SECOND>(above, here, below, sides);
+        }
+        self.deletions_at_end::<SECOND>(words, row, word, sides)
+    }
+
+    /// The three words around an index, in three rows; `None` where memory ends.
+    #[inline(always)]
+    fn rows_around<'a>(&self, words: &'a [u32], index: u32) -> Option<[&'a [u32; 3]; 3]> {
+        let stride = usize::from(self.stride);
+        // The bound of the type lets the compiler see that the last row's check covers the others.
+        let from = usize::from(index as u16).checked_sub(stride + 1)?;
+        let three = |from: usize| words.get(from..from + 3)?.first_chunk::<3>();
+        let below = three(from + 2 * stride)?;
+        Some([three(from)?, three(from + stride)?, below])
+    }
+
+    /// The same for a word in the first or the last row, or at an end of memory.
+    #[inline(never)]
+    fn deletions_at_end<const SECOND: bool>(
+        &self,
+        words: &[u32],
+        row: u32,
+        word: u32,
+        sides: u32,
+    ) -> u32 {
+        let triple = |row: u32| {
+            if row < self.rows {
+                let index = self.origin + word + row * u32::from(self.stride);
+                triple(words, index as usize)
+            } else {
+                [0; 3]
+            }
+        };
+        let above = triple(row.wrapping_sub(1));
+        judge::<SECOND>(&above, &triple(row), &triple(row + 1), sides)
+    }
 }
 
 /// The eight neighbours of 32 cells.
@@ -40,57 +125,48 @@ struct Around {
     north_west: u32,
 }
 
-/// The cells of word `index` that the first (or second) subiteration deletes, in rows of `per_row` words.
+/// Bit 31 if word `word` of a row has one on its left, bit 0 if it has one on its right.
 #[inline(always)]
-pub(super) fn deletions_at<const SECOND: bool>(
-    words: &[u32],
-    index: usize,
-    per_row: usize,
-    edges: Edges,
+const fn sides(word: u32, per_row: u32) -> u32 {
+    let (left, right) = (word.wrapping_neg(), (word + 1).wrapping_sub(per_row));
+    left & 1 << 31 | right >> 31
+}
+
+/// The cells of the middle word that the first (or second) subiteration deletes.
+///
+/// The words on the left count if bit 31 of `sides` is set, those on the right if bit 0 is. A function apart, with few
+/// arguments: inlined, it runs out of registers.
+#[inline(never)]
+fn judge<const SECOND: bool>(
+    [above_left, north, above_right]: &[u32; 3],
+    [left, here, right]: &[u32; 3],
+    [below_left, south, below_right]: &[u32; 3],
+    sides: u32,
 ) -> u32 {
-    let [left, here, right] = sides(triple(words, index), edges);
+    let (north, here, south) = (*north, *here, *south);
     if here == 0 {
         return 0;
     }
-    let [above_left, north, above_right] = if edges.top {
-        [0; 3]
-    } else {
-        sides(triple(words, index - per_row), edges)
-    };
-    let [below_left, south, below_right] = if edges.bottom {
-        [0; 3]
-    } else {
-        sides(triple(words, index + per_row), edges)
-    };
-    let (east, west) = (eastern(here, right), western(here, left));
+    let (east, west) = (eastern(here, right & sides), western(here, left & sides));
     // A cell with all four sides set has C = 0.
     if here & !(north & south & east & west) == 0 {
         return 0;
     }
     let around = Around {
         north,
-        north_east: eastern(north, above_right),
+        north_east: eastern(north, above_right & sides),
         east,
-        south_east: eastern(south, below_right),
+        south_east: eastern(south, below_right & sides),
         south,
-        south_west: western(south, below_left),
+        south_west: western(south, below_left & sides),
         west,
-        north_west: western(north, above_left),
+        north_west: western(north, above_left & sides),
     };
     here & if SECOND {
         deletions(around.turned())
     } else {
         deletions(around)
     }
-}
-
-#[inline(always)]
-fn sides([left, here, right]: [u32; 3], edges: Edges) -> [u32; 3] {
-    [
-        if edges.left { 0 } else { left },
-        here,
-        if edges.right { 0 } else { right },
-    ]
 }
 
 /// Each cell's eastern neighbour.
@@ -151,7 +227,7 @@ const fn deletions(around: Around) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Around, deletions};
+    use super::{Around, deletions, sides};
 
     /// The definition, word for word; p[0] is p2.
     fn deletes(p: [bool; 8], second: bool) -> bool {
@@ -172,6 +248,14 @@ mod tests {
             (p6 || p7 || !p9) && p8
         };
         count(c) == 1 && (2..=3).contains(&n) && !m
+    }
+
+    #[test]
+    fn words_at_the_ends_of_a_row_have_one_side() {
+        assert_eq!(sides(0, 1), 0);
+        assert_eq!([sides(0, 2), sides(1, 2)], [1, 1 << 31]);
+        let inner = 1 << 31 | 1;
+        assert_eq!([sides(1, 3), sides(15, 31), sides(29, 31)], [inner; 3]);
     }
 
     #[test]

@@ -1,17 +1,20 @@
 //! Guo–Hall thinning, 32 cells at a time, in place and in instalments [Guo & Hall 1989].
 //!
 //! All cells of a subiteration are judged before any is deleted. North is towards row 0, so a plane is seen as an
-//! image with row 0 on top; `opencv_contrib`'s `THINNING_GUOHALL` does too, and gives the same bits. The two subiterations
-//! of the rule alternate until two in a row delete nothing.
+//! image with row 0 on top; `opencv_contrib`'s `THINNING_GUOHALL` does too, and gives the same bits. The two
+//! subiterations of the rule alternate until two in a row delete nothing.
 //!
-//! Only words that may change are looked at: a word can delete only if a word of its 3 × 3 block changed in one of the
-//! last two subiterations. Two bits a word hold that. At the start of a subiteration's group of 32 words the older
-//! bit, no longer needed, becomes "to be looked at"; a word that deletes nothing drops it, and what remains is the
-//! new "changed". Deletions wait one row, because the row below still reads the old values.
+//! Only words that may change are looked at: a word can delete only if a cell of it or next to it changed in one of the
+//! last two subiterations. Two bits a word, one for each subiteration, say where its last pass changed a cell of the
+//! word or one that touches the word from the left or the right; the rows above and below follow by a shift. The older
+//! bit has then served and gives its place to the new one, so nothing else is kept.
+//!
+//! Deletions wait until no word reads the old values any more. Such readers are at most a row and a word behind, fewer
+//! than 32 words ahead, so what a group of 32 words loses is deleted when the next group but one begins.
 
 use super::Progress;
-use super::rule::{Edges, deletions_at};
-use crate::grid::{MAX_WORDS_PER_ROW, PlaneMut, Region, Shape, ShapeError, at};
+use super::rule::Patch;
+use crate::grid::{PlaneMut, Region, Shape, ShapeError};
 
 /// Words of marks that a [`Thinning`] needs for a plane of this many words.
 #[must_use]
@@ -21,69 +24,76 @@ pub const fn marks_for(words: usize) -> usize {
 
 /// The state of a thinning; `M` is at least [`marks_for`] the region's words.
 ///
-/// Invariant between two calls: the deletions found in rows `row − 1` and `row` and not yet made are in `waiting`;
-/// every deletion of an earlier row is made.
+/// The region's words are counted row by row; 32 of them share a word of marks and are a *group*.
+///
+/// Invariant between two calls: the words before the present one have been judged, and what they lose is deleted from
+/// the plane or waits.
 #[derive(Clone, Debug)]
 pub struct Thinning<const M: usize> {
     shape: Shape,
-    region: Region,
-    /// Per subiteration: words that changed in its last pass, or are to be looked at in the present one.
+    patch: Patch,
+    /// Per subiteration: the words touched by its last pass; the groups behind the present pass, by this one.
     marks: [[u32; M]; 2],
     /// Which of the two subiterations is on.
     second: bool,
-    window: MarkWindow,
+    window: Window,
     /// Words of the present group still to be looked at.
     todo: u32,
-    row: usize,
-    waiting: [Row; 2],
+    /// Whether the present group may be touched: it has words to look at, or the next field holds.
+    active: bool,
+    /// The first word of the present group is touched by the last one of the group before.
+    touched_from_before: bool,
+    /// What the present group and the one before it lose, by the lowest bit of the group.
+    losses: [Losses; 2],
     /// Whether the present pass, and the one before, deleted anything.
-    deleted: [bool; 2],
+    deleted: bool,
+    deleted_before: bool,
     passes: u16,
     done: bool,
 }
 
-/// Deletions found in a row.
+/// What the words of a group lose, before it is deleted.
 #[derive(Clone, Copy, Debug)]
-struct Row {
-    /// Words with deletions, by word of the region.
+struct Losses {
+    /// The words that lose cells.
     words: u32,
-    deletions: [u32; MAX_WORDS_PER_ROW],
+    /// Those that lose their first cell, and those that lose their last one: the words beside are touched.
+    first_cells: u32,
+    last_cells: u32,
+    /// The cells lost by each word.
+    cells: [u32; 32],
 }
 
-/// A sliding view of the marks: those of the next group, grown by a word to each side, with its two neighbours.
+/// A sliding view of the marks of both subiterations, as they were before the present pass.
 #[derive(Clone, Copy, Debug, Default)]
-struct MarkWindow {
+struct Window {
     /// The next group.
     group: usize,
-    /// Either subiteration's marks in the next group and the one after, as they were.
-    either: [u32; 2],
-    /// The grown marks in the group before the next, and in the next.
-    grown: [u32; 2],
+    /// The marks of the group before it, and its own.
+    before: u32,
+    here: u32,
 }
 
 impl<const M: usize> Thinning<M> {
     /// A thinning with nothing to do.
     #[must_use]
     pub const fn new() -> Self {
-        let shape = Shape::UNIT;
-        let empty = Row {
-            words: 0,
-            deletions: [0; MAX_WORDS_PER_ROW],
-        };
         Self {
-            shape,
-            region: shape.whole(),
+            shape: Shape::UNIT,
+            patch: Patch::new(Shape::UNIT, Shape::UNIT.whole()),
             marks: [[0; M]; 2],
             second: false,
-            window: MarkWindow {
+            window: Window {
                 group: 0,
-                either: [0; 2],
-                grown: [0; 2],
+                before: 0,
+                here: 0,
             },
             todo: 0,
-            row: 0,
-            waiting: [empty; 2],
-            deleted: [false; 2],
+            active: false,
+            touched_from_before: false,
+            losses: [Losses::NONE; 2],
+            deleted: false,
+            deleted_before: true,
             passes: 0,
             done: true,
         }
@@ -103,14 +113,13 @@ impl<const M: usize> Thinning<M> {
         }
         *self = Self {
             shape,
-            region,
+            patch: Patch::new(shape, region),
             done: region.size() == 0,
-            deleted: [false, true],
             ..Self::new()
         };
         for marks in &mut self.marks {
             for (group, mark) in marks.iter_mut().enumerate() {
-                *mark = words_of_group(region, group);
+                *mark = words_of_group(region.size(), group);
             }
         }
         self.begin_pass();
@@ -158,151 +167,119 @@ impl<const M: usize> Thinning<M> {
         anchors: &[u32],
         left: &mut u32,
     ) -> bool {
-        let groups = marks_for(self.region.size());
         loop {
-            if !self.look::<SECOND>(words, anchors, left) {
-                return false;
+            if self.todo != 0 {
+                *left = self.look::<SECOND>(words, anchors, *left);
+                if self.todo != 0 {
+                    return false;
+                }
             }
-            if self.window.group == groups {
+            if self.window.group == marks_for(self.patch.size()) {
                 break;
             }
             if *left == 0 {
                 return false;
             }
             *left -= 1;
-            self.next_group();
+            self.next_group(words);
         }
         self.end_pass(words);
         true
     }
 
-    /// Look at the words of the present group; whether all were looked at.
-    fn look<const SECOND: bool>(
-        &mut self,
-        words: &mut [u32],
-        anchors: &[u32],
-        left: &mut u32,
-    ) -> bool {
+    /// Look at the words of the present group, as far as the budget lasts; what is left of it.
+    #[inline(never)]
+    fn look<const SECOND: bool>(&mut self, words: &[u32], anchors: &[u32], mut left: u32) -> u32 {
+        let group = self.window.group - 1;
+        let losses = of_group(&mut self.losses, group);
         let mut todo = self.todo;
-        if todo == 0 {
-            return true;
-        }
-        let group = self.window.group.wrapping_sub(1);
-        let (per_row, rows) = (
-            usize::from(self.region.words),
-            usize::from(self.region.rows),
-        );
-        let mut idle = 0;
-        while todo != 0 && *left != 0 {
-            *left -= 1;
-            let bit = todo & todo.wrapping_neg();
-            todo ^= bit;
-            let place = group * 32 + bit.trailing_zeros() as usize;
-            let (row, word) = (place / per_row, place % per_row);
-            if row != self.row {
-                self.turn_to(row, words);
+        while todo != 0 && left != 0 {
+            left -= 1;
+            let k = todo.trailing_zeros();
+            todo &= todo - 1;
+            let place = group as u32 * 32 + k;
+            let mut lost = self.patch.deletions::<SECOND>(words, place);
+            if lost != 0 {
+                lost &= !anchors.get(self.patch.index(place)).copied().unwrap_or(0);
             }
-            let edges = Edges {
-                top: row == 0,
-                bottom: row + 1 == rows,
-                left: word == 0,
-                right: word + 1 == per_row,
-            };
-            let index = self.index(row, word);
-            let deletions = deletions_at::<SECOND>(words, index, self.shape.words_per_row(), edges)
-                & !at(anchors, index);
-            if deletions == 0 {
-                idle |= bit;
-            } else {
-                self.wait(row, word, deletions);
+            if lost != 0 {
+                losses.add(k, lost);
             }
-        }
-        if let Some(mark) = self.mark(group) {
-            *mark &= !idle;
         }
         self.todo = todo;
-        todo == 0
+        left
     }
 
-    fn index(&self, row: usize, word: usize) -> usize {
-        let (first_row, first_word) = (self.region.first_row, self.region.first_word);
-        (usize::from(first_row) + row) * self.shape.words_per_row() + usize::from(first_word) + word
-    }
-
-    fn wait(&mut self, row: usize, word: usize, deletions: u32) {
-        let Some(slot) = self.waiting.get_mut(row & 1) else {
-            return;
-        };
-        if let Some(out) = slot.deletions.get_mut(word) {
-            *out = deletions;
-            slot.words |= 1 << word;
+    /// Take the next group's words to be looked at.
+    fn next_group(&mut self, words: &mut [u32]) {
+        if self.active {
+            self.note_touched();
+        }
+        let group = self.window.group;
+        if of_group(&mut self.losses, group).words != 0 {
+            self.delete(group - 2, words);
+        }
+        let look = self.window.slide(&self.marks, self.patch.words_per_row());
+        self.active = look != 0 || self.touched_from_before;
+        if look != 0 {
+            self.todo = look & words_of_group(self.patch.size(), group);
         }
     }
 
-    /// Make the deletions that no row from `row` on reads any more.
-    fn turn_to(&mut self, row: usize, words: &mut [u32]) {
-        self.delete(self.row.wrapping_sub(1), words);
-        if row != self.row + 1 {
-            self.delete(self.row, words);
-        }
-        self.row = row;
-    }
-
-    /// Make the deletions that wait in a row.
-    fn delete(&mut self, row: usize, words: &mut [u32]) {
-        let Some(mut which) = self.waiting.get(row & 1).map(|slot| slot.words) else {
-            return;
-        };
-        if which == 0 {
-            return;
-        }
-        let start = self.index(row, 0);
-        let Some(slot) = self.waiting.get_mut(row & 1) else {
-            return;
-        };
-        slot.words = 0;
-        while which != 0 {
-            let word = which.trailing_zeros() as usize;
-            which &= which - 1;
-            let gone = slot.deletions.get(word).copied().unwrap_or(0);
-            if let Some(out) = words.get_mut(start + word) {
-                *out &= !gone;
+    /// Delete what the words of a group lose, one of the last two.
+    fn delete(&mut self, group: usize, words: &mut [u32]) {
+        let losses = of_group(&mut self.losses, group);
+        let mut todo = losses.words;
+        (losses.words, losses.first_cells, losses.last_cells) = (0, 0, 0);
+        while todo != 0 {
+            let k = todo.trailing_zeros();
+            todo &= todo - 1;
+            let index = self.patch.index(group as u32 * 32 + k);
+            if let (Some(word), Some(lost)) = (words.get_mut(index), losses.cells.get(k as usize)) {
+                *word &= !lost;
             }
         }
-        self.deleted[0] = true;
     }
 
-    /// Take the next group's marks to be looked at.
-    fn next_group(&mut self) {
-        let group = self.window.group;
-        let mut look = self
-            .window
-            .slide(&self.marks, usize::from(self.region.words));
-        look &= words_of_group(self.region, group);
-        if let Some(mark) = self.mark(group) {
-            *mark = look;
-        }
-        self.todo = look;
-    }
-
-    /// The present subiteration's marks of a group.
-    fn mark(&mut self, group: usize) -> Option<&mut u32> {
+    /// Mark what the present group's words touched.
+    fn note_touched(&mut self) {
+        let Some(group) = self.window.group.checked_sub(1) else {
+            return;
+        };
+        let losses = of_group(&mut self.losses, group);
+        let before = u32::from(self.touched_from_before);
+        let touched = losses.words | (losses.first_cells >> 1 | losses.last_cells << 1) | before;
         let [first, second] = &mut self.marks;
         let marks = if self.second { second } else { first };
-        marks.get_mut(group)
+        if let Some(mark) = marks.get_mut(group) {
+            *mark = touched;
+        }
+        if losses.first_cells & 1 != 0
+            && let Some(mark) = marks.get_mut(group.wrapping_sub(1))
+        {
+            *mark |= 1 << 31;
+        }
+        self.touched_from_before = losses.last_cells >> 31 != 0;
+        self.deleted |= losses.words != 0;
     }
 
     fn begin_pass(&mut self) {
-        self.window = MarkWindow::at_start(&self.marks);
-        self.row = 0;
+        self.window = Window {
+            group: 0,
+            before: 0,
+            here: either(&self.marks, 0),
+        };
+        (self.active, self.touched_from_before) = (false, false);
     }
 
     fn end_pass(&mut self, words: &mut [u32]) {
-        self.delete(self.row.wrapping_sub(1), words);
-        self.delete(self.row, words);
+        self.note_touched();
+        let groups = self.window.group;
+        self.delete(groups.saturating_sub(2), words);
+        self.delete(groups.saturating_sub(1), words);
         self.passes = self.passes.saturating_add(1);
-        self.done = self.deleted == [false; 2];
-        self.deleted = [false, self.deleted[0]];
+        self.done = !self.deleted && !self.deleted_before;
+        self.deleted_before = core::mem::take(&mut self.deleted);
         self.second = !self.second;
         self.begin_pass();
     }
@@ -314,50 +291,64 @@ impl<const M: usize> Default for Thinning<M> {
     }
 }
 
-impl MarkWindow {
-    fn at_start<const M: usize>(marks: &[[u32; M]; 2]) -> Self {
-        let either = [either(marks, 0), either(marks, 1)];
-        Self {
-            group: 0,
-            either,
-            grown: [0, grow(0, either[0], either[1])],
-        }
-    }
+impl Losses {
+    const NONE: Self = Self {
+        words: 0,
+        first_cells: 0,
+        last_cells: 0,
+        cells: [0; 32],
+    };
 
-    /// The words of the next group with a mark in their 3 × 3 block; the group is then behind.
-    ///
-    /// Words are counted through the region row by row, so the block's rows are `per_row` bits apart. The ends of
-    /// adjacent rows count as neighbours: a few words too many, never one too few.
-    fn slide<const M: usize>(&mut self, marks: &[[u32; M]; 2], per_row: usize) -> u32 {
-        let beyond = either(marks, self.group + 2);
-        let [before, here] = self.grown;
-        let after = grow(self.either[0], self.either[1], beyond);
-        let above = (u64::from(here) << 32 | u64::from(before)) >> (32 - per_row);
-        let below = (u64::from(after) << 32 | u64::from(here)) >> per_row;
-        *self = Self {
-            group: self.group + 1,
-            either: [self.either[1], beyond],
-            grown: [here, after],
-        };
-        here | above as u32 | below as u32
+    /// Word `k` of the group loses these cells.
+    #[inline(always)]
+    fn add(&mut self, k: u32, lost: u32) {
+        self.words |= 1 << k;
+        self.first_cells |= (lost & 1) << k;
+        self.last_cells |= lost >> 31 << k;
+        if let Some(cells) = self.cells.get_mut(k as usize) {
+            *cells = lost;
+        }
     }
 }
 
-/// A bit for each word of the group that is in the region.
-fn words_of_group(region: Region, group: usize) -> u32 {
-    match region.size().saturating_sub(group * 32) {
+impl Window {
+    /// The words of the next group that are marked, or lie under or over a marked word; the group is then behind.
+    ///
+    /// Rows of the region are `per_row` bits apart, at most 31.
+    fn slide<const M: usize>(&mut self, marks: &[[u32; M]; 2], per_row: u32) -> u32 {
+        let Self {
+            group,
+            before,
+            here,
+        } = *self;
+        let after = either(marks, group + 1);
+        let above = here << per_row | before >> (32 - per_row);
+        let below = here >> per_row | after << (32 - per_row);
+        *self = Self {
+            group: group + 1,
+            before: here,
+            here: after,
+        };
+        here | above | below
+    }
+}
+
+/// A bit for each word of the group in a region of `size` words.
+fn words_of_group(size: usize, group: usize) -> u32 {
+    match size.saturating_sub(group * 32) {
         0 => 0,
         words @ 1..32 => u32::MAX >> (32 - words),
         _ => u32::MAX,
     }
 }
 
-fn either<const M: usize>(marks: &[[u32; M]; 2], group: usize) -> u32 {
-    let [one, other] = marks;
-    one.get(group).copied().unwrap_or(0) | other.get(group).copied().unwrap_or(0)
+/// The losses of a group, one of the last two.
+fn of_group([even, odd]: &mut [Losses; 2], group: usize) -> &mut Losses {
+    if group.is_multiple_of(2) { even } else { odd }
 }
 
-/// A group's marks grown by one word to either side.
-const fn grow(before: u32, here: u32, after: u32) -> u32 {
-    here | here << 1 | before >> 31 | here >> 1 | after << 31
+/// The marks of both subiterations.
+fn either<const M: usize>(marks: &[[u32; M]; 2], group: usize) -> u32 {
+    let [first, second] = marks;
+    first.get(group).copied().unwrap_or(0) | second.get(group).copied().unwrap_or(0)
 }

@@ -189,34 +189,60 @@ impl Wavefront {
     /// Enter what is open around a cell.
     fn expand(&mut self, space: &mut WaveSpace<'_>, site: Site) {
         let shape = space.way.shape();
+        let (per_row, rows) = (shape.words_per_row(), shape.rows());
         let (row, word) = (usize::from(site.y), usize::from(site.x / 32));
         let bit = site.bit();
         let window = bit << 1 | bit | bit >> 1;
-        for row in row.saturating_sub(1)..(row + 2).min(shape.rows()) {
-            let index = row * shape.words_per_row() + word;
-            self.enter(space, index, window, (row, word));
-            if bit == 1 && word != 0 {
-                self.enter(space, index - 1, 1 << 31, (row, word - 1));
-            }
-            if bit == 1 << 31 && word + 1 != shape.words_per_row() {
-                self.enter(space, index + 1, 1, (row, word + 1));
+        let index = row * per_row + word;
+        if row != 0 {
+            self.enter(space, index - per_row, window, (row - 1, word));
+        }
+        self.enter(space, index, window, (row, word));
+        if row + 1 != rows {
+            self.enter(space, index + per_row, window, (row + 1, word));
+        }
+        if bit == 1 && word != 0 {
+            self.expand_into(space, (row, word - 1), 1 << 31);
+        } else if bit == 1 << 31 && word + 1 != per_row {
+            self.expand_into(space, (row, word + 1), 1);
+        }
+    }
+
+    /// Enter what is open in the column `mask` of the word beside a cell, in its row and the rows around.
+    #[inline(never)]
+    fn expand_into(&mut self, space: &mut WaveSpace<'_>, (row, word): (usize, usize), mask: u32) {
+        for row in row.saturating_sub(1)..row + 2 {
+            if let Some(index) = space.way.shape().index(row, word) {
+                self.enter(space, index, mask, (row, word));
             }
         }
     }
 
-    /// Reach the open cells of `mask` in a word, and queue them for the next level; how many.
+    /// Enter the open cells of `mask` in a word; how many.
     #[inline(always)]
     fn enter(
         &mut self,
         space: &mut WaveSpace<'_>,
         index: usize,
         mask: u32,
-        (row, word): (usize, usize),
+        place: (usize, usize),
     ) -> u32 {
         let open = mask & at(space.way.words(), index) & space.residues.unreached(index);
-        if open == 0 {
-            return 0;
+        if open != 0 {
+            self.reach(space, index, open, place);
         }
+        open.count_ones()
+    }
+
+    /// Reach the cells of `open` and queue them for the next level.
+    #[inline(never)]
+    fn reach(
+        &mut self,
+        space: &mut WaveSpace<'_>,
+        index: usize,
+        open: u32,
+        (row, word): (usize, usize),
+    ) {
         space.residues.reach(index, open, self.next);
         let mut rest = open;
         while rest != 0 {
@@ -224,7 +250,6 @@ impl Wavefront {
             rest &= rest - 1;
             self.queue(space, row, column);
         }
-        open.count_ones()
     }
 
     /// Append a cell to the ring, or note its row.

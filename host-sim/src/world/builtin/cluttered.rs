@@ -35,11 +35,11 @@ pub(super) fn plan() -> Occupancy {
             continue;
         }
         placed.push([x, y, radius]);
-        if hash(trial, 3) % 3 == 0 {
+        if hash(trial, 3).is_multiple_of(3) {
             plan.disc(Class::Wall, [x, y], radius);
         } else {
             // A box whose corner lies on the circle.
-            let (a, b) = if hash(trial, 4) % 2 == 0 {
+            let (a, b) = if hash(trial, 4).is_multiple_of(2) {
                 (0.8, 0.6)
             } else {
                 (0.6, 0.8)

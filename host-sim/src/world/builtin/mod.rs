@@ -103,3 +103,85 @@ pub(super) fn draw(name: &str) -> Option<World> {
     });
     Some(World::flat(world.name, (world.plan)(), starts.collect()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::{CellSet, Coverage};
+    use crate::robot::{Footprint, RADIUS_M};
+
+    #[test]
+    fn the_robot_fits_at_every_start_and_can_turn_there() {
+        for builtin in builtins() {
+            let world = World::builtin(builtin.name).expect("listed");
+            assert!(!world.starts().is_empty());
+            for start in world.starts() {
+                let turned = |k: u32| Start {
+                    yaw_rad: f64::from(k),
+                    ..*start
+                };
+                let clearance = (0..6)
+                    .map(|k| world.clearance_m(&Footprint::PIONEER_3AT, turned(k)))
+                    .fold(f64::INFINITY, f64::min);
+                assert!(clearance > 0.1, "{}: {clearance}", builtin.name);
+            }
+        }
+    }
+
+    /// Share of the free floor around the first start that the robot's disc could see.
+    fn visible_share(name: &str) -> f64 {
+        let world = World::builtin(name).expect("listed");
+        let start = world.starts()[0];
+        let free = CellSet::free(&world, start).count() as f64 * 0.0025;
+        Coverage::new(&world, start, RADIUS_M, 12.0).reachable_m2() / free
+    }
+
+    #[test]
+    fn every_room_is_as_open_as_the_description_says() {
+        for name in [
+            "office",
+            "cave",
+            "loop",
+            "cluttered",
+            "hall",
+            "empty-hall",
+            "narrow-doors",
+        ] {
+            let share = visible_share(name);
+            assert!((0.99..1.01).contains(&share), "{name}: {share}");
+        }
+        assert!(visible_share("unreachable-room") < 0.99);
+        let closet = World::builtin("boxed-in").expect("listed");
+        assert_eq!(CellSet::free(&closet, closet.starts()[0]).count(), 400);
+    }
+
+    #[test]
+    fn starts_of_a_world_lie_in_one_piece() {
+        for builtin in builtins() {
+            let world = World::builtin(builtin.name).expect("listed");
+            let reach = CellSet::reach(&world, world.starts()[0], RADIUS_M);
+            for start in world.starts() {
+                let cell = world.occupancy().cell_at(start.x_m, start.y_m);
+                assert!(reach.contains(cell), "{} {start:?}", builtin.name);
+            }
+        }
+    }
+
+    #[test]
+    fn doors_are_as_wide_as_they_say() {
+        let world = World::builtin("narrow-doors").expect("listed");
+        let grid = world.occupancy();
+        // Along the middle of the wall with the doors.
+        let j = grid.cell_at(0.0, 2.7).j;
+        let mut widths = vec![0];
+        for i in 0..grid.width() as i64 {
+            if grid.is_solid(super::super::GridCell { i, j }) {
+                widths.push(0);
+            } else if let Some(last) = widths.last_mut() {
+                *last += 1;
+            }
+        }
+        widths.retain(|cells| *cells > 0);
+        assert_eq!(widths, [13, 14, 15, 16, 18]);
+    }
+}
