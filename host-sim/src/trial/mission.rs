@@ -104,6 +104,14 @@ impl From<LinkError> for MissionError {
     }
 }
 
+/// Whether the robot can stand where the mission starts, before anything else is spent on it.
+///
+/// # Errors
+/// As [`WorldError::Start`].
+pub fn check(mission: &Mission, world: &World) -> Result<(), WorldError> {
+    Simulator::new(world, sim_config(mission)).map(|_| ())
+}
+
 /// Explore `world` over `link`.
 ///
 /// # Errors
