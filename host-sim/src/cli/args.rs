@@ -33,7 +33,7 @@ pub(super) enum Command {
 
 #[derive(Debug, Args)]
 pub(super) struct ExploreArgs {
-    /// World files (ROS map_server YAML) or names of built-in worlds
+    /// World files (YAML for ROS map servers) or names of built-in worlds
     #[arg(value_name = "WORLD", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
     /// What plans: frontier on the device, or a baseline on the host
