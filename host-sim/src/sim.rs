@@ -10,7 +10,7 @@ use fixed::types::I4F12;
 use crate::metrics::{Localization, Overlap, Safety};
 use crate::robot::{
     Drive, DriveLimits, Footprint, LaserNoise, LaserScanner, Odometry, OdometryModel, Pose,
-    RADIUS_M, Source, Velocity, laser,
+    RADIUS_M, Source, Velocity, laser, stand,
 };
 use crate::world::{World, WorldError};
 
@@ -61,6 +61,7 @@ pub struct Simulator<'w> {
     footprint: Footprint,
     time_ms: u32,
     commanded_ms: u32,
+    start_z_m: f64,
     pose: Pose,
     drive: Drive,
     odometry: Odometry,
@@ -89,9 +90,15 @@ impl<'w> Simulator<'w> {
         let pose = Pose {
             x_m: start.x_m,
             y_m: start.y_m,
-            z_m: world.ground_m(start.x_m, start.y_m).unwrap_or(0.0),
             yaw_rad: crate::robot::wrap(start.yaw_rad),
             ..Pose::default()
+        };
+        let Some(pose) = stand(world, &pose) else {
+            return Err(WorldError::Start {
+                file: world.name().to_owned(),
+                index: config.start,
+                reason: "there is no ground under the robot; choose a place with a surface".into(),
+            });
         };
         let scanner =
             |laser, sources| LaserScanner::new(&laser, config.laser_noise, config.seed, sources);
@@ -101,6 +108,7 @@ impl<'w> Simulator<'w> {
             footprint: Footprint::PIONEER_3AT,
             time_ms: 0,
             commanded_ms: 0,
+            start_z_m: pose.z_m,
             pose,
             drive: Drive::new(config.limits),
             odometry: Odometry::new(config.odometry, pose, config.seed),
@@ -123,9 +131,14 @@ impl<'w> Simulator<'w> {
     pub fn observe(&mut self) -> Observation {
         self.localization
             .add(self.pose.distance_m(self.odometry.pose()));
+        let believed = self.odometry.pose();
+        let above_start = Pose {
+            z_m: believed.z_m - self.start_z_m,
+            ..*believed
+        };
         let mut observation = Observation {
             time_ms: self.time_ms,
-            pose: self.odometry.pose().to_wire(),
+            pose: above_start.to_wire(),
             velocity: self.odometry.velocity().to_wire(),
             ..Observation::default()
         };
@@ -163,21 +176,28 @@ impl<'w> Simulator<'w> {
             .advance(&self.pose, forward_m, turn_rad, velocity);
     }
 
-    /// Moves if nothing solid is in the way, and says whether it did.
+    /// Moves if nothing solid is in the way, and says whether it did. A robot that fell lies where it fell.
     fn substep(&mut self, velocity: Velocity, seconds: f64) -> bool {
         let next = self.pose.driven(velocity, seconds);
+        if self.safety.falls > 0 {
+            self.drive.halt();
+            return false;
+        }
         if self
             .footprint
             .overlaps(self.world, next.x_m, next.y_m, next.yaw_rad)
         {
             self.drive.halt();
-            if !self.in_contact {
-                self.safety.collisions += 1;
-            }
+            self.safety.collisions += u32::from(!self.in_contact);
             self.in_contact = true;
             self.safety.min_clearance_m = 0.0;
             return false;
         }
+        let Some(next) = stand(self.world, &next) else {
+            self.drive.halt();
+            self.safety.falls += 1;
+            return false;
+        };
         self.path_length_m += velocity.linear_mps.abs() * seconds;
         self.pose = next;
         self.track_clearance();
@@ -291,96 +311,4 @@ impl<'w> Simulator<'w> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn twist(linear: f64, angular: f64) -> Option<Twist> {
-        let velocity = Velocity {
-            linear_mps: linear,
-            angular_radps: angular,
-        };
-        Some(velocity.to_wire())
-    }
-
-    fn office() -> World {
-        World::builtin("office").expect("built in")
-    }
-
-    #[test]
-    fn same_seed_same_run() {
-        let world = office();
-        let run = |seed| {
-            let config = SimConfig {
-                seed,
-                odometry: OdometryModel::Noisy(crate::robot::OdometryNoise::default()),
-                ..SimConfig::default()
-            };
-            let mut sim = Simulator::new(&world, config).expect("fits");
-            let mut seen = Vec::new();
-            for step in 0..40 {
-                seen.push(sim.observe());
-                sim.drive(twist(0.4, if step % 9 < 4 { 0.7 } else { -0.6 }));
-            }
-            (seen, sim.odometry_pose().x_m.to_bits())
-        };
-        assert_eq!(run(5), run(5));
-        assert_ne!(run(5).0, run(6).0);
-    }
-
-    #[test]
-    fn a_wall_stops_the_robot_and_counts_once() {
-        let world = office();
-        let mut sim = Simulator::new(&world, SimConfig::default()).expect("fits");
-        for _ in 0..300 {
-            sim.drive(twist(0.7, 0.0));
-        }
-        assert_eq!(sim.safety().collisions, 1);
-        assert_eq!(sim.safety().min_clearance_m, 0.0);
-        // The corridor ends at x = 24.2, the robot's nose is 0.254 ahead.
-        let nose_m = sim.pose().x_m + 0.254;
-        assert!((24.19..24.2).contains(&nose_m), "{nose_m}");
-        assert!((sim.path_length_m() - (sim.pose().x_m - 12.0)).abs() < 1e-9);
-        // Back off and hit it again: another contact.
-        for speed in [-0.3, 0.5] {
-            for _ in 0..20 {
-                sim.drive(twist(speed, 0.0));
-            }
-        }
-        assert_eq!(sim.safety().collisions, 2);
-    }
-
-    #[test]
-    fn silence_stops_the_robot_after_the_stale_limit() {
-        let world = office();
-        let mut sim = Simulator::new(&world, SimConfig::default()).expect("fits");
-        for _ in 0..10 {
-            sim.drive(twist(0.25, 0.0));
-        }
-        sim.drive(None);
-        // 400 ms after the last command it still counts.
-        assert!((sim.velocity().linear_mps - 0.25).abs() < 1e-9);
-        sim.drive(None);
-        assert!((sim.velocity().linear_mps - 0.19).abs() < 1e-9);
-        sim.drive(None);
-        sim.drive(None);
-        sim.drive(None);
-        assert_eq!(sim.velocity(), Velocity::default());
-    }
-
-    #[test]
-    fn truth_starts_in_the_world_frame() {
-        let world = office();
-        let mut sim = Simulator::new(&world, SimConfig::default()).expect("fits");
-        let seen = sim.observe();
-        assert_eq!(seen.pose.x.to_num::<f64>(), 12.0);
-        assert_eq!(seen.pose.y.to_num::<f64>(), 7.0);
-        assert_eq!(seen.scans.len(), 2);
-        assert_eq!(seen.scans[0].ranges_mm.len(), 181);
-        // Straight ahead, the tilted laser meets the ground at 0.45 m / sin 20°.
-        let ground = f64::from(seen.scans[1].ranges_mm[90]) / 1000.0;
-        assert!(
-            (ground - 0.45 / 20.0_f64.to_radians().sin()).abs() < 0.05,
-            "{ground}"
-        );
-    }
-}
+mod tests;

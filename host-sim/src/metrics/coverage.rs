@@ -231,7 +231,7 @@ mod tests {
     }
 
     impl Seen {
-        /// What perfect beams see from every fifth cell of reach in both directions.
+        /// What perfect beams see from every eighth cell of reach in both directions.
         fn from_everywhere(world: &World, start: Start) -> Self {
             let [columns, rows] = world.size_m().map(|m| (m / MAP_CELL_M) as i32 + 3);
             let mut seen = Self {
@@ -240,8 +240,8 @@ mod tests {
             };
             let reach = CellSet::reach(world, start, 0.3);
             let grid = world.occupancy();
-            for j in (0..grid.height() as i64).step_by(5) {
-                for i in (0..grid.width() as i64).step_by(5) {
+            for j in (0..grid.height() as i64).step_by(8) {
+                for i in (0..grid.width() as i64).step_by(8) {
                     let cell = GridCell { i, j };
                     if reach.contains(cell) {
                         seen.look_around(world, grid.centre(cell));

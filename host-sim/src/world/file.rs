@@ -344,3 +344,46 @@ impl World {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    const WHOLE: &str = "image: walls.png  # a plan\nresolution: 0.05\norigin: [-12.0, -8.0, 0.0]\nnegate: 0\n\
+        occupied_thresh: 0.65\nfree_thresh: 0.196\nwall_height: 1.5\n\
+        elevation: {image: heights.png, z_min: -2.0, z_max: 3.0, no_data: 0}\nrobots: [[0.0, 0.0, 0.0]]\n";
+
+    fn read(text: &str) -> Result<(), String> {
+        let document = yaml::parse(text)?;
+        let said = |bad: BadKey| format!("{}: {}", bad.key, bad.reason);
+        let keys = Table::new("", &document, &KEYS).map_err(said)?;
+        Plan::read(&keys).map(|_| ()).map_err(said)
+    }
+
+    #[test]
+    fn damaged_world_files_are_refused_in_one_line_or_read() {
+        assert_eq!(read(WHOLE), Ok(()));
+        let mut rng = ChaCha8Rng::seed_from_u64(13);
+        let marks = b"[]{}:,-#'\"|>&*!%\t\n 0a.~?";
+        let mut refused = 0;
+        for _ in 0..20_000 {
+            let mut bytes = WHOLE.as_bytes().to_vec();
+            for _ in 0..1 + rng.next_u32() % 3 {
+                let at = rng.next_u32() as usize % bytes.len();
+                let mark = marks[rng.next_u32() as usize % marks.len()];
+                match rng.next_u32() % 3 {
+                    0 => bytes[at] = mark,
+                    1 => bytes.insert(at, mark),
+                    _ => bytes.truncate(at.max(1)),
+                }
+            }
+            if let Err(reason) = read(&String::from_utf8_lossy(&bytes)) {
+                assert!(!reason.contains('\n'), "{reason}");
+                refused += 1;
+            }
+        }
+        assert!(refused > 10_000, "{refused}");
+    }
+}

@@ -129,3 +129,54 @@ impl Image {
         self.transparent.get(index).copied().unwrap_or(false)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    fn png() -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 5, 4);
+        encoder.set_color(png::ColorType::Rgba);
+        let mut writer = encoder.write_header().expect("header");
+        writer.write_image_data(&[77; 80]).expect("data");
+        drop(writer);
+        bytes
+    }
+
+    #[test]
+    fn damaged_images_are_refused_or_read_and_never_worse() {
+        let mut rng = ChaCha8Rng::seed_from_u64(12);
+        let whole: [&[u8]; 3] = [
+            b"P5 5 4 255\n01234567890123456789",
+            b"P2 2 2 9\n# grey\n1 2 3 4\n",
+            &png(),
+        ];
+        let (mut read, mut refused) = (0, 0);
+        for round in 0..30_000 {
+            let mut bytes = whole[round % 3].to_vec();
+            for _ in 0..1 + rng.next_u32() % 3 {
+                let at = rng.next_u32() as usize % bytes.len();
+                match rng.next_u32() % 3 {
+                    0 => bytes[at] = rng.next_u32() as u8,
+                    1 => bytes.truncate(at.max(1)),
+                    _ => bytes.insert(at, rng.next_u32() as u8),
+                }
+            }
+            match Image::decode(&bytes) {
+                Ok(image) => {
+                    assert_eq!(image.samples.len(), image.width * image.height);
+                    assert!(image.samples.iter().all(|sample| *sample <= image.full));
+                    read += 1;
+                }
+                Err(error) => {
+                    assert!(!error.to_string().contains('\n'), "{error}");
+                    refused += 1;
+                }
+            }
+        }
+        assert!(read > 1000 && refused > 10_000, "{read} {refused}");
+    }
+}

@@ -108,6 +108,17 @@ impl World {
         Self::new(name, occupancy, None, WALL_HEIGHT_M, starts)
     }
 
+    /// A world of hills. The starts are not checked.
+    #[must_use]
+    pub fn uneven(
+        name: &str,
+        occupancy: Occupancy,
+        elevation: Elevation,
+        starts: Vec<Start>,
+    ) -> Self {
+        Self::new(name, occupancy, Some(elevation), WALL_HEIGHT_M, starts)
+    }
+
     fn new(
         name: &str,
         occupancy: Occupancy,

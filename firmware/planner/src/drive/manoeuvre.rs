@@ -3,7 +3,7 @@
 //! In a passage narrower than the robot's diagonal it cannot turn everywhere, and following the field alone wedges it. The
 //! search (A* over poses, in the manner of hybrid A*) starts where the robot stands and ends at a pose from which the field
 //! can be followed: aligned with the field's heading *there*, with [`GO_ON_M`] free ahead. Poses are kept exactly; of those
-//! that fall into the same cell of 4 cm × 4 cm × 7.5° only the first is.
+//! that fall into the same cell of 3 cm × 3 cm × 7.5° only the first is.
 //!
 //! Invariant: every pose on the way keeps the margin. Units: metres, radians; robot frame at the start.
 
@@ -14,13 +14,13 @@ use crate::geometry::Twist;
 use crate::math;
 
 /// Motions of a plan at the most.
-pub const MOST_MOTIONS: usize = 48;
+pub const MOST_MOTIONS: usize = 64;
 /// Periods that a motion takes.
 const PERIODS: u8 = 2;
 /// Poses looked at in a search.
-const MOST_NODES: usize = 600;
+const MOST_NODES: usize = 1000;
 /// Length of a straight or curved motion, metres.
-const LENGTH_M: f32 = 0.04;
+const LENGTH_M: f32 = 0.03;
 /// Turn of a motion on the spot, radians: 7.5°.
 const TURN_RAD: f32 = math::PI / 24.0;
 /// Turn of a curved motion, radians.

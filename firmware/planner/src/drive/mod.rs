@@ -23,8 +23,11 @@ use crate::math;
 const MARGIN_M: f32 = 0.06;
 /// Clearance kept when creeping through a narrow place, metres: two sigma of a range.
 const CREEP_MARGIN_M: f32 = 0.025;
-/// Clearance planned for in a manoeuvre, metres; driving it may use some up.
-const PLAN_MARGIN_M: f32 = 0.03;
+/// Clearances planned for in a manoeuvre, metres, the wider first. The nearest of many points of a wall is two sigma nearer
+/// than the wall, so there is more room than the narrower one says.
+const PLAN_MARGINS_M: [f32; 2] = [0.03, 0.012];
+/// Clearance kept while a manoeuvre is driven, metres.
+const PLAN_KEPT_M: f32 = 0.008;
 /// Speed at and below which the robot creeps, metres a second.
 const CREEP_MPS: f32 = 0.15;
 /// Turn rate wished for a radian of error, 1/s.
@@ -66,10 +69,8 @@ impl Drive {
                 if creeps { CREEP_MARGIN_M } else { MARGIN_M },
             )
         };
-        if let Some(twist) = self
-            .plan
-            .next(config.period_s)
-            .filter(|&twist| admits(twist))
+        if let Some(twist) = self.plan.next(config.period_s)
+            && surround.admits(twist, now, config, PLAN_KEPT_M)
         {
             return twist;
         }
@@ -88,11 +89,12 @@ impl Drive {
         {
             return twist;
         }
-        self.plan =
-            manoeuvre::search(surround, heading_at, PLAN_MARGIN_M, scratch).unwrap_or_default();
-        self.plan
-            .next(config.period_s)
-            .filter(|&twist| admits(twist))
+        let found = PLAN_MARGINS_M
+            .iter()
+            .find_map(|&margin_m| manoeuvre::search(surround, &heading_at, margin_m, scratch));
+        self.plan = found.unwrap_or_default();
+        let next = self.plan.next(config.period_s);
+        next.filter(|&twist| surround.admits(twist, now, config, PLAN_KEPT_M))
             .unwrap_or_default()
     }
 }

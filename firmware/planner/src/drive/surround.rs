@@ -1,7 +1,7 @@
 //! The near field seen from the robot, and whether a motion touches it.
 //!
 //! The robot is its rectangle. A motion is clear if the rectangle, at places at most [`CHECK_EVERY_M`] apart for any part of it,
-//! keeps a margin from every near point; a point that is nearer than the margin already may not come nearer.
+//! keeps a margin from every near point; a point that is nearer than the margin already may hardly come nearer.
 //!
 //! Units: metres, seconds, radians; robot frame, x forward.
 
@@ -24,8 +24,10 @@ const CHECK_EVERY_M: f32 = 0.05;
 const TICK_S: f32 = 0.1;
 /// Steps of it at the most: one period and the braking from full speed.
 const MOST_TICKS: u32 = 40;
-/// What a point that is too near may lose of its distance to rounding, metres.
+/// What a point nearer than the margin may lose of its distance in one motion, metres.
 const SLACK_M: f32 = 0.004;
+/// Nothing may come nearer than this, however often it loses a little, metres.
+const FLOOR_M: f32 = 0.01;
 
 /// A place of the robot relative to where it is now.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -115,7 +117,8 @@ impl Surround {
         self.threats.iter().all(|threat| {
             let (dx, dy) = (threat.at.x_m - place.x_m, threat.at.y_m - place.y_m);
             let now = overhang(dx * cos + dy * sin, dy * cos - dx * sin);
-            now >= margin_m.min(threat.clearance_m - SLACK_M)
+            let least = (threat.clearance_m - SLACK_M).max(FLOOR_M.min(threat.clearance_m));
+            now >= margin_m.min(least - 1e-5)
         })
     }
 

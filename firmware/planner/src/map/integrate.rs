@@ -72,7 +72,7 @@ pub(crate) fn informative_range_mm(ranges_mm: &[u16], i: usize, limit_mm: u16) -
     let range = *ranges_mm.get(i)?;
     let returned = |k: Option<usize>| {
         k.and_then(|k| ranges_mm.get(k))
-            .is_some_and(|&range| range != INVALID_MM && range < limit_mm)
+            .is_none_or(|&range| range != INVALID_MM && range < limit_mm)
     };
     let dropout = range >= limit_mm && returned(i.checked_sub(1)) && returned(Some(i + 1));
     (range != INVALID_MM && !dropout).then_some(range)
@@ -96,7 +96,9 @@ pub(crate) fn level_beams<'a>(
         } else {
             f32::from(range)
         } * 1e-3;
+        // A no-return goes through all its cells: one of them may be an obstacle, which ends it.
         let free_from_m = match i & 3 {
+            _ if missing => 0.0,
             0 => 0.0,
             2 => 1.2,
             _ => 2.4,

@@ -128,6 +128,37 @@ mod tests {
         }
     }
 
+    #[test]
+    fn drawings_stay_as_they_are() {
+        // A change of a drawing changes every result on it: free cells, and a sum that depends on their places.
+        let fingerprint = |world: &World| {
+            let classes = world.occupancy().classes().iter();
+            classes.fold((0, 0_u32), |(free, sum), class| {
+                let bit = u32::from(*class == super::super::Class::Free);
+                (free + bit, sum.wrapping_mul(31).wrapping_add(bit))
+            })
+        };
+        let prints: Vec<_> = builtins()
+            .iter()
+            .map(|builtin| {
+                let world = World::builtin(builtin.name).expect("listed");
+                (builtin.name, fingerprint(&world))
+            })
+            .collect();
+        let expected = [
+            ("office", (115_412, 3_156_533_628)),
+            ("cave", (76_337, 1_078_126_173)),
+            ("loop", (52_256, 1_009_329_408)),
+            ("cluttered", (86_345, 3_978_289_357)),
+            ("hall", (229_376, 3_185_510_912)),
+            ("empty-hall", (360_000, 281_830_400)),
+            ("narrow-doors", (44_784, 3_584_075_896)),
+            ("unreachable-room", (50_296, 2_037_409_664)),
+            ("boxed-in", (14_016, 405_072_896)),
+        ];
+        assert_eq!(prints, expected);
+    }
+
     /// Share of the free floor around the first start that the robot's disc could see.
     fn visible_share(name: &str) -> f64 {
         let world = World::builtin(name).expect("listed");
