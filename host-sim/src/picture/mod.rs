@@ -1,6 +1,6 @@
 //! `run.png`: the map, the skeleton, the last window's field and the path coloured by time, with a legend.
 //!
-//! A map cell is a square of two to six whole pixels, so that the map stays crisp; everything else is antialiased. North
+//! A map cell is a square of whole pixels, two to six but for the smallest maps, so that the map stays crisp; everything else is antialiased. North
 //! is up.
 
 mod canvas;
@@ -64,7 +64,11 @@ impl Frame {
     fn around(map: &GridMap) -> Self {
         let side = |cells: usize| cells.max(1) as i32 + 2 * RIM;
         let (columns, rows) = (side(map.width), side(map.height));
-        let cell_px = (GOOD_SIDE / columns.max(rows)).clamp(2, 6);
+        let longest = columns.max(rows);
+        // A closet is drawn larger, so that its marks do not cover it.
+        let cell_px = (GOOD_SIDE / longest)
+            .clamp(2, 6)
+            .max((LEAST_WIDTH / longest).min(14));
         Self {
             left: MARGIN + (LEAST_WIDTH - columns * cell_px).max(0) / 2,
             top: HEADER,

@@ -108,7 +108,7 @@ fn a_run_that_saw_nothing_still_has_a_picture() {
 #[test]
 fn large_maps_keep_whole_pixels() {
     let side = |cells: usize| Frame::around(&GridMap::unknown(0, 0, cells, cells / 2)).cell_px;
-    assert_eq!([20, 300, 640, 1_300].map(side), [6, 4, 2, 2]);
+    assert_eq!([20, 100, 300, 640, 1_300].map(side), [14, 6, 4, 2, 2]);
 }
 
 #[test]
