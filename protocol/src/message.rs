@@ -288,6 +288,10 @@ pub enum Cause {
     Panic,
     /// A processor fault; [`Crash::at`] is the program counter.
     Fault,
+    /// The stack ran out of its room; [`Crash::at`] is 0.
+    StackOverflow,
+    /// The main loop did not come round in time; [`Crash::at`] is 0.
+    Watchdog,
 }
 
 /// A crash: the program stopped, commands zero velocity and reboots.
@@ -496,6 +500,8 @@ impl fmt::Display for Crash {
         match self.cause {
             Cause::Panic => write!(f, "panic at {}:{}", self.file, self.at),
             Cause::Fault => write!(f, "processor fault at {:#010x}", self.at),
+            Cause::StackOverflow => f.write_str("stack overflow"),
+            Cause::Watchdog => f.write_str("watchdog: the main loop did not come round"),
         }
     }
 }

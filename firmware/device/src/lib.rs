@@ -12,6 +12,7 @@
 //! | [`pilot`] | the session's state: started, paused, stopped; used directly it is a link without bytes |
 //! | [`session`] | the conversation: hello, duplicates, silence, logs |
 //! | [`signal`] | what the status LED shows |
+//! | [`ring`] | bytes from an interrupt to the main loop |
 //! | [`port`] | serial line, e-stop and LED through `embedded-io` and `embedded-hal` |
 //!
 //! The big memories ([`Memory`]) are lent to every call, so that a board can put them where it has room.
@@ -30,6 +31,7 @@ pub mod limits;
 pub mod meter;
 pub mod pilot;
 pub mod port;
+pub mod ring;
 pub mod session;
 pub mod signal;
 

@@ -140,7 +140,7 @@ pub fn open_line(image: &Path) -> Result<QemuLine, LinkError> {
 
 #[cfg(unix)]
 fn socket_path() -> PathBuf {
-    use std::sync::atomic::{AtomicU32, Ordering};
+    use core::sync::atomic::{AtomicU32, Ordering};
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
     let name = format!("fieldline-{}-{count}.sock", std::process::id());

@@ -50,7 +50,7 @@ pub struct Answer {
     pub residual: f32,
     /// Heading of −∇p at the robot; `null` without a robot or where the field is flat.
     pub heading_rad: Option<f32>,
-    /// Mean |p_r − p| around the robot; `null` without a robot.
+    /// Mean `|p_r − p|` around the robot; `null` without a robot.
     pub p_diff: Option<f32>,
     /// No goal can be reached (from the robot, if there is one): there is nothing to follow.
     pub flat: bool,
