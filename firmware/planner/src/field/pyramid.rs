@@ -226,11 +226,14 @@ impl Level<'_> {
         let rows = self.factors[side..][..side * side].chunks_exact_mut(side);
         for (y, row) in rows.enumerate() {
             let coarse_row = &coarse[y / 2 * coarse_side..][..coarse_side];
-            for (pair, &x) in row.chunks_mut(2).zip(coarse_row) {
+            let (pairs, last) = row.as_chunks_mut::<2>();
+            for ([west, east], &x) in pairs.iter_mut().zip(coarse_row) {
                 let factor = overcorrect(x);
-                for x in pair {
-                    *x *= factor;
-                }
+                *west *= factor;
+                *east *= factor;
+            }
+            if let ([last], Some(&x)) = (last, coarse_row.last()) {
+                *last *= overcorrect(x);
             }
         }
     }
