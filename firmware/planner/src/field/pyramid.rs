@@ -1,6 +1,6 @@
 //! The coarse levels of the multigrid: blocks of 2 × 2 blocks, and one correction factor for each.
 //!
-//! Multiply all values of block J by a factor x_J, and ask that the sum of the block's equations holds:
+//! Multiply all values of block J by a factor `x_J`, and ask that the sum of the block's equations holds:
 //!
 //! ```text
 //! D_J x_J = Σ_K A_JK x_K + b_J        K: the four blocks beside J
