@@ -97,7 +97,7 @@ fn starting_anew_forgets_what_was_half_done() {
             while thinning.advance(&mut plane, &[], 50) == Progress::Pending {}
             assert_eq!(map.with_words(&words), map.thinned(), "map {round}");
         } else {
-            let _ = thinning.advance(&mut plane, rng.below(400) as u32);
+            let _ = thinning.advance(&mut plane, &[], rng.below(400) as u32);
         }
     }
 }
