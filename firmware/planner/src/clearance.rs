@@ -2,7 +2,7 @@
 //!
 //! A cell is *passable* if no obstacle cell lies in the disc of the robot's radius around it; unknown cells obstruct
 //! nothing. Everything that plans (skeleton, window) works on passable cells, so a gap the robot does not fit through is no
-//! way, and a door of 0.8 m keeps a lane of two or three cells. Bit-parallel: 32 columns at a time over rows of 64 bits.
+//! way, and a door of 0.8 m keeps a lane of two or three cells. Where the robot has been is passable too. Bit-parallel: 32 columns at a time over rows of 64 bits.
 //!
 //! Units: map cells.
 
@@ -99,7 +99,7 @@ pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
         visit(
             row,
             Strip {
-                passable: middle(!blocked),
+                passable: middle(!blocked | (here.trail() & !here.obstacle())),
                 unknown: middle(here.unknown()),
                 obstacle: middle(here.obstacle()),
             },
@@ -113,6 +113,10 @@ pub fn is_passable<const TILES: usize, const SLOTS: usize>(
     disc: &Disc,
     cell: crate::geometry::Cell,
 ) -> bool {
+    let stands = |cell| matches!(tiles.class(cell), Class::Obstacle | Class::Negative);
+    if tiles.row(cell.x, cell.y).trail() & 1 == 1 {
+        return !stands(cell);
+    }
     (-disc.reach..=disc.reach).all(|dy| {
         let half = disc
             .half_widths

@@ -4,6 +4,9 @@
 //! may start anywhere: only the *extent* of what is known has to fit the box. Each tile row is two words: `low` and
 //! `high` bits of the class code, bit k = column k. Rows are read 64 cells at a time by everything that plans.
 //!
+//! Beside them a *trail*, one bit for 2 × 2 cells: where the robot's centre has been. Noise may close a passage behind the robot
+//! that is as narrow as it is; the trail keeps it open, because where the robot has been it can be.
+//!
 //! Invariant: `extent` covers every tile in use and is at most w by h tiles, so no two tiles share a slot.
 //! Units: cells of [`crate::geometry::CELL_M`].
 
@@ -41,6 +44,7 @@ pub enum NoRoom {
 pub struct Row {
     low: u64,
     high: u64,
+    trail: u64,
 }
 
 impl Row {
@@ -54,6 +58,12 @@ impl Row {
     #[must_use]
     pub const fn free(self) -> u64 {
         self.low & !self.high
+    }
+
+    /// Cells on or beside the robot's way so far.
+    #[must_use]
+    pub const fn trail(self) -> u64 {
+        self.trail
     }
 
     /// Cells never measured.
@@ -109,6 +119,8 @@ pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     pool: [TileRows; TILES],
     /// Pool index + 1 of the tile in a slot, 0 where there is none.
     directory: [u16; SLOTS],
+    /// Where the robot has been in the tile of a slot: a row of 2 × 2-cell blocks each.
+    trail: [[u16; TILE_SIDE as usize / 2]; SLOTS],
     used: u16,
     width: i32,
     height: i32,
@@ -124,6 +136,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         Self {
             pool: [[[0; 2]; TILE_SIDE as usize]; TILES],
             directory: [0; SLOTS],
+            trail: [[0; TILE_SIDE as usize / 2]; SLOTS],
             used: 0,
             width: 0,
             height: 0,
@@ -142,6 +155,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Forget everything; the box becomes `width` × `height` tiles. A box that does not [`fit`](Self::fits) holds nothing.
     pub fn reset(&mut self, width: u8, height: u8) {
         self.directory.fill(0);
+        self.trail = [[0; TILE_SIDE as usize / 2]; SLOTS];
         self.used = 0;
         let fits = Self::fits(width, height);
         self.width = if fits { i32::from(width) } else { 0 };
@@ -283,26 +297,53 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         Ok(())
     }
 
+    /// The robot's centre has been in this cell.
+    pub fn note_visit(&mut self, cell: Cell) {
+        if !self.in_extent(cell.x >> 5, cell.y >> 5) {
+            return;
+        }
+        let slot = self.slot(cell.x >> 5, cell.y >> 5);
+        let row = self
+            .trail
+            .get_mut(slot)
+            .and_then(|rows| rows.get_mut((cell.y & 31) as usize / 2));
+        if let Some(row) = row {
+            *row |= 1 << ((cell.x & 31) / 2);
+        }
+    }
+
     /// The 64 cells from `x` on in row `y`.
     #[must_use]
     pub fn row(&self, x: i32, y: i32) -> Row {
-        let (tile_x, shift) = (x >> 5, (x & 31) as u32);
+        let (tile_x, tile_y, shift) = (x >> 5, y >> 5, (x & 31) as u32);
         let mut row = Row::default();
         for k in 0..3 {
-            let Some(rows) = self.rows(tile_x + k, y >> 5) else {
+            if !self.in_extent(tile_x + k, tile_y) {
                 continue;
-            };
-            let Some(&[low, high]) = rows.get((y & 31) as usize) else {
-                continue;
-            };
+            }
+            let slot = self.slot(tile_x + k, tile_y);
             let place = |word: u32| match k {
                 0 => u64::from(word) >> shift,
                 1 => u64::from(word) << 32 >> shift,
                 _ if shift == 0 => 0,
                 _ => u64::from(word) << (64 - shift),
             };
-            row.low |= place(low);
-            row.high |= place(high);
+            let index = self
+                .directory
+                .get(slot)
+                .and_then(|entry| entry.checked_sub(1));
+            let rows = index.and_then(|index| self.pool.get(usize::from(index)));
+            if let Some(&[low, high]) = rows.and_then(|rows| rows.get((y & 31) as usize)) {
+                row.low |= place(low);
+                row.high |= place(high);
+            }
+            let trail = self
+                .trail
+                .get(slot)
+                .and_then(|rows| rows.get((y & 31) as usize / 2));
+            if let Some(&blocks) = trail.filter(|&&blocks| blocks != 0) {
+                row.trail |= place(twice(blocks));
+            }
         }
         row
     }
@@ -330,6 +371,16 @@ impl<const TILES: usize, const SLOTS: usize> Default for Tiles<TILES, SLOTS> {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// Every bit doubled.
+const fn twice(bits: u16) -> u32 {
+    let mut wide = bits as u32;
+    wide = (wide | wide << 8) & 0x00ff_00ff;
+    wide = (wide | wide << 4) & 0x0f0f_0f0f;
+    wide = (wide | wide << 2) & 0x3333_3333;
+    wide = (wide | wide << 1) & 0x5555_5555;
+    wide | wide << 1
 }
 
 #[cfg(test)]
@@ -433,6 +484,19 @@ mod tests {
             (tiles.used(), tiles.class(Cell { x: 96, y: 0 })),
             (4, Class::Free)
         );
+    }
+
+    #[test]
+    fn the_trail_covers_blocks_of_two_by_two() {
+        let mut tiles = small();
+        for (x, y) in [(-3, 9), (31, 9), (32, 40)] {
+            tiles.set(Cell { x, y }, Class::Free).unwrap();
+            tiles.note_visit(Cell { x, y });
+        }
+        assert_eq!(tiles.row(-10, 8).trail(), 0b11 << 6 | 0b11 << 40);
+        assert_eq!(tiles.row(-10, 9).trail(), tiles.row(-10, 8).trail());
+        assert_eq!(tiles.row(30, 41).trail(), 0b11 << 2);
+        assert_eq!(tiles.row(-10, 10).trail(), 0);
     }
 
     #[test]

@@ -41,9 +41,8 @@ const STUCK_DROPS: u8 = 3;
 const HEAD_START: u32 = 10;
 /// Rounds in a row without a field at the robot after which a goal is dropped.
 const FLAT_ROUNDS: u8 = 4;
-/// Rounds in a row that must find nothing before the exploration is over: the second one began after the first was found
-/// empty, so it saw everything there is.
-const EMPTY_ROUNDS: u8 = 2;
+/// Rounds in a row that must find nothing before the exploration is over: noise may close a way for a moment.
+const EMPTY_ROUNDS: u8 = 5;
 
 /// What the strategy remembers.
 #[derive(Debug)]
