@@ -16,8 +16,8 @@
 
 use crate::clearance::Disc;
 use crate::config::Config;
-use crate::drive::{Drive, Place, Surround};
-use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, Solution, Window, descent, solve};
+use crate::drive::{self, Drive, Ground, Place, Surround};
+use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, Stop, Window, descent, solve};
 use crate::geometry::{Cell, Point, Pose, Twist};
 use crate::map::Map;
 use crate::map::integrate::is_level;
@@ -27,7 +27,7 @@ use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::Outlook;
 use crate::strategy::{self, Road};
 use crate::topology::Topology;
-use crate::view::{Rows, SCALES, View};
+use crate::view::{self, Rows, SCALES, View};
 
 /// Range code: nothing came back, so free up to the range limit.
 pub const NO_RETURN_MM: u16 = 16_383;
@@ -95,7 +95,13 @@ pub struct Workspace {
 }
 
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
-    const CHECK: () = assert!(SLOTS * 16 + RING <= SCRATCH, "the wave fits the scratch");
+    const CHECK: () = {
+        assert!(SLOTS * 16 + RING <= SCRATCH, "the wave fits the scratch");
+        assert!(
+            drive::manoeuvre::SCRATCH_WORDS <= SCRATCH,
+            "a search fits the scratch"
+        );
+    };
 
     /// An empty planner.
     #[must_use]
@@ -269,6 +275,10 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         };
     }
     sense(config, state, &input);
+    // A search for a manoeuvre has the scratch; until it is over the robot stands and plans nothing else.
+    if state.drive.is_searching() {
+        return steer(config, state, workspace, &input);
+    }
     let disc = Disc::new(config.robot_radius_m);
     if state
         .topology
@@ -282,7 +292,25 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
             ..Output::default()
         };
     }
-    follow(config, state, workspace, &disc, &input)
+    let Some((view, goal)) = local_goal(state, &disc, &input) else {
+        return Output::default();
+    };
+    charge(
+        &mut workspace.window,
+        &mut workspace.window_at,
+        &view,
+        &goal,
+    );
+    let solution = solve(
+        &mut workspace.window,
+        &mut workspace.scratch,
+        &config.solver,
+    );
+    Output {
+        cycles: solution.cycles + solution.sweeps,
+        budget_exhausted: solution.stop == Stop::Budget,
+        ..steer(config, state, workspace, &input)
+    }
 }
 
 /// Scans and odometry into the map and the near field.
@@ -339,8 +367,10 @@ fn replan<const TILES: usize, const SLOTS: usize>(
         input.time_ms,
         (residues, ring),
     );
-    if outlook == Outlook::Nothing {
-        state.status = conclude(state);
+    match outlook {
+        Outlook::Nothing => state.status = conclude(state),
+        Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
+        Outlook::Road | Outlook::Unsure => {}
     }
 }
 
@@ -357,74 +387,72 @@ fn conclude<const TILES: usize, const SLOTS: usize>(state: &State<TILES, SLOTS>)
     }
 }
 
-/// Local goal, local potential, descent, drive.
-fn follow<const TILES: usize, const SLOTS: usize>(
+/// Follow the window's field.
+fn steer<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
-    disc: &Disc,
     input: &Input<'_>,
 ) -> Output {
-    let robot = input.pose.point().cell();
-    let Some((view, goal)) = local_goal(state, disc, input) else {
+    let Workspace {
+        window,
+        window_at,
+        scratch,
+    } = workspace;
+    let Some((origin, scale)) = *window_at else {
         return Output::default();
     };
-    charge(
-        &mut workspace.window,
-        &mut workspace.window_at,
-        &view,
-        &goal,
-    );
-    let solution = solve(
-        &mut workspace.window,
-        &mut workspace.scratch,
-        &config.solver,
-    );
-    let (x, y) = view.position(input.pose.point());
-    let heading = descent::heading_at(&workspace.window, x, y);
+    let heading_at = |place: Place| heading_at(window, (origin, scale), &input.pose, place);
+    let here = heading_at(Place::default());
     let surround = Surround::new(&input.pose, state.near.points());
-    let velocity = match heading {
-        Some(_) => {
-            let heading_there =
-                |place: Place| heading_at(&workspace.window, &view, &input.pose, place);
-            let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
-            let drive = &mut state.drive;
-            drive.follow(config, heading_there, input.velocity, &surround, scratch)
-        }
+    let velocity = if here.is_some() {
+        let ground = Ground {
+            surround: &surround,
+            heading_at,
+        };
+        state.drive.follow(
+            config,
+            &ground,
+            input.velocity,
+            bytemuck::cast_slice_mut(scratch),
+        )
+    } else if is_at_goal(window, (origin, scale), input.pose.point()) {
         // In the goal's own cell there is no slope: look around until it is explored.
-        None if view
-            .place(robot)
-            .is_some_and(|place| View::has(&goal, place)) =>
-        {
-            Twist {
-                linear_mps: 0.0,
-                angular_radps: LOOK_AROUND_RADPS,
-            }
+        Twist {
+            linear_mps: 0.0,
+            angular_radps: LOOK_AROUND_RADPS,
         }
-        None => Twist::default(),
+    } else {
+        state.strategy.note_flat();
+        Twist::default()
     };
-    output(velocity, heading.unwrap_or(input.pose.yaw_rad), &solution)
+    Output {
+        velocity,
+        heading_rad: math::wrap(input.pose.yaw_rad + here.unwrap_or(0.0)),
+        ..Output::default()
+    }
+}
+
+fn is_at_goal(window: &Window, (origin, scale): (Cell, i32), robot: Point) -> bool {
+    let (x, y) = view::position((origin, scale), robot);
+    match (
+        usize::try_from(math::floor(x)),
+        usize::try_from(math::floor(y)),
+    ) {
+        (Ok(x), Ok(y)) => window.is_goal(x, y),
+        _ => false,
+    }
 }
 
 /// The field's heading at a place near the robot, radians to the left of the robot's own.
-fn heading_at(window: &Window, view: &View, pose: &Pose, place: Place) -> Option<f32> {
+fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Option<f32> {
     let (sin, cos) = math::sin_cos(pose.yaw_rad);
     let there = Point {
         x_m: pose.x_m + place.x_m * cos - place.y_m * sin,
         y_m: pose.y_m + place.x_m * sin + place.y_m * cos,
     };
-    let (x, y) = view.position(there);
+    let (x, y) = view::position(at, there);
     descent::heading_at(window, x, y).map(|heading| math::wrap(heading - pose.yaw_rad))
-}
-
-fn output(velocity: Twist, heading_rad: f32, solution: &Solution) -> Output {
-    Output {
-        velocity,
-        status: Status::Exploring,
-        heading_rad,
-        cycles: solution.cycles + solution.sweeps,
-        budget_exhausted: solution.stop == crate::field::Stop::Budget,
-    }
 }
 
 /// The smallest window that holds a local goal, and the goal's cells in it.

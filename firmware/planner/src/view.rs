@@ -2,8 +2,8 @@
 //!
 //! A window cell is `scale` × `scale` map cells (1, 2 or 4): where no centre cell is near, the window grows [Ouroboros,
 //! III-B] by growing its cells, at the same memory and time. It is passable if any of its map cells is: passable cells
-//! on the two sides of a wall are five cells apart, so no wall is lost at 20 cm. At 40 cm one would be, so there it must not
-//! hold an obstacle besides; that closes doors, but a window of this scale is only asked for in the open.
+//! on the two sides of a wall are five cells apart, so no wall is lost at 20 cm. At 40 cm one would be, so there all of
+//! its map cells must be passable; that closes doors, but a window of this scale is only asked for in the open.
 //!
 //! Invariant: `origin` is a multiple of `scale`; bit x of row y is the window cell whose least map cell is
 //! origin + scale·(x, y).
@@ -72,7 +72,7 @@ impl View {
             obstacle: [0; SIDE],
             unknown: [0; SIDE],
         };
-        let mut known: Rows = [0; SIDE];
+        let (mut known, mut blocked): (Rows, Rows) = ([0; SIDE], [0; SIDE]);
         let across = SIDE as i32 * scale;
         for block in 0..(across + 31) / 32 {
             let shift = (block * 32 / scale) as u32;
@@ -87,12 +87,13 @@ impl View {
                 put(&mut view.passable, strip.passable);
                 put(&mut view.obstacle, strip.obstacle);
                 put(&mut known, !strip.unknown);
+                put(&mut blocked, !strip.passable);
             });
         }
         let inside = (1u64 << SIDE) - 1;
         if scale == 4 {
-            for (passable, obstacle) in view.passable.iter_mut().zip(view.obstacle) {
-                *passable &= !obstacle;
+            for (passable, blocked) in view.passable.iter_mut().zip(blocked) {
+                *passable &= !blocked;
             }
         }
         for (unknown, known) in view.unknown.iter_mut().zip(known) {
@@ -111,17 +112,6 @@ impl View {
         let y = (cell.y - self.origin.y).div_euclid(self.scale);
         let inside = |at: i32| (0..SIDE as i32).contains(&at);
         (inside(x) && inside(y)).then_some((x as usize, y as usize))
-    }
-
-    /// A point in window cells.
-    #[must_use]
-    pub fn position(&self, point: Point) -> (f32, f32) {
-        let side = CELL_M * self.scale as f32;
-        let along = |at: f32, origin: i32| (at - origin as f32 * CELL_M) / side;
-        (
-            along(point.x_m, self.origin.x),
-            along(point.y_m, self.origin.y),
-        )
     }
 
     /// The map cell of a window cell (its middle).
@@ -188,6 +178,14 @@ impl View {
     }
 }
 
+/// A point in cells of the window whose least map cell and scale are given.
+#[must_use]
+pub fn position((origin, scale): (Cell, i32), point: Point) -> (f32, f32) {
+    let side = CELL_M * scale as f32;
+    let along = |at: f32, origin: i32| (at - origin as f32 * CELL_M) / side;
+    (along(point.x_m, origin.x), along(point.y_m, origin.y))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -242,19 +240,20 @@ mod tests {
                         x: view.origin.x + x as i32 * scale,
                         y: view.origin.y + y as i32 * scale,
                     };
-                    let (mut any, mut wall) = (false, false);
+                    let (mut any, mut all) = (false, true);
                     for k in 0..scale * scale {
                         let cell = Cell {
                             x: least.x + k % scale,
                             y: least.y + k / scale,
                         };
-                        any |= is_passable(&tiles, &disc, cell);
-                        wall |= tiles.class(cell) == Class::Obstacle;
+                        let passable = is_passable(&tiles, &disc, cell);
+                        any |= passable;
+                        all &= passable;
                     }
-                    any &= scale < 4 || !wall;
+                    let wanted = if scale < 4 { any } else { all };
                     assert_eq!(
                         View::has(&view.passable, (x, y)),
-                        any,
+                        wanted,
                         "scale {scale} ({x}, {y})"
                     );
                 }

@@ -21,6 +21,7 @@
 //! | --- | --- |
 //! | [`window`] | the cells: field, boundary, preferences; warm values across a move |
 //! | `reach` | which free cells a goal can be reached from, by bits |
+//! | `seed` | a first value for cells that have none |
 //! | `gauss_seidel` | one relaxation sweep, the papers' method |
 //! | `multigrid`, `pyramid` | one cycle of the fast method, and its coarse levels |
 //! | [`solver`] | which method, how long, and when to stop |
@@ -35,6 +36,7 @@ mod multigrid;
 mod pyramid;
 mod reach;
 mod runs;
+mod seed;
 
 pub mod descent;
 pub mod preference;

@@ -7,7 +7,7 @@
 //! q         ← one Gauss–Seidel sweep
 //! ```
 //!
-//! A cell's equation is taken four times over: 4 q = Σ w q_k with w = 1 ± ε/2, plus for the greater of two opposite
+//! A cell's equation is taken four times over, `4 q = Σ w q_k` with w = 1 ± ε/2, plus for the greater of two opposite
 //! neighbours. The blocks' origin alternates between cycles, so that no wall stays inside the same blocks.
 //!
 //! Invariant: 0 ≤ q ≤ GOAL. A cycle's cost hardly depends on the field's values.

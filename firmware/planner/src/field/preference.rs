@@ -4,15 +4,15 @@
 //! p_diff(r) = mean of |p_r − p_n| over the cells n of the kernel around the robot's cell r
 //! ```
 //!
-//! Conventions, on which the paper is silent: the kernel is 20 cells wide, an even number, so it covers x_r − 10 to
-//! x_r + 9 and y_r − 10 to y_r + 9; only free cells with a way to a goal count, not the robot's own; the mean is of absolute
-//! differences, as the signed mean of a harmonic field is about zero by the mean value property.
+//! Conventions, on which the paper is silent. The kernel is 20 cells wide, an even number: it covers 10 columns to the
+//! left of the robot's and 9 to the right, 10 rows below and 9 above. Only free cells with a way to a goal count, and
+//! not the robot's own. The mean is of absolute differences: the signed mean of a harmonic field is about zero.
 //!
-//! In q-form |p_r − p_n| = |q_r − q_n|, and small values keep their precision: right to 1e-5 down to 1e-34.
+//! In q-form `|p_r − p_n| = |q_r − q_n|`, and small values keep their precision: right to 1e-5 down to 1e-34.
 
 use super::window::{GOAL, SIDE, Window, index};
 
-/// K_n, width of the kernel in cells [Terrain, Table I].
+/// `K_n`, width of the kernel in cells [Terrain, Table I].
 pub const KERNEL_CELLS: usize = 20;
 
 /// `p_diff` at cell (x, y), where p runs from 0 to 1; 0 if the kernel holds no other reached cell.

@@ -1,6 +1,6 @@
 //! The coarse levels of the multigrid: blocks of 2 × 2 blocks, and one correction factor for each.
 //!
-//! Multiply all values of block J by a factor x_J, and ask that the sum of the block's equations holds:
+//! Multiply all values of block J by a factor `x_J`, and ask that the sum of the block's equations holds:
 //!
 //! ```text
 //! D_J x_J = Σ_K A_JK x_K + b_J        K: the four blocks beside J
@@ -226,11 +226,14 @@ impl Level<'_> {
         let rows = self.factors[side..][..side * side].chunks_exact_mut(side);
         for (y, row) in rows.enumerate() {
             let coarse_row = &coarse[y / 2 * coarse_side..][..coarse_side];
-            for (pair, &x) in row.chunks_mut(2).zip(coarse_row) {
+            let (pairs, last) = row.as_chunks_mut::<2>();
+            for ([west, east], &x) in pairs.iter_mut().zip(coarse_row) {
                 let factor = overcorrect(x);
-                for x in pair {
-                    *x *= factor;
-                }
+                *west *= factor;
+                *east *= factor;
+            }
+            if let ([last], Some(&x)) = (last, coarse_row.last()) {
+                *last *= overcorrect(x);
             }
         }
     }

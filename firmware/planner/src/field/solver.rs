@@ -10,7 +10,8 @@
 use super::gauss_seidel;
 use super::multigrid::{self, SCRATCH_FLOATS};
 use super::runs::Runs;
-use super::window::{SIDE, STRIDE, Window, index};
+use super::seed;
+use super::window::{SIDE, Window, index};
 
 /// Gauss–Seidel sweeps that cost about as much as a multigrid cycle.
 pub const SWEEPS_PER_CYCLE: u16 = 5;
@@ -20,14 +21,10 @@ pub const SWEEPS_PER_CYCLE: u16 = 5;
 const STRONG_ATTRACTION: f32 = 0.15;
 
 /// Cycles without a better error after which the multigrid gives up.
-const PATIENCE: u16 = 8;
+const PATIENCE: u16 = 12;
 
 /// Relative change in a block of sweeps, per sweep, below which Gauss–Seidel has converged.
 const SWEEP_TOLERANCE: f32 = 1e-5;
-
-/// What a blank cell takes of its best neighbour's value: about the field's fall from cell to cell indoors, so that a
-/// cold start begins with the right shape. 1 would do, with a third more cycles behind doors.
-const FILL: f32 = 0.85;
 
 /// How to solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -126,7 +123,7 @@ fn run_multigrid(
     config: &SolverConfig,
     solution: &mut Solution,
 ) {
-    fill_blanks(window);
+    seed::fill_blanks(window);
     let (mut best, mut since) = (f32::INFINITY, 0);
     while solution.cycles < config.max_cycles {
         solution.residual = multigrid::cycle(window, scratch);
@@ -147,18 +144,17 @@ fn run_multigrid(
 }
 
 fn run_gauss_seidel(window: &mut Window, config: &SolverConfig, solution: &mut Solution) {
+    // Blank cells are zero, where the rise begins.
     window.blank = [0; SIDE];
-    let sweeps = (config.max_cycles - solution.cycles).saturating_mul(SWEEPS_PER_CYCLE);
-    while solution.sweeps < sweeps {
-        gauss_seidel::sweep(window);
-        solution.sweeps += 1;
-        // Measuring costs about a sweep: do it now and then.
-        if solution.sweeps % SWEEPS_PER_CYCLE == 0 {
-            solution.residual = gauss_seidel::residual(window);
-            if solution.residual < SWEEP_TOLERANCE {
-                solution.stop = Stop::Converged;
-                return;
-            }
+    for _ in solution.cycles..config.max_cycles {
+        for _ in 1..SWEEPS_PER_CYCLE {
+            gauss_seidel::sweep(window);
+        }
+        solution.residual = gauss_seidel::measured_sweep(window);
+        solution.sweeps += SWEEPS_PER_CYCLE;
+        if solution.residual < SWEEP_TOLERANCE {
+            solution.stop = Stop::Converged;
+            return;
         }
     }
 }
@@ -177,33 +173,4 @@ fn mean_preference(window: &Window) -> f32 {
         }
     }
     sum / cells
-}
-
-/// Give each blank cell a part of its best neighbour's value, which the multigrid could never raise from zero: sweeps
-/// up and down the window until all have one. Cold, this makes about 0.85 to the power of the distance.
-fn fill_blanks(window: &mut Window) {
-    for upward in [true, false].into_iter().cycle() {
-        let (mut missing, mut changed) = (false, false);
-        for step in 0..SIDE {
-            let y = if upward { step } else { SIDE - 1 - step };
-            for run in Runs(window.blank[y]) {
-                let around = &mut window.q[index(run.start, y) - STRIDE..];
-                for i in 0..run.len() {
-                    let i = if upward { i } else { run.len() - 1 - i };
-                    let upright = around[i].max(around[i + 2 * STRIDE]);
-                    let level = around[i + STRIDE - 1].max(around[i + STRIDE + 1]);
-                    let value = FILL * upright.max(level);
-                    let q = &mut around[i + STRIDE];
-                    changed |= value > *q;
-                    *q = q.max(value);
-                    missing |= *q == 0.0;
-                }
-            }
-        }
-        // Beside a value that has underflowed, zero it stays.
-        if !missing || !changed {
-            break;
-        }
-    }
-    window.blank = [0; SIDE];
 }

@@ -174,7 +174,9 @@ impl Window {
             return;
         }
         slide(&mut self.q, dx, dy);
-        slide(&mut self.preference, dx, dy);
+        if self.preferred {
+            slide(&mut self.preference, dx, dy);
+        }
         for mask in [&mut self.reached, &mut self.goal, &mut self.blank] {
             let bits = |y: usize| {
                 y.checked_add_signed(dy as isize)

@@ -38,6 +38,8 @@ pub(crate) struct Beam {
     pub(crate) length_m: f32,
     /// It ended on something.
     pub(crate) hit: bool,
+    /// Which of the sweep it is.
+    pub(crate) number: usize,
     /// Nearer than this another beam frees the cells, metres.
     free_from_m: f32,
 }
@@ -108,6 +110,7 @@ pub(crate) fn level_beams<'a>(
             direction: (cos, sin),
             length_m,
             hit: !missing,
+            number: i,
             free_from_m,
         })
     })
@@ -293,6 +296,7 @@ mod tests {
             direction: (cos, sin),
             length_m,
             hit: true,
+            number: 0,
             free_from_m: 0.0,
         }
     }

@@ -1,8 +1,9 @@
 //! Strategy *frontier*: go to the nearest unexplored centre cell along the skeleton, until none can be reached
 //! [Ouroboros, Algorithm 1 without loop closing: lines 3, 4, 23–28].
 //!
-//! A goal that is reached and stays unexplored, or to which the robot makes no progress, is dropped, with its reason; so no
-//! run hangs on a cell that cannot be seen.
+//! The goal that the robot is on its way to has a head start in the wave, so that two equally near goals do not pull it to and
+//! fro. A goal that is reached and stays unexplored, or to which the robot makes no progress, is dropped, with its reason; so no
+//! run hangs on a cell that cannot be seen. Those without progress get a second chance when nothing else is left.
 //!
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
 
@@ -30,6 +31,16 @@ const PATIENCE_MS: u32 = 12_000;
 const REACHED_STEPS: u32 = 3;
 /// Time at a reached goal after which it is dropped, milliseconds: two turns on the spot.
 const LOOK_MS: u32 = 5_000;
+/// Time without moving after which a goal is dropped, milliseconds.
+const STANDING_MS: u32 = 40_000;
+/// A robot that moved less than this has not moved, metres.
+const MOVED_M: f32 = 0.3;
+/// Goals dropped in a row without moving after which the robot is stuck.
+const STUCK_DROPS: u8 = 3;
+/// Head start of the present goal, coarse steps: what turning about costs.
+const HEAD_START: u32 = 10;
+/// Rounds in a row without a field at the robot after which a goal is dropped.
+const FLAT_ROUNDS: u8 = 4;
 /// Rounds in a row that must find nothing before the exploration is over: the second one began after the first was found
 /// empty, so it saw everything there is.
 const EMPTY_ROUNDS: u8 = 2;
@@ -42,8 +53,16 @@ pub struct Frontier {
     /// Fewest steps so far to the present goal, and when.
     fewest: u32,
     since_ms: u32,
+    /// Where the robot last moved from, when, and how many goals it dropped since.
+    stood: Point,
+    stood_ms: u32,
+    stood_drops: u8,
+    /// The window had no way to the local goal since the last round, and in how many rounds before.
+    flat: bool,
+    flat_rounds: u8,
     empty_rounds: u8,
     had_road: bool,
+    second_chance: bool,
 }
 
 /// What a new round says.
@@ -55,6 +74,8 @@ pub enum Outlook {
     Unsure,
     /// No frontier can be reached.
     Nothing,
+    /// The robot cannot move, whatever the goal.
+    Stuck,
 }
 
 fn near(a: Cell, b: Cell, radius_m: f32) -> bool {
@@ -71,8 +92,14 @@ impl Frontier {
             dropped: Vec::new(),
             fewest: u32::MAX,
             since_ms: 0,
+            stood: Point { x_m: 0.0, y_m: 0.0 },
+            stood_ms: 0,
+            stood_drops: 0,
+            flat: false,
+            flat_rounds: 0,
             empty_rounds: 0,
             had_road: false,
+            second_chance: false,
         }
     }
 
@@ -128,31 +155,58 @@ impl Frontier {
             }
             _ => None,
         };
+        self.note_motion(robot, time_ms);
         self.adopt(road, time_ms)
     }
 
-    /// Wave from every frontier cell that was not dropped.
+    /// Wave from every frontier cell that was not dropped; those beside the present goal first.
     fn spread(&self, space: &mut WaveSpace<'_>, goals: Plane<'_>, frame: Frame) {
         let mut wave = Wavefront::new();
         wave.start(space);
-        for site in goals.sites() {
-            let cell = frame.cell(site);
-            if !self
-                .dropped
-                .iter()
-                .any(|dropped| near(dropped.cell, cell, DROP_RADIUS_M))
-            {
-                wave.seed(space, site);
+        let present =
+            |cell| !self.road.is_empty() && near(self.road.goal(), cell, 2.0 * DROP_RADIUS_M);
+        for favoured in [true, false] {
+            for site in goals.sites() {
+                let cell = frame.cell(site);
+                let dropped = || {
+                    self.dropped
+                        .iter()
+                        .any(|dropped| near(dropped.cell, cell, DROP_RADIUS_M))
+                };
+                if present(cell) == favoured && !dropped() {
+                    wave.seed(space, site);
+                }
+            }
+            if favoured {
+                wave.advance_levels(space, HEAD_START);
             }
         }
         // Without a budget it always comes to its end.
         let _ = wave.advance(space, None, u32::MAX);
     }
 
+    /// The window has no way from the robot to its local goal, though the skeleton, coarser, had one.
+    pub fn note_flat(&mut self) {
+        self.flat = true;
+    }
+
+    fn note_motion(&mut self, robot: Point, time_ms: u32) {
+        let (dx, dy) = (robot.x_m - self.stood.x_m, robot.y_m - self.stood.y_m);
+        if dx * dx + dy * dy > MOVED_M * MOVED_M {
+            (self.stood, self.stood_ms, self.stood_drops) = (robot, time_ms, 0);
+        }
+    }
+
     fn adopt(&mut self, road: Option<Road>, time_ms: u32) -> Outlook {
         let Some(road) = road else {
             self.road.clear();
             self.fewest = u32::MAX;
+            if !self.second_chance {
+                self.second_chance = true;
+                self.dropped
+                    .retain(|dropped| dropped.reason != Residue::NoProgress);
+                return Outlook::Unsure;
+            }
             self.empty_rounds = self.empty_rounds.saturating_add(1);
             return if self.empty_rounds >= EMPTY_ROUNDS {
                 Outlook::Nothing
@@ -170,31 +224,56 @@ impl Frontier {
         }
         self.road = road;
         self.give_up_if_idle(time_ms);
-        Outlook::Road
+        if self.stood_drops >= STUCK_DROPS {
+            Outlook::Stuck
+        } else {
+            Outlook::Road
+        }
     }
 
-    /// Drop a goal that was reached and stays unexplored, or that comes no nearer.
+    /// Drop a goal that was reached and stays unexplored, that has no field, or that comes no nearer.
     fn give_up_if_idle(&mut self, time_ms: u32) {
-        let idle_ms = time_ms.wrapping_sub(self.since_ms);
-        let reached = self.road.steps() <= REACHED_STEPS;
-        if idle_ms > if reached { LOOK_MS } else { PATIENCE_MS } {
-            if self.dropped.is_full() {
-                self.dropped.remove(0);
-            }
-            let reason = if reached {
-                Residue::Unobservable
-            } else {
-                Residue::NoProgress
-            };
-            // There is room now.
-            let _ = self.dropped.push(Leftover {
-                cell: self.road.goal(),
-                cells: 1,
-                reason,
-            });
-            self.road.clear();
-            self.fewest = u32::MAX;
+        self.flat_rounds = if self.flat { self.flat_rounds + 1 } else { 0 };
+        self.flat = false;
+        if self.flat_rounds >= FLAT_ROUNDS {
+            self.flat_rounds = 0;
+            self.drop_goal(Residue::Unreachable);
+            return;
         }
+        let idle_ms = time_ms.wrapping_sub(self.since_ms);
+        let stood_ms = time_ms.wrapping_sub(self.stood_ms);
+        let reached = self.road.steps() <= REACHED_STEPS;
+        let patience_ms = match (reached, stood_ms > PATIENCE_MS / 2) {
+            (true, _) => LOOK_MS,
+            (false, false) => PATIENCE_MS,
+            (false, true) => STANDING_MS,
+        };
+        if idle_ms <= patience_ms {
+            return;
+        }
+        if !reached && stood_ms > STANDING_MS {
+            self.stood_ms = time_ms;
+            self.stood_drops += 1;
+        }
+        self.drop_goal(if reached {
+            Residue::Unobservable
+        } else {
+            Residue::NoProgress
+        });
+    }
+
+    fn drop_goal(&mut self, reason: Residue) {
+        if self.dropped.is_full() {
+            self.dropped.remove(0);
+        }
+        // There is room now.
+        let _ = self.dropped.push(Leftover {
+            cell: self.road.goal(),
+            cells: 1,
+            reason,
+        });
+        self.road.clear();
+        self.fewest = u32::MAX;
     }
 }
 
