@@ -2,3 +2,11 @@
 #![forbid(unsafe_code)]
 
 pub mod link;
+pub mod metrics;
+pub mod picture;
+pub mod report;
+pub mod robot;
+pub mod sim;
+pub mod solve;
+pub mod trial;
+pub mod world;

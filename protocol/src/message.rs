@@ -39,6 +39,8 @@ pub const TILE_BYTES: usize = 256;
 pub const TILE_SKELETON_BYTES: usize = 32;
 /// Cells in a row of the field's window.
 pub const FIELD_SIDE: usize = 61;
+/// Bytes of a row's cell kinds: 61 cells of two bits.
+pub const FIELD_CELL_BYTES: usize = 16;
 /// Bytes of a build identifier.
 pub const BUILD_BYTES: usize = 24;
 /// Bytes of a source file's name in a crash report.
@@ -394,6 +396,8 @@ pub struct FieldRow {
     pub scale: u8,
     /// q = 1 − p, scaled so that a goal is 1; 0 on obstacles.
     pub q: Vec<f32, FIELD_SIDE>,
+    /// Two bits a cell, least x in the low bits: 0 free, 1 obstacle, 2 goal.
+    pub cells: Vec<u8, FIELD_CELL_BYTES>,
 }
 
 /// Why a frontier was left.

@@ -314,10 +314,12 @@ fn reply_field_row() {
             origin_y: 30,
             scale: 1,
             q: [1.0, 0.5, 0.0].into_iter().collect(),
+            cells: [0b01_00_10].into_iter().collect(),
         })),
         &[
             5, 1, 7, 59, 60, 1, // row, origin, scale
             3, 0, 0, 0x80, 0x3f, 0, 0, 0, 0x3f, 0, 0, 0, 0, // three cells
+            1, 18, // goal, free, obstacle
         ],
     );
 }

@@ -10,9 +10,9 @@ use fieldline_protocol::frame::{
     encode_log, encode_reply, encode_request, overhead,
 };
 use fieldline_protocol::message::{
-    BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Counters, Crash, FIELD_SIDE, FieldRow, Frontier,
-    Identity, Laser, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM, Reply, Request, Residue, Start,
-    Strategy as Plan, TILE_BYTES, TILE_SKELETON_BYTES, Tile,
+    BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Counters, Crash, FIELD_CELL_BYTES, FIELD_SIDE,
+    FieldRow, Frontier, Identity, Laser, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM, Reply, Request,
+    Residue, Start, Strategy as Plan, TILE_BYTES, TILE_SKELETON_BYTES, Tile,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use proptest::prelude::*;
@@ -127,6 +127,7 @@ fn the_largest_messages_fit_and_fill_their_frames() {
             origin_y: i16::MIN,
             scale: 255,
             q: [f32::MAX; FIELD_SIDE].into_iter().collect(),
+            cells: [u8::MAX; FIELD_CELL_BYTES].into_iter().collect(),
         })),
         Reply::Frontiers(
             [Frontier {

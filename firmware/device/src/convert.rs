@@ -73,11 +73,11 @@ fn laser(laser: &wire::Laser) -> config::Laser {
 #[must_use]
 pub fn config(start: &wire::Start) -> Config {
     Config {
-        lasers: start.lasers.iter().map(laser).collect(),
         box_tiles: start.box_tiles,
         robot_radius_m: f32::from(start.robot_radius_mm) / 1000.0,
         max_linear_mps: float(start.max_linear),
         max_angular_radps: float(start.max_angular),
+        ..Config::pioneer_3at(start.lasers.iter().map(laser).collect())
     }
 }
 

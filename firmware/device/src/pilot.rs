@@ -11,7 +11,8 @@
 //! input nor a new observation ends it, only the host's word (Resume or Start) with the input released. Used directly, a
 //! pilot is the link without bytes: the session calls the same functions, so the stream of commands is the same.
 
-use fieldline_planner::planner::{Input, Output, WINDOW_SIDE};
+use fieldline_planner::field::SIDE;
+use fieldline_planner::planner::{self, CellKind, Input, Output};
 use fieldline_planner::{Config, State, Workspace, step};
 use fieldline_protocol::message::{
     Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, Frontier, MAX_FRONTIERS,
@@ -24,7 +25,7 @@ use crate::limits;
 use crate::log::{info, warning};
 
 // What is collected into the wire's bounded lists must fit them.
-const _: () = assert!(WINDOW_SIDE == FIELD_SIDE && MAX_SCANS == 2);
+const _: () = assert!(SIDE == FIELD_SIDE && MAX_SCANS == 2);
 
 /// The planner's memories, lent by whoever has room for them.
 #[derive(Debug)]
@@ -189,15 +190,10 @@ impl Pilot {
         memory: &Memory<'_, TILES, SLOTS>,
         row: u8,
     ) -> Option<FieldRow> {
-        let mut q = [0.0; WINDOW_SIDE];
-        let window = memory.workspace.field_row(row, &mut q)?;
-        Some(FieldRow {
-            row,
-            origin_x: window.origin_x,
-            origin_y: window.origin_y,
-            scale: window.scale,
-            q: q.into_iter().collect(),
-        })
+        memory
+            .workspace
+            .field_row(row)
+            .map(|found| field_row(row, &found))
     }
 
     /// The residual frontiers, the first [`MAX_FRONTIERS`] of them.
@@ -210,6 +206,29 @@ impl Pilot {
             .take(MAX_FRONTIERS)
             .map(convert::wire_frontier)
             .collect()
+    }
+}
+
+/// Window cells on the wire count in their own side, and their kinds take two bits each.
+fn field_row(row: u8, found: &planner::FieldRow) -> FieldRow {
+    let scale = i32::from(found.scale.max(1));
+    let short = |cell: i32| cell.div_euclid(scale) as i16;
+    let kind = |kind: &CellKind| match kind {
+        CellKind::Free => 0,
+        CellKind::Obstacle => 1,
+        CellKind::Goal => 2,
+    };
+    let pack = |four: &[CellKind]| {
+        let bits = four.iter().enumerate();
+        bits.fold(0, |byte, (i, cell)| byte | kind(cell) << (2 * i))
+    };
+    FieldRow {
+        row,
+        origin_x: short(found.origin.x),
+        origin_y: short(found.origin.y),
+        scale: found.scale,
+        q: found.q.into_iter().collect(),
+        cells: found.kinds.chunks(4).map(pack).collect(),
     }
 }
 

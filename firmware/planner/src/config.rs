@@ -2,6 +2,8 @@
 
 use heapless::Vec;
 
+use crate::field::SolverConfig;
+
 /// Where a laser sits and how it sweeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Laser {
@@ -36,4 +38,36 @@ pub struct Config {
     pub max_linear_mps: f32,
     /// Greatest turn rate, radians a second. Default: 2.44 (140°/s).
     pub max_angular_radps: f32,
+    /// Acceleration and braking of the robot, metres a second squared. Default: 0.3 (Pioneer 3-AT).
+    pub linear_accel_mps2: f32,
+    /// Angular acceleration, radians a second squared. Default: 1.75 (100°/s²).
+    pub angular_accel_radps2: f32,
+    /// Time from one step to the next, seconds. Default: 0.2.
+    pub period_s: f32,
+    /// The window's solver.
+    pub solver: SolverConfig,
+    /// Topological work in a step, thinning words. Default: 15,000.
+    pub topology_units: u32,
+}
+
+impl Config {
+    /// A Pioneer 3-AT with the given lasers, in the largest square box of the default image.
+    #[must_use]
+    pub fn pioneer_3at(lasers: Vec<Laser, 2>) -> Self {
+        Self {
+            lasers,
+            box_tiles: (20, 20),
+            robot_radius_m: 0.30,
+            max_linear_mps: 0.7,
+            max_angular_radps: 2.44,
+            linear_accel_mps2: 0.3,
+            angular_accel_radps2: 1.75,
+            period_s: 0.2,
+            solver: SolverConfig {
+                max_cycles: 4,
+                ..SolverConfig::default()
+            },
+            topology_units: 15_000,
+        }
+    }
 }

@@ -75,6 +75,15 @@ impl Pose {
 }
 
 impl Cell {
+    /// The corner of this cell with the least coordinates.
+    #[must_use]
+    pub fn corner(self) -> Point {
+        Point {
+            x_m: self.x as f32 * CELL_M,
+            y_m: self.y as f32 * CELL_M,
+        }
+    }
+
     /// The centre of this cell.
     #[must_use]
     pub fn centre(self) -> Point {

@@ -5,14 +5,22 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod bits;
+pub mod clearance;
 pub mod config;
+pub mod drive;
 pub mod field;
 pub mod geometry;
+pub mod grid;
 pub mod map;
 pub mod math;
+pub mod near;
 pub mod planner;
 pub mod skeleton;
 pub mod status;
+pub mod strategy;
+pub mod topology;
+pub mod view;
 
 pub use config::Config;
 pub use planner::{Input, Output, State, Workspace, step};

@@ -1,8 +1,42 @@
-//! One step of the exploration, read as the paper's algorithm box.
+//! One step of the exploration, read as the paper's algorithm box [Ouroboros, Algorithm 1].
+//!
+//! ```text
+//! sense:   scans + odometry → map, near field
+//! line 3:  update the Voronoi cells         (topology, in instalments)
+//! line 4:  move the robot to the Voronoi    (strategy)
+//! line 24: propagate from the unexplored    (strategy)
+//! line 26: exit when there is none          (status)
+//! line 27: define the local goal            (road)
+//! line 28: compute the local potential      (view, field)
+//! line 29: follow it                        (descent, drive)
+//! ```
+//!
+//! A pure function of configuration, state, workspace and input: no clock, no I/O, no globals, no logging. Same bits in, same
+//! bits out, on host and target.
 
+use crate::clearance::Disc;
 use crate::config::Config;
-use crate::geometry::{Pose, Twist};
-use crate::status::{Frontier, Status};
+use crate::drive::{self, Drive, Ground, Place, Surround};
+use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, Stop, Window, descent, solve};
+use crate::geometry::{Cell, Point, Pose, Twist};
+use crate::map::Map;
+use crate::map::integrate::is_level;
+use crate::math;
+use crate::near::NearField;
+use crate::status::{Fault, Finish, Frontier, Status};
+use crate::strategy::frontier::Outlook;
+use crate::strategy::{self, Road};
+use crate::topology::Topology;
+use crate::view::{self, Rows, SCALES, View};
+
+/// Range code: nothing came back, so free up to the range limit.
+pub const NO_RETURN_MM: u16 = 16_383;
+/// Range code: no information.
+pub const INVALID_MM: u16 = 0;
+/// Turn rate of a robot that looks around at its goal, radians a second.
+const LOOK_AROUND_RADPS: f32 = 0.6;
+/// The robot that starts inside something sees it nearer than this everywhere, metres.
+const BLOCKED_M: f32 = 0.12;
 
 /// What a step is given.
 #[derive(Clone, Copy, Debug)]
@@ -16,11 +50,6 @@ pub struct Input<'a> {
     /// Ranges in millimetres of each laser of [`Config::lasers`]; [`NO_RETURN_MM`] and [`INVALID_MM`] are codes.
     pub scans: [&'a [u16]; 2],
 }
-
-/// Range code: nothing came back, so free up to the range limit.
-pub const NO_RETURN_MM: u16 = 16_383;
-/// Range code: no information.
-pub const INVALID_MM: u16 = 0;
 
 /// What a step answers.
 #[derive(Clone, Copy, Debug, Default)]
@@ -37,41 +66,120 @@ pub struct Output {
     pub budget_exhausted: bool,
 }
 
-/// What a planner remembers from step to step. `TILES` map tiles, `SLOTS` tile places in the box.
+/// What a planner remembers from step to step. `TILES` map tiles in the pool, `SLOTS` tile places in the box.
 #[derive(Debug)]
-pub struct State<const TILES: usize, const SLOTS: usize> {}
+pub struct State<const TILES: usize, const SLOTS: usize> {
+    map: Map<TILES, SLOTS>,
+    near: NearField,
+    topology: Topology<SLOTS>,
+    strategy: strategy::Frontier,
+    drive: Drive,
+    status: Status,
+    started: bool,
+    /// Where the robot began.
+    start: Cell,
+}
 
-/// Scratch memory of a step.
+/// Words of scratch.
+const SCRATCH: usize = SCRATCH_FLOATS;
+/// Words of the wave's queue.
+const RING: usize = 1024;
+
+/// Memory of a step: the field, kept as a warm start for the next one, and scratch that the wave and the multigrid use in turn.
 #[derive(Debug)]
-pub struct Workspace {}
+pub struct Workspace {
+    window: Window,
+    /// Its least map cell and its scale.
+    window_at: Option<(Cell, i32)>,
+    scratch: [f32; SCRATCH],
+}
 
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
+    const CHECK: () = {
+        assert!(SLOTS * 16 + RING <= SCRATCH, "the wave fits the scratch");
+        assert!(
+            drive::manoeuvre::SCRATCH_WORDS <= SCRATCH,
+            "a search fits the scratch"
+        );
+    };
+
     /// An empty planner.
     #[must_use]
     pub const fn new() -> Self {
-        Self {}
+        let () = Self::CHECK;
+        Self {
+            map: Map::new(),
+            near: NearField::new(),
+            topology: Topology::new(),
+            strategy: strategy::Frontier::new(),
+            drive: Drive::new(),
+            status: Status::Exploring,
+            started: false,
+            start: Cell { x: 0, y: 0 },
+        }
     }
 
     /// Forget everything and take the box's shape from `config`.
-    pub fn reset(&mut self, _config: &Config) {}
+    pub fn reset(&mut self, config: &Config) {
+        self.map.reset(config.box_tiles.0, config.box_tiles.1);
+        self.near.clear();
+        self.topology.reset();
+        self.strategy.reset();
+        self.drive = Drive::new();
+        self.status = Status::Exploring;
+        self.started = false;
+    }
+
+    /// The map.
+    #[must_use]
+    pub const fn map(&self) -> &Map<TILES, SLOTS> {
+        &self.map
+    }
+
+    /// The centre cells.
+    #[must_use]
+    pub const fn topology(&self) -> &Topology<SLOTS> {
+        &self.topology
+    }
+
+    /// The way to the present goal.
+    #[must_use]
+    pub const fn road(&self) -> &Road {
+        self.strategy.road()
+    }
 
     /// The cells of a tile (two bits each: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle), or `None` where
     /// nothing was ever seen.
     #[must_use]
-    pub fn tile(&self, _x: i16, _y: i16) -> Option<&[u8; 256]> {
-        None
+    pub fn tile(&self, x: i16, y: i16) -> Option<[u8; 256]> {
+        self.map.tiles().packed(i32::from(x), i32::from(y))
     }
 
     /// The skeleton of a tile: 16 rows of 16 coarse cells.
     #[must_use]
-    pub fn tile_skeleton(&self, _x: i16, _y: i16) -> [u16; 16] {
-        [0; 16]
+    pub fn tile_skeleton(&self, x: i16, y: i16) -> [u16; 16] {
+        let frame = self.topology.frame();
+        let mut rows = [0; 16];
+        let Some(plane) = self.topology.skeleton() else {
+            return rows;
+        };
+        for (dy, row) in rows.iter_mut().enumerate() {
+            let cell = Cell {
+                x: i32::from(x) * 32,
+                y: i32::from(y) * 32 + 2 * dy as i32,
+            };
+            if let Some(site) = frame.site(cell) {
+                let word = plane.word(usize::from(site.y), usize::from(site.x / 32));
+                *row = (word >> (site.x & 16)) as u16;
+            }
+        }
+        rows
     }
 
     /// Frontiers left over, and why.
     #[must_use]
     pub fn frontiers(&self) -> &[Frontier] {
-        &[]
+        self.strategy.dropped()
     }
 }
 
@@ -82,10 +190,20 @@ impl<const TILES: usize, const SLOTS: usize> Default for State<TILES, SLOTS> {
 }
 
 impl Workspace {
-    /// Cleared scratch.
+    /// Cleared.
     #[must_use]
     pub const fn new() -> Self {
-        Self {}
+        Self {
+            window: Window::new(),
+            window_at: None,
+            scratch: [0.0; SCRATCH],
+        }
+    }
+
+    /// The last window's field.
+    #[must_use]
+    pub const fn window(&self) -> &Window {
+        &self.window
     }
 }
 
@@ -95,35 +213,303 @@ impl Default for Workspace {
     }
 }
 
-/// Where the window of the last step lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Window {
-    /// Cell column of the window's first cell, in units of the window's cell.
-    pub origin_x: i16,
-    /// Cell row of the window's first cell.
-    pub origin_y: i16,
-    /// Side of a window cell in map cells.
+/// One row of the last step's window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldRow {
+    /// Least map cell of the window.
+    pub origin: Cell,
+    /// Map cells along a window cell.
     pub scale: u8,
+    /// q = 1 − p, scaled so that a goal is 1; 0 on obstacles and where no goal can be reached from.
+    pub q: [f32; SIDE],
+    /// What each cell is in the boundary-value problem.
+    pub kinds: [CellKind; SIDE],
 }
 
-/// Cells in a row of the window.
-pub const WINDOW_SIDE: usize = 61;
+/// What a cell is in the window's boundary-value problem.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CellKind {
+    /// Relaxed.
+    Free,
+    /// p = 1, or without a way to a goal.
+    #[default]
+    Obstacle,
+    /// p = 0.
+    Goal,
+}
 
 impl Workspace {
-    /// One row of the last step's field (row 0 has the least y) into `q`, scaled so that a goal is 1, and where the window lies;
-    /// `None` before the first window and beyond the last row.
+    /// One row of the last step's field, row 0 the least y; `None` before the first window and beyond the last row.
     #[must_use]
-    pub fn field_row(&self, _row: u8, _q: &mut [f32; WINDOW_SIDE]) -> Option<Window> {
-        None
+    pub fn field_row(&self, row: u8) -> Option<FieldRow> {
+        let (origin, scale) = self.window_at?;
+        let y = usize::from(row);
+        (y < SIDE).then(|| FieldRow {
+            origin,
+            scale: scale as u8,
+            q: core::array::from_fn(|x| self.window.q(x, y) / GOAL),
+            kinds: core::array::from_fn(|x| {
+                if self.window.is_goal(x, y) {
+                    CellKind::Goal
+                } else if self.window.is_reached(x, y) {
+                    CellKind::Free
+                } else {
+                    CellKind::Obstacle
+                }
+            }),
+        })
     }
 }
 
 /// One step: what was sensed in, what to drive out.
 pub fn step<const TILES: usize, const SLOTS: usize>(
-    _config: &Config,
-    _state: &mut State<TILES, SLOTS>,
-    _workspace: &mut Workspace,
-    _input: Input<'_>,
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    input: Input<'_>,
 ) -> Output {
-    Output::default()
+    if state.status != Status::Exploring {
+        return Output {
+            status: state.status,
+            ..Output::default()
+        };
+    }
+    sense(config, state, &input);
+    // A search for a manoeuvre has the scratch; until it is over the robot stands and plans nothing else.
+    if state.drive.is_searching() {
+        return steer(config, state, workspace, &input);
+    }
+    let disc = Disc::new(config.robot_radius_m);
+    if state
+        .topology
+        .advance(state.map.tiles(), &disc, config.topology_units)
+    {
+        replan(state, workspace, &disc, &input);
+    }
+    if state.status != Status::Exploring {
+        return Output {
+            status: state.status,
+            ..Output::default()
+        };
+    }
+    let Some((view, goal)) = local_goal(state, &disc, &input) else {
+        return Output::default();
+    };
+    charge(
+        &mut workspace.window,
+        &mut workspace.window_at,
+        &view,
+        &goal,
+    );
+    let solution = solve(
+        &mut workspace.window,
+        &mut workspace.scratch,
+        &config.solver,
+    );
+    Output {
+        cycles: solution.cycles + solution.sweeps,
+        budget_exhausted: solution.stop == Stop::Budget,
+        ..steer(config, state, workspace, &input)
+    }
+}
+
+/// Scans and odometry into the map and the near field.
+fn sense<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    input: &Input<'_>,
+) {
+    if !state.started {
+        state.started = true;
+        state.start = input.pose.point().cell();
+        if starts_blocked(config, input) {
+            state.status = Status::Fault(Fault::StartBlocked);
+        }
+    }
+    state.map.observe(config, input);
+    for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
+        if is_level(laser) {
+            state.near.update(&input.pose, laser, ranges_mm);
+        }
+    }
+}
+
+/// Whether the level laser sees something closer than the robot's own hull in nearly every beam.
+fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
+    let level = config
+        .lasers
+        .iter()
+        .zip(input.scans)
+        .find(|(laser, _)| is_level(laser));
+    level.is_some_and(|(_, ranges_mm)| {
+        let blocked = |&&range: &&u16| f32::from(range) * 1e-3 < BLOCKED_M;
+        !ranges_mm.is_empty()
+            && ranges_mm.iter().filter(blocked).count() * 10 >= ranges_mm.len() * 9
+    })
+}
+
+/// A new skeleton: find the way to the nearest frontier, or find that there is none.
+fn replan<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    disc: &Disc,
+    input: &Input<'_>,
+) {
+    let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
+    let (residues, ring) = words.split_at_mut(SLOTS * 16);
+    let (residues, _) = residues.as_chunks_mut::<2>();
+    let robot = input.pose.point();
+    let outlook = state.strategy.replan(
+        &state.topology,
+        state.map.tiles(),
+        disc,
+        robot,
+        input.time_ms,
+        (residues, ring),
+    );
+    match outlook {
+        Outlook::Nothing => state.status = conclude(state),
+        Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
+        Outlook::Road | Outlook::Unsure => {}
+    }
+}
+
+/// Why there is no frontier left within reach.
+fn conclude<const TILES: usize, const SLOTS: usize>(state: &State<TILES, SLOTS>) -> Status {
+    if state.map.pool_full() {
+        Status::Fault(Fault::MapFull)
+    } else if state.map.out_of_box() {
+        Status::Fault(Fault::OutOfBox)
+    } else if state.strategy.had_road() {
+        Status::Finished(Finish::Explored)
+    } else {
+        Status::Finished(Finish::BoxedIn)
+    }
+}
+
+/// Follow the window's field.
+fn steer<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    input: &Input<'_>,
+) -> Output {
+    let Workspace {
+        window,
+        window_at,
+        scratch,
+    } = workspace;
+    let Some((origin, scale)) = *window_at else {
+        return Output::default();
+    };
+    let heading_at = |place: Place| heading_at(window, (origin, scale), &input.pose, place);
+    let here = heading_at(Place::default());
+    let surround = Surround::new(&input.pose, state.near.points());
+    let velocity = if here.is_some() {
+        let ground = Ground {
+            surround: &surround,
+            heading_at,
+        };
+        state.drive.follow(
+            config,
+            &ground,
+            input.velocity,
+            bytemuck::cast_slice_mut(scratch),
+        )
+    } else if is_at_goal(window, (origin, scale), input.pose.point()) {
+        // In the goal's own cell there is no slope: look around until it is explored.
+        Twist {
+            linear_mps: 0.0,
+            angular_radps: LOOK_AROUND_RADPS,
+        }
+    } else {
+        state.strategy.note_flat();
+        Twist::default()
+    };
+    Output {
+        velocity,
+        heading_rad: math::wrap(input.pose.yaw_rad + here.unwrap_or(0.0)),
+        ..Output::default()
+    }
+}
+
+fn is_at_goal(window: &Window, (origin, scale): (Cell, i32), robot: Point) -> bool {
+    let (x, y) = view::position((origin, scale), robot);
+    match (
+        usize::try_from(math::floor(x)),
+        usize::try_from(math::floor(y)),
+    ) {
+        (Ok(x), Ok(y)) => window.is_goal(x, y),
+        _ => false,
+    }
+}
+
+/// The field's heading at a place near the robot, radians to the left of the robot's own.
+fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Option<f32> {
+    let (sin, cos) = math::sin_cos(pose.yaw_rad);
+    let there = Point {
+        x_m: pose.x_m + place.x_m * cos - place.y_m * sin,
+        y_m: pose.y_m + place.x_m * sin + place.y_m * cos,
+    };
+    let (x, y) = view::position(at, there);
+    descent::heading_at(window, x, y).map(|heading| math::wrap(heading - pose.yaw_rad))
+}
+
+/// The smallest window that holds a local goal, and the goal's cells in it.
+fn local_goal<const TILES: usize, const SLOTS: usize>(
+    state: &State<TILES, SLOTS>,
+    disc: &Disc,
+    input: &Input<'_>,
+) -> Option<(View, Rows)> {
+    let (robot, road) = (input.pose.point(), state.strategy.road());
+    if road.is_empty() {
+        return None;
+    }
+    SCALES.iter().find_map(|&scale| {
+        let mut view = View::around(state.map.tiles(), disc, robot.cell(), scale);
+        view.free_robot(robot.cell());
+        let goal = road
+            .local_goals(robot)
+            .find_map(|cell| goal_cells(&view, cell))?;
+        Some((view, goal))
+    })
+}
+
+/// The passable window cells of a coarse cell, if there are any.
+fn goal_cells(view: &View, cell: Cell) -> Option<Rows> {
+    let mut rows: Rows = [0; SIDE];
+    let mut any = false;
+    for k in 0..4 {
+        let part = Cell {
+            x: cell.x + (k & 1),
+            y: cell.y + (k >> 1),
+        };
+        if let Some(place) = view
+            .place(part)
+            .filter(|&place| View::has(&view.passable, place))
+        {
+            View::put(&mut rows, place);
+            any = true;
+        }
+    }
+    any.then_some(rows)
+}
+
+/// Set the window's boundary, keeping the field of the last window where they overlap.
+fn charge(window: &mut Window, at: &mut Option<(Cell, i32)>, view: &View, goal: &Rows) {
+    match *at {
+        Some((origin, scale)) if scale == view.scale => {
+            let steps = |to: i32, from: i32| (to - from) / scale;
+            window.shift(
+                steps(view.origin.x, origin.x),
+                steps(view.origin.y, origin.y),
+            );
+            window.set_boundary(&view.passable, goal);
+        }
+        _ => {
+            window.set_boundary(&view.passable, goal);
+            window.clear();
+        }
+    }
+    *at = Some((view.origin, view.scale));
 }

@@ -304,13 +304,15 @@ fn tile() -> impl Strategy<Value = Tile> {
 }
 
 fn field_row() -> impl Strategy<Value = FieldRow> {
-    (any::<(u8, i16, i16, u8)>(), list(prop::num::f32::NORMAL)).prop_map(
-        |((row, origin_x, origin_y, scale), q)| FieldRow {
+    let place = any::<(u8, i16, i16, u8)>();
+    (place, list(prop::num::f32::NORMAL), list(any::<u8>())).prop_map(
+        |((row, origin_x, origin_y, scale), q, cells)| FieldRow {
             row,
             origin_x,
             origin_y,
             scale,
             q,
+            cells,
         },
     )
 }

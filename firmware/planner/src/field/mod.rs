@@ -1,1 +1,48 @@
-//! The potential in the local window.
+//! The potential in the local window, and the way down it.
+//!
+//! Obstacles hold p = 1, goals p = 0, and every free cell between them satisfies [BVP; Terrain, eq. 1]
+//!
+//! ```text
+//! ∇²p − ε (|∂p/∂x| + |∂p/∂y|) = 0          ε: the cell's preference, |ε| ≤ 2
+//! ```
+//!
+//! The robot follows −∇p. Everything here works with **q = 1 − p** instead (obstacle 0, goal [`GOAL`]), in which the
+//! same equation reads
+//!
+//! ```text
+//! q = ((N + S) + (W + E) + (ε/2) (|N − S| + |W − E|)) / 4
+//! ```
+//!
+//! because far from every goal p is 1 less something like 1e-20, which no float near 1 can hold, while q keeps its
+//! full relative precision. The equation is homogeneous of degree one, so the goal's value is free: 2¹⁰⁰ doubles the
+//! range that an f32 reaches before it underflows.
+//!
+//! | room | what it holds |
+//! | --- | --- |
+//! | [`window`] | the cells: field, boundary, preferences; warm values across a move |
+//! | `reach` | which free cells a goal can be reached from, by bits |
+//! | `seed` | a first value for cells that have none |
+//! | `gauss_seidel` | one relaxation sweep, the papers' method |
+//! | `multigrid`, `pyramid` | one cycle of the fast method, and its coarse levels |
+//! | [`solver`] | which method, how long, and when to stop |
+//! | [`descent`] | the heading of −∇p, the way of steepest ascent of q |
+//! | [`preference`] | `p_diff`, the flatness measure that preferences answer to |
+//!
+//! Directions: x right (east), y up (north), row 0 is the least y. Everything is f32 without fused operations, so that
+//! host and target compute the same bits.
+
+mod gauss_seidel;
+mod multigrid;
+mod pyramid;
+mod reach;
+mod runs;
+mod seed;
+
+pub mod descent;
+pub mod preference;
+pub mod solver;
+pub mod window;
+
+pub use multigrid::SCRATCH_FLOATS;
+pub use solver::{Method, Solution, SolverConfig, Stop, solve};
+pub use window::{GOAL, Preference, PreferenceError, SIDE, Window};

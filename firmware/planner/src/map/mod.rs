@@ -1,1 +1,88 @@
-//! The map: occupancy of the known space.
+//! The map: occupancy of the known space, from scans.
+//!
+//! [`tiles`] keeps the class of every cell for the whole run, [`evidence`] the counts around the robot, and
+//! [`integrate`] turns beams into both.
+
+pub mod evidence;
+pub mod integrate;
+pub mod tiles;
+
+pub use evidence::Evidence;
+pub use tiles::{Class, Tiles};
+
+use crate::config::Config;
+use crate::geometry::Cell;
+use crate::planner::Input;
+
+/// The robot stands where it is, so this much around it is free, metres.
+const FOOTPRINT_M: f32 = 0.25;
+
+/// Everything known of the space. `TILES` tiles in the pool, `SLOTS` places in the box.
+#[derive(Debug)]
+pub struct Map<const TILES: usize, const SLOTS: usize> {
+    pub(crate) tiles: Tiles<TILES, SLOTS>,
+    evidence: Evidence,
+    out_of_box: bool,
+    pool_full: bool,
+}
+
+impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
+    /// An empty map without a box.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            tiles: Tiles::new(),
+            evidence: Evidence::new(),
+            out_of_box: false,
+            pool_full: false,
+        }
+    }
+
+    /// Forget everything; the box is `width` × `height` tiles.
+    pub fn reset(&mut self, width: u8, height: u8) {
+        self.tiles.reset(width, height);
+        self.evidence.reset(Cell::default());
+        self.out_of_box = false;
+        self.pool_full = false;
+    }
+
+    /// Enter everything that an input says of the space.
+    pub fn observe(&mut self, config: &Config, input: &Input<'_>) {
+        let robot = input.pose.point();
+        self.evidence.follow(robot.cell());
+        self.free_footprint(robot, FOOTPRINT_M);
+        for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
+            self.integrate(&input.pose, laser, ranges_mm);
+        }
+    }
+
+    /// What is known of a cell.
+    #[must_use]
+    pub fn class(&self, cell: Cell) -> Class {
+        self.tiles.class(cell)
+    }
+
+    /// The stored tiles.
+    #[must_use]
+    pub const fn tiles(&self) -> &Tiles<TILES, SLOTS> {
+        &self.tiles
+    }
+
+    /// Something was seen that the box has no place for.
+    #[must_use]
+    pub const fn out_of_box(&self) -> bool {
+        self.out_of_box
+    }
+
+    /// Something was seen that the pool has no tile for.
+    #[must_use]
+    pub const fn pool_full(&self) -> bool {
+        self.pool_full
+    }
+}
+
+impl<const TILES: usize, const SLOTS: usize> Default for Map<TILES, SLOTS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,205 @@
+//! Where the robot fits: cells whose centre is at least its radius away from the centre of every obstacle cell.
+//!
+//! A cell is *passable* if no obstacle cell lies in the disc of the robot's radius around it; unknown cells obstruct
+//! nothing. Everything that plans (skeleton, window) works on passable cells, so a gap the robot does not fit through is no
+//! way, and a door of 0.8 m keeps a lane of two or three cells. Bit-parallel: 32 columns at a time over rows of 64 bits.
+//!
+//! Units: map cells.
+
+use crate::geometry::CELL_M;
+use crate::map::{Class, Tiles};
+use crate::math;
+
+/// Greatest radius, cells.
+pub const MOST_RADIUS: usize = 6;
+const RING: usize = 2 * MOST_RADIUS + 1;
+
+/// A disc as half widths: row dy covers columns −h..=h.
+#[derive(Clone, Copy, Debug)]
+pub struct Disc {
+    half_widths: [Option<u8>; MOST_RADIUS + 1],
+    reach: i32,
+}
+
+impl Disc {
+    /// The cells whose centre is nearer than `radius_m`, at most [`MOST_RADIUS`] cells.
+    #[must_use]
+    pub fn new(radius_m: f32) -> Self {
+        let radius = (radius_m / CELL_M).clamp(0.5, MOST_RADIUS as f32);
+        // A hair is taken off so that 0.30 m is three cells and not a rounding error more.
+        let radius2 = radius * radius - 1e-3;
+        let mut half_widths = [None; MOST_RADIUS + 1];
+        let mut reach = 0;
+        for (dy, half) in half_widths.iter_mut().enumerate() {
+            let rest = radius2 - (dy * dy) as f32;
+            if rest >= 0.0 {
+                *half = u8::try_from(math::floor(math::sqrt(rest))).ok();
+                reach = dy as i32;
+            }
+        }
+        Self { half_widths, reach }
+    }
+}
+
+fn widen(row: u64, half: u8) -> u64 {
+    let mut wide = row;
+    for _ in 0..half {
+        wide |= wide << 1 | wide >> 1;
+    }
+    wide
+}
+
+/// 32 cells of a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Strip {
+    /// The robot's centre may be here.
+    pub passable: u32,
+    /// Never measured.
+    pub unknown: u32,
+    /// An obstacle of either sign.
+    pub obstacle: u32,
+}
+
+/// Visit rows `y..y + height` of the 32 columns from `x` on, in order.
+pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    disc: &Disc,
+    (x, y): (i32, i32),
+    height: i32,
+    mut visit: impl FnMut(i32, Strip),
+) {
+    // Columns x − 16 .. x + 48, so that the middle 32 see a halo of 16.
+    let read = |row: i32| tiles.row(x - 16, row);
+    let mut ring = [0u64; RING];
+    let slot = |row: i32| (row - y + MOST_RADIUS as i32).rem_euclid(RING as i32) as usize;
+    for row in y - disc.reach..y + disc.reach {
+        if let Some(place) = ring.get_mut(slot(row)) {
+            *place = read(row).obstacle();
+        }
+    }
+    for row in y..y + height {
+        if let Some(place) = ring.get_mut(slot(row + disc.reach)) {
+            *place = read(row + disc.reach).obstacle();
+        }
+        let mut blocked = 0;
+        for dy in -disc.reach..=disc.reach {
+            let half = disc
+                .half_widths
+                .get(dy.unsigned_abs() as usize)
+                .copied()
+                .flatten();
+            if let (Some(half), Some(&near)) = (half, ring.get(slot(row + dy)))
+                && near != 0
+            {
+                blocked |= widen(near, half);
+            }
+        }
+        let here = read(row);
+        let middle = |bits: u64| (bits >> 16) as u32;
+        visit(
+            row,
+            Strip {
+                passable: middle(!blocked),
+                unknown: middle(here.unknown()),
+                obstacle: middle(here.obstacle()),
+            },
+        );
+    }
+}
+
+/// Whether the robot's centre may be in this cell; the slow twin of [`for_each_strip`].
+pub fn is_passable<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    disc: &Disc,
+    cell: crate::geometry::Cell,
+) -> bool {
+    (-disc.reach..=disc.reach).all(|dy| {
+        let half = disc
+            .half_widths
+            .get(dy.unsigned_abs() as usize)
+            .copied()
+            .flatten();
+        half.is_none_or(|half| {
+            (-i32::from(half)..=i32::from(half)).all(|dx| {
+                let near = crate::geometry::Cell {
+                    x: cell.x + dx,
+                    y: cell.y + dy,
+                };
+                !matches!(tiles.class(near), Class::Obstacle | Class::Negative)
+            })
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Cell;
+
+    fn scattered() -> Tiles<9, 24> {
+        let mut tiles = Tiles::new();
+        tiles.reset(6, 4);
+        let mut seed = 1u32;
+        for _ in 0..300 {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let cell = Cell {
+                x: (seed >> 8) as i32 % 90 - 40,
+                y: (seed >> 20) as i32 % 60 - 30,
+            };
+            let class = if seed >> 4 & 3 == 0 {
+                Class::Obstacle
+            } else {
+                Class::Free
+            };
+            let _ = tiles.set(cell, class);
+        }
+        tiles
+    }
+
+    #[test]
+    fn strips_agree_with_the_cell_by_cell_twin() {
+        let tiles = scattered();
+        for radius in [0.1, 0.15, 0.2, 0.3, 0.35, 0.45] {
+            let disc = Disc::new(radius);
+            for x in [-40, -7, 32] {
+                for_each_strip(&tiles, &disc, (x, -31), 62, |y, strip| {
+                    for k in 0..32 {
+                        let cell = Cell { x: x + k, y };
+                        assert_eq!(
+                            strip.passable >> k & 1 == 1,
+                            is_passable(&tiles, &disc, cell),
+                            "radius {radius}, {cell:?}"
+                        );
+                        assert_eq!(
+                            strip.unknown >> k & 1 == 1,
+                            tiles.class(cell) == Class::Unknown
+                        );
+                    }
+                });
+            }
+        }
+    }
+
+    /// A gap of n free cells between two walls leaves n − 4 lanes at the 3-AT's radius.
+    #[test]
+    fn doors_of_five_cells_and_more_stay_open() {
+        for gap in 3..9 {
+            let mut tiles: Tiles<9, 24> = Tiles::new();
+            tiles.reset(6, 4);
+            for x in 0..30 {
+                let open = (10..10 + gap).contains(&x);
+                tiles
+                    .set(
+                        Cell { x, y: 5 },
+                        if open { Class::Free } else { Class::Obstacle },
+                    )
+                    .unwrap();
+            }
+            let mut lanes = 0;
+            for_each_strip(&tiles, &Disc::new(0.30), (0, 5), 1, |_, strip| {
+                lanes = (strip.passable & 0x3fff_ffff & !3).count_ones() as i32;
+            });
+            assert_eq!(lanes, (gap - 4).max(0), "gap {gap}");
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! From the field's heading to a velocity of a skid-steer robot that touches nothing.
+//!
+//! The wish is: turn towards the heading with rate `k·error`, go forward with `v_max·cos²(error)`. The wish is then tried
+//! against the near field: a candidate (v, ω) is admissible if the robot's rectangle stays clear of every point while the
+//! robot, from its measured velocity and within its acceleration limits, follows the candidate for one period and then
+//! brakes to a stop. The first admissible one, in order of distance from the wish, is driven; where none is, the robot
+//! turns on the spot, and where it cannot, a [`manoeuvre`] leads out.
+//!
+//! Invariant: whatever is driven can be followed by a stop that touches nothing known, so the zero command is always safe.
+//! Units: metres, seconds, radians; robot frame, x forward.
+
+pub mod manoeuvre;
+mod open;
+pub mod surround;
+
+pub use manoeuvre::{Found, Ground, Plan, Search};
+pub use surround::{Place, Surround};
+
+use crate::config::Config;
+use crate::geometry::Twist;
+use crate::math;
+
+/// Clearance kept at speed, metres: three sigma of a range and one of the odometry between two scans.
+const MARGIN_M: f32 = 0.06;
+/// Clearance kept when creeping through a narrow place, metres: two sigma of a range.
+const CREEP_MARGIN_M: f32 = 0.025;
+/// Clearances planned for in a manoeuvre, metres, the wider first. The nearest of many points of a wall is two sigma nearer
+/// than the wall, so there is more room than the narrower one says.
+const PLAN_MARGINS_M: [f32; 2] = [0.03, 0.012];
+/// Clearance kept while a manoeuvre is driven, metres.
+const PLAN_KEPT_M: f32 = 0.008;
+/// Speed at and below which the robot creeps, metres a second.
+const CREEP_MPS: f32 = 0.15;
+/// Turn rate wished for a radian of error, 1/s.
+const TURN_GAIN: f32 = 2.0;
+/// Beyond this error the robot turns on the spot, radians.
+const TURN_FIRST_RAD: f32 = 0.9;
+/// An error smaller than this is none, radians.
+const ALIGNED_RAD: f32 = 0.12;
+
+/// Poses looked at in a step of a search.
+const SEARCH_NODES: u32 = 250;
+/// Speed backwards where there is no room to turn, metres a second.
+const REVERSE_MPS: f32 = 0.15;
+/// An error this near to half a turn can be driven backwards, radians.
+const REVERSE_RAD: f32 = 0.35;
+
+/// What the drive remembers: the manoeuvre in progress, or the search for one.
+#[derive(Debug, Default)]
+pub struct Drive {
+    plan: Plan,
+    search: Option<Search>,
+}
+
+impl Drive {
+    /// At rest.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            plan: Plan::new(),
+            search: None,
+        }
+    }
+
+    /// Whether a search is going on: its poses are in the scratch, which nobody else may use until it is over.
+    #[must_use]
+    pub const fn is_searching(&self) -> bool {
+        self.search.is_some()
+    }
+
+    /// The velocity for the heading that the field has at the robot's place, from the velocity `now`; zero where nothing is
+    /// admissible, and while a search goes on.
+    pub fn follow<H: Fn(Place) -> Option<f32>>(
+        &mut self,
+        config: &Config,
+        ground: &Ground<'_, H>,
+        now: Twist,
+        scratch: &mut [u32],
+    ) -> Twist {
+        let surround = ground.surround;
+        if self.search.is_none() {
+            let planned = self.plan.next(config.period_s);
+            if let Some(twist) = planned.filter(|&t| surround.admits(t, now, config, PLAN_KEPT_M)) {
+                return twist;
+            }
+            self.plan.clear();
+            let Some(error) = (ground.heading_at)(Place::default()) else {
+                return Twist::default();
+            };
+            if let Some(twist) = directly(config, error, now, surround) {
+                return twist;
+            }
+            if is_moving(now) {
+                return Twist::default();
+            }
+            self.search = Some(Search::start(PLAN_MARGINS_M[0], scratch));
+        }
+        self.go_on_searching(ground, scratch);
+        Twist::default()
+    }
+
+    fn go_on_searching<H: Fn(Place) -> Option<f32>>(
+        &mut self,
+        ground: &Ground<'_, H>,
+        scratch: &mut [u32],
+    ) {
+        let Some(search) = &mut self.search else {
+            return;
+        };
+        match search.advance(ground, SEARCH_NODES, scratch) {
+            Found::Pending => {}
+            Found::Plan(plan) => {
+                self.plan = plan;
+                self.search = None;
+            }
+            Found::Nothing => {
+                let narrower = PLAN_MARGINS_M
+                    .iter()
+                    .find(|&&margin_m| margin_m < search.margin_m());
+                self.search = narrower.map(|&margin_m| Search::start(margin_m, scratch));
+            }
+        }
+    }
+}
+
+fn is_moving(now: Twist) -> bool {
+    now.linear_mps.abs() > 0.02 || now.angular_radps.abs() > 0.05
+}
+
+/// What needs no manoeuvre: ahead, turning on the spot, or straight back.
+fn directly(config: &Config, error: f32, now: Twist, surround: &Surround) -> Option<Twist> {
+    let admits = |&twist: &Twist| {
+        let creeps = twist.linear_mps.abs() <= CREEP_MPS;
+        surround.admits(
+            twist,
+            now,
+            config,
+            if creeps { CREEP_MARGIN_M } else { MARGIN_M },
+        )
+    };
+    let ahead = ahead(config, error).into_iter().flatten().find(admits);
+    // A turn that could not be finished would wedge the robot.
+    let turnable = || surround.is_arc_clear(Place::default(), 0.0, error, CREEP_MARGIN_M);
+    ahead
+        .or_else(|| {
+            turns(config, error)
+                .into_iter()
+                .flatten()
+                .find(admits)
+                .filter(|_| turnable())
+        })
+        .or_else(|| back(error).filter(admits))
+}
+
+/// Straight back, where the heading is behind.
+fn back(error: f32) -> Option<Twist> {
+    let askew = math::wrap(error + math::PI);
+    (askew.abs() < REVERSE_RAD).then_some(Twist {
+        linear_mps: -REVERSE_MPS,
+        angular_radps: 0.5 * askew,
+    })
+}
+
+/// Ways forward, the wish first.
+fn ahead(config: &Config, error: f32) -> [Option<Twist>; 15] {
+    let wish_w = turn_rate(config, error);
+    let (_, cos) = math::sin_cos(error);
+    let wish_v = if error.abs() > TURN_FIRST_RAD {
+        0.0
+    } else {
+        config.max_linear_mps * cos * cos
+    };
+    core::array::from_fn(|i| {
+        let part = [1.0, 0.5, 0.2].get(i / 5).copied().unwrap_or(0.0);
+        let offset = [0.0, 0.25, -0.25, 0.6, -0.6]
+            .get(i % 5)
+            .copied()
+            .unwrap_or(0.0);
+        let most = config.max_angular_radps;
+        (wish_v > 0.0).then(|| Twist {
+            linear_mps: wish_v * part,
+            angular_radps: (wish_w + offset).clamp(-most, most),
+        })
+    })
+}
+
+/// Turns on the spot towards the heading, the quick one first.
+fn turns(config: &Config, error: f32) -> [Option<Twist>; 2] {
+    let quick = turn_rate(config, error);
+    [quick, 0.4 * quick].map(|angular_radps| {
+        (error.abs() > ALIGNED_RAD).then_some(Twist {
+            linear_mps: 0.0,
+            angular_radps,
+        })
+    })
+}
+
+fn turn_rate(config: &Config, error: f32) -> f32 {
+    let most = 0.6 * config.max_angular_radps;
+    (TURN_GAIN * error).clamp(-most, most)
+}

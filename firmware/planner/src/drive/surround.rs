@@ -1,0 +1,228 @@
+//! The near field seen from the robot, and whether a motion touches it.
+//!
+//! The robot is its rectangle. A motion is clear if the rectangle, at places at most [`CHECK_EVERY_M`] apart for any part of it,
+//! keeps a margin from every near point; a point that is nearer than the margin already may hardly come nearer.
+//!
+//! Units: metres, seconds, radians; robot frame, x forward.
+
+use heapless::Vec;
+
+use crate::config::Config;
+use crate::geometry::{Point, Pose, Twist};
+use crate::math;
+use crate::near::MOST_POINTS;
+
+/// Half the 3-AT's length, metres.
+pub const HALF_LENGTH_M: f32 = 0.254;
+/// Half the 3-AT's width over its wheels, metres.
+pub const HALF_WIDTH_M: f32 = 0.2485;
+/// Half the robot's diagonal, metres.
+const HALF_DIAGONAL_M: f32 = 0.355;
+/// A place of the robot is checked every so many metres that any part of it moved.
+const CHECK_EVERY_M: f32 = 0.05;
+/// Time step of the look ahead, seconds.
+const TICK_S: f32 = 0.1;
+/// Steps of it at the most: one period and the braking from full speed.
+const MOST_TICKS: u32 = 40;
+/// What a point nearer than the margin may lose of its distance in one motion, metres.
+const SLACK_M: f32 = 0.004;
+/// Nothing may come nearer than this, however often it loses a little, metres.
+const FLOOR_M: f32 = 0.01;
+
+/// A place of the robot relative to where it is now.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Place {
+    /// Metres ahead.
+    pub x_m: f32,
+    /// Metres to the left.
+    pub y_m: f32,
+    /// Radians to the left.
+    pub yaw_rad: f32,
+}
+
+impl Place {
+    /// This place after an arc of `length_m` (negative is backwards) that turns by `turn_rad`.
+    #[must_use]
+    pub fn after(self, length_m: f32, turn_rad: f32) -> Self {
+        let (sin, cos) = math::sin_cos(self.yaw_rad + 0.5 * turn_rad);
+        Self {
+            x_m: self.x_m + length_m * cos,
+            y_m: self.y_m + length_m * sin,
+            yaw_rad: self.yaw_rad + turn_rad,
+        }
+    }
+}
+
+/// A near point, with its distance from the robot as it stands.
+#[derive(Clone, Copy, Debug)]
+struct Threat {
+    at: Point,
+    clearance_m: f32,
+}
+
+/// What stands around the robot, in its frame.
+#[derive(Debug)]
+pub struct Surround {
+    threats: Vec<Threat, MOST_POINTS>,
+}
+
+/// Distance of a point from the robot's rectangle, by the larger overhang; negative inside.
+fn overhang(x_m: f32, y_m: f32) -> f32 {
+    let (along, across) = (x_m.abs() - HALF_LENGTH_M, y_m.abs() - HALF_WIDTH_M);
+    if along > across { along } else { across }
+}
+
+fn towards(from: f32, to: f32, most: f32) -> f32 {
+    from + (to - from).clamp(-most, most)
+}
+
+impl Surround {
+    /// The points as seen from `pose`.
+    #[must_use]
+    pub fn new(pose: &Pose, points: &[Point]) -> Self {
+        let (sin, cos) = math::sin_cos(pose.yaw_rad);
+        let threats = points
+            .iter()
+            .take(MOST_POINTS)
+            .map(|point| {
+                let (dx, dy) = (point.x_m - pose.x_m, point.y_m - pose.y_m);
+                let at = Point {
+                    x_m: dx * cos + dy * sin,
+                    y_m: dy * cos - dx * sin,
+                };
+                Threat {
+                    at,
+                    clearance_m: overhang(at.x_m, at.y_m),
+                }
+            })
+            // A point well inside the robot is a false echo or a passing hand; it cannot be avoided any more.
+            .filter(|threat| threat.clearance_m > -0.02)
+            .collect();
+        Self { threats }
+    }
+
+    /// Distance of the nearest point from the robot, metres.
+    #[must_use]
+    pub fn clearance_m(&self) -> f32 {
+        self.threats
+            .iter()
+            .map(|threat| threat.clearance_m)
+            .fold(f32::MAX, f32::min)
+    }
+
+    /// Whether the robot at this place keeps `margin_m` from every point.
+    #[must_use]
+    pub fn is_clear(&self, place: Place, margin_m: f32) -> bool {
+        let (sin, cos) = math::sin_cos(place.yaw_rad);
+        self.threats.iter().all(|threat| {
+            let (dx, dy) = (threat.at.x_m - place.x_m, threat.at.y_m - place.y_m);
+            let now = overhang(dx * cos + dy * sin, dy * cos - dx * sin);
+            let least = (threat.clearance_m - SLACK_M).max(FLOOR_M.min(threat.clearance_m));
+            now >= margin_m.min(least - 1e-5)
+        })
+    }
+
+    /// Whether an arc of `length_m` that turns by `turn_rad` is clear, from a place on.
+    #[must_use]
+    pub fn is_arc_clear(&self, from: Place, length_m: f32, turn_rad: f32, margin_m: f32) -> bool {
+        let moved = length_m.abs() + turn_rad.abs() * HALF_DIAGONAL_M;
+        let parts = math::floor(moved / CHECK_EVERY_M) + 1;
+        let (length, turn) = (length_m / parts as f32, turn_rad / parts as f32);
+        let mut place = from;
+        (0..parts).all(|_| {
+            place = place.after(length, turn);
+            self.is_clear(place, margin_m)
+        })
+    }
+
+    /// Whether following `twist` for one period and braking after it is clear, from the velocity `now` and within the
+    /// robot's acceleration.
+    #[must_use]
+    pub fn admits(&self, twist: Twist, now: Twist, config: &Config, margin_m: f32) -> bool {
+        let (most_v, most_w) = (
+            config.linear_accel_mps2 * TICK_S,
+            config.angular_accel_radps2 * TICK_S,
+        );
+        let (mut v, mut w) = (now.linear_mps, now.angular_radps);
+        let mut place = Place::default();
+        let mut left_s = config.period_s;
+        let mut since_m = 0.0;
+        for _ in 0..MOST_TICKS {
+            let braking = left_s <= 1e-3;
+            let wanted = if braking { Twist::default() } else { twist };
+            left_s -= TICK_S;
+            let v_next = towards(v, wanted.linear_mps, most_v);
+            let w_next = towards(w, wanted.angular_radps, most_w);
+            let (length, turn) = (0.5 * (v + v_next) * TICK_S, 0.5 * (w + w_next) * TICK_S);
+            place = place.after(length, turn);
+            (v, w) = (v_next, w_next);
+            since_m += length.abs() + turn.abs() * HALF_DIAGONAL_M;
+            let stopped = left_s <= 1e-3 && v.abs() < 1e-3 && w.abs() < 1e-3;
+            if stopped || since_m > CHECK_EVERY_M {
+                since_m = 0.0;
+                if !self.is_clear(place, margin_m) {
+                    return false;
+                }
+            }
+            if stopped {
+                return true;
+            }
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn config() -> Config {
+        Config::pioneer_3at(Vec::new())
+    }
+
+    fn wall_ahead(distance_m: f32) -> Surround {
+        let points: std::vec::Vec<Point> = (-10..=10)
+            .map(|k| Point {
+                x_m: distance_m,
+                y_m: k as f32 * 0.05,
+            })
+            .collect();
+        Surround::new(&Pose::default(), &points)
+    }
+
+    #[test]
+    fn a_wall_is_admitted_only_beyond_the_braking_distance() {
+        let full = Twist {
+            linear_mps: 0.7,
+            angular_radps: 0.0,
+        };
+        // 0.14 m in the period and 0.7²/(2·0.3) = 0.82 m of braking.
+        let needs = HALF_LENGTH_M + 0.14 + 0.82 + 0.06;
+        assert!(wall_ahead(needs + 0.03).admits(full, full, &config(), 0.06));
+        assert!(!wall_ahead(needs - 0.03).admits(full, full, &config(), 0.06));
+    }
+
+    #[test]
+    fn a_turn_on_the_spot_needs_the_diagonal() {
+        let turn =
+            |distance| wall_ahead(distance).is_arc_clear(Place::default(), 0.0, math::PI, 0.0);
+        assert!(turn(0.36));
+        assert!(!turn(0.34));
+    }
+
+    #[test]
+    fn a_point_too_near_may_be_left_but_not_approached() {
+        let near = wall_ahead(HALF_LENGTH_M + 0.01);
+        assert!(near.is_arc_clear(Place::default(), -0.1, 0.0, 0.05));
+        assert!(!near.is_arc_clear(Place::default(), 0.1, 0.0, 0.05));
+    }
+
+    #[test]
+    fn the_place_after_a_quarter_circle() {
+        let mut place = Place::default();
+        for _ in 0..90 {
+            place = place.after(math::PI / 180.0, math::PI / 180.0);
+        }
+        assert!((place.x_m - 1.0).abs() < 1e-3 && (place.y_m - 1.0).abs() < 1e-3);
+    }
+}

@@ -1,0 +1,80 @@
+//! Gauss–Seidel: one sweep in row order, the papers' method [BVP; Terrain, eq. 2], in q-form:
+//!
+//! ```text
+//! q ← ((N + S) + (W + E) + (ε/2) (|N − S| + |W − E|)) / 4
+//! ```
+//!
+//! For |ε| ≤ 2 this is a convex combination of the neighbours. Hence: started from q = 0 it rises monotonically, and
+//! at every sweep each cell with q > 0 has a strictly better neighbour (no local minimum of p), which neither
+//! over-relaxation nor the multigrid can promise in transit.
+
+use core::cell::Cell;
+
+use super::runs::Runs;
+use super::window::{Preference, STRIDE, Window, index};
+
+/// Relax every reached cell once, from the lowest row up, left to right.
+pub(super) fn sweep(window: &mut Window) {
+    if window.preferred {
+        sweep_rows::<true, false>(window);
+    } else {
+        // Without preferences the last term is zero: leaving it out gives the same bits.
+        sweep_rows::<false, false>(window);
+    }
+}
+
+/// As [`sweep`]; answers the greatest relative change of a cell, infinite while some rise from zero.
+pub(super) fn measured_sweep(window: &mut Window) -> f32 {
+    if window.preferred {
+        sweep_rows::<true, true>(window)
+    } else {
+        sweep_rows::<false, true>(window)
+    }
+}
+
+fn sweep_rows<const PREFERRED: bool, const MEASURED: bool>(window: &mut Window) -> f32 {
+    let mut worst = 0.0;
+    for (y, &reached) in window.reached.iter().enumerate() {
+        for run in Runs(reached) {
+            let start = index(run.start, y);
+            let around = &mut window.q[start - STRIDE..][..run.len() + 2 * STRIDE];
+            let preference = &window.preference[start..][..run.len()];
+            relax_run::<PREFERRED, MEASURED>(around, preference, &mut worst);
+        }
+    }
+    worst
+}
+
+/// Relax a run of cells: `around` begins below the run's first cell and ends above the cell after its last.
+#[inline(always)]
+fn relax_run<const PREFERRED: bool, const MEASURED: bool>(
+    around: &mut [f32],
+    preference: &[Preference],
+    worst: &mut f32,
+) {
+    let length = preference.len();
+    let mut west = around[STRIDE - 1];
+    let around = Cell::from_mut(around).as_slice_of_cells();
+    let south = &around[..length];
+    let here = &around[STRIDE..][..length];
+    let east = &around[STRIDE + 1..][..length];
+    let north = &around[2 * STRIDE..][..length];
+    let upright = south.iter().zip(north);
+    let level = here.iter().zip(east);
+    for ((preference, (south, north)), (here, east)) in preference.iter().zip(upright).zip(level) {
+        let (north, south, east) = (north.get(), south.get(), east.get());
+        let mut sum = (north + south) + (west + east);
+        if PREFERRED {
+            sum += preference.half() * ((north - south).abs() + (west - east).abs());
+        }
+        west = sum * 0.25;
+        if MEASURED {
+            // Below the least normal number a relative change means nothing.
+            let change = (west - here.get()).abs();
+            if change > *worst * here.get() + f32::MIN_POSITIVE {
+                *worst = change / here.get();
+            }
+        }
+        here.set(west);
+    }
+}

@@ -1,0 +1,37 @@
+//! How flat the field is around the robot [Terrain, §III]:
+//!
+//! ```text
+//! p_diff(r) = mean of |p_r − p_n| over the cells n of the kernel around the robot's cell r
+//! ```
+//!
+//! Conventions, on which the paper is silent. The kernel is 20 cells wide, an even number: it covers 10 columns to the
+//! left of the robot's and 9 to the right, 10 rows below and 9 above. Only free cells with a way to a goal count, and
+//! not the robot's own. The mean is of absolute differences: the signed mean of a harmonic field is about zero.
+//!
+//! In q-form `|p_r − p_n| = |q_r − q_n|`, and small values keep their precision: right to 1e-5 down to 1e-34.
+
+use super::window::{GOAL, SIDE, Window, index};
+
+/// `K_n`, width of the kernel in cells [Terrain, Table I].
+pub const KERNEL_CELLS: usize = 20;
+
+/// `p_diff` at cell (x, y), where p runs from 0 to 1; 0 if the kernel holds no other reached cell.
+#[must_use]
+pub fn p_diff(window: &Window, x: usize, y: usize) -> f32 {
+    let q_robot = window.q(x, y);
+    let half = KERNEL_CELLS / 2;
+    let (mut sum, mut cells) = (0.0, 0_u16);
+    for row in y.saturating_sub(half)..(y + half).min(SIDE) {
+        for column in x.saturating_sub(half)..(x + half).min(SIDE) {
+            if window.is_reached(column, row) && (column, row) != (x, y) {
+                sum += (window.q[index(column, row)] - q_robot).abs();
+                cells += 1;
+            }
+        }
+    }
+    if cells == 0 {
+        0.0
+    } else {
+        sum / f32::from(cells) / GOAL
+    }
+}

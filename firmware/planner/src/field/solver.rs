@@ -1,0 +1,176 @@
+//! Solve the window: which method, how long, and when to stop.
+//!
+//! The multigrid stops when its own factors say that the field is right, max |x − 1| < 0.05: a small residual says
+//! nothing, since a slow mode has a small residual and a large error. It gives way to Gauss–Seidel where it is known
+//! to be weak, under a strong global attraction, and where its factors stop converging.
+//!
+//! The budget is in multigrid cycles, a hard bound on time: Gauss–Seidel spends [`SWEEPS_PER_CYCLE`] sweeps for one.
+//! A field that ran out of budget stays in the window, and the next call goes on from it.
+
+use super::gauss_seidel;
+use super::multigrid::{self, SCRATCH_FLOATS};
+use super::runs::Runs;
+use super::seed;
+use super::window::{SIDE, Window, index};
+
+/// Gauss–Seidel sweeps that cost about as much as a multigrid cycle.
+pub const SWEEPS_PER_CYCLE: u16 = 5;
+
+/// Mean preference above which the multigrid is not used: q rounds to the goal's value over whole rooms there, and
+/// the coarse factors see nothing but rounding.
+const STRONG_ATTRACTION: f32 = 0.15;
+
+/// Cycles without a better error after which the multigrid gives up.
+const PATIENCE: u16 = 12;
+
+/// Relative change in a block of sweeps, per sweep, below which Gauss–Seidel has converged.
+const SWEEP_TOLERANCE: f32 = 1e-5;
+
+/// How to solve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Multigrid where it works, Gauss–Seidel where it does not.
+    #[default]
+    Auto,
+    /// Multigrid, come what may.
+    Multigrid,
+    /// Gauss–Seidel from q = 0.
+    GaussSeidel,
+}
+
+/// Parameters of a solve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolverConfig {
+    /// Most multigrid cycles, or a fifth of the sweeps. Default: 12.
+    pub max_cycles: u16,
+    /// max |x − 1| below which the multigrid stops. Default: 0.05.
+    pub tolerance: f32,
+    /// How to solve. Default: [`Method::Auto`].
+    pub method: Method,
+}
+
+impl Default for SolverConfig {
+    fn default() -> Self {
+        Self {
+            max_cycles: 12,
+            tolerance: 0.05,
+            method: Method::Auto,
+        }
+    }
+}
+
+/// Why a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// The stop rule holds.
+    Converged,
+    /// The budget ran out first; the next call goes on from here.
+    Budget,
+    /// No free cell can be reached from a goal: there is no field.
+    Flat,
+}
+
+/// What a solve did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solution {
+    /// Multigrid cycles spent.
+    pub cycles: u16,
+    /// Gauss–Seidel sweeps spent, beyond the one in each cycle.
+    pub sweeps: u16,
+    /// Why it ended.
+    pub stop: Stop,
+    /// What the stop rule looked at last: the multigrid's max |x − 1|, or the greatest relative change of a sweep.
+    pub residual: f32,
+    /// The method that ended it: never [`Method::Auto`].
+    pub method: Method,
+}
+
+/// Solve the window's field from whatever it holds.
+pub fn solve(
+    window: &mut Window,
+    scratch: &mut [f32; SCRATCH_FLOATS],
+    config: &SolverConfig,
+) -> Solution {
+    let mut solution = Solution {
+        cycles: 0,
+        sweeps: 0,
+        stop: Stop::Budget,
+        residual: f32::INFINITY,
+        method: Method::Multigrid,
+    };
+    if window.reached.iter().all(|&row| row == 0) {
+        return Solution {
+            stop: Stop::Flat,
+            residual: 0.0,
+            ..solution
+        };
+    }
+    let strong = config.method == Method::Auto && mean_preference(window) > STRONG_ATTRACTION;
+    if config.method != Method::GaussSeidel && !strong {
+        run_multigrid(window, scratch, config, &mut solution);
+    } else {
+        solution.method = Method::GaussSeidel;
+    }
+    if solution.method == Method::GaussSeidel {
+        run_gauss_seidel(window, config, &mut solution);
+    }
+    solution
+}
+
+fn run_multigrid(
+    window: &mut Window,
+    scratch: &mut [f32; SCRATCH_FLOATS],
+    config: &SolverConfig,
+    solution: &mut Solution,
+) {
+    seed::fill_blanks(window);
+    let (mut best, mut since) = (f32::INFINITY, 0);
+    while solution.cycles < config.max_cycles {
+        solution.residual = multigrid::cycle(window, scratch);
+        solution.cycles += 1;
+        if solution.residual < config.tolerance {
+            solution.stop = Stop::Converged;
+            return;
+        }
+        since += 1;
+        if solution.residual < best {
+            (best, since) = (solution.residual, 0);
+        }
+        if config.method == Method::Auto && since >= PATIENCE {
+            solution.method = Method::GaussSeidel;
+            return;
+        }
+    }
+}
+
+fn run_gauss_seidel(window: &mut Window, config: &SolverConfig, solution: &mut Solution) {
+    // Blank cells are zero, where the rise begins.
+    window.blank = [0; SIDE];
+    for _ in solution.cycles..config.max_cycles {
+        for _ in 1..SWEEPS_PER_CYCLE {
+            gauss_seidel::sweep(window);
+        }
+        solution.residual = gauss_seidel::measured_sweep(window);
+        solution.sweeps += SWEEPS_PER_CYCLE;
+        if solution.residual < SWEEP_TOLERANCE {
+            solution.stop = Stop::Converged;
+            return;
+        }
+    }
+}
+
+/// Mean ε of the reached cells.
+fn mean_preference(window: &Window) -> f32 {
+    if !window.preferred {
+        return 0.0;
+    }
+    let (mut sum, mut cells) = (0.0, 0.0);
+    for (y, &reached) in window.reached.iter().enumerate() {
+        for run in Runs(reached) {
+            cells += run.len() as f32;
+            let preferences = &window.preference[index(run.start, y)..][..run.len()];
+            sum += preferences.iter().map(|p| 2.0 * p.half()).sum::<f32>();
+        }
+    }
+    sum / cells
+}

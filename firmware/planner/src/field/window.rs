@@ -1,0 +1,309 @@
+//! The local window: 61 × 61 cells of the field q, their boundary and their preferences.
+//!
+//! Cell (x, y), 0 ≤ x, y < [`SIDE`]: x to the right, y up. What is neither free nor a goal is an obstacle, and so is
+//! everything outside the window [Ouroboros: 61 × 61 cells].
+//!
+//! Invariants: q is [`GOAL`] on goals, 0 on obstacles, outside, and on free cells that no goal can be reached from;
+//! elsewhere 0 ≤ q ≤ `GOAL`. A *blank* cell is a reachable one that has no value yet; the solver gives it one.
+//!
+//! Units: q in units of 1/[`GOAL`] of p's; preferences are pure numbers.
+
+use core::fmt;
+
+use fixed::types::I3F13;
+
+use super::multigrid::Origin;
+use super::reach;
+use super::runs::Runs;
+
+/// Cells along a side of the window [Ouroboros, Table I].
+pub const SIDE: usize = 61;
+
+/// The value of q on a goal: 2¹⁰⁰.
+pub const GOAL: f32 = f32::from_bits((127 + 100) << 23);
+
+/// Floats from a cell to the one above it: the row, its two neighbours outside, and one to spare.
+pub(super) const STRIDE: usize = 64;
+
+/// Floats of the field: the rows, the row below, the one above, and one to spare.
+pub(super) const FLOATS: usize = STRIDE * STRIDE;
+
+/// The bits of a row that are cells.
+const ROW: u64 = (1 << SIDE) - 1;
+
+/// Where cell (x, y) lies among the floats of the field.
+pub(super) const fn index(x: usize, y: usize) -> usize {
+    (y + 1) * STRIDE + x + 1
+}
+
+/// How much a cell attracts (positive) or repels (negative): ε of the equation, within ±2.
+///
+/// Up to there every neighbour's weight (1 ± ε/2)/4 is non-negative, so that the maximum principle holds; beyond, the
+/// relaxation diverges [Terrain, §III]. Resolution 2⁻¹³.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Preference(I3F13);
+
+/// A preference outside ±2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PreferenceError(
+    /// What was asked for.
+    pub I3F13,
+);
+
+impl fmt::Display for PreferenceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "preference {} diverges: keep it within -2 and 2", self.0)
+    }
+}
+
+impl core::error::Error for PreferenceError {}
+
+impl Preference {
+    /// No preference: the cell is harmonic.
+    pub const NONE: Self = Self(I3F13::ZERO);
+    /// The strongest attraction, 2.
+    pub const MAX: Self = Self(I3F13::const_from_int(2));
+    /// The strongest repulsion, −2.
+    pub const MIN: Self = Self(I3F13::const_from_int(-2));
+
+    /// A preference of `epsilon`.
+    ///
+    /// # Errors
+    /// If `epsilon` is outside ±2.
+    pub fn new(epsilon: I3F13) -> Result<Self, PreferenceError> {
+        if Self::MIN.0 <= epsilon && epsilon <= Self::MAX.0 {
+            Ok(Self(epsilon))
+        } else {
+            Err(PreferenceError(epsilon))
+        }
+    }
+
+    /// The preference nearest to `epsilon`; none for NaN.
+    #[must_use]
+    pub fn nearest(epsilon: f32) -> Self {
+        if epsilon.is_nan() {
+            return Self::NONE;
+        }
+        Self(I3F13::saturating_from_num(epsilon)).clamp(Self::MIN, Self::MAX)
+    }
+
+    /// ε.
+    #[must_use]
+    pub fn get(self) -> I3F13 {
+        self.0
+    }
+
+    /// ε/2, the factor of the gradient term in the q-form.
+    #[inline(always)]
+    pub(super) fn half(self) -> f32 {
+        const SCALE: f32 = 1.0 / (1 << (I3F13::FRAC_NBITS + 1)) as f32;
+        f32::from(self.0.to_bits()) * SCALE
+    }
+}
+
+/// The window. 25 KB; made once, in a `static`.
+#[derive(Clone, Debug)]
+pub struct Window {
+    /// q, row by row with a border of zeros; see [`index`].
+    pub(super) q: [f32; FLOATS],
+    /// ε, in the same places.
+    pub(super) preference: [Preference; FLOATS],
+    /// Some preference is not none.
+    pub(super) preferred: bool,
+    /// Free cells that a goal can be reached from.
+    pub(super) reached: [u64; SIDE],
+    /// Goal cells.
+    pub(super) goal: [u64; SIDE],
+    /// Reached cells that have no value yet.
+    pub(super) blank: [u64; SIDE],
+    /// Free cells that no goal can be reached from.
+    unreached: u16,
+    /// Where the multigrid's next blocks begin.
+    pub(super) origin: Origin,
+}
+
+impl Window {
+    /// A window of obstacles.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            q: [0.0; FLOATS],
+            preference: [Preference::NONE; FLOATS],
+            preferred: false,
+            reached: [0; SIDE],
+            goal: [0; SIDE],
+            blank: [0; SIDE],
+            unreached: 0,
+            origin: Origin::Even,
+        }
+    }
+
+    /// Forget the field, so that the next solve starts cold; boundary and preferences stay.
+    pub fn clear(&mut self) {
+        self.blank = self.reached;
+        self.q = [0.0; FLOATS];
+        self.charge_goals();
+    }
+
+    /// Take a new boundary: bit x of row y of `free` and of `goal`; what is in neither is an obstacle, what is in both
+    /// is a goal. A cell that stays keeps its value as a warm start; a new one is blank until the next solve.
+    pub fn set_boundary(&mut self, free: &[u64; SIDE], goal: &[u64; SIDE]) {
+        let free = core::array::from_fn(|y| free[y] & !goal[y] & ROW);
+        let goal = core::array::from_fn(|y| goal[y] & ROW);
+        let reached = reach::flood(&free, &goal);
+        let mut unreached = 0;
+        for y in 0..SIDE {
+            unreached += (free[y] & !reached[y]).count_ones();
+            let valued = self.valued(y);
+            self.blank[y] = reached[y] & !valued;
+            self.fill(y, valued & !reached[y], 0.0);
+        }
+        self.reached = reached;
+        self.goal = goal;
+        self.unreached = unreached as u16;
+        self.charge_goals();
+    }
+
+    /// Move the window by (dx, dy) cells over the field: cell (x, y) takes what was at (x + dx, y + dy), values,
+    /// boundary and preferences alike; what comes in is obstacle until [`Window::set_boundary`] says otherwise.
+    pub fn shift(&mut self, dx: i32, dy: i32) {
+        let across = dx.unsigned_abs() as usize;
+        let up = dy.unsigned_abs() as usize;
+        if across >= SIDE || up >= SIDE {
+            *self = Self::new();
+            return;
+        }
+        slide(&mut self.q, dx, dy);
+        if self.preferred {
+            slide(&mut self.preference, dx, dy);
+        }
+        for mask in [&mut self.reached, &mut self.goal, &mut self.blank] {
+            let bits = |y: usize| {
+                y.checked_add_signed(dy as isize)
+                    .and_then(|y| mask.get(y))
+                    .copied()
+                    .unwrap_or(0)
+            };
+            let moved = |bits: u64| {
+                if dx >= 0 {
+                    bits >> across
+                } else {
+                    bits << across & ROW
+                }
+            };
+            *mask = core::array::from_fn(|y| moved(bits(y)));
+        }
+    }
+
+    /// Give cell (x, y) a preference; outside the window nothing happens.
+    pub fn set_preference(&mut self, x: usize, y: usize, preference: Preference) {
+        if x < SIDE && y < SIDE {
+            self.preference[index(x, y)] = preference;
+            self.preferred |= preference != Preference::NONE;
+        }
+    }
+
+    /// Give every cell (x, y) the preference `of(x, y)`.
+    pub fn set_preferences(&mut self, mut of: impl FnMut(usize, usize) -> Preference) {
+        self.preferred = false;
+        for y in 0..SIDE {
+            let row = &mut self.preference[index(0, y)..][..SIDE];
+            for (x, cell) in row.iter_mut().enumerate() {
+                *cell = of(x, y);
+                self.preferred |= *cell != Preference::NONE;
+            }
+        }
+    }
+
+    /// The preference of cell (x, y); none outside the window.
+    #[must_use]
+    pub fn preference(&self, x: usize, y: usize) -> Preference {
+        if x < SIDE && y < SIDE {
+            self.preference[index(x, y)]
+        } else {
+            Preference::NONE
+        }
+    }
+
+    /// q of cell (x, y), from 0 to [`GOAL`]; 0 outside the window.
+    #[must_use]
+    pub fn q(&self, x: usize, y: usize) -> f32 {
+        if x < SIDE && y < SIDE {
+            self.q[index(x, y)]
+        } else {
+            0.0
+        }
+    }
+
+    /// Is (x, y) a free cell with a way to a goal?
+    #[must_use]
+    pub fn is_reached(&self, x: usize, y: usize) -> bool {
+        x < SIDE && y < SIDE && self.reached[y] >> x & 1 == 1
+    }
+
+    /// Is (x, y) a goal cell?
+    #[must_use]
+    pub fn is_goal(&self, x: usize, y: usize) -> bool {
+        x < SIDE && y < SIDE && self.goal[y] >> x & 1 == 1
+    }
+
+    /// Free cells with a way to a goal, bit x of row y.
+    #[must_use]
+    pub fn reached(&self) -> &[u64; SIDE] {
+        &self.reached
+    }
+
+    /// How many free cells have no way to any goal.
+    #[must_use]
+    pub fn unreached_cells(&self) -> u16 {
+        self.unreached
+    }
+
+    /// Cells of row y whose value is worth keeping.
+    fn valued(&self, y: usize) -> u64 {
+        (self.reached[y] | self.goal[y]) & !self.blank[y]
+    }
+
+    /// Set q on `cells` of row y.
+    fn fill(&mut self, y: usize, cells: u64, value: f32) {
+        for run in Runs(cells) {
+            self.q[index(run.start, y)..][..run.len()].fill(value);
+        }
+    }
+
+    /// Set q on the goals.
+    pub(super) fn charge_goals(&mut self) {
+        for y in 0..SIDE {
+            self.fill(y, self.goal[y], GOAL);
+        }
+    }
+}
+
+impl Default for Window {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Move a window's worth of items so that cell (x, y) gets what was at (x + dx, y + dy), and clear what came in.
+fn slide<T: Copy + Default>(cells: &mut [T; FLOATS], dx: i32, dy: i32) {
+    let (across, up) = (dx.unsigned_abs() as usize, dy.unsigned_abs() as usize);
+    let by = dx + dy * STRIDE as i32;
+    let distance = by.unsigned_abs() as usize;
+    if by >= 0 {
+        cells.copy_within(distance.., 0);
+    } else {
+        cells.copy_within(..FLOATS - distance, distance);
+    }
+    // What crossed an edge wrapped round to the other side, or came from a margin.
+    let blank = T::default();
+    let (rows, _) = cells.as_chunks_mut::<STRIDE>();
+    let (incoming, outgoing) = if dx >= 0 { (across, 0) } else { (0, across) };
+    for row in rows.iter_mut() {
+        row[..=outgoing].fill(blank);
+        row[SIDE + 1 - incoming..].fill(blank);
+    }
+    let (incoming, outgoing) = if dy >= 0 { (up, 0) } else { (0, up) };
+    rows[..=outgoing].as_flattened_mut().fill(blank);
+    rows[SIDE + 1 - incoming..].as_flattened_mut().fill(blank);
+}

@@ -1,0 +1,91 @@
+//! A cell of a plane, and walks over cells.
+
+use super::Plane;
+
+/// A cell of a bit plane, by column and row. Not a [`crate::geometry::Cell`]: a plane has its own origin and scale.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Site {
+    /// Column.
+    pub x: u16,
+    /// Row.
+    pub y: u16,
+}
+
+/// Steps to the eight neighbours, sides before diagonals: the tie order of every walk.
+const STEPS: [(i8, i8); 8] = [
+    (1, 0),
+    (0, -1),
+    (-1, 0),
+    (0, 1),
+    (1, -1),
+    (-1, -1),
+    (-1, 1),
+    (1, 1),
+];
+
+impl Site {
+    /// The site `dx` columns and `dy` rows away, if both stay in the range of the type.
+    #[must_use]
+    pub fn offset(self, dx: i8, dy: i8) -> Option<Self> {
+        Some(Self {
+            x: self.x.checked_add_signed(i16::from(dx))?,
+            y: self.y.checked_add_signed(i16::from(dy))?,
+        })
+    }
+
+    /// The up to eight sites around: first those that share a side (east, north, west, south, with row 0 in the
+    /// north), then the diagonal ones (north-east, north-west, south-west, south-east). They may lie outside a plane.
+    pub fn neighbours(self) -> impl Iterator<Item = Self> {
+        STEPS
+            .iter()
+            .filter_map(move |&(dx, dy)| self.offset(dx, dy))
+    }
+
+    /// This site's bit in its word.
+    #[inline]
+    pub(crate) const fn bit(self) -> u32 {
+        1 << (self.x & 31)
+    }
+}
+
+/// The set cells of a plane, row after row; see [`Plane::sites`].
+#[derive(Clone, Debug)]
+pub struct Sites<'a> {
+    plane: Plane<'a>,
+    next_word: usize,
+    left: u32,
+}
+
+impl<'a> Sites<'a> {
+    pub(super) const fn new(plane: Plane<'a>) -> Self {
+        Self {
+            plane,
+            next_word: 0,
+            left: 0,
+        }
+    }
+}
+
+impl Iterator for Sites<'_> {
+    type Item = Site;
+
+    fn next(&mut self) -> Option<Site> {
+        while self.left == 0 {
+            self.left = *self.plane.words.get(self.next_word)?;
+            self.next_word += 1;
+        }
+        let bit = self.left.trailing_zeros() as usize;
+        self.left &= self.left - 1;
+        let (row, word) = {
+            let per_row = self.plane.shape.words_per_row();
+            (
+                (self.next_word - 1) / per_row,
+                (self.next_word - 1) % per_row,
+            )
+        };
+        Some(Site {
+            x: (word * 32 + bit) as u16,
+            y: row as u16,
+        })
+    }
+}

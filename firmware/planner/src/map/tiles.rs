@@ -1,0 +1,462 @@
+//! The global map: two bits a cell in a pool of 32 × 32-cell tiles, given out on first touch.
+//!
+//! A tile at tile coordinates (i, j) lives in slot (i mod w, j mod h) of a w × h box (toroidal addressing), so the map
+//! may start anywhere: only the *extent* of what is known has to fit the box. Each tile row is two words: `low` and
+//! `high` bits of the class code, bit k = column k. Rows are read 64 cells at a time by everything that plans.
+//!
+//! Invariant: `extent` covers every tile in use and is at most w by h tiles, so no two tiles share a slot.
+//! Units: cells of [`crate::geometry::CELL_M`].
+
+use crate::geometry::Cell;
+
+/// Cells along a tile's side.
+pub const TILE_SIDE: i32 = 32;
+
+/// What is known of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Class {
+    /// Never measured.
+    #[default]
+    Unknown = 0,
+    /// Traversable.
+    Free = 1,
+    /// Stands in the way.
+    Obstacle = 2,
+    /// A hole, cliff or downward slope [Terrain, III-B].
+    Negative = 3,
+}
+
+/// A cell that the map has no room for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoRoom {
+    /// The known extent would outgrow the box.
+    Box,
+    /// Every tile of the pool is in use.
+    Pool,
+}
+
+/// 64 cells of a row: bit k of each word is column x + k.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Row {
+    low: u64,
+    high: u64,
+}
+
+impl Row {
+    /// Cells that stand in the way, of either sign.
+    #[must_use]
+    pub const fn obstacle(self) -> u64 {
+        self.high
+    }
+
+    /// Cells known to be traversable.
+    #[must_use]
+    pub const fn free(self) -> u64 {
+        self.low & !self.high
+    }
+
+    /// Cells never measured.
+    #[must_use]
+    pub const fn unknown(self) -> u64 {
+        !(self.low | self.high)
+    }
+}
+
+/// Inclusive bounds in tiles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extent {
+    /// Least tile column and row.
+    pub least: (i32, i32),
+    /// Greatest tile column and row.
+    pub greatest: (i32, i32),
+}
+
+impl Extent {
+    const fn with(self, x: i32, y: i32) -> Self {
+        Self {
+            least: (min(self.least.0, x), min(self.least.1, y)),
+            greatest: (max(self.greatest.0, x), max(self.greatest.1, y)),
+        }
+    }
+
+    /// Tiles across.
+    #[must_use]
+    pub const fn width(self) -> i32 {
+        self.greatest.0 - self.least.0 + 1
+    }
+
+    /// Tiles up.
+    #[must_use]
+    pub const fn height(self) -> i32 {
+        self.greatest.1 - self.least.1 + 1
+    }
+}
+
+const fn min(a: i32, b: i32) -> i32 {
+    if a < b { a } else { b }
+}
+
+const fn max(a: i32, b: i32) -> i32 {
+    if a > b { a } else { b }
+}
+
+type TileRows = [[u32; 2]; TILE_SIDE as usize];
+
+/// The tile pool and its directory. `TILES` tiles in the pool, `SLOTS` places in the box.
+#[derive(Debug)]
+pub struct Tiles<const TILES: usize, const SLOTS: usize> {
+    pool: [TileRows; TILES],
+    /// Pool index + 1 of the tile in a slot, 0 where there is none.
+    directory: [u16; SLOTS],
+    used: u16,
+    width: i32,
+    height: i32,
+    extent: Option<Extent>,
+    /// Changes of any cell so far; wraps.
+    edits: u32,
+}
+
+impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
+    /// An empty map without a box; [`Self::reset`] gives it one.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            pool: [[[0; 2]; TILE_SIDE as usize]; TILES],
+            directory: [0; SLOTS],
+            used: 0,
+            width: 0,
+            height: 0,
+            extent: None,
+            edits: 0,
+        }
+    }
+
+    /// Whether a box of `width` × `height` tiles can be held: both at least 4, width even (the skeleton's words are
+    /// two tiles wide), product at most `SLOTS`.
+    #[must_use]
+    pub const fn fits(width: u8, height: u8) -> bool {
+        width >= 4 && height >= 4 && width % 2 == 0 && width as usize * height as usize <= SLOTS
+    }
+
+    /// Forget everything; the box becomes `width` × `height` tiles. A box that does not [`fit`](Self::fits) holds nothing.
+    pub fn reset(&mut self, width: u8, height: u8) {
+        self.directory.fill(0);
+        self.used = 0;
+        let fits = Self::fits(width, height);
+        self.width = if fits { i32::from(width) } else { 0 };
+        self.height = if fits { i32::from(height) } else { 0 };
+        self.extent = None;
+        self.edits = self.edits.wrapping_add(1);
+    }
+
+    /// Bounds of the tiles in use.
+    #[must_use]
+    pub const fn extent(&self) -> Option<Extent> {
+        self.extent
+    }
+
+    /// Tiles across and up that the box holds.
+    #[must_use]
+    pub const fn box_tiles(&self) -> (i32, i32) {
+        (self.width, self.height)
+    }
+
+    /// Whether anything was ever stored in this tile.
+    #[must_use]
+    pub fn is_touched(&self, tile_x: i32, tile_y: i32) -> bool {
+        self.rows(tile_x, tile_y).is_some()
+    }
+
+    /// Tiles in use.
+    #[must_use]
+    pub const fn used(&self) -> usize {
+        self.used as usize
+    }
+
+    /// A number that changes whenever any cell does.
+    #[must_use]
+    pub const fn edits(&self) -> u32 {
+        self.edits
+    }
+
+    fn slot(&self, tile_x: i32, tile_y: i32) -> usize {
+        (tile_y.rem_euclid(self.height) * self.width + tile_x.rem_euclid(self.width)) as usize
+    }
+
+    fn in_extent(&self, tile_x: i32, tile_y: i32) -> bool {
+        self.extent.is_some_and(|e| {
+            tile_x >= e.least.0
+                && tile_x <= e.greatest.0
+                && tile_y >= e.least.1
+                && tile_y <= e.greatest.1
+        })
+    }
+
+    fn rows(&self, tile_x: i32, tile_y: i32) -> Option<&TileRows> {
+        if !self.in_extent(tile_x, tile_y) {
+            return None;
+        }
+        let entry = *self.directory.get(self.slot(tile_x, tile_y))?;
+        self.pool.get(usize::from(entry.checked_sub(1)?))
+    }
+
+    /// Pool index of the tile, taking a fresh one on first touch.
+    fn touch(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
+        if !self.in_extent(tile_x, tile_y) {
+            let grown = match self.extent {
+                Some(extent) => extent.with(tile_x, tile_y),
+                None => Extent {
+                    least: (tile_x, tile_y),
+                    greatest: (tile_x, tile_y),
+                },
+            };
+            if grown.width() > self.width || grown.height() > self.height {
+                return Err(NoRoom::Box);
+            }
+            if usize::from(self.used) >= TILES {
+                return Err(NoRoom::Pool);
+            }
+            self.extent = Some(grown);
+        }
+        let slot = self.slot(tile_x, tile_y);
+        let entry = self.directory.get_mut(slot).ok_or(NoRoom::Box)?;
+        if *entry == 0 {
+            let fresh = self
+                .pool
+                .get_mut(usize::from(self.used))
+                .ok_or(NoRoom::Pool)?;
+            *fresh = [[0; 2]; TILE_SIDE as usize];
+            self.used += 1;
+            *entry = self.used;
+        }
+        Ok(usize::from(*entry) - 1)
+    }
+
+    /// What is known of a cell.
+    #[must_use]
+    pub fn class(&self, cell: Cell) -> Class {
+        let Some(rows) = self.rows(cell.x >> 5, cell.y >> 5) else {
+            return Class::Unknown;
+        };
+        let Some([low, high]) = rows.get((cell.y & 31) as usize) else {
+            return Class::Unknown;
+        };
+        let bit = cell.x & 31;
+        match (low >> bit & 1, high >> bit & 1) {
+            (0, 0) => Class::Unknown,
+            (1, 0) => Class::Free,
+            (0, _) => Class::Obstacle,
+            _ => Class::Negative,
+        }
+    }
+
+    /// Store what is known of a cell.
+    ///
+    /// # Errors
+    /// [`NoRoom`] where the box or the pool cannot hold it; the map is then unchanged.
+    pub fn set(&mut self, cell: Cell, class: Class) -> Result<(), NoRoom> {
+        let index = self.touch(cell.x >> 5, cell.y >> 5)?;
+        let row = self
+            .pool
+            .get_mut(index)
+            .and_then(|rows| rows.get_mut((cell.y & 31) as usize));
+        let Some([low, high]) = row else {
+            return Err(NoRoom::Pool);
+        };
+        let bit = 1u32 << (cell.x & 31);
+        let code = class as u8;
+        let old = (*low, *high);
+        *low = if code & 1 == 0 {
+            *low & !bit
+        } else {
+            *low | bit
+        };
+        *high = if code & 2 == 0 {
+            *high & !bit
+        } else {
+            *high | bit
+        };
+        if old != (*low, *high) {
+            self.edits = self.edits.wrapping_add(1);
+        }
+        Ok(())
+    }
+
+    /// The 64 cells from `x` on in row `y`.
+    #[must_use]
+    pub fn row(&self, x: i32, y: i32) -> Row {
+        let (tile_x, shift) = (x >> 5, (x & 31) as u32);
+        let mut row = Row::default();
+        for k in 0..3 {
+            let Some(rows) = self.rows(tile_x + k, y >> 5) else {
+                continue;
+            };
+            let Some(&[low, high]) = rows.get((y & 31) as usize) else {
+                continue;
+            };
+            let place = |word: u32| match k {
+                0 => u64::from(word) >> shift,
+                1 => u64::from(word) << 32 >> shift,
+                _ if shift == 0 => 0,
+                _ => u64::from(word) << (64 - shift),
+            };
+            row.low |= place(low);
+            row.high |= place(high);
+        }
+        row
+    }
+
+    /// A tile's cells, two bits each, row by row from the least y with the least x in the low bits; `None` where nothing
+    /// was ever seen.
+    #[must_use]
+    pub fn packed(&self, tile_x: i32, tile_y: i32) -> Option<[u8; 256]> {
+        let rows = self.rows(tile_x, tile_y)?;
+        let mut bytes = [0; 256];
+        for (row, out) in rows.iter().zip(bytes.chunks_exact_mut(8)) {
+            for (k, byte) in out.iter_mut().enumerate() {
+                for c in 0..4 {
+                    let column = 4 * k + c;
+                    let code = (row[0] >> column & 1) | (row[1] >> column & 1) << 1;
+                    *byte |= (code as u8) << (2 * c);
+                }
+            }
+        }
+        Some(bytes)
+    }
+}
+
+impl<const TILES: usize, const SLOTS: usize> Default for Tiles<TILES, SLOTS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Class, NoRoom, Tiles};
+    use crate::geometry::Cell;
+
+    fn small() -> Tiles<4, 24> {
+        let mut tiles = Tiles::new();
+        tiles.reset(6, 4);
+        tiles
+    }
+
+    #[test]
+    fn a_cell_reads_back_and_its_neighbours_stay_unknown() {
+        let mut tiles = small();
+        for (x, class) in [
+            (-33, Class::Free),
+            (-32, Class::Obstacle),
+            (31, Class::Negative),
+        ] {
+            let cell = Cell { x, y: -5 };
+            tiles.set(cell, class).unwrap();
+            assert_eq!(tiles.class(cell), class);
+            assert_eq!(tiles.class(Cell { x: x + 2, y: -5 }), Class::Unknown);
+        }
+        tiles.set(Cell { x: 31, y: -5 }, Class::Unknown).unwrap();
+        assert_eq!(tiles.class(Cell { x: 31, y: -5 }), Class::Unknown);
+    }
+
+    #[test]
+    fn a_row_spans_three_tiles() {
+        let mut tiles = small();
+        for x in -40..40 {
+            let class = if x % 3 == 0 {
+                Class::Obstacle
+            } else {
+                Class::Free
+            };
+            tiles.set(Cell { x, y: 7 }, class).unwrap();
+        }
+        for start in [-40, -33, -32, -31, -24] {
+            let row = tiles.row(start, 7);
+            for k in 0..64 {
+                let cell = Cell { x: start + k, y: 7 };
+                assert_eq!(
+                    row.obstacle() >> k & 1 == 1,
+                    tiles.class(cell) == Class::Obstacle
+                );
+                assert_eq!(row.free() >> k & 1 == 1, tiles.class(cell) == Class::Free);
+            }
+        }
+        assert_eq!(tiles.row(0, 8).unknown(), u64::MAX);
+    }
+
+    #[test]
+    fn the_extent_must_fit_the_box_wherever_it_starts() {
+        let mut tiles = small();
+        let origin = Cell { x: 1000, y: -1000 };
+        tiles.set(origin, Class::Free).unwrap();
+        assert_eq!(
+            tiles.set(
+                Cell {
+                    x: 1000,
+                    y: -1000 + 128
+                },
+                Class::Free
+            ),
+            Err(NoRoom::Box)
+        );
+        tiles
+            .set(
+                Cell {
+                    x: 1000,
+                    y: -1000 + 32,
+                },
+                Class::Free,
+            )
+            .unwrap();
+        assert_eq!(
+            tiles.class(Cell {
+                x: 1000,
+                y: -1000 + 128
+            }),
+            Class::Unknown,
+            "no ghost across the torus"
+        );
+    }
+
+    #[test]
+    fn a_full_pool_refuses_and_keeps_what_it_has() {
+        let mut tiles = small();
+        for k in 0..4 {
+            tiles.set(Cell { x: 32 * k, y: 0 }, Class::Free).unwrap();
+        }
+        assert_eq!(
+            tiles.set(Cell { x: 0, y: 32 }, Class::Free),
+            Err(NoRoom::Pool)
+        );
+        assert_eq!(
+            (tiles.used(), tiles.class(Cell { x: 96, y: 0 })),
+            (4, Class::Free)
+        );
+    }
+
+    #[test]
+    fn the_packed_tile_agrees_with_the_cells() {
+        let mut tiles = small();
+        for i in 0..300 {
+            let cell = Cell {
+                x: i * 7 % 32,
+                y: i * 11 % 32,
+            };
+            let class = [Class::Free, Class::Obstacle, Class::Negative][i as usize % 3];
+            tiles.set(cell, class).unwrap();
+        }
+        let bytes = tiles.packed(0, 0).unwrap();
+        for i in 0..1024usize {
+            let code = bytes[i / 4] >> (i % 4 * 2) & 3;
+            assert_eq!(
+                code,
+                tiles.class(Cell {
+                    x: i as i32 % 32,
+                    y: i as i32 / 32
+                }) as u8
+            );
+        }
+        assert!(tiles.packed(1, 0).is_none());
+    }
+}

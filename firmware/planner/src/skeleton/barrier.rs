@@ -1,0 +1,86 @@
+//! Cells taken out of a plane for a while.
+
+use heapless::Vec;
+
+use crate::grid::{PlaneMut, Site};
+
+/// A blocker on the wavefront's way: up to `N` cells of the skeleton that are cleared until it is lowered.
+///
+/// A wave cannot enter a cell that is not set, so the robot's cell or a wall across the road stops it [Ouroboros, steps
+/// 3 and 5]. Invariant: every cell held was set before and is cleared now.
+#[derive(Debug)]
+#[must_use = "lower it, or the skeleton stays cut"]
+pub struct Barrier<const N: usize> {
+    cleared: Vec<Site, N>,
+}
+
+impl<const N: usize> Barrier<N> {
+    /// Clear `cells` in the plane. Those that are clear already, or outside, stay what they are.
+    ///
+    /// # Errors
+    /// When more than `N` of them are set; the plane is then as it was.
+    pub fn raise(
+        plane: &mut PlaneMut<'_>,
+        cells: impl IntoIterator<Item = Site>,
+    ) -> Result<Self, BarrierFull> {
+        let mut barrier = Self {
+            cleared: Vec::new(),
+        };
+        for cell in cells {
+            if plane.clear(cell) && barrier.cleared.push(cell).is_err() {
+                plane.set(cell);
+                barrier.lower(plane);
+                return Err(BarrierFull);
+            }
+        }
+        Ok(barrier)
+    }
+
+    /// Set them again.
+    pub fn lower(self, plane: &mut PlaneMut<'_>) {
+        for cell in self.cleared {
+            plane.set(cell);
+        }
+    }
+}
+
+/// More cells than a barrier holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BarrierFull;
+
+impl core::fmt::Display for BarrierFull {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("a barrier of more skeleton cells than it can hold: take a larger one")
+    }
+}
+
+impl core::error::Error for BarrierFull {}
+
+#[cfg(test)]
+mod tests {
+    use super::{Barrier, BarrierFull};
+    use crate::grid::{PlaneMut, Shape, Site};
+
+    fn row() -> [Site; 3] {
+        [2, 3, 4].map(|x| Site { x, y: 0 })
+    }
+
+    #[test]
+    fn a_barrier_lowered_leaves_no_trace() {
+        let mut words = [0b10111];
+        let mut plane = PlaneMut::new(Shape::UNIT, &mut words).unwrap();
+        let barrier = Barrier::<2>::raise(&mut plane, row()).unwrap();
+        assert_eq!(plane.words_mut(), [0b00011]);
+        barrier.lower(&mut plane);
+        assert_eq!(words, [0b10111], "bit 3 was clear before");
+    }
+
+    #[test]
+    fn a_barrier_too_small_is_not_raised() {
+        let mut words = [0b11111];
+        let mut plane = PlaneMut::new(Shape::UNIT, &mut words).unwrap();
+        let error = Barrier::<2>::raise(&mut plane, row()).unwrap_err();
+        assert_eq!(error, BarrierFull);
+        assert_eq!(words, [0b11111]);
+    }
+}

@@ -1,0 +1,379 @@
+//! Strategy *frontier*: go to the nearest unexplored centre cell along the skeleton, until none can be reached
+//! [Ouroboros, Algorithm 1 without loop closing: lines 3, 4, 23–28].
+//!
+//! The goal that the robot is on its way to has a head start in the wave, so that two equally near goals do not pull it to and
+//! fro. A goal that is reached and stays unexplored, or to which the robot makes no progress, is dropped, with its reason; so no
+//! run hangs on a cell that cannot be seen. Those without progress get a second chance when nothing else is left.
+//!
+//! Units: map cells, coarse steps of 20 cm, milliseconds.
+
+use heapless::Vec;
+
+use super::Road;
+use crate::bits::{Adjacency, flood};
+use crate::clearance::Disc;
+use crate::field::SIDE;
+use crate::geometry::{CELL_M, Cell, Point};
+use crate::grid::{Plane, Site};
+use crate::map::Tiles;
+use crate::skeleton::{Residues, WaveSpace, Wavefront};
+use crate::status::{Frontier as Leftover, Residue};
+use crate::topology::{Frame, Topology};
+use crate::view::{Rows, SCALES, View};
+
+/// Goals dropped at the most; the list is the report's too.
+pub const MOST_DROPPED: usize = 32;
+/// Around a dropped goal no other is taken, metres.
+const DROP_RADIUS_M: f32 = 0.5;
+/// Time without progress after which a goal is dropped, milliseconds.
+const PATIENCE_MS: u32 = 12_000;
+/// A goal this near is reached, coarse steps.
+const REACHED_STEPS: u32 = 3;
+/// Time at a reached goal after which it is dropped, milliseconds: two turns on the spot.
+const LOOK_MS: u32 = 5_000;
+/// Time without moving after which a goal is dropped, milliseconds.
+const STANDING_MS: u32 = 40_000;
+/// A robot that moved less than this has not moved, metres.
+const MOVED_M: f32 = 0.3;
+/// Goals dropped in a row without moving after which the robot is stuck.
+const STUCK_DROPS: u8 = 3;
+/// Head start of the present goal, coarse steps: what turning about costs.
+const HEAD_START: u32 = 10;
+/// Rounds in a row without a field at the robot after which a goal is dropped.
+const FLAT_ROUNDS: u8 = 4;
+/// Rounds in a row that must find nothing before the exploration is over: the second one began after the first was found
+/// empty, so it saw everything there is.
+const EMPTY_ROUNDS: u8 = 2;
+
+/// What the strategy remembers.
+#[derive(Debug)]
+pub struct Frontier {
+    road: Road,
+    dropped: Vec<Leftover, MOST_DROPPED>,
+    /// Fewest steps so far to the present goal, and when.
+    fewest: u32,
+    since_ms: u32,
+    /// Where the robot last moved from, when, and how many goals it dropped since.
+    stood: Point,
+    stood_ms: u32,
+    stood_drops: u8,
+    /// The window had no way to the local goal since the last round, and in how many rounds before.
+    flat: bool,
+    flat_rounds: u8,
+    empty_rounds: u8,
+    had_road: bool,
+    second_chance: bool,
+}
+
+/// What a new round says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outlook {
+    /// There is a way to a frontier.
+    Road,
+    /// None was found; the next round decides.
+    Unsure,
+    /// No frontier can be reached.
+    Nothing,
+    /// The robot cannot move, whatever the goal.
+    Stuck,
+}
+
+fn near(a: Cell, b: Cell, radius_m: f32) -> bool {
+    let (dx, dy) = ((a.x - b.x) as f32 * CELL_M, (a.y - b.y) as f32 * CELL_M);
+    dx * dx + dy * dy < radius_m * radius_m
+}
+
+impl Frontier {
+    /// At the start.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            road: Road::new(),
+            dropped: Vec::new(),
+            fewest: u32::MAX,
+            since_ms: 0,
+            stood: Point { x_m: 0.0, y_m: 0.0 },
+            stood_ms: 0,
+            stood_drops: 0,
+            flat: false,
+            flat_rounds: 0,
+            empty_rounds: 0,
+            had_road: false,
+            second_chance: false,
+        }
+    }
+
+    /// Forget everything.
+    pub fn reset(&mut self) {
+        *self = Self::new();
+    }
+
+    /// The way to the present goal.
+    #[must_use]
+    pub const fn road(&self) -> &Road {
+        &self.road
+    }
+
+    /// Goals that were given up, and why.
+    #[must_use]
+    pub fn dropped(&self) -> &[Leftover] {
+        &self.dropped
+    }
+
+    /// Whether any frontier was ever within reach.
+    #[must_use]
+    pub const fn had_road(&self) -> bool {
+        self.had_road
+    }
+
+    /// A new skeleton is there: spread the wave from its frontier cells, move the robot to the skeleton, and walk down
+    /// [Ouroboros, Algorithm 1, lines 3, 4, 24].
+    pub fn replan<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        topology: &Topology<SLOTS>,
+        tiles: &Tiles<TILES, SLOTS>,
+        disc: &Disc,
+        robot: Point,
+        time_ms: u32,
+        (residues, ring): (&mut [[u32; 2]], &mut [u32]),
+    ) -> Outlook {
+        let frame = topology.frame();
+        let road = match (topology.skeleton(), topology.frontier()) {
+            (Some(way), Some(goals)) => {
+                Residues::new(frame.shape, residues)
+                    .ok()
+                    .and_then(|residues| {
+                        let mut space = WaveSpace {
+                            way,
+                            residues,
+                            ring,
+                        };
+                        self.spread(&mut space, goals, frame);
+                        let entry = entry(&space, frame, tiles, disc, robot.cell())?;
+                        Some(walk_down(&space, frame, tiles, entry))
+                    })
+            }
+            _ => None,
+        };
+        self.note_motion(robot, time_ms);
+        self.adopt(road, time_ms)
+    }
+
+    /// Wave from every frontier cell that was not dropped; those beside the present goal first.
+    fn spread(&self, space: &mut WaveSpace<'_>, goals: Plane<'_>, frame: Frame) {
+        let mut wave = Wavefront::new();
+        wave.start(space);
+        let present =
+            |cell| !self.road.is_empty() && near(self.road.goal(), cell, 2.0 * DROP_RADIUS_M);
+        for favoured in [true, false] {
+            for site in goals.sites() {
+                let cell = frame.cell(site);
+                let dropped = || {
+                    self.dropped
+                        .iter()
+                        .any(|dropped| near(dropped.cell, cell, DROP_RADIUS_M))
+                };
+                if present(cell) == favoured && !dropped() {
+                    wave.seed(space, site);
+                }
+            }
+            if favoured {
+                wave.advance_levels(space, HEAD_START);
+            }
+        }
+        // Without a budget it always comes to its end.
+        let _ = wave.advance(space, None, u32::MAX);
+    }
+
+    /// The window has no way from the robot to its local goal, though the skeleton, coarser, had one.
+    pub fn note_flat(&mut self) {
+        self.flat = true;
+    }
+
+    fn note_motion(&mut self, robot: Point, time_ms: u32) {
+        let (dx, dy) = (robot.x_m - self.stood.x_m, robot.y_m - self.stood.y_m);
+        if dx * dx + dy * dy > MOVED_M * MOVED_M {
+            (self.stood, self.stood_ms, self.stood_drops) = (robot, time_ms, 0);
+        }
+    }
+
+    fn adopt(&mut self, road: Option<Road>, time_ms: u32) -> Outlook {
+        let Some(road) = road else {
+            self.road.clear();
+            self.fewest = u32::MAX;
+            if !self.second_chance {
+                self.second_chance = true;
+                self.dropped
+                    .retain(|dropped| dropped.reason != Residue::NoProgress);
+                return Outlook::Unsure;
+            }
+            self.empty_rounds = self.empty_rounds.saturating_add(1);
+            return if self.empty_rounds >= EMPTY_ROUNDS {
+                Outlook::Nothing
+            } else {
+                Outlook::Unsure
+            };
+        };
+        self.empty_rounds = 0;
+        self.had_road = true;
+        let same =
+            !self.road.is_empty() && near(road.goal(), self.road.goal(), 2.0 * DROP_RADIUS_M);
+        if !same || road.steps() < self.fewest {
+            self.fewest = road.steps();
+            self.since_ms = time_ms;
+        }
+        self.road = road;
+        self.give_up_if_idle(time_ms);
+        if self.stood_drops >= STUCK_DROPS {
+            Outlook::Stuck
+        } else {
+            Outlook::Road
+        }
+    }
+
+    /// Drop a goal that was reached and stays unexplored, that has no field, or that comes no nearer.
+    fn give_up_if_idle(&mut self, time_ms: u32) {
+        self.flat_rounds = if self.flat { self.flat_rounds + 1 } else { 0 };
+        self.flat = false;
+        if self.flat_rounds >= FLAT_ROUNDS {
+            self.flat_rounds = 0;
+            self.drop_goal(Residue::Unreachable);
+            return;
+        }
+        let idle_ms = time_ms.wrapping_sub(self.since_ms);
+        let stood_ms = time_ms.wrapping_sub(self.stood_ms);
+        let reached = self.road.steps() <= REACHED_STEPS;
+        let patience_ms = match (reached, stood_ms > PATIENCE_MS / 2) {
+            (true, _) => LOOK_MS,
+            (false, false) => PATIENCE_MS,
+            (false, true) => STANDING_MS,
+        };
+        if idle_ms <= patience_ms {
+            return;
+        }
+        if !reached && stood_ms > STANDING_MS {
+            self.stood_ms = time_ms;
+            self.stood_drops += 1;
+        }
+        self.drop_goal(if reached {
+            Residue::Unobservable
+        } else {
+            Residue::NoProgress
+        });
+    }
+
+    fn drop_goal(&mut self, reason: Residue) {
+        if self.dropped.is_full() {
+            self.dropped.remove(0);
+        }
+        // There is room now.
+        let _ = self.dropped.push(Leftover {
+            cell: self.road.goal(),
+            cells: 1,
+            reason,
+        });
+        self.road.clear();
+        self.fewest = u32::MAX;
+    }
+}
+
+impl Default for Frontier {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The centre cell nearest to the robot, by steps through passable cells, that the wave came to.
+fn entry<const TILES: usize, const SLOTS: usize>(
+    space: &WaveSpace<'_>,
+    frame: Frame,
+    tiles: &Tiles<TILES, SLOTS>,
+    disc: &Disc,
+    robot: Cell,
+) -> Option<Site> {
+    SCALES.iter().find_map(|&scale| {
+        let mut view = View::around(tiles, disc, robot, scale);
+        view.free_robot(robot);
+        let mut targets: Rows = [0; SIDE];
+        for y in 0..SIDE {
+            for x in 0..SIDE {
+                let place = (x, y);
+                if !View::has(&view.passable, place) {
+                    continue;
+                }
+                if reached_site(space, frame, &view, place).is_some() {
+                    View::put(&mut targets, place);
+                }
+            }
+        }
+        let mut seeds: Rows = [0; SIDE];
+        View::put(&mut seeds, view.place(robot)?);
+        let met = flood(&view.passable, &mut seeds, &targets, Adjacency::Four)?;
+        reached_site(
+            space,
+            frame,
+            &view,
+            (usize::from(met.site.x), usize::from(met.site.y)),
+        )
+    })
+}
+
+/// A centre cell in a window cell that the wave came to.
+fn reached_site(
+    space: &WaveSpace<'_>,
+    frame: Frame,
+    view: &View,
+    (x, y): (usize, usize),
+) -> Option<Site> {
+    let least = Cell {
+        x: view.origin.x + x as i32 * view.scale,
+        y: view.origin.y + y as i32 * view.scale,
+    };
+    let coarse = (view.scale / 2).max(1);
+    (0..coarse * coarse).find_map(|k| {
+        let cell = Cell {
+            x: least.x + k % coarse * 2,
+            y: least.y + k / coarse * 2,
+        };
+        let site = frame.site(cell)?;
+        (space.way.get(site) && space.residues.get(site).is_some()).then_some(site)
+    })
+}
+
+/// The road from the entry to the frontier, and one cell into the unexplored beyond it.
+fn walk_down<const TILES: usize, const SLOTS: usize>(
+    space: &WaveSpace<'_>,
+    frame: Frame,
+    tiles: &Tiles<TILES, SLOTS>,
+    entry: Site,
+) -> Road {
+    let way = core::iter::once(entry).chain(space.residues.descent(entry));
+    let mut last = entry;
+    let cells = way.map(|site| {
+        last = site;
+        frame.cell(site)
+    });
+    let mut road = Road::along(cells);
+    road.extend(unexplored_beside(frame.cell(last), tiles));
+    road
+}
+
+/// The coarse cell beside `cell` in which most was never measured.
+fn unexplored_beside<const TILES: usize, const SLOTS: usize>(
+    cell: Cell,
+    tiles: &Tiles<TILES, SLOTS>,
+) -> Option<Cell> {
+    let unknown = |cell: Cell| {
+        (0..2)
+            .map(|dy| (tiles.row(cell.x, cell.y + dy).unknown() & 3).count_ones())
+            .sum::<u32>()
+    };
+    [(2, 0), (-2, 0), (0, 2), (0, -2)]
+        .into_iter()
+        .map(|(dx, dy)| Cell {
+            x: cell.x + dx,
+            y: cell.y + dy,
+        })
+        .max_by_key(|&beside| unknown(beside))
+        .filter(|&beside| unknown(beside) > 0)
+}

@@ -1,0 +1,135 @@
+//! The road: the way down the wave from the robot's centre cell to the goal it comes from, and the local goal on it.
+//!
+//! The local goal is the last cell of the road within 2 m of the robot [Ouroboros, III-C, sixth step] and within
+//! [`MOST_STEPS_AHEAD`] steps along it: by distance alone a long way round inside the window would make the field underflow.
+//!
+//! Units: coarse cells of 20 cm, named by the least of their four map cells.
+
+use heapless::Vec;
+
+use crate::geometry::{Cell, Point};
+
+/// Cells kept of a road; a new one is made long before the robot has used up the last.
+pub const ROAD_CELLS: usize = 96;
+/// Radius of the circle that the local goal lies in, metres [Ouroboros, III-C].
+pub const LOCAL_GOAL_M: f32 = 2.0;
+/// Steps along the road to the local goal at the most.
+pub const MOST_STEPS_AHEAD: usize = 20;
+
+/// The way to a goal.
+#[derive(Clone, Debug, Default)]
+pub struct Road {
+    cells: Vec<Cell, ROAD_CELLS>,
+    /// Steps to the goal, also those not kept.
+    steps: u32,
+    /// The cell that the wave came from.
+    goal: Cell,
+}
+
+/// The middle of a coarse cell.
+fn middle(cell: Cell) -> Point {
+    Cell {
+        x: cell.x + 1,
+        y: cell.y + 1,
+    }
+    .corner()
+}
+
+fn distance2(a: Point, b: Point) -> f32 {
+    let (dx, dy) = (a.x_m - b.x_m, a.y_m - b.y_m);
+    dx * dx + dy * dy
+}
+
+impl Road {
+    /// No road.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            cells: Vec::new(),
+            steps: 0,
+            goal: Cell { x: 0, y: 0 },
+        }
+    }
+
+    /// The road along these cells, the robot's end first.
+    pub fn along(cells: impl Iterator<Item = Cell>) -> Self {
+        let mut road = Self::new();
+        for cell in cells {
+            // What does not fit is counted only.
+            let _ = road.cells.push(cell);
+            road.steps += 1;
+            road.goal = cell;
+        }
+        road
+    }
+
+    /// Let the road end one cell farther, without changing its goal.
+    pub fn extend(&mut self, cell: Option<Cell>) {
+        if let Some(cell) = cell {
+            // A full road is long enough.
+            let _ = self.cells.push(cell);
+        }
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+
+    /// Forget it.
+    pub fn clear(&mut self) {
+        *self = Self::new();
+    }
+
+    /// Steps to the goal.
+    #[must_use]
+    pub const fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    /// The cell that the wave came from.
+    #[must_use]
+    pub const fn goal(&self) -> Cell {
+        self.goal
+    }
+
+    /// The cells, the robot's end first.
+    #[must_use]
+    pub fn cells(&self) -> &[Cell] {
+        &self.cells
+    }
+
+    /// The cells of the road that may be the local goal, the best first: from the last one in the circle back to the one
+    /// nearest to the robot.
+    pub fn local_goals(&self, robot: Point) -> impl Iterator<Item = Cell> + '_ {
+        let near = |cell: &Cell| distance2(middle(*cell), robot);
+        let ahead = self
+            .cells
+            .get(..self.cells.len().min(MOST_STEPS_AHEAD))
+            .unwrap_or_default();
+        let nearest = ahead
+            .iter()
+            .enumerate()
+            .fold((0, f32::MAX), |best, (k, cell)| {
+                if near(cell) < best.1 {
+                    (k, near(cell))
+                } else {
+                    best
+                }
+            })
+            .0;
+        let end = (nearest + MOST_STEPS_AHEAD).min(self.cells.len());
+        let beyond = self.cells.get(nearest..end).unwrap_or_default();
+        let within = beyond
+            .iter()
+            .take_while(move |cell| near(cell) <= LOCAL_GOAL_M * LOCAL_GOAL_M)
+            .count();
+        beyond
+            .get(..within.max(1))
+            .unwrap_or(beyond)
+            .iter()
+            .rev()
+            .copied()
+    }
+}

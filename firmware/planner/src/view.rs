@@ -1,0 +1,278 @@
+//! What stands in the local window: 61 × 61 cells around the robot, as bit rows.
+//!
+//! A window cell is `scale` × `scale` map cells (1, 2 or 4): where no centre cell is near, the window grows [Ouroboros,
+//! III-B] by growing its cells, at the same memory and time. It is passable if any of its map cells is: passable cells
+//! on the two sides of a wall are five cells apart, so no wall is lost at 20 cm. At 40 cm one would be, so there all of
+//! its map cells must be passable; that closes doors, but a window of this scale is only asked for in the open.
+//!
+//! Invariant: `origin` is a multiple of `scale`; bit x of row y is the window cell whose least map cell is
+//! origin + scale·(x, y).
+
+use crate::clearance::{Disc, Strip, for_each_strip};
+use crate::field::SIDE;
+use crate::geometry::{CELL_M, Cell, Point};
+use crate::map::Tiles;
+
+/// Scales that a window may grow to.
+pub const SCALES: [i32; 3] = [1, 2, 4];
+
+/// Bit rows of the window.
+pub type Rows = [u64; SIDE];
+
+/// The window's cells.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// Least map cell.
+    pub origin: Cell,
+    /// Map cells along a window cell.
+    pub scale: i32,
+    /// The robot's centre may be here.
+    pub passable: Rows,
+    /// Something stands here.
+    pub obstacle: Rows,
+    /// Nothing was ever measured here.
+    pub unknown: Rows,
+}
+
+/// OR of adjacent groups of `scale` bits; 32 / scale bits remain.
+fn squeeze(word: u32, scale: i32) -> u64 {
+    let halve = |word: u32| {
+        let mut bits = (word | word >> 1) & 0x5555_5555;
+        bits = (bits | bits >> 1) & 0x3333_3333;
+        bits = (bits | bits >> 2) & 0x0f0f_0f0f;
+        bits = (bits | bits >> 4) & 0x00ff_00ff;
+        (bits | bits >> 8) & 0xffff
+    };
+    u64::from(match scale {
+        1 => word,
+        2 => halve(word),
+        _ => halve(halve(word)),
+    })
+}
+
+impl View {
+    /// The window around `centre`.
+    #[must_use]
+    pub fn around<const TILES: usize, const SLOTS: usize>(
+        tiles: &Tiles<TILES, SLOTS>,
+        disc: &Disc,
+        centre: Cell,
+        scale: i32,
+    ) -> Self {
+        let half = SIDE as i32 / 2;
+        let least = |at: i32| (at.div_euclid(scale) - half) * scale;
+        let origin = Cell {
+            x: least(centre.x),
+            y: least(centre.y),
+        };
+        let mut view = Self {
+            origin,
+            scale,
+            passable: [0; SIDE],
+            obstacle: [0; SIDE],
+            unknown: [0; SIDE],
+        };
+        let (mut known, mut blocked): (Rows, Rows) = ([0; SIDE], [0; SIDE]);
+        let across = SIDE as i32 * scale;
+        for block in 0..(across + 31) / 32 {
+            let shift = (block * 32 / scale) as u32;
+            let corner = (origin.x + block * 32, origin.y);
+            for_each_strip(tiles, disc, corner, across, |y, strip: Strip| {
+                let row = ((y - origin.y) / scale) as usize;
+                let put = |rows: &mut Rows, word: u32| {
+                    if let Some(out) = rows.get_mut(row) {
+                        *out |= squeeze(word, scale) << shift;
+                    }
+                };
+                put(&mut view.passable, strip.passable);
+                put(&mut view.obstacle, strip.obstacle);
+                put(&mut known, !strip.unknown);
+                put(&mut blocked, !strip.passable);
+            });
+        }
+        let inside = (1u64 << SIDE) - 1;
+        if scale == 4 {
+            for (passable, blocked) in view.passable.iter_mut().zip(blocked) {
+                *passable &= !blocked;
+            }
+        }
+        for (unknown, known) in view.unknown.iter_mut().zip(known) {
+            *unknown = !known & inside;
+        }
+        for row in view.passable.iter_mut().chain(&mut view.obstacle) {
+            *row &= inside;
+        }
+        view
+    }
+
+    /// The window cell of a map cell, if it is in the window.
+    #[must_use]
+    pub fn place(&self, cell: Cell) -> Option<(usize, usize)> {
+        let x = (cell.x - self.origin.x).div_euclid(self.scale);
+        let y = (cell.y - self.origin.y).div_euclid(self.scale);
+        let inside = |at: i32| (0..SIDE as i32).contains(&at);
+        (inside(x) && inside(y)).then_some((x as usize, y as usize))
+    }
+
+    /// The map cell of a window cell (its middle).
+    #[must_use]
+    pub const fn cell(&self, x: usize, y: usize) -> Cell {
+        let middle = self.scale / 2;
+        Cell {
+            x: self.origin.x + x as i32 * self.scale + middle,
+            y: self.origin.y + y as i32 * self.scale + middle,
+        }
+    }
+
+    /// Whether a window cell is set in `rows`.
+    #[must_use]
+    pub fn has(rows: &Rows, (x, y): (usize, usize)) -> bool {
+        rows.get(y).is_some_and(|row| row >> x & 1 == 1)
+    }
+
+    /// Set a window cell in `rows`.
+    pub fn put(rows: &mut Rows, (x, y): (usize, usize)) {
+        if let Some(row) = rows.get_mut(y) {
+            *row |= 1 << x;
+        }
+    }
+
+    /// Let the robot out where its own cell is not passable (it stands nearer to something than its radius, or the map is
+    /// wrong by a cell): within four cells of it, whatever does not touch an obstacle counts as passable; failing
+    /// that, whatever is no obstacle.
+    pub fn free_robot(&mut self, robot: Cell) {
+        let Some(place) = self.place(robot) else {
+            return;
+        };
+        if Self::has(&self.passable, place) {
+            return;
+        }
+        let (x, y) = place;
+        let columns = (0x1ff_u64 << x) >> 4;
+        let touched = |rows: &Rows, row: usize| {
+            let here = rows.get(row).copied().unwrap_or(0);
+            let above = rows.get(row + 1).copied().unwrap_or(0);
+            let below = row
+                .checked_sub(1)
+                .and_then(|row| rows.get(row))
+                .copied()
+                .unwrap_or(0);
+            here | here << 1 | here >> 1 | above | below
+        };
+        let roomy = touched(&self.obstacle, y) >> x & 1 == 0;
+        let obstacle = self.obstacle;
+        for (row, passable) in self.passable.iter_mut().enumerate() {
+            if row.abs_diff(y) <= 4 {
+                let taken = if roomy {
+                    touched(&obstacle, row)
+                } else {
+                    obstacle.get(row).copied().unwrap_or(0)
+                };
+                *passable |= columns & !taken;
+            }
+        }
+        Self::put(&mut self.passable, place);
+        for row in &mut self.passable {
+            *row &= (1 << SIDE) - 1;
+        }
+    }
+}
+
+/// A point in cells of the window whose least map cell and scale are given.
+#[must_use]
+pub fn position((origin, scale): (Cell, i32), point: Point) -> (f32, f32) {
+    let side = CELL_M * scale as f32;
+    let along = |at: f32, origin: i32| (at - origin as f32 * CELL_M) / side;
+    (along(point.x_m, origin.x), along(point.y_m, origin.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clearance::is_passable;
+    use crate::map::Class;
+
+    fn room() -> Tiles<16, 64> {
+        let mut tiles = Tiles::new();
+        tiles.reset(8, 8);
+        for y in -40..40 {
+            for x in -40..40 {
+                let wall = x == -30 || y == 21 || (x == 7 && y % 9 != 0);
+                tiles
+                    .set(
+                        Cell { x, y },
+                        if wall { Class::Obstacle } else { Class::Free },
+                    )
+                    .unwrap();
+            }
+        }
+        tiles
+    }
+
+    #[test]
+    fn the_window_at_scale_one_is_the_map() {
+        let (tiles, disc) = (room(), Disc::new(0.3));
+        let view = View::around(&tiles, &disc, Cell { x: 3, y: -2 }, 1);
+        for y in 0..SIDE {
+            for x in 0..SIDE {
+                let cell = view.cell(x, y);
+                assert_eq!(view.place(cell), Some((x, y)));
+                assert_eq!(
+                    View::has(&view.passable, (x, y)),
+                    is_passable(&tiles, &disc, cell)
+                );
+                assert_eq!(
+                    View::has(&view.obstacle, (x, y)),
+                    tiles.class(cell) == Class::Obstacle
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_grown_window_is_passable_where_any_of_its_cells_is() {
+        let (tiles, disc) = (room(), Disc::new(0.3));
+        for scale in [2, 4] {
+            let view = View::around(&tiles, &disc, Cell { x: -5, y: 9 }, scale);
+            for y in 0..SIDE {
+                for x in 0..SIDE {
+                    let least = Cell {
+                        x: view.origin.x + x as i32 * scale,
+                        y: view.origin.y + y as i32 * scale,
+                    };
+                    let (mut any, mut all) = (false, true);
+                    for k in 0..scale * scale {
+                        let cell = Cell {
+                            x: least.x + k % scale,
+                            y: least.y + k / scale,
+                        };
+                        let passable = is_passable(&tiles, &disc, cell);
+                        any |= passable;
+                        all &= passable;
+                    }
+                    let wanted = if scale < 4 { any } else { all };
+                    assert_eq!(
+                        View::has(&view.passable, (x, y)),
+                        wanted,
+                        "scale {scale} ({x}, {y})"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_robot_too_near_to_a_wall_is_let_out() {
+        let (tiles, disc) = (room(), Disc::new(0.3));
+        let robot = Cell { x: -28, y: 0 };
+        let mut view = View::around(&tiles, &disc, robot, 1);
+        let place = view.place(robot).unwrap();
+        assert!(!View::has(&view.passable, place));
+        view.free_robot(robot);
+        assert!(View::has(&view.passable, place));
+        assert!(
+            !View::has(&view.passable, (place.0 - 2, place.1)),
+            "not into the wall"
+        );
+    }
+}

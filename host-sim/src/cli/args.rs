@@ -1,0 +1,203 @@
+//! The arguments and what they may be.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use host_sim::link::fault::{Faults, FaultsError};
+use host_sim::link::spec::LinkSpec;
+
+use super::baselines;
+
+/// Explore simulated buildings with the Fieldline planner; without a command, explore the built-in office.
+#[derive(Debug, Parser)]
+#[command(name = "host-sim", version)]
+pub(super) struct Cli {
+    #[command(subcommand)]
+    pub(super) command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Explore worlds and leave a folder with report, map, trajectory, commands and picture of each
+    Explore(ExploreArgs),
+    /// List the built-in worlds
+    Worlds {
+        /// One JSON object a line
+        #[arg(long)]
+        json: bool,
+    },
+    /// Solve the potential of one window drawn in a text file
+    Solve(SolveArgs),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExploreArgs {
+    /// World files (YAML for ROS map servers) or names of built-in worlds
+    #[arg(value_name = "WORLD", default_values_t = [String::from("office")])]
+    pub(super) worlds: Vec<String>,
+    /// What plans: frontier on the device, or a baseline on the host
+    #[arg(long, default_value = baselines::FRONTIER, value_parser = baselines::parse)]
+    pub(super) strategy: String,
+    /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback; direct for baselines]
+    #[arg(long)]
+    pub(super) link: Option<LinkSpec>,
+    /// Decides every random number of the run
+    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<u64>)]
+    pub(super) seed: u64,
+    /// Which of the world's start poses, from 0
+    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<usize>)]
+    pub(super) start: usize,
+    /// What the robot believes of its motion
+    #[arg(long, value_enum, default_value_t = OdometryArg::Truth)]
+    pub(super) odometry: OdometryArg,
+    /// Simulated seconds after which a run ends
+    #[arg(long, value_name = "S", default_value = "3600", value_parser = time_limit)]
+    pub(super) time_limit: u32,
+    /// Folder of the run; of several runs, the folder of their folders [default: out/WORLD-STRATEGY-SEED]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Let simulated time pass no faster than the clock on the wall
+    #[arg(long)]
+    pub(super) realtime: bool,
+    /// Break the link on purpose, as in drop=0.02,duplicate=0.02,corrupt=0.02,truncate=0.01,delay=0.01,reset@900
+    #[arg(long, value_name = "SPEC")]
+    pub(super) fault: Option<FaultArg>,
+    /// Extent that the device's map can hold, in metres across and up, as in 128x32 [default: chosen for the world]
+    #[arg(long, value_name = "AxB", value_parser = map_shape)]
+    pub(super) map_shape: Option<(u8, u8)>,
+    /// Compare every step's heading with that of the converged window
+    #[arg(long)]
+    pub(super) check_field: bool,
+    /// Print the reports, one JSON object a line, and nothing else
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+impl Default for ExploreArgs {
+    fn default() -> Self {
+        Self {
+            worlds: vec!["office".into()],
+            strategy: baselines::FRONTIER.into(),
+            link: None,
+            seed: 0,
+            start: 0,
+            odometry: OdometryArg::Truth,
+            time_limit: 3_600_000,
+            out: None,
+            realtime: false,
+            fault: None,
+            map_shape: None,
+            check_field: false,
+            json: false,
+        }
+    }
+}
+
+/// Faults, and the words they were asked for with.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct FaultArg {
+    pub(super) words: String,
+    pub(super) faults: Faults,
+}
+
+impl core::str::FromStr for FaultArg {
+    type Err = FaultsError;
+
+    fn from_str(words: &str) -> Result<Self, FaultsError> {
+        Ok(Self {
+            words: words.into(),
+            faults: words.parse()?,
+        })
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum OdometryArg {
+    /// The exact pose
+    Truth,
+    /// Wheel encoders and an inertial unit
+    Noisy,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SolveArgs {
+    /// One character a cell, first line = greatest y: # obstacle, G goal, . free, R robot; at most 61 x 61
+    pub(super) window: PathBuf,
+    /// Preferences in the same layout, comma-separated, within -2 and 2
+    #[arg(long, value_name = "EPS.csv")]
+    pub(super) preference: Option<PathBuf>,
+    /// Which solver
+    #[arg(long, value_enum, default_value_t = SolverArg::Multigrid)]
+    pub(super) solver: SolverArg,
+    /// Write q = 1 - p of every cell here
+    #[arg(long, value_name = "FIELD.csv")]
+    pub(super) out: Option<PathBuf>,
+    /// Print the answer as one JSON object
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum SolverArg {
+    /// Multigrid, with Gauss-Seidel where it is known to be weak
+    Multigrid,
+    /// Gauss-Seidel from q = 0
+    GaussSeidel,
+}
+
+/// A number without sign or point.
+fn whole<T: core::str::FromStr>(text: &str) -> Result<T, String> {
+    let number = text.parse();
+    number.map_err(|_| "give a whole number from 0 on".into())
+}
+
+/// Seconds to milliseconds.
+fn time_limit(text: &str) -> Result<u32, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 && seconds <= 4e6 => Ok((seconds * 1000.0).ceil() as u32),
+        _ => Err("give simulated seconds above 0, at most 4000000".into()),
+    }
+}
+
+/// `AxB` metres to tiles.
+fn map_shape(text: &str) -> Result<(u8, u8), String> {
+    let side = |text: &str| text.trim().parse::<f64>().ok().filter(|m| *m > 0.0);
+    let sides = text.split_once('x');
+    match sides.and_then(|(a, b)| side(a).zip(side(b))) {
+        Some((across_m, up_m)) => Ok(host_sim::trial::shape::of_metres(across_m, up_m)),
+        None => Err("give metres across and up, as in 128x32".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Cli, ExploreArgs, map_shape, time_limit};
+    use clap::{CommandFactory as _, Parser as _};
+
+    #[test]
+    fn the_definition_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn the_defaults_of_the_command_are_those_of_no_command() {
+        let cli = Cli::parse_from(["host-sim", "explore"]);
+        let Some(super::Command::Explore(args)) = cli.command else {
+            panic!("explore");
+        };
+        assert_eq!(format!("{args:?}"), format!("{:?}", ExploreArgs::default()));
+    }
+
+    #[test]
+    fn quantities_are_checked() {
+        assert_eq!(time_limit("1.5"), Ok(1_500));
+        for bad in ["0", "-3", "nan", "inf", "soon", "1e9"] {
+            assert!(time_limit(bad).is_err(), "{bad}");
+        }
+        assert_eq!(map_shape("128x32"), Ok((40, 10)));
+        for bad in ["128", "x", "-1x5", "0x5", "axb", "nanx3"] {
+            assert!(map_shape(bad).is_err(), "{bad}");
+        }
+    }
+}

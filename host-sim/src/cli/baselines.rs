@@ -1,0 +1,82 @@
+//! What can plan: the device's strategy by any link, and baselines that only the host has the memory for.
+//!
+//! A baseline is a [`Link`] of its own, without bytes: it answers observations with commands and shows a map.
+
+use anyhow::{Result, bail};
+
+use host_sim::link::Link;
+use host_sim::link::spec::{LinkSpec, Options};
+
+/// The strategy on the device.
+pub(super) const FRONTIER: &str = "frontier";
+
+/// Makes a baseline.
+type Make = fn() -> Box<dyn Link>;
+
+/// The baselines by name.
+const BASELINES: &[(&str, Make)] = &[];
+
+/// A known strategy's name, or what the known ones are.
+pub(super) fn parse(name: &str) -> Result<String, String> {
+    let known: Vec<&str> = core::iter::once(FRONTIER)
+        .chain(BASELINES.iter().map(|(name, _)| *name))
+        .collect();
+    if known.contains(&name) {
+        Ok(name.into())
+    } else {
+        Err(format!(
+            "unknown strategy '{name}'; use {}",
+            known.join(", ")
+        ))
+    }
+}
+
+/// Where a strategy runs if nothing is said, and the refusal of where it cannot.
+pub(super) fn place(strategy: &str, link: Option<&LinkSpec>) -> Result<LinkSpec> {
+    match (strategy, link) {
+        (FRONTIER, None) => Ok(LinkSpec::Loopback),
+        (FRONTIER, Some(link)) => Ok(link.clone()),
+        (_, None | Some(LinkSpec::Direct)) => Ok(LinkSpec::Direct),
+        (_, Some(link)) => bail!(
+            "--strategy {strategy} runs on the host only, not by --link {link}; leave --link out or say direct"
+        ),
+    }
+}
+
+/// What plans, ready for its hello.
+pub(super) fn open(strategy: &str, link: &LinkSpec, options: &Options) -> Result<Box<dyn Link>> {
+    let baseline = BASELINES.iter().find(|(name, _)| *name == strategy);
+    Ok(match baseline {
+        Some((_, make)) => make(),
+        None => link.open(options)?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FRONTIER, parse, place};
+    use host_sim::link::spec::LinkSpec;
+
+    #[test]
+    fn unknown_strategies_are_named_with_the_known() {
+        let error = parse("magic").unwrap_err();
+        assert!(
+            error.contains("'magic'") && error.contains("frontier"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn the_device_runs_anywhere_and_a_baseline_on_the_host() {
+        assert_eq!(place(FRONTIER, None).unwrap(), LinkSpec::Loopback);
+        assert_eq!(
+            place(FRONTIER, Some(&LinkSpec::Qemu)).unwrap(),
+            LinkSpec::Qemu
+        );
+        assert_eq!(place("bvp", None).unwrap(), LinkSpec::Direct);
+        let error = place("bvp", Some(&LinkSpec::Loopback))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("bvp") && error.contains("direct"), "{error}");
+    }
+}

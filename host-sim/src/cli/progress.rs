@@ -1,0 +1,119 @@
+//! The line that lives while a run does, the pacer, and the interrupt key.
+
+use core::sync::atomic::{AtomicBool, Ordering};
+use core::time::Duration;
+use std::sync::Arc;
+use std::time::Instant;
+
+use anyhow::{Context as _, Result};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use host_sim::trial::{Flow, Progress, Watch, wording};
+
+/// Ticks of the bar: tenths of a per cent.
+const TICKS: u64 = 1_000;
+
+/// The interrupt key: the first press asks a run to end, the second ends the program.
+#[derive(Clone, Debug)]
+pub(super) struct Interrupt(Arc<AtomicBool>);
+
+impl Interrupt {
+    /// From now on the key is ours.
+    pub(super) fn listen() -> Result<Self> {
+        let pressed = Arc::new(AtomicBool::new(false));
+        for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+            // The order matters: a shutdown only if it was pressed before.
+            let second = Arc::clone(&pressed);
+            signal_hook::flag::register_conditional_shutdown(signal, 130, second)
+                .context("cannot listen to the interrupt key")?;
+            signal_hook::flag::register(signal, Arc::clone(&pressed))
+                .context("cannot listen to the interrupt key")?;
+        }
+        Ok(Self(pressed))
+    }
+
+    /// Whether it was pressed.
+    pub(super) fn pressed(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Looks on at one run.
+pub(super) struct Onlooker {
+    bar: ProgressBar,
+    interrupt: Interrupt,
+    /// When simulated time 0 was, if simulated time must not run ahead of the clock.
+    began: Option<Instant>,
+}
+
+impl Onlooker {
+    /// Of the run named so.
+    pub(super) fn new(name: &str, realtime: bool, interrupt: Interrupt) -> Self {
+        // Nothing is drawn where standard error is no terminal.
+        let bar = ProgressBar::new(TICKS);
+        let style = ProgressStyle::with_template("{prefix:.bold} {bar:24.cyan/black.dim} {msg}");
+        if let Ok(style) = style {
+            bar.set_style(style.progress_chars("━━─"));
+        }
+        bar.set_prefix(name.to_owned());
+        bar.set_message("waiting for the device");
+        Self {
+            bar,
+            interrupt,
+            began: realtime.then(Instant::now),
+        }
+    }
+
+    /// Takes the line away.
+    pub(super) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Watch for Onlooker {
+    fn step(&mut self, progress: &Progress) -> Flow {
+        self.bar
+            .set_position((progress.coverage * TICKS as f64) as u64);
+        self.bar.set_message(message(progress));
+        if let Some(began) = self.began {
+            let due = Duration::from_millis(progress.time_ms.into());
+            std::thread::sleep(due.saturating_sub(began.elapsed()));
+        }
+        if self.interrupt.pressed() {
+            Flow::Interrupt
+        } else {
+            Flow::Continue
+        }
+    }
+}
+
+fn message(progress: &Progress) -> String {
+    format!(
+        "{:5.1} % known  {:6.1} s  {:6.1} m  {}",
+        progress.coverage * 100.0,
+        f64::from(progress.time_ms) / 1000.0,
+        progress.path_m,
+        wording::status(progress.status)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::message;
+    use fieldline_protocol::message::Status;
+    use host_sim::trial::Progress;
+
+    #[test]
+    fn the_line_tells_coverage_time_distance_and_status() {
+        let progress = Progress {
+            time_ms: 83_400,
+            coverage: 0.4567,
+            path_m: 31.26,
+            status: Status::Exploring,
+        };
+        assert_eq!(
+            message(&progress),
+            " 45.7 % known    83.4 s    31.3 m  exploring"
+        );
+    }
+}

@@ -1,0 +1,60 @@
+//! `host-sim worlds`: the built-in ones, with size and starts.
+
+use anyhow::Result;
+use serde::Serialize;
+
+use host_sim::world::{World, builtins};
+
+use super::say;
+
+/// A built-in world, in the order of the JSON line.
+#[derive(Serialize)]
+struct Listing {
+    name: &'static str,
+    description: &'static str,
+    size_m: [f64; 2],
+    /// x m, y m, yaw rad.
+    starts: Vec<[f64; 3]>,
+}
+
+/// Lists them.
+pub(super) fn run(json: bool) -> Result<()> {
+    let listings: Vec<Listing> = builtins()
+        .iter()
+        .filter_map(|builtin| {
+            let world = World::builtin(builtin.name)?;
+            let starts = world.starts().iter();
+            Some(Listing {
+                name: builtin.name,
+                description: builtin.description,
+                size_m: world.size_m().map(|m| (m * 100.0).round() / 100.0),
+                starts: starts.map(|s| [s.x_m, s.y_m, s.yaw_rad]).collect(),
+            })
+        })
+        .collect();
+    let widest = listings.iter().map(|listing| listing.name.len()).max();
+    for listing in &listings {
+        if json {
+            say(&serde_json::to_string(listing)?)?;
+        } else {
+            say(&text(listing, widest.unwrap_or(0)))?;
+        }
+    }
+    Ok(())
+}
+
+fn text(listing: &Listing, width: usize) -> String {
+    let starts: Vec<String> = listing
+        .starts
+        .iter()
+        .map(|[x, y, yaw]| format!("({x}, {y}, {yaw})"))
+        .collect();
+    let [across, up] = listing.size_m;
+    format!(
+        "{:width$}  {}\n{:width$}  {across} x {up} m; starts (x m, y m, yaw rad): {}",
+        listing.name,
+        listing.description,
+        "",
+        starts.join(" ")
+    )
+}

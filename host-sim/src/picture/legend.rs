@@ -1,0 +1,124 @@
+//! Words and keys around the map: title, scale bar, what each colour means, and the time scale of the path.
+
+use super::canvas::Canvas;
+use super::palette::{self, Rgb};
+use super::{Frame, HEADER, MARGIN, Scene, layers};
+
+/// Pixels from one line of the legend to the next.
+const LINE: f32 = 29.0;
+/// Height of the time scale, pixels.
+const TIME_BAR: f32 = 118.0;
+
+/// Two lines above the map.
+pub(super) fn title(canvas: &mut Canvas, scene: &Scene<'_>) {
+    let left = MARGIN as f32;
+    canvas.text((left, 37.0), 23.0, scene.title, palette::INK);
+    canvas.text((left, 61.0), 15.5, scene.subtitle, palette::FAINT);
+}
+
+/// A round length of up to a quarter of the map's width.
+pub(super) fn scale_bar(canvas: &mut Canvas, frame: &Frame) {
+    let metres = round_length(frame.width() as f32 / frame.metre_px() / 4.0);
+    let length = metres * frame.metre_px();
+    let (left, top) = (
+        frame.left as f32,
+        (frame.top + frame.height()) as f32 + 20.0,
+    );
+    let ink = palette::INK.alpha(1.0);
+    canvas.rect((left, top), length, 5.0, ink);
+    canvas.rect(
+        (left + length / 2.0, top + 1.0),
+        length / 2.0 - 1.0,
+        3.0,
+        palette::PAGE.alpha(1.0),
+    );
+    let label = format!("{metres} m");
+    let at = (left + length + 9.0, top + 8.0);
+    canvas.text(at, 14.0, &label, palette::INK);
+}
+
+/// 1, 2 or 5 times a power of ten, not above `metres` where that is at least one.
+fn round_length(metres: f32) -> f32 {
+    let lengths = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
+    let fitting = lengths.into_iter().rfind(|length| *length <= metres);
+    fitting.unwrap_or(1.0)
+}
+
+/// The keys, from `left` on.
+pub(super) fn panel(canvas: &mut Canvas, left: i32, scene: &Scene<'_>) {
+    let (left, mut y) = (left as f32, HEADER as f32 + 8.0);
+    let mid = left + 13.0;
+    for (colour, words) in [
+        (palette::FREE, "free"),
+        (palette::OBSTACLE, "obstacle"),
+        (palette::UNKNOWN, "not measured"),
+    ] {
+        swatch(canvas, (left, y), colour);
+        label(canvas, left, y, words);
+        y += LINE;
+    }
+    canvas.line(
+        &[(left, y), (left + 26.0, y)],
+        2.0,
+        palette::SKELETON.alpha(1.0),
+    );
+    label(canvas, left, y, "skeleton");
+    y += LINE;
+    if scene.window.is_some() {
+        swatch(canvas, (left, y), palette::field(0.6));
+        layers::arrow(canvas, (mid, y), (1.0, 0.0), 18.0, 1.2);
+        label(canvas, left, y, "field, last window");
+        y += LINE;
+    }
+    layers::ring(canvas, (mid, y), 6.0);
+    label(canvas, left, y, "start");
+    y += LINE;
+    layers::head(canvas, (mid, y), 0.0, 9.0);
+    label(canvas, left, y, "end");
+    y += LINE;
+    if !scene.residue.is_empty() {
+        layers::diamond(canvas, (mid, y));
+        label(canvas, left, y, "frontier left");
+        y += LINE;
+    }
+    time_bar(canvas, left, y + 4.0, scene);
+}
+
+fn swatch(canvas: &mut Canvas, (left, y): (f32, f32), colour: Rgb) {
+    let corners = |inset: f32| {
+        let (x0, y0) = (left + inset, y - 8.0 + inset);
+        let (x1, y1) = (left + 26.0 - inset, y + 8.0 - inset);
+        [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+    };
+    canvas.polygon(&corners(0.0), colour.alpha(1.0));
+    canvas.outline(&corners(0.5), 1.0, palette::HAIR.alpha(1.0));
+}
+
+fn label(canvas: &mut Canvas, left: f32, y: f32, words: &str) {
+    canvas.text((left + 40.0, y + 5.0), 15.5, words, palette::INK);
+}
+
+/// The path's colours over simulated time.
+fn time_bar(canvas: &mut Canvas, left: f32, top: f32, scene: &Scene<'_>) {
+    let total_s = (scene.path.last().map_or(0, |p| p.time_ms) + 500) / 1000;
+    let (x, width) = (left + 6.0, 14.0);
+    for i in 0..TIME_BAR as i32 {
+        let share = i as f32 / TIME_BAR;
+        let y = top + i as f32;
+        canvas.rect((x, y), width, 1.5, palette::time(share).alpha(1.0));
+    }
+    label(canvas, left, top + 6.0, "path from 0:00");
+    let end = format!("to {}:{:02} min", total_s / 60, total_s % 60);
+    label(canvas, left, top + TIME_BAR - 5.0, &end);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::round_length;
+
+    #[test]
+    fn scale_bars_are_round() {
+        let lengths = [0.3, 1.9, 4.2, 5.0, 23.0, 400.0].map(round_length);
+        assert_eq!(lengths, [1.0, 1.0, 2.0, 5.0, 20.0, 100.0]);
+    }
+}

@@ -1,0 +1,100 @@
+//! The colours of a run's picture, chosen to stay apart for colour-blind eyes and in grey print.
+
+use tiny_skia::Color;
+
+/// The page.
+pub(super) const PAGE: Rgb = Rgb(0xff, 0xff, 0xff);
+/// Text and outlines.
+pub(super) const INK: Rgb = Rgb(0x1d, 0x23, 0x2b);
+/// Secondary text, ticks, the frame.
+pub(super) const FAINT: Rgb = Rgb(0x6b, 0x75, 0x82);
+/// Hairlines.
+pub(super) const HAIR: Rgb = Rgb(0xd5, 0xda, 0xe0);
+/// Cells never measured.
+pub(super) const UNKNOWN: Rgb = Rgb(0xe8, 0xeb, 0xef);
+/// Free cells.
+pub(super) const FREE: Rgb = Rgb(0xff, 0xff, 0xff);
+/// Obstacle cells.
+pub(super) const OBSTACLE: Rgb = Rgb(0x2b, 0x33, 0x3d);
+/// Holes and cliffs.
+pub(super) const NEGATIVE: Rgb = Rgb(0x8a, 0x5a, 0x3b);
+/// Lines of five metres.
+pub(super) const GRID: Rgb = Rgb(0xec, 0xef, 0xf2);
+/// The skeleton.
+pub(super) const SKELETON: Rgb = Rgb(0x7f, 0xb2, 0xc4);
+/// The window and its arrows.
+pub(super) const WINDOW: Rgb = Rgb(0x1f, 0x6f, 0xb2);
+/// Where it began.
+pub(super) const START: Rgb = Rgb(0x1a, 0x93, 0x6f);
+/// Frontiers that were left.
+pub(super) const RESIDUE: Rgb = Rgb(0xe0, 0x8e, 0x0b);
+
+/// An opaque colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Rgb(pub(super) u8, pub(super) u8, pub(super) u8);
+
+impl Rgb {
+    /// With an opacity of `alpha` in 0..=1.
+    pub(super) fn alpha(self, alpha: f32) -> Color {
+        let opacity = (alpha.clamp(0.0, 1.0) * 255.0) as u8;
+        Color::from_rgba8(self.0, self.1, self.2, opacity)
+    }
+
+    fn mix(self, other: Self, share: f32) -> Self {
+        let channel = |a: u8, b: u8| (f32::from(a) + (f32::from(b) - f32::from(a)) * share) as u8;
+        Self(
+            channel(self.0, other.0),
+            channel(self.1, other.1),
+            channel(self.2, other.2),
+        )
+    }
+}
+
+/// From the first to the last moment of the path: dark violet over magenta to amber, falling in darkness all the way.
+pub(super) fn time(share: f32) -> Rgb {
+    const STOPS: [Rgb; 5] = [
+        Rgb(0x2d, 0x11, 0x60),
+        Rgb(0x72, 0x1f, 0x81),
+        Rgb(0xb7, 0x37, 0x79),
+        Rgb(0xee, 0x5b, 0x5e),
+        Rgb(0xfc, 0xa5, 0x54),
+    ];
+    along(&STOPS, share)
+}
+
+/// The field by how near a goal is, far to near: a light blue that deepens.
+pub(super) fn field(share: f32) -> Rgb {
+    const STOPS: [Rgb; 3] = [
+        Rgb(0xf3, 0xf8, 0xfc),
+        Rgb(0xd6, 0xe8, 0xf5),
+        Rgb(0xa6, 0xcd, 0xea),
+    ];
+    along(&STOPS, share)
+}
+
+fn along(stops: &[Rgb], share: f32) -> Rgb {
+    let place = share.clamp(0.0, 1.0) * (stops.len() - 1) as f32;
+    let i = (place as usize).min(stops.len() - 2);
+    stops[i].mix(stops[i + 1], place - i as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Rgb, time};
+
+    #[test]
+    fn the_time_scale_grows_lighter_all_the_way() {
+        let light = |Rgb(r, g, b): Rgb| {
+            0.2126 * f32::from(r) + 0.7152 * f32::from(g) + 0.0722 * f32::from(b)
+        };
+        let scale: Vec<f32> = (0..=100).map(|i| light(time(i as f32 / 100.0))).collect();
+        assert!(scale.windows(2).all(|pair| pair[0] <= pair[1] + 0.8));
+        assert!(scale[100] - scale[0] > 120.0);
+    }
+
+    #[test]
+    fn the_ends_are_the_stops_and_outside_is_clamped() {
+        assert_eq!(time(-1.0), Rgb(0x2d, 0x11, 0x60));
+        assert_eq!(time(2.0), Rgb(0xfc, 0xa5, 0x54));
+    }
+}

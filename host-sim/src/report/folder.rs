@@ -1,0 +1,122 @@
+//! The folder of a run: one call writes every file, and an error names the file and the remedy.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::{Report, commands, ros_map, tum};
+use crate::trial::Record;
+
+/// Why a file of the run could not be written.
+#[derive(Debug)]
+pub struct WriteError {
+    /// The file or folder.
+    pub path: PathBuf,
+    /// What the system said.
+    pub source: std::io::Error,
+}
+
+impl core::fmt::Display for WriteError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(
+            f,
+            "cannot write {}: {}; choose a writable folder with --out",
+            self.path.display(),
+            self.source
+        )
+    }
+}
+
+// No source: the message has it already.
+impl core::error::Error for WriteError {}
+
+/// Make `folder` if needed and prove that it takes files, before a run is spent on it.
+///
+/// # Errors
+/// As [`WriteError`].
+pub fn prepare(folder: &Path) -> Result<(), WriteError> {
+    fs::create_dir_all(folder).map_err(|source| WriteError {
+        path: folder.to_owned(),
+        source,
+    })?;
+    // An empty report is what an interrupted run leaves, instead of the previous run's.
+    put(folder, "report.json", b"")
+}
+
+/// Write every file of a run into `folder`.
+///
+/// # Errors
+/// As [`WriteError`], at the first file that cannot be written.
+pub fn write(
+    folder: &Path,
+    report: &Report,
+    record: &Record,
+    picture: &[u8],
+) -> Result<(), WriteError> {
+    let estimates: Vec<_> = record.steps.iter().map(|step| step.estimate).collect();
+    let truths: Vec<_> = record.steps.iter().map(|step| step.truth).collect();
+    let rows = record.steps.iter().map(|s| (&s.estimate, &s.command));
+    put(folder, "report.json", report.to_json_pretty().as_bytes())?;
+    put(folder, "map.pgm", &ros_map::pgm(&record.map))?;
+    put(
+        folder,
+        "map.yaml",
+        ros_map::yaml(&record.map, "map.pgm").as_bytes(),
+    )?;
+    put(folder, "trajectory.tum", tum::text(&estimates).as_bytes())?;
+    put(
+        folder,
+        "trajectory_truth.tum",
+        tum::text(&truths).as_bytes(),
+    )?;
+    put(folder, "commands.csv", commands::text(rows).as_bytes())?;
+    put(folder, "run.png", picture)
+}
+
+fn put(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
+    let path = folder.join(name);
+    fs::write(&path, bytes).map_err(|source| WriteError { path, source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{prepare, write};
+    use crate::report::tests::sample;
+    use crate::trial::Record;
+
+    #[test]
+    fn every_file_is_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path().join("a/b");
+        prepare(&folder).unwrap();
+        write(&folder, &sample(), &Record::default(), b"picture").unwrap();
+        let mut names: Vec<_> = std::fs::read_dir(&folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        assert_eq!(
+            names,
+            [
+                "commands.csv",
+                "map.pgm",
+                "map.yaml",
+                "report.json",
+                "run.png",
+                "trajectory.tum",
+                "trajectory_truth.tum"
+            ]
+        );
+        assert_eq!(std::fs::read(folder.join("run.png")).unwrap(), b"picture");
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_is_named() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let error = prepare(&file.path().join("sub")).unwrap_err().to_string();
+        assert!(
+            error.contains(&file.path().display().to_string()),
+            "{error}"
+        );
+        assert!(error.contains("--out") && !error.contains('\n'), "{error}");
+    }
+}

@@ -1,0 +1,228 @@
+//! The robot's map as a rectangle of cells, put together from its tiles.
+//!
+//! Cells of 10 cm, row by row from the least y; `origin` is the map coordinate of the first cell, in the odometry frame.
+
+use std::collections::BTreeMap;
+
+use fieldline_protocol::message::Tile;
+
+/// Cells on a tile's side.
+pub const TILE_SIDE: i32 = 32;
+/// Side of a cell, metres.
+pub const CELL_M: f64 = 0.1;
+
+/// What the robot holds a cell for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MapCell {
+    /// Never measured.
+    #[default]
+    Unknown,
+    /// A beam went through.
+    Free,
+    /// A beam came back.
+    Obstacle,
+    /// A hole or cliff.
+    NegativeObstacle,
+}
+
+/// A rectangle of cells and the skeleton over it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct GridMap {
+    /// Column of the first cell.
+    pub origin_x: i32,
+    /// Row of the first cell.
+    pub origin_y: i32,
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    cells: Vec<MapCell>,
+    skeleton: Vec<bool>,
+}
+
+impl GridMap {
+    /// An unknown rectangle.
+    #[must_use]
+    pub fn unknown(origin_x: i32, origin_y: i32, width: usize, height: usize) -> Self {
+        Self {
+            origin_x,
+            origin_y,
+            width,
+            height,
+            cells: vec![MapCell::Unknown; width * height],
+            skeleton: vec![false; width * height],
+        }
+    }
+
+    /// The tiles side by side, cut to the known cells and a rim of one unknown cell; empty if nothing is known.
+    #[must_use]
+    pub fn from_tiles(tiles: &BTreeMap<(i16, i16), Tile>) -> Self {
+        let span = |of: fn(&(i16, i16)) -> i16| {
+            let least = tiles.keys().map(of).min().unwrap_or(0);
+            let most = tiles.keys().map(of).max().unwrap_or(-1);
+            (i32::from(least), i32::from(most) + 1)
+        };
+        let ((x0, x1), (y0, y1)) = (span(|key| key.0), span(|key| key.1));
+        let side = |from: i32, to: i32| usize::try_from((to - from) * TILE_SIDE).unwrap_or(0);
+        let mut map = Self::unknown(x0 * TILE_SIDE, y0 * TILE_SIDE, side(x0, x1), side(y0, y1));
+        for tile in tiles.values() {
+            map.lay(tile);
+        }
+        map.cropped(1)
+    }
+
+    /// The cell at map coordinates; outside is unknown.
+    #[must_use]
+    pub fn get(&self, x: i32, y: i32) -> MapCell {
+        self.index(x, y)
+            .and_then(|i| self.cells.get(i).copied())
+            .unwrap_or_default()
+    }
+
+    /// Whether the cell at map coordinates lies on the skeleton.
+    #[must_use]
+    pub fn on_skeleton(&self, x: i32, y: i32) -> bool {
+        self.index(x, y)
+            .and_then(|i| self.skeleton.get(i).copied())
+            .unwrap_or(false)
+    }
+
+    /// Set a cell; outside is ignored.
+    pub fn set(&mut self, x: i32, y: i32, cell: MapCell) {
+        if let Some(slot) = self.index(x, y).and_then(|i| self.cells.get_mut(i)) {
+            *slot = cell;
+        }
+    }
+
+    /// Put a cell on the skeleton; outside is ignored.
+    pub fn set_skeleton(&mut self, x: i32, y: i32) {
+        if let Some(slot) = self.index(x, y).and_then(|i| self.skeleton.get_mut(i)) {
+            *slot = true;
+        }
+    }
+
+    /// Cells that are not unknown.
+    #[must_use]
+    pub fn known(&self) -> usize {
+        let is_known = |cell: &&MapCell| **cell != MapCell::Unknown;
+        self.cells.iter().filter(is_known).count()
+    }
+
+    fn index(&self, x: i32, y: i32) -> Option<usize> {
+        let column = usize::try_from(x - self.origin_x).ok()?;
+        let row = usize::try_from(y - self.origin_y).ok()?;
+        (column < self.width && row < self.height).then_some(row * self.width + column)
+    }
+
+    fn lay(&mut self, tile: &Tile) {
+        let (left, bottom) = (i32::from(tile.x) * TILE_SIDE, i32::from(tile.y) * TILE_SIDE);
+        for row in 0..TILE_SIDE {
+            for column in 0..TILE_SIDE {
+                let (x, y) = (left + column, bottom + row);
+                self.set(x, y, cell_of(tile, column, row));
+                if skeleton_of(tile, column, row) {
+                    self.set_skeleton(x, y);
+                }
+            }
+        }
+    }
+
+    fn cropped(&self, rim: i32) -> Self {
+        let (mut x0, mut y0, mut x1, mut y1) = (i32::MAX, i32::MAX, i32::MIN, i32::MIN);
+        for (x, y) in self.places() {
+            if self.get(x, y) != MapCell::Unknown {
+                (x0, y0) = (x0.min(x), y0.min(y));
+                (x1, y1) = (x1.max(x), y1.max(y));
+            }
+        }
+        if x0 > x1 {
+            return Self::default();
+        }
+        let side = |from: i32, to: i32| usize::try_from(to - from + 1 + 2 * rim).unwrap_or(0);
+        let mut out = Self::unknown(x0 - rim, y0 - rim, side(x0, x1), side(y0, y1));
+        for (x, y) in out.places().collect::<Vec<_>>() {
+            out.set(x, y, self.get(x, y));
+            if self.on_skeleton(x, y) {
+                out.set_skeleton(x, y);
+            }
+        }
+        out
+    }
+
+    fn places(&self) -> impl Iterator<Item = (i32, i32)> + use<> {
+        let (x0, y0, width) = (self.origin_x, self.origin_y, self.width.max(1));
+        let place = move |i: usize| (x0 + (i % width) as i32, y0 + (i / width) as i32);
+        (0..self.cells.len()).map(place)
+    }
+}
+
+/// Two bits a cell, row by row, least x in the low bits.
+fn cell_of(tile: &Tile, column: i32, row: i32) -> MapCell {
+    let bit = 2 * (row * TILE_SIDE + column);
+    let byte = tile.cells.get((bit / 8) as usize).copied().unwrap_or(0);
+    match (byte >> (bit % 8)) & 3 {
+        0 => MapCell::Unknown,
+        1 => MapCell::Free,
+        2 => MapCell::Obstacle,
+        _ => MapCell::NegativeObstacle,
+    }
+}
+
+/// One bit a coarse cell of 2 × 2 cells, row by row, least x in the low bits.
+fn skeleton_of(tile: &Tile, column: i32, row: i32) -> bool {
+    let bit = (row / 2) * (TILE_SIDE / 2) + column / 2;
+    let byte = tile.skeleton.get((bit / 8) as usize).copied().unwrap_or(0);
+    (byte >> (bit % 8)) & 1 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{GridMap, MapCell};
+    use fieldline_protocol::message::Tile;
+    use std::collections::BTreeMap;
+
+    fn tile(x: i16, y: i16, set: &[(usize, usize, u8)]) -> ((i16, i16), Tile) {
+        let mut cells = [0_u8; 256];
+        for &(column, row, code) in set {
+            let bit = 2 * (row * 32 + column);
+            cells[bit / 8] |= code << (bit % 8);
+        }
+        let mut skeleton = [0_u8; 32];
+        skeleton[2 * 3] = 0b10; // coarse (1, 3): cells 2..4 × 6..8
+        let tile = Tile {
+            x,
+            y,
+            cells: heapless::Vec::from_slice(&cells).unwrap(),
+            skeleton: heapless::Vec::from_slice(&skeleton).unwrap(),
+        };
+        ((x, y), tile)
+    }
+
+    #[test]
+    fn tiles_land_where_their_coordinates_say() {
+        let tiles: BTreeMap<_, _> = [
+            tile(-1, 0, &[(31, 6, 1), (30, 6, 2)]),
+            tile(0, 0, &[(0, 6, 1), (3, 7, 3)]),
+        ]
+        .into();
+        let map = GridMap::from_tiles(&tiles);
+        assert_eq!((map.origin_x, map.origin_y), (-3, 5));
+        assert_eq!((map.width, map.height), (8, 4));
+        assert_eq!(map.get(-2, 6), MapCell::Obstacle);
+        assert_eq!(map.get(-1, 6), MapCell::Free);
+        assert_eq!(map.get(0, 6), MapCell::Free);
+        assert_eq!(map.get(3, 7), MapCell::NegativeObstacle);
+        assert_eq!(map.get(0, 7), MapCell::Unknown);
+        assert_eq!(map.known(), 4);
+        let skeleton: Vec<_> = (0..5).map(|x| map.on_skeleton(x, 6)).collect();
+        assert_eq!(skeleton, [false, false, true, true, false]);
+        assert!(map.on_skeleton(2, 7) && !map.on_skeleton(2, 5));
+    }
+
+    #[test]
+    fn nothing_known_is_an_empty_map() {
+        let map = GridMap::from_tiles(&[tile(4, 4, &[])].into());
+        assert_eq!((map.width, map.height, map.known()), (0, 0, 0));
+        assert_eq!(GridMap::from_tiles(&BTreeMap::new()), map);
+    }
+}

@@ -1,0 +1,258 @@
+//! The ground that the robot covers: a rectangle, judged exactly against the solid cells of the world.
+//!
+//! Two convex shapes that do not overlap are nearest at a corner of one of them, so the gap between the rectangle and a
+//! cell is the least over the eight corners. They overlap unless one of their four edge directions separates them.
+//! The distance field only spares the work where nothing can be near. Metres.
+
+use crate::world::{GridCell, World};
+
+/// Clearance is not measured beyond this, metres.
+pub const FARTHEST_M: f64 = 1.0;
+
+/// A rectangle around the robot's centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Footprint {
+    /// Half its length, along the heading, metres.
+    pub half_length_m: f64,
+    /// Half its width, metres.
+    pub half_width_m: f64,
+}
+
+/// The rectangle at a pose: centre, cosine and sine of the heading.
+#[derive(Clone, Copy)]
+struct Placed {
+    half: [f64; 2],
+    centre: [f64; 2],
+    cos: f64,
+    sin: f64,
+}
+
+impl Footprint {
+    /// The Pioneer 3-AT: 0.508 m long, 0.497 m wide.
+    pub const PIONEER_3AT: Self = Self {
+        half_length_m: 0.254,
+        half_width_m: 0.2485,
+    };
+
+    /// Distance from the centre to a corner, metres.
+    #[must_use]
+    pub fn circumradius_m(&self) -> f64 {
+        (self.half_length_m * self.half_length_m + self.half_width_m * self.half_width_m).sqrt()
+    }
+
+    /// Does the footprint overlap a solid cell?
+    #[must_use]
+    pub fn overlaps(&self, world: &World, x_m: f64, y_m: f64, yaw_rad: f64) -> bool {
+        let cell = world.occupancy().cell_at(x_m, y_m);
+        if world.distance().from_anywhere_m(cell) > self.circumradius_m() {
+            return false;
+        }
+        let placed = self.place(x_m, y_m, yaw_rad);
+        solid_cells(world, x_m, y_m, self.circumradius_m()).any(|square| placed.overlaps(square))
+    }
+
+    /// Metres between the footprint's outline and the nearest solid cell: 0 where they overlap, and at most
+    /// [`FARTHEST_M`].
+    #[must_use]
+    pub fn clearance_m(&self, world: &World, x_m: f64, y_m: f64, yaw_rad: f64) -> f64 {
+        let placed = self.place(x_m, y_m, yaw_rad);
+        let mut nearest_m = FARTHEST_M;
+        for square in solid_cells(world, x_m, y_m, FARTHEST_M + self.circumradius_m()) {
+            if placed.overlaps(square) {
+                return 0.0;
+            }
+            nearest_m = nearest_m.min(placed.gap_m(square));
+        }
+        nearest_m
+    }
+
+    /// A lower bound of [`Self::clearance_m`] that costs one look-up.
+    #[must_use]
+    pub fn clearance_bound_m(&self, world: &World, x_m: f64, y_m: f64) -> f64 {
+        let cell = world.occupancy().cell_at(x_m, y_m);
+        world.distance().from_anywhere_m(cell) - self.circumradius_m()
+    }
+
+    fn place(&self, x_m: f64, y_m: f64, yaw_rad: f64) -> Placed {
+        Placed {
+            half: [self.half_length_m, self.half_width_m],
+            centre: [x_m, y_m],
+            cos: libm::cos(yaw_rad),
+            sin: libm::sin(yaw_rad),
+        }
+    }
+}
+
+impl Placed {
+    /// A world point in the robot's frame.
+    fn inside(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let (dx, dy) = (x - self.centre[0], y - self.centre[1]);
+        [dx * self.cos + dy * self.sin, dy * self.cos - dx * self.sin]
+    }
+
+    /// The rectangle's corners in the world.
+    fn corners(&self) -> [[f64; 2]; 4] {
+        let [a, b] = self.half;
+        [[a, b], [-a, b], [-a, -b], [a, -b]].map(|[x, y]| {
+            [
+                self.centre[0] + x * self.cos - y * self.sin,
+                self.centre[1] + x * self.sin + y * self.cos,
+            ]
+        })
+    }
+
+    /// No edge direction of either shape separates them.
+    fn overlaps(&self, [x0, y0, x1, y1]: [f64; 4]) -> bool {
+        let spread = |values: [f64; 4]| {
+            values
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+                    (low.min(*v), high.max(*v))
+                })
+        };
+        let corners = self.corners();
+        let (low, high) = spread(corners.map(|c| c[0]));
+        if high <= x0 || low >= x1 {
+            return false;
+        }
+        let (low, high) = spread(corners.map(|c| c[1]));
+        if high <= y0 || low >= y1 {
+            return false;
+        }
+        let square = square_corners([x0, y0, x1, y1]).map(|c| self.inside(c));
+        (0..2).all(|axis| {
+            let (low, high) = spread(square.map(|c| c[axis]));
+            high > -self.half[axis] && low < self.half[axis]
+        })
+    }
+
+    /// Distance between shapes that do not overlap.
+    fn gap_m(&self, square: [f64; 4]) -> f64 {
+        let [x0, y0, x1, y1] = square;
+        let [a, b] = self.half;
+        let to_rectangle =
+            square_corners(square).map(|corner| point_to_box(self.inside(corner), [-a, -b, a, b]));
+        let to_square = self.corners().map(|c| point_to_box(c, [x0, y0, x1, y1]));
+        to_rectangle
+            .into_iter()
+            .chain(to_square)
+            .fold(f64::INFINITY, f64::min)
+    }
+}
+
+fn square_corners([x0, y0, x1, y1]: [f64; 4]) -> [[f64; 2]; 4] {
+    [[x0, y0], [x1, y0], [x1, y1], [x0, y1]]
+}
+
+fn point_to_box([x, y]: [f64; 2], [x0, y0, x1, y1]: [f64; 4]) -> f64 {
+    let dx = (x0 - x).max(x - x1).max(0.0);
+    let dy = (y0 - y).max(y - y1).max(0.0);
+    (dx * dx + dy * dy).sqrt()
+}
+
+/// The solid cells, as [x0, y0, x1, y1], that come within `reach_m` of a point along both axes.
+fn solid_cells(world: &World, x_m: f64, y_m: f64, reach_m: f64) -> impl Iterator<Item = [f64; 4]> {
+    let grid = world.occupancy();
+    let low = grid.cell_at(x_m - reach_m, y_m - reach_m);
+    let high = grid.cell_at(x_m + reach_m, y_m + reach_m);
+    (low.j..=high.j)
+        .flat_map(move |j| (low.i..=high.i).map(move |i| GridCell { i, j }))
+        .filter(|cell| grid.is_solid(*cell))
+        .map(|cell| {
+            let [x, y] = grid.centre(cell);
+            let half = 0.5 * grid.resolution_m();
+            [x - half, y - half, x + half, y + half]
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::{Class, Occupancy};
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    const ROBOT: Footprint = Footprint::PIONEER_3AT;
+
+    fn random_world(rng: &mut ChaCha8Rng) -> World {
+        let mut grid = Occupancy::filled(60, 50, 0.06, [-1.0, 0.5], Class::Free);
+        for _ in 0..8 {
+            let cell = GridCell {
+                i: i64::from(rng.next_u32() % 60),
+                j: i64::from(rng.next_u32() % 50),
+            };
+            grid.set(cell, Class::Wall);
+        }
+        World::flat("random", grid, Vec::new())
+    }
+
+    /// Least distance between points spread over both outlines and insides, 0.02 m apart.
+    fn sampled_m(world: &World, pose: [f64; 3]) -> f64 {
+        let placed = ROBOT.place(pose[0], pose[1], pose[2]);
+        let mut nearest = FARTHEST_M;
+        for square in solid_cells(world, pose[0], pose[1], FARTHEST_M + 0.4) {
+            for a in -13..=13 {
+                for b in -13..=13 {
+                    let (x, y) = (
+                        f64::from(a) / 13.0 * placed.half[0],
+                        f64::from(b) / 13.0 * placed.half[1],
+                    );
+                    let point = [
+                        pose[0] + x * placed.cos - y * placed.sin,
+                        pose[1] + x * placed.sin + y * placed.cos,
+                    ];
+                    nearest = nearest.min(point_to_box(point, square));
+                }
+            }
+        }
+        nearest
+    }
+
+    #[test]
+    fn clearance_is_what_sampling_finds() {
+        let mut rng = ChaCha8Rng::seed_from_u64(31);
+        let (mut touching, mut near, mut far) = (0, 0, 0);
+        for _ in 0..15 {
+            let world = random_world(&mut rng);
+            for _ in 0..16 {
+                let mut uniform = |low: f64, high: f64| {
+                    low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX)
+                };
+                let pose = [uniform(-1.0, 2.6), uniform(0.5, 3.5), uniform(-4.0, 4.0)];
+                let exact = ROBOT.clearance_m(&world, pose[0], pose[1], pose[2]);
+                let sampled = sampled_m(&world, pose);
+                // Samples are at most 14 mm from any point of the rectangle.
+                assert!(exact <= sampled + 1e-12, "{pose:?}: {exact} > {sampled}");
+                assert!(sampled <= exact + 0.0138, "{pose:?}: {exact}, {sampled}");
+                assert_eq!(
+                    ROBOT.overlaps(&world, pose[0], pose[1], pose[2]),
+                    exact == 0.0
+                );
+                assert!(ROBOT.clearance_bound_m(&world, pose[0], pose[1]) <= exact.max(0.0));
+                touching += u32::from(exact == 0.0);
+                near += u32::from(exact > 0.0 && exact < 0.2);
+                far += u32::from(exact >= 0.2);
+            }
+        }
+        assert!(
+            touching > 30 && near > 30 && far > 5,
+            "{touching} {near} {far}"
+        );
+    }
+
+    #[test]
+    fn a_door_just_wider_than_the_robot_lets_it_pass_straight_only() {
+        // A gap of 0.6 m at y in [0.7, 1.3].
+        let mut grid = Occupancy::filled(60, 40, 0.05, [0.0, 0.0], Class::Free);
+        for j in (0..14).chain(26..40) {
+            for i in 28..32 {
+                grid.set(GridCell { i, j }, Class::Wall);
+            }
+        }
+        let world = World::flat("door", grid, Vec::new());
+        let clearance = ROBOT.clearance_m(&world, 1.5, 1.0, 0.0);
+        assert!((clearance - (0.3 - 0.2485)).abs() < 1e-9, "{clearance}");
+        assert!(ROBOT.overlaps(&world, 1.5, 1.0, 0.6));
+        assert!(!ROBOT.overlaps(&world, 1.5, 1.0, 0.1));
+    }
+}

@@ -1,0 +1,297 @@
+//! The two laser scanners: where they sit, how they sweep, how they err.
+//!
+//! A beam at bearing b leaves along `(cos b, sin b, 0)`, turned by the mount's pitch and then by the robot's attitude. The
+//! simulated geometry is the announced one: mount and bearings are first rounded to the wire's fixed-point numbers.
+//!
+//! Error of a range r: `r + σ·N(0,1)`, rounded to millimetres; with a small probability nothing comes back (dark or
+//! shiny surfaces), with a smaller one something does from nearer than the wall (dust, an edge hit by half).
+
+use fieldline_protocol::message::{self, INVALID_MM, MAX_BEAMS, NO_RETURN_MM, Scan};
+use fixed::types::{I4F12, I16F16};
+
+use super::noise::{Noise, Source};
+use super::pose::Pose;
+use crate::world::{Ray, World};
+
+/// How lasers err.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaserNoise {
+    /// Standard deviation of a range, metres. Default: 0.01.
+    pub sigma_m: f64,
+    /// Probability that a return is lost. Default: 0.001.
+    pub lost: f64,
+    /// Probability of a false return, uniform between the laser and the wall. Default: 0.0005.
+    pub false_return: f64,
+}
+
+impl Default for LaserNoise {
+    fn default() -> Self {
+        Self {
+            sigma_m: 0.01,
+            lost: 0.001,
+            false_return: 0.0005,
+        }
+    }
+}
+
+impl LaserNoise {
+    /// Perfect lasers but for the rounding to millimetres.
+    pub const NONE: Self = Self {
+        sigma_m: 0.0,
+        lost: 0.0,
+        false_return: 0.0,
+    };
+}
+
+/// Nothing is reported from nearer, metres: the laser's own housing.
+const NEAREST_M: f64 = 0.02;
+
+/// The level scanner: 0.10 m ahead of the centre, 0.40 m up.
+#[must_use]
+pub fn level() -> message::Laser {
+    mount(0.10, 0.40, 0.0)
+}
+
+/// The tilted scanner: 0.15 m ahead of the centre, 0.45 m up, 20° down.
+#[must_use]
+pub fn tilted() -> message::Laser {
+    mount(0.15, 0.45, 20.0)
+}
+
+/// 181 beams from −90° to +90°, 12 m.
+fn mount(x_m: f64, z_m: f64, down_deg: f64) -> message::Laser {
+    message::Laser {
+        x: I4F12::from_num(x_m),
+        y: I4F12::ZERO,
+        z: I4F12::from_num(z_m),
+        pitch: I4F12::from_num(down_deg.to_radians()),
+        first_bearing: I16F16::from_num(-core::f64::consts::FRAC_PI_2),
+        bearing_step: I16F16::from_num(1.0_f64.to_radians()),
+        beams: MAX_BEAMS as u16,
+        range_limit_mm: 12_000,
+    }
+}
+
+/// One scanner at work.
+#[derive(Clone, Debug)]
+pub struct LaserScanner {
+    /// Where the beams leave, in the robot's frame, metres.
+    position_m: [f64; 3],
+    /// Where they go, in the robot's frame.
+    directions: Vec<[f64; 3]>,
+    limit_m: f64,
+    errors: LaserNoise,
+    range: Noise,
+    fault: Noise,
+}
+
+impl LaserScanner {
+    /// A scanner as announced by `laser`, erring as `errors` says, with `sources` of noise for ranges and faults.
+    #[must_use]
+    pub fn new(
+        laser: &message::Laser,
+        errors: LaserNoise,
+        seed: u64,
+        [range, fault]: [Source; 2],
+    ) -> Self {
+        let pitch: f64 = laser.pitch.to_num();
+        let (first, step): (f64, f64) = (laser.first_bearing.to_num(), laser.bearing_step.to_num());
+        let directions = (0..laser.beams.min(MAX_BEAMS as u16))
+            .map(|beam| {
+                let bearing = first + step * f64::from(beam);
+                let (cos, sin) = (libm::cos(bearing), libm::sin(bearing));
+                [cos * libm::cos(pitch), sin, -cos * libm::sin(pitch)]
+            })
+            .collect();
+        Self {
+            position_m: [laser.x.to_num(), laser.y.to_num(), laser.z.to_num()],
+            directions,
+            limit_m: f64::from(laser.range_limit_mm) / 1000.0,
+            errors,
+            range: Noise::new(seed, range),
+            fault: Noise::new(seed, fault),
+        }
+    }
+
+    /// One sweep from a pose.
+    pub fn scan(&mut self, world: &World, pose: &Pose) -> Scan {
+        let axes = pose.axes();
+        let rotate = |v: &[f64; 3]| {
+            [0, 1, 2].map(|k| axes[0][k] * v[0] + axes[1][k] * v[1] + axes[2][k] * v[2])
+        };
+        let offset = rotate(&self.position_m);
+        let origin_m = [
+            pose.x_m + offset[0],
+            pose.y_m + offset[1],
+            pose.z_m + offset[2],
+        ];
+        let mut scan = Scan::default();
+        for beam in 0..self.directions.len() {
+            let ray = Ray {
+                origin_m,
+                direction: rotate(&self.directions[beam]),
+            };
+            let hit = world.cast(&ray, self.limit_m);
+            let code = self.measure(hit.map(|hit| hit.range_m));
+            // The vector holds MAX_BEAMS, and there are no more directions.
+            let _ = scan.ranges_mm.push(code);
+        }
+        scan
+    }
+
+    /// What the scanner makes of a true range.
+    fn measure(&mut self, range_m: Option<f64>) -> u16 {
+        // All draws happen for every beam, so that no beam shifts the next.
+        let error_m = self.errors.sigma_m * self.range.normal();
+        let (fate, place) = (self.fault.uniform(), self.fault.uniform());
+        let reach_m = range_m.unwrap_or(self.limit_m);
+        if fate < self.errors.false_return {
+            return code(NEAREST_M + place * (reach_m - NEAREST_M).max(0.0));
+        }
+        match range_m {
+            Some(range_m) if fate < 1.0 - self.errors.lost => {
+                let measured_m = range_m + error_m;
+                if measured_m > self.limit_m {
+                    NO_RETURN_MM
+                } else {
+                    code(measured_m)
+                }
+            }
+            _ => NO_RETURN_MM,
+        }
+    }
+}
+
+/// A range in millimetres, kept clear of the two codes.
+fn code(range_m: f64) -> u16 {
+    let millimetres = (range_m.max(NEAREST_M) * 1000.0).round() as u16;
+    millimetres.clamp(INVALID_MM + 1, NO_RETURN_MM - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scanner(laser: &message::Laser, errors: LaserNoise, seed: u64) -> LaserScanner {
+        LaserScanner::new(
+            laser,
+            errors,
+            seed,
+            [Source::LevelRange, Source::LevelFault],
+        )
+    }
+
+    /// 6 × 6 m with its walls at 0 and 6.
+    fn room() -> World {
+        let row = ".".repeat(12);
+        World::picture("room", 0.5, &[row.as_str(); 12])
+    }
+
+    fn middle() -> Pose {
+        Pose {
+            x_m: 3.0,
+            y_m: 3.0,
+            ..Pose::default()
+        }
+    }
+
+    #[test]
+    fn perfect_lasers_measure_the_room() {
+        let scan = scanner(&level(), LaserNoise::NONE, 1).scan(&room(), &middle());
+        let mount_m: f64 = level().x.to_num();
+        assert_eq!(scan.ranges_mm.len(), 181);
+        assert_eq!(
+            scan.ranges_mm[90],
+            ((3.0 - mount_m) * 1000.0).round() as u16
+        );
+        for (beam, range_mm) in scan.ranges_mm.iter().enumerate() {
+            let bearing = level().first_bearing.to_num::<f64>()
+                + level().bearing_step.to_num::<f64>() * beam as f64;
+            let [along, across] = [bearing.cos(), bearing.sin()];
+            let wall = ((3.0 - mount_m) / along.max(1e-9)).min(3.0 / across.abs());
+            assert!(
+                (f64::from(*range_mm) / 1000.0 - wall).abs() < 6e-4,
+                "{beam}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_tilted_laser_sees_the_ground_and_the_sides() {
+        let scan = scanner(&tilted(), LaserNoise::NONE, 1).scan(&room(), &middle());
+        let (height, pitch): (f64, f64) = (tilted().z.to_num(), tilted().pitch.to_num());
+        assert_eq!(
+            scan.ranges_mm[90],
+            (height / pitch.sin() * 1000.0).round() as u16
+        );
+        // Straight to the side its beams stay level and meet the wall.
+        assert_eq!(scan.ranges_mm[180], 3000);
+    }
+
+    #[test]
+    fn nothing_within_the_limit_is_the_code() {
+        let wide = World::builtin("empty-hall").expect("built in");
+        let pose = Pose {
+            x_m: 15.0,
+            y_m: 15.0,
+            ..Pose::default()
+        };
+        let scan = scanner(&level(), LaserNoise::NONE, 1).scan(&wide, &pose);
+        assert!(scan.ranges_mm.iter().all(|code| *code == NO_RETURN_MM));
+    }
+
+    #[test]
+    fn noise_has_its_rates_and_its_spread() {
+        let errors = LaserNoise {
+            sigma_m: 0.02,
+            lost: 0.05,
+            false_return: 0.03,
+        };
+        let mut laser = scanner(&level(), errors, 8);
+        let world = room();
+        let truth = f64::from(
+            scanner(&level(), LaserNoise::NONE, 1)
+                .scan(&world, &middle())
+                .ranges_mm[90],
+        );
+        let count = 20_000;
+        let ahead: Vec<u16> = (0..count)
+            .map(|_| laser.measure(Some(truth / 1000.0)))
+            .collect();
+        let share = |test: &dyn Fn(f64) -> bool| {
+            ahead.iter().filter(|r| test(f64::from(**r))).count() as f64 / f64::from(count)
+        };
+        let lost = share(&|range| range == f64::from(NO_RETURN_MM));
+        let near = share(&|range| range < truth - 100.0);
+        // Four standard errors; a false return is within 100 mm of the wall in 3.5 % of its cases.
+        assert!((lost - 0.05).abs() < 0.0062, "{lost}");
+        assert!((near - 0.029).abs() < 0.0048, "{near}");
+        let good: Vec<f64> = ahead
+            .iter()
+            .map(|range| f64::from(*range) - truth)
+            .filter(|error| error.abs() < 100.0)
+            .collect();
+        let variance = good.iter().map(|e| e * e).sum::<f64>() / good.len() as f64;
+        assert!((variance.sqrt() - 20.0).abs() < 0.8, "{}", variance.sqrt());
+    }
+
+    #[test]
+    fn a_change_of_one_rate_leaves_the_other_draws_alone() {
+        let quiet = LaserNoise {
+            lost: 0.0,
+            false_return: 0.0,
+            ..LaserNoise::default()
+        };
+        let scan = |errors| scanner(&level(), errors, 5).scan(&room(), &middle());
+        let (clean, faulty) = (scan(quiet), scan(LaserNoise { lost: 0.2, ..quiet }));
+        let mut lost = 0;
+        for (clean, faulty) in clean.ranges_mm.iter().zip(&faulty.ranges_mm) {
+            if *faulty == NO_RETURN_MM {
+                lost += 1;
+            } else {
+                assert_eq!(clean, faulty);
+            }
+        }
+        assert!((15..60).contains(&lost), "{lost}");
+    }
+}

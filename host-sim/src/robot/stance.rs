@@ -1,0 +1,109 @@
+//! How the robot stands: height, roll and pitch from the ground under its four wheels.
+//!
+//! ```text
+//! z = mean of the four     pitch = atan((rear − front) / wheelbase)     roll = atan((left − right) / track)
+//! ```
+//!
+//! with the means of the two wheels at each end and side. It is the plane of least squares through the four contacts: a chassis on
+//! four stiff wheels touches with three of them at the most. Over a hole there is no stance. Metres, radians.
+
+use super::pose::Pose;
+use crate::world::World;
+
+/// Between the axles of the 3-AT, metres.
+const WHEELBASE_M: f64 = 0.268;
+/// Between the wheels of an axle, metres.
+const TRACK_M: f64 = 0.394;
+
+/// The same planar pose, standing on the ground; `None` if a wheel has none under it.
+#[must_use]
+pub fn stand(world: &World, pose: &Pose) -> Option<Pose> {
+    if world.elevation().is_none() {
+        return Some(Pose {
+            z_m: 0.0,
+            roll_rad: 0.0,
+            pitch_rad: 0.0,
+            ..*pose
+        });
+    }
+    let (cos, sin) = (libm::cos(pose.yaw_rad), libm::sin(pose.yaw_rad));
+    let under = |ahead: f64, left: f64| {
+        let (x, y) = (0.5 * WHEELBASE_M * ahead, 0.5 * TRACK_M * left);
+        world.ground_m(pose.x_m + x * cos - y * sin, pose.y_m + x * sin + y * cos)
+    };
+    let front_left = under(1.0, 1.0)?;
+    let front_right = under(1.0, -1.0)?;
+    let rear_left = under(-1.0, 1.0)?;
+    let rear_right = under(-1.0, -1.0)?;
+    let fall = 0.5 * (rear_left + rear_right - front_left - front_right);
+    let lean = 0.5 * (front_left + rear_left - front_right - rear_right);
+    Some(Pose {
+        z_m: 0.25 * (front_left + front_right + rear_left + rear_right),
+        pitch_rad: libm::atan(fall / WHEELBASE_M),
+        roll_rad: libm::atan(lean / TRACK_M),
+        ..*pose
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::{Class, Elevation, HeightScale, Image, Occupancy};
+
+    /// Ground that rises by 0.2 m a metre along x, 8 × 4 m, with a hole from x = 6.
+    fn slope() -> World {
+        let samples = (0..40 * 80_u32).map(|k| match k % 80 {
+            i if i >= 60 => 0,
+            i => 1 + i,
+        });
+        let image = Image {
+            width: 80,
+            height: 40,
+            samples: samples.collect(),
+            full: 255,
+            channels: 1,
+            transparent: Vec::new(),
+        };
+        let scale = HeightScale {
+            z_min_m: 0.0,
+            z_max_m: 254.0 * 0.02,
+            no_data: Some(0),
+        };
+        let ground = Elevation::from_image(&image, scale, 0.1, [0.0, 0.0]);
+        let floor = Occupancy::filled(80, 40, 0.1, [0.0, 0.0], Class::Free);
+        World::uneven("slope", floor, ground, Vec::new())
+    }
+
+    fn at(x_m: f64, yaw_rad: f64) -> Pose {
+        Pose {
+            x_m,
+            y_m: 2.0,
+            yaw_rad,
+            ..Pose::default()
+        }
+    }
+
+    #[test]
+    fn uphill_lifts_the_nose_and_across_leans() {
+        let world = slope();
+        let angle = 0.2_f64.atan();
+        let up = stand(&world, &at(3.0, 0.0)).expect("ground");
+        assert!((up.pitch_rad + angle).abs() < 1e-9 && up.roll_rad.abs() < 1e-9);
+        // The first sample, at x = 0.05, lies at 0.
+        assert!((up.z_m - 0.2 * 2.95).abs() < 1e-9, "{}", up.z_m);
+        let down = stand(&world, &at(3.0, core::f64::consts::PI)).expect("ground");
+        assert!((down.pitch_rad - angle).abs() < 1e-9);
+        // Facing along y the higher ground is on the right.
+        let across = stand(&world, &at(3.0, core::f64::consts::FRAC_PI_2)).expect("ground");
+        assert!((across.roll_rad + angle).abs() < 1e-9 && across.pitch_rad.abs() < 1e-9);
+        // Its forward axis lies on the slope.
+        let [forward, ..] = up.axes();
+        assert!((forward[2] / forward[0] - 0.2).abs() < 1e-9);
+    }
+
+    #[test]
+    fn there_is_no_stance_over_a_hole() {
+        assert!(stand(&slope(), &at(5.7, 0.0)).is_some());
+        assert_eq!(stand(&slope(), &at(5.95, 0.0)), None);
+    }
+}

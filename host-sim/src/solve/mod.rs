@@ -1,0 +1,242 @@
+//! `host-sim solve`: one window from a text file, solved by the planner's own field module.
+//!
+//! The drawn window lies in the lower left of the planner's 61 × 61 cells; everything around it is obstacle. Headings in
+//! radians, x right, y up; q = 1 − p scaled so that a goal is 1.
+
+pub mod sheet;
+
+use core::fmt::Write as _;
+
+use fieldline_planner::field::{
+    GOAL, Method, Preference, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, descent,
+    preference, solve, solver::SWEEPS_PER_CYCLE,
+};
+use serde::Serialize;
+
+use sheet::{Sheet, SheetCell};
+
+/// A relative change of a sweep that says nothing but rounding: half a unit in the last place of an f32.
+const ROUNDING: f32 = 6e-8;
+/// Sweeps after which Gauss–Seidel has to do: three times what the slowest window of the tests takes.
+const MOST_SWEEPS: u32 = 60_000;
+
+/// Which solver was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solver {
+    /// Multigrid, with Gauss–Seidel where it is known to be weak.
+    Multigrid,
+    /// Gauss–Seidel from q = 0, as in the papers.
+    GaussSeidel,
+}
+
+/// The answer, in the order of the JSON line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Answer {
+    /// `multigrid` or `gauss-seidel`: what was asked for.
+    pub solver: &'static str,
+    /// What ended it: the multigrid gives way to Gauss–Seidel under strong preferences.
+    pub method: &'static str,
+    /// Columns of the drawn window.
+    pub width: usize,
+    /// Rows of it.
+    pub height: usize,
+    /// Multigrid cycles; `null` if there were none.
+    pub cycles: Option<u32>,
+    /// Gauss–Seidel sweeps, beyond the one in each cycle; `null` if there were none.
+    pub sweeps: Option<u32>,
+    /// `converged`, `budget` or `flat`.
+    pub stop: &'static str,
+    /// What the stop rule saw last: a cycle's greatest factor less one, or a sweep's greatest relative change.
+    pub residual: f32,
+    /// Heading of −∇p at the robot; `null` without a robot or where the field is flat.
+    pub heading_rad: Option<f32>,
+    /// Mean `|p_r − p|` around the robot; `null` without a robot.
+    pub p_diff: Option<f32>,
+    /// No goal can be reached (from the robot, if there is one): there is nothing to follow.
+    pub flat: bool,
+}
+
+/// A solved window and the answer about it.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// The answer.
+    pub answer: Answer,
+    /// q of every drawn cell, rows from the least y, goal = 1.
+    pub q: Vec<Vec<f64>>,
+}
+
+/// Solve a drawn window, with preferences by rows from the least y if there are any.
+#[must_use]
+pub fn run(sheet: &Sheet, epsilon: Option<&[Vec<f32>]>, solver: Solver) -> Solved {
+    let mut window = Box::new(Window::new());
+    let (free, goal) = boundary(sheet);
+    window.set_boundary(&free, &goal);
+    if let Some(rows) = epsilon {
+        window.set_preferences(|x, y| {
+            let cell = rows.get(y).and_then(|row| row.get(x));
+            Preference::nearest(cell.copied().unwrap_or(0.0))
+        });
+    }
+    let solution = converge(&mut window, solver);
+    let heading = sheet
+        .robot
+        .and_then(|(x, y)| descent::heading(&window, x, y));
+    let unreached = |(x, y)| !window.is_reached(x, y) && !window.is_goal(x, y);
+    let answer = Answer {
+        solver: solver.name(),
+        method: match solution.method {
+            Method::GaussSeidel => "gauss-seidel",
+            Method::Auto | Method::Multigrid => "multigrid",
+        },
+        width: sheet.width(),
+        height: sheet.height(),
+        cycles: spent(solution.cycles),
+        sweeps: spent(solution.sweeps),
+        stop: match solution.stop {
+            Stop::Converged => "converged",
+            Stop::Budget => "budget",
+            Stop::Flat => "flat",
+        },
+        residual: solution.residual,
+        heading_rad: heading,
+        p_diff: sheet.robot.map(|(x, y)| preference::p_diff(&window, x, y)),
+        flat: solution.stop == Stop::Flat || sheet.robot.is_some_and(unreached),
+    };
+    let q = |y: usize| {
+        let scaled = |x| f64::from(window.q(x, y)) / f64::from(GOAL);
+        (0..sheet.width()).map(scaled).collect()
+    };
+    Solved {
+        answer,
+        q: (0..sheet.height()).map(q).collect(),
+    }
+}
+
+impl Solver {
+    /// Its name on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Multigrid => "multigrid",
+            Self::GaussSeidel => "gauss-seidel",
+        }
+    }
+}
+
+/// What [`converge`] spent and saw.
+struct Effort {
+    cycles: u32,
+    sweeps: u32,
+    stop: Stop,
+    residual: f32,
+    method: Method,
+}
+
+/// Solve until the field is right to about four digits, much farther than a heading needs.
+///
+/// Gauss–Seidel's own stop rule looks at a sweep's change, which in a slow window is far below the error; here it goes on
+/// until the change is one of rounding.
+fn converge(window: &mut Window, solver: Solver) -> Effort {
+    let mut config = SolverConfig {
+        max_cycles: MOST_SWEEPS.min(u16::MAX.into()) as u16 / SWEEPS_PER_CYCLE,
+        tolerance: 1e-5,
+        method: match solver {
+            Solver::Multigrid => Method::Auto,
+            Solver::GaussSeidel => Method::GaussSeidel,
+        },
+    };
+    let mut scratch = Box::new([0.0; SCRATCH_FLOATS]);
+    let first = solve(window, &mut scratch, &config);
+    let mut effort = Effort {
+        cycles: first.cycles.into(),
+        sweeps: first.sweeps.into(),
+        stop: first.stop,
+        residual: first.residual,
+        method: first.method,
+    };
+    (config.method, config.max_cycles) = (Method::GaussSeidel, 1);
+    while effort.method == Method::GaussSeidel
+        && effort.stop == Stop::Converged
+        && effort.residual > ROUNDING
+        && effort.sweeps < MOST_SWEEPS
+    {
+        let more = solve(window, &mut scratch, &config);
+        effort.sweeps += u32::from(more.sweeps);
+        effort.residual = more.residual;
+    }
+    effort
+}
+
+fn spent(count: u32) -> Option<u32> {
+    (count > 0).then_some(count)
+}
+
+fn boundary(sheet: &Sheet) -> ([u64; SIDE], [u64; SIDE]) {
+    let row_bits = |row: &[SheetCell], kind: SheetCell| {
+        let bit = |(x, cell): (usize, &SheetCell)| u64::from(*cell == kind) << x;
+        row.iter().enumerate().map(bit).sum()
+    };
+    let bits = |kind: SheetCell| {
+        core::array::from_fn(|y| sheet.rows.get(y).map_or(0, |row| row_bits(row, kind)))
+    };
+    (bits(SheetCell::Free), bits(SheetCell::Goal))
+}
+
+impl Solved {
+    /// FIELD.csv: the drawn window's layout, nine significant digits, so that every f32 survives.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let mut out = String::new();
+        for row in self.q.iter().rev() {
+            for (x, q) in row.iter().enumerate() {
+                let comma = if x == 0 { "" } else { "," };
+                // Writing into a string does not fail.
+                let _ = write!(out, "{comma}{q:.8e}");
+            }
+            out.push('\n');
+        }
+        out
+    }
+}
+
+impl Answer {
+    /// One line of JSON, without a newline.
+    #[must_use]
+    pub fn to_json_line(&self) -> String {
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// A few words for a person.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        let count = |name: &str, n: Option<u32>| n.map(|n| format!("{n} {name}"));
+        let spent: Vec<String> = [count("cycles", self.cycles), count("sweeps", self.sweeps)]
+            .into_iter()
+            .flatten()
+            .collect();
+        let heading = match self.heading_rad {
+            Some(rad) => format!("heading {rad:.5} rad ({:.2} deg)", rad.to_degrees()),
+            None => "no heading".into(),
+        };
+        let p_diff = self
+            .p_diff
+            .map_or_else(String::new, |p| format!(", p_diff {p:.4e}"));
+        let flat = if self.flat { ", flat" } else { "" };
+        format!(
+            "{} x {} cells, {}: {} ({}), residual {:.2e}\n{heading}{p_diff}{flat}",
+            self.width,
+            self.height,
+            self.method,
+            self.stop,
+            if spent.is_empty() {
+                "nothing to do".into()
+            } else {
+                spent.join(", ")
+            },
+            self.residual,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,141 @@
+//! The planner's map, kept on the host from the same observations.
+//!
+//! The planner is deterministic, so the host can know what the device knows at every step without reading it over the
+//! wire. At the end of a run the device's tiles are compared with it, cell for cell.
+
+use std::collections::BTreeMap;
+
+use fieldline_device::{SLOTS, TILES, convert};
+use fieldline_planner::config::Config;
+use fieldline_planner::geometry::Cell;
+use fieldline_planner::map::{Class, Map};
+use fieldline_planner::planner::Input;
+use fieldline_protocol::message::{Observation, Start, Status, Tile};
+
+/// The map that a device must have.
+#[derive(Debug)]
+pub struct Mirror {
+    config: Config,
+    map: Box<Map<TILES, SLOTS>>,
+}
+
+impl Mirror {
+    /// The empty map of a session.
+    #[must_use]
+    pub fn new(start: &Start) -> Self {
+        let config = convert::config(start);
+        let mut map = Box::new(Map::new());
+        map.reset(config.box_tiles.0, config.box_tiles.1);
+        Self { config, map }
+    }
+
+    /// Enter an observation to which the device answered with `status`; one that holds still does not plan.
+    pub fn observe(&mut self, observation: &Observation, status: Status) {
+        let held = matches!(
+            status,
+            Status::Idle | Status::Paused | Status::EmergencyStop
+        );
+        if held {
+            return;
+        }
+        let scan = |i: usize| match observation.scans.get(i) {
+            Some(scan) => scan.ranges_mm.as_slice(),
+            None => &[],
+        };
+        let input = Input {
+            time_ms: observation.time_ms,
+            pose: convert::pose(&observation.pose),
+            velocity: convert::twist(&observation.velocity),
+            scans: [scan(0), scan(1)],
+        };
+        self.map.observe(&self.config, &input);
+    }
+
+    /// Whether a cell has been measured.
+    #[must_use]
+    pub fn is_known(&self, cell: Cell) -> bool {
+        self.map.class(cell) != Class::Unknown
+    }
+
+    /// Whether these tiles are this map: all of it, and nothing else.
+    #[must_use]
+    pub fn equals(&self, tiles: &BTreeMap<(i16, i16), Tile>) -> bool {
+        let reach = |of: fn(&(i16, i16)) -> i16| {
+            let least = tiles.keys().map(of).min().unwrap_or(0);
+            let most = tiles.keys().map(of).max().unwrap_or(0);
+            least.saturating_sub(1)..=most.saturating_add(1)
+        };
+        reach(|key| key.1).all(|y| {
+            reach(|key| key.0).all(|x| {
+                let ours = self.map.tiles().packed(i32::from(x), i32::from(y));
+                let theirs = tiles.get(&(x, y)).map(|tile| tile.cells.as_slice());
+                ours.as_ref().map(<[u8; 256]>::as_slice) == theirs
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::Mirror;
+    use crate::sim::{SimConfig, Simulator};
+    use crate::world::World;
+    use fieldline_planner::geometry::Cell;
+    use fieldline_protocol::message::{Status, Strategy, Tile};
+
+    fn seen_from_the_start() -> (Mirror, BTreeMap<(i16, i16), Tile>) {
+        let world = World::builtin("office").unwrap();
+        let mut sim = Simulator::new(&world, SimConfig::default()).unwrap();
+        let mut mirror = Mirror::new(&sim.start_message(Strategy::Frontier, (20, 20)));
+        for _ in 0..5 {
+            mirror.observe(&sim.observe(), Status::Exploring);
+        }
+        let mut tiles = BTreeMap::new();
+        for (x, y) in (-2..12).flat_map(|x| (-2..12).map(move |y| (x, y))) {
+            if let Some(cells) = mirror.map.tiles().packed(x.into(), y.into()) {
+                let cells = heapless::Vec::from_slice(&cells).unwrap();
+                let skeleton = heapless::Vec::new();
+                let tile = Tile {
+                    x,
+                    y,
+                    cells,
+                    skeleton,
+                };
+                tiles.insert((x, y), tile);
+            }
+        }
+        (mirror, tiles)
+    }
+
+    #[test]
+    fn it_knows_what_the_lasers_saw() {
+        let (mirror, _) = seen_from_the_start();
+        // The office's start is at (12, 7) in the corridor.
+        assert!(mirror.is_known(Cell { x: 130, y: 70 }));
+        assert!(!mirror.is_known(Cell { x: -50, y: 70 }));
+    }
+
+    #[test]
+    fn one_changed_cell_or_one_lost_tile_is_noticed() {
+        let (mirror, tiles) = seen_from_the_start();
+        assert!(tiles.len() > 3 && mirror.equals(&tiles));
+        let mut changed = tiles.clone();
+        changed.values_mut().next().unwrap().cells[100] ^= 1;
+        assert!(!mirror.equals(&changed));
+        let mut lost = tiles.clone();
+        let middle = *tiles.keys().nth(tiles.len() / 2).unwrap();
+        lost.remove(&middle);
+        assert!(!mirror.equals(&lost));
+    }
+
+    #[test]
+    fn a_paused_device_learns_nothing() {
+        let world = World::builtin("office").unwrap();
+        let mut sim = Simulator::new(&world, SimConfig::default()).unwrap();
+        let mut mirror = Mirror::new(&sim.start_message(Strategy::Frontier, (20, 20)));
+        mirror.observe(&sim.observe(), Status::Paused);
+        assert!(mirror.equals(&BTreeMap::new()));
+    }
+}

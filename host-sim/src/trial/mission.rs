@@ -1,0 +1,275 @@
+//! One run in the simulator, from a world and a link to a report.
+//!
+//! ```text
+//! hello → box → Simulator, Mirror, Coverage → run → Report
+//! ```
+
+use core::fmt;
+
+use fieldline_planner::geometry::Cell;
+use fieldline_protocol::message::{Observation, Status, Strategy, Twist};
+
+use super::mirror::Mirror;
+use super::{Body, Cast, Record, Setup, Survey, Watch, record, run, shape};
+use crate::link::{Link, LinkError};
+use crate::metrics::Coverage;
+use crate::report::tum::Stamped;
+use crate::report::{self, Report, SCHEMA_VERSION};
+use crate::robot::{OdometryModel, OdometryNoise, RADIUS_M, laser};
+use crate::sim::{SimConfig, Simulator};
+use crate::world::{World, WorldError};
+
+/// What a run is asked to be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mission {
+    /// Name of the strategy, for the report.
+    pub strategy: String,
+    /// Name of the link, for the report.
+    pub link: String,
+    /// The faults put on the link, for the report.
+    pub fault: Option<String>,
+    /// Decides all noise.
+    pub seed: u64,
+    /// Which of the world's starts.
+    pub start: usize,
+    /// Whether odometry errs.
+    pub noisy_odometry: bool,
+    /// Simulated time limit, milliseconds.
+    pub time_limit_ms: u32,
+    /// The map's box in tiles; chosen for the world if `None`.
+    pub box_tiles: Option<(u8, u8)>,
+    /// Compare every heading with that of the converged window.
+    pub check_field: bool,
+}
+
+impl Default for Mission {
+    fn default() -> Self {
+        Self {
+            strategy: "frontier".into(),
+            link: "direct".into(),
+            fault: None,
+            seed: 0,
+            start: 0,
+            noisy_odometry: false,
+            time_limit_ms: 3_600_000,
+            box_tiles: None,
+            check_field: false,
+        }
+    }
+}
+
+/// Why a run could not begin.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MissionError {
+    /// The world, or the start in it.
+    World(WorldError),
+    /// The device did not greet.
+    Link(LinkError),
+    /// The box has more tiles than the device has slots.
+    Box {
+        /// Tiles across.
+        across: u8,
+        /// Tiles up.
+        up: u8,
+        /// The device's slots.
+        slots: u16,
+    },
+}
+
+impl fmt::Display for MissionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::World(error) => error.fmt(f),
+            Self::Link(error) => error.fmt(f),
+            Self::Box { across, up, slots } => write!(
+                f,
+                "a map of {across} x {up} tiles of {} m does not fit the device's {slots}; choose a smaller --map-shape",
+                shape::TILE_M
+            ),
+        }
+    }
+}
+
+impl core::error::Error for MissionError {}
+
+impl From<WorldError> for MissionError {
+    fn from(error: WorldError) -> Self {
+        Self::World(error)
+    }
+}
+
+impl From<LinkError> for MissionError {
+    fn from(error: LinkError) -> Self {
+        Self::Link(error)
+    }
+}
+
+/// Whether the robot can stand where the mission starts, before anything else is spent on it.
+///
+/// # Errors
+/// As [`WorldError::Start`].
+pub fn check(mission: &Mission, world: &World) -> Result<(), WorldError> {
+    Simulator::new(world, sim_config(mission)).map(|_| ())
+}
+
+/// Explore `world` over `link`.
+///
+/// # Errors
+/// As [`MissionError`], before the robot moves; whatever happens later is in the report.
+pub fn explore(
+    mission: &Mission,
+    world: &World,
+    link: &mut dyn Link,
+    watch: &mut dyn Watch,
+) -> Result<(Report, Record), MissionError> {
+    let mut simulator = Simulator::new(world, sim_config(mission))?;
+    let slots = link.hello()?.tile_slots;
+    let (across, up) = mission
+        .box_tiles
+        .unwrap_or_else(|| shape::for_world(world.size_m(), slots));
+    if u32::from(across) * u32::from(up) > u32::from(slots) {
+        return Err(MissionError::Box { across, up, slots });
+    }
+    let setup = Setup {
+        start: simulator.start_message(Strategy::Frontier, (across, up)),
+        time_limit_ms: mission.time_limit_ms,
+        check_field: mission.check_field,
+    };
+    let mut account = Account::new(&setup, world, mission.start);
+    let record = run(
+        &setup,
+        &mut Cast {
+            link,
+            body: &mut simulator,
+            survey: &mut account,
+            watch,
+        },
+    );
+    let report = assemble(mission, &simulator, &account, &record);
+    Ok((report, record))
+}
+
+fn sim_config(mission: &Mission) -> SimConfig {
+    SimConfig {
+        seed: mission.seed,
+        start: mission.start,
+        odometry: if mission.noisy_odometry {
+            OdometryModel::Noisy(OdometryNoise::default())
+        } else {
+            OdometryModel::Truth
+        },
+        ..SimConfig::default()
+    }
+}
+
+/// Coverage by the mirror of the device's map.
+#[derive(Debug)]
+struct Account {
+    mirror: Mirror,
+    coverage: Coverage,
+}
+
+impl Account {
+    fn new(setup: &Setup, world: &World, start: usize) -> Self {
+        let start = world.starts().get(start).copied().unwrap_or_default();
+        let range_m = f64::from(laser::level().range_limit_mm) / 1000.0;
+        Self {
+            mirror: Mirror::new(&setup.start),
+            coverage: Coverage::new(world, start, RADIUS_M, range_m),
+        }
+    }
+}
+
+impl Survey for Account {
+    fn note(&mut self, observation: &Observation, status: Status) -> f64 {
+        self.mirror.observe(observation, status);
+        let time_s = f64::from(observation.time_ms) / 1000.0;
+        let mirror = &self.mirror;
+        self.coverage
+            .update(time_s, |cell: Cell| mirror.is_known(cell))
+    }
+}
+
+impl Body for Simulator<'_> {
+    fn period_ms(&self) -> u32 {
+        self.config().period_ms
+    }
+
+    fn observe(&mut self) -> Observation {
+        Simulator::observe(self)
+    }
+
+    fn drive(&mut self, velocity: Option<Twist>) {
+        Simulator::drive(self, velocity);
+    }
+
+    fn truth(&self) -> Stamped {
+        record::stamped(self.time_ms(), &self.pose().to_wire())
+    }
+}
+
+fn assemble(
+    mission: &Mission,
+    simulator: &Simulator<'_>,
+    account: &Account,
+    record: &Record,
+) -> Report {
+    let progress = record.progress();
+    Report {
+        schema_version: SCHEMA_VERSION,
+        world: simulator.world().name().into(),
+        strategy: mission.strategy.clone(),
+        link: mission.link.clone(),
+        seed: mission.seed,
+        odometry: if mission.noisy_odometry {
+            "noisy".into()
+        } else {
+            "truth".into()
+        },
+        start: mission.start,
+        fault: mission.fault.clone(),
+        outcome: record.outcome(),
+        sim_time_s: f64::from(progress.time_ms) / 1000.0,
+        path_length_m: simulator.path_length_m(),
+        steps: record.steps.len() as u64,
+        coverage: coverage(account, simulator),
+        safety: safety(simulator),
+        localization: record.localization(),
+        planner: record.planner(),
+        field: record.field(),
+        link_stats: record.link_report(),
+        digest: record.digest.to_string(),
+        debug: report::Debug {
+            map_matches_mirror: (!record.tiles.is_empty())
+                .then(|| account.mirror.equals(&record.tiles)),
+            checked_windows: record.heading_errors_deg.len() as u64,
+        },
+    }
+}
+
+fn coverage(account: &Account, simulator: &Simulator<'_>) -> report::Coverage {
+    let coverage = &account.coverage;
+    report::Coverage {
+        fraction: coverage.fraction(),
+        known_m2: round(coverage.known_m2()),
+        reachable_m2: round(coverage.reachable_m2()),
+        t90_s: coverage.t90_s(),
+        t99_s: coverage.t99_s(),
+        overlap: Some(simulator.overlap()),
+    }
+}
+
+fn safety(simulator: &Simulator<'_>) -> report::Safety {
+    let safety = simulator.safety();
+    report::Safety {
+        collisions: safety.collisions,
+        falls: safety.falls,
+        tips: safety.tips,
+        min_clearance_m: Some(safety.min_clearance_m).filter(|m| m.is_finite()),
+    }
+}
+
+/// Areas are whole cells of 0.01 m²; the product's last bits are noise.
+fn round(area_m2: f64) -> f64 {
+    (area_m2 * 100.0).round() / 100.0
+}

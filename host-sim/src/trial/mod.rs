@@ -1,0 +1,205 @@
+//! One run: sense, ask, drive, until something ends it.
+//!
+//! The loop knows neither what plans (any [`Link`]: a device on a wire, a direct call, a host-only baseline) nor what
+//! drives (any [`Body`]). It is lockstep: simulated time passes only in [`Body::drive`], so that the commands do not depend
+//! on how long an answer takes; the wall clock is only measured. Same link, same body, same seed: same record.
+
+pub mod ending;
+pub mod freeze;
+pub mod mirror;
+pub mod mission;
+pub mod oracle;
+pub mod record;
+pub mod shape;
+pub mod snapshot;
+pub mod wording;
+
+use std::time::Instant;
+
+use fieldline_protocol::message::{Command, Control, Observation, Start, Status, Twist};
+
+use crate::link::{Link, LinkError};
+use crate::report::tum::Stamped;
+use freeze::FreezeDetector;
+
+pub use ending::Ending;
+pub use record::{Record, Step};
+
+/// Time that the robot is given to come to rest after the last command, milliseconds: its watchdog's 500 ms and braking
+/// from full speed at 0.3 m/s².
+const REST_MS: u32 = 3_000;
+
+/// The robot in its world, as a run needs it.
+pub trait Body {
+    /// Simulated time from one observation to the next, milliseconds.
+    fn period_ms(&self) -> u32;
+    /// What the robot senses now.
+    fn observe(&mut self) -> Observation;
+    /// Drive so for one period. `None` is silence: the last velocity counts until the robot's own watchdog finds it stale.
+    fn drive(&mut self, velocity: Option<Twist>);
+    /// Where the robot truly is, in the frame of the observations' poses.
+    fn truth(&self) -> Stamped;
+}
+
+/// Keeps account of what became known.
+pub trait Survey {
+    /// Take an observation and what the planner answered; the fraction of the reachable world that is known now.
+    fn note(&mut self, observation: &Observation, status: Status) -> f64;
+}
+
+/// Looks on, and may end the run: a progress line, a pacer, the interrupt key.
+pub trait Watch {
+    /// After every step; whether to go on.
+    fn step(&mut self, progress: &Progress) -> Flow;
+}
+
+/// What a [`Watch`] says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flow {
+    /// Go on.
+    Continue,
+    /// Stop the robot and end the run.
+    Interrupt,
+}
+
+/// How far a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Simulated milliseconds.
+    pub time_ms: u32,
+    /// Fraction of the reachable world that is known.
+    pub coverage: f64,
+    /// Metres driven.
+    pub path_m: f64,
+    /// What the planner is doing.
+    pub status: Status,
+}
+
+/// What stays the same during a run.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// What the device is told at the start.
+    pub start: Start,
+    /// Simulated time after which the run ends, milliseconds.
+    pub time_limit_ms: u32,
+    /// Compare every step's heading with that of the converged window.
+    pub check_field: bool,
+}
+
+/// Who takes part in a run.
+#[expect(missing_debug_implementations, reason = "borrowed trait objects")]
+pub struct Cast<'a> {
+    /// What plans.
+    pub link: &'a mut dyn Link,
+    /// What drives.
+    pub body: &'a mut dyn Body,
+    /// What keeps account.
+    pub survey: &'a mut dyn Survey,
+    /// What looks on.
+    pub watch: &'a mut dyn Watch,
+}
+
+/// Run until something ends it. The record holds whatever was learnt, however it ended.
+pub fn run(setup: &Setup, cast: &mut Cast<'_>) -> Record {
+    let mut record = Record::default();
+    record.ending = match cast.link.control(&Control::Start(setup.start.clone())) {
+        Ok(Status::Fault(fault)) => Ending::Fault(fault),
+        Ok(_) => explore(setup, cast, &mut record),
+        Err(error) => Ending::Link(error),
+    };
+    bring_to_rest(cast, &record);
+    read_out(cast, &mut record);
+    record
+}
+
+fn explore(setup: &Setup, cast: &mut Cast<'_>, record: &mut Record) -> Ending {
+    let mut freeze = FreezeDetector::default();
+    loop {
+        let (observation, truth) = (cast.body.observe(), cast.body.truth());
+        let asked = Instant::now();
+        let command = match cast.link.observe(&observation) {
+            Ok(command) => command,
+            Err(error) => return Ending::Link(error),
+        };
+        let wall_us = asked.elapsed().as_secs_f64() * 1e6;
+        let coverage = cast.survey.note(&observation, command.status);
+        record.push(Step::new(&observation, truth, command, wall_us), coverage);
+        if setup.check_field
+            && let Err(error) = check_field(cast.link, &observation, &command, record)
+        {
+            return Ending::Link(error);
+        }
+        if let Some(ending) = ended(setup, cast.watch, &mut freeze, record, &command) {
+            return ending;
+        }
+        cast.body.drive(Some(command.velocity));
+    }
+}
+
+/// Whether anything ends the run after this step.
+fn ended(
+    setup: &Setup,
+    watch: &mut dyn Watch,
+    freeze: &mut FreezeDetector,
+    record: &Record,
+    command: &Command,
+) -> Option<Ending> {
+    let progress = record.progress();
+    let flow = watch.step(&progress);
+    let truth = record.steps.last().map(|step| step.truth)?;
+    match command.status {
+        Status::Finished(why) => Some(Ending::Finished(why)),
+        Status::Fault(why) => Some(Ending::Fault(why)),
+        _ if flow == Flow::Interrupt => Some(Ending::Interrupted),
+        _ if progress.time_ms >= setup.time_limit_ms => Some(Ending::TimeLimit),
+        status if freeze.step(&truth, status == Status::Exploring) => Some(Ending::Frozen),
+        _ => None,
+    }
+}
+
+/// After a broken link nobody tells the robot anything, and it drives on until its watchdog notices; otherwise it is
+/// stopped at once.
+fn bring_to_rest(cast: &mut Cast<'_>, record: &Record) {
+    let broken = matches!(record.ending, Ending::Link(_));
+    if !broken && !matches!(record.ending, Ending::Finished(_)) {
+        // The ending stands whether or not the device hears this: its own stale limit stops it.
+        let _ = cast.link.control(&Control::Stop);
+    }
+    let told = (!broken).then(Twist::default);
+    for _ in 0..REST_MS.div_ceil(cast.body.period_ms().max(1)) {
+        cast.body.drive(told);
+    }
+}
+
+/// Map, last window, residual frontiers and counters, as far as the link still answers.
+fn read_out(cast: &mut Cast<'_>, record: &mut Record) {
+    if !matches!(record.ending, Ending::Link(_)) {
+        let start = record.steps.first().map(|step| step.estimate);
+        let start = start.unwrap_or_default();
+        if let Err(error) = snapshot::read(cast.link, start.x_m, start.y_m, record) {
+            record.read_out_error = Some(error);
+        }
+    }
+    record.link_stats = cast.link.stats();
+}
+
+fn check_field(
+    link: &mut dyn Link,
+    observation: &Observation,
+    command: &Command,
+    record: &mut Record,
+) -> Result<(), LinkError> {
+    // Without a cycle there was no window in this step: the one that could be read is an older one.
+    if command.status != Status::Exploring || command.cost.cycles == 0 {
+        return Ok(());
+    }
+    if let Some(window) = snapshot::window(link)?
+        && let Some(error_deg) = oracle::heading_error_deg(&window, &observation.pose, command)
+    {
+        record.heading_errors_deg.push(error_deg);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,211 @@
+//! What a run wrote down, step by step, and what was read from the device at its end.
+
+use std::collections::BTreeMap;
+
+use fieldline_protocol::message::{Command, Frontier, Observation, Pose, Status, Tile};
+
+use super::snapshot::Window;
+use super::{Ending, Progress, wording};
+use crate::link::digest::Digest;
+use crate::link::{LinkError, LinkStats};
+use crate::report::tum::Stamped;
+use crate::report::{self, GridMap, Percentiles};
+
+/// One step.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// The pose that the planner was told.
+    pub estimate: Stamped,
+    /// The true pose.
+    pub truth: Stamped,
+    /// The answer.
+    pub command: Command,
+    /// Microseconds until the answer.
+    pub wall_us: f64,
+}
+
+/// Everything about a run.
+#[derive(Clone, Debug)]
+pub struct Record {
+    /// How it ended.
+    pub ending: Ending,
+    /// Every answered observation.
+    pub steps: Vec<Step>,
+    /// Fraction known after the last step.
+    pub coverage: f64,
+    /// Metres driven, by the true pose.
+    pub path_m: f64,
+    /// Of the commands so far.
+    pub digest: Digest,
+    /// The device's map.
+    pub map: GridMap,
+    /// The same, as it was sent.
+    pub tiles: BTreeMap<(i16, i16), Tile>,
+    /// The last window's field.
+    pub window: Option<Window>,
+    /// Frontiers that were left.
+    pub frontiers: Vec<Frontier>,
+    /// Angles between a step's heading and that of the converged window, where that was asked for.
+    pub heading_errors_deg: Vec<f64>,
+    /// Both ends' counters.
+    pub link_stats: LinkStats,
+    /// Why map and field could not be read, if so.
+    pub read_out_error: Option<LinkError>,
+}
+
+impl Default for Record {
+    fn default() -> Self {
+        Self {
+            ending: Ending::Interrupted,
+            steps: Vec::new(),
+            coverage: 0.0,
+            path_m: 0.0,
+            digest: Digest::default(),
+            map: GridMap::default(),
+            tiles: BTreeMap::new(),
+            window: None,
+            frontiers: Vec::new(),
+            heading_errors_deg: Vec::new(),
+            link_stats: LinkStats::default(),
+            read_out_error: None,
+        }
+    }
+}
+
+impl Step {
+    /// From what was sent and what came back.
+    #[must_use]
+    pub fn new(observation: &Observation, truth: Stamped, command: Command, wall_us: f64) -> Self {
+        Self {
+            estimate: stamped(observation.time_ms, &observation.pose),
+            truth,
+            command,
+            wall_us,
+        }
+    }
+}
+
+/// A pose of the wire at a time.
+#[must_use]
+pub fn stamped(time_ms: u32, pose: &Pose) -> Stamped {
+    Stamped {
+        time_ms,
+        x_m: pose.x.to_num(),
+        y_m: pose.y.to_num(),
+        z_m: pose.z.to_num(),
+        roll_rad: pose.roll.to_num(),
+        pitch_rad: pose.pitch.to_num(),
+        yaw_rad: pose.yaw.to_num(),
+    }
+}
+
+impl Record {
+    /// Take one more step and the coverage after it.
+    pub fn push(&mut self, step: Step, coverage: f64) {
+        if let Some(last) = self.steps.last() {
+            let (dx, dy) = (
+                step.truth.x_m - last.truth.x_m,
+                step.truth.y_m - last.truth.y_m,
+            );
+            self.path_m += dx.hypot(dy);
+        }
+        self.digest.add(&step.command);
+        self.coverage = coverage;
+        self.steps.push(step);
+    }
+
+    /// How far the run is.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        let last = self.steps.last();
+        Progress {
+            time_ms: last.map_or(0, |step| step.truth.time_ms),
+            coverage: self.coverage,
+            path_m: self.path_m,
+            status: last.map_or(Status::Idle, |step| step.command.status),
+        }
+    }
+
+    /// The report's part on the ending.
+    #[must_use]
+    pub fn outcome(&self) -> report::Outcome {
+        let residual = |frontier: &Frontier| report::ResidualFrontier {
+            x_m: centre_m(frontier.x),
+            y_m: centre_m(frontier.y),
+            cells: u32::from(frontier.cells),
+            reason: wording::residue(frontier.reason).into(),
+        };
+        report::Outcome {
+            status: self.ending.status().into(),
+            reason: self.ending.reason().into(),
+            residual_frontiers: self.frontiers.iter().map(residual).collect(),
+        }
+    }
+
+    /// The report's part on odometry.
+    #[must_use]
+    pub fn localization(&self) -> report::Localization {
+        let error = |s: &Step| (s.estimate.x_m - s.truth.x_m).hypot(s.estimate.y_m - s.truth.y_m);
+        let errors: Vec<f64> = self.steps.iter().map(error).collect();
+        if errors.is_empty() {
+            return report::Localization::default();
+        }
+        report::Localization {
+            mean_error_m: Some(errors.iter().sum::<f64>() / errors.len() as f64),
+            max_error_m: errors.into_iter().reduce(f64::max),
+        }
+    }
+
+    /// The report's part on cost.
+    #[must_use]
+    pub fn planner(&self) -> report::Planner {
+        let wall: Vec<f64> = self.steps.iter().map(|step| step.wall_us).collect();
+        let costs = self.steps.iter().map(|step| step.command.cost);
+        let counted = costs.clone().filter(|cost| cost.instructions > 0);
+        let instructions: Vec<f64> = counted.map(|cost| f64::from(cost.instructions)).collect();
+        report::Planner {
+            wall_us: Percentiles::of(&wall),
+            instructions: Percentiles::of(&instructions),
+            stack_bytes: costs
+                .map(|cost| cost.stack_bytes)
+                .max()
+                .filter(|&bytes| bytes > 0),
+        }
+    }
+
+    /// The report's part on the windows.
+    #[must_use]
+    pub fn field(&self) -> report::Field {
+        let exhausted = |step: &&Step| step.command.cost.budget_exhausted;
+        let errors = Percentiles::of(&self.heading_errors_deg);
+        report::Field {
+            worst_heading_error_deg: errors.map(|errors| errors.max),
+            heading_error_deg: errors,
+            budget_exhausted: self.steps.iter().filter(exhausted).count() as u64,
+        }
+    }
+
+    /// The report's part on the link.
+    #[must_use]
+    pub fn link_report(&self) -> report::LinkStats {
+        let LinkStats {
+            sent,
+            received,
+            retries,
+            dropped,
+            crc_errors,
+        } = self.link_stats;
+        report::LinkStats {
+            sent,
+            received,
+            retries,
+            dropped,
+            crc_errors,
+        }
+    }
+}
+
+fn centre_m(cell: i16) -> f64 {
+    // Rounded, so that the file shows 3.05 and not 3.0500000000000003.
+    ((f64::from(cell) + 0.5) * 100.0 * report::grid_map::CELL_M).round() / 100.0
+}

@@ -1,0 +1,107 @@
+//! Reads map, field and residual frontiers over the link, once, at the end of a run.
+//!
+//! The map is found by spreading from the start's tile: beams leave the robot, so that the touched tiles are connected
+//! through their eight neighbours. Cost: one request for each touched tile and for each tile around them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use fieldline_protocol::message::{FIELD_SIDE, FieldRow, Tile};
+
+use super::Record;
+use crate::link::{Link, LinkError};
+use crate::report::GridMap;
+use crate::report::grid_map::{CELL_M, TILE_SIDE};
+
+/// What a window's cell is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WindowCell {
+    /// Part of the field.
+    #[default]
+    Free,
+    /// q = 0.
+    Obstacle,
+    /// q = 1.
+    Goal,
+}
+
+/// The last window's field, `FIELD_SIDE` cells square, row by row from the least y.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Window {
+    /// Column of the first cell, in window cells.
+    pub origin_x: i32,
+    /// Row of the first cell, in window cells.
+    pub origin_y: i32,
+    /// Side of a window cell, metres.
+    pub cell_m: f64,
+    /// q, scaled so that a goal is 1.
+    pub q: Vec<f32>,
+    /// The boundary.
+    pub cells: Vec<WindowCell>,
+}
+
+/// Fill the record's map, window and frontiers; the map is sought from the point (`x_m`, `y_m`).
+///
+/// # Errors
+/// As [`LinkError`]; what was read before stays in the record.
+pub fn read(link: &mut dyn Link, x_m: f64, y_m: f64, record: &mut Record) -> Result<(), LinkError> {
+    record.frontiers = link.frontiers()?;
+    record.window = window(link)?;
+    record.tiles = tiles(link, x_m, y_m)?;
+    record.map = GridMap::from_tiles(&record.tiles);
+    Ok(())
+}
+
+/// The last window's field; `None` before the first.
+///
+/// # Errors
+/// As [`LinkError`].
+pub fn window(link: &mut dyn Link) -> Result<Option<Window>, LinkError> {
+    let mut out: Option<Window> = None;
+    for row in 0..FIELD_SIDE as u8 {
+        let Some(row) = link.field_row(row)? else {
+            return Ok(None);
+        };
+        let window = out.get_or_insert_with(|| Window {
+            origin_x: i32::from(row.origin_x),
+            origin_y: i32::from(row.origin_y),
+            cell_m: CELL_M * f64::from(row.scale.max(1)),
+            q: Vec::with_capacity(FIELD_SIDE * FIELD_SIDE),
+            cells: Vec::with_capacity(FIELD_SIDE * FIELD_SIDE),
+        });
+        for column in 0..FIELD_SIDE {
+            window.q.push(row.q.get(column).copied().unwrap_or(0.0));
+            window.cells.push(cell_of(&row, column));
+        }
+    }
+    Ok(out)
+}
+
+fn cell_of(row: &FieldRow, column: usize) -> WindowCell {
+    let byte = row.cells.get(column / 4).copied().unwrap_or(1);
+    match (byte >> (2 * (column % 4))) & 3 {
+        0 => WindowCell::Free,
+        2 => WindowCell::Goal,
+        _ => WindowCell::Obstacle,
+    }
+}
+
+fn tiles(link: &mut dyn Link, x_m: f64, y_m: f64) -> Result<BTreeMap<(i16, i16), Tile>, LinkError> {
+    let side_m = CELL_M * f64::from(TILE_SIDE);
+    let first = ((x_m / side_m).floor() as i16, (y_m / side_m).floor() as i16);
+    let (mut found, mut asked) = (BTreeMap::new(), BTreeSet::from([first]));
+    let mut pending = vec![first];
+    while let Some((x, y)) = pending.pop() {
+        let Some(tile) = link.tile(x, y)? else {
+            continue;
+        };
+        found.insert((x, y), tile);
+        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
+        for (dx, dy) in around {
+            let next = (x.saturating_add(dx), y.saturating_add(dy));
+            if asked.insert(next) {
+                pending.push(next);
+            }
+        }
+    }
+    Ok(found)
+}

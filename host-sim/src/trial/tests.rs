@@ -1,0 +1,271 @@
+//! Runs with a scripted device and a point robot: every ending, and what the record then holds.
+
+use fieldline_protocol::message::{
+    Command, Control, Fault, FieldRow, Finish, Frontier, Identity, Observation, Residue, Start,
+    Status, Tile, Twist,
+};
+use fixed::types::{I4F12, I16F16};
+
+use super::{Body, Cast, Ending, Flow, Progress, Record, Setup, Survey, Watch, run};
+use crate::link::{Link, LinkError, LinkStats};
+use crate::report::tum::Stamped;
+
+/// A point that drives along x.
+#[derive(Default)]
+struct Point {
+    time_ms: u32,
+    x_m: f64,
+    driven: Vec<Option<Twist>>,
+}
+
+impl Body for Point {
+    fn period_ms(&self) -> u32 {
+        100
+    }
+    fn observe(&mut self) -> Observation {
+        let mut observation = Observation {
+            time_ms: self.time_ms,
+            ..Observation::default()
+        };
+        observation.pose.x = I16F16::from_num(self.x_m + 0.25);
+        observation
+    }
+    fn drive(&mut self, velocity: Option<Twist>) {
+        self.time_ms += 100;
+        self.x_m += velocity.unwrap_or_default().linear.to_num::<f64>() * 0.1;
+        self.driven.push(velocity);
+    }
+    fn truth(&self) -> Stamped {
+        Stamped {
+            time_ms: self.time_ms,
+            x_m: self.x_m,
+            ..Stamped::default()
+        }
+    }
+}
+
+/// Answers from a script, then for ever with the last line.
+struct Script {
+    answers: Vec<Result<Command, LinkError>>,
+    asked: usize,
+    controls: Vec<Control>,
+}
+
+impl Script {
+    fn new(answers: Vec<Result<Command, LinkError>>) -> Self {
+        Self {
+            answers,
+            asked: 0,
+            controls: Vec::new(),
+        }
+    }
+}
+
+impl Link for Script {
+    fn hello(&mut self) -> Result<Identity, LinkError> {
+        Ok(Identity::default())
+    }
+    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
+        self.controls.push(control.clone());
+        Ok(Status::Exploring)
+    }
+    fn observe(&mut self, _: &Observation) -> Result<Command, LinkError> {
+        let line = self.asked.min(self.answers.len() - 1);
+        self.asked += 1;
+        self.answers[line].clone()
+    }
+    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
+        // Three tiles on a diagonal, the last of them far from the start.
+        let known = (0..3).contains(&x) && x == y;
+        Ok(known.then(|| Tile {
+            x,
+            y,
+            cells: heapless::Vec::from_slice(&[0b0101_0101; 256]).unwrap(),
+            skeleton: heapless::Vec::new(),
+        }))
+    }
+    fn field_row(&mut self, _: u8) -> Result<Option<FieldRow>, LinkError> {
+        Ok(None)
+    }
+    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
+        Ok(vec![Frontier {
+            x: 30,
+            y: -13,
+            cells: 4,
+            reason: Residue::Unreachable,
+        }])
+    }
+    fn stats(&self) -> LinkStats {
+        LinkStats {
+            sent: self.asked as u64,
+            ..LinkStats::default()
+        }
+    }
+}
+
+struct Counting(u64);
+
+impl Survey for Counting {
+    fn note(&mut self, _: &Observation, _: Status) -> f64 {
+        self.0 += 1;
+        self.0 as f64 / 1_000.0
+    }
+}
+
+struct Until(u32);
+
+impl Watch for Until {
+    fn step(&mut self, progress: &Progress) -> Flow {
+        if progress.time_ms >= self.0 {
+            Flow::Interrupt
+        } else {
+            Flow::Continue
+        }
+    }
+}
+
+fn command(status: Status, linear: f64) -> Result<Command, LinkError> {
+    Ok(Command {
+        velocity: Twist {
+            linear: I4F12::from_num(linear),
+            ..Twist::default()
+        },
+        status,
+        ..Command::default()
+    })
+}
+
+fn trial(link: &mut Script, body: &mut Point, interrupt_ms: u32) -> Record {
+    let setup = Setup {
+        start: Start::default(),
+        time_limit_ms: 120_000,
+        check_field: false,
+    };
+    let mut cast = Cast {
+        link,
+        body,
+        survey: &mut Counting(0),
+        watch: &mut Until(interrupt_ms),
+    };
+    run(&setup, &mut cast)
+}
+
+fn ends(answers: Vec<Result<Command, LinkError>>) -> (Record, Script, Point) {
+    let (mut link, mut body) = (Script::new(answers), Point::default());
+    let record = trial(&mut link, &mut body, u32::MAX);
+    (record, link, body)
+}
+
+#[test]
+fn a_finish_ends_the_run_and_everything_is_read() {
+    let (record, link, body) = ends(vec![
+        command(Status::Exploring, 0.5),
+        command(Status::Exploring, 0.5),
+        command(Status::Finished(Finish::Explored), 0.5),
+    ]);
+    assert_eq!(record.ending, Ending::Finished(Finish::Explored));
+    assert_eq!(record.steps.len(), 3);
+    assert!((record.path_m - 0.1).abs() < 1e-3, "{}", record.path_m);
+    assert!((record.coverage - 0.003).abs() < 1e-12);
+    assert_eq!(record.link_stats.sent, 3);
+    assert_eq!(record.tiles.len(), 3, "found through the corners");
+    assert_eq!(record.map.known(), 3 * 1024);
+    assert_eq!(link.controls.len(), 1, "a finished device is not stopped");
+    // The velocity that came with the finish is not driven.
+    assert_eq!(body.driven.len(), 2 + 30);
+    assert!(
+        body.driven[2..]
+            .iter()
+            .all(|twist| *twist == Some(Twist::default()))
+    );
+    let outcome = record.outcome();
+    assert_eq!(
+        (outcome.status.as_str(), outcome.reason.as_str()),
+        ("finished", "explored")
+    );
+    let frontier = &outcome.residual_frontiers[0];
+    assert_eq!((frontier.x_m, frontier.y_m), (3.05, -1.25));
+    let localization = record.localization();
+    assert!((localization.mean_error_m.unwrap() - 0.25).abs() < 1e-4);
+}
+
+#[test]
+fn a_fault_ends_the_run() {
+    let (record, ..) = ends(vec![command(Status::Fault(Fault::MapFull), 0.0)]);
+    assert_eq!(record.ending, Ending::Fault(Fault::MapFull));
+    assert_eq!(record.steps.len(), 1);
+}
+
+#[test]
+fn after_a_broken_link_the_robot_is_left_to_its_watchdog() {
+    let (record, link, body) = ends(vec![
+        command(Status::Exploring, 0.5),
+        Err(LinkError::Silent),
+    ]);
+    assert_eq!(record.ending, Ending::Link(LinkError::Silent));
+    assert!(body.driven[0].is_some_and(|twist| twist != Twist::default()));
+    assert_eq!(body.driven[1..], [None; 30], "silence, not a command");
+    assert_eq!(link.controls.len(), 1, "a dead link is not spoken to");
+    assert!(record.tiles.is_empty());
+}
+
+#[test]
+fn a_robot_that_stands_is_frozen_and_told_to_stop() {
+    let (record, link, _) = ends(vec![command(Status::Exploring, 0.0)]);
+    assert_eq!(record.ending, Ending::Frozen);
+    assert_eq!(record.steps.last().unwrap().truth.time_ms, 60_000);
+    assert_eq!(link.controls.last(), Some(&Control::Stop));
+}
+
+#[test]
+fn a_paused_robot_is_not_frozen_and_the_time_limit_ends_it() {
+    let (record, ..) = ends(vec![command(Status::Paused, 0.0)]);
+    assert_eq!(record.ending, Ending::TimeLimit);
+    assert_eq!(record.steps.last().unwrap().truth.time_ms, 120_000);
+}
+
+#[test]
+fn an_interrupt_stops_the_robot_and_keeps_the_record() {
+    let mut link = Script::new(vec![command(Status::Exploring, 0.5)]);
+    let mut body = Point::default();
+    let record = trial(&mut link, &mut body, 3_000);
+    assert_eq!(record.ending, Ending::Interrupted);
+    assert_eq!(record.steps.len(), 31);
+    assert_eq!(link.controls.last(), Some(&Control::Stop));
+    assert_eq!(*body.driven.last().unwrap(), Some(Twist::default()));
+}
+
+#[test]
+fn the_digest_is_of_the_commands_alone() {
+    let answers = || {
+        vec![
+            command(Status::Exploring, 0.5),
+            command(Status::Finished(Finish::Explored), 0.0),
+        ]
+    };
+    let (first, ..) = ends(answers());
+    let (second, ..) = ends(answers());
+    assert_eq!(first.digest, second.digest);
+    let (other, ..) = ends(vec![
+        command(Status::Exploring, 0.25),
+        command(Status::Finished(Finish::Explored), 0.0),
+    ]);
+    assert_ne!(first.digest, other.digest);
+}
+
+#[test]
+fn costs_are_reported_only_where_the_device_measures() {
+    let mut measured = command(Status::Finished(Finish::Explored), 0.0).unwrap();
+    measured.cost.instructions = 4_000_000;
+    measured.cost.stack_bytes = 2_048;
+    measured.cost.budget_exhausted = true;
+    let (record, ..) = ends(vec![command(Status::Exploring, 0.1), Ok(measured)]);
+    let planner = record.planner();
+    assert_eq!(planner.instructions.unwrap().max, 4e6);
+    assert_eq!(planner.stack_bytes, Some(2_048));
+    assert!(planner.wall_us.unwrap().p50 >= 0.0);
+    assert_eq!(record.field().budget_exhausted, 1);
+    let (record, ..) = ends(vec![command(Status::Finished(Finish::Explored), 0.0)]);
+    assert_eq!(record.planner().instructions, None);
+    assert_eq!(record.planner().stack_bytes, None);
+}

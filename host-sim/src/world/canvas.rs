@@ -1,0 +1,112 @@
+//! Drawing of floor plans: a grid that is filled with rectangles, discs and seeded scatter, in metres.
+//!
+//! A cell takes a shape's class if its centre lies inside the shape. The same calls give the same cells everywhere: only
+//! sums, products and comparisons are used.
+
+use super::occupancy::{Class, GridCell, Occupancy};
+
+/// A number that looks random, of two numbers: multiply, shift and mix.
+pub(super) fn hash(a: u32, b: u32) -> u32 {
+    let mut value = a
+        .wrapping_mul(0x9e37_79b1)
+        .wrapping_add(b.wrapping_mul(0x85eb_ca77));
+    for _ in 0..2 {
+        value ^= value >> 15;
+        value = value.wrapping_mul(0xd168_aaad);
+        value ^= value >> 13;
+        value = value.wrapping_mul(0xaf72_3597);
+    }
+    value ^ value >> 16
+}
+
+/// Smooth noise in [−1, 1] over the plane, with features of about 1 m and half as much of about 0.4 m.
+pub(super) fn roughness(x_m: f64, y_m: f64) -> f64 {
+    (value_noise(x_m, y_m) + 0.5 * value_noise(2.5 * x_m + 17.0, 2.5 * y_m + 31.0)) / 1.5
+}
+
+/// Random values on the whole numbers, smoothly joined.
+fn value_noise(x: f64, y: f64) -> f64 {
+    let (i, j) = (x.floor(), y.floor());
+    let smooth = |t: f64| t * t * (3.0 - 2.0 * t);
+    let (fx, fy) = (smooth(x - i), smooth(y - j));
+    let at = |di: f64, dj: f64| {
+        let bits = hash((i + di) as i64 as u32, (j + dj) as i64 as u32);
+        f64::from(bits) / f64::from(u32::MAX) * 2.0 - 1.0
+    };
+    let low = at(0.0, 0.0) * (1.0 - fx) + at(1.0, 0.0) * fx;
+    let high = at(0.0, 1.0) * (1.0 - fx) + at(1.0, 1.0) * fx;
+    low * (1.0 - fy) + high * fy
+}
+
+/// The grid being drawn.
+pub(super) struct Canvas {
+    grid: Occupancy,
+}
+
+impl Canvas {
+    /// Cells of 5 cm.
+    const RESOLUTION_M: f64 = 0.05;
+
+    /// A plan of `width_m` × `height_m` with its lower left corner at the frame's origin, all of one class.
+    pub(super) fn new(width_m: f64, height_m: f64, class: Class) -> Self {
+        let cells = |m: f64| (m / Self::RESOLUTION_M).round() as usize;
+        Self {
+            grid: Occupancy::filled(
+                cells(width_m),
+                cells(height_m),
+                Self::RESOLUTION_M,
+                [0.0, 0.0],
+                class,
+            ),
+        }
+    }
+
+    /// Fills every cell whose centre satisfies `inside(x, y)`.
+    pub(super) fn fill(&mut self, class: Class, inside: impl Fn(f64, f64) -> bool) {
+        for j in 0..self.grid.height() as i64 {
+            for i in 0..self.grid.width() as i64 {
+                let cell = GridCell { i, j };
+                let [x, y] = self.grid.centre(cell);
+                if inside(x, y) {
+                    self.grid.set(cell, class);
+                }
+            }
+        }
+    }
+
+    /// A rectangle from (x0, y0) to (x1, y1).
+    pub(super) fn rect(&mut self, class: Class, [x0, y0, x1, y1]: [f64; 4]) {
+        self.fill(class, |x, y| x > x0 && x < x1 && y > y0 && y < y1);
+    }
+
+    /// Free floor.
+    pub(super) fn floor(&mut self, corners: [f64; 4]) {
+        self.rect(Class::Free, corners);
+    }
+
+    /// A wall, a cupboard, a desk.
+    pub(super) fn block(&mut self, corners: [f64; 4]) {
+        self.rect(Class::Wall, corners);
+    }
+
+    /// A round pillar, a chair, a plant.
+    pub(super) fn disc(&mut self, class: Class, [cx, cy]: [f64; 2], radius: f64) {
+        self.fill(class, |x, y| {
+            (x - cx) * (x - cx) + (y - cy) * (y - cy) < radius * radius
+        });
+    }
+
+    /// A wall all around the plan.
+    pub(super) fn border(&mut self, thickness: f64) {
+        let [width, height] =
+            [self.grid.width(), self.grid.height()].map(|cells| cells as f64 * Self::RESOLUTION_M);
+        self.fill(Class::Wall, |x, y| {
+            x < thickness || y < thickness || x > width - thickness || y > height - thickness
+        });
+    }
+
+    /// The plan.
+    pub(super) fn finish(self) -> Occupancy {
+        self.grid
+    }
+}

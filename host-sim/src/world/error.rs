@@ -1,0 +1,80 @@
+//! What can be wrong with a world, each said in one line that names the file, the thing and the remedy.
+
+use core::fmt;
+
+use super::builtin;
+
+/// Why a world could not be had.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WorldError {
+    /// The world file is missing or unreadable; also an unknown built-in name.
+    Unreadable {
+        /// File or name as given.
+        file: String,
+        /// What the system said.
+        reason: String,
+    },
+    /// Not YAML, or not one document of it.
+    Syntax {
+        /// The world file.
+        file: String,
+        /// Line, column and what was found.
+        reason: String,
+    },
+    /// A key that is unknown or missing, or whose value is impossible.
+    Value {
+        /// The world file.
+        file: String,
+        /// The key, with the tables it lies in; empty for the whole document.
+        key: String,
+        /// What is wrong and what would be right.
+        reason: String,
+    },
+    /// An image that is missing, damaged or of the wrong kind.
+    Image {
+        /// The world file.
+        file: String,
+        /// The image, as resolved.
+        image: String,
+        /// What is wrong and what would be right.
+        reason: String,
+    },
+    /// A start pose in which the robot does not fit.
+    Start {
+        /// The world file or built-in name.
+        file: String,
+        /// Which of `robots`, from 0.
+        index: usize,
+        /// What is in the way and what would be right.
+        reason: String,
+    },
+}
+
+impl fmt::Display for WorldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable { file, reason } => write!(
+                f,
+                "{file}: cannot read this world ({reason}); give a world file or a built-in world: {}",
+                builtin::names().join(", ")
+            ),
+            Self::Syntax { file, reason } => {
+                write!(f, "{file}: {reason}; correct the YAML there")
+            }
+            Self::Value { file, key, reason } if key.is_empty() => write!(f, "{file}: {reason}"),
+            Self::Value { file, key, reason } => write!(f, "{file}: {key}: {reason}"),
+            Self::Image {
+                file,
+                image,
+                reason,
+            } => write!(f, "{file}: image {image}: {reason}"),
+            Self::Start {
+                file,
+                index,
+                reason,
+            } => write!(f, "{file}: robots[{index}]: {reason}"),
+        }
+    }
+}
+
+impl core::error::Error for WorldError {}

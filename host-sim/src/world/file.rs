@@ -1,0 +1,389 @@
+//! World files: YAML in the ROS `map_server` convention with a few keys more.
+//!
+//! | key | meaning | default |
+//! | --- | --- | --- |
+//! | `image` | occupancy, PGM or PNG, relative to the file | none, if there is an `elevation` |
+//! | `resolution` | side of a pixel, metres | required |
+//! | `origin` | x, y in metres of the lower left corner, yaw (must be 0) | required |
+//! | `negate` | 1 if white is occupied | 0 |
+//! | `occupied_thresh` | above this occupancy is wall | 0.65 |
+//! | `free_thresh` | below this occupancy is free; in between is unknown | 0.196 |
+//! | `mode` | `trinary`; `scale` is read the same way | `trinary` |
+//! | `wall_height` | metres above the ground | 1.5 |
+//! | `elevation` | `{image, z_min, z_max, no_data, resolution, origin}` | flat |
+//! | `robots` | list of `[x, y, yaw]` | the origin of the frame if a robot fits there, else the widest place |
+//!
+//! Any other key is an error: a key misspelt would otherwise be a setting ignored.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::elevation::{Elevation, HeightScale};
+use super::image::Image;
+use super::occupancy::{Class, GridCell, Occupancy, Thresholds};
+use super::yaml::{self, BadKey, Node, Table};
+use super::{Start, WALL_HEIGHT_M, World, WorldError};
+use crate::robot::Footprint;
+
+/// Keys of a world file.
+const KEYS: [&str; 10] = [
+    "image",
+    "resolution",
+    "origin",
+    "negate",
+    "occupied_thresh",
+    "free_thresh",
+    "mode",
+    "wall_height",
+    "elevation",
+    "robots",
+];
+/// Keys of its `elevation`.
+const ELEVATION_KEYS: [&str; 6] = ["image", "z_min", "z_max", "no_data", "resolution", "origin"];
+
+/// Reads, checks and builds.
+pub(super) fn load(path: &Path) -> Result<World, WorldError> {
+    let file = path.display().to_string();
+    let text = fs::read_to_string(path).map_err(|e| WorldError::Unreadable {
+        file: file.clone(),
+        reason: e.to_string(),
+    })?;
+    let document = yaml::parse(&text).map_err(|reason| WorldError::Syntax {
+        file: file.clone(),
+        reason,
+    })?;
+    Loader { path, file }.build(&document)
+}
+
+/// The file being read, for paths and messages.
+struct Loader<'a> {
+    path: &'a Path,
+    file: String,
+}
+
+impl Loader<'_> {
+    fn build(&self, document: &Node) -> Result<World, WorldError> {
+        let keys = Table::new("", document, &KEYS).map_err(|bad| self.value(bad))?;
+        let plan = Plan::read(&keys).map_err(|bad| self.value(bad))?;
+        let elevation = match &plan.heights {
+            Some(heights) => Some(self.elevation(heights)?),
+            None => None,
+        };
+        let occupancy = match (plan.image, &elevation) {
+            (Some(image), _) => {
+                let image = self.image(image)?;
+                Occupancy::from_image(&image, plan.thresholds, plan.resolution_m, plan.origin_m)
+            }
+            (None, Some(ground)) => Occupancy::filled(
+                ground.width(),
+                ground.height(),
+                ground.resolution_m(),
+                ground.origin_m(),
+                Class::Free,
+            ),
+            (None, None) => {
+                let reason = "missing; give an image, an elevation, or both";
+                return Err(self.value(keys.bad("image", reason)));
+            }
+        };
+        let name = self.path.file_stem().unwrap_or_default().to_string_lossy();
+        let mut world = World::new(&name, occupancy, elevation, plan.wall_height_m, Vec::new());
+        world.starts = match plan.starts {
+            Some(starts) => starts,
+            None => vec![default_start(&world)],
+        };
+        for (index, start) in world.starts.iter().enumerate() {
+            world.check_start(&self.file, index, *start)?;
+        }
+        Ok(world)
+    }
+
+    fn elevation(&self, heights: &Heights<'_>) -> Result<Elevation, WorldError> {
+        let image = self.image(heights.image)?;
+        if image.channels != 1 {
+            let reason = "heights must be grey, and this image has colours; convert it";
+            return Err(self.image_error(heights.image, reason));
+        }
+        Ok(Elevation::from_image(
+            &image,
+            heights.scale,
+            heights.resolution_m,
+            heights.origin_m,
+        ))
+    }
+
+    fn image(&self, name: &str) -> Result<Image, WorldError> {
+        Image::load(&self.beside(name)).map_err(|e| self.image_error(name, &e.to_string()))
+    }
+
+    fn image_error(&self, name: &str, reason: &str) -> WorldError {
+        WorldError::Image {
+            file: self.file.clone(),
+            image: self.beside(name).display().to_string(),
+            reason: reason.to_owned(),
+        }
+    }
+
+    /// A path relative to the file.
+    fn beside(&self, name: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(name)
+    }
+
+    fn value(&self, BadKey { key, reason }: BadKey) -> WorldError {
+        WorldError::Value {
+            file: self.file.clone(),
+            key,
+            reason,
+        }
+    }
+}
+
+/// What the file says, checked but for the images.
+struct Plan<'a> {
+    image: Option<&'a str>,
+    resolution_m: f64,
+    origin_m: [f64; 2],
+    thresholds: Thresholds,
+    wall_height_m: f64,
+    heights: Option<Heights<'a>>,
+    starts: Option<Vec<Start>>,
+}
+
+/// What the file says of the ground.
+struct Heights<'a> {
+    image: &'a str,
+    scale: HeightScale,
+    resolution_m: f64,
+    origin_m: [f64; 2],
+}
+
+impl<'a> Plan<'a> {
+    fn read(keys: &Table<'a>) -> Result<Self, BadKey> {
+        let resolution_m = keys.required("resolution", length(keys, "resolution")?, "0.05")?;
+        let origin_m = keys.required("origin", origin(keys)?, "[0, 0, 0]")?;
+        match keys.text("mode")? {
+            None | Some("trinary" | "scale") => {}
+            Some(mode) => {
+                return Err(keys.bad("mode", &format!("{mode} is not supported; use trinary")));
+            }
+        }
+        Ok(Self {
+            image: keys.text("image")?,
+            resolution_m,
+            origin_m,
+            thresholds: thresholds(keys)?,
+            wall_height_m: length(keys, "wall_height")?.unwrap_or(WALL_HEIGHT_M),
+            heights: match keys.node("elevation") {
+                Some(node) => Some(Heights::read(node, resolution_m, origin_m)?),
+                None => None,
+            },
+            starts: starts(keys)?,
+        })
+    }
+}
+
+impl<'a> Heights<'a> {
+    fn read(node: &'a Node, resolution_m: f64, origin_m: [f64; 2]) -> Result<Self, BadKey> {
+        let keys = Table::new("elevation", node, &ELEVATION_KEYS)?;
+        let z_min_m = keys.required("z_min", keys.number("z_min")?, "-2.0")?;
+        let z_max_m = keys.required("z_max", keys.number("z_max")?, "3.0")?;
+        if !(z_min_m.is_finite() && z_max_m.is_finite() && z_min_m < z_max_m) {
+            let reason = format!("{z_max_m} is not above z_min ({z_min_m})");
+            return Err(keys.bad("z_max", &reason));
+        }
+        let no_data = match keys.number("no_data")? {
+            None => None,
+            Some(value) if (0.0..=65_535.0).contains(&value) && value.fract() == 0.0 => {
+                Some(value as u32)
+            }
+            Some(value) => {
+                let reason = format!("{value} is not a grey value from 0 to 65535");
+                return Err(keys.bad("no_data", &reason));
+            }
+        };
+        Ok(Self {
+            image: keys.required("image", keys.text("image")?, "heights.png")?,
+            scale: HeightScale {
+                z_min_m,
+                z_max_m,
+                no_data,
+            },
+            resolution_m: length(&keys, "resolution")?.unwrap_or(resolution_m),
+            origin_m: origin(&keys)?.unwrap_or(origin_m),
+        })
+    }
+}
+
+fn length(keys: &Table<'_>, key: &str) -> Result<Option<f64>, BadKey> {
+    match keys.number(key)? {
+        Some(metres) if !(metres.is_finite() && metres > 0.0) => {
+            Err(keys.bad(key, &format!("{metres} is not a length above 0 m")))
+        }
+        other => Ok(other),
+    }
+}
+
+fn origin(keys: &Table<'_>) -> Result<Option<[f64; 2]>, BadKey> {
+    let Some(node) = keys.node("origin") else {
+        return Ok(None);
+    };
+    let Some(numbers) = node.numbers(2..=3) else {
+        return Err(keys.bad("origin", &format!("{node} is not [x, y, yaw]")));
+    };
+    match numbers.get(2) {
+        Some(yaw) if *yaw != 0.0 => {
+            let reason =
+                format!("a yaw of {yaw} is not supported; rotate the image and set it to 0");
+            Err(keys.bad("origin", &reason))
+        }
+        _ => Ok(Some([numbers[0], numbers[1]])),
+    }
+}
+
+fn thresholds(keys: &Table<'_>) -> Result<Thresholds, BadKey> {
+    let free = keys.number("free_thresh")?.unwrap_or(0.196);
+    let occupied = keys.number("occupied_thresh")?.unwrap_or(0.65);
+    if !(0.0 < free && free < 1.0) {
+        return Err(keys.bad("free_thresh", &format!("{free} is not between 0 and 1")));
+    }
+    if !(free < occupied && occupied < 1.0) {
+        let reason = format!("{occupied} is not between free_thresh ({free}) and 1");
+        return Err(keys.bad("occupied_thresh", &reason));
+    }
+    Ok(Thresholds {
+        occupied,
+        free,
+        negate: keys.flag("negate")?.unwrap_or(false),
+    })
+}
+
+fn starts(keys: &Table<'_>) -> Result<Option<Vec<Start>>, BadKey> {
+    let list = match keys.node("robots") {
+        None => return Ok(None),
+        Some(Node::List(list)) if !list.is_empty() => list,
+        Some(other) => {
+            let reason = format!("{other} is not a list of [x, y, yaw], at least one");
+            return Err(keys.bad("robots", &reason));
+        }
+    };
+    let mut starts = Vec::with_capacity(list.len());
+    for (index, node) in list.iter().enumerate() {
+        let Some(numbers) = node.numbers(2..=3) else {
+            let key = format!("robots[{index}]");
+            return Err(keys.bad(&key, &format!("{node} is not [x, y, yaw]")));
+        };
+        starts.push(Start {
+            x_m: numbers[0],
+            y_m: numbers[1],
+            yaw_rad: numbers.get(2).copied().unwrap_or(0.0),
+        });
+    }
+    Ok(Some(starts))
+}
+
+/// The origin of the frame if the robot fits there, else the cell with most room around it.
+fn default_start(world: &World) -> Start {
+    let origin = Start::default();
+    if world.check_start("", 0, origin).is_ok() {
+        origin
+    } else {
+        world.widest_place()
+    }
+}
+
+impl World {
+    /// Does the robot fit at a start?
+    pub(crate) fn check_start(
+        &self,
+        file: &str,
+        index: usize,
+        start: Start,
+    ) -> Result<(), WorldError> {
+        let (x, y) = (start.x_m, start.y_m);
+        let inside = self.occupancy.index(self.occupancy.cell_at(x, y));
+        let place = match inside.map(|index| self.occupancy.classes()[index]) {
+            None => "lies outside of the map",
+            Some(Class::Wall) => "lies in a wall",
+            Some(Class::Unknown) => "lies in unknown space",
+            Some(Class::Free) if self.clearance_m(&Footprint::PIONEER_3AT, start) > 0.0 => {
+                return Ok(());
+            }
+            Some(Class::Free) => "is too close to a wall, the robot overlaps it",
+        };
+        let best = self.widest_place();
+        let remedy = if self.is_solid(best.x_m, best.y_m) {
+            "nothing is free anywhere, check negate and the thresholds".to_owned()
+        } else {
+            format!("most room is at ({:.2}, {:.2})", best.x_m, best.y_m)
+        };
+        let room_m = self.distance.from_centre_m(self.occupancy.cell_at(x, y));
+        Err(WorldError::Start {
+            file: file.to_owned(),
+            index,
+            reason: format!("({x:.2}, {y:.2}) {place} ({room_m:.2} m from its centre); {remedy}"),
+        })
+    }
+
+    /// The cell with most room around it, facing along x.
+    fn widest_place(&self) -> Start {
+        let mut best = (0.0, GridCell { i: 0, j: 0 });
+        for j in 0..self.occupancy.height() as i64 {
+            for i in 0..self.occupancy.width() as i64 {
+                let cell = GridCell { i, j };
+                let room_m = self.distance.from_centre_m(cell);
+                if room_m > best.0 {
+                    best = (room_m, cell);
+                }
+            }
+        }
+        let [x_m, y_m] = self.occupancy.centre(best.1);
+        Start {
+            x_m,
+            y_m,
+            yaw_rad: 0.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    const WHOLE: &str = "image: walls.png  # a plan\nresolution: 0.05\norigin: [-12.0, -8.0, 0.0]\nnegate: 0\n\
+        occupied_thresh: 0.65\nfree_thresh: 0.196\nwall_height: 1.5\n\
+        elevation: {image: heights.png, z_min: -2.0, z_max: 3.0, no_data: 0}\nrobots: [[0.0, 0.0, 0.0]]\n";
+
+    fn read(text: &str) -> Result<(), String> {
+        let document = yaml::parse(text)?;
+        let said = |bad: BadKey| format!("{}: {}", bad.key, bad.reason);
+        let keys = Table::new("", &document, &KEYS).map_err(said)?;
+        Plan::read(&keys).map(|_| ()).map_err(said)
+    }
+
+    #[test]
+    fn damaged_world_files_are_refused_in_one_line_or_read() {
+        assert_eq!(read(WHOLE), Ok(()));
+        let mut rng = ChaCha8Rng::seed_from_u64(13);
+        let marks = b"[]{}:,-#'\"|>&*!%\t\n 0a.~?";
+        let mut refused = 0;
+        for _ in 0..20_000 {
+            let mut bytes = WHOLE.as_bytes().to_vec();
+            for _ in 0..1 + rng.next_u32() % 3 {
+                let at = rng.next_u32() as usize % bytes.len();
+                let mark = marks[rng.next_u32() as usize % marks.len()];
+                match rng.next_u32() % 3 {
+                    0 => bytes[at] = mark,
+                    1 => bytes.insert(at, mark),
+                    _ => bytes.truncate(at.max(1)),
+                }
+            }
+            if let Err(reason) = read(&String::from_utf8_lossy(&bytes)) {
+                assert!(!reason.contains('\n'), "{reason}");
+                refused += 1;
+            }
+        }
+        assert!(refused > 10_000, "{refused}");
+    }
+}

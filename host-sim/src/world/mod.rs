@@ -1,0 +1,227 @@
+//! The world a robot explores: what stands where, how high the ground lies, and where a robot may start.
+//!
+//! A world comes from a YAML file in the ROS `map_server` convention ([`World::load`]), from the collection drawn here
+//! ([`World::builtin`]), or from rows of characters in a test ([`World::picture`]). It is immutable and exact: collisions,
+//! coverage and ranges are judged on it, never on what a planner believes.
+//!
+//! Frame: x east, y north, z up, metres, angles counter-clockwise in radians.
+
+mod builtin;
+mod canvas;
+mod distance;
+mod elevation;
+mod error;
+mod file;
+mod image;
+mod occupancy;
+mod pgm;
+mod png_file;
+mod ray;
+mod walk;
+mod yaml;
+
+use std::path::Path;
+
+pub use builtin::{Builtin, builtins};
+pub use distance::DistanceField;
+pub use elevation::{Elevation, HeightScale};
+pub use error::WorldError;
+pub use image::{Image, ImageError, MAX_PIXELS};
+pub use occupancy::{Class, GridCell, Occupancy, Thresholds};
+pub use ray::{Hit, Ray, Surface};
+pub(crate) use walk::Walk;
+
+use crate::robot::Footprint;
+
+/// Height of walls where a world file says nothing, metres.
+pub const WALL_HEIGHT_M: f64 = 1.5;
+
+/// Where a robot may start.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Start {
+    /// Metres.
+    pub x_m: f64,
+    /// Metres.
+    pub y_m: f64,
+    /// Radians.
+    pub yaw_rad: f64,
+}
+
+/// A world.
+#[derive(Clone, Debug)]
+pub struct World {
+    name: String,
+    occupancy: Occupancy,
+    distance: DistanceField,
+    walls: ray::Walls,
+    elevation: Option<Elevation>,
+    wall_height_m: f64,
+    starts: Vec<Start>,
+}
+
+impl World {
+    /// A built-in world by name, or else a world file by path.
+    ///
+    /// # Errors
+    /// As [`WorldError`].
+    pub fn open(name_or_path: &str) -> Result<Self, WorldError> {
+        Self::builtin(name_or_path).map_or_else(|| Self::load(Path::new(name_or_path)), Ok)
+    }
+
+    /// A world file.
+    ///
+    /// # Errors
+    /// As [`WorldError`].
+    pub fn load(path: &Path) -> Result<Self, WorldError> {
+        file::load(path)
+    }
+
+    /// A built-in world; [`builtins`] lists them.
+    #[must_use]
+    pub fn builtin(name: &str) -> Option<Self> {
+        builtin::draw(name)
+    }
+
+    /// A flat world from rows of characters, greatest y first: `#` wall, `?` unknown, anything else free. The corner of
+    /// least x and y lies at the origin, and there are no starts.
+    #[must_use]
+    pub fn picture(name: &str, resolution_m: f64, rows: &[&str]) -> Self {
+        let width = rows.iter().map(|row| row.len()).max().unwrap_or(0);
+        let mut grid =
+            Occupancy::filled(width, rows.len(), resolution_m, [0.0, 0.0], Class::Unknown);
+        for (j, row) in (0..).zip(rows.iter().rev()) {
+            for (i, character) in (0..).zip(row.chars()) {
+                let class = match character {
+                    '#' => Class::Wall,
+                    '?' => Class::Unknown,
+                    _ => Class::Free,
+                };
+                grid.set(GridCell { i, j }, class);
+            }
+        }
+        Self::flat(name, grid, Vec::new())
+    }
+
+    /// A flat world. The starts are not checked.
+    #[must_use]
+    pub fn flat(name: &str, occupancy: Occupancy, starts: Vec<Start>) -> Self {
+        Self::new(name, occupancy, None, WALL_HEIGHT_M, starts)
+    }
+
+    /// A world of hills. The starts are not checked.
+    #[must_use]
+    pub fn uneven(
+        name: &str,
+        occupancy: Occupancy,
+        elevation: Elevation,
+        starts: Vec<Start>,
+    ) -> Self {
+        Self::new(name, occupancy, Some(elevation), WALL_HEIGHT_M, starts)
+    }
+
+    fn new(
+        name: &str,
+        occupancy: Occupancy,
+        elevation: Option<Elevation>,
+        wall_height_m: f64,
+        starts: Vec<Start>,
+    ) -> Self {
+        let distance = DistanceField::new(&occupancy);
+        Self {
+            name: name.to_owned(),
+            walls: ray::Walls::new(&occupancy, &distance),
+            occupancy,
+            distance,
+            elevation,
+            wall_height_m,
+            starts,
+        }
+    }
+
+    /// The built-in name, or the file's without its extension.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Where robots may start; never empty for a world file or a built-in world.
+    #[must_use]
+    pub fn starts(&self) -> &[Start] {
+        &self.starts
+    }
+
+    /// What stands where.
+    #[must_use]
+    pub fn occupancy(&self) -> &Occupancy {
+        &self.occupancy
+    }
+
+    /// How far everything is from the nearest solid cell.
+    #[must_use]
+    pub fn distance(&self) -> &DistanceField {
+        &self.distance
+    }
+
+    /// The ground's heights; `None` where all of it lies at 0.
+    #[must_use]
+    pub fn elevation(&self) -> Option<&Elevation> {
+        self.elevation.as_ref()
+    }
+
+    /// Height of the walls above the ground, metres.
+    #[must_use]
+    pub fn wall_height_m(&self) -> f64 {
+        self.wall_height_m
+    }
+
+    /// Size along x and y, metres.
+    #[must_use]
+    pub fn size_m(&self) -> [f64; 2] {
+        let grid = &self.occupancy;
+        [grid.width(), grid.height()].map(|cells| cells as f64 * grid.resolution_m())
+    }
+
+    /// Is a point wall, unknown or outside?
+    #[must_use]
+    pub fn is_solid(&self, x_m: f64, y_m: f64) -> bool {
+        self.occupancy.is_solid(self.occupancy.cell_at(x_m, y_m))
+    }
+
+    /// Height of the ground, metres; 0 in a flat world, `None` over a hole.
+    #[must_use]
+    pub fn ground_m(&self, x_m: f64, y_m: f64) -> Option<f64> {
+        match &self.elevation {
+            None => Some(0.0),
+            Some(elevation) => elevation.ground_m(x_m, y_m),
+        }
+    }
+
+    /// What a ray meets first within `limit_m`, if anything.
+    #[must_use]
+    pub fn cast(&self, ray: &Ray, limit_m: f64) -> Option<Hit> {
+        let ground = match &self.elevation {
+            None => ray::plane(ray).filter(|hit| hit.range_m <= limit_m),
+            Some(elevation) => ray::ground(elevation, ray, limit_m),
+        };
+        let limit_m = ground.map_or(limit_m, |hit| hit.range_m);
+        self.walls
+            .cast(ray, limit_m, |cell| self.wall_top_m(cell))
+            .or(ground)
+    }
+
+    /// How high the wall on a cell stands; endless outside of the map, and over a hole as if its ground were at 0.
+    fn wall_top_m(&self, cell: GridCell) -> f64 {
+        if self.occupancy.index(cell).is_none() {
+            return f64::INFINITY;
+        }
+        let [x_m, y_m] = self.occupancy.centre(cell);
+        self.ground_m(x_m, y_m).unwrap_or(0.0) + self.wall_height_m
+    }
+
+    /// Metres between a footprint at a pose and the nearest solid cell: 0 where they overlap, and
+    /// at most [`crate::robot::FARTHEST_M`].
+    #[must_use]
+    pub fn clearance_m(&self, footprint: &Footprint, start: Start) -> f64 {
+        footprint.clearance_m(self, start.x_m, start.y_m, start.yaw_rad)
+    }
+}

@@ -1,0 +1,278 @@
+//! The bit-parallel thinning against the paper's conditions taken cell by cell, and against other people's code.
+
+mod skeleton_common;
+
+use fieldline_planner::grid::{PlaneMut, Region, ShapeError};
+use fieldline_planner::skeleton::{Progress, Thinning, marks_for};
+use skeleton_common::{Map, Rng, any_map, discs, noise, rooms};
+
+type AnyThinning = Thinning<16>;
+
+/// Thin in one go; the skeleton and the work it took.
+fn thin(map: &Map) -> (Map, u32) {
+    let mut words = map.words();
+    let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
+    let mut thinning = AnyThinning::new();
+    thinning.start(map.shape(), map.shape().whole()).unwrap();
+    let Progress::Done { left } = thinning.advance(&mut plane, &[], u32::MAX) else {
+        panic!("an endless budget was spent");
+    };
+    (map.with_words(&words), u32::MAX - left)
+}
+
+#[test]
+fn equals_the_naive_thinning_on_a_thousand_maps() {
+    let mut rng = Rng::new(1);
+    for round in 0..1000 {
+        let map = any_map(&mut rng);
+        let (skeleton, _) = thin(&map);
+        let expected = map.thinned();
+        assert!(
+            skeleton == expected,
+            "map {round}\n{}\nours\n{}\nexpected\n{}",
+            map.print(),
+            skeleton.print(),
+            expected.print()
+        );
+    }
+}
+
+#[test]
+fn keeps_every_piece_and_every_hole() {
+    let mut rng = Rng::new(2);
+    let mut most = (0, 0);
+    for _ in 0..300 {
+        let map = any_map(&mut rng);
+        let (skeleton, _) = thin(&map);
+        let pieces = map.pieces(true, true);
+        let outsides = map.pieces(false, false);
+        assert_eq!(skeleton.pieces(true, true), pieces, "{}", map.print());
+        assert_eq!(skeleton.pieces(false, false), outsides, "{}", map.print());
+        most = (most.0.max(pieces), most.1.max(outsides));
+    }
+    assert!(
+        most.0 > 50 && most.1 > 50,
+        "the maps were too tame: {most:?}"
+    );
+}
+
+#[test]
+fn instalments_change_nothing() {
+    let mut rng = Rng::new(3);
+    for _ in 0..300 {
+        let map = any_map(&mut rng);
+        let (expected, work) = thin(&map);
+        let mut words = map.words();
+        let mut thinning = AnyThinning::new();
+        thinning.start(map.shape(), map.shape().whole()).unwrap();
+        let largest = 1 + rng.below(200);
+        let mut spent = 0;
+        loop {
+            let budget = rng.below(largest + 1) as u32;
+            let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
+            match thinning.advance(&mut plane, &[], budget) {
+                Progress::Pending => spent += budget,
+                Progress::Done { left } => {
+                    spent += budget - left;
+                    break;
+                }
+            }
+        }
+        assert_eq!(spent, work, "the work depends on how it is divided");
+        assert_eq!(map.with_words(&words), expected);
+        assert!(thinning.is_done());
+    }
+}
+
+#[test]
+fn starting_anew_forgets_what_was_half_done() {
+    let mut rng = Rng::new(7);
+    let mut thinning = AnyThinning::new();
+    for round in 0..300 {
+        let map = any_map(&mut rng);
+        let mut words = map.words();
+        let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
+        thinning.start(map.shape(), map.shape().whole()).unwrap();
+        if round % 3 == 0 {
+            while thinning.advance(&mut plane, &[], 50) == Progress::Pending {}
+            assert_eq!(map.with_words(&words), map.thinned(), "map {round}");
+        } else {
+            let _ = thinning.advance(&mut plane, &[], rng.below(400) as u32);
+        }
+    }
+}
+
+#[test]
+fn a_region_is_thinned_as_if_it_were_alone_and_nothing_else_is_touched() {
+    let mut rng = Rng::new(4);
+    for _ in 0..300 {
+        let map = any_map(&mut rng);
+        let shape = map.shape();
+        let (first_row, first_word) = (rng.below(map.rows), rng.below(shape.words_per_row()));
+        let region = Region {
+            first_row: first_row as u16,
+            rows: rng.below(map.rows - first_row + 1) as u16,
+            first_word: first_word as u16,
+            words: 1 + rng.below(shape.words_per_row() - first_word) as u16,
+        };
+        let columns = usize::from(region.words) * 32;
+        let mut alone = Map::new(columns, usize::from(region.rows), false);
+        for y in 0..alone.rows {
+            for x in 0..columns {
+                let (from_x, from_y) = (first_word * 32 + x, first_row + y);
+                alone.set(x, y, map.get(from_x as isize, from_y as isize));
+            }
+        }
+        let mut expected = map.clone();
+        let alone = alone.thinned();
+        for y in 0..alone.rows {
+            for x in 0..columns {
+                let value = alone.get(x as isize, y as isize);
+                expected.set(first_word * 32 + x, first_row + y, value);
+            }
+        }
+        let mut words = map.words();
+        let mut plane = PlaneMut::new(shape, &mut words).unwrap();
+        let mut thinning = AnyThinning::new();
+        thinning.start(shape, region).unwrap();
+        assert!(matches!(
+            thinning.advance(&mut plane, &[], u32::MAX),
+            Progress::Done { .. }
+        ));
+        assert_eq!(map.with_words(&words), expected);
+    }
+}
+
+/// Of 3 × 11 words the last one, from column 64 of row 10 on, has its mark in a group of its own. In this map, found
+/// by search, a cell of it can go only because its neighbour in the word before went, and nothing else says so.
+#[test]
+fn a_change_crosses_from_a_group_to_the_next() {
+    let mut map = Map::new(96, 11, false);
+    let picture = Map::parse(
+        "\
+..####..
+.#......
+.....#..
+####.#..
+#.###...
+#..###..
+.###....
+",
+    );
+    for y in 0..picture.rows {
+        for x in 0..picture.columns {
+            map.set(60 + x, 4 + y, picture.get(x as isize, y as isize));
+        }
+    }
+    let (skeleton, _) = thin(&map);
+    assert_eq!(skeleton.print(), map.thinned().print());
+}
+
+#[test]
+fn wide_planes_wrap_nowhere() {
+    let mut rng = Rng::new(5);
+    for round in 0..60 {
+        let columns = [992, 961, 400, 160][round % 4];
+        let mut map = match round % 3 {
+            0 => rooms(&mut rng, columns, 24),
+            1 => noise(&mut rng, columns, 24),
+            _ => discs(&mut rng, columns, 24),
+        };
+        map.rect(0, 0, 3, 24, true);
+        map.rect(columns - 3, 0, 3, 24, true);
+        let mut words = map.words();
+        let mut thinning = Thinning::<{ marks_for(31 * 24) }>::new();
+        thinning.start(map.shape(), map.shape().whole()).unwrap();
+        let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
+        while thinning.advance(&mut plane, &[], 1000) == Progress::Pending {}
+        assert_eq!(map.with_words(&words), map.thinned(), "map {round}");
+    }
+}
+
+#[test]
+fn looks_only_where_something_may_change() {
+    let mut map = Map::new(320, 320, false);
+    map.rect(100, 100, 120, 120, true);
+    let mut words = map.words();
+    let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
+    let mut thinning = Thinning::<100>::new();
+    thinning.start(map.shape(), map.shape().whole()).unwrap();
+    let Progress::Done { left } = thinning.advance(&mut plane, &[], u32::MAX) else {
+        panic!("an endless budget was spent");
+    };
+    let (work, passes) = (u32::MAX - left, u32::from(thinning.passes()));
+    assert_eq!(
+        passes, 121,
+        "one side a pass, and one to see that it is over"
+    );
+    // At most a hall's outline of two rows and 240 words, and 100 groups, a pass; all words in the first two.
+    assert!(
+        work < passes * (2 * 5 + 240 + 100) + 2 * 3200,
+        "{work} units"
+    );
+}
+
+#[test]
+fn a_region_beyond_the_marks_is_refused() {
+    let map = Map::new(64, 257, true);
+    let error = AnyThinning::new()
+        .start(map.shape(), map.shape().whole())
+        .unwrap_err();
+    let expected = ShapeError::TooLarge {
+        needs: 514,
+        has: 512,
+    };
+    assert_eq!(error, expected);
+}
+
+#[test]
+fn a_thinning_that_was_not_started_is_done_and_touches_nothing() {
+    let map = Map::new(32, 1, true);
+    let mut words = map.words();
+    let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
+    let progress = AnyThinning::new().advance(&mut plane, &[], 5);
+    assert_eq!(progress, Progress::Done { left: 5 });
+    assert_eq!(words, [u32::MAX]);
+}
+
+/// The maps of `fixtures/skeleton.txt`: name, map, and `opencv_contrib`'s skeleton of it (see the script).
+fn fixtures() -> Vec<(String, Map, Map)> {
+    let text = include_str!("../fixtures/skeleton.txt");
+    let mut lines = text.lines();
+    let mut maps = Vec::new();
+    while let Some(head) = lines.next() {
+        let words: Vec<&str> = head.split(' ').collect();
+        let ["map", name, columns, rows] = words[..] else {
+            panic!("not the head of a map: {head}");
+        };
+        let (columns, rows) = (columns.parse().unwrap(), rows.parse().unwrap());
+        let mut map = Map::new(columns, rows, false);
+        let mut skeleton = map.clone();
+        for y in 0..rows {
+            let line = lines.next().unwrap();
+            assert_eq!(line.len(), columns, "{name}, row {y}");
+            for (x, cell) in line.bytes().enumerate() {
+                map.set(x, y, cell != b'.');
+                skeleton.set(x, y, cell == b'#');
+            }
+        }
+        maps.push((name.to_owned(), map, skeleton));
+    }
+    maps
+}
+
+#[test]
+fn gives_opencv_s_skeletons_bit_for_bit() {
+    let fixtures = fixtures();
+    assert_eq!(fixtures.len(), 9);
+    for (name, map, expected) in fixtures {
+        let (skeleton, _) = thin(&map);
+        assert!(
+            skeleton == expected,
+            "{name}: ours\n{}\nexpected\n{}",
+            skeleton.print(),
+            expected.print()
+        );
+        assert!(map.cells.iter().filter(|c| **c).count() > 600);
+    }
+}
