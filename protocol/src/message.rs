@@ -44,7 +44,7 @@ pub const FIELD_CELL_BYTES: usize = 16;
 /// Bytes of a build identifier.
 pub const BUILD_BYTES: usize = 24;
 /// Bytes of a source file's name in a crash report.
-pub const CRASH_FILE_BYTES: usize = 24;
+pub const CRASH_FILE_BYTES: usize = 32;
 
 /// A pose in the odometry frame, metres and radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]

@@ -22,12 +22,9 @@
 #[cfg(test)]
 extern crate std;
 
-// Macros first: the rest uses them.
-#[macro_use]
-mod log;
-
 pub mod convert;
 pub mod limits;
+mod log;
 pub mod meter;
 pub mod pilot;
 pub mod port;

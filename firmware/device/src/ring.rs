@@ -121,7 +121,7 @@ mod tests {
     use super::Ring;
 
     fn all<const N: usize>(ring: &Ring<N>) -> Vec<u8> {
-        std::iter::from_fn(|| ring.pop()).collect()
+        core::iter::from_fn(|| ring.pop()).collect()
     }
 
     #[test]

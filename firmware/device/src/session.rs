@@ -18,6 +18,7 @@ use fieldline_protocol::{SCHEMA, VERSION};
 use heapless::Deque;
 
 use crate::STALE_MS;
+use crate::log::{info, warning};
 use crate::meter::Meter;
 use crate::pilot::{Memory, Pilot};
 use crate::signal::Signal;
