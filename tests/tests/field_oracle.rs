@@ -4,6 +4,7 @@
 //! *Right* is within 5° of the truth, now and at every later look. A *field* is right when 99 % of its cells are and none
 //! of them is a local minimum. The tables are in `golden/field.txt`; `BLESS=1` rewrites it.
 
+#[allow(dead_code, reason = "each test file uses a part of it")]
 mod field_common;
 
 use std::fmt::Write;
