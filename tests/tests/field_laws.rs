@@ -4,6 +4,7 @@
 #[allow(dead_code, reason = "each test file uses a part of it")]
 mod field_common;
 
+use field_common::golden::compare_with_golden;
 use field_common::oracle::Truth;
 use field_common::scenes::{KINDS, Kind, Pull, scene};
 use field_common::{Random, Rows, cells, degrees_between};
@@ -73,8 +74,8 @@ fn a_narrow_corridor_is_a_hyperbolic_sine() {
     }
 }
 
-/// In a room with goals all along its lower side, q is a sum of sines across times hyperbolic sines along, with
-/// cosh κ_k = 2 − cos(kπ / (w + 1)).
+/// In a room with goals all along its lower side, q is a sum of sines across times hyperbolic sines of κ y along, with
+/// cosh κ = 2 − cos(k π / (w + 1)) for the k-th.
 #[test]
 fn a_room_with_one_open_side_is_a_fourier_sum() {
     let (width, height) = (40_usize, 25_usize);
@@ -85,7 +86,7 @@ fn a_room_with_one_open_side_is_a_fourier_sum() {
     room.set_boundary(&free, &goal);
     converge(&mut room);
     let truth = Truth::of(&room);
-    let angle = |k: usize, x: usize| (k * x) as f64 * std::f64::consts::PI / (width + 1) as f64;
+    let angle = |k: usize, x: usize| (k * x) as f64 * core::f64::consts::PI / (width + 1) as f64;
     for (x, y) in cells().filter(|&(x, y)| x < width && (1..=height).contains(&y)) {
         let term = |k: usize| {
             let weight: f64 = (1..=width).map(|x| angle(k, x).sin()).sum();
@@ -145,7 +146,8 @@ fn no_cell_is_above_or_below_all_its_neighbours() {
 
 #[test]
 fn mirrored_and_turned_windows_have_mirrored_and_turned_fields() {
-    let maps: [fn(usize, usize) -> (usize, usize); 3] = [
+    type Map = fn(usize, usize) -> (usize, usize);
+    let maps: [Map; 3] = [
         |x, y| (SIDE - 1 - x, y),
         |x, y| (x, SIDE - 1 - y),
         |x, y| (y, x),
@@ -431,4 +433,30 @@ fn noise_brings_no_panic_and_no_number_out_of_range() {
             assert!(least <= q && q <= most, "round {round} ({x}, {y}): {q:e}");
         }
     }
+}
+
+/// The fields themselves, as hashes of their bits: a host whose floats round otherwise, or a change that was meant to
+/// change nothing, shows here.
+#[test]
+fn fields_have_the_same_bits_everywhere() {
+    let mut scratch = [0.0; SCRATCH_FLOATS];
+    let mut lines = String::new();
+    for (kind, pull) in KINDS
+        .into_iter()
+        .flat_map(|k| [(k, Pull::None), (k, Pull::Heights)])
+    {
+        let mut window = scene(kind, pull, 12).window;
+        let solution = solve(&mut window, &mut scratch, &SolverConfig::default());
+        let bits = cells().map(|(x, y)| window.q(x, y).to_bits());
+        // FNV-1a, word by word.
+        let hash = bits.fold(0x811C_9DC5_u32, |hash, bits| {
+            (hash ^ bits).wrapping_mul(0x0100_0193)
+        });
+        let (kind, pull) = (format!("{kind:?}"), format!("{pull:?}"));
+        lines += &format!(
+            "{kind:<10}{pull:<8}{:>3} cycles  {hash:08x}\n",
+            solution.cycles
+        );
+    }
+    compare_with_golden("field_bits.txt", &lines);
 }

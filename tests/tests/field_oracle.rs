@@ -7,8 +7,9 @@
 #[allow(dead_code, reason = "each test file uses a part of it")]
 mod field_common;
 
-use std::fmt::Write;
+use core::fmt::Write;
 
+use field_common::golden::compare_with_golden;
 use field_common::oracle::Truth;
 use field_common::scenes::{KINDS, Kind, Pull, Scene, WALK_STEPS, Walk, scene};
 use field_common::{cells, degrees_between};
@@ -152,8 +153,8 @@ impl Ranks {
     }
 }
 
-impl std::fmt::Display for Ranks {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl core::fmt::Display for Ranks {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         for value in self.0 {
             match value {
                 Some(value) => write!(f, "{value:>5}")?,
@@ -296,19 +297,6 @@ fn hasty(pull: Pull) -> (usize, usize) {
         }
     }
     (right, KINDS.len() * WALK_STEPS)
-}
-
-/// Compare with a golden file, or write it if the environment says `BLESS=1`.
-fn compare_with_golden(name: &str, text: &str) {
-    let path = format!("{}/golden/{name}", env!("CARGO_MANIFEST_DIR"));
-    if std::env::var_os("BLESS").is_some_and(|value| value == "1") {
-        std::fs::write(&path, text).unwrap();
-    }
-    let golden = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(
-        golden == text,
-        "{path} differs; BLESS=1 rewrites it. Now:\n{text}"
-    );
 }
 
 #[test]

@@ -141,7 +141,7 @@ impl Window {
     /// Forget the field, so that the next solve starts cold; boundary and preferences stay.
     pub fn clear(&mut self) {
         self.blank = self.reached;
-        self.q = [0.0; FLOATS];
+        self.q.fill(0.0);
         self.charge_goals();
     }
 
@@ -170,7 +170,7 @@ impl Window {
         let across = dx.unsigned_abs() as usize;
         let up = dy.unsigned_abs() as usize;
         if across >= SIDE || up >= SIDE {
-            *self = Self::new();
+            self.empty();
             return;
         }
         slide(&mut self.q, dx, dy);
@@ -193,6 +193,17 @@ impl Window {
             };
             *mask = core::array::from_fn(|y| moved(bits(y)));
         }
+    }
+
+    /// A window of obstacles again.
+    fn empty(&mut self) {
+        self.q.fill(0.0);
+        self.preference.fill(Preference::NONE);
+        self.preferred = false;
+        for mask in [&mut self.reached, &mut self.goal, &mut self.blank] {
+            mask.fill(0);
+        }
+        self.unreached = 0;
     }
 
     /// Give cell (x, y) a preference; outside the window nothing happens.
