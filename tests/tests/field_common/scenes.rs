@@ -109,7 +109,7 @@ impl Ground {
     /// Wavelengths of 2 to 8 m, heights up to 0.4 m.
     fn draw(random: &mut Random) -> Self {
         Self(core::array::from_fn(|_| {
-            let wave = std::f64::consts::TAU / (20.0 + 60.0 * random.unit());
+            let wave = core::f64::consts::TAU / (20.0 + 60.0 * random.unit());
             let (sin, cos) = sin_cos(random.angle());
             [wave * cos, wave * sin, random.angle(), 0.1 * random.unit()]
         }))

@@ -46,3 +46,6 @@ pub mod window;
 pub use multigrid::SCRATCH_FLOATS;
 pub use solver::{Method, Solution, SolverConfig, Stop, solve};
 pub use window::{GOAL, Preference, PreferenceError, SIDE, Window};
+
+/// The window and the multigrid's scratch memory go into the chip's 64 KB of core-coupled memory.
+const _: () = assert!(size_of::<Window>() + SCRATCH_FLOATS * size_of::<f32>() <= 64 * 1024);

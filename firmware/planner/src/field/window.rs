@@ -141,7 +141,8 @@ impl Window {
     /// Forget the field, so that the next solve starts cold; boundary and preferences stay.
     pub fn clear(&mut self) {
         self.blank = self.reached;
-        self.q = [0.0; FLOATS];
+        self.q.fill(0.0);
+        self.origin = Origin::Even;
         self.charge_goals();
     }
 
@@ -170,7 +171,7 @@ impl Window {
         let across = dx.unsigned_abs() as usize;
         let up = dy.unsigned_abs() as usize;
         if across >= SIDE || up >= SIDE {
-            *self = Self::new();
+            self.empty();
             return;
         }
         slide(&mut self.q, dx, dy);
@@ -193,6 +194,18 @@ impl Window {
             };
             *mask = core::array::from_fn(|y| moved(bits(y)));
         }
+    }
+
+    /// A window of obstacles again.
+    fn empty(&mut self) {
+        self.q.fill(0.0);
+        self.preference.fill(Preference::NONE);
+        self.preferred = false;
+        for mask in [&mut self.reached, &mut self.goal, &mut self.blank] {
+            mask.fill(0);
+        }
+        self.unreached = 0;
+        self.origin = Origin::Even;
     }
 
     /// Give cell (x, y) a preference; outside the window nothing happens.
@@ -306,4 +319,60 @@ fn slide<T: Copy + Default>(cells: &mut [T; FLOATS], dx: i32, dy: i32) {
     let (incoming, outgoing) = if dy >= 0 { (up, 0) } else { (0, up) };
     rows[..=outgoing].as_flattened_mut().fill(blank);
     rows[SIDE + 1 - incoming..].as_flattened_mut().fill(blank);
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use fixed::types::I3F13;
+
+    use super::{GOAL, Preference, SIDE, Window};
+
+    #[test]
+    fn a_preference_keeps_within_two() {
+        let of = |epsilon: f32| Preference::new(I3F13::from_num(epsilon));
+        assert_eq!(of(2.0), Ok(Preference::MAX));
+        assert_eq!(of(-2.0), Ok(Preference::MIN));
+        let error = of(2.001).expect_err("too strong");
+        assert_eq!(
+            error.to_string(),
+            "preference 2.001 diverges: keep it within -2 and 2"
+        );
+        assert_eq!(Preference::nearest(1e9), Preference::MAX);
+        assert_eq!(Preference::nearest(f32::NEG_INFINITY), Preference::MIN);
+        assert_eq!(Preference::nearest(f32::NAN), Preference::NONE);
+        assert_eq!(Preference::nearest(0.5).half(), 0.25);
+    }
+
+    #[test]
+    fn a_new_boundary_keeps_what_stays_and_blanks_what_is_new() {
+        let row = |bits: u64| {
+            let mut rows = [0; SIDE];
+            rows[3] = bits;
+            rows
+        };
+        let mut window = Window::new();
+        window.set_boundary(&row(0b001_1110), &row(0b000_0001));
+        assert_eq!(
+            (window.blank[3], window.reached[3]),
+            (0b001_1110, 0b001_1110)
+        );
+        // As if solved.
+        window.blank[3] = 0;
+        window.fill(3, 0b001_1110, 7.0);
+
+        // Cell 1 stays, 2 becomes the goal, 3 an obstacle, 0 free, 5 new and out of reach.
+        window.set_boundary(&row(0b010_0011), &row(0b000_0100));
+        let q = core::array::from_fn(|x| window.q(x, 3));
+        assert_eq!(q, [GOAL, 7.0, GOAL, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!((window.reached[3], window.blank[3]), (0b000_0011, 0));
+        assert_eq!(window.unreached_cells(), 1);
+
+        window.clear();
+        assert_eq!(
+            (window.q(1, 3), window.q(2, 3), window.blank[3]),
+            (0.0, GOAL, 0b000_0011)
+        );
+    }
 }
