@@ -24,7 +24,7 @@ use crate::map::integrate::is_level;
 use crate::math;
 use crate::near::NearField;
 use crate::status::{Fault, Finish, Frontier, Status};
-use crate::strategy::frontier::Outlook;
+use crate::strategy::frontier::{Known, Outlook};
 use crate::strategy::{self, Road};
 use crate::topology::Topology;
 use crate::view::{self, Rows, SCALES, View};
@@ -359,14 +359,14 @@ fn replan<const TILES: usize, const SLOTS: usize>(
     let (residues, ring) = words.split_at_mut(SLOTS * 16);
     let (residues, _) = residues.as_chunks_mut::<2>();
     let robot = input.pose.point();
-    let outlook = state.strategy.replan(
-        &state.topology,
-        state.map.tiles(),
+    let known = Known {
+        topology: &state.topology,
+        tiles: state.map.tiles(),
         disc,
-        robot,
-        input.time_ms,
-        (residues, ring),
-    );
+    };
+    let outlook = state
+        .strategy
+        .replan(&known, robot, input.time_ms, (residues, ring));
     match outlook {
         Outlook::Nothing => state.status = conclude(state),
         Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),

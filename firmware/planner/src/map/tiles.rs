@@ -149,7 +149,10 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// two tiles wide), product at most `SLOTS`.
     #[must_use]
     pub const fn fits(width: u8, height: u8) -> bool {
-        width >= 4 && height >= 4 && width % 2 == 0 && width as usize * height as usize <= SLOTS
+        width >= 4
+            && height >= 4
+            && width.is_multiple_of(2)
+            && width as usize * height as usize <= SLOTS
     }
 
     /// Forget everything; the box becomes `width` × `height` tiles. A box that does not [`fit`](Self::fits) holds nothing.

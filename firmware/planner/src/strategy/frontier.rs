@@ -64,6 +64,17 @@ pub struct Frontier {
     second_chance: bool,
 }
 
+/// What is known of the space, for a round of planning.
+#[derive(Debug)]
+pub struct Known<'a, const TILES: usize, const SLOTS: usize> {
+    /// The published skeleton and its frontier.
+    pub topology: &'a Topology<SLOTS>,
+    /// The map.
+    pub tiles: &'a Tiles<TILES, SLOTS>,
+    /// The robot's disc.
+    pub disc: &'a Disc,
+}
+
 /// What a new round says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outlook {
@@ -126,36 +137,37 @@ impl Frontier {
     }
 
     /// A new skeleton is there: spread the wave from its frontier cells, move the robot to the skeleton, and walk down
-    /// [Ouroboros, Algorithm 1, lines 3, 4, 24].
+    /// [Ouroboros, Algorithm 1, lines 3, 4, 24]. The wave runs in the lent residues and ring.
     pub fn replan<const TILES: usize, const SLOTS: usize>(
         &mut self,
-        topology: &Topology<SLOTS>,
-        tiles: &Tiles<TILES, SLOTS>,
-        disc: &Disc,
+        known: &Known<'_, TILES, SLOTS>,
         robot: Point,
         time_ms: u32,
         (residues, ring): (&mut [[u32; 2]], &mut [u32]),
     ) -> Outlook {
-        let frame = topology.frame();
-        let road = match (topology.skeleton(), topology.frontier()) {
-            (Some(way), Some(goals)) => {
-                Residues::new(frame.shape, residues)
-                    .ok()
-                    .and_then(|residues| {
-                        let mut space = WaveSpace {
-                            way,
-                            residues,
-                            ring,
-                        };
-                        self.spread(&mut space, goals, frame);
-                        let entry = entry(&space, frame, tiles, disc, robot.cell())?;
-                        Some(walk_down(&space, frame, tiles, entry))
-                    })
-            }
-            _ => None,
-        };
+        let road = self.find_road(known, robot, (residues, ring));
         self.note_motion(robot, time_ms);
         self.adopt(road, time_ms)
+    }
+
+    fn find_road<const TILES: usize, const SLOTS: usize>(
+        &self,
+        known: &Known<'_, TILES, SLOTS>,
+        robot: Point,
+        (residues, ring): (&mut [[u32; 2]], &mut [u32]),
+    ) -> Option<Road> {
+        let frame = known.topology.frame();
+        let way = known.topology.skeleton()?;
+        let goals = known.topology.frontier()?;
+        let residues = Residues::new(frame.shape, residues).ok()?;
+        let mut space = WaveSpace {
+            way,
+            residues,
+            ring,
+        };
+        self.spread(&mut space, goals, frame);
+        let entry = entry(&space, frame, known, robot.cell())?;
+        Some(walk_down(&space, frame, known.tiles, entry))
     }
 
     /// Wave from every frontier cell that was not dropped; those beside the present goal first.
@@ -286,12 +298,11 @@ impl Default for Frontier {
 fn entry<const TILES: usize, const SLOTS: usize>(
     space: &WaveSpace<'_>,
     frame: Frame,
-    tiles: &Tiles<TILES, SLOTS>,
-    disc: &Disc,
+    known: &Known<'_, TILES, SLOTS>,
     robot: Cell,
 ) -> Option<Site> {
     SCALES.iter().find_map(|&scale| {
-        let mut view = View::around(tiles, disc, robot, scale);
+        let mut view = View::around(known.tiles, known.disc, robot, scale);
         view.free_robot(robot);
         let mut targets: Rows = [0; SIDE];
         for y in 0..SIDE {
