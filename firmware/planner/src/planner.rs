@@ -24,7 +24,7 @@ use crate::map::integrate::is_level;
 use crate::math;
 use crate::near::NearField;
 use crate::status::{Fault, Finish, Frontier, Status};
-use crate::strategy::frontier::{Known, Outlook};
+use crate::strategy::frontier::{Known, Lent, Outlook};
 use crate::strategy::{self, Road};
 use crate::topology::Topology;
 use crate::view::{self, Rows, SCALES, View};
@@ -91,6 +91,8 @@ pub struct Workspace {
     window: Window,
     /// Its least map cell and its scale.
     window_at: Option<(Cell, i32)>,
+    /// What stands in the window.
+    view: View,
     scratch: [f32; SCRATCH],
 }
 
@@ -196,6 +198,7 @@ impl Workspace {
         Self {
             window: Window::new(),
             window_at: None,
+            view: View::new(),
             scratch: [0.0; SCRATCH],
         }
     }
@@ -292,15 +295,11 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
             ..Output::default()
         };
     }
-    let Some((view, goal)) = local_goal(state, &disc, &input) else {
+    let view = &mut workspace.view;
+    let Some(goal) = local_goal(state, &disc, &input, view) else {
         return Output::default();
     };
-    charge(
-        &mut workspace.window,
-        &mut workspace.window_at,
-        &view,
-        &goal,
-    );
+    charge(&mut workspace.window, &mut workspace.window_at, view, &goal);
     let solution = solve(
         &mut workspace.window,
         &mut workspace.scratch,
@@ -358,15 +357,18 @@ fn replan<const TILES: usize, const SLOTS: usize>(
     let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
     let (residues, ring) = words.split_at_mut(SLOTS * 16);
     let (residues, _) = residues.as_chunks_mut::<2>();
+    let lent = Lent {
+        residues,
+        ring,
+        view: &mut workspace.view,
+    };
     let robot = input.pose.point();
     let known = Known {
         topology: &state.topology,
         tiles: state.map.tiles(),
         disc,
     };
-    let outlook = state
-        .strategy
-        .replan(&known, robot, input.time_ms, (residues, ring));
+    let outlook = state.strategy.replan(&known, robot, input.time_ms, lent);
     match outlook {
         Outlook::Nothing => state.status = conclude(state),
         Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
@@ -398,13 +400,15 @@ fn steer<const TILES: usize, const SLOTS: usize>(
         window,
         window_at,
         scratch,
+        ..
     } = workspace;
     let Some((origin, scale)) = *window_at else {
         return Output::default();
     };
     let heading_at = |place: Place| heading_at(window, (origin, scale), &input.pose, place);
     let here = heading_at(Place::default());
-    let surround = Surround::new(&input.pose, state.near.points());
+    let mut surround = Surround::empty();
+    surround.see(&input.pose, state.near.points());
     let velocity = if here.is_some() {
         let ground = Ground {
             surround: &surround,
@@ -455,23 +459,22 @@ fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Op
     descent::heading_at(window, x, y).map(|heading| math::wrap(heading - pose.yaw_rad))
 }
 
-/// The smallest window that holds a local goal, and the goal's cells in it.
+/// See the smallest window that holds a local goal; the goal's cells in it.
 fn local_goal<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     disc: &Disc,
     input: &Input<'_>,
-) -> Option<(View, Rows)> {
+    view: &mut View,
+) -> Option<Rows> {
     let (robot, road) = (input.pose.point(), state.strategy.road());
     if road.is_empty() {
         return None;
     }
     SCALES.iter().find_map(|&scale| {
-        let mut view = View::around(state.map.tiles(), disc, robot.cell(), scale);
+        view.look_around(state.map.tiles(), disc, robot.cell(), scale);
         view.free_robot(robot.cell());
-        let goal = road
-            .local_goals(robot)
-            .find_map(|cell| goal_cells(&view, cell))?;
-        Some((view, goal))
+        road.local_goals(robot)
+            .find_map(|cell| goal_cells(view, cell))
     })
 }
 

@@ -158,7 +158,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Forget everything; the box becomes `width` × `height` tiles. A box that does not [`fit`](Self::fits) holds nothing.
     pub fn reset(&mut self, width: u8, height: u8) {
         self.directory.fill(0);
-        self.trail = [[0; TILE_SIDE as usize / 2]; SLOTS];
+        self.trail.as_flattened_mut().fill(0);
         self.used = 0;
         let fits = Self::fits(width, height);
         self.width = if fits { i32::from(width) } else { 0 };

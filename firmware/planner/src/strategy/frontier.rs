@@ -75,6 +75,17 @@ pub struct Known<'a, const TILES: usize, const SLOTS: usize> {
     pub disc: &'a Disc,
 }
 
+/// Scratch of a round of planning.
+#[derive(Debug)]
+pub struct Lent<'a> {
+    /// The wave's distances, a pair for each word of the plane.
+    pub residues: &'a mut [[u32; 2]],
+    /// The wave's queue.
+    pub ring: &'a mut [u32],
+    /// The window in which the robot finds its centre cell.
+    pub view: &'a mut View,
+}
+
 /// What a new round says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outlook {
@@ -137,15 +148,15 @@ impl Frontier {
     }
 
     /// A new skeleton is there: spread the wave from its frontier cells, move the robot to the skeleton, and walk down
-    /// [Ouroboros, Algorithm 1, lines 3, 4, 24]. The wave runs in the lent residues and ring.
+    /// [Ouroboros, Algorithm 1, lines 3, 4, 24]. It works in what is lent.
     pub fn replan<const TILES: usize, const SLOTS: usize>(
         &mut self,
         known: &Known<'_, TILES, SLOTS>,
         robot: Point,
         time_ms: u32,
-        (residues, ring): (&mut [[u32; 2]], &mut [u32]),
+        lent: Lent<'_>,
     ) -> Outlook {
-        let road = self.find_road(known, robot, (residues, ring));
+        let road = self.find_road(known, robot, lent);
         self.note_motion(robot, time_ms);
         self.adopt(road, time_ms)
     }
@@ -154,19 +165,19 @@ impl Frontier {
         &self,
         known: &Known<'_, TILES, SLOTS>,
         robot: Point,
-        (residues, ring): (&mut [[u32; 2]], &mut [u32]),
+        lent: Lent<'_>,
     ) -> Option<Road> {
         let frame = known.topology.frame();
         let way = known.topology.skeleton()?;
         let goals = known.topology.frontier()?;
-        let residues = Residues::new(frame.shape, residues).ok()?;
+        let residues = Residues::new(frame.shape, lent.residues).ok()?;
         let mut space = WaveSpace {
             way,
             residues,
-            ring,
+            ring: lent.ring,
         };
         self.spread(&mut space, goals, frame);
-        let entry = entry(&space, frame, known, robot.cell())?;
+        let entry = entry(&space, frame, known, robot.cell(), lent.view)?;
         Some(walk_down(&space, frame, known.tiles, entry))
     }
 
@@ -300,9 +311,10 @@ fn entry<const TILES: usize, const SLOTS: usize>(
     frame: Frame,
     known: &Known<'_, TILES, SLOTS>,
     robot: Cell,
+    view: &mut View,
 ) -> Option<Site> {
     SCALES.iter().find_map(|&scale| {
-        let mut view = View::around(known.tiles, known.disc, robot, scale);
+        view.look_around(known.tiles, known.disc, robot, scale);
         view.free_robot(robot);
         let mut targets: Rows = [0; SIDE];
         for y in 0..SIDE {
@@ -311,7 +323,7 @@ fn entry<const TILES: usize, const SLOTS: usize>(
                 if !View::has(&view.passable, place) {
                     continue;
                 }
-                if reached_site(space, frame, &view, place).is_some() {
+                if reached_site(space, frame, view, place).is_some() {
                     View::put(&mut targets, place);
                 }
             }
