@@ -334,7 +334,7 @@ fn entry<const TILES: usize, const SLOTS: usize>(
         reached_site(
             space,
             frame,
-            &view,
+            view,
             (usize::from(met.site.x), usize::from(met.site.y)),
         )
     })
