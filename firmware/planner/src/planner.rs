@@ -334,7 +334,8 @@ fn sense<const TILES: usize, const SLOTS: usize>(
 }
 
 /// Whether the level laser sees something closer than the robot's own hull in nearly every beam.
-fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
+#[must_use]
+pub fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
     let level = config
         .lasers
         .iter()

@@ -64,7 +64,8 @@ pub(crate) fn sensor_point(pose: &Pose, laser: &Laser) -> Point {
 }
 
 /// Whether the laser sweeps the level plane.
-pub(crate) fn is_level(laser: &Laser) -> bool {
+#[must_use]
+pub fn is_level(laser: &Laser) -> bool {
     laser.pitch_rad.abs() < LEVEL_RAD
 }
 
