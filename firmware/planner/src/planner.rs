@@ -14,6 +14,7 @@
 //! A pure function of configuration, state, workspace and input: no clock, no I/O, no globals, no logging. Same bits in, same
 //! bits out, on host and target.
 
+use crate::bits::{Adjacency, flood};
 use crate::clearance::Disc;
 use crate::config::Config;
 use crate::drive::{self, Drive, Ground, Place, Surround};
@@ -35,6 +36,8 @@ pub const NO_RETURN_MM: u16 = 16_383;
 pub const INVALID_MM: u16 = 0;
 /// Turn rate of a robot that looks around at its goal, radians a second.
 const LOOK_AROUND_RADPS: f32 = 0.6;
+/// A robot whose centre has less room than this, in cells, is boxed in: one square metre.
+const BOX_CELLS: u32 = 100;
 /// The robot that starts inside something sees it nearer than this everywhere, metres.
 const BLOCKED_M: f32 = 0.12;
 
@@ -371,23 +374,44 @@ fn replan<const TILES: usize, const SLOTS: usize>(
     };
     let outlook = state.strategy.replan(&known, robot, input.time_ms, lent);
     match outlook {
-        Outlook::Nothing => state.status = conclude(state),
+        Outlook::Nothing => {
+            state.strategy.list_leftovers(&known);
+            state.status = conclude(state, &mut workspace.view, disc, robot.cell());
+        }
         Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
         Outlook::Road | Outlook::Unsure => {}
     }
 }
 
 /// Why there is no frontier left within reach.
-fn conclude<const TILES: usize, const SLOTS: usize>(state: &State<TILES, SLOTS>) -> Status {
+fn conclude<const TILES: usize, const SLOTS: usize>(
+    state: &State<TILES, SLOTS>,
+    view: &mut View,
+    disc: &Disc,
+    robot: Cell,
+) -> Status {
+    view.look_around(state.map.tiles(), disc, robot, 1);
+    view.free_robot(robot);
     if state.map.pool_full() {
         Status::Fault(Fault::MapFull)
     } else if state.map.out_of_box() {
         Status::Fault(Fault::OutOfBox)
-    } else if state.strategy.had_road() {
-        Status::Finished(Finish::Explored)
-    } else {
+    } else if room_cells(view, robot) < BOX_CELLS {
         Status::Finished(Finish::BoxedIn)
+    } else {
+        Status::Finished(Finish::Explored)
     }
+}
+
+/// Cells of the window that the robot's centre can get to.
+fn room_cells(view: &View, robot: Cell) -> u32 {
+    let mut reached: Rows = [0; SIDE];
+    if let Some(place) = view.place(robot) {
+        View::put(&mut reached, place);
+    }
+    // With no target it floods everything.
+    let _ = flood(&view.passable, &mut reached, &[0; SIDE], Adjacency::Four);
+    reached.iter().map(|row| row.count_ones()).sum()
 }
 
 /// Follow the window's field.

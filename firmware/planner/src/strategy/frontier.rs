@@ -25,6 +25,8 @@ use crate::view::{Rows, SCALES, View};
 pub const MOST_DROPPED: usize = 32;
 /// Around a dropped goal no other is taken, metres.
 const DROP_RADIUS_M: f32 = 0.5;
+/// Leftover cells this near are one group, metres.
+const GROUP_RADIUS_M: f32 = 2.0;
 /// Time without progress after which a goal is dropped, milliseconds.
 const PATIENCE_MS: u32 = 12_000;
 /// A goal this near is reached, coarse steps.
@@ -60,7 +62,6 @@ pub struct Frontier {
     flat: bool,
     flat_rounds: u8,
     empty_rounds: u8,
-    had_road: bool,
     second_chance: bool,
 }
 
@@ -119,7 +120,6 @@ impl Frontier {
             flat: false,
             flat_rounds: 0,
             empty_rounds: 0,
-            had_road: false,
             second_chance: false,
         }
     }
@@ -141,12 +141,6 @@ impl Frontier {
         &self.dropped
     }
 
-    /// Whether any frontier was ever within reach.
-    #[must_use]
-    pub const fn had_road(&self) -> bool {
-        self.had_road
-    }
-
     /// A new skeleton is there: spread the wave from its frontier cells, move the robot to the skeleton, and walk down
     /// [Ouroboros, Algorithm 1, lines 3, 4, 24]. It works in what is lent.
     pub fn replan<const TILES: usize, const SLOTS: usize>(
@@ -159,6 +153,35 @@ impl Frontier {
         let road = self.find_road(known, robot, lent);
         self.note_motion(robot, time_ms);
         self.adopt(road, time_ms)
+    }
+
+    /// List the frontier cells that were never within reach, in groups, behind the goals that were dropped.
+    pub fn list_leftovers<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        known: &Known<'_, TILES, SLOTS>,
+    ) {
+        let Some(goals) = known.topology.frontier() else {
+            return;
+        };
+        for site in goals.sites() {
+            let cell = known.topology.frame().cell(site);
+            let group = self
+                .dropped
+                .iter_mut()
+                .find(|left| near(left.cell, cell, GROUP_RADIUS_M));
+            match group {
+                Some(left) => left.cells = left.cells.saturating_add(1),
+                // A full list names enough of them.
+                None => {
+                    let left = Leftover {
+                        cell,
+                        cells: 1,
+                        reason: Residue::Unreachable,
+                    };
+                    let _ = self.dropped.push(left);
+                }
+            }
+        }
     }
 
     fn find_road<const TILES: usize, const SLOTS: usize>(
@@ -237,7 +260,6 @@ impl Frontier {
             };
         };
         self.empty_rounds = 0;
-        self.had_road = true;
         let same =
             !self.road.is_empty() && near(road.goal(), self.road.goal(), 2.0 * DROP_RADIUS_M);
         if !same || road.steps() < self.fewest {
