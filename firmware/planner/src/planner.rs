@@ -18,7 +18,7 @@ use crate::bits::{Adjacency, flood};
 use crate::clearance::Disc;
 use crate::config::Config;
 use crate::drive::{self, Drive, Ground, Place, Surround};
-use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, Stop, Window, descent, solve};
+use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, descent, solve};
 use crate::geometry::{Cell, Point, Pose, Twist};
 use crate::map::Map;
 use crate::map::integrate::is_level;
@@ -286,10 +286,9 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         return steer(config, state, workspace, &input);
     }
     let disc = Disc::new(config.robot_radius_m);
-    if state
-        .topology
-        .advance(state.map.tiles(), &disc, config.topology_units)
-    {
+    let units = config.topology_units;
+    let fresh = state.topology.advance(state.map.tiles(), &disc, units);
+    if fresh {
         replan(state, workspace, &disc, &input);
     }
     if state.status != Status::Exploring {
@@ -303,11 +302,13 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         return Output::default();
     };
     charge(&mut workspace.window, &mut workspace.window_at, view, &goal);
-    let solution = solve(
-        &mut workspace.window,
-        &mut workspace.scratch,
-        &config.solver,
-    );
+    // A step that planned a road has spent the time of two cycles on it.
+    let most = config.solver.max_cycles;
+    let solver = SolverConfig {
+        max_cycles: if fresh { most.div_ceil(2) } else { most },
+        ..config.solver
+    };
+    let solution = solve(&mut workspace.window, &mut workspace.scratch, &solver);
     Output {
         cycles: solution.cycles + solution.sweeps,
         budget_exhausted: solution.stop == Stop::Budget,
