@@ -40,7 +40,7 @@ pub use session::{Boot, Session};
 /// robot has gone 35 cm at full speed.
 pub const STALE_MS: u16 = 500;
 /// Tiles in the map's pool of the default image: 1966 m² of touched tiles.
-pub const TILES: usize = 192;
+pub const TILES: usize = 152;
 /// Places for tiles in the map's box of the default image: 20 × 20 tiles are 64 × 64 m.
 pub const SLOTS: usize = 400;
 /// The planner's memory of the default image.

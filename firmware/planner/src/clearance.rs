@@ -69,17 +69,18 @@ pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
     mut visit: impl FnMut(i32, Strip),
 ) {
     // Columns x − 16 .. x + 48, so that the middle 32 see a halo of 16.
-    let read = |row: i32| tiles.row(x - 16, row);
+    let mut reader = tiles.reader(x - 16);
+    let mut ahead = tiles.reader(x - 16);
     let mut ring = [0u64; RING];
     let slot = |row: i32| (row - y + MOST_RADIUS as i32).rem_euclid(RING as i32) as usize;
     for row in y - disc.reach..y + disc.reach {
         if let Some(place) = ring.get_mut(slot(row)) {
-            *place = read(row).obstacle();
+            *place = ahead.row(row).obstacle();
         }
     }
     for row in y..y + height {
         if let Some(place) = ring.get_mut(slot(row + disc.reach)) {
-            *place = read(row + disc.reach).obstacle();
+            *place = ahead.row(row + disc.reach).obstacle();
         }
         let mut blocked = 0;
         for dy in -disc.reach..=disc.reach {
@@ -94,7 +95,7 @@ pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
                 blocked |= widen(near, half);
             }
         }
-        let here = read(row);
+        let here = reader.row(row);
         let middle = |bits: u64| (bits >> 16) as u32;
         visit(
             row,

@@ -46,7 +46,7 @@ pub struct Config {
     pub period_s: f32,
     /// The window's solver.
     pub solver: SolverConfig,
-    /// Topological work in a step, thinning words. Default: 15,000.
+    /// Topological work in a step, thinning words. Default: 10,000.
     pub topology_units: u32,
 }
 
@@ -67,7 +67,7 @@ impl Config {
                 max_cycles: 4,
                 ..SolverConfig::default()
             },
-            topology_units: 15_000,
+            topology_units: 10_000,
         }
     }
 }

@@ -94,7 +94,7 @@ enum Stage {
 }
 
 /// Work that a round may do in a step, in units of a thinning word (about a hundred instructions).
-const TILE_UNITS: u32 = 60;
+const TILE_UNITS: u32 = 40;
 
 type Words<const SLOTS: usize> = [[u32; 8]; SLOTS];
 

@@ -30,6 +30,25 @@ pub enum Class {
     Negative = 3,
 }
 
+impl Class {
+    const fn from_bits(low: u32, high: u32) -> Self {
+        match (low, high) {
+            (0, 0) => Self::Unknown,
+            (_, 0) => Self::Free,
+            (0, _) => Self::Obstacle,
+            _ => Self::Negative,
+        }
+    }
+}
+
+/// Remembers the tile of the last cell looked up: consecutive cells of a beam share it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cursor {
+    tile: Option<(i32, i32)>,
+    /// Pool index + 1 of it, 0 where there is none (yet).
+    index: u16,
+}
+
 /// A cell that the map has no room for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoRoom {
@@ -112,6 +131,61 @@ const fn max(a: i32, b: i32) -> i32 {
 }
 
 type TileRows = [[u32; 2]; TILE_SIDE as usize];
+type Trail = [u16; TILE_SIDE as usize / 2];
+
+/// A tile that a reader goes through.
+#[derive(Clone, Copy, Debug)]
+struct Column<'a> {
+    rows: &'a TileRows,
+    trail: &'a Trail,
+}
+
+/// Reads rows of 64 cells one after another; tiles are looked up once in 32 rows.
+#[derive(Debug)]
+pub struct RowReader<'a, const TILES: usize, const SLOTS: usize> {
+    tiles: &'a Tiles<TILES, SLOTS>,
+    x: i32,
+    tile_y: i32,
+    columns: [Option<Column<'a>>; 3],
+}
+
+impl<const TILES: usize, const SLOTS: usize> RowReader<'_, TILES, SLOTS> {
+    /// The 64 cells of row `y`.
+    pub fn row(&mut self, y: i32) -> Row {
+        if y >> 5 != self.tile_y {
+            self.tile_y = y >> 5;
+            for (k, column) in (0..).zip(&mut self.columns) {
+                *column = self.tiles.column((self.x >> 5) + k, self.tile_y);
+            }
+        }
+        let shift = (self.x & 31) as u32;
+        let [first, second, third] = self.columns.map(|column| read(column, y));
+        // The first tile's cells move down by the shift, the others follow it; the third only has cells when there is a shift.
+        let join = |first: u32, second: u32, third: u32| {
+            let whole = u64::from(second) << 32 | u64::from(first);
+            let beyond = u64::from(third) << 32 << (32 - shift);
+            if shift == 0 {
+                whole
+            } else {
+                whole >> shift | beyond
+            }
+        };
+        Row {
+            low: join(first[0], second[0], third[0]),
+            high: join(first[1], second[1], third[1]),
+            trail: join(first[2], second[2], third[2]),
+        }
+    }
+}
+
+/// Low, high and trail bits of a tile's row.
+fn read(column: Option<Column<'_>>, y: i32) -> [u32; 3] {
+    let Some(column) = column else { return [0; 3] };
+    let row = (y & 31) as usize;
+    let [low, high] = column.rows.get(row).copied().unwrap_or_default();
+    let trail = column.trail.get(row / 2).copied().unwrap_or(0);
+    [low, high, if trail == 0 { 0 } else { twice(trail) }]
+}
 
 /// The tile pool and its directory. `TILES` tiles in the pool, `SLOTS` places in the box.
 #[derive(Debug)]
@@ -120,7 +194,7 @@ pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     /// Pool index + 1 of the tile in a slot, 0 where there is none.
     directory: [u16; SLOTS],
     /// Where the robot has been in the tile of a slot: a row of 2 × 2-cell blocks each.
-    trail: [[u16; TILE_SIDE as usize / 2]; SLOTS],
+    trail: [Trail; SLOTS],
     used: u16,
     width: i32,
     height: i32,
@@ -149,13 +223,16 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// two tiles wide), product at most `SLOTS`.
     #[must_use]
     pub const fn fits(width: u8, height: u8) -> bool {
-        width >= 4 && height >= 4 && width % 2 == 0 && width as usize * height as usize <= SLOTS
+        width >= 4
+            && height >= 4
+            && width.is_multiple_of(2)
+            && width as usize * height as usize <= SLOTS
     }
 
     /// Forget everything; the box becomes `width` × `height` tiles. A box that does not [`fit`](Self::fits) holds nothing.
     pub fn reset(&mut self, width: u8, height: u8) {
         self.directory.fill(0);
-        self.trail = [[0; TILE_SIDE as usize / 2]; SLOTS];
+        self.trail.as_flattened_mut().fill(0);
         self.used = 0;
         let fits = Self::fits(width, height);
         self.width = if fits { i32::from(width) } else { 0 };
@@ -257,12 +334,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             return Class::Unknown;
         };
         let bit = cell.x & 31;
-        match (low >> bit & 1, high >> bit & 1) {
-            (0, 0) => Class::Unknown,
-            (1, 0) => Class::Free,
-            (0, _) => Class::Obstacle,
-            _ => Class::Negative,
-        }
+        Class::from_bits(low >> bit & 1, high >> bit & 1)
     }
 
     /// Store what is known of a cell.
@@ -315,37 +387,54 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// The 64 cells from `x` on in row `y`.
     #[must_use]
     pub fn row(&self, x: i32, y: i32) -> Row {
-        let (tile_x, tile_y, shift) = (x >> 5, y >> 5, (x & 31) as u32);
-        let mut row = Row::default();
-        for k in 0..3 {
-            if !self.in_extent(tile_x + k, tile_y) {
-                continue;
-            }
-            let slot = self.slot(tile_x + k, tile_y);
-            let place = |word: u32| match k {
-                0 => u64::from(word) >> shift,
-                1 => u64::from(word) << 32 >> shift,
-                _ if shift == 0 => 0,
-                _ => u64::from(word) << (64 - shift),
-            };
-            let index = self
-                .directory
-                .get(slot)
-                .and_then(|entry| entry.checked_sub(1));
-            let rows = index.and_then(|index| self.pool.get(usize::from(index)));
-            if let Some(&[low, high]) = rows.and_then(|rows| rows.get((y & 31) as usize)) {
-                row.low |= place(low);
-                row.high |= place(high);
-            }
-            let trail = self
-                .trail
-                .get(slot)
-                .and_then(|rows| rows.get((y & 31) as usize / 2));
-            if let Some(&blocks) = trail.filter(|&&blocks| blocks != 0) {
-                row.trail |= place(twice(blocks));
-            }
+        self.reader(x).row(y)
+    }
+
+    /// A reader of rows of 64 cells from column `x` on.
+    #[must_use]
+    pub const fn reader(&self, x: i32) -> RowReader<'_, TILES, SLOTS> {
+        RowReader {
+            tiles: self,
+            x,
+            tile_y: i32::MIN,
+            columns: [None; 3],
         }
-        row
+    }
+
+    /// The rows and the trail of a tile, if it is in the extent.
+    fn column(&self, tile_x: i32, tile_y: i32) -> Option<Column<'_>> {
+        if !self.in_extent(tile_x, tile_y) {
+            return None;
+        }
+        let slot = self.slot(tile_x, tile_y);
+        let index = self.directory.get(slot)?.checked_sub(1)?;
+        Some(Column {
+            rows: self.pool.get(usize::from(index))?,
+            trail: self.trail.get(slot)?,
+        })
+    }
+
+    /// What is known of a cell, looked up by a cursor that remembers the tile of the last one.
+    pub(super) fn class_at(&self, cursor: &mut Cursor, cell: Cell) -> Class {
+        let tile = (cell.x >> 5, cell.y >> 5);
+        if cursor.tile != Some(tile) || cursor.index == 0 {
+            cursor.tile = Some(tile);
+            cursor.index = if self.in_extent(tile.0, tile.1) {
+                self.directory
+                    .get(self.slot(tile.0, tile.1))
+                    .copied()
+                    .unwrap_or(0)
+            } else {
+                0
+            };
+        }
+        let rows = usize::from(cursor.index)
+            .checked_sub(1)
+            .and_then(|index| self.pool.get(index));
+        let Some([low, high]) = rows.and_then(|rows| rows.get((cell.y & 31) as usize)) else {
+            return Class::Unknown;
+        };
+        Class::from_bits(low >> (cell.x & 31) & 1, high >> (cell.x & 31) & 1)
     }
 
     /// A tile's cells, two bits each, row by row from the least y with the least x in the low bits; `None` where nothing
