@@ -3,6 +3,7 @@
 //! | file | what |
 //! | --- | --- |
 //! | [`golden`] | committed tables: compare, or rewrite with `BLESS=1` |
+//! | [`random`] | seeded numbers |
 //! | [`table`] | columns of text |
 //! | [`runs`] | whole explorations, several at a time, and their row in a table |
 //! | [`worlds`] | the built-in worlds by kind; worlds drawn by others, where there are any |
@@ -17,6 +18,7 @@ pub mod costs;
 pub mod elf;
 pub mod emulator;
 pub mod golden;
+pub mod random;
 pub mod runs;
 pub mod table;
 pub mod worlds;
