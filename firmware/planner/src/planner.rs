@@ -79,6 +79,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     drive: Drive,
     status: Status,
     started: bool,
+    /// A skeleton was published that no road was planned on yet.
+    fresh: bool,
     /// Where the robot began.
     start: Cell,
 }
@@ -120,6 +122,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             drive: Drive::new(),
             status: Status::Exploring,
             started: false,
+            fresh: false,
             start: Cell { x: 0, y: 0 },
         }
     }
@@ -133,6 +136,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.drive = Drive::new();
         self.status = Status::Exploring;
         self.started = false;
+        self.fresh = false;
     }
 
     /// The map.
@@ -286,10 +290,15 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         return steer(config, state, workspace, &input);
     }
     let disc = Disc::new(config.robot_radius_m);
-    let units = config.topology_units;
-    let fresh = state.topology.advance(state.map.tiles(), &disc, units);
-    if fresh {
+    // A new skeleton is planned on in the step after it was finished, so that no step does both.
+    let planned = state.fresh;
+    if planned {
+        state.fresh = false;
         replan(state, workspace, &disc, &input);
+    } else {
+        state.fresh = state
+            .topology
+            .advance(state.map.tiles(), &disc, config.topology_units);
     }
     if state.status != Status::Exploring {
         return Output {
@@ -305,7 +314,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     // A step that planned a road has spent the time of two cycles on it.
     let most = config.solver.max_cycles;
     let solver = SolverConfig {
-        max_cycles: if fresh { most.div_ceil(2) } else { most },
+        max_cycles: if planned { most.div_ceil(2) } else { most },
         ..config.solver
     };
     let solution = solve(&mut workspace.window, &mut workspace.scratch, &solver);
