@@ -14,8 +14,10 @@
 //!
 //! Invariant: no cell falls; afterwards no reached cell is below a sixteenth of its neighbours.
 
+use core::cell::Cell;
+
 use super::runs::Runs;
-use super::window::{SIDE, STRIDE, Start, Window, index};
+use super::window::{SIDE, STRIDE, Window, index};
 
 /// What a cell takes of its neighbour's value: about the field's fall from cell to cell indoors. From 1, a flat start,
 /// the heading behind doors takes a third more cycles.
@@ -28,64 +30,61 @@ const STEEPEST: f32 = 16.0;
 /// The same in a cold window, where no value is worth keeping: just more than 1/0.85.
 const STEEPEST_COLD: f32 = 1.25;
 
-/// Raise what is too low, in sweeps up and down the window until nothing changes.
+/// Raise what is too low, in sweeps up and down over the rows that may hold such cells: those with something new, and
+/// those beside a row that changed.
 pub(super) fn raise(window: &mut Window) {
-    let steepest = match window.start {
-        Start::Cold => STEEPEST_COLD,
-        Start::Moved => STEEPEST,
-        Start::Raised => return,
-    };
-    let mut idle_sweeps = 0;
-    for upward in [true, false].into_iter().cycle() {
-        let mut changed = false;
+    let steepest = if window.cold { STEEPEST_COLD } else { STEEPEST };
+    let mut upward = true;
+    while window.unraised != 0 {
         for step in 0..SIDE {
             let y = if upward { step } else { SIDE - 1 - step };
-            for run in Runs(window.reached[y]) {
-                let start = index(run.start, y);
-                let beside = if upward {
-                    start - STRIDE
-                } else {
-                    start + STRIDE
-                };
-                let mut source = [0.0; SIDE];
-                let source = &mut source[..run.len()];
-                source.copy_from_slice(&window.q[beside..][..run.len()]);
-                changed |= raise_run(
-                    &mut window.q[start - 1..][..run.len() + 2],
-                    source,
-                    steepest,
-                );
+            if window.unraised >> y & 1 == 1 {
+                window.unraised &= !(1 << y);
+                if raise_row(window, y, steepest) {
+                    window.touch_rows(1 << y);
+                    window.unraised &= !(1 << y);
+                }
             }
         }
-        idle_sweeps = if changed { 0 } else { idle_sweeps + 1 };
-        if idle_sweeps == 2 {
-            break;
-        }
+        upward = !upward;
     }
-    window.start = Start::Raised;
+    window.cold = false;
 }
 
-/// Raise a run of cells to what the `source` row beside it gives, and its neighbours in the row, the first and the last
-/// of `row`. Answers whether a cell changed.
-fn raise_run(row: &mut [f32], source: &[f32], steepest: f32) -> bool {
+/// Raise the cells of a row to what their neighbours give. Answers whether one changed.
+fn raise_row(window: &mut Window, y: usize, steepest: f32) -> bool {
     let mut changed = false;
-    let mut raise = |q: &mut f32, neighbour: f32| {
-        if steepest * *q < neighbour {
-            *q = PART * neighbour;
-            changed = true;
+    for run in Runs(window.reached[y]) {
+        let length = run.len();
+        let around = &mut window.q[index(run.start, y) - STRIDE..][..length + 2 * STRIDE];
+        let around = Cell::from_mut(around).as_slice_of_cells();
+        let south = &around[..length];
+        let here = &around[STRIDE..][..length];
+        let north = &around[2 * STRIDE..][..length];
+        let mut raise = |cell: &Cell<f32>, best: f32| {
+            let q = cell.get();
+            if steepest * q < best {
+                changed = true;
+                cell.set(PART * best);
+                PART * best
+            } else {
+                q
+            }
+        };
+        let mut west = around[STRIDE - 1].get();
+        for (here, (south, north)) in here.iter().zip(south.iter().zip(north)) {
+            west = raise(here, greater(west, greater(south.get(), north.get())));
         }
-        *q
-    };
-    let [west, cells @ .., east] = row else {
-        return false;
-    };
-    let mut west = *west;
-    for (q, &source) in cells.iter_mut().zip(source) {
-        west = raise(q, if source > west { source } else { west });
-    }
-    let mut east = *east;
-    for q in cells.iter_mut().rev() {
-        east = raise(q, east);
+        let mut east = around[STRIDE + length].get();
+        for here in here.iter().rev() {
+            east = raise(here, east);
+        }
     }
     changed
+}
+
+/// The greater of two numbers, without the care for NaN that makes `f32::max` a call.
+#[inline(always)]
+fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }

@@ -11,7 +11,7 @@ use super::gauss_seidel;
 use super::multigrid::{self, SCRATCH_FLOATS};
 use super::runs::Runs;
 use super::seed;
-use super::window::{Start, Window, index};
+use super::window::{Window, index};
 
 /// Gauss–Seidel sweeps that cost about as much as a multigrid cycle.
 pub const SWEEPS_PER_CYCLE: u16 = 5;
@@ -146,7 +146,8 @@ fn run_multigrid(
 }
 
 fn run_gauss_seidel(window: &mut Window, config: &SolverConfig, solution: &mut Solution) {
-    window.start = Start::Moved;
+    // What has risen part of the way is worth keeping.
+    window.cold = false;
     for _ in solution.cycles..config.max_cycles {
         for _ in 1..SWEEPS_PER_CYCLE {
             gauss_seidel::sweep(window);

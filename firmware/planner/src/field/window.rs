@@ -101,17 +101,6 @@ impl Preference {
     }
 }
 
-/// What the values in the window are worth to the multigrid as a start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Start {
-    /// Nothing: all are zero.
-    Cold,
-    /// Most are right, or on the way: the boundary moved under them.
-    Moved,
-    /// None is far too low.
-    Raised,
-}
-
 /// The window. 25 KB; made once, in a `static`.
 #[derive(Clone, Debug)]
 pub struct Window {
@@ -127,8 +116,10 @@ pub struct Window {
     pub(super) goal: [u64; SIDE],
     /// Free cells that no goal can be reached from.
     unreached: u16,
-    /// What the values are worth as a start.
-    pub(super) start: Start,
+    /// No cell has a value worth keeping.
+    pub(super) cold: bool,
+    /// Rows that may hold cells far too low for the multigrid (see `seed`).
+    pub(super) unraised: u64,
     /// Where the multigrid's next blocks begin.
     pub(super) origin: Origin,
 }
@@ -144,14 +135,16 @@ impl Window {
             reached: [0; SIDE],
             goal: [0; SIDE],
             unreached: 0,
-            start: Start::Cold,
+            cold: true,
+            unraised: 0,
             origin: Origin::Even,
         }
     }
 
     /// Forget the field, so that the next solve starts cold; boundary and preferences stay.
     pub fn clear(&mut self) {
-        self.start = Start::Cold;
+        self.cold = true;
+        self.unraised = ROW;
         self.q.fill(0.0);
         self.origin = Origin::Even;
         self.charge_goals();
@@ -166,15 +159,15 @@ impl Window {
         let mut unreached = 0;
         for y in 0..SIDE {
             unreached += (free[y] & !reached[y]).count_ones();
-            let left = (self.reached[y] | self.goal[y]) & !reached[y];
-            self.fill(y, left, 0.0);
+            let before = self.reached[y] | self.goal[y];
+            self.fill(y, before & !reached[y], 0.0);
+            if (reached[y] & !before) | (goal[y] & !self.goal[y]) != 0 {
+                self.touch_rows(1 << y);
+            }
         }
         self.reached = reached;
         self.goal = goal;
         self.unreached = unreached as u16;
-        if self.start == Start::Raised {
-            self.start = Start::Moved;
-        }
         self.charge_goals();
     }
 
@@ -186,6 +179,9 @@ impl Window {
         if across >= SIDE || up >= SIDE {
             self.empty();
             return;
+        }
+        if self.unraised != 0 {
+            self.unraised = ROW;
         }
         slide(&mut self.q, dx, dy);
         if self.preferred {
@@ -218,7 +214,8 @@ impl Window {
             mask.fill(0);
         }
         self.unreached = 0;
-        self.start = Start::Cold;
+        self.cold = true;
+        self.unraised = 0;
         self.origin = Origin::Even;
     }
 
@@ -284,6 +281,11 @@ impl Window {
     #[must_use]
     pub fn unreached_cells(&self) -> u16 {
         self.unreached
+    }
+
+    /// These rows have changed: they and those beside them may hold cells that are now far too low.
+    pub(super) fn touch_rows(&mut self, rows: u64) {
+        self.unraised |= (rows | rows << 1 | rows >> 1) & ROW;
     }
 
     /// Set q on `cells` of row y.
