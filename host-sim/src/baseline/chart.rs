@@ -368,20 +368,23 @@ mod tests {
     fn a_robot_too_near_to_a_wall_is_let_out_only_while_it_stands_there() {
         let rows = [
             "##########", //
-            "....R.....",
             "..........",
+            "....R.....",
             "..........",
             "..........",
             "..........",
         ];
         let (chart, _) = chart_for(&rows, 0.3);
         let at = |x, y| chart.frame().index(Cell { x, y }).unwrap();
-        assert!(chart.is_passable(at(4, 4)), "its own cell");
-        assert!(chart.is_passable(at(4, 3)) && chart.is_passable(at(5, 3)));
-        assert!(!chart.is_passable(at(6, 4)), "this one touches the wall");
+        assert!(chart.is_passable(at(4, 3)), "its own cell");
+        assert!(chart.is_passable(at(8, 3)) && !chart.is_passable(at(9, 3)));
+        assert!(!chart.is_passable(at(4, 4)), "this one touches the wall");
+        let (chart, _) = chart_for(&["#####", "..R..", "....."], 0.3);
+        let at = |x, y| chart.frame().index(Cell { x, y }).unwrap();
         assert!(
-            !chart.is_passable(at(9, 4)),
-            "farther away nothing is freed"
+            chart.is_passable(at(1, 1)),
+            "failing that, what is no obstacle"
         );
+        assert!(!chart.is_passable(at(1, 2)));
     }
 }

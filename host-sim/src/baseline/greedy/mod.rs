@@ -22,6 +22,7 @@
 //! Map, clearance and drive are the planner's.
 
 pub mod frontiers;
+pub mod inflation;
 pub mod pursuit;
 pub mod route;
 pub mod tuning;
@@ -32,6 +33,7 @@ use fieldline_planner::status::{Frontier as Leftover, Residue};
 use super::chart::Chart;
 use super::session::{Outlook, Plan, Scene};
 use frontiers::Frontier;
+use inflation::Inflation;
 use route::Routes;
 pub use tuning::Tuning;
 
@@ -58,6 +60,7 @@ pub struct GreedyFrontier {
     tuning: Tuning,
     goal: Option<Goal>,
     way: Vec<Point>,
+    inflation: Inflation,
     blacklist: Vec<Leftover>,
     /// Frontiers without a way to them at the last choice.
     unreachable: Vec<(Cell, usize)>,
@@ -149,7 +152,8 @@ impl Plan for GreedyFrontier {
         if choosing || elapsed(self.routed_ms, ROUTE_PERIOD_MS) {
             self.routed_ms = time_ms;
             self.reached |= arrives;
-            let routes = Routes::from(scene.chart, at.cell());
+            self.inflation = Inflation::new(scene.chart);
+            let routes = Routes::from(scene.chart, &self.inflation, at.cell());
             if choosing {
                 self.choose(scene.chart, &routes, at.cell(), time_ms);
             }
@@ -170,7 +174,7 @@ impl Plan for GreedyFrontier {
     }
 
     fn heading_at(&self, scene: &Scene<'_>, point: Point) -> Option<f32> {
-        pursuit::heading(scene.chart, &self.way, point)
+        pursuit::heading(scene.chart, &self.inflation, &self.way, point)
     }
 
     fn dropped(&self) -> Vec<Leftover> {
