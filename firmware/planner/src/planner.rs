@@ -445,9 +445,14 @@ fn steer<const TILES: usize, const SLOTS: usize>(
     let mut surround = Surround::empty();
     surround.see(&input.pose, state.near.points());
     let velocity = if here.is_some() {
+        let potential_at = |place: Place| {
+            let (x, y) = view::position((origin, scale), ahead(&input.pose, place));
+            potential_at(window, x, y)
+        };
         let ground = Ground {
             surround: &surround,
             heading_at,
+            potential_at: Some(&potential_at),
         };
         state.drive.follow(
             config,
@@ -483,14 +488,29 @@ fn is_at_goal(window: &Window, (origin, scale): (Cell, i32), robot: Point) -> bo
     }
 }
 
-/// The field's heading at a place near the robot, radians to the left of the robot's own.
-fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Option<f32> {
+/// q of the window cell at a position in cells.
+fn potential_at(window: &Window, x: f32, y: f32) -> f32 {
+    match (
+        usize::try_from(math::floor(x)),
+        usize::try_from(math::floor(y)),
+    ) {
+        (Ok(x), Ok(y)) => window.q(x, y),
+        _ => 0.0,
+    }
+}
+
+/// A place in the robot's frame as a point of the odometry frame.
+fn ahead(pose: &Pose, place: Place) -> Point {
     let (sin, cos) = math::sin_cos(pose.yaw_rad);
-    let there = Point {
+    Point {
         x_m: pose.x_m + place.x_m * cos - place.y_m * sin,
         y_m: pose.y_m + place.x_m * sin + place.y_m * cos,
-    };
-    let (x, y) = view::position(at, there);
+    }
+}
+
+/// The field's heading at a place near the robot, radians to the left of the robot's own.
+fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Option<f32> {
+    let (x, y) = view::position(at, ahead(pose, place));
     descent::heading_at(window, x, y).map(|heading| math::wrap(heading - pose.yaw_rad))
 }
 
