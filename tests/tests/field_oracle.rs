@@ -11,8 +11,10 @@ use core::fmt::Write;
 
 use field_common::golden::compare_with_golden;
 use field_common::oracle::Truth;
-use field_common::scenes::{KINDS, Kind, Pull, Scene, WALK_STEPS, Walk, scene};
-use field_common::{cells, degrees_between};
+use field_common::scenes::{
+    CHANGES, Change, KINDS, Kind, Pull, Scene, WALK_STEPS, Walk, before_and_after, scene,
+};
+use field_common::{Random, cells, degrees_between};
 use fieldline_planner::field::descent;
 use fieldline_planner::field::{
     GOAL, Method, SCRATCH_FLOATS, SIDE, Solution, SolverConfig, Stop, Window, solve,
@@ -299,6 +301,62 @@ fn hasty(pull: Pull) -> (usize, usize) {
         }
     }
     (right, KINDS.len() * WALK_STEPS)
+}
+
+/// A solved field whose boundary changes under it; the robot is where it can still reach a goal.
+fn disturbed(change: Change) -> Vec<Trial> {
+    let mut scratch = [0.0; SCRATCH_FLOATS];
+    let mut trials = Vec::new();
+    for (kind, seed) in KINDS
+        .into_iter()
+        .flat_map(|kind| (0..20).map(move |seed| (kind, seed)))
+    {
+        let pull = if seed % 2 == 0 {
+            Pull::None
+        } else {
+            Pull::Heights
+        };
+        let mut scene = scene(kind, pull, seed);
+        let [before, after] = before_and_after(&scene, change, &mut Random::new(seed));
+        scene.window.set_boundary(&before.0, &before.1);
+        work(&mut scene.window, &mut scratch, Method::Auto, 12);
+        scene.window.set_boundary(&after.0, &after.1);
+        if scene.window.is_reached(scene.robot.0, scene.robot.1) {
+            let judge = Judge::new(&scene.window, scene.robot);
+            trials.push(multigrid(&mut scene.window, &judge, &mut scratch));
+        }
+    }
+    trials
+}
+
+/// The boundary may change in any way without the warm start becoming worse than a cold one.
+#[test]
+fn a_changed_boundary_costs_no_more_than_a_cold_start() {
+    let mut out = String::from(
+        "\
+Cycles of the multigrid after the boundary of a solved field changed; columns as in field.txt.
+
+                     n | heading right  | field right    | stop rule      |  a  b
+",
+    );
+    let mut all = Vec::new();
+    for change in CHANGES {
+        let trials = disturbed(change);
+        let [heading, field, stop] = Row::ranks(&trials);
+        let wrong = trials.iter().filter(|trial| trial.stopped_wrong).count();
+        let (name, count, failed) = (format!("{change:?}"), trials.len(), Row::failures(&trials));
+        writeln!(
+            out,
+            "{name:<18}{count:>4} |{heading} |{field} |{stop} |{wrong:>3}{failed:>3}"
+        )
+        .unwrap();
+        all.push((heading, failed));
+    }
+    compare_with_golden("field_changes.txt", &out);
+    for (heading, failed) in all {
+        assert!(heading.at_most([3, 7, CYCLE_LIMIT]), "heading: {heading}");
+        assert_eq!(failed, 0);
+    }
 }
 
 #[test]

@@ -79,6 +79,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     drive: Drive,
     status: Status,
     started: bool,
+    /// A skeleton was published that no road was planned on yet.
+    fresh: bool,
     /// Where the robot began.
     start: Cell,
 }
@@ -120,6 +122,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             drive: Drive::new(),
             status: Status::Exploring,
             started: false,
+            fresh: false,
             start: Cell { x: 0, y: 0 },
         }
     }
@@ -133,6 +136,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.drive = Drive::new();
         self.status = Status::Exploring;
         self.started = false;
+        self.fresh = false;
     }
 
     /// The map.
@@ -286,10 +290,15 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         return steer(config, state, workspace, &input);
     }
     let disc = Disc::new(config.robot_radius_m);
-    let units = config.topology_units;
-    let fresh = state.topology.advance(state.map.tiles(), &disc, units);
-    if fresh {
+    // A new skeleton is planned on in the step after it was finished, so that no step does both.
+    let planned = state.fresh;
+    if planned {
+        state.fresh = false;
         replan(state, workspace, &disc, &input);
+    } else {
+        state.fresh = state
+            .topology
+            .advance(state.map.tiles(), &disc, config.topology_units);
     }
     if state.status != Status::Exploring {
         return Output {
@@ -305,7 +314,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     // A step that planned a road has spent the time of two cycles on it.
     let most = config.solver.max_cycles;
     let solver = SolverConfig {
-        max_cycles: if fresh { most.div_ceil(2) } else { most },
+        max_cycles: if planned { most.div_ceil(2) } else { most },
         ..config.solver
     };
     let solution = solve(&mut workspace.window, &mut workspace.scratch, &solver);
@@ -436,9 +445,14 @@ fn steer<const TILES: usize, const SLOTS: usize>(
     let mut surround = Surround::empty();
     surround.see(&input.pose, state.near.points());
     let velocity = if here.is_some() {
+        let potential_at = |place: Place| {
+            let (x, y) = view::position((origin, scale), ahead(&input.pose, place));
+            potential_at(window, x, y)
+        };
         let ground = Ground {
             surround: &surround,
             heading_at,
+            potential_at: Some(&potential_at),
         };
         state.drive.follow(
             config,
@@ -474,14 +488,29 @@ fn is_at_goal(window: &Window, (origin, scale): (Cell, i32), robot: Point) -> bo
     }
 }
 
-/// The field's heading at a place near the robot, radians to the left of the robot's own.
-fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Option<f32> {
+/// q of the window cell at a position in cells.
+fn potential_at(window: &Window, x: f32, y: f32) -> f32 {
+    match (
+        usize::try_from(math::floor(x)),
+        usize::try_from(math::floor(y)),
+    ) {
+        (Ok(x), Ok(y)) => window.q(x, y),
+        _ => 0.0,
+    }
+}
+
+/// A place in the robot's frame as a point of the odometry frame.
+fn ahead(pose: &Pose, place: Place) -> Point {
     let (sin, cos) = math::sin_cos(pose.yaw_rad);
-    let there = Point {
+    Point {
         x_m: pose.x_m + place.x_m * cos - place.y_m * sin,
         y_m: pose.y_m + place.x_m * sin + place.y_m * cos,
-    };
-    let (x, y) = view::position(at, there);
+    }
+}
+
+/// The field's heading at a place near the robot, radians to the left of the robot's own.
+fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Option<f32> {
+    let (x, y) = view::position(at, ahead(pose, place));
     descent::heading_at(window, x, y).map(|heading| math::wrap(heading - pose.yaw_rad))
 }
 

@@ -208,9 +208,9 @@ impl Chart {
                 let first = (y - origin.y) as usize * width + column;
                 for (k, flags) in self.flags[first..first + 32].iter_mut().enumerate() {
                     let bit = |word: u32| (word >> k & 1) as u8;
-                    *flags = bit(strip.passable) * PASSABLE
-                        | bit(strip.unknown) * UNKNOWN
-                        | bit(strip.obstacle) * OBSTACLE;
+                    *flags = (bit(strip.passable) * PASSABLE)
+                        | (bit(strip.unknown) * UNKNOWN)
+                        | (bit(strip.obstacle) * OBSTACLE);
                 }
             });
         }
@@ -368,20 +368,23 @@ mod tests {
     fn a_robot_too_near_to_a_wall_is_let_out_only_while_it_stands_there() {
         let rows = [
             "##########", //
-            "....R.....",
             "..........",
+            "....R.....",
             "..........",
             "..........",
             "..........",
         ];
         let (chart, _) = chart_for(&rows, 0.3);
         let at = |x, y| chart.frame().index(Cell { x, y }).unwrap();
-        assert!(chart.is_passable(at(4, 4)), "its own cell");
-        assert!(chart.is_passable(at(4, 3)) && chart.is_passable(at(5, 3)));
-        assert!(!chart.is_passable(at(6, 4)), "this one touches the wall");
+        assert!(chart.is_passable(at(4, 3)), "its own cell");
+        assert!(chart.is_passable(at(8, 3)) && !chart.is_passable(at(9, 3)));
+        assert!(!chart.is_passable(at(4, 4)), "this one touches the wall");
+        let (chart, _) = chart_for(&["#####", "..R..", "....."], 0.3);
+        let at = |x, y| chart.frame().index(Cell { x, y }).unwrap();
         assert!(
-            !chart.is_passable(at(9, 4)),
-            "farther away nothing is freed"
+            chart.is_passable(at(1, 1)),
+            "failing that, what is no obstacle"
         );
+        assert!(!chart.is_passable(at(1, 2)));
     }
 }

@@ -223,6 +223,7 @@ impl<P: Plan> Session<P> {
             let ground = Ground {
                 surround: &surround,
                 heading_at: heading_there,
+                potential_at: None,
             };
             self.drive
                 .follow(config, &ground, input.velocity, &mut self.scratch)

@@ -21,7 +21,7 @@
 //! | --- | --- |
 //! | [`window`] | the cells: field, boundary, preferences; warm values across a move |
 //! | `reach` | which free cells a goal can be reached from, by bits |
-//! | `seed` | a first value for cells that have none |
+//! | `seed` | a start for cells that have no value, or one far too low |
 //! | `gauss_seidel` | one relaxation sweep, the papers' method |
 //! | `multigrid`, `pyramid` | one cycle of the fast method, and its coarse levels |
 //! | [`solver`] | which method, how long, and when to stop |

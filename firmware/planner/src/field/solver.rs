@@ -11,7 +11,7 @@ use super::gauss_seidel;
 use super::multigrid::{self, SCRATCH_FLOATS};
 use super::runs::Runs;
 use super::seed;
-use super::window::{SIDE, Window, index};
+use super::window::{Window, index};
 
 /// Gauss–Seidel sweeps that cost about as much as a multigrid cycle.
 pub const SWEEPS_PER_CYCLE: u16 = 5;
@@ -125,7 +125,7 @@ fn run_multigrid(
     config: &SolverConfig,
     solution: &mut Solution,
 ) {
-    seed::fill_blanks(window);
+    seed::raise(window);
     let (mut best, mut since) = (f32::INFINITY, 0);
     while solution.cycles < config.max_cycles {
         solution.residual = multigrid::cycle(window, scratch);
@@ -146,8 +146,8 @@ fn run_multigrid(
 }
 
 fn run_gauss_seidel(window: &mut Window, config: &SolverConfig, solution: &mut Solution) {
-    // Blank cells are zero, where the rise begins.
-    window.blank = [0; SIDE];
+    // What has risen part of the way is worth keeping.
+    window.cold = false;
     for _ in solution.cycles..config.max_cycles {
         for _ in 1..SWEEPS_PER_CYCLE {
             gauss_seidel::sweep(window);

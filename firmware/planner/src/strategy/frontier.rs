@@ -34,7 +34,7 @@ const REACHED_STEPS: u32 = 3;
 /// Time at a reached goal after which it is dropped, milliseconds: two turns on the spot.
 const LOOK_MS: u32 = 5_000;
 /// Time without moving after which a goal is dropped, milliseconds.
-const STANDING_MS: u32 = 40_000;
+const STANDING_MS: u32 = 24_000;
 /// A robot that moved less than this has not moved, metres.
 const MOVED_M: f32 = 0.3;
 /// Goals dropped in a row without moving after which the robot is stuck.

@@ -1,4 +1,4 @@
-//! Frontiers and what they cost: the rule of explore_lite.
+//! Frontiers and what they cost: the rule of `explore_lite`.
 //!
 //! The free cells connected with the robot's are searched; an unknown cell with one of them among its four neighbours is a
 //! frontier cell. Frontiers are the 8-connected clusters of them; those shorter than a minimum size are ignored. The cheapest
@@ -170,8 +170,9 @@ fn frontier(chart: &Chart, routes: &Routes, cells: &[usize]) -> Option<Frontier>
 
 #[cfg(test)]
 mod tests {
-    use super::{Frontier, search};
-    use crate::baseline::chart::sketch::chart;
+    use super::{Found, Frontier, search};
+    use crate::baseline::chart::sketch::chart_for;
+    use crate::baseline::greedy::inflation::Inflation;
     use crate::baseline::greedy::route::Routes;
     use crate::baseline::greedy::tuning::Tuning;
     use fieldline_planner::geometry::Cell;
@@ -183,22 +184,21 @@ mod tests {
         }
     }
 
-    fn found(rows: &[&str], min_frontier_size_m: f32) -> Vec<(usize, (i32, i32))> {
-        let (chart, robot) = chart(rows);
-        let routes = Routes::from(&chart, robot.cell());
-        let tell = |frontier: &Frontier| {
-            let cell = chart.frame().cell(frontier.goal);
-            (frontier.cells, (cell.x, cell.y))
-        };
-        search(&chart, &routes, &tuning(min_frontier_size_m))
-            .iter()
-            .map(tell)
-            .collect()
+    fn found(rows: &[&str], radius_m: f32, tuning: &Tuning) -> Found {
+        let (chart, robot) = chart_for(rows, radius_m);
+        let routes = Routes::from(&chart, &Inflation::new(&chart), robot.cell());
+        search(&chart, &routes, robot.cell(), tuning)
+    }
+
+    /// Cells and goal of each frontier.
+    fn told(found: &Found) -> Vec<(usize, (i32, i32))> {
+        let tell = |f: &Frontier| (f.cells, (f.goal.x, f.goal.y));
+        found.frontiers.iter().map(tell).collect()
     }
 
     #[test]
     fn clusters_are_eight_connected_and_lie_in_the_unknown() {
-        // A staircase is one frontier; the cells across the wall are another.
+        // A staircase is one frontier; the cells behind the wall are another; those behind them are none.
         let rows = [
             "############", //
             "#..????#???#",
@@ -207,73 +207,112 @@ mod tests {
             "#R.......###",
             "############",
         ];
-        let mut found = found(&rows, 0.0);
+        let mut found = told(&found(&rows, 0.05, &tuning(0.0)));
         found.sort_unstable();
-        assert_eq!(found, [(3, (9, 2)), (4, (3, 3))]);
+        assert_eq!(found, [(3, (9, 3)), (4, (4, 3))]);
     }
 
     #[test]
-    fn short_frontiers_and_those_without_a_way_are_ignored() {
+    fn short_frontiers_are_ignored() {
         let rows = [
             "##############", //
             "#R...........#",
             "#????????##?##",
-            "####?###..??##",
             "##############",
         ];
-        // Nine cells, 0.8 m long, with one in the wall's gap; the lone one; and two that only a closed-in cell touches.
-        assert_eq!(found(&rows, 0.75), [(8, (4, 3))]);
-        assert_eq!(found(&rows, 0.0).len(), 2);
-        assert!(found(&rows, 0.9).is_empty());
+        let sizes = |least_m| {
+            let found = found(&rows, 0.05, &tuning(least_m));
+            found.frontiers.iter().map(|f| f.cells).collect::<Vec<_>>()
+        };
+        assert_eq!(sizes(0.0), [8, 1]);
+        assert_eq!(sizes(0.75), [8], "eight cells are 0.8 m");
+        assert!(sizes(0.85).is_empty());
+    }
+
+    #[test]
+    fn a_door_counts_with_its_full_width_not_with_its_lanes() {
+        let door = [
+            "???????????????", //
+            "???????????????",
+            "####.......####",
+            "#.............#",
+            "#.............#",
+            "#.............#",
+            "#......R......#",
+            "#.............#",
+            "###############",
+        ];
+        let wide = found(&door, 0.3, &tuning(0.65));
+        assert_eq!(wide.frontiers.first().map(|f| f.cells), Some(7));
+    }
+
+    #[test]
+    fn a_frontier_seen_through_a_gap_that_the_robot_does_not_fit_through_is_unreachable() {
+        let mut rows = vec!["################"; 1];
+        rows.extend(["#??????????????#"; 3]);
+        rows.extend(["#..............#"; 7]);
+        rows.extend(["######...#######"; 2]);
+        rows.extend(["#..............#"; 4]);
+        rows.extend(["#......R.......#"; 1]);
+        rows.extend(["#..............#"; 4]);
+        rows.extend(["################"; 1]);
+        let found = found(&rows, 0.3, &tuning(0.75));
+        assert!(found.frontiers.is_empty());
+        assert_eq!(found.unreachable, [(Cell { x: 1, y: 19 }, 14)]);
     }
 
     #[test]
     fn the_goal_is_on_the_frontier_even_where_its_centroid_is_not() {
         let rows = [
-            "???????", //
-            "?.....?", "?..R..?", "?.....?", "???????",
+            "#############", //
+            "#???????????#",
+            "#?.........?#",
+            "#?.........?#",
+            "#?....R....?#",
+            "#?.........?#",
+            "#?.........?#",
+            "#???????????#",
+            "#############",
         ];
-        let found = found(&rows, 0.0);
         // The ring's centroid is the robot itself.
-        assert_eq!(found.len(), 1);
+        let found = told(&found(&rows, 0.05, &tuning(0.0)));
+        assert!(found.len() == 1 && found[0].0 == 28, "{found:?}");
         let (x, y) = found[0].1;
-        assert_ne!((x, y), (3, 2));
-        assert!(x == 1 || x == 5 || y == 1 || y == 3, "({x}, {y})");
+        assert!(x == 1 || x == 11 || y == 1 || y == 7, "({x}, {y})");
     }
 
     #[test]
     fn near_and_large_are_cheap() {
-        let frontier = |cells, distance_m| Frontier {
-            cells,
-            distance_m,
-            goal: 0,
-        };
         let tuning = Tuning::default();
-        let cost = |cells, distance_m| frontier(cells, distance_m).cost(&tuning);
+        let cost = |cells, distance_m| {
+            let frontier = Frontier {
+                cells,
+                distance_m,
+                goal: Cell::default(),
+                approach: 0,
+            };
+            frontier.cost(&tuning)
+        };
         assert!(cost(10, 2.0) < cost(10, 3.0));
         assert!(cost(20, 2.0) < cost(10, 2.0));
-        let expected = tuning.potential_scale * 2.0 - tuning.gain_scale * 1.5;
-        assert!((cost(15, 2.0) - expected).abs() < 1e-5);
+        assert!((cost(15, 2.0) - (3.0 * 2.0 - 1.0 * 1.5)).abs() < 1e-5);
     }
 
     #[test]
     fn the_cheapest_is_first() {
         let rows = [
             "####################", //
-            "#...R..............#",
-            "#?????############?#",
+            "#.....R............#",
+            "#???############???#",
             "####################",
         ];
-        let (chart, robot) = chart(&rows);
-        let routes = Routes::from(&chart, robot.cell());
-        let first = |tuning: Tuning| search(&chart, &routes, &tuning)[0].goal;
-        let at = |x, y| chart.frame().index(Cell { x, y }).unwrap();
-        let far_is_free = Tuning {
-            potential_scale: 0.0,
-            gain_scale: -1.0,
+        let goals = |tuning: &Tuning| told(&found(&rows, 0.05, tuning));
+        let near = goals(&tuning(0.0));
+        let far = goals(&Tuning {
+            potential_scale: -3.0,
             ..tuning(0.0)
-        };
-        assert_eq!(first(tuning(0.0)), at(3, 2));
-        assert_eq!(first(far_is_free), at(18, 2));
+        });
+        assert_eq!(near, [(3, (2, 1)), (3, (17, 1))]);
+        assert_eq!(far, [(3, (17, 1)), (3, (2, 1))]);
     }
 }

@@ -1,12 +1,12 @@
-//! Baseline *greedy-frontier*: what ROS users run, explore_lite (m-explore) over a global planner and a path follower.
+//! Baseline *greedy-frontier*: what ROS users run, `explore_lite` (m-explore) over a global planner and a path follower.
 //!
 //! Every 3 s ([`Tuning::planner_period_ms`]), and at once where a goal is reached, the [`frontiers`] are found anew and the
 //! cheapest that is not blacklisted is the goal. A goal to which the robot comes no nearer for 30 s is blacklisted, as is one
 //! without a way. The [`route`] to it is planned anew every second (the rate of ROS 2's default behaviour tree), and
 //! [`pursuit`] follows it. The exploration ends when no frontier is left, or only blacklisted ones.
 //!
-//! Parameters are those of the package's `explore.launch`: planner_frequency 0.33, progress_timeout 30, potential_scale 3.0,
-//! orientation_scale 0, gain_scale 1.0, min_frontier_size 0.75
+//! Parameters are those of the package's `explore.launch`: `planner_frequency` 0.33, `progress_timeout` 30, `potential_scale` 3.0,
+//! `orientation_scale` 0, `gain_scale` 1.0, `min_frontier_size` 0.75
 //! (<https://github.com/hrnr/m-explore>, `explore/launch/explore.launch` at 46223c4, `explore/src/frontier_search.cpp` and
 //! `explore/src/explore.cpp` at 18526a7).
 //!
@@ -17,11 +17,12 @@
 //! - a frontier needs a way to it; the package finds out by the planner's failure;
 //! - two goals count as the same if they lie within the blacklist's tolerance, not within 1 cm; otherwise a centroid that
 //!   trembles would never time out;
-//! - at a goal the robot looks around, where move_base turns to a heading of zero.
+//! - at a goal the robot looks around, where `move_base` turns to a heading of zero.
 //!
 //! Map, clearance and drive are the planner's.
 
 pub mod frontiers;
+pub mod inflation;
 pub mod pursuit;
 pub mod route;
 pub mod tuning;
@@ -32,6 +33,7 @@ use fieldline_planner::status::{Frontier as Leftover, Residue};
 use super::chart::Chart;
 use super::session::{Outlook, Plan, Scene};
 use frontiers::Frontier;
+use inflation::Inflation;
 use route::Routes;
 pub use tuning::Tuning;
 
@@ -58,6 +60,7 @@ pub struct GreedyFrontier {
     tuning: Tuning,
     goal: Option<Goal>,
     way: Vec<Point>,
+    inflation: Inflation,
     blacklist: Vec<Leftover>,
     /// Frontiers without a way to them at the last choice.
     unreachable: Vec<(Cell, usize)>,
@@ -149,7 +152,8 @@ impl Plan for GreedyFrontier {
         if choosing || elapsed(self.routed_ms, ROUTE_PERIOD_MS) {
             self.routed_ms = time_ms;
             self.reached |= arrives;
-            let routes = Routes::from(scene.chart, at.cell());
+            self.inflation = Inflation::new(scene.chart);
+            let routes = Routes::from(scene.chart, &self.inflation, at.cell());
             if choosing {
                 self.choose(scene.chart, &routes, at.cell(), time_ms);
             }
@@ -170,7 +174,7 @@ impl Plan for GreedyFrontier {
     }
 
     fn heading_at(&self, scene: &Scene<'_>, point: Point) -> Option<f32> {
-        pursuit::heading(scene.chart, &self.way, point)
+        pursuit::heading(scene.chart, &self.inflation, &self.way, point)
     }
 
     fn dropped(&self) -> Vec<Leftover> {

@@ -1,11 +1,9 @@
 //! Cheapest ways over the known passable cells from where the robot stands (Dijkstra), as ROS's global planner finds them on an
 //! inflated costmap.
 //!
-//! A step to a neighbour costs its length times 1 + 4.03·exp(−10·(d − r)), where d is the distance of the cell's centre from the
-//! nearest obstacle cell's and r the robot's radius, and its length alone from 0.55 m on: costmap_2d's inflation with its
-//! defaults (252·exp(−10·(d − r)) up to an inflation radius of 0.55 m) seen by navfn, to which a free cell costs 50 and a cell of
-//! cost c 50 + 0.8·c. Unlike navfn, a way goes through known cells only, so that every goal on it can be driven to; and its
-//! steps are straight or diagonal, a diagonal one only between two free cells.
+//! A step costs its length times the [`Prices`] of the cell that it leads to. Unlike navfn's, a way goes through known cells
+//! only, so that every goal on it can be driven to; its steps are straight or diagonal, a diagonal one only between two free
+//! cells.
 //!
 //! Invariant: costs are integers, so that the same map gives the same way everywhere. Units: a straight step is
 //! [`STRAIGHT`].
@@ -15,15 +13,12 @@ use std::collections::BinaryHeap;
 
 use fieldline_planner::geometry::{CELL_M, Cell, Point};
 
+use super::inflation::{Inflation, Prices};
 use crate::baseline::chart::Chart;
 
 /// Length of a straight step, and of a diagonal one.
 const STRAIGHT: u32 = 100;
 const DIAGONAL: u32 = 141;
-/// Squared distance to an obstacle, in cells, below which a step costs more than its length: 0.55 m.
-const INFLATED: i32 = 31;
-/// The robot's radius, cells.
-const RADIUS: f32 = 3.0;
 /// No way.
 const NONE: u32 = u32::MAX;
 
@@ -41,7 +36,7 @@ pub struct Routes {
 impl Routes {
     /// All ways from `robot`.
     #[must_use]
-    pub fn from(chart: &Chart, robot: Cell) -> Self {
+    pub fn from(chart: &Chart, inflation: &Inflation, robot: Cell) -> Self {
         let count = chart.frame().len();
         let mut routes = Self {
             cost: vec![NONE; count],
@@ -53,13 +48,13 @@ impl Routes {
             .index(robot)
             .filter(|&home| chart.is_passable(home));
         if let Some(home) = home {
-            routes.spread(chart, home);
+            routes.spread(chart, inflation, home);
         }
         routes
     }
 
-    fn spread(&mut self, chart: &Chart, home: usize) {
-        let factors = Factors::new(chart);
+    fn spread(&mut self, chart: &Chart, inflation: &Inflation, home: usize) {
+        let prices = Prices::new();
         let mut queue = BinaryHeap::new();
         (self.cost[home], self.length[home]) = (0, 0);
         queue.push(Reverse((0, home)));
@@ -68,7 +63,7 @@ impl Routes {
                 continue;
             }
             for (near, step) in steps(chart, index).into_iter().flatten() {
-                let total = cost + step * factors.percent(near) / 100;
+                let total = cost + step * prices.percent(inflation.square(near)) / 100;
                 if total < self.cost[near] {
                     self.cost[near] = total;
                     self.length[near] = self.length[index] + step;
@@ -124,54 +119,11 @@ fn steps(chart: &Chart, index: usize) -> [Option<(usize, u32)>; 8] {
     ]
 }
 
-/// What a step onto a cell costs, in per cent of its length.
-struct Factors {
-    /// Squared distance of each cell from the nearest obstacle, cells; at most [`INFLATED`].
-    near: Vec<u8>,
-    table: [u32; INFLATED as usize + 1],
-}
-
-impl Factors {
-    fn new(chart: &Chart) -> Self {
-        let frame = chart.frame();
-        let mut near = vec![INFLATED as u8; frame.len()];
-        let reach = 5;
-        let (width, height) = (frame.width as i32, frame.height as i32);
-        for index in (0..frame.len()).filter(|&index| chart.is_obstacle(index)) {
-            let (x, y) = frame.place(index);
-            let (x, y) = (x as i32, y as i32);
-            for dy in -reach.min(y)..=reach.min(height - 1 - y) {
-                for dx in -reach.min(x)..=reach.min(width - 1 - x) {
-                    let square = (dx * dx + dy * dy).min(INFLATED) as u8;
-                    let cell = &mut near[((y + dy) * width + x + dx) as usize];
-                    *cell = square.min(*cell);
-                }
-            }
-        }
-        let factor = |square: usize| {
-            let beyond_m = ((square as f32).sqrt() - RADIUS) * CELL_M;
-            let inflation = if square as i32 >= INFLATED {
-                0.0
-            } else {
-                0.8 / 50.0 * 252.0 * libm::expf(-10.0 * beyond_m.max(0.0))
-            };
-            (100.0 * (1.0 + inflation)) as u32
-        };
-        Self {
-            near,
-            table: core::array::from_fn(factor),
-        }
-    }
-
-    fn percent(&self, index: usize) -> u32 {
-        self.table[usize::from(self.near[index])]
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::Routes;
     use crate::baseline::chart::sketch::{chart, chart_for};
+    use crate::baseline::greedy::inflation::Inflation;
     use fieldline_planner::geometry::Cell;
 
     #[test]
@@ -180,7 +132,7 @@ mod tests {
         let mut rows = vec![row.as_str(); 20];
         rows[10] = "..............R................";
         let (chart, robot) = chart(&rows);
-        let routes = Routes::from(&chart, robot.cell());
+        let routes = Routes::from(&chart, &Inflation::new(&chart), robot.cell());
         let at = |x, y| routes.length_m(chart.frame().index(Cell { x, y }).unwrap());
         assert_eq!(at(14, 9), Some(0.0));
         assert!((at(20, 9).unwrap() - 0.6).abs() < 1e-5);
@@ -202,7 +154,7 @@ mod tests {
             "###################",
         ];
         let (chart, robot) = chart(&rows);
-        let routes = Routes::from(&chart, robot.cell());
+        let routes = Routes::from(&chart, &Inflation::new(&chart), robot.cell());
         let goal = chart.frame().index(Cell { x: 17, y: 1 }).unwrap();
         let way = routes.way(&chart, goal);
         assert_eq!(way.first(), Some(&robot));
@@ -211,7 +163,7 @@ mod tests {
         assert_eq!(highest, Some(4), "the middle of the room");
         let corner = ["...", "#..", "R#."];
         let (chart, robot) = super::tests::chart(&corner);
-        let routes = Routes::from(&chart, robot.cell());
+        let routes = Routes::from(&chart, &Inflation::new(&chart), robot.cell());
         let beyond = chart.frame().index(Cell { x: 1, y: 1 }).unwrap();
         assert_eq!(routes.length_m(beyond), None);
     }
@@ -229,7 +181,7 @@ mod tests {
         ];
         let across = |radius_m| {
             let (chart, robot) = chart_for(&rows, radius_m);
-            let routes = Routes::from(&chart, robot.cell());
+            let routes = Routes::from(&chart, &Inflation::new(&chart), robot.cell());
             routes.length_m(chart.frame().index(Cell { x: 5, y: 6 }).unwrap())
         };
         assert!((across(0.2).unwrap() - 0.6).abs() < 1e-5);
