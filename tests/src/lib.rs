@@ -12,7 +12,8 @@
 //! | [`elf`] | what an image takes of flash and memory |
 //!
 //! Three environment variables decide what a test run does: `BLESS=1` rewrites golden files, `FIELDLINE_FULL=1` adds
-//! what takes long, `FIELDLINE_HIL=1` makes a missing emulator a failure instead of a skipped test.
+//! what takes long, `FIELDLINE_HIL=1` makes a missing emulator a failure instead of a skipped test, and `FIELDLINE_HIL=0`
+//! leaves out what needs the image.
 
 pub mod costs;
 pub mod elf;
