@@ -99,12 +99,21 @@ pub(crate) fn level_beams<'a>(
         } else {
             f32::from(range)
         } * 1e-3;
-        // A no-return goes through all its cells: one of them may be an obstacle, which ends it.
-        let free_from_m = match i & 3 {
-            _ if missing => 0.0,
-            0 => 0.0,
-            2 => 1.4,
-            _ => 2.8,
+        let dense_to_mm = match i & 3 {
+            0 => 0,
+            2 => 1_400,
+            _ => 2_800,
+        };
+        // A no-return goes through all its cells where a neighbour met something: one of them may be an obstacle, which ends it.
+        let beyond = |k: Option<usize>| {
+            k.and_then(|k| ranges_mm.get(k))
+                .is_none_or(|&beside| beside > dense_to_mm)
+        };
+        let sure = !missing || (beyond(i.checked_sub(1)) && beyond(Some(i + 1)));
+        let free_from_m = if sure {
+            f32::from(dense_to_mm) * 1e-3
+        } else {
+            0.0
         };
         Some(Beam {
             from,

@@ -338,18 +338,7 @@ fn entry<const TILES: usize, const SLOTS: usize>(
     SCALES.iter().find_map(|&scale| {
         view.look_around(known.tiles, known.disc, robot, scale);
         view.free_robot(robot);
-        let mut targets: Rows = [0; SIDE];
-        for y in 0..SIDE {
-            for x in 0..SIDE {
-                let place = (x, y);
-                if !View::has(&view.passable, place) {
-                    continue;
-                }
-                if reached_site(space, frame, view, place).is_some() {
-                    View::put(&mut targets, place);
-                }
-            }
-        }
+        let targets = targets(space, frame, view);
         let mut seeds: Rows = [0; SIDE];
         View::put(&mut seeds, view.place(robot)?);
         let met = flood(&view.passable, &mut seeds, &targets, Adjacency::Four)?;
@@ -360,6 +349,43 @@ fn entry<const TILES: usize, const SLOTS: usize>(
             (usize::from(met.site.x), usize::from(met.site.y)),
         )
     })
+}
+
+/// The passable window cells that hold a centre cell which the wave came to.
+fn targets(space: &WaveSpace<'_>, frame: Frame, view: &View) -> Rows {
+    let mut targets: Rows = [0; SIDE];
+    let least = (view.origin.y - frame.origin.y).div_euclid(2);
+    let rows = least.max(0) as usize..(least + SIDE as i32 * view.scale / 2 + 1).max(0) as usize;
+    for y in rows.start..rows.end.min(frame.shape.rows()) {
+        for word in 0..frame.shape.words_per_row() {
+            let mut bits = space.way.word(y, word);
+            while bits != 0 {
+                let x = (word * 32) as u16 + bits.trailing_zeros() as u16;
+                bits &= bits - 1;
+                let site = Site { x, y: y as u16 };
+                if space.residues.get(site).is_some() {
+                    mark(&mut targets, view, frame.cell(site));
+                }
+            }
+        }
+    }
+    targets
+}
+
+/// Mark the passable window cells of a coarse cell.
+fn mark(rows: &mut Rows, view: &View, cell: Cell) {
+    for k in 0..4 {
+        let part = Cell {
+            x: cell.x + (k & 1),
+            y: cell.y + (k >> 1),
+        };
+        if let Some(place) = view
+            .place(part)
+            .filter(|&place| View::has(&view.passable, place))
+        {
+            View::put(rows, place);
+        }
+    }
 }
 
 /// A centre cell in a window cell that the wave came to.

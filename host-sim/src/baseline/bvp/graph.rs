@@ -212,9 +212,9 @@ impl Level {
     pub(super) fn eliminate(&mut self) {
         let count = self.len();
         let mut flow = vec![vec![0.0; count]; count];
-        for node in 0..count {
+        for (node, row) in flow.iter_mut().enumerate() {
             for edge in self.edges(node) {
-                flow[node][self.from[edge] as usize] = self.flow[edge];
+                row[self.from[edge] as usize] = self.flow[edge];
             }
         }
         let (mut loss, mut source) = (self.loss.clone(), self.source.clone());
