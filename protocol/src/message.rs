@@ -44,7 +44,7 @@ pub const FIELD_CELL_BYTES: usize = 16;
 /// Bytes of a build identifier.
 pub const BUILD_BYTES: usize = 24;
 /// Bytes of a source file's name in a crash report.
-pub const CRASH_FILE_BYTES: usize = 24;
+pub const CRASH_FILE_BYTES: usize = 32;
 
 /// A pose in the odometry frame, metres and radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
@@ -288,6 +288,10 @@ pub enum Cause {
     Panic,
     /// A processor fault; [`Crash::at`] is the program counter.
     Fault,
+    /// The stack ran out of its room; [`Crash::at`] is 0.
+    StackOverflow,
+    /// The main loop did not come round in time; [`Crash::at`] is 0.
+    Watchdog,
 }
 
 /// A crash: the program stopped, commands zero velocity and reboots.
@@ -496,6 +500,8 @@ impl fmt::Display for Crash {
         match self.cause {
             Cause::Panic => write!(f, "panic at {}:{}", self.file, self.at),
             Cause::Fault => write!(f, "processor fault at {:#010x}", self.at),
+            Cause::StackOverflow => f.write_str("stack overflow"),
+            Cause::Watchdog => f.write_str("watchdog: the main loop did not come round"),
         }
     }
 }

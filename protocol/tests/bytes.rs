@@ -380,6 +380,17 @@ fn reply_crash() {
         }),
         b"\x08\x00\x80\x01\x08src/a.rs",
     );
+    for (cause, number) in [
+        (Cause::Fault, 1),
+        (Cause::StackOverflow, 2),
+        (Cause::Watchdog, 3),
+    ] {
+        let crash = Crash {
+            cause,
+            ..Crash::default()
+        };
+        reply_is(Reply::Crash(crash), &[8, number, 0, 0]);
+    }
 }
 
 #[test]

@@ -117,7 +117,7 @@ fn instalments_and_a_ring_lost_between_them_change_nothing() {
             }
             if round % 2 == 0 {
                 wave.park(&memory.space(&map));
-                memory.ring.fill(0xdead_beef);
+                memory.ring = vec![0xdead_beef; rng.below(64)];
             }
         }
         check(&map, &memory.space(&map).residues, &steps);

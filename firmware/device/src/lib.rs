@@ -12,6 +12,7 @@
 //! | [`pilot`] | the session's state: started, paused, stopped; used directly it is a link without bytes |
 //! | [`session`] | the conversation: hello, duplicates, silence, logs |
 //! | [`signal`] | what the status LED shows |
+//! | [`ring`] | bytes from an interrupt to the main loop |
 //! | [`port`] | serial line, e-stop and LED through `embedded-io` and `embedded-hal` |
 //!
 //! The big memories ([`Memory`]) are lent to every call, so that a board can put them where it has room.
@@ -21,15 +22,13 @@
 #[cfg(test)]
 extern crate std;
 
-// Macros first: the rest uses them.
-#[macro_use]
-mod log;
-
 pub mod convert;
 pub mod limits;
+mod log;
 pub mod meter;
 pub mod pilot;
 pub mod port;
+pub mod ring;
 pub mod session;
 pub mod signal;
 
@@ -41,7 +40,7 @@ pub use session::{Boot, Session};
 /// robot has gone 35 cm at full speed.
 pub const STALE_MS: u16 = 500;
 /// Tiles in the map's pool of the default image: 1966 m² of touched tiles.
-pub const TILES: usize = 192;
+pub const TILES: usize = 152;
 /// Places for tiles in the map's box of the default image: 20 × 20 tiles are 64 × 64 m.
 pub const SLOTS: usize = 400;
 /// The planner's memory of the default image.

@@ -1,19 +1,12 @@
 //! Log macros: defmt's with the feature `defmt`, nothing without.
 
 #[cfg(feature = "defmt")]
-macro_rules! info {
-    ($($message:tt)*) => { defmt::info!($($message)*) };
-}
-#[cfg(feature = "defmt")]
-macro_rules! warning {
-    ($($message:tt)*) => { defmt::warn!($($message)*) };
-}
+pub(crate) use defmt::{info, warn as warning};
 
+/// Evaluates its values, so that nothing is unused, and says nothing.
 #[cfg(not(feature = "defmt"))]
-macro_rules! info {
+macro_rules! nothing {
     ($text:literal $(, $value:expr)* $(,)?) => {{ $( let _ = &$value; )* }};
 }
 #[cfg(not(feature = "defmt"))]
-macro_rules! warning {
-    ($text:literal $(, $value:expr)* $(,)?) => {{ $( let _ = &$value; )* }};
-}
+pub(crate) use {nothing as info, nothing as warning};

@@ -22,6 +22,7 @@ use heapless::Vec;
 
 use crate::convert;
 use crate::limits;
+use crate::log::{info, warning};
 
 // What is collected into the wire's bounded lists must fit them.
 const _: () = assert!(SIDE == FIELD_SIDE && MAX_SCANS == 2);

@@ -236,6 +236,12 @@ mod tests {
         out[..length].to_vec()
     }
 
+    fn booted() -> Session {
+        let mut session = Session::new();
+        session.boot(Boot::default(), 4, 400);
+        session
+    }
+
     fn greeting() -> Vec<u8> {
         let hello = Request::Hello {
             version: VERSION,
@@ -284,7 +290,7 @@ mod tests {
 
     #[test]
     fn bytes_go_through_and_the_board_may_sleep() {
-        let mut session = Session::new(Boot::default(), 4, 400);
+        let mut session = booted();
         let mut board = Bare {
             log: vec![1, 2, 3],
             ..Bare::default()
@@ -309,7 +315,7 @@ mod tests {
 
     #[test]
     fn a_pressed_or_broken_stop_stops() {
-        let mut session = Session::new(Boot::default(), 4, 400);
+        let mut session = booted();
         let mut board = Bare::default();
         let pins = [(State::High, State::High), (State::High, State::High)];
         turn_through(Line::default(), &mut session, &mut board, &pins);
@@ -325,7 +331,7 @@ mod tests {
 
     #[test]
     fn the_led_follows_the_clock() {
-        let mut session = Session::new(Boot::default(), 4, 400);
+        let mut session = booted();
         let mut board = Bare {
             now_ms: 125,
             ..Bare::default()
@@ -340,7 +346,7 @@ mod tests {
 
     #[test]
     fn a_reset_is_reported_once_its_answer_is_out() {
-        let mut session = Session::new(Boot::default(), 4, 400);
+        let mut session = booted();
         let mut board = Bare::default();
         let mut bytes = greeting();
         bytes.extend(frame(1, &Request::Control(Control::Reset)));
@@ -361,7 +367,7 @@ mod tests {
 
     #[test]
     fn a_broken_line_is_an_error_with_a_name() {
-        let mut session = Session::new(Boot::default(), 4, 400);
+        let mut session = booted();
         let mut bench = Bench::new();
         let turn = |line: Line, session: &mut Session, bench: &mut Bench| {
             let (mut stop, mut led) = (

@@ -18,6 +18,7 @@ use fieldline_protocol::{SCHEMA, VERSION};
 use heapless::Deque;
 
 use crate::STALE_MS;
+use crate::log::{info, warning};
 use crate::meter::Meter;
 use crate::pilot::{Memory, Pilot};
 use crate::signal::Signal;
@@ -62,14 +63,18 @@ pub struct Session {
     reset: bool,
 }
 
+impl Default for Session {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Session {
-    /// A device that just booted, with `tile_pool` tiles and `tile_slots` places for them. Its hello waits to be sent.
+    /// A device that has not booted: silent, and a stranger to everybody. Made for a `static`.
     #[must_use]
-    pub fn new(boot: Boot, tile_pool: usize, tile_slots: usize) -> Self {
-        let identity = identity(boot, tile_pool, tile_slots);
-        info!("boot {=u32}", identity.boots);
-        let mut session = Self {
-            identity,
+    pub const fn new() -> Self {
+        Self {
+            identity: NOBODY,
             pilot: Pilot::new(),
             receiver: Receiver::new(Side::Device),
             outbox: Deque::new(),
@@ -77,14 +82,20 @@ impl Session {
             incompatible: false,
             answered: None,
             log_sequence: 0,
-            counters: Counters::default(),
+            counters: NOTHING_COUNTED,
             now_ms: 0,
             heard_ms: 0,
             stale: false,
             reset: false,
-        };
-        session.say_who(0);
-        session
+        }
+    }
+
+    /// Boots, with `tile_pool` tiles and `tile_slots` places for them. The hello waits to be sent.
+    pub fn boot(&mut self, boot: Boot, tile_pool: usize, tile_slots: usize) {
+        info!("boot {=u32}", boot.boots);
+        *self = Self::new();
+        self.identity = identity(boot, tile_pool, tile_slots);
+        self.say_who(0);
     }
 
     /// Takes a byte off the line. The byte that ends a request is answered before this returns: an observation steps the planner.
@@ -354,21 +365,39 @@ fn put(outbox: &mut Deque<u8, OUTBOX>, counters: &mut Counters, frame: &[u8], le
     }
 }
 
+const NOTHING_COUNTED: Counters = Counters {
+    received: 0,
+    crc_errors: 0,
+    dropped: 0,
+    duplicates: 0,
+    stale_stops: 0,
+};
+
+const NOBODY: Identity = Identity {
+    version: VERSION,
+    schema: SCHEMA,
+    build: heapless::String::new(),
+    boots: 0,
+    tile_slots: 0,
+    tile_pool: 0,
+    max_frame: 0,
+    stale_ms: STALE_MS,
+    crash: None,
+    counters: NOTHING_COUNTED,
+};
+
 /// Who a device is that just booted, with `tile_pool` tiles and `tile_slots` places for them.
 #[must_use]
 pub fn identity(boot: Boot, tile_pool: usize, tile_slots: usize) -> Identity {
     let short = |count: usize| u16::try_from(count).unwrap_or(u16::MAX);
     Identity {
-        version: VERSION,
-        schema: SCHEMA,
         build: build(),
         boots: boot.boots,
         tile_slots: short(tile_slots),
         tile_pool: short(tile_pool),
         max_frame: short(MAX_REQUEST_FRAME),
-        stale_ms: STALE_MS,
         crash: boot.crash,
-        counters: Counters::default(),
+        ..NOBODY
     }
 }
 

@@ -22,6 +22,8 @@ pub const REACH_M: f32 = 1.2;
 const REACH_BEHIND_M: f32 = 0.8;
 /// Least distance between neighbours of one scan, metres.
 const SPACING_M: f32 = 0.03;
+/// Difference of range within which two adjacent beams hit the same thing, millimetres.
+const COMPANY_MM: u16 = 250;
 /// A beam that ends this little short of a point still looked at it, metres: five sigma of a range.
 const LOOKED_AT_M: f32 = 0.05;
 
@@ -62,6 +64,9 @@ impl NearField {
         });
         let mut last: Option<Point> = None;
         for beam in level_beams(pose, laser, ranges_mm).filter(|beam| beam.hit) {
+            if !has_company(ranges_mm, beam.number) {
+                continue;
+            }
             let end = beam.end();
             let crowded = last.is_some_and(|last| distance2(last, end) < SPACING_M * SPACING_M);
             if !crowded && within_reach(pose, end) {
@@ -86,6 +91,16 @@ impl NearField {
         // There is room now, so this cannot fail.
         let _ = self.points.push(point);
     }
+}
+
+/// Whether a beam beside this one ended about as far. Within reach even a pole of 4 cm is hit by two; a lone point is a false
+/// return, and one that fell behind the robot would never be seen through.
+fn has_company(ranges_mm: &[u16], number: usize) -> bool {
+    let range = |k: Option<usize>| k.and_then(|k| ranges_mm.get(k)).copied();
+    let here = range(Some(number)).unwrap_or(0);
+    let near =
+        |beside: Option<u16>| beside.is_some_and(|beside| beside.abs_diff(here) < COMPANY_MM);
+    near(range(number.checked_sub(1))) || near(range(Some(number + 1)))
 }
 
 fn within_reach(pose: &Pose, point: Point) -> bool {
@@ -125,6 +140,15 @@ mod tests {
             beams: 181,
             range_limit_mm: 12_000,
         }
+    }
+
+    #[test]
+    fn a_lone_false_return_is_not_kept() {
+        let mut near = NearField::new();
+        let mut scan = [NO_RETURN_MM; 181];
+        scan[90] = 500;
+        near.update(&Pose::default(), &laser(), &scan);
+        assert!(near.points().is_empty());
     }
 
     /// A scan that sees one thing, 4 beams wide, at a bearing (degrees) and range; nothing else.

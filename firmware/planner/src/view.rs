@@ -2,8 +2,8 @@
 //!
 //! A window cell is `scale` × `scale` map cells (1, 2 or 4): where no centre cell is near, the window grows [Ouroboros,
 //! III-B] by growing its cells, at the same memory and time. It is passable if any of its map cells is: passable cells
-//! on the two sides of a wall are five cells apart, so no wall is lost at 20 cm. At 40 cm one would be, so there it must not
-//! hold an obstacle besides; that closes doors, but a window of this scale is only asked for in the open.
+//! on the two sides of a wall are five cells apart, so no wall is lost at 20 cm. At 40 cm one would be, so there all of
+//! its map cells must be passable; that closes doors, but a window of this scale is only asked for in the open.
 //!
 //! Invariant: `origin` is a multiple of `scale`; bit x of row y is the window cell whose least map cell is
 //! origin + scale·(x, y).
@@ -19,6 +19,9 @@ pub const SCALES: [i32; 3] = [1, 2, 4];
 /// Bit rows of the window.
 pub type Rows = [u64; SIDE];
 
+/// The bits of a row that are cells.
+const INSIDE: u64 = (1 << SIDE) - 1;
+
 /// The window's cells.
 #[derive(Clone, Debug)]
 pub struct View {
@@ -30,8 +33,6 @@ pub struct View {
     pub passable: Rows,
     /// Something stands here.
     pub obstacle: Rows,
-    /// Nothing was ever measured here.
-    pub unknown: Rows,
 }
 
 /// OR of adjacent groups of `scale` bits; 32 / scale bits remain.
@@ -51,28 +52,36 @@ fn squeeze(word: u32, scale: i32) -> u64 {
 }
 
 impl View {
-    /// The window around `centre`.
+    /// A window of nothing.
     #[must_use]
-    pub fn around<const TILES: usize, const SLOTS: usize>(
+    pub const fn new() -> Self {
+        let origin = Cell { x: 0, y: 0 };
+        Self {
+            origin,
+            scale: 1,
+            passable: [0; SIDE],
+            obstacle: [0; SIDE],
+        }
+    }
+
+    /// See the window around `centre`.
+    pub fn look_around<const TILES: usize, const SLOTS: usize>(
+        &mut self,
         tiles: &Tiles<TILES, SLOTS>,
         disc: &Disc,
         centre: Cell,
         scale: i32,
-    ) -> Self {
+    ) {
         let half = SIDE as i32 / 2;
         let least = |at: i32| (at.div_euclid(scale) - half) * scale;
         let origin = Cell {
             x: least(centre.x),
             y: least(centre.y),
         };
-        let mut view = Self {
-            origin,
-            scale,
-            passable: [0; SIDE],
-            obstacle: [0; SIDE],
-            unknown: [0; SIDE],
-        };
-        let mut known: Rows = [0; SIDE];
+        (self.origin, self.scale) = (origin, scale);
+        self.passable.fill(0);
+        self.obstacle.fill(0);
+        let mut blocked: Rows = [0; SIDE];
         let across = SIDE as i32 * scale;
         for block in 0..(across + 31) / 32 {
             let shift = (block * 32 / scale) as u32;
@@ -84,24 +93,21 @@ impl View {
                         *out |= squeeze(word, scale) << shift;
                     }
                 };
-                put(&mut view.passable, strip.passable);
-                put(&mut view.obstacle, strip.obstacle);
-                put(&mut known, !strip.unknown);
+                put(&mut self.passable, strip.passable);
+                put(&mut self.obstacle, strip.obstacle);
+                put(&mut blocked, !strip.passable);
             });
         }
-        let inside = (1u64 << SIDE) - 1;
-        if scale == 4 {
-            for (passable, obstacle) in view.passable.iter_mut().zip(view.obstacle) {
-                *passable &= !obstacle;
-            }
+        for (passable, blocked) in self.passable.iter_mut().zip(blocked) {
+            *passable &= if scale == 4 {
+                INSIDE & !blocked
+            } else {
+                INSIDE
+            };
         }
-        for (unknown, known) in view.unknown.iter_mut().zip(known) {
-            *unknown = !known & inside;
+        for row in &mut self.obstacle {
+            *row &= INSIDE;
         }
-        for row in view.passable.iter_mut().chain(&mut view.obstacle) {
-            *row &= inside;
-        }
-        view
     }
 
     /// The window cell of a map cell, if it is in the window.
@@ -111,17 +117,6 @@ impl View {
         let y = (cell.y - self.origin.y).div_euclid(self.scale);
         let inside = |at: i32| (0..SIDE as i32).contains(&at);
         (inside(x) && inside(y)).then_some((x as usize, y as usize))
-    }
-
-    /// A point in window cells.
-    #[must_use]
-    pub fn position(&self, point: Point) -> (f32, f32) {
-        let side = CELL_M * self.scale as f32;
-        let along = |at: f32, origin: i32| (at - origin as f32 * CELL_M) / side;
-        (
-            along(point.x_m, self.origin.x),
-            along(point.y_m, self.origin.y),
-        )
     }
 
     /// The map cell of a window cell (its middle).
@@ -183,9 +178,23 @@ impl View {
         }
         Self::put(&mut self.passable, place);
         for row in &mut self.passable {
-            *row &= (1 << SIDE) - 1;
+            *row &= INSIDE;
         }
     }
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A point in cells of the window whose least map cell and scale are given.
+#[must_use]
+pub fn position((origin, scale): (Cell, i32), point: Point) -> (f32, f32) {
+    let side = CELL_M * scale as f32;
+    let along = |at: f32, origin: i32| (at - origin as f32 * CELL_M) / side;
+    (along(point.x_m, origin.x), along(point.y_m, origin.y))
 }
 
 #[cfg(test)]
@@ -214,7 +223,8 @@ mod tests {
     #[test]
     fn the_window_at_scale_one_is_the_map() {
         let (tiles, disc) = (room(), Disc::new(0.3));
-        let view = View::around(&tiles, &disc, Cell { x: 3, y: -2 }, 1);
+        let mut view = View::new();
+        view.look_around(&tiles, &disc, Cell { x: 3, y: -2 }, 1);
         for y in 0..SIDE {
             for x in 0..SIDE {
                 let cell = view.cell(x, y);
@@ -235,26 +245,28 @@ mod tests {
     fn a_grown_window_is_passable_where_any_of_its_cells_is() {
         let (tiles, disc) = (room(), Disc::new(0.3));
         for scale in [2, 4] {
-            let view = View::around(&tiles, &disc, Cell { x: -5, y: 9 }, scale);
+            let mut view = View::new();
+            view.look_around(&tiles, &disc, Cell { x: -5, y: 9 }, scale);
             for y in 0..SIDE {
                 for x in 0..SIDE {
                     let least = Cell {
                         x: view.origin.x + x as i32 * scale,
                         y: view.origin.y + y as i32 * scale,
                     };
-                    let (mut any, mut wall) = (false, false);
+                    let (mut any, mut all) = (false, true);
                     for k in 0..scale * scale {
                         let cell = Cell {
                             x: least.x + k % scale,
                             y: least.y + k / scale,
                         };
-                        any |= is_passable(&tiles, &disc, cell);
-                        wall |= tiles.class(cell) == Class::Obstacle;
+                        let passable = is_passable(&tiles, &disc, cell);
+                        any |= passable;
+                        all &= passable;
                     }
-                    any &= scale < 4 || !wall;
+                    let wanted = if scale < 4 { any } else { all };
                     assert_eq!(
                         View::has(&view.passable, (x, y)),
-                        any,
+                        wanted,
                         "scale {scale} ({x}, {y})"
                     );
                 }
@@ -266,7 +278,8 @@ mod tests {
     fn a_robot_too_near_to_a_wall_is_let_out() {
         let (tiles, disc) = (room(), Disc::new(0.3));
         let robot = Cell { x: -28, y: 0 };
-        let mut view = View::around(&tiles, &disc, robot, 1);
+        let mut view = View::new();
+        view.look_around(&tiles, &disc, robot, 1);
         let place = view.place(robot).unwrap();
         assert!(!View::has(&view.passable, place));
         view.free_robot(robot);

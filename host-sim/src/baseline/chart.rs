@@ -208,9 +208,9 @@ impl Chart {
                 let first = (y - origin.y) as usize * width + column;
                 for (k, flags) in self.flags[first..first + 32].iter_mut().enumerate() {
                     let bit = |word: u32| (word >> k & 1) as u8;
-                    *flags = bit(strip.passable) * PASSABLE
-                        | bit(strip.unknown) * UNKNOWN
-                        | bit(strip.obstacle) * OBSTACLE;
+                    *flags = (bit(strip.passable) * PASSABLE)
+                        | (bit(strip.unknown) * UNKNOWN)
+                        | (bit(strip.obstacle) * OBSTACLE);
                 }
             });
         }

@@ -15,7 +15,7 @@ use fieldline_device::session::{self, Boot};
 use fieldline_device::{SLOTS, TILES};
 use fieldline_planner::clearance::Disc;
 use fieldline_planner::config::Config;
-use fieldline_planner::drive::{Drive, Place, Surround, manoeuvre};
+use fieldline_planner::drive::{Drive, Ground, Place, Surround, manoeuvre};
 use fieldline_planner::geometry::{Point, Pose, Twist};
 use fieldline_planner::map::Map;
 use fieldline_planner::map::integrate::is_level;
@@ -220,9 +220,13 @@ impl<P: Plan> Session<P> {
                 let there = plan.heading_at(&scene, ahead(&pose, place));
                 there.map(|heading| math::wrap(heading - pose.yaw_rad))
             };
-            let scratch = &mut self.scratch;
+            let ground = Ground {
+                surround: &surround,
+                heading_at: heading_there,
+                potential_at: None,
+            };
             self.drive
-                .follow(config, heading_there, input.velocity, &surround, scratch)
+                .follow(config, &ground, input.velocity, &mut self.scratch)
         } else {
             look_around(config, input, &surround)
         };

@@ -33,7 +33,7 @@ pub(super) enum Command {
 
 #[derive(Debug, Args)]
 pub(super) struct ExploreArgs {
-    /// World files (ROS map_server YAML) or names of built-in worlds
+    /// World files (YAML for ROS map servers) or names of built-in worlds
     #[arg(value_name = "WORLD", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
     /// What plans: frontier on the device, or a baseline on the host
@@ -43,10 +43,10 @@ pub(super) struct ExploreArgs {
     #[arg(long)]
     pub(super) link: Option<LinkSpec>,
     /// Decides every random number of the run
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<u64>)]
     pub(super) seed: u64,
     /// Which of the world's start poses, from 0
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<usize>)]
     pub(super) start: usize,
     /// What the robot believes of its motion
     #[arg(long, value_enum, default_value_t = OdometryArg::Truth)]
@@ -144,6 +144,12 @@ pub(super) enum SolverArg {
     Multigrid,
     /// Gauss-Seidel from q = 0
     GaussSeidel,
+}
+
+/// A number without sign or point.
+fn whole<T: core::str::FromStr>(text: &str) -> Result<T, String> {
+    let number = text.parse();
+    number.map_err(|_| "give a whole number from 0 on".into())
 }
 
 /// Seconds to milliseconds.

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, bail};
 
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::picture::{Scene, run_png};
 use host_sim::report::{Report, folder};
 use host_sim::trial::Record;
-use host_sim::trial::mission::{self, Mission};
+use host_sim::trial::mission::{self, Mission, MissionError};
 use host_sim::world::World;
 
 use super::args::{ExploreArgs, OdometryArg};
@@ -25,11 +25,12 @@ struct Errand {
 /// Explores every world; whether all of them ended explored.
 pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     let link = baselines::place(&args.strategy, args.link.as_ref())?;
-    let errands = errands(args)?;
+    let mission = mission(args, &link);
+    let errands = errands(args, &mission)?;
     let interrupt = Interrupt::listen()?;
     let mut all_explored = true;
     for errand in &errands {
-        all_explored &= explore(args, &link, errand, &interrupt)?;
+        all_explored &= explore(args, &link, &mission, errand, &interrupt)?;
         if interrupt.pressed() {
             break;
         }
@@ -38,12 +39,13 @@ pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
 }
 
 /// Every world is opened and every folder proved before the first run.
-fn errands(args: &ExploreArgs) -> Result<Vec<Errand>> {
-    let worlds: Vec<World> = args
-        .worlds
-        .iter()
-        .map(|name| Ok(World::open(name)?))
-        .collect::<Result<_>>()?;
+fn errands(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Errand>> {
+    let open = |name: &String| {
+        let world = World::open(name)?;
+        mission::check(mission, &world)?;
+        Ok(world)
+    };
+    let worlds: Vec<World> = args.worlds.iter().map(open).collect::<Result<_>>()?;
     let names = unique(worlds.iter().map(|world| {
         let (strategy, seed) = (&args.strategy, args.seed);
         format!("{}-{strategy}-{seed}", world.name())
@@ -83,6 +85,7 @@ fn unique(names: impl Iterator<Item = String>) -> Vec<String> {
 fn explore(
     args: &ExploreArgs,
     link: &LinkSpec,
+    mission: &Mission,
     errand: &Errand,
     interrupt: &Interrupt,
 ) -> Result<bool> {
@@ -98,14 +101,12 @@ fn explore(
     let mut planner = baselines::open(&args.strategy, link, &options)
         .with_context(|| format!("--link {link}"))?;
     let mut onlooker = Onlooker::new(name, args.realtime, interrupt.clone());
-    let run = mission::explore(
-        &mission(args, link),
-        &errand.world,
-        planner.as_mut(),
-        &mut onlooker,
-    );
+    let run = mission::explore(mission, &errand.world, planner.as_mut(), &mut onlooker);
     onlooker.finish();
-    let (report, record) = run.with_context(|| format!("{name} by {link}"))?;
+    let (report, record) = match run {
+        Err(MissionError::Link(error)) => bail!("--link {link}: {error}"),
+        run => run?,
+    };
     folder::write(&errand.folder, &report, &record, &picture(&report, &record))?;
     tell(args, &report, &record, &errand.folder)?;
     Ok(report.explored())

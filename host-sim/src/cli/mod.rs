@@ -84,8 +84,7 @@ fn one_paragraph(error: &clap::Error) -> String {
     let first = text.split("\n\n").next().unwrap_or_default();
     let first = first.trim_start_matches("error: ");
     let first = first.trim_end();
-    let joint = if first.ends_with(['.', ']']) { "" } else { ";" };
-    format!("{first}{joint} see host-sim --help")
+    format!("{first}; see host-sim --help")
 }
 
 fn is_broken_pipe(error: &Error) -> bool {

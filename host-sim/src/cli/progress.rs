@@ -1,8 +1,9 @@
 //! The line that lives while a run does, the pacer, and the interrupt key.
 
+use core::sync::atomic::{AtomicBool, Ordering};
+use core::time::Duration;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use anyhow::{Context as _, Result};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -55,6 +56,7 @@ impl Onlooker {
             bar.set_style(style.progress_chars("━━─"));
         }
         bar.set_prefix(name.to_owned());
+        bar.set_message("waiting for the device");
         Self {
             bar,
             interrupt,

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Result, anyhow};
 
 use host_sim::solve::sheet::{self, Sheet};
 use host_sim::solve::{self, Solver};
@@ -28,8 +28,12 @@ pub(super) fn run(args: &SolveArgs) -> Result<()> {
     };
     let solved = solve::run(&sheet, epsilon.as_deref(), solver);
     if let Some(path) = &args.out {
-        fs::write(path, solved.csv())
-            .with_context(|| format!("cannot write {}; choose another --out", path.display()))?;
+        fs::write(path, solved.csv()).map_err(|error| {
+            anyhow!(
+                "cannot write {} ({error}); choose another --out",
+                path.display()
+            )
+        })?;
         note(&format!("field written to {}", path.display()));
     }
     if args.json {
@@ -40,8 +44,12 @@ pub(super) fn run(args: &SolveArgs) -> Result<()> {
 }
 
 fn read(path: &Path) -> Result<String> {
-    let bytes = fs::read(path)
-        .with_context(|| format!("cannot read {}; give an existing file", path.display()))?;
+    let bytes = fs::read(path).map_err(|error| {
+        anyhow!(
+            "cannot read {} ({error}); give an existing file",
+            path.display()
+        )
+    })?;
     String::from_utf8(bytes)
         .ok()
         .with_context(|| format!("{} is no text; give a plain text file", path.display()))

@@ -40,6 +40,18 @@ impl Patience {
         attempt: Duration::from_secs(3),
         attempts: 10,
     };
+    /// The same time in steps of a fifth of a second at the most: a device that is still booting hears nothing, and a repeated hello
+    /// costs it nothing.
+    #[must_use]
+    pub fn for_hello(self) -> Self {
+        let attempt = self.attempt.min(Duration::from_millis(200));
+        let total = self.attempt * self.attempts;
+        Self {
+            attempt,
+            attempts: (total.as_millis() / attempt.as_millis().max(1)) as u32,
+        }
+    }
+
     /// With a robot that moves while we wait: five attempts within the device's stale limit of 500 ms.
     pub const REAL_TIME: Self = Self {
         attempt: Duration::from_millis(95),
@@ -98,27 +110,32 @@ impl<L: Line> Endpoint<L> {
     }
 
     fn call(&mut self, request: &Request) -> Result<Reply, LinkError> {
-        if self.boots.is_none() && !matches!(request, Request::Hello { .. }) {
+        if self.boots.is_none() {
             self.hello()?;
         }
+        self.ask(request, self.patience)
+    }
+
+    /// Sends a request until it is answered.
+    fn ask(&mut self, request: &Request, patience: Patience) -> Result<Reply, LinkError> {
         self.sequence = self.sequence.wrapping_add(1).max(1);
         let mut frame = [0; 1 + MAX_REQUEST_FRAME];
         // A zero first, to end whatever noise is on the line; only when asking again does it cost a byte.
         let length = encode_request(self.sequence, request, &mut frame[1..])
             .map_err(|error| LinkError::Io(error.to_string()))?;
-        for attempt in 0..self.patience.attempts {
+        for attempt in 0..patience.attempts {
             self.stats.sent += 1;
             self.stats.retries += u64::from(attempt > 0);
             self.line.send(&frame[usize::from(attempt == 0)..=length])?;
-            if let Some(reply) = self.await_reply()? {
+            if let Some(reply) = self.await_reply(patience.attempt)? {
                 return Ok(reply);
             }
         }
         Err(LinkError::Silent)
     }
 
-    fn await_reply(&mut self) -> Result<Option<Reply>, LinkError> {
-        let deadline = self.line.now() + self.patience.attempt;
+    fn await_reply(&mut self, limit: Duration) -> Result<Option<Reply>, LinkError> {
+        let deadline = self.line.now() + limit;
         loop {
             while let Some(byte) = self.inbox.pop_front() {
                 if let Some(reply) = self.hear(byte)? {
@@ -172,8 +189,7 @@ impl<L: Line> Endpoint<L> {
                 Some(crash) => LinkError::Crashed(crash.to_string()),
                 None => LinkError::Reset,
             }),
-            None if sequence == self.sequence => Ok(Some(Reply::Hello(identity))),
-            Some(_) if sequence == self.sequence => Ok(Some(Reply::Hello(identity))),
+            _ if sequence == self.sequence => Ok(Some(Reply::Hello(identity))),
             // It just booted and we have not met, or it answered an earlier hello twice.
             _ => Ok(None),
         }
@@ -202,7 +218,7 @@ impl<L: Line> Link for Endpoint<L> {
             schema: SCHEMA,
             nonce: self.nonce,
         };
-        let identity = match self.call(&request) {
+        let identity = match self.ask(&request, self.patience.for_hello()) {
             Ok(Reply::Hello(identity)) => identity,
             Ok(_) => return Err(unexpected("a hello")),
             Err(LinkError::Silent) if self.bytes > 0 && self.receiver.tally().received == 0 => {

@@ -81,10 +81,7 @@ fn explain(log: &str) -> String {
 /// The path in cargo's message `{"reason":"compiler-artifact",…,"executable":"…"}`.
 fn executable(messages: &str) -> Option<PathBuf> {
     const KEY: &str = "\"executable\":\"";
-    let line = messages
-        .lines()
-        .filter(|line| line.contains(KEY))
-        .next_back()?;
+    let line = messages.lines().rfind(|line| line.contains(KEY))?;
     let rest = &line[line.find(KEY)? + KEY.len()..];
     let path = &rest[..rest.find('"')?];
     Some(PathBuf::from(

@@ -71,7 +71,9 @@ impl LocalDevice {
 
 fn boot(boots: u32) -> Session {
     let boot = Boot { boots, crash: None };
-    Session::new(boot, TILES, SLOTS)
+    let mut session = Session::new();
+    session.boot(boot, TILES, SLOTS);
+    session
 }
 
 impl Line for LocalDevice {

@@ -22,6 +22,8 @@ pub mod endpoint;
 pub mod fault;
 pub mod image;
 pub mod line;
+#[cfg(feature = "logs")]
+pub mod logs;
 pub mod loopback;
 pub mod qemu;
 pub mod serial;

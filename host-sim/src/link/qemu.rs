@@ -36,6 +36,13 @@ impl Drop for Emulator {
 
 impl Emulator {
     fn start(image: &Path, serial: &str) -> Result<Self, LinkError> {
+        if !image.is_file() {
+            let what = format!(
+                "there is no image at {}; type: cargo image",
+                image.display()
+            );
+            return Err(LinkError::Io(what));
+        }
         let child = Command::new(PROGRAM)
             .args([
                 "-M",
@@ -84,6 +91,21 @@ impl Emulator {
     }
 }
 
+#[cfg(unix)]
+impl Emulator {
+    /// Why the line failed: the emulator's last word, if it ended or is about to.
+    fn explain(&mut self, error: LinkError) -> LinkError {
+        let began = Instant::now();
+        while began.elapsed() < Duration::from_secs(1) {
+            if let Err(ended) = self.check() {
+                return ended;
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        error
+    }
+}
+
 /// A line to an emulated board.
 #[cfg(unix)]
 #[derive(Debug)]
@@ -96,12 +118,12 @@ pub struct QemuLine {
 impl Line for QemuLine {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         let sent = self.stream.send(bytes);
-        sent.or_else(|error| self.emulator.check().and(Err(error)))
+        sent.map_err(|error| self.emulator.explain(error))
     }
 
     fn receive(&mut self, into: &mut Vec<u8>, wait: Duration) -> Result<(), LinkError> {
         let received = self.stream.receive(into, wait);
-        received.or_else(|error| self.emulator.check().and(Err(error)))
+        received.map_err(|error| self.emulator.explain(error))
     }
 
     fn now(&self) -> Duration {
@@ -140,7 +162,7 @@ pub fn open_line(image: &Path) -> Result<QemuLine, LinkError> {
 
 #[cfg(unix)]
 fn socket_path() -> PathBuf {
-    use std::sync::atomic::{AtomicU32, Ordering};
+    use core::sync::atomic::{AtomicU32, Ordering};
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
     let name = format!("fieldline-{}-{count}.sock", std::process::id());

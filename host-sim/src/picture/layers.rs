@@ -72,7 +72,9 @@ pub(super) fn arrows(canvas: &mut Canvas, frame: &Frame, window: &Window) {
             let (column, row) = window_cell(window, y * FIELD_SIDE + x);
             let centre = |cell: i32| (f64::from(cell) + 0.5) * cells;
             let middle = frame.spot(centre(column), centre(row));
-            arrow(canvas, middle, (dx, -dy), length, thickness);
+            if frame.holds(middle) {
+                arrow(canvas, middle, (dx, -dy), length, thickness);
+            }
         }
     }
     let corner = |x: i32, y: i32| frame.spot(f64::from(x) * cells, f64::from(y) * cells);
@@ -136,7 +138,7 @@ pub(super) fn skeleton(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
         |x: i32, y: i32| map.on_skeleton(2 * x, 2 * y) && map.get(2 * x, 2 * y) == MapCell::Free;
     let centre = |x: i32, y: i32| frame.spot(f64::from(2 * x + 1), f64::from(2 * y + 1));
     let colour = palette::SKELETON.alpha(1.0);
-    let width = frame.cell_px as f32 * 0.3;
+    let width = (frame.cell_px as f32 * 0.3).max(1.3);
     let (x0, y0) = (frame.origin_x.div_euclid(2), frame.origin_y.div_euclid(2));
     for y in y0..=y0 + frame.rows / 2 {
         for x in (x0..=x0 + frame.columns / 2).filter(|&x| on(x, y)) {

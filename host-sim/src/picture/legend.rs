@@ -16,9 +16,9 @@ pub(super) fn title(canvas: &mut Canvas, scene: &Scene<'_>) {
     canvas.text((left, 61.0), 15.5, scene.subtitle, palette::FAINT);
 }
 
-/// A round length of about a fifth of the map's width, and north.
+/// A round length of up to a quarter of the map's width.
 pub(super) fn scale_bar(canvas: &mut Canvas, frame: &Frame) {
-    let metres = round_length(frame.width() as f32 / frame.metre_px() / 5.0);
+    let metres = round_length(frame.width() as f32 / frame.metre_px() / 4.0);
     let length = metres * frame.metre_px();
     let (left, top) = (
         frame.left as f32,
@@ -100,7 +100,7 @@ fn label(canvas: &mut Canvas, left: f32, y: f32, words: &str) {
 
 /// The path's colours over simulated time.
 fn time_bar(canvas: &mut Canvas, left: f32, top: f32, scene: &Scene<'_>) {
-    let total_s = scene.path.last().map_or(0, |p| p.time_ms) / 1000;
+    let total_s = (scene.path.last().map_or(0, |p| p.time_ms) + 500) / 1000;
     let (x, width) = (left + 6.0, 14.0);
     for i in 0..TIME_BAR as i32 {
         let share = i as f32 / TIME_BAR;

@@ -1,6 +1,6 @@
 //! `run.png`: the map, the skeleton, the last window's field and the path coloured by time, with a legend.
 //!
-//! A map cell is a square of two to six whole pixels, so that the map stays crisp; everything else is antialiased. North
+//! A map cell is a square of whole pixels, two to six but for the smallest maps, so that the map stays crisp; everything else is antialiased. North
 //! is up.
 
 mod canvas;
@@ -26,6 +26,8 @@ const PANEL: i32 = 236;
 const PANEL_HEIGHT: i32 = 470;
 /// The least width of the map's part, so that the title fits.
 const LEAST_WIDTH: i32 = 420;
+/// Cells of unknown around the map.
+const RIM: i32 = 3;
 /// The picture's side that a map of any size should not pass by much, pixels.
 const GOOD_SIDE: i32 = 1_500;
 
@@ -60,14 +62,19 @@ struct Frame {
 
 impl Frame {
     fn around(map: &GridMap) -> Self {
-        let (columns, rows) = (map.width.max(1) as i32, map.height.max(1) as i32);
-        let cell_px = (GOOD_SIDE / columns.max(rows)).clamp(2, 6);
+        let side = |cells: usize| cells.max(1) as i32 + 2 * RIM;
+        let (columns, rows) = (side(map.width), side(map.height));
+        let longest = columns.max(rows);
+        // A closet is drawn larger, so that its marks do not cover it.
+        let cell_px = (GOOD_SIDE / longest)
+            .clamp(2, 6)
+            .max((LEAST_WIDTH / longest).min(14));
         Self {
             left: MARGIN + (LEAST_WIDTH - columns * cell_px).max(0) / 2,
             top: HEADER,
             cell_px,
-            origin_x: map.origin_x,
-            origin_y: map.origin_y,
+            origin_x: map.origin_x - RIM,
+            origin_y: map.origin_y - RIM,
             columns,
             rows,
         }
@@ -96,6 +103,13 @@ impl Frame {
             (f64::from(self.left) + (x - f64::from(self.origin_x)) * side) as f32,
             (f64::from(self.top) + (f64::from(self.rows + self.origin_y) - y) * side) as f32,
         )
+    }
+
+    /// Whether a spot lies on the map.
+    fn holds(&self, (x, y): Spot) -> bool {
+        let within =
+            |v: f32, from: i32, length: i32| v >= from as f32 && v <= (from + length) as f32;
+        within(x, self.left, self.width()) && within(y, self.top, self.height())
     }
 
     /// A point in metres.

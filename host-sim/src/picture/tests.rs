@@ -108,17 +108,20 @@ fn a_run_that_saw_nothing_still_has_a_picture() {
 #[test]
 fn large_maps_keep_whole_pixels() {
     let side = |cells: usize| Frame::around(&GridMap::unknown(0, 0, cells, cells / 2)).cell_px;
-    assert_eq!([20, 300, 640, 1_300].map(side), [6, 5, 2, 2]);
+    assert_eq!([20, 100, 300, 640, 1_300].map(side), [14, 6, 4, 2, 2]);
 }
 
 #[test]
 fn pixels_and_spots_agree() {
     let frame = Frame::around(&GridMap::unknown(-7, 3, 30, 20));
+    let rim = 3 * frame.cell_px;
     let (left, top) = frame.pixel(-7, 22);
-    assert_eq!((left, top), (frame.left, frame.top));
+    assert_eq!((left, top), (frame.left + rim, frame.top + rim));
     let (x, y) = frame.spot(-7.0, 23.0);
     assert_eq!((x, y), (left as f32, top as f32));
     let (x, y) = frame.metres(2.3, 0.3);
-    let corner = (frame.left + frame.width(), frame.top + frame.height());
-    assert_eq!((x.round() as i32, y.round() as i32), corner);
+    let right = frame.left + frame.width() - rim;
+    let bottom = frame.top + frame.height() - rim;
+    assert_eq!((x.round() as i32, y.round() as i32), (right, bottom));
+    assert!(frame.holds((x, y)) && !frame.holds((x, 0.0)));
 }

@@ -26,11 +26,8 @@ impl core::fmt::Display for WriteError {
     }
 }
 
-impl core::error::Error for WriteError {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        Some(&self.source)
-    }
-}
+// No source: the message has it already.
+impl core::error::Error for WriteError {}
 
 /// Make `folder` if needed and prove that it takes files, before a run is spent on it.
 ///

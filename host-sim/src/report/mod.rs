@@ -153,6 +153,8 @@ pub struct Percentiles {
 pub struct Field {
     /// Greatest angle between a step's heading and that of the converged window; `null` without `--check-field`.
     pub worst_heading_error_deg: Option<f64>,
+    /// The same angle over all compared steps.
+    pub heading_error_deg: Option<Percentiles>,
     /// Steps whose solver ran out of budget.
     pub budget_exhausted: u64,
 }

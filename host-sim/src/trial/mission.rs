@@ -104,6 +104,14 @@ impl From<LinkError> for MissionError {
     }
 }
 
+/// Whether the robot can stand where the mission starts, before anything else is spent on it.
+///
+/// # Errors
+/// As [`WorldError::Start`].
+pub fn check(mission: &Mission, world: &World) -> Result<(), WorldError> {
+    Simulator::new(world, sim_config(mission)).map(|_| ())
+}
+
 /// Explore `world` over `link`.
 ///
 /// # Errors
@@ -234,7 +242,7 @@ fn assemble(
         debug: report::Debug {
             map_matches_mirror: (!record.tiles.is_empty())
                 .then(|| account.mirror.equals(&record.tiles)),
-            checked_windows: record.checked_windows,
+            checked_windows: record.heading_errors_deg.len() as u64,
         },
     }
 }

@@ -189,18 +189,14 @@ fn check_field(
     command: &Command,
     record: &mut Record,
 ) -> Result<(), LinkError> {
-    if command.status != Status::Exploring {
+    // Without a cycle there was no window in this step: the one that could be read is an older one.
+    if command.status != Status::Exploring || command.cost.cycles == 0 {
         return Ok(());
     }
     if let Some(window) = snapshot::window(link)?
         && let Some(error_deg) = oracle::heading_error_deg(&window, &observation.pose, command)
     {
-        record.checked_windows += 1;
-        record.worst_heading_error_deg = Some(
-            record
-                .worst_heading_error_deg
-                .map_or(error_deg, |worst| worst.max(error_deg)),
-        );
+        record.heading_errors_deg.push(error_deg);
     }
     Ok(())
 }

@@ -62,11 +62,14 @@ pub fn solve(cells: &[WindowCell]) -> Vec<f64> {
     q
 }
 
-/// Heading of ∇q at a point of the window, in cells; `None` where it is flat.
+/// Heading of ∇q at a point of the window, in cells; `None` where it is flat: in the point's own cell there must be a slope.
 #[must_use]
 pub fn heading_at(q: &[f64], x: f64, y: f64) -> Option<f64> {
     let inside = |v: f64| (0.0..SIDE as f64).contains(&v);
     if !inside(x) || !inside(y) {
+        return None;
+    }
+    if gradient(q, x as isize, y as isize) == (0.0, 0.0) {
         return None;
     }
     let (west, south) = ((x - 0.5).floor(), (y - 0.5).floor());

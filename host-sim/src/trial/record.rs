@@ -45,10 +45,8 @@ pub struct Record {
     pub window: Option<Window>,
     /// Frontiers that were left.
     pub frontiers: Vec<Frontier>,
-    /// Greatest angle between a heading and that of the converged window, where that was asked for.
-    pub worst_heading_error_deg: Option<f64>,
-    /// Windows compared for it.
-    pub checked_windows: u64,
+    /// Angles between a step's heading and that of the converged window, where that was asked for.
+    pub heading_errors_deg: Vec<f64>,
     /// Both ends' counters.
     pub link_stats: LinkStats,
     /// Why map and field could not be read, if so.
@@ -67,8 +65,7 @@ impl Default for Record {
             tiles: BTreeMap::new(),
             window: None,
             frontiers: Vec::new(),
-            worst_heading_error_deg: None,
-            checked_windows: 0,
+            heading_errors_deg: Vec::new(),
             link_stats: LinkStats::default(),
             read_out_error: None,
         }
@@ -180,8 +177,10 @@ impl Record {
     #[must_use]
     pub fn field(&self) -> report::Field {
         let exhausted = |step: &&Step| step.command.cost.budget_exhausted;
+        let errors = Percentiles::of(&self.heading_errors_deg);
         report::Field {
-            worst_heading_error_deg: self.worst_heading_error_deg,
+            worst_heading_error_deg: errors.map(|errors| errors.max),
+            heading_error_deg: errors,
             budget_exhausted: self.steps.iter().filter(exhausted).count() as u64,
         }
     }

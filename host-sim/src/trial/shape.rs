@@ -6,26 +6,29 @@
 /// Side of a tile, metres.
 pub const TILE_M: f64 = 3.2;
 
-/// The fewest tiles that hold an extent in any alignment, plus the wall around it.
-fn tiles_for(metres: f64) -> u32 {
-    (metres / TILE_M).ceil() as u32 + 1
-}
-
-/// The box for a world of this size: square where that fits, else as long as the world; square also where nothing fits,
-/// and the run will say so.
+/// The box for a world of this size: square where that holds the world, else as long as the world. Where not even that fits,
+/// square, and the run will say so.
+///
+/// A world that is not aligned with the tiles touches one tile more than its length says; a box that has no slots
+/// for that is taken all the same, since walls at both ends are rarely touched.
 #[must_use]
-pub fn for_world([width_m, height_m]: [f64; 2], slots: u16) -> (u8, u8) {
+pub fn for_world(size_m: [f64; 2], slots: u16) -> (u8, u8) {
     let slots = u32::from(slots).max(1);
-    let (across, up) = (tiles_for(width_m), tiles_for(height_m));
     let side = slots.isqrt();
-    if across.max(up) <= side || across * up > slots {
-        return (narrow(side), narrow(side));
-    }
-    if across > up {
-        (narrow(across), narrow(slots / across))
-    } else {
-        (narrow(slots / up), narrow(up))
-    }
+    [1, 0]
+        .into_iter()
+        .find_map(|spare| {
+            let [across, up] = size_m.map(|m| (m / TILE_M).ceil().max(1.0) as u32 + spare);
+            match (across.max(up) <= side, across * up <= slots) {
+                (true, _) => Some((side, side)),
+                (false, true) if across > up => Some((across, slots / across)),
+                (false, true) => Some((slots / up, up)),
+                _ => None,
+            }
+        })
+        .map_or((narrow(side), narrow(side)), |(across, up)| {
+            (narrow(across), narrow(up))
+        })
 }
 
 /// The box of so many metres, rounded up to tiles.
@@ -52,14 +55,15 @@ mod tests {
     #[test]
     fn long_worlds_get_a_long_box_that_holds_them() {
         for (size, expected) in [
-            ([114.0, 30.0], (37, 10)),
+            ([114.0, 30.0], (36, 11)),
+            ([114.0, 28.0], (37, 10)),
             ([30.0, 96.0], (12, 31)),
             ([72.0, 13.0], (24, 16)),
         ] {
             let (across, up) = for_world(size, 400);
             assert_eq!((across, up), expected);
             assert!(u32::from(across) * u32::from(up) <= 400);
-            assert!(f64::from(across - 1) * 3.2 >= size[0].min(f64::from(across - 1) * 3.2));
+            assert!(f64::from(across) * 3.2 >= size[0] && f64::from(up) * 3.2 >= size[1]);
         }
     }
 

@@ -119,6 +119,11 @@ impl Robot {
         }
     }
 
+    /// Lets a step pass without a command.
+    pub(crate) fn wait(&mut self) {
+        self.time_ms += 100;
+    }
+
     fn drive(&mut self, command: &Command) {
         self.digest.add(command);
         self.steps += 1;

@@ -224,7 +224,12 @@ fn status() -> impl Strategy<Value = Status> {
 }
 
 fn crash() -> impl Strategy<Value = Crash> {
-    let cause = prop::sample::select(vec![Cause::Panic, Cause::Fault]);
+    let cause = prop::sample::select(vec![
+        Cause::Panic,
+        Cause::Fault,
+        Cause::StackOverflow,
+        Cause::Watchdog,
+    ]);
     (cause, any::<u32>(), text()).prop_map(|(cause, at, file)| Crash { cause, at, file })
 }
 

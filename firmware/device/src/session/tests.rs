@@ -43,8 +43,11 @@ struct Talk {
 
 impl Talk {
     fn booted(boot: Boot) -> Self {
+        let mut session = Session::new();
+        assert!(session.pending().is_empty());
+        session.boot(boot, 192, 400);
         Self {
-            session: Session::new(boot, 192, 400),
+            session,
             bench: Bench::new(),
             steps: Steps::default(),
             host: Receiver::new(Side::Host),

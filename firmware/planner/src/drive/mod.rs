@@ -10,9 +10,10 @@
 //! Units: metres, seconds, radians; robot frame, x forward.
 
 pub mod manoeuvre;
+mod open;
 pub mod surround;
 
-pub use manoeuvre::Plan;
+pub use manoeuvre::{Found, Ground, Plan, Search};
 pub use surround::{Place, Surround};
 
 use crate::config::Config;
@@ -37,66 +38,127 @@ const TURN_FIRST_RAD: f32 = 0.9;
 /// An error smaller than this is none, radians.
 const ALIGNED_RAD: f32 = 0.12;
 
-/// What the drive remembers: the manoeuvre in progress.
+/// Poses looked at in a step of a search.
+const SEARCH_NODES: u32 = 250;
+/// Speed backwards where there is no room to turn, metres a second.
+const REVERSE_MPS: f32 = 0.15;
+/// An error this near to half a turn can be driven backwards, radians.
+const REVERSE_RAD: f32 = 0.35;
+
+/// What the drive remembers: the manoeuvre in progress, or the search for one.
 #[derive(Debug, Default)]
 pub struct Drive {
     plan: Plan,
+    search: Option<Search>,
 }
 
 impl Drive {
     /// At rest.
     #[must_use]
     pub const fn new() -> Self {
-        Self { plan: Plan::new() }
+        Self {
+            plan: Plan::new(),
+            search: None,
+        }
     }
 
-    /// The velocity for the heading that `heading_at` gives for the robot's place (radians to the left), from the velocity
-    /// `now`; zero where nothing is admissible.
-    pub fn follow(
+    /// Whether a search is going on: its poses are in the scratch, which nobody else may use until it is over.
+    #[must_use]
+    pub const fn is_searching(&self) -> bool {
+        self.search.is_some()
+    }
+
+    /// The velocity for the heading that the field has at the robot's place, from the velocity `now`; zero where nothing is
+    /// admissible, and while a search goes on.
+    pub fn follow<H: Fn(Place) -> Option<f32>>(
         &mut self,
         config: &Config,
-        heading_at: impl Fn(Place) -> Option<f32>,
+        ground: &Ground<'_, H>,
         now: Twist,
-        surround: &Surround,
         scratch: &mut [u32],
     ) -> Twist {
-        let admits = |twist: Twist| {
-            let creeps = twist.linear_mps.abs() <= CREEP_MPS;
-            surround.admits(
-                twist,
-                now,
-                config,
-                if creeps { CREEP_MARGIN_M } else { MARGIN_M },
-            )
-        };
-        if let Some(twist) = self.plan.next(config.period_s)
-            && surround.admits(twist, now, config, PLAN_KEPT_M)
-        {
-            return twist;
+        let surround = ground.surround;
+        if self.search.is_none() {
+            let planned = self.plan.next(config.period_s);
+            if let Some(twist) = planned.filter(|&t| surround.admits(t, now, config, PLAN_KEPT_M)) {
+                return twist;
+            }
+            self.plan.clear();
+            let Some(error) = (ground.heading_at)(Place::default()) else {
+                return Twist::default();
+            };
+            if let Some(twist) = directly(config, error, now, surround) {
+                return twist;
+            }
+            if is_moving(now) {
+                return Twist::default();
+            }
+            self.search = Some(Search::start(PLAN_MARGINS_M[0], scratch));
         }
-        self.plan.clear();
-        let Some(error) = heading_at(Place::default()) else {
-            return Twist::default();
-        };
-        let ahead = ahead(config, error);
-        if let Some(twist) = ahead.into_iter().flatten().find(|&twist| admits(twist)) {
-            return twist;
-        }
-        if let Some(twist) = turns(config, error)
-            .into_iter()
-            .flatten()
-            .find(|&twist| admits(twist))
-        {
-            return twist;
-        }
-        let found = PLAN_MARGINS_M
-            .iter()
-            .find_map(|&margin_m| manoeuvre::search(surround, &heading_at, margin_m, scratch));
-        self.plan = found.unwrap_or_default();
-        let next = self.plan.next(config.period_s);
-        next.filter(|&twist| surround.admits(twist, now, config, PLAN_KEPT_M))
-            .unwrap_or_default()
+        self.go_on_searching(ground, scratch);
+        Twist::default()
     }
+
+    fn go_on_searching<H: Fn(Place) -> Option<f32>>(
+        &mut self,
+        ground: &Ground<'_, H>,
+        scratch: &mut [u32],
+    ) {
+        let Some(search) = &mut self.search else {
+            return;
+        };
+        match search.advance(ground, SEARCH_NODES, scratch) {
+            Found::Pending => {}
+            Found::Plan(plan) => {
+                self.plan = plan;
+                self.search = None;
+            }
+            Found::Nothing => {
+                let narrower = PLAN_MARGINS_M
+                    .iter()
+                    .find(|&&margin_m| margin_m < search.margin_m());
+                self.search = narrower.map(|&margin_m| Search::start(margin_m, scratch));
+            }
+        }
+    }
+}
+
+fn is_moving(now: Twist) -> bool {
+    now.linear_mps.abs() > 0.02 || now.angular_radps.abs() > 0.05
+}
+
+/// What needs no manoeuvre: ahead, turning on the spot, or straight back.
+fn directly(config: &Config, error: f32, now: Twist, surround: &Surround) -> Option<Twist> {
+    let admits = |&twist: &Twist| {
+        let creeps = twist.linear_mps.abs() <= CREEP_MPS;
+        surround.admits(
+            twist,
+            now,
+            config,
+            if creeps { CREEP_MARGIN_M } else { MARGIN_M },
+        )
+    };
+    let ahead = ahead(config, error).into_iter().flatten().find(admits);
+    // A turn that could not be finished would wedge the robot.
+    let turnable = || surround.is_arc_clear(Place::default(), 0.0, error, CREEP_MARGIN_M);
+    ahead
+        .or_else(|| {
+            turns(config, error)
+                .into_iter()
+                .flatten()
+                .find(admits)
+                .filter(|_| turnable())
+        })
+        .or_else(|| back(error).filter(admits))
+}
+
+/// Straight back, where the heading is behind.
+fn back(error: f32) -> Option<Twist> {
+    let askew = math::wrap(error + math::PI);
+    (askew.abs() < REVERSE_RAD).then_some(Twist {
+        linear_mps: -REVERSE_MPS,
+        angular_radps: 0.5 * askew,
+    })
 }
 
 /// Ways forward, the wish first.

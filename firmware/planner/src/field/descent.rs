@@ -40,10 +40,13 @@ pub fn heading_at(window: &Window, x: f32, y: f32) -> Option<f32> {
     angle(sum)
 }
 
-/// The reached cell or goal among the four beside (x, y) with the greatest q, if it is greater than q here: one step
-/// of the steepest way. From any reached cell of a solved window these steps lead to a goal.
+/// One step of the steepest way from cell (x, y): a goal beside it, or else the one of the four cells beside with the
+/// greatest q, if that is greater than q here. From any reached cell of a solved window these steps lead to a goal.
 #[must_use]
 pub fn ascend(window: &Window, x: usize, y: usize) -> Option<(usize, usize)> {
+    if !window.is_reached(x, y) {
+        return None;
+    }
     let mut best = (window.q(x, y), None);
     for (x, y) in [
         (x.wrapping_sub(1), y),
@@ -51,6 +54,10 @@ pub fn ascend(window: &Window, x: usize, y: usize) -> Option<(usize, usize)> {
         (x, y.wrapping_sub(1)),
         (x, y + 1),
     ] {
+        // Among goals alone q may have rounded to a goal's own value.
+        if window.is_goal(x, y) {
+            return Some((x, y));
+        }
         if window.q(x, y) > best.0 {
             best = (window.q(x, y), Some((x, y)));
         }
@@ -73,5 +80,6 @@ fn cell_gradient(window: &Window, x: i32, y: i32) -> Option<(f32, f32)> {
 }
 
 fn angle((x, y): (f32, f32)) -> Option<f32> {
-    (x != 0.0 || y != 0.0).then(|| math::atan2(y, x))
+    // Written so that a position that is no number has no heading.
+    (x.abs() + y.abs() > 0.0).then(|| math::atan2(y, x))
 }

@@ -16,26 +16,42 @@ use super::window::{Preference, STRIDE, Window, index};
 /// Relax every reached cell once, from the lowest row up, left to right.
 pub(super) fn sweep(window: &mut Window) {
     if window.preferred {
-        sweep_rows::<true>(window);
+        sweep_rows::<true, false>(window);
     } else {
-        // (ε/2)(…) would add zero: leaving it out gives the same bits.
-        sweep_rows::<false>(window);
+        // Without preferences the last term is zero: leaving it out gives the same bits.
+        sweep_rows::<false, false>(window);
     }
 }
 
-fn sweep_rows<const PREFERRED: bool>(window: &mut Window) {
+/// As [`sweep`]; answers the greatest relative change of a cell, infinite while some rise from zero.
+pub(super) fn measured_sweep(window: &mut Window) -> f32 {
+    if window.preferred {
+        sweep_rows::<true, true>(window)
+    } else {
+        sweep_rows::<false, true>(window)
+    }
+}
+
+fn sweep_rows<const PREFERRED: bool, const MEASURED: bool>(window: &mut Window) -> f32 {
+    let mut worst = 0.0;
     for (y, &reached) in window.reached.iter().enumerate() {
         for run in Runs(reached) {
             let start = index(run.start, y);
             let around = &mut window.q[start - STRIDE..][..run.len() + 2 * STRIDE];
-            relax_run::<PREFERRED>(around, &window.preference[start..][..run.len()]);
+            let preference = &window.preference[start..][..run.len()];
+            relax_run::<PREFERRED, MEASURED>(around, preference, &mut worst);
         }
     }
+    worst
 }
 
-/// Relax a run of cells: `around` starts below the run's first cell and ends above the cell after its last.
+/// Relax a run of cells: `around` begins below the run's first cell and ends above the cell after its last.
 #[inline(always)]
-fn relax_run<const PREFERRED: bool>(around: &mut [f32], preference: &[Preference]) {
+fn relax_run<const PREFERRED: bool, const MEASURED: bool>(
+    around: &mut [f32],
+    preference: &[Preference],
+    worst: &mut f32,
+) {
     let length = preference.len();
     let mut west = around[STRIDE - 1];
     let around = Cell::from_mut(around).as_slice_of_cells();
@@ -43,34 +59,22 @@ fn relax_run<const PREFERRED: bool>(around: &mut [f32], preference: &[Preference
     let here = &around[STRIDE..][..length];
     let east = &around[STRIDE + 1..][..length];
     let north = &around[2 * STRIDE..][..length];
-    let across = south.iter().zip(north);
-    let along = here.iter().zip(east);
-    for ((preference, (south, north)), (here, east)) in preference.iter().zip(across).zip(along) {
+    let upright = south.iter().zip(north);
+    let level = here.iter().zip(east);
+    for ((preference, (south, north)), (here, east)) in preference.iter().zip(upright).zip(level) {
         let (north, south, east) = (north.get(), south.get(), east.get());
         let mut sum = (north + south) + (west + east);
         if PREFERRED {
             sum += preference.half() * ((north - south).abs() + (west - east).abs());
         }
         west = sum * 0.25;
+        if MEASURED {
+            // Below the least normal number a relative change means nothing.
+            let change = (west - here.get()).abs();
+            if change > *worst * here.get() + f32::MIN_POSITIVE {
+                *worst = change / here.get();
+            }
+        }
         here.set(west);
     }
-}
-
-/// The greatest relative change that one more sweep would make: max |q′ − q| / q, 0 where nothing is free.
-pub(super) fn residual(window: &Window) -> f32 {
-    let mut worst = 0.0_f32;
-    for (y, &reached) in window.reached.iter().enumerate() {
-        for x in Runs(reached).flatten() {
-            let at = index(x, y);
-            let q = window.q[at];
-            let (north, south) = (window.q[at + STRIDE], window.q[at - STRIDE]);
-            let (west, east) = (window.q[at - 1], window.q[at + 1]);
-            let bend = (north - south).abs() + (west - east).abs();
-            let sum = (north + south) + (west + east) + window.preference[at].half() * bend;
-            // Below the least normal number a relative change means nothing.
-            let change = (sum * 0.25 - q).abs() / q.max(f32::MIN_POSITIVE);
-            worst = worst.max(change);
-        }
-    }
-    worst
 }

@@ -7,7 +7,7 @@
 //! q         ← one Gauss–Seidel sweep
 //! ```
 //!
-//! A cell's equation is taken four times over: 4 q = Σ w q_k with w = 1 ± ε/2, plus for the greater of two opposite
+//! A cell's equation is taken four times over, `4 q = Σ w q_k` with w = 1 ± ε/2, plus for the greater of two opposite
 //! neighbours. The blocks' origin alternates between cycles, so that no wall stays inside the same blocks.
 //!
 //! Invariant: 0 ≤ q ≤ GOAL. A cycle's cost hardly depends on the field's values.
@@ -57,7 +57,7 @@ impl Origin {
 
 /// One cycle. Answers max |x − 1| over the blocks: the relative error that the field had.
 ///
-/// No reached cell may be blank.
+/// The window must be raised (see `seed`): zero stays zero, however it is multiplied.
 pub(super) fn cycle(window: &mut Window, scratch: &mut [f32; SCRATCH_FLOATS]) -> f32 {
     let mut pyramid = Pyramid::new(scratch);
     if window.preferred {

@@ -29,11 +29,15 @@ mod tests {
 
     #[test]
     fn runs_of_a_word() {
-        let runs = |bits| Runs(bits).collect::<Vec<_>>();
+        let runs = |bits| {
+            Runs(bits)
+                .map(|run| (run.start, run.end))
+                .collect::<Vec<_>>()
+        };
         assert_eq!(runs(0), []);
-        assert_eq!(runs(0b0111_0010), [1..2, 4..7]);
-        assert_eq!(runs((1 << 61) - 1), [0..61]);
-        assert_eq!(runs(1 | 1 << 60), [0..1, 60..61]);
-        assert_eq!(runs(u64::MAX), [0..64]);
+        assert_eq!(runs(0b0111_0010), [(1, 2), (4, 7)]);
+        assert_eq!(runs((1 << 61) - 1), [(0, 61)]);
+        assert_eq!(runs(1 | 1 << 60), [(0, 1), (60, 61)]);
+        assert_eq!(runs(u64::MAX), [(0, 64)]);
     }
 }

@@ -9,8 +9,8 @@
 //! word or one that touches the word from the left or the right; the rows above and below follow by a shift. The older
 //! bit has then served and gives its place to the new one, so nothing else is kept.
 //!
-//! Deletions wait until no word reads the old values any more. Such readers are at most a row and a word behind, fewer
-//! than 32 words ahead, so what a group of 32 words loses is deleted when the next group but one begins.
+//! Deletions wait until no word reads the old values any more. Such readers are at most a row and a word ahead, that is
+//! 32 words, so what a group of 32 words loses is deleted when the next group but one begins.
 
 use super::Progress;
 use super::rule::Patch;
@@ -111,12 +111,11 @@ impl<const M: usize> Thinning<M> {
                 has: M * 32,
             });
         }
-        *self = Self {
-            shape,
-            patch: Patch::new(shape, region),
-            done: region.size() == 0,
-            ..Self::new()
-        };
+        (self.shape, self.patch) = (shape, Patch::new(shape, region));
+        self.losses.iter_mut().for_each(Losses::clear);
+        (self.second, self.todo) = (false, 0);
+        (self.deleted, self.deleted_before) = (false, true);
+        (self.passes, self.done) = (0, region.size() == 0);
         for marks in &mut self.marks {
             for (group, mark) in marks.iter_mut().enumerate() {
                 *mark = words_of_group(region.size(), group);
@@ -230,7 +229,7 @@ impl<const M: usize> Thinning<M> {
     fn delete(&mut self, group: usize, words: &mut [u32]) {
         let losses = of_group(&mut self.losses, group);
         let mut todo = losses.words;
-        (losses.words, losses.first_cells, losses.last_cells) = (0, 0, 0);
+        losses.clear();
         while todo != 0 {
             let k = todo.trailing_zeros();
             todo &= todo - 1;
@@ -298,6 +297,11 @@ impl Losses {
         last_cells: 0,
         cells: [0; 32],
     };
+
+    /// Nothing is lost.
+    fn clear(&mut self) {
+        (self.words, self.first_cells, self.last_cells) = (0, 0, 0);
+    }
 
     /// Word `k` of the group loses these cells.
     #[inline(always)]

@@ -139,11 +139,30 @@ impl Wavefront {
             if !self.run_queue(space, &mut left) || !self.run_rows(space, &mut left) {
                 return Progress::Pending;
             }
-            self.left = self.len;
-            self.rescan = self.noted.widened(space.way.shape().rows());
-            self.noted = Rows::NONE;
-            (self.here, self.next) = (self.next, self.next.next());
+            self.end_level(space);
         }
+    }
+
+    /// Go on for `levels` steps of distance. What is seeded between two such calls starts that much later than the first
+    /// seeds: a handicap for goals that are to be preferred less.
+    pub fn advance_levels(&mut self, space: &mut WaveSpace<'_>, levels: u32) {
+        let mut left = u32::MAX;
+        for _ in 0..levels {
+            if self.is_over() {
+                return;
+            }
+            self.run_queue(space, &mut left);
+            self.run_rows(space, &mut left);
+            self.end_level(space);
+        }
+    }
+
+    /// Everything of the present level has had its turn.
+    fn end_level(&mut self, space: &WaveSpace<'_>) {
+        self.left = self.len;
+        self.rescan = self.noted.widened(space.way.shape().rows());
+        self.noted = Rows::NONE;
+        (self.here, self.next) = (self.next, self.next.next());
     }
 
     /// Give up the ring: what waits in it is noted by row, so that its memory may serve elsewhere until the next call.

@@ -6,7 +6,7 @@
 //! x_i (w_i + Σ_k f_ki) = Σ_j f_ij x_j + b_i
 //! ```
 //!
-//! where f_ij ≥ 0 flows from j into i, w_i ≥ 0 is lost to cells whose value is given, and b_i ≥ 0 comes from goals. On the
+//! where `f_ij` ≥ 0 flows from j into i, `w_i` ≥ 0 is lost to cells whose value is given, and `b_i` ≥ 0 comes from goals. On the
 //! finest level x is q itself: every f is 1, w counts the neighbours that are goals or obstacles (together f and w are 4), b
 //! is the goals' value. A coarser level scales groups of x by common factors y, and its coefficients
 //!
@@ -33,7 +33,7 @@ pub(super) struct Level {
     flow: Vec<f64>,
     loss: Vec<f64>,
     source: Vec<f64>,
-    /// w_i + Σ_k f_ki.
+    /// `w_i` + `Σ_k` `f_ki`.
     outflow: Vec<f64>,
     /// x.
     pub(super) value: Vec<f64>,
@@ -212,9 +212,9 @@ impl Level {
     pub(super) fn eliminate(&mut self) {
         let count = self.len();
         let mut flow = vec![vec![0.0; count]; count];
-        for node in 0..count {
+        for (node, row) in flow.iter_mut().enumerate() {
             for edge in self.edges(node) {
-                flow[node][self.from[edge] as usize] = self.flow[edge];
+                row[self.from[edge] as usize] = self.flow[edge];
             }
         }
         let (mut loss, mut source) = (self.loss.clone(), self.source.clone());

@@ -1,4 +1,4 @@
-//! Frontiers and what they cost: the rule of explore_lite.
+//! Frontiers and what they cost: the rule of `explore_lite`.
 //!
 //! The free cells connected with the robot's are searched; an unknown cell with one of them among its four neighbours is a
 //! frontier cell. Frontiers are the 8-connected clusters of them; those shorter than a minimum size are ignored. The cheapest

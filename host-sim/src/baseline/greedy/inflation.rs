@@ -1,4 +1,4 @@
-//! How near obstacles are, and what that costs: costmap_2d's inflation with its defaults, seen by navfn.
+//! How near obstacles are, and what that costs: `costmap_2d`'s inflation with its defaults, seen by navfn.
 //!
 //! A step onto a cell costs its length times 1 + 4.03·exp(−10·(d − r)), where d is the distance of the cell's centre from the nearest
 //! obstacle cell's and r the robot's radius, and its length alone from 0.55 m on. The inflation layer gives a cell

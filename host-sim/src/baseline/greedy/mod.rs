@@ -1,12 +1,12 @@
-//! Baseline *greedy-frontier*: what ROS users run, explore_lite (m-explore) over a global planner and a path follower.
+//! Baseline *greedy-frontier*: what ROS users run, `explore_lite` (m-explore) over a global planner and a path follower.
 //!
 //! Every 3 s ([`Tuning::planner_period_ms`]), and at once where a goal is reached, the [`frontiers`] are found anew and the
 //! cheapest that is not blacklisted is the goal. A goal to which the robot comes no nearer for 30 s is blacklisted, as is one
 //! without a way. The [`route`] to it is planned anew every second (the rate of ROS 2's default behaviour tree), and
 //! [`pursuit`] follows it. The exploration ends when no frontier is left, or only blacklisted ones.
 //!
-//! Parameters are those of the package's `explore.launch`: planner_frequency 0.33, progress_timeout 30, potential_scale 3.0,
-//! orientation_scale 0, gain_scale 1.0, min_frontier_size 0.75
+//! Parameters are those of the package's `explore.launch`: `planner_frequency` 0.33, `progress_timeout` 30, `potential_scale` 3.0,
+//! `orientation_scale` 0, `gain_scale` 1.0, `min_frontier_size` 0.75
 //! (<https://github.com/hrnr/m-explore>, `explore/launch/explore.launch` at 46223c4, `explore/src/frontier_search.cpp` and
 //! `explore/src/explore.cpp` at 18526a7).
 //!
@@ -17,7 +17,7 @@
 //! - a frontier needs a way to it; the package finds out by the planner's failure;
 //! - two goals count as the same if they lie within the blacklist's tolerance, not within 1 cm; otherwise a centroid that
 //!   trembles would never time out;
-//! - at a goal the robot looks around, where move_base turns to a heading of zero.
+//! - at a goal the robot looks around, where `move_base` turns to a heading of zero.
 //!
 //! Map, clearance and drive are the planner's.
 

@@ -1,4 +1,4 @@
-//! The parameters of explore_lite, with the values of its own launch file.
+//! The parameters of `explore_lite`, with the values of its own launch file.
 
 /// Parameters; the default is what the package starts with (`explore.launch`).
 #[derive(Clone, Copy, Debug, PartialEq)]

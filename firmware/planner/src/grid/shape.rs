@@ -1,0 +1,223 @@
+//! The size of a plane, and rectangles in it.
+
+use core::fmt;
+
+use super::Site;
+
+/// Greatest number of words in a row: a row and a word more then have one bit each in a `u32`.
+pub const MAX_WORDS_PER_ROW: usize = 31;
+/// Greatest number of rows: the index of a word then fits in a `u16`.
+pub const MAX_ROWS: usize = 2048;
+
+const _: () = assert!(MAX_WORDS_PER_ROW * MAX_ROWS <= 1 << 16);
+
+/// Rows and words of a plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    words_per_row: u16,
+    rows: u16,
+}
+
+/// A rectangle of whole words inside a plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// First row.
+    pub first_row: u16,
+    /// Number of rows.
+    pub rows: u16,
+    /// First word in each row.
+    pub first_word: u16,
+    /// Number of words in each row.
+    pub words: u16,
+}
+
+/// Why a plane of this shape cannot be had.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShapeError {
+    /// No rows or no words.
+    Empty,
+    /// More words in a row than [`MAX_WORDS_PER_ROW`].
+    TooWide(usize),
+    /// More rows than [`MAX_ROWS`].
+    TooTall(usize),
+    /// The memory lent is too small.
+    TooLarge {
+        /// Words that the shape needs.
+        needs: usize,
+        /// Words that were lent.
+        has: usize,
+    },
+}
+
+impl fmt::Display for ShapeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(
+                f,
+                "a plane without cells: give at least one word and one row"
+            ),
+            Self::TooWide(words) => write!(
+                f,
+                "{words} words in a row: give at most {MAX_WORDS_PER_ROW}, or swap the axes"
+            ),
+            Self::TooTall(rows) => {
+                write!(f, "{rows} rows: give at most {MAX_ROWS}, or swap the axes")
+            }
+            Self::TooLarge { needs, has } => write!(
+                f,
+                "a plane of {needs} words in memory of {has}: lend more memory or take a smaller box"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ShapeError {}
+
+impl Shape {
+    /// One word.
+    pub const UNIT: Self = Self {
+        words_per_row: 1,
+        rows: 1,
+    };
+
+    /// A shape of `rows` rows of `words_per_row` words (32 cells each).
+    ///
+    /// # Errors
+    /// When a side is 0 or beyond its limit.
+    pub const fn new(words_per_row: usize, rows: usize) -> Result<Self, ShapeError> {
+        if words_per_row == 0 || rows == 0 {
+            return Err(ShapeError::Empty);
+        }
+        if words_per_row > MAX_WORDS_PER_ROW {
+            return Err(ShapeError::TooWide(words_per_row));
+        }
+        if rows > MAX_ROWS {
+            return Err(ShapeError::TooTall(rows));
+        }
+        Ok(Self {
+            words_per_row: words_per_row as u16,
+            rows: rows as u16,
+        })
+    }
+
+    /// Words in a row.
+    #[must_use]
+    pub const fn words_per_row(self) -> usize {
+        self.words_per_row as usize
+    }
+
+    /// Rows.
+    #[must_use]
+    pub const fn rows(self) -> usize {
+        self.rows as usize
+    }
+
+    /// Columns.
+    #[must_use]
+    pub const fn columns(self) -> usize {
+        self.words_per_row() * 32
+    }
+
+    /// Words in the plane.
+    #[must_use]
+    pub const fn words(self) -> usize {
+        self.words_per_row() * self.rows()
+    }
+
+    /// Whether the site lies in the plane.
+    #[must_use]
+    pub const fn contains(self, site: Site) -> bool {
+        (site.x as usize) < self.columns() && (site.y as usize) < self.rows()
+    }
+
+    /// The whole plane.
+    #[must_use]
+    pub const fn whole(self) -> Region {
+        Region {
+            first_row: 0,
+            rows: self.rows,
+            first_word: 0,
+            words: self.words_per_row,
+        }
+    }
+
+    /// The smallest region that holds both corners and all between; corners outside are moved to the border.
+    #[must_use]
+    pub fn region(self, one: Site, other: Site) -> Region {
+        let row = |y: u16| y.min(self.rows - 1);
+        let word = |x: u16| (x / 32).min(self.words_per_row - 1);
+        let (top, bottom) = (row(one.y.min(other.y)), row(one.y.max(other.y)));
+        let (left, right) = (word(one.x.min(other.x)), word(one.x.max(other.x)));
+        Region {
+            first_row: top,
+            rows: bottom - top + 1,
+            first_word: left,
+            words: right - left + 1,
+        }
+    }
+
+    /// Index of a word, and `None` outside.
+    #[inline]
+    pub(crate) fn index(self, row: usize, word: usize) -> Option<usize> {
+        (row < self.rows() && word < self.words_per_row())
+            .then(|| row * self.words_per_row() + word)
+    }
+
+    /// Words needed, if `has` words are enough.
+    pub(super) fn lend(self, has: usize) -> Result<usize, ShapeError> {
+        let needs = self.words();
+        if has < needs {
+            return Err(ShapeError::TooLarge { needs, has });
+        }
+        Ok(needs)
+    }
+}
+
+impl Region {
+    /// Words in the region.
+    #[must_use]
+    pub const fn size(self) -> usize {
+        self.rows as usize * self.words as usize
+    }
+
+    /// The part of the region that lies in a plane of this shape.
+    #[must_use]
+    pub(crate) fn within(self, shape: Shape) -> Self {
+        let first_row = self.first_row.min(shape.rows);
+        let first_word = self.first_word.min(shape.words_per_row);
+        Self {
+            first_row,
+            rows: self.rows.min(shape.rows - first_row),
+            first_word,
+            words: self.words.min(shape.words_per_row - first_word),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::{Shape, ShapeError, Site};
+    use crate::grid::Plane;
+
+    #[test]
+    fn shapes_that_cannot_be_are_refused() {
+        assert_eq!(Shape::new(0, 4), Err(ShapeError::Empty));
+        assert_eq!(Shape::new(32, 4), Err(ShapeError::TooWide(32)));
+        assert_eq!(Shape::new(1, 5000), Err(ShapeError::TooTall(5000)));
+        let shape = Shape::new(2, 3).unwrap();
+        let error = Plane::new(shape, &[0; 5]).unwrap_err();
+        assert_eq!(error, ShapeError::TooLarge { needs: 6, has: 5 });
+        assert!(error.to_string().contains("6 words in memory of 5"));
+    }
+
+    #[test]
+    fn regions_cover_their_corners_in_whole_words() {
+        let shape = Shape::new(4, 50).unwrap();
+        let region = shape.region(Site { x: 70, y: 900 }, Site { x: 31, y: 7 });
+        assert_eq!((region.first_word, region.words), (0, 3));
+        assert_eq!((region.first_row, region.rows), (7, 43));
+        assert_eq!(shape.whole().size(), 200);
+    }
+}
