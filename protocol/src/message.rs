@@ -126,7 +126,8 @@ pub enum Strategy {
 pub struct Start {
     /// Which strategy plans.
     pub strategy: Strategy,
-    /// The map's box in tiles of 3.2 m, across and up; their product is at most the device's tile slots.
+    /// The map's box in tiles of 3.2 m, across (an even number) and up, both at least 4; their product is at most the device's tile
+    /// slots.
     pub box_tiles: (u8, u8),
     /// The laser scanners.
     pub lasers: Vec<Laser, MAX_SCANS>,
@@ -485,7 +486,7 @@ impl fmt::Display for Refusal {
             Self::NotStarted => f.write_str("no session is running; start one first"),
             Self::OutOfOrder => f.write_str("a request older than the last one answered"),
             Self::BadBox => {
-                f.write_str("the map's box does not fit its tile slots; ask for a smaller box")
+                f.write_str("the map's box must be an even number of tiles across, both sides at least 4, and their product within the tile slots")
             }
             Self::BadParameter(parameter) => write!(f, "bad parameter: {parameter}"),
             Self::UnknownStrategy => f.write_str("the strategy is not in this image"),

@@ -121,7 +121,7 @@ impl Pilot {
         memory: &mut Memory<'_, TILES, SLOTS>,
         start: &Start,
     ) -> Result<(), Refusal> {
-        limits::check_start(start, SLOTS)?;
+        limits::check_start::<TILES, SLOTS>(start)?;
         let config = convert::config(start);
         info!(
             "start: box {=u8} x {=u8} tiles, {=usize} lasers, radius {=u16} mm",
