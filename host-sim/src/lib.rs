@@ -1,6 +1,7 @@
 //! Everything the robot is not: worlds, the 3-AT, its lasers and odometry, links, trials, metrics, pictures.
 #![forbid(unsafe_code)]
 
+pub mod baseline;
 pub mod link;
 pub mod metrics;
 pub mod picture;

@@ -2,7 +2,7 @@
 //!
 //! A cell is *passable* if no obstacle cell lies in the disc of the robot's radius around it; unknown cells obstruct
 //! nothing. Everything that plans (skeleton, window) works on passable cells, so a gap the robot does not fit through is no
-//! way, and a door of 0.8 m keeps a lane of two or three cells. Bit-parallel: 32 columns at a time over rows of 64 bits.
+//! way, and a door of 0.8 m keeps a lane of two or three cells. Where the robot has been is passable too. Bit-parallel: 32 columns at a time over rows of 64 bits.
 //!
 //! Units: map cells.
 
@@ -69,17 +69,18 @@ pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
     mut visit: impl FnMut(i32, Strip),
 ) {
     // Columns x − 16 .. x + 48, so that the middle 32 see a halo of 16.
-    let read = |row: i32| tiles.row(x - 16, row);
+    let mut reader = tiles.reader(x - 16);
+    let mut ahead = tiles.reader(x - 16);
     let mut ring = [0u64; RING];
     let slot = |row: i32| (row - y + MOST_RADIUS as i32).rem_euclid(RING as i32) as usize;
     for row in y - disc.reach..y + disc.reach {
         if let Some(place) = ring.get_mut(slot(row)) {
-            *place = read(row).obstacle();
+            *place = ahead.row(row).obstacle();
         }
     }
     for row in y..y + height {
         if let Some(place) = ring.get_mut(slot(row + disc.reach)) {
-            *place = read(row + disc.reach).obstacle();
+            *place = ahead.row(row + disc.reach).obstacle();
         }
         let mut blocked = 0;
         for dy in -disc.reach..=disc.reach {
@@ -94,12 +95,12 @@ pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
                 blocked |= widen(near, half);
             }
         }
-        let here = read(row);
+        let here = reader.row(row);
         let middle = |bits: u64| (bits >> 16) as u32;
         visit(
             row,
             Strip {
-                passable: middle(!blocked),
+                passable: middle(!blocked | (here.trail() & !here.obstacle())),
                 unknown: middle(here.unknown()),
                 obstacle: middle(here.obstacle()),
             },
@@ -113,6 +114,10 @@ pub fn is_passable<const TILES: usize, const SLOTS: usize>(
     disc: &Disc,
     cell: crate::geometry::Cell,
 ) -> bool {
+    let stands = |cell| matches!(tiles.class(cell), Class::Obstacle | Class::Negative);
+    if tiles.row(cell.x, cell.y).trail() & 1 == 1 {
+        return !stands(cell);
+    }
     (-disc.reach..=disc.reach).all(|dy| {
         let half = disc
             .half_widths

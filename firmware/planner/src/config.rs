@@ -46,7 +46,7 @@ pub struct Config {
     pub period_s: f32,
     /// The window's solver.
     pub solver: SolverConfig,
-    /// Topological work in a step, thinning words. Default: 15,000.
+    /// Topological work in a step, thinning words. Default: 6,000.
     pub topology_units: u32,
 }
 
@@ -64,10 +64,10 @@ impl Config {
             angular_accel_radps2: 1.75,
             period_s: 0.2,
             solver: SolverConfig {
-                max_cycles: 4,
+                max_cycles: 3,
                 ..SolverConfig::default()
             },
-            topology_units: 15_000,
+            topology_units: 6_000,
         }
     }
 }

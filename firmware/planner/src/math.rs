@@ -45,7 +45,7 @@ pub fn sin_cos(angle: f32) -> (f32, f32) {
     let quarter = floor(angle * (2.0 / PI) + 0.5);
     let k = quarter as f32;
     // π/2 in two parts (Cody–Waite), so that the reduced angle keeps its low bits.
-    let r = (angle - k * 1.570_312_5) - k * 4.838_267_9e-4;
+    let r = (angle - k * 1.570_312_5) - k * 4.838_268e-4;
     let r2 = r * r;
     let s = r + r * r2 * (-1.666_665_5e-1 + r2 * (8.332_161e-3 + r2 * -1.951_529_6e-4));
     let c =

@@ -14,17 +14,18 @@
 //! A pure function of configuration, state, workspace and input: no clock, no I/O, no globals, no logging. Same bits in, same
 //! bits out, on host and target.
 
+use crate::bits::{Adjacency, flood};
 use crate::clearance::Disc;
 use crate::config::Config;
 use crate::drive::{self, Drive, Ground, Place, Surround};
-use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, Stop, Window, descent, solve};
+use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, descent, solve};
 use crate::geometry::{Cell, Point, Pose, Twist};
 use crate::map::Map;
 use crate::map::integrate::is_level;
 use crate::math;
 use crate::near::NearField;
 use crate::status::{Fault, Finish, Frontier, Status};
-use crate::strategy::frontier::Outlook;
+use crate::strategy::frontier::{Known, Lent, Outlook};
 use crate::strategy::{self, Road};
 use crate::topology::Topology;
 use crate::view::{self, Rows, SCALES, View};
@@ -35,6 +36,8 @@ pub const NO_RETURN_MM: u16 = 16_383;
 pub const INVALID_MM: u16 = 0;
 /// Turn rate of a robot that looks around at its goal, radians a second.
 const LOOK_AROUND_RADPS: f32 = 0.6;
+/// A robot whose centre has less room than this, in cells, is boxed in: one square metre.
+const BOX_CELLS: u32 = 100;
 /// The robot that starts inside something sees it nearer than this everywhere, metres.
 const BLOCKED_M: f32 = 0.12;
 
@@ -76,6 +79,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     drive: Drive,
     status: Status,
     started: bool,
+    /// A skeleton was published that no road was planned on yet.
+    fresh: bool,
     /// Where the robot began.
     start: Cell,
 }
@@ -91,6 +96,8 @@ pub struct Workspace {
     window: Window,
     /// Its least map cell and its scale.
     window_at: Option<(Cell, i32)>,
+    /// What stands in the window.
+    view: View,
     scratch: [f32; SCRATCH],
 }
 
@@ -115,6 +122,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             drive: Drive::new(),
             status: Status::Exploring,
             started: false,
+            fresh: false,
             start: Cell { x: 0, y: 0 },
         }
     }
@@ -128,6 +136,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.drive = Drive::new();
         self.status = Status::Exploring;
         self.started = false;
+        self.fresh = false;
     }
 
     /// The map.
@@ -196,6 +205,7 @@ impl Workspace {
         Self {
             window: Window::new(),
             window_at: None,
+            view: View::new(),
             scratch: [0.0; SCRATCH],
         }
     }
@@ -280,11 +290,15 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         return steer(config, state, workspace, &input);
     }
     let disc = Disc::new(config.robot_radius_m);
-    if state
-        .topology
-        .advance(state.map.tiles(), &disc, config.topology_units)
-    {
+    // A new skeleton is planned on in the step after it was finished, so that no step does both.
+    let planned = state.fresh;
+    if planned {
+        state.fresh = false;
         replan(state, workspace, &disc, &input);
+    } else {
+        state.fresh = state
+            .topology
+            .advance(state.map.tiles(), &disc, config.topology_units);
     }
     if state.status != Status::Exploring {
         return Output {
@@ -292,20 +306,18 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
             ..Output::default()
         };
     }
-    let Some((view, goal)) = local_goal(state, &disc, &input) else {
+    let view = &mut workspace.view;
+    let Some(goal) = local_goal(state, &disc, &input, view) else {
         return Output::default();
     };
-    charge(
-        &mut workspace.window,
-        &mut workspace.window_at,
-        &view,
-        &goal,
-    );
-    let solution = solve(
-        &mut workspace.window,
-        &mut workspace.scratch,
-        &config.solver,
-    );
+    charge(&mut workspace.window, &mut workspace.window_at, view, &goal);
+    // A step that planned a road has spent the time of two cycles on it.
+    let most = config.solver.max_cycles;
+    let solver = SolverConfig {
+        max_cycles: if planned { most.div_ceil(2) } else { most },
+        ..config.solver
+    };
+    let solution = solve(&mut workspace.window, &mut workspace.scratch, &solver);
     Output {
         cycles: solution.cycles + solution.sweeps,
         budget_exhausted: solution.stop == Stop::Budget,
@@ -335,7 +347,8 @@ fn sense<const TILES: usize, const SLOTS: usize>(
 }
 
 /// Whether the level laser sees something closer than the robot's own hull in nearly every beam.
-fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
+#[must_use]
+pub fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
     let level = config
         .lasers
         .iter()
@@ -358,33 +371,57 @@ fn replan<const TILES: usize, const SLOTS: usize>(
     let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
     let (residues, ring) = words.split_at_mut(SLOTS * 16);
     let (residues, _) = residues.as_chunks_mut::<2>();
+    let lent = Lent {
+        residues,
+        ring,
+        view: &mut workspace.view,
+    };
     let robot = input.pose.point();
-    let outlook = state.strategy.replan(
-        &state.topology,
-        state.map.tiles(),
+    let known = Known {
+        topology: &state.topology,
+        tiles: state.map.tiles(),
         disc,
-        robot,
-        input.time_ms,
-        (residues, ring),
-    );
+    };
+    let outlook = state.strategy.replan(&known, robot, input.time_ms, lent);
     match outlook {
-        Outlook::Nothing => state.status = conclude(state),
+        Outlook::Nothing => {
+            state.strategy.list_leftovers(&known);
+            state.status = conclude(state, &mut workspace.view, disc, robot.cell());
+        }
         Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
         Outlook::Road | Outlook::Unsure => {}
     }
 }
 
 /// Why there is no frontier left within reach.
-fn conclude<const TILES: usize, const SLOTS: usize>(state: &State<TILES, SLOTS>) -> Status {
+fn conclude<const TILES: usize, const SLOTS: usize>(
+    state: &State<TILES, SLOTS>,
+    view: &mut View,
+    disc: &Disc,
+    robot: Cell,
+) -> Status {
+    view.look_around(state.map.tiles(), disc, robot, 1);
+    view.free_robot(robot);
     if state.map.pool_full() {
         Status::Fault(Fault::MapFull)
     } else if state.map.out_of_box() {
         Status::Fault(Fault::OutOfBox)
-    } else if state.strategy.had_road() {
-        Status::Finished(Finish::Explored)
-    } else {
+    } else if room_cells(view, robot) < BOX_CELLS {
         Status::Finished(Finish::BoxedIn)
+    } else {
+        Status::Finished(Finish::Explored)
     }
+}
+
+/// Cells of the window that the robot's centre can get to.
+fn room_cells(view: &View, robot: Cell) -> u32 {
+    let mut reached: Rows = [0; SIDE];
+    if let Some(place) = view.place(robot) {
+        View::put(&mut reached, place);
+    }
+    // With no target it floods everything.
+    let _ = flood(&view.passable, &mut reached, &[0; SIDE], Adjacency::Four);
+    reached.iter().map(|row| row.count_ones()).sum()
 }
 
 /// Follow the window's field.
@@ -398,17 +435,24 @@ fn steer<const TILES: usize, const SLOTS: usize>(
         window,
         window_at,
         scratch,
+        ..
     } = workspace;
     let Some((origin, scale)) = *window_at else {
         return Output::default();
     };
     let heading_at = |place: Place| heading_at(window, (origin, scale), &input.pose, place);
     let here = heading_at(Place::default());
-    let surround = Surround::new(&input.pose, state.near.points());
+    let mut surround = Surround::empty();
+    surround.see(&input.pose, state.near.points());
     let velocity = if here.is_some() {
+        let potential_at = |place: Place| {
+            let (x, y) = view::position((origin, scale), ahead(&input.pose, place));
+            potential_at(window, x, y)
+        };
         let ground = Ground {
             surround: &surround,
             heading_at,
+            potential_at: Some(&potential_at),
         };
         state.drive.follow(
             config,
@@ -444,34 +488,48 @@ fn is_at_goal(window: &Window, (origin, scale): (Cell, i32), robot: Point) -> bo
     }
 }
 
-/// The field's heading at a place near the robot, radians to the left of the robot's own.
-fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Option<f32> {
+/// q of the window cell at a position in cells.
+fn potential_at(window: &Window, x: f32, y: f32) -> f32 {
+    match (
+        usize::try_from(math::floor(x)),
+        usize::try_from(math::floor(y)),
+    ) {
+        (Ok(x), Ok(y)) => window.q(x, y),
+        _ => 0.0,
+    }
+}
+
+/// A place in the robot's frame as a point of the odometry frame.
+fn ahead(pose: &Pose, place: Place) -> Point {
     let (sin, cos) = math::sin_cos(pose.yaw_rad);
-    let there = Point {
+    Point {
         x_m: pose.x_m + place.x_m * cos - place.y_m * sin,
         y_m: pose.y_m + place.x_m * sin + place.y_m * cos,
-    };
-    let (x, y) = view::position(at, there);
+    }
+}
+
+/// The field's heading at a place near the robot, radians to the left of the robot's own.
+fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Option<f32> {
+    let (x, y) = view::position(at, ahead(pose, place));
     descent::heading_at(window, x, y).map(|heading| math::wrap(heading - pose.yaw_rad))
 }
 
-/// The smallest window that holds a local goal, and the goal's cells in it.
+/// See the smallest window that holds a local goal; the goal's cells in it.
 fn local_goal<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     disc: &Disc,
     input: &Input<'_>,
-) -> Option<(View, Rows)> {
+    view: &mut View,
+) -> Option<Rows> {
     let (robot, road) = (input.pose.point(), state.strategy.road());
     if road.is_empty() {
         return None;
     }
     SCALES.iter().find_map(|&scale| {
-        let mut view = View::around(state.map.tiles(), disc, robot.cell(), scale);
+        view.look_around(state.map.tiles(), disc, robot.cell(), scale);
         view.free_robot(robot.cell());
-        let goal = road
-            .local_goals(robot)
-            .find_map(|cell| goal_cells(&view, cell))?;
-        Some((view, goal))
+        road.local_goals(robot)
+            .find_map(|cell| goal_cells(view, cell))
     })
 }
 

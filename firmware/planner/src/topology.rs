@@ -94,16 +94,15 @@ enum Stage {
 }
 
 /// Work that a round may do in a step, in units of a thinning word (about a hundred instructions).
-const TILE_UNITS: u32 = 60;
+const TILE_UNITS: u32 = 40;
 
 type Words<const SLOTS: usize> = [[u32; 8]; SLOTS];
 
 /// The planes and the round in progress. `SLOTS` tiles of 16 × 16 coarse cells.
 #[derive(Debug)]
 pub struct Topology<const SLOTS: usize> {
-    /// The published skeleton and its frontier cells.
+    /// The published skeleton.
     skeleton: Words<SLOTS>,
-    frontier: Words<SLOTS>,
     frame: Frame,
     /// The round in progress.
     next: Words<SLOTS>,
@@ -119,7 +118,6 @@ impl<const SLOTS: usize> Topology<SLOTS> {
     pub const fn new() -> Self {
         Self {
             skeleton: [[0; 8]; SLOTS],
-            frontier: [[0; 8]; SLOTS],
             frame: Frame::NONE,
             next: [[0; 8]; SLOTS],
             next_frontier: [[0; 8]; SLOTS],
@@ -132,7 +130,6 @@ impl<const SLOTS: usize> Topology<SLOTS> {
     /// Forget everything.
     pub fn reset(&mut self) {
         self.skeleton.as_flattened_mut().fill(0);
-        self.frontier.as_flattened_mut().fill(0);
         self.frame = Frame::NONE;
         self.stage = Stage::Load(0);
     }
@@ -149,10 +146,13 @@ impl<const SLOTS: usize> Topology<SLOTS> {
         Plane::new(self.frame.shape, self.skeleton.as_flattened()).ok()
     }
 
-    /// The published frontier cells.
+    /// The frontier cells of the published skeleton; `None` once the next round has begun, which needs their memory.
     #[must_use]
     pub fn frontier(&self) -> Option<Plane<'_>> {
-        Plane::new(self.frame.shape, self.frontier.as_flattened()).ok()
+        if self.stage != Stage::Load(0) {
+            return None;
+        }
+        Plane::new(self.frame.shape, self.next_frontier.as_flattened()).ok()
     }
 
     /// Go on with the round, `budget` units at the most; true when a skeleton was published.
@@ -246,7 +246,6 @@ impl<const SLOTS: usize> Topology<SLOTS> {
             Progress::Pending => false,
             Progress::Done { .. } => {
                 self.skeleton = self.next;
-                self.frontier = self.next_frontier;
                 self.frame = self.next_frame;
                 self.stage = Stage::Load(0);
                 true

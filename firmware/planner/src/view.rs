@@ -19,6 +19,9 @@ pub const SCALES: [i32; 3] = [1, 2, 4];
 /// Bit rows of the window.
 pub type Rows = [u64; SIDE];
 
+/// The bits of a row that are cells.
+const INSIDE: u64 = (1 << SIDE) - 1;
+
 /// The window's cells.
 #[derive(Clone, Debug)]
 pub struct View {
@@ -30,8 +33,6 @@ pub struct View {
     pub passable: Rows,
     /// Something stands here.
     pub obstacle: Rows,
-    /// Nothing was ever measured here.
-    pub unknown: Rows,
 }
 
 /// OR of adjacent groups of `scale` bits; 32 / scale bits remain.
@@ -51,28 +52,36 @@ fn squeeze(word: u32, scale: i32) -> u64 {
 }
 
 impl View {
-    /// The window around `centre`.
+    /// A window of nothing.
     #[must_use]
-    pub fn around<const TILES: usize, const SLOTS: usize>(
+    pub const fn new() -> Self {
+        let origin = Cell { x: 0, y: 0 };
+        Self {
+            origin,
+            scale: 1,
+            passable: [0; SIDE],
+            obstacle: [0; SIDE],
+        }
+    }
+
+    /// See the window around `centre`.
+    pub fn look_around<const TILES: usize, const SLOTS: usize>(
+        &mut self,
         tiles: &Tiles<TILES, SLOTS>,
         disc: &Disc,
         centre: Cell,
         scale: i32,
-    ) -> Self {
+    ) {
         let half = SIDE as i32 / 2;
         let least = |at: i32| (at.div_euclid(scale) - half) * scale;
         let origin = Cell {
             x: least(centre.x),
             y: least(centre.y),
         };
-        let mut view = Self {
-            origin,
-            scale,
-            passable: [0; SIDE],
-            obstacle: [0; SIDE],
-            unknown: [0; SIDE],
-        };
-        let (mut known, mut blocked): (Rows, Rows) = ([0; SIDE], [0; SIDE]);
+        (self.origin, self.scale) = (origin, scale);
+        self.passable.fill(0);
+        self.obstacle.fill(0);
+        let mut blocked: Rows = [0; SIDE];
         let across = SIDE as i32 * scale;
         for block in 0..(across + 31) / 32 {
             let shift = (block * 32 / scale) as u32;
@@ -84,25 +93,21 @@ impl View {
                         *out |= squeeze(word, scale) << shift;
                     }
                 };
-                put(&mut view.passable, strip.passable);
-                put(&mut view.obstacle, strip.obstacle);
-                put(&mut known, !strip.unknown);
+                put(&mut self.passable, strip.passable);
+                put(&mut self.obstacle, strip.obstacle);
                 put(&mut blocked, !strip.passable);
             });
         }
-        let inside = (1u64 << SIDE) - 1;
-        if scale == 4 {
-            for (passable, blocked) in view.passable.iter_mut().zip(blocked) {
-                *passable &= !blocked;
-            }
+        for (passable, blocked) in self.passable.iter_mut().zip(blocked) {
+            *passable &= if scale == 4 {
+                INSIDE & !blocked
+            } else {
+                INSIDE
+            };
         }
-        for (unknown, known) in view.unknown.iter_mut().zip(known) {
-            *unknown = !known & inside;
+        for row in &mut self.obstacle {
+            *row &= INSIDE;
         }
-        for row in view.passable.iter_mut().chain(&mut view.obstacle) {
-            *row &= inside;
-        }
-        view
     }
 
     /// The window cell of a map cell, if it is in the window.
@@ -173,8 +178,14 @@ impl View {
         }
         Self::put(&mut self.passable, place);
         for row in &mut self.passable {
-            *row &= (1 << SIDE) - 1;
+            *row &= INSIDE;
         }
+    }
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self::new()
     }
 }
 
@@ -212,7 +223,8 @@ mod tests {
     #[test]
     fn the_window_at_scale_one_is_the_map() {
         let (tiles, disc) = (room(), Disc::new(0.3));
-        let view = View::around(&tiles, &disc, Cell { x: 3, y: -2 }, 1);
+        let mut view = View::new();
+        view.look_around(&tiles, &disc, Cell { x: 3, y: -2 }, 1);
         for y in 0..SIDE {
             for x in 0..SIDE {
                 let cell = view.cell(x, y);
@@ -233,7 +245,8 @@ mod tests {
     fn a_grown_window_is_passable_where_any_of_its_cells_is() {
         let (tiles, disc) = (room(), Disc::new(0.3));
         for scale in [2, 4] {
-            let view = View::around(&tiles, &disc, Cell { x: -5, y: 9 }, scale);
+            let mut view = View::new();
+            view.look_around(&tiles, &disc, Cell { x: -5, y: 9 }, scale);
             for y in 0..SIDE {
                 for x in 0..SIDE {
                     let least = Cell {
@@ -265,7 +278,8 @@ mod tests {
     fn a_robot_too_near_to_a_wall_is_let_out() {
         let (tiles, disc) = (room(), Disc::new(0.3));
         let robot = Cell { x: -28, y: 0 };
-        let mut view = View::around(&tiles, &disc, robot, 1);
+        let mut view = View::new();
+        view.look_around(&tiles, &disc, robot, 1);
         let place = view.place(robot).unwrap();
         assert!(!View::has(&view.passable, place));
         view.free_robot(robot);

@@ -4,6 +4,7 @@
 
 use anyhow::{Result, bail};
 
+use host_sim::baseline::{Bvp, GreedyFrontier, Session};
 use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
 
@@ -14,7 +15,12 @@ pub(super) const FRONTIER: &str = "frontier";
 type Make = fn() -> Box<dyn Link>;
 
 /// The baselines by name.
-const BASELINES: &[(&str, Make)] = &[];
+const BASELINES: &[(&str, Make)] = &[
+    ("bvp", || Box::new(Session::new(Bvp::new()))),
+    ("greedy-frontier", || {
+        Box::new(Session::new(GreedyFrontier::default()))
+    }),
+];
 
 /// A known strategy's name, or what the known ones are.
 pub(super) fn parse(name: &str) -> Result<String, String> {

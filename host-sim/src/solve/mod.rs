@@ -17,6 +17,8 @@ use sheet::{Sheet, SheetCell};
 
 /// A relative change of a sweep that says nothing but rounding: half a unit in the last place of an f32.
 const ROUNDING: f32 = 6e-8;
+/// Blocks of sweeps without a smaller change after which rounding goes round in circles, as it does under preferences.
+const PATIENCE: u32 = 40;
 /// Sweeps after which Gauss–Seidel has to do: three times what the slowest window of the tests takes.
 const MOST_SWEEPS: u32 = 60_000;
 
@@ -155,14 +157,18 @@ fn converge(window: &mut Window, solver: Solver) -> Effort {
         method: first.method,
     };
     (config.method, config.max_cycles) = (Method::GaussSeidel, 1);
+    let (mut best, mut idle) = (effort.residual, 0);
     while effort.method == Method::GaussSeidel
         && effort.stop == Stop::Converged
         && effort.residual > ROUNDING
         && effort.sweeps < MOST_SWEEPS
+        && idle < PATIENCE
     {
         let more = solve(window, &mut scratch, &config);
         effort.sweeps += u32::from(more.sweeps);
         effort.residual = more.residual;
+        idle = if more.residual < best { 0 } else { idle + 1 };
+        best = best.min(more.residual);
     }
     effort
 }

@@ -50,7 +50,7 @@ fn both_solvers_agree_with_the_direct_solution() {
         let solved = run(&sheet, None, solver);
         assert_eq!(solved.answer.stop, "converged", "{solver:?}");
         let told = f64::from(solved.answer.heading_rad.unwrap());
-        assert!((told - heading).abs() < 1e-5, "{solver:?} {told} {heading}");
+        assert!((told - heading).abs() < 1e-4, "{solver:?} {told} {heading}");
         for (i, exact) in exact.iter().enumerate() {
             let q = solved.q[i / 61][i % 61];
             assert!(
@@ -82,7 +82,7 @@ fn a_corridor_by_hand() {
 fn up_is_the_first_line() {
     let sheet = Sheet::parse(".G.\n...\n...\n...\n.R.").unwrap();
     let answer = run(&sheet, None, Solver::Multigrid).answer;
-    assert!((answer.heading_rad.unwrap() - core::f32::consts::FRAC_PI_2).abs() < 1e-6);
+    assert!((answer.heading_rad.unwrap() - core::f32::consts::FRAC_PI_2).abs() < 1e-4);
 }
 
 #[test]
@@ -122,4 +122,77 @@ fn the_json_line_has_the_documented_keys_in_order() {
         "{\"solver\":\"gauss-seidel\",\"method\":\"multigrid\",\"width\":5,\"height\":1,\"cycles\":null,\
          \"sweeps\":null,\"stop\":\"flat\",\"residual\":0.0,\"heading_rad\":null,\"p_diff\":0.0,\"flat\":true}"
     );
+}
+
+/// Walls with gaps, scatter and a few goals, by a xorshift generator.
+fn random_window(seed: u64) -> Sheet {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    let mut next = move |below: u64| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        ((state >> 11) % below) as usize
+    };
+    let mut rows = vec![vec![SheetCell::Free; 61]; 61];
+    for _ in 0..next(5) {
+        let (at, gap, across) = (next(61), next(55), next(2) == 0);
+        for k in (0..61).filter(|k| !(gap..gap + 6).contains(k)) {
+            let (x, y) = if across { (k, at) } else { (at, k) };
+            rows[y][x] = SheetCell::Obstacle;
+        }
+    }
+    for _ in 0..next(400) {
+        rows[next(61)][next(61)] = SheetCell::Obstacle;
+    }
+    for _ in 0..=next(3) {
+        rows[next(61)][next(61)] = SheetCell::Goal;
+    }
+    rows[30][30] = SheetCell::Free;
+    Sheet {
+        rows,
+        robot: Some((30, 30)),
+    }
+}
+
+#[test]
+fn random_windows_agree_with_the_direct_solution() {
+    for seed in 0..40 {
+        let sheet = random_window(seed);
+        let exact = oracle_of(&sheet);
+        for solver in BOTH {
+            let solved = run(&sheet, None, solver);
+            let answer = &solved.answer;
+            assert_ne!(answer.stop, "budget", "seed {seed}: {answer:?}");
+            let reached = exact[30 * 61 + 30] > 0.0;
+            assert_eq!(answer.flat, !reached, "seed {seed}");
+            for (i, &exact) in exact.iter().enumerate().filter(|(_, q)| **q > 1e-60) {
+                let q = solved.q[i / 61][i % 61];
+                assert!(
+                    (q - exact).abs() <= 2e-3 * exact,
+                    "{seed} {solver:?} {i}: {q} {exact}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn both_solvers_agree_under_preferences() {
+    for seed in 0..20 {
+        let sheet = random_window(seed);
+        let slope =
+            |y: usize, x: usize| (((x * 7 + y * 11 + seed as usize) % 21) as f32 - 14.0) / 28.0;
+        let rows: Vec<Vec<f32>> = (0..61)
+            .map(|y| (0..61).map(|x| slope(y, x)).collect())
+            .collect();
+        let [fast, slow] = BOTH.map(|solver| run(&sheet, Some(&rows), solver));
+        assert_ne!(fast.answer.stop, "budget", "seed {seed}");
+        let pairs = fast.q.iter().flatten().zip(slow.q.iter().flatten());
+        for (i, (fast, slow)) in pairs.enumerate().filter(|(_, (_, slow))| **slow > 1e-60) {
+            assert!(
+                (fast - slow).abs() <= 2e-3 * slow,
+                "{seed} {i}: {fast} {slow}"
+            );
+        }
+    }
 }

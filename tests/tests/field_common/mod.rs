@@ -1,5 +1,6 @@
 //! What the tests of the field share: seeded windows, the f64 truth about them, and angles.
 
+pub(crate) mod golden;
 pub(crate) mod oracle;
 pub(crate) mod scenes;
 
@@ -22,8 +23,8 @@ pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
 
 /// Degrees between two angles in radians, from 0 to 180.
 pub(crate) fn degrees_between(a: f64, b: f64) -> f64 {
-    let turn = (a - b).rem_euclid(std::f64::consts::TAU);
-    turn.min(std::f64::consts::TAU - turn).to_degrees()
+    let turn = (a - b).rem_euclid(core::f64::consts::TAU);
+    turn.min(core::f64::consts::TAU - turn).to_degrees()
 }
 
 /// A small seeded generator (xorshift64*), so that every run sees the same windows.
@@ -64,6 +65,6 @@ impl Random {
 
     /// Uniform in 0 to 2π.
     pub(crate) fn angle(&mut self) -> f64 {
-        self.unit() * std::f64::consts::TAU
+        self.unit() * core::f64::consts::TAU
     }
 }

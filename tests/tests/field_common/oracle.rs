@@ -75,7 +75,7 @@ impl Truth {
         gy.atan2(gx)
     }
 
-    /// `p_diff` at a cell: mean |p − p_robot| over the reached cells of the kernel from 10 cells before to 9 after.
+    /// `p_diff` at a cell: mean `|p − p_robot|` over the reached cells of the kernel from 10 cells before to 9 after.
     pub(crate) fn p_diff(&self, reached: &Rows, x: usize, y: usize) -> f64 {
         let inside = |a: usize, b: usize| b + 10 >= a && b < a + 10;
         let kernel = cells().filter(|&(column, row)| inside(x, column) && inside(y, row));

@@ -102,6 +102,69 @@ fn nearest_to_middle(window: &Window) -> (usize, usize) {
     reached.min_by_key(distance).expect("a reached cell")
 }
 
+/// What may happen to a boundary under a solved field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Change {
+    /// The goal is elsewhere.
+    GoalJumps,
+    /// There is one more.
+    GoalAppears,
+    /// There is one less.
+    GoalVanishes,
+    /// A wall all across, with a narrow gap or none, gets a gap of seven cells more.
+    DoorOpens,
+    /// The same, the other way round.
+    DoorCloses,
+}
+
+/// Every change, in the order of the tables.
+pub(crate) const CHANGES: [Change; 5] = [
+    Change::GoalJumps,
+    Change::GoalAppears,
+    Change::GoalVanishes,
+    Change::DoorOpens,
+    Change::DoorCloses,
+];
+
+/// Boundaries (free cells, goals) before a change of the scene's and after it.
+pub(crate) fn before_and_after(
+    scene: &Scene,
+    change: Change,
+    random: &mut Random,
+) -> [(Rows, Rows); 2] {
+    let (mut free, mut goal, mut other): (Rows, Rows, Rows) = ([0; SIDE], [0; SIDE], [0; SIDE]);
+    for (x, y) in cells() {
+        goal[y] |= u64::from(scene.window.is_goal(x, y)) << x;
+        free[y] |= u64::from(scene.window.is_reached(x, y)) << x | goal[y];
+    }
+    let reached: Vec<_> = cells()
+        .filter(|&(x, y)| scene.window.is_reached(x, y))
+        .collect();
+    let (x, y) = reached[random.between(0, reached.len() as i32) as usize];
+    if (x, y) != scene.robot {
+        other[y] = 1 << x;
+    }
+    let both = core::array::from_fn(|y| goal[y] | other[y]);
+
+    let side = SIDE as i32;
+    let (mut closed, mut open) = (free, free);
+    let wall = random.between(5, side - 5) as usize;
+    let gap = if random.chance(0.3) {
+        0
+    } else {
+        0b111 << random.between(0, side - 3)
+    };
+    closed[wall] &= gap;
+    open[wall] &= gap | 0b111_1111 << random.between(0, side - 7);
+    match change {
+        Change::GoalJumps => [(free, goal), (free, other)],
+        Change::GoalAppears => [(free, other), (free, both)],
+        Change::GoalVanishes => [(free, both), (free, other)],
+        Change::DoorOpens => [(closed, goal), (open, goal)],
+        Change::DoorCloses => [(open, goal), (closed, goal)],
+    }
+}
+
 /// Rolling ground: a few sine waves, heights in metres.
 pub(crate) struct Ground([[f64; 4]; 4]);
 
@@ -109,7 +172,7 @@ impl Ground {
     /// Wavelengths of 2 to 8 m, heights up to 0.4 m.
     fn draw(random: &mut Random) -> Self {
         Self(core::array::from_fn(|_| {
-            let wave = std::f64::consts::TAU / (20.0 + 60.0 * random.unit());
+            let wave = core::f64::consts::TAU / (20.0 + 60.0 * random.unit());
             let (sin, cos) = sin_cos(random.angle());
             [wave * cos, wave * sin, random.angle(), 0.1 * random.unit()]
         }))

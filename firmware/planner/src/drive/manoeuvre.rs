@@ -3,7 +3,8 @@
 //! In a passage narrower than the robot's diagonal it cannot turn everywhere, and following the field alone wedges it. The
 //! search (A* over poses, in the manner of hybrid A*) starts where the robot stands and ends at a pose from which the field
 //! can be followed: aligned with the field's heading *there*, with [`GO_ON_M`] free ahead; or, dearer, aligned against it
-//! with as much free behind. Poses are kept exactly; of those that fall into the same cell of 3 cm × 3 cm × 7.5° only the
+//! with as much free behind. The end must also be farther along the field than the start, or the robot would go to and fro
+//! before a tight corner. Poses are kept exactly; of those that fall into the same cell of 3 cm × 3 cm × 7.5° only the
 //! first is. It works in instalments while the robot stands, so no step takes long.
 //!
 //! Invariant: every pose on the way keeps the margin. Units: metres, radians; robot frame at the start.
@@ -132,17 +133,28 @@ pub struct Search {
 
 /// What a search runs on: what stands around, and the field's heading at a place, radians left of the robot's present one, or
 /// `None` where the field says nothing.
-#[derive(Debug)]
+#[expect(missing_debug_implementations, reason = "it lends closures")]
 pub struct Ground<'a, H> {
     /// What stands around.
     pub surround: &'a Surround,
     /// The field's heading.
     pub heading_at: H,
+    /// How far along the field a place is (q of its cell); `None` where that is not asked for.
+    pub potential_at: Option<&'a dyn Fn(Place) -> f32>,
 }
+
+/// By this factor q must grow from the start to the end of a manoeuvre. In a passage of the robot's width it doubles in 0.1 m.
+const PROGRESS: f32 = 1.3;
 
 impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
     fn misalignment(&self, place: Place) -> Option<f32> {
         (self.heading_at)(place).map(|heading| math::wrap(heading - place.yaw_rad))
+    }
+
+    /// Whether a place is farther along the field than the robot.
+    fn is_progress(&self, place: Place) -> bool {
+        self.potential_at
+            .is_none_or(|q| q(place) > PROGRESS * q(Place::default()))
     }
 
     /// Whether the field can be followed from here: forwards, or against the alignment backwards.
@@ -155,7 +167,9 @@ impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
             };
             error.abs() < ALIGNED_RAD
         });
-        aligned && self.surround.is_arc_clear(place, length_m, 0.0, margin_m)
+        aligned
+            && self.is_progress(place.after(length_m, 0.0))
+            && self.surround.is_arc_clear(place, length_m, 0.0, margin_m)
     }
 }
 
@@ -318,6 +332,7 @@ mod tests {
         let ground = Ground {
             surround: &surround,
             heading_at,
+            potential_at: None,
         };
         let mut search = Search::start(0.02, &mut scratch);
         loop {

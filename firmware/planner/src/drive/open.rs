@@ -6,11 +6,11 @@
 use super::surround::Place;
 
 /// Poses that a search may find.
-pub const MOST_NODES: usize = 1100;
+pub(super) const MOST_NODES: usize = 1100;
 const NODE_WORDS: usize = 5;
 
 /// Words that they need.
-pub const WORDS: usize = MOST_NODES * NODE_WORDS + MOST_NODES;
+pub(super) const WORDS: usize = MOST_NODES * NODE_WORDS + MOST_NODES;
 
 /// A pose of the search.
 #[derive(Clone, Copy, Debug)]

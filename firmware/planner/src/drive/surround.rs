@@ -80,25 +80,36 @@ impl Surround {
     /// The points as seen from `pose`.
     #[must_use]
     pub fn new(pose: &Pose, points: &[Point]) -> Self {
+        let mut surround = Self::empty();
+        surround.see(pose, points);
+        surround
+    }
+
+    /// Nothing around.
+    #[must_use]
+    pub const fn empty() -> Self {
+        Self {
+            threats: Vec::new(),
+        }
+    }
+
+    /// See the points from `pose`.
+    pub fn see(&mut self, pose: &Pose, points: &[Point]) {
         let (sin, cos) = math::sin_cos(pose.yaw_rad);
-        let threats = points
-            .iter()
-            .take(MOST_POINTS)
-            .map(|point| {
-                let (dx, dy) = (point.x_m - pose.x_m, point.y_m - pose.y_m);
-                let at = Point {
-                    x_m: dx * cos + dy * sin,
-                    y_m: dy * cos - dx * sin,
-                };
-                Threat {
-                    at,
-                    clearance_m: overhang(at.x_m, at.y_m),
-                }
-            })
+        self.threats.clear();
+        for point in points {
+            let (dx, dy) = (point.x_m - pose.x_m, point.y_m - pose.y_m);
+            let at = Point {
+                x_m: dx * cos + dy * sin,
+                y_m: dy * cos - dx * sin,
+            };
+            let clearance_m = overhang(at.x_m, at.y_m);
             // A point well inside the robot is a false echo or a passing hand; it cannot be avoided any more.
-            .filter(|threat| threat.clearance_m > -0.02)
-            .collect();
-        Self { threats }
+            if clearance_m > -0.02 {
+                // There are no more points than threats.
+                let _ = self.threats.push(Threat { at, clearance_m });
+            }
+        }
     }
 
     /// Distance of the nearest point from the robot, metres.

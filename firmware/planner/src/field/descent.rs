@@ -44,7 +44,7 @@ pub fn heading_at(window: &Window, x: f32, y: f32) -> Option<f32> {
 /// greatest q, if that is greater than q here. From any reached cell of a solved window these steps lead to a goal.
 #[must_use]
 pub fn ascend(window: &Window, x: usize, y: usize) -> Option<(usize, usize)> {
-    if window.is_goal(x, y) {
+    if !window.is_reached(x, y) {
         return None;
     }
     let mut best = (window.q(x, y), None);
@@ -80,5 +80,6 @@ fn cell_gradient(window: &Window, x: i32, y: i32) -> Option<(f32, f32)> {
 }
 
 fn angle((x, y): (f32, f32)) -> Option<f32> {
-    (x != 0.0 || y != 0.0).then(|| math::atan2(y, x))
+    // Written so that a position that is no number has no heading.
+    (x.abs() + y.abs() > 0.0).then(|| math::atan2(y, x))
 }

@@ -21,7 +21,7 @@
 //! | --- | --- |
 //! | [`window`] | the cells: field, boundary, preferences; warm values across a move |
 //! | `reach` | which free cells a goal can be reached from, by bits |
-//! | `seed` | a first value for cells that have none |
+//! | `seed` | a start for cells that have no value, or one far too low |
 //! | `gauss_seidel` | one relaxation sweep, the papers' method |
 //! | `multigrid`, `pyramid` | one cycle of the fast method, and its coarse levels |
 //! | [`solver`] | which method, how long, and when to stop |
@@ -46,3 +46,6 @@ pub mod window;
 pub use multigrid::SCRATCH_FLOATS;
 pub use solver::{Method, Solution, SolverConfig, Stop, solve};
 pub use window::{GOAL, Preference, PreferenceError, SIDE, Window};
+
+/// The window and the multigrid's scratch memory go into the chip's 64 KB of core-coupled memory.
+const _: () = assert!(size_of::<Window>() + SCRATCH_FLOATS * size_of::<f32>() <= 64 * 1024);

@@ -57,7 +57,7 @@ impl Origin {
 
 /// One cycle. Answers max |x − 1| over the blocks: the relative error that the field had.
 ///
-/// No reached cell may be blank.
+/// The window must be raised (see `seed`): zero stays zero, however it is multiplied.
 pub(super) fn cycle(window: &mut Window, scratch: &mut [f32; SCRATCH_FLOATS]) -> f32 {
     let mut pyramid = Pyramid::new(scratch);
     if window.preferred {

@@ -1,13 +1,20 @@
-//! A first value for cells that have none, which the multigrid could never raise from zero.
+//! A start worth correcting: a value for each cell that has none, or one far too low.
+//!
+//! The multigrid multiplies. It brings down what is too high in a few cycles, but what is too low it raises only as far
+//! as the smoothing carries, and zero it never raises. At the solution a cell has at least (1 − |ε|/2)/4 of its best
+//! neighbour's value; so one with less than a sixteenth, in a new cell, beside a new goal, behind a door that opened,
+//! holds no value but the lack of one:
 //!
 //! ```text
-//! q ← max(q, 0.85 max(N, S, W, E))        over the blank cells, up and down the window
+//! q ← 0.85 n  where  16 q < n = max(N, S, W, E)
 //! ```
 //!
-//! Around a warm field this continues it outwards; in a cold window it makes about 0.85 to the power of the distance to
-//! the nearest goal, so that a start has roughly the field's shape.
+//! Around a warm field this continues it outwards. A cold window is raised by a finer comb, to about 0.85 to the power of
+//! the distance to the nearest goal, so that the start has roughly the field's shape.
 //!
-//! Invariant: a blank cell with a way to a value above zero gets one; other cells keep theirs.
+//! Invariant: no cell falls; afterwards no reached cell is below a sixteenth of its neighbours.
+
+use core::cell::Cell;
 
 use super::runs::Runs;
 use super::window::{SIDE, STRIDE, Window, index};
@@ -16,59 +23,68 @@ use super::window::{SIDE, STRIDE, Window, index};
 /// the heading behind doors takes a third more cycles.
 const PART: f32 = 0.85;
 
-/// Give every blank cell a value.
-pub(super) fn fill_blanks(window: &mut Window) {
-    let mut idle_sweeps = 0;
-    for upward in [true, false].into_iter().cycle() {
-        let (mut changed, mut missing) = (false, false);
+/// How many times a neighbour may exceed a cell of a field that was right before the boundary moved. Strong repulsion,
+/// ε < −1.5, may need more, and gets a worse start.
+const STEEPEST: f32 = 16.0;
+
+/// The same in a cold window, where no value is worth keeping: just more than 1/0.85.
+const STEEPEST_COLD: f32 = 1.25;
+
+/// Raise what is too low, in sweeps up and down over the rows that may hold such cells: those with something new, and
+/// those beside a row that changed.
+pub(super) fn raise(window: &mut Window) {
+    let steepest = if window.cold { STEEPEST_COLD } else { STEEPEST };
+    let mut upward = true;
+    while window.unraised != 0 {
         for step in 0..SIDE {
             let y = if upward { step } else { SIDE - 1 - step };
-            for run in Runs(window.blank[y]) {
-                let start = index(run.start, y);
-                let beside = if upward {
-                    start - STRIDE
-                } else {
-                    start + STRIDE
-                };
-                let mut source = [0.0; SIDE];
-                let source = &mut source[..run.len()];
-                source.copy_from_slice(&window.q[beside..][..run.len()]);
-                changed |= raise_run(&mut window.q[start - 1..][..run.len() + 2], source);
-                // A value spreads over its whole run, so the first cell speaks for the rest.
-                missing |= window.q[start] == 0.0;
+            if window.unraised >> y & 1 == 1 {
+                window.unraised &= !(1 << y);
+                if raise_row(window, y, steepest) {
+                    window.touch_rows(1 << y);
+                    window.unraised &= !(1 << y);
+                }
             }
         }
-        // Beside values that have underflowed, blank cells stay at zero.
-        idle_sweeps = if changed { 0 } else { idle_sweeps + 1 };
-        if !missing || idle_sweeps == 2 {
-            break;
-        }
+        upward = !upward;
     }
-    window.blank = [0; SIDE];
+    window.cold = false;
 }
 
-/// Raise a run of blank cells to what the `source` row beside it gives, and its neighbours in the row, the first and the
-/// last of `row`. Answers whether a cell changed.
-fn raise_run(row: &mut [f32], source: &[f32]) -> bool {
+/// Raise the cells of a row to what their neighbours give. Answers whether one changed.
+fn raise_row(window: &mut Window, y: usize, steepest: f32) -> bool {
     let mut changed = false;
-    let mut raise = |q: &mut f32, neighbour: f32| {
-        let value = PART * neighbour;
-        if value > *q {
-            *q = value;
-            changed = true;
+    for run in Runs(window.reached[y]) {
+        let length = run.len();
+        let around = &mut window.q[index(run.start, y) - STRIDE..][..length + 2 * STRIDE];
+        let around = Cell::from_mut(around).as_slice_of_cells();
+        let south = &around[..length];
+        let here = &around[STRIDE..][..length];
+        let north = &around[2 * STRIDE..][..length];
+        let mut raise = |cell: &Cell<f32>, best: f32| {
+            let q = cell.get();
+            if steepest * q < best {
+                changed = true;
+                cell.set(PART * best);
+                PART * best
+            } else {
+                q
+            }
+        };
+        let mut west = around[STRIDE - 1].get();
+        for (here, (south, north)) in here.iter().zip(south.iter().zip(north)) {
+            west = raise(here, greater(west, greater(south.get(), north.get())));
         }
-        *q
-    };
-    let [west, cells @ .., east] = row else {
-        return false;
-    };
-    let mut west = *west;
-    for (q, &source) in cells.iter_mut().zip(source) {
-        west = raise(q, if source > west { source } else { west });
-    }
-    let mut east = *east;
-    for q in cells.iter_mut().rev() {
-        east = raise(q, east);
+        let mut east = around[STRIDE + length].get();
+        for here in here.iter().rev() {
+            east = raise(here, east);
+        }
     }
     changed
+}
+
+/// The greater of two numbers, without the care for NaN that makes `f32::max` a call.
+#[inline(always)]
+fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }

@@ -4,7 +4,7 @@
 //! everything outside the window [Ouroboros: 61 × 61 cells].
 //!
 //! Invariants: q is [`GOAL`] on goals, 0 on obstacles, outside, and on free cells that no goal can be reached from;
-//! elsewhere 0 ≤ q ≤ `GOAL`. A *blank* cell is a reachable one that has no value yet; the solver gives it one.
+//! elsewhere 0 ≤ q ≤ `GOAL`. A reachable cell that is new has q = 0 until the solver gives it a value.
 //!
 //! Units: q in units of 1/[`GOAL`] of p's; preferences are pure numbers.
 
@@ -114,10 +114,12 @@ pub struct Window {
     pub(super) reached: [u64; SIDE],
     /// Goal cells.
     pub(super) goal: [u64; SIDE],
-    /// Reached cells that have no value yet.
-    pub(super) blank: [u64; SIDE],
     /// Free cells that no goal can be reached from.
     unreached: u16,
+    /// No cell has a value worth keeping.
+    pub(super) cold: bool,
+    /// Rows that may hold cells far too low for the multigrid (see `seed`).
+    pub(super) unraised: u64,
     /// Where the multigrid's next blocks begin.
     pub(super) origin: Origin,
 }
@@ -132,21 +134,24 @@ impl Window {
             preferred: false,
             reached: [0; SIDE],
             goal: [0; SIDE],
-            blank: [0; SIDE],
             unreached: 0,
+            cold: true,
+            unraised: 0,
             origin: Origin::Even,
         }
     }
 
     /// Forget the field, so that the next solve starts cold; boundary and preferences stay.
     pub fn clear(&mut self) {
-        self.blank = self.reached;
-        self.q = [0.0; FLOATS];
+        self.cold = true;
+        self.unraised = ROW;
+        self.q.fill(0.0);
+        self.origin = Origin::Even;
         self.charge_goals();
     }
 
     /// Take a new boundary: bit x of row y of `free` and of `goal`; what is in neither is an obstacle, what is in both
-    /// is a goal. A cell that stays keeps its value as a warm start; a new one is blank until the next solve.
+    /// is a goal. A cell that stays keeps its value as a warm start.
     pub fn set_boundary(&mut self, free: &[u64; SIDE], goal: &[u64; SIDE]) {
         let free = core::array::from_fn(|y| free[y] & !goal[y] & ROW);
         let goal = core::array::from_fn(|y| goal[y] & ROW);
@@ -154,9 +159,11 @@ impl Window {
         let mut unreached = 0;
         for y in 0..SIDE {
             unreached += (free[y] & !reached[y]).count_ones();
-            let valued = self.valued(y);
-            self.blank[y] = reached[y] & !valued;
-            self.fill(y, valued & !reached[y], 0.0);
+            let before = self.reached[y] | self.goal[y];
+            self.fill(y, before & !reached[y], 0.0);
+            if (reached[y] & !before) | (goal[y] & !self.goal[y]) != 0 {
+                self.touch_rows(1 << y);
+            }
         }
         self.reached = reached;
         self.goal = goal;
@@ -170,14 +177,17 @@ impl Window {
         let across = dx.unsigned_abs() as usize;
         let up = dy.unsigned_abs() as usize;
         if across >= SIDE || up >= SIDE {
-            *self = Self::new();
+            self.empty();
             return;
+        }
+        if self.unraised != 0 {
+            self.unraised = ROW;
         }
         slide(&mut self.q, dx, dy);
         if self.preferred {
             slide(&mut self.preference, dx, dy);
         }
-        for mask in [&mut self.reached, &mut self.goal, &mut self.blank] {
+        for mask in [&mut self.reached, &mut self.goal] {
             let bits = |y: usize| {
                 y.checked_add_signed(dy as isize)
                     .and_then(|y| mask.get(y))
@@ -193,6 +203,20 @@ impl Window {
             };
             *mask = core::array::from_fn(|y| moved(bits(y)));
         }
+    }
+
+    /// A window of obstacles again.
+    fn empty(&mut self) {
+        self.q.fill(0.0);
+        self.preference.fill(Preference::NONE);
+        self.preferred = false;
+        for mask in [&mut self.reached, &mut self.goal] {
+            mask.fill(0);
+        }
+        self.unreached = 0;
+        self.cold = true;
+        self.unraised = 0;
+        self.origin = Origin::Even;
     }
 
     /// Give cell (x, y) a preference; outside the window nothing happens.
@@ -259,9 +283,9 @@ impl Window {
         self.unreached
     }
 
-    /// Cells of row y whose value is worth keeping.
-    fn valued(&self, y: usize) -> u64 {
-        (self.reached[y] | self.goal[y]) & !self.blank[y]
+    /// These rows have changed: they and those beside them may hold cells that are now far too low.
+    pub(super) fn touch_rows(&mut self, rows: u64) {
+        self.unraised |= (rows | rows << 1 | rows >> 1) & ROW;
     }
 
     /// Set q on `cells` of row y.
@@ -296,14 +320,64 @@ fn slide<T: Copy + Default>(cells: &mut [T; FLOATS], dx: i32, dy: i32) {
         cells.copy_within(..FLOATS - distance, distance);
     }
     // What crossed an edge wrapped round to the other side, or came from a margin.
-    let blank = T::default();
+    let nothing = T::default();
     let (rows, _) = cells.as_chunks_mut::<STRIDE>();
     let (incoming, outgoing) = if dx >= 0 { (across, 0) } else { (0, across) };
     for row in rows.iter_mut() {
-        row[..=outgoing].fill(blank);
-        row[SIDE + 1 - incoming..].fill(blank);
+        row[..=outgoing].fill(nothing);
+        row[SIDE + 1 - incoming..].fill(nothing);
     }
     let (incoming, outgoing) = if dy >= 0 { (up, 0) } else { (0, up) };
-    rows[..=outgoing].as_flattened_mut().fill(blank);
-    rows[SIDE + 1 - incoming..].as_flattened_mut().fill(blank);
+    rows[..=outgoing].as_flattened_mut().fill(nothing);
+    rows[SIDE + 1 - incoming..].as_flattened_mut().fill(nothing);
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use fixed::types::I3F13;
+
+    use super::{GOAL, Preference, SIDE, Window};
+
+    #[test]
+    fn a_preference_keeps_within_two() {
+        let of = |epsilon: f32| Preference::new(I3F13::from_num(epsilon));
+        assert_eq!(of(2.0), Ok(Preference::MAX));
+        assert_eq!(of(-2.0), Ok(Preference::MIN));
+        let error = of(2.001).expect_err("too strong");
+        assert_eq!(
+            error.to_string(),
+            "preference 2.001 diverges: keep it within -2 and 2"
+        );
+        assert_eq!(Preference::nearest(1e9), Preference::MAX);
+        assert_eq!(Preference::nearest(f32::NEG_INFINITY), Preference::MIN);
+        assert_eq!(Preference::nearest(f32::NAN), Preference::NONE);
+        assert_eq!(Preference::nearest(0.5).half(), 0.25);
+    }
+
+    #[test]
+    fn a_new_boundary_keeps_what_stays_and_clears_what_left() {
+        let row = |bits: u64| {
+            let mut rows = [0; SIDE];
+            rows[3] = bits;
+            rows
+        };
+        let mut window = Window::new();
+        window.set_boundary(&row(0b001_1110), &row(0b000_0001));
+        // As if solved.
+        window.fill(3, 0b001_1110, 7.0);
+
+        // Cell 1 stays, 2 becomes the goal, 3 and 4 obstacles, 0 free, 5 new and out of reach.
+        window.set_boundary(&row(0b010_0011), &row(0b000_0100));
+        let q = core::array::from_fn(|x| window.q(x, 3));
+        assert_eq!(q, [GOAL, 7.0, GOAL, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(
+            (window.reached[3], window.unreached_cells()),
+            (0b000_0011, 1)
+        );
+
+        window.clear();
+        assert_eq!(core::array::from_fn(|x| window.q(x, 3)), [0.0, 0.0, GOAL]);
+    }
 }

@@ -51,7 +51,7 @@ impl Evidence {
 
     /// Forget everything and centre on `centre`.
     pub fn reset(&mut self, centre: Cell) {
-        self.counts = [[0; EVIDENCE_SIDE as usize / 2]; EVIDENCE_SIDE as usize];
+        self.counts.as_flattened_mut().fill(0);
         self.origin = Self::origin_around(centre);
     }
 

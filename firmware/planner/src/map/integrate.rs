@@ -13,7 +13,7 @@
 //! Units: metres, radians; ranges in millimetres.
 
 use super::Map;
-use super::tiles::{Class, NoRoom};
+use super::tiles::{Class, Cursor, NoRoom};
 use crate::config::Laser;
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::math;
@@ -64,7 +64,8 @@ pub(crate) fn sensor_point(pose: &Pose, laser: &Laser) -> Point {
 }
 
 /// Whether the laser sweeps the level plane.
-pub(crate) fn is_level(laser: &Laser) -> bool {
+#[must_use]
+pub fn is_level(laser: &Laser) -> bool {
     laser.pitch_rad.abs() < LEVEL_RAD
 }
 
@@ -98,12 +99,21 @@ pub(crate) fn level_beams<'a>(
         } else {
             f32::from(range)
         } * 1e-3;
-        // A no-return goes through all its cells: one of them may be an obstacle, which ends it.
-        let free_from_m = match i & 3 {
-            _ if missing => 0.0,
-            0 => 0.0,
-            2 => 1.2,
-            _ => 2.4,
+        let dense_to_mm = match i & 3 {
+            0 => 0,
+            2 => 1_400,
+            _ => 2_800,
+        };
+        // A no-return goes through all its cells where a neighbour met something: one of them may be an obstacle, which ends it.
+        let beyond = |k: Option<usize>| {
+            k.and_then(|k| ranges_mm.get(k))
+                .is_none_or(|&beside| beside > dense_to_mm)
+        };
+        let sure = !missing || (beyond(i.checked_sub(1)) && beyond(Some(i + 1)));
+        let free_from_m = if sure {
+            f32::from(dense_to_mm) * 1e-3
+        } else {
+            0.0
         };
         Some(Beam {
             from,
@@ -199,6 +209,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         if beam.length_m <= beam.free_from_m {
             return;
         }
+        let mut cursor = Cursor::default();
         let guard_from = if beam.hit {
             beam.length_m - GUARD_M
         } else {
@@ -208,13 +219,19 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             if beam.hit && leaves_m >= beam.length_m {
                 return false;
             }
-            self.pass(cell, leaves_m > guard_from, !beam.hit)
+            self.pass(&mut cursor, cell, leaves_m > guard_from, !beam.hit)
         });
     }
 
     /// A beam went through; false where it must not go on.
-    fn pass(&mut self, cell: Cell, guarded: bool, stop_at_obstacle: bool) -> bool {
-        let class = self.tiles.class(cell);
+    fn pass(
+        &mut self,
+        cursor: &mut Cursor,
+        cell: Cell,
+        guarded: bool,
+        stop_at_obstacle: bool,
+    ) -> bool {
+        let class = self.tiles.class_at(cursor, cell);
         let obstacle = matches!(class, Class::Obstacle | Class::Negative);
         if obstacle && guarded {
             return true;

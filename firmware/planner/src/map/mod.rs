@@ -14,6 +14,8 @@ use crate::config::Config;
 use crate::geometry::Cell;
 use crate::planner::Input;
 
+/// A robot that moved more cells than this between two observations was carried.
+const LONGEST_STRIDE: i32 = 10;
 /// The robot stands where it is, so this much around it is free, metres.
 const FOOTPRINT_M: f32 = 0.25;
 
@@ -22,6 +24,8 @@ const FOOTPRINT_M: f32 = 0.25;
 pub struct Map<const TILES: usize, const SLOTS: usize> {
     pub(crate) tiles: Tiles<TILES, SLOTS>,
     evidence: Evidence,
+    /// Where the robot was at the last observation.
+    last_visit: Option<Cell>,
     out_of_box: bool,
     pool_full: bool,
 }
@@ -33,6 +37,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         Self {
             tiles: Tiles::new(),
             evidence: Evidence::new(),
+            last_visit: None,
             out_of_box: false,
             pool_full: false,
         }
@@ -42,6 +47,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     pub fn reset(&mut self, width: u8, height: u8) {
         self.tiles.reset(width, height);
         self.evidence.reset(Cell::default());
+        self.last_visit = None;
         self.out_of_box = false;
         self.pool_full = false;
     }
@@ -51,8 +57,34 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         let robot = input.pose.point();
         self.evidence.follow(robot.cell());
         self.free_footprint(robot, FOOTPRINT_M);
+        self.leave_trail(robot.cell());
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             self.integrate(&input.pose, laser, ranges_mm);
+        }
+    }
+
+    /// Mark the way from the last cell, with no diagonal steps, so that the trail is connected by sides.
+    fn leave_trail(&mut self, to: Cell) {
+        let from = self.last_visit.unwrap_or(to);
+        self.last_visit = Some(to);
+        let steps = (to.x - from.x).abs().max((to.y - from.y).abs());
+        if steps > LONGEST_STRIDE {
+            self.tiles.note_visit(to);
+            return;
+        }
+        let mut before = from;
+        for k in 0..=steps {
+            let part = |from: i32, to: i32| from + (to - from) * k / steps.max(1);
+            let here = Cell {
+                x: part(from.x, to.x),
+                y: part(from.y, to.y),
+            };
+            self.tiles.note_visit(Cell {
+                x: here.x,
+                y: before.y,
+            });
+            self.tiles.note_visit(here);
+            before = here;
         }
     }
 

@@ -4,6 +4,9 @@
 //! may start anywhere: only the *extent* of what is known has to fit the box. Each tile row is two words: `low` and
 //! `high` bits of the class code, bit k = column k. Rows are read 64 cells at a time by everything that plans.
 //!
+//! Beside them a *trail*, one bit for 2 × 2 cells: where the robot's centre has been. Noise may close a passage behind the robot
+//! that is as narrow as it is; the trail keeps it open, because where the robot has been it can be.
+//!
 //! Invariant: `extent` covers every tile in use and is at most w by h tiles, so no two tiles share a slot.
 //! Units: cells of [`crate::geometry::CELL_M`].
 
@@ -27,6 +30,25 @@ pub enum Class {
     Negative = 3,
 }
 
+impl Class {
+    const fn from_bits(low: u32, high: u32) -> Self {
+        match (low, high) {
+            (0, 0) => Self::Unknown,
+            (_, 0) => Self::Free,
+            (0, _) => Self::Obstacle,
+            _ => Self::Negative,
+        }
+    }
+}
+
+/// Remembers the tile of the last cell looked up: consecutive cells of a beam share it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cursor {
+    tile: Option<(i32, i32)>,
+    /// Pool index + 1 of it, 0 where there is none (yet).
+    index: u16,
+}
+
 /// A cell that the map has no room for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoRoom {
@@ -41,6 +63,7 @@ pub enum NoRoom {
 pub struct Row {
     low: u64,
     high: u64,
+    trail: u64,
 }
 
 impl Row {
@@ -54,6 +77,12 @@ impl Row {
     #[must_use]
     pub const fn free(self) -> u64 {
         self.low & !self.high
+    }
+
+    /// Cells on or beside the robot's way so far.
+    #[must_use]
+    pub const fn trail(self) -> u64 {
+        self.trail
     }
 
     /// Cells never measured.
@@ -102,6 +131,61 @@ const fn max(a: i32, b: i32) -> i32 {
 }
 
 type TileRows = [[u32; 2]; TILE_SIDE as usize];
+type Trail = [u16; TILE_SIDE as usize / 2];
+
+/// A tile that a reader goes through.
+#[derive(Clone, Copy, Debug)]
+struct Column<'a> {
+    rows: &'a TileRows,
+    trail: &'a Trail,
+}
+
+/// Reads rows of 64 cells one after another; tiles are looked up once in 32 rows.
+#[derive(Debug)]
+pub struct RowReader<'a, const TILES: usize, const SLOTS: usize> {
+    tiles: &'a Tiles<TILES, SLOTS>,
+    x: i32,
+    tile_y: i32,
+    columns: [Option<Column<'a>>; 3],
+}
+
+impl<const TILES: usize, const SLOTS: usize> RowReader<'_, TILES, SLOTS> {
+    /// The 64 cells of row `y`.
+    pub fn row(&mut self, y: i32) -> Row {
+        if y >> 5 != self.tile_y {
+            self.tile_y = y >> 5;
+            for (k, column) in (0..).zip(&mut self.columns) {
+                *column = self.tiles.column((self.x >> 5) + k, self.tile_y);
+            }
+        }
+        let shift = (self.x & 31) as u32;
+        let [first, second, third] = self.columns.map(|column| read(column, y));
+        // The first tile's cells move down by the shift, the others follow it; the third only has cells when there is a shift.
+        let join = |first: u32, second: u32, third: u32| {
+            let whole = u64::from(second) << 32 | u64::from(first);
+            let beyond = u64::from(third) << 32 << (32 - shift);
+            if shift == 0 {
+                whole
+            } else {
+                whole >> shift | beyond
+            }
+        };
+        Row {
+            low: join(first[0], second[0], third[0]),
+            high: join(first[1], second[1], third[1]),
+            trail: join(first[2], second[2], third[2]),
+        }
+    }
+}
+
+/// Low, high and trail bits of a tile's row.
+fn read(column: Option<Column<'_>>, y: i32) -> [u32; 3] {
+    let Some(column) = column else { return [0; 3] };
+    let row = (y & 31) as usize;
+    let [low, high] = column.rows.get(row).copied().unwrap_or_default();
+    let trail = column.trail.get(row / 2).copied().unwrap_or(0);
+    [low, high, if trail == 0 { 0 } else { twice(trail) }]
+}
 
 /// The tile pool and its directory. `TILES` tiles in the pool, `SLOTS` places in the box.
 #[derive(Debug)]
@@ -109,6 +193,8 @@ pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     pool: [TileRows; TILES],
     /// Pool index + 1 of the tile in a slot, 0 where there is none.
     directory: [u16; SLOTS],
+    /// Where the robot has been in the tile of a slot: a row of 2 × 2-cell blocks each.
+    trail: [Trail; SLOTS],
     used: u16,
     width: i32,
     height: i32,
@@ -124,6 +210,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         Self {
             pool: [[[0; 2]; TILE_SIDE as usize]; TILES],
             directory: [0; SLOTS],
+            trail: [[0; TILE_SIDE as usize / 2]; SLOTS],
             used: 0,
             width: 0,
             height: 0,
@@ -136,12 +223,16 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// two tiles wide), product at most `SLOTS`.
     #[must_use]
     pub const fn fits(width: u8, height: u8) -> bool {
-        width >= 4 && height >= 4 && width % 2 == 0 && width as usize * height as usize <= SLOTS
+        width >= 4
+            && height >= 4
+            && width.is_multiple_of(2)
+            && width as usize * height as usize <= SLOTS
     }
 
     /// Forget everything; the box becomes `width` × `height` tiles. A box that does not [`fit`](Self::fits) holds nothing.
     pub fn reset(&mut self, width: u8, height: u8) {
         self.directory.fill(0);
+        self.trail.as_flattened_mut().fill(0);
         self.used = 0;
         let fits = Self::fits(width, height);
         self.width = if fits { i32::from(width) } else { 0 };
@@ -243,12 +334,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             return Class::Unknown;
         };
         let bit = cell.x & 31;
-        match (low >> bit & 1, high >> bit & 1) {
-            (0, 0) => Class::Unknown,
-            (1, 0) => Class::Free,
-            (0, _) => Class::Obstacle,
-            _ => Class::Negative,
-        }
+        Class::from_bits(low >> bit & 1, high >> bit & 1)
     }
 
     /// Store what is known of a cell.
@@ -283,28 +369,72 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         Ok(())
     }
 
+    /// The robot's centre has been in this cell.
+    pub fn note_visit(&mut self, cell: Cell) {
+        if !self.in_extent(cell.x >> 5, cell.y >> 5) {
+            return;
+        }
+        let slot = self.slot(cell.x >> 5, cell.y >> 5);
+        let row = self
+            .trail
+            .get_mut(slot)
+            .and_then(|rows| rows.get_mut((cell.y & 31) as usize / 2));
+        if let Some(row) = row {
+            *row |= 1 << ((cell.x & 31) / 2);
+        }
+    }
+
     /// The 64 cells from `x` on in row `y`.
     #[must_use]
     pub fn row(&self, x: i32, y: i32) -> Row {
-        let (tile_x, shift) = (x >> 5, (x & 31) as u32);
-        let mut row = Row::default();
-        for k in 0..3 {
-            let Some(rows) = self.rows(tile_x + k, y >> 5) else {
-                continue;
-            };
-            let Some(&[low, high]) = rows.get((y & 31) as usize) else {
-                continue;
-            };
-            let place = |word: u32| match k {
-                0 => u64::from(word) >> shift,
-                1 => u64::from(word) << 32 >> shift,
-                _ if shift == 0 => 0,
-                _ => u64::from(word) << (64 - shift),
-            };
-            row.low |= place(low);
-            row.high |= place(high);
+        self.reader(x).row(y)
+    }
+
+    /// A reader of rows of 64 cells from column `x` on.
+    #[must_use]
+    pub const fn reader(&self, x: i32) -> RowReader<'_, TILES, SLOTS> {
+        RowReader {
+            tiles: self,
+            x,
+            tile_y: i32::MIN,
+            columns: [None; 3],
         }
-        row
+    }
+
+    /// The rows and the trail of a tile, if it is in the extent.
+    fn column(&self, tile_x: i32, tile_y: i32) -> Option<Column<'_>> {
+        if !self.in_extent(tile_x, tile_y) {
+            return None;
+        }
+        let slot = self.slot(tile_x, tile_y);
+        let index = self.directory.get(slot)?.checked_sub(1)?;
+        Some(Column {
+            rows: self.pool.get(usize::from(index))?,
+            trail: self.trail.get(slot)?,
+        })
+    }
+
+    /// What is known of a cell, looked up by a cursor that remembers the tile of the last one.
+    pub(super) fn class_at(&self, cursor: &mut Cursor, cell: Cell) -> Class {
+        let tile = (cell.x >> 5, cell.y >> 5);
+        if cursor.tile != Some(tile) || cursor.index == 0 {
+            cursor.tile = Some(tile);
+            cursor.index = if self.in_extent(tile.0, tile.1) {
+                self.directory
+                    .get(self.slot(tile.0, tile.1))
+                    .copied()
+                    .unwrap_or(0)
+            } else {
+                0
+            };
+        }
+        let rows = usize::from(cursor.index)
+            .checked_sub(1)
+            .and_then(|index| self.pool.get(index));
+        let Some([low, high]) = rows.and_then(|rows| rows.get((cell.y & 31) as usize)) else {
+            return Class::Unknown;
+        };
+        Class::from_bits(low >> (cell.x & 31) & 1, high >> (cell.x & 31) & 1)
     }
 
     /// A tile's cells, two bits each, row by row from the least y with the least x in the low bits; `None` where nothing
@@ -330,6 +460,16 @@ impl<const TILES: usize, const SLOTS: usize> Default for Tiles<TILES, SLOTS> {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// Every bit doubled.
+const fn twice(bits: u16) -> u32 {
+    let mut wide = bits as u32;
+    wide = (wide | wide << 8) & 0x00ff_00ff;
+    wide = (wide | wide << 4) & 0x0f0f_0f0f;
+    wide = (wide | wide << 2) & 0x3333_3333;
+    wide = (wide | wide << 1) & 0x5555_5555;
+    wide | wide << 1
 }
 
 #[cfg(test)]
@@ -433,6 +573,19 @@ mod tests {
             (tiles.used(), tiles.class(Cell { x: 96, y: 0 })),
             (4, Class::Free)
         );
+    }
+
+    #[test]
+    fn the_trail_covers_blocks_of_two_by_two() {
+        let mut tiles = small();
+        for (x, y) in [(-3, 9), (31, 9), (32, 40)] {
+            tiles.set(Cell { x, y }, Class::Free).unwrap();
+            tiles.note_visit(Cell { x, y });
+        }
+        assert_eq!(tiles.row(-10, 8).trail(), 0b11 << 6 | 0b11 << 40);
+        assert_eq!(tiles.row(-10, 9).trail(), tiles.row(-10, 8).trail());
+        assert_eq!(tiles.row(30, 41).trail(), 0b11 << 2);
+        assert_eq!(tiles.row(-10, 10).trail(), 0);
     }
 
     #[test]

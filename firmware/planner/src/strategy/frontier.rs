@@ -25,6 +25,8 @@ use crate::view::{Rows, SCALES, View};
 pub const MOST_DROPPED: usize = 32;
 /// Around a dropped goal no other is taken, metres.
 const DROP_RADIUS_M: f32 = 0.5;
+/// Leftover cells this near are one group, metres.
+const GROUP_RADIUS_M: f32 = 2.0;
 /// Time without progress after which a goal is dropped, milliseconds.
 const PATIENCE_MS: u32 = 12_000;
 /// A goal this near is reached, coarse steps.
@@ -32,7 +34,7 @@ const REACHED_STEPS: u32 = 3;
 /// Time at a reached goal after which it is dropped, milliseconds: two turns on the spot.
 const LOOK_MS: u32 = 5_000;
 /// Time without moving after which a goal is dropped, milliseconds.
-const STANDING_MS: u32 = 40_000;
+const STANDING_MS: u32 = 24_000;
 /// A robot that moved less than this has not moved, metres.
 const MOVED_M: f32 = 0.3;
 /// Goals dropped in a row without moving after which the robot is stuck.
@@ -41,9 +43,8 @@ const STUCK_DROPS: u8 = 3;
 const HEAD_START: u32 = 10;
 /// Rounds in a row without a field at the robot after which a goal is dropped.
 const FLAT_ROUNDS: u8 = 4;
-/// Rounds in a row that must find nothing before the exploration is over: the second one began after the first was found
-/// empty, so it saw everything there is.
-const EMPTY_ROUNDS: u8 = 2;
+/// Rounds in a row that must find nothing before the exploration is over: noise may close a way for a moment.
+const EMPTY_ROUNDS: u8 = 5;
 
 /// What the strategy remembers.
 #[derive(Debug)]
@@ -61,8 +62,29 @@ pub struct Frontier {
     flat: bool,
     flat_rounds: u8,
     empty_rounds: u8,
-    had_road: bool,
     second_chance: bool,
+}
+
+/// What is known of the space, for a round of planning.
+#[derive(Debug)]
+pub struct Known<'a, const TILES: usize, const SLOTS: usize> {
+    /// The published skeleton and its frontier.
+    pub topology: &'a Topology<SLOTS>,
+    /// The map.
+    pub tiles: &'a Tiles<TILES, SLOTS>,
+    /// The robot's disc.
+    pub disc: &'a Disc,
+}
+
+/// Scratch of a round of planning.
+#[derive(Debug)]
+pub struct Lent<'a> {
+    /// The wave's distances, a pair for each word of the plane.
+    pub residues: &'a mut [[u32; 2]],
+    /// The wave's queue.
+    pub ring: &'a mut [u32],
+    /// The window in which the robot finds its centre cell.
+    pub view: &'a mut View,
 }
 
 /// What a new round says.
@@ -98,7 +120,6 @@ impl Frontier {
             flat: false,
             flat_rounds: 0,
             empty_rounds: 0,
-            had_road: false,
             second_chance: false,
         }
     }
@@ -120,43 +141,67 @@ impl Frontier {
         &self.dropped
     }
 
-    /// Whether any frontier was ever within reach.
-    #[must_use]
-    pub const fn had_road(&self) -> bool {
-        self.had_road
-    }
-
     /// A new skeleton is there: spread the wave from its frontier cells, move the robot to the skeleton, and walk down
-    /// [Ouroboros, Algorithm 1, lines 3, 4, 24].
+    /// [Ouroboros, Algorithm 1, lines 3, 4, 24]. It works in what is lent.
     pub fn replan<const TILES: usize, const SLOTS: usize>(
         &mut self,
-        topology: &Topology<SLOTS>,
-        tiles: &Tiles<TILES, SLOTS>,
-        disc: &Disc,
+        known: &Known<'_, TILES, SLOTS>,
         robot: Point,
         time_ms: u32,
-        (residues, ring): (&mut [[u32; 2]], &mut [u32]),
+        lent: Lent<'_>,
     ) -> Outlook {
-        let frame = topology.frame();
-        let road = match (topology.skeleton(), topology.frontier()) {
-            (Some(way), Some(goals)) => {
-                Residues::new(frame.shape, residues)
-                    .ok()
-                    .and_then(|residues| {
-                        let mut space = WaveSpace {
-                            way,
-                            residues,
-                            ring,
-                        };
-                        self.spread(&mut space, goals, frame);
-                        let entry = entry(&space, frame, tiles, disc, robot.cell())?;
-                        Some(walk_down(&space, frame, tiles, entry))
-                    })
-            }
-            _ => None,
-        };
+        let road = self.find_road(known, robot, lent);
         self.note_motion(robot, time_ms);
         self.adopt(road, time_ms)
+    }
+
+    /// List the frontier cells that were never within reach, in groups, behind the goals that were dropped.
+    pub fn list_leftovers<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        known: &Known<'_, TILES, SLOTS>,
+    ) {
+        let Some(goals) = known.topology.frontier() else {
+            return;
+        };
+        for site in goals.sites() {
+            let cell = known.topology.frame().cell(site);
+            let group = self
+                .dropped
+                .iter_mut()
+                .find(|left| near(left.cell, cell, GROUP_RADIUS_M));
+            match group {
+                Some(left) => left.cells = left.cells.saturating_add(1),
+                // A full list names enough of them.
+                None => {
+                    let left = Leftover {
+                        cell,
+                        cells: 1,
+                        reason: Residue::Unreachable,
+                    };
+                    let _ = self.dropped.push(left);
+                }
+            }
+        }
+    }
+
+    fn find_road<const TILES: usize, const SLOTS: usize>(
+        &self,
+        known: &Known<'_, TILES, SLOTS>,
+        robot: Point,
+        lent: Lent<'_>,
+    ) -> Option<Road> {
+        let frame = known.topology.frame();
+        let way = known.topology.skeleton()?;
+        let goals = known.topology.frontier()?;
+        let residues = Residues::new(frame.shape, lent.residues).ok()?;
+        let mut space = WaveSpace {
+            way,
+            residues,
+            ring: lent.ring,
+        };
+        self.spread(&mut space, goals, frame);
+        let entry = entry(&space, frame, known, robot.cell(), lent.view)?;
+        Some(walk_down(&space, frame, known.tiles, entry))
     }
 
     /// Wave from every frontier cell that was not dropped; those beside the present goal first.
@@ -215,7 +260,6 @@ impl Frontier {
             };
         };
         self.empty_rounds = 0;
-        self.had_road = true;
         let same =
             !self.road.is_empty() && near(road.goal(), self.road.goal(), 2.0 * DROP_RADIUS_M);
         if !same || road.steps() < self.fewest {
@@ -287,35 +331,61 @@ impl Default for Frontier {
 fn entry<const TILES: usize, const SLOTS: usize>(
     space: &WaveSpace<'_>,
     frame: Frame,
-    tiles: &Tiles<TILES, SLOTS>,
-    disc: &Disc,
+    known: &Known<'_, TILES, SLOTS>,
     robot: Cell,
+    view: &mut View,
 ) -> Option<Site> {
     SCALES.iter().find_map(|&scale| {
-        let mut view = View::around(tiles, disc, robot, scale);
+        view.look_around(known.tiles, known.disc, robot, scale);
         view.free_robot(robot);
-        let mut targets: Rows = [0; SIDE];
-        for y in 0..SIDE {
-            for x in 0..SIDE {
-                let place = (x, y);
-                if !View::has(&view.passable, place) {
-                    continue;
-                }
-                if reached_site(space, frame, &view, place).is_some() {
-                    View::put(&mut targets, place);
-                }
-            }
-        }
+        let targets = targets(space, frame, view);
         let mut seeds: Rows = [0; SIDE];
         View::put(&mut seeds, view.place(robot)?);
         let met = flood(&view.passable, &mut seeds, &targets, Adjacency::Four)?;
         reached_site(
             space,
             frame,
-            &view,
+            view,
             (usize::from(met.site.x), usize::from(met.site.y)),
         )
     })
+}
+
+/// The passable window cells that hold a centre cell which the wave came to.
+fn targets(space: &WaveSpace<'_>, frame: Frame, view: &View) -> Rows {
+    let mut targets: Rows = [0; SIDE];
+    let least = (view.origin.y - frame.origin.y).div_euclid(2);
+    let rows = least.max(0) as usize..(least + SIDE as i32 * view.scale / 2 + 1).max(0) as usize;
+    for y in rows.start..rows.end.min(frame.shape.rows()) {
+        for word in 0..frame.shape.words_per_row() {
+            let mut bits = space.way.word(y, word);
+            while bits != 0 {
+                let x = (word * 32) as u16 + bits.trailing_zeros() as u16;
+                bits &= bits - 1;
+                let site = Site { x, y: y as u16 };
+                if space.residues.get(site).is_some() {
+                    mark(&mut targets, view, frame.cell(site));
+                }
+            }
+        }
+    }
+    targets
+}
+
+/// Mark the passable window cells of a coarse cell.
+fn mark(rows: &mut Rows, view: &View, cell: Cell) {
+    for k in 0..4 {
+        let part = Cell {
+            x: cell.x + (k & 1),
+            y: cell.y + (k >> 1),
+        };
+        if let Some(place) = view
+            .place(part)
+            .filter(|&place| View::has(&view.passable, place))
+        {
+            View::put(rows, place);
+        }
+    }
 }
 
 /// A centre cell in a window cell that the wave came to.

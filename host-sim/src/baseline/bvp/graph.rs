@@ -1,0 +1,253 @@
+//! Balance equations on graphs, each coarser than the last, as the full-grid field needs them.
+//!
+//! Every level has unknowns x > 0 with
+//!
+//! ```text
+//! x_i (w_i + Σ_k f_ki) = Σ_j f_ij x_j + b_i
+//! ```
+//!
+//! where `f_ij` ≥ 0 flows from j into i, `w_i` ≥ 0 is lost to cells whose value is given, and `b_i` ≥ 0 comes from goals. On the
+//! finest level x is q itself: every f is 1, w counts the neighbours that are goals or obstacles (together f and w are 4), b
+//! is the goals' value. A coarser level scales groups of x by common factors y, and its coefficients
+//!
+//! ```text
+//! F_IJ = Σ f_ij x_j        W_J = Σ w_j x_j        B_I = Σ b_i
+//! ```
+//!
+//! are sums of positive numbers only, so that they keep their digits whatever the range of x. A group is a connected part of
+//! a block of 2 × 2 places: it never joins the two sides of a wall.
+
+/// No node, no edge.
+const NONE: u32 = u32::MAX;
+
+/// Nodes that are solved directly.
+pub(super) const FEW: usize = 40;
+
+/// A level; node i has the edges `starts[i]..starts[i + 1]`.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Level {
+    starts: Vec<u32>,
+    /// The other node of each edge.
+    from: Vec<u32>,
+    /// f of each edge.
+    flow: Vec<f64>,
+    loss: Vec<f64>,
+    source: Vec<f64>,
+    /// `w_i` + `Σ_k` `f_ki`.
+    outflow: Vec<f64>,
+    /// x.
+    pub(super) value: Vec<f64>,
+    /// The coarser node of each node, and the coarser edge of each edge (none within a group).
+    group: Vec<u32>,
+    group_edge: Vec<u32>,
+}
+
+/// A cell of the finest level.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Node {
+    /// The free neighbours, by number.
+    pub(super) beside: [Option<u32>; 4],
+    /// Neighbours that are goals.
+    pub(super) goals: u8,
+}
+
+impl Level {
+    /// The finest level, for goals of the value `goal`.
+    pub(super) fn finest(nodes: &[Node], goal: f64) -> Self {
+        let mut level = Self::with_capacity(nodes.len());
+        for node in nodes {
+            for near in node.beside.into_iter().flatten() {
+                level.from.push(near);
+            }
+            level.starts.push(level.from.len() as u32);
+            let free = node.beside.into_iter().flatten().count();
+            level.loss.push((4 - free) as f64);
+            level.source.push(f64::from(node.goals) * goal);
+        }
+        level.flow = vec![1.0; level.from.len()];
+        level.outflow = vec![4.0; nodes.len()];
+        level.value = vec![goal; nodes.len()];
+        level
+    }
+
+    fn with_capacity(nodes: usize) -> Self {
+        let mut level = Self {
+            starts: Vec::with_capacity(nodes + 1),
+            ..Self::default()
+        };
+        level.starts.push(0);
+        level
+    }
+
+    /// Nodes.
+    pub(super) fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    fn edges(&self, node: usize) -> core::ops::Range<usize> {
+        self.starts[node] as usize..self.starts[node + 1] as usize
+    }
+
+    /// One Gauss–Seidel sweep, in either order.
+    pub(super) fn sweep(&mut self, backwards: bool) {
+        let count = self.len();
+        for k in 0..count {
+            let node = if backwards { count - 1 - k } else { k };
+            let edges = self.edges(node);
+            let inflow = self.from[edges.clone()].iter().zip(&self.flow[edges]);
+            let sum: f64 = inflow
+                .map(|(&near, flow)| flow * self.value[near as usize])
+                .sum();
+            if self.outflow[node] > 0.0 {
+                self.value[node] = (sum + self.source[node]) / self.outflow[node];
+            }
+        }
+    }
+
+    /// A coarser level's structure, and the coarser places, from where this level's nodes lie.
+    pub(super) fn coarsen(&mut self, places: &[(u32, u32)]) -> (Self, Vec<(u32, u32)>) {
+        let block = |node: usize| (places[node].0 / 2, places[node].1 / 2);
+        let count = self.groups(&block);
+        let mut blocks = vec![(0, 0); count];
+        for (node, &group) in self.group.iter().enumerate() {
+            blocks[group as usize] = block(node);
+        }
+        (self.join(count), blocks)
+    }
+
+    /// Number the connected parts of every block.
+    fn groups(&mut self, block: &impl Fn(usize) -> (u32, u32)) -> usize {
+        self.group = vec![NONE; self.len()];
+        let (mut count, mut pending) = (0, Vec::new());
+        for first in 0..self.len() {
+            if self.group[first] != NONE {
+                continue;
+            }
+            self.group[first] = count;
+            pending.push(first);
+            while let Some(node) = pending.pop() {
+                for edge in self.edges(node) {
+                    let near = self.from[edge] as usize;
+                    if self.group[near] == NONE && block(near) == block(first) {
+                        self.group[near] = count;
+                        pending.push(near);
+                    }
+                }
+            }
+            count += 1;
+        }
+        count as usize
+    }
+
+    /// The graph of the groups.
+    fn join(&mut self, count: usize) -> Self {
+        let mut coarse = Self::with_capacity(count);
+        let members = members(&self.group, count);
+        // The edge to each group that was met last, valid from the present group's first edge on.
+        let mut met = vec![NONE; count];
+        self.group_edge = vec![NONE; self.from.len()];
+        for (group, nodes) in members.iter().enumerate() {
+            let first = coarse.from.len() as u32;
+            for &node in nodes {
+                for edge in self.edges(node as usize) {
+                    let other = self.group[self.from[edge] as usize];
+                    if other as usize == group {
+                        continue;
+                    }
+                    let known = met[other as usize];
+                    if known == NONE || known < first {
+                        met[other as usize] = coarse.from.len() as u32;
+                        coarse.from.push(other);
+                    }
+                    self.group_edge[edge] = met[other as usize];
+                }
+            }
+            coarse.starts.push(coarse.from.len() as u32);
+        }
+        coarse.flow = vec![0.0; coarse.from.len()];
+        for numbers in [
+            &mut coarse.loss,
+            &mut coarse.source,
+            &mut coarse.outflow,
+            &mut coarse.value,
+        ] {
+            *numbers = vec![0.0; count];
+        }
+        coarse
+    }
+
+    /// Give the coarser level the coefficients that follow from the present x, and factors of 1.
+    pub(super) fn restrict(&self, coarse: &mut Self) {
+        coarse.flow.fill(0.0);
+        coarse.loss.fill(0.0);
+        coarse.source.fill(0.0);
+        coarse.value.fill(1.0);
+        for (node, &group) in self.group.iter().enumerate() {
+            let group = group as usize;
+            coarse.loss[group] += self.loss[node] * self.value[node];
+            coarse.source[group] += self.source[node];
+            for edge in self.edges(node) {
+                let into = self.group_edge[edge];
+                if into != NONE {
+                    coarse.flow[into as usize] +=
+                        self.flow[edge] * self.value[self.from[edge] as usize];
+                }
+            }
+        }
+        coarse.outflow.copy_from_slice(&coarse.loss);
+        for (&from, flow) in coarse.from.iter().zip(&coarse.flow) {
+            coarse.outflow[from as usize] += flow;
+        }
+    }
+
+    /// Scale every x by its group's factor.
+    pub(super) fn prolong(&mut self, coarse: &Self) {
+        for (value, &group) in self.value.iter_mut().zip(&self.group) {
+            *value *= coarse.value[group as usize];
+        }
+    }
+
+    /// Solve directly, the way of Grassmann, Taksar and Heyman: what is left of a column is summed anew, never subtracted.
+    /// Cost: n³/3.
+    pub(super) fn eliminate(&mut self) {
+        let count = self.len();
+        let mut flow = vec![vec![0.0; count]; count];
+        for (node, row) in flow.iter_mut().enumerate() {
+            for edge in self.edges(node) {
+                row[self.from[edge] as usize] = self.flow[edge];
+            }
+        }
+        let (mut loss, mut source) = (self.loss.clone(), self.source.clone());
+        let mut outflow = vec![0.0; count];
+        for last in (0..count).rev() {
+            outflow[last] = loss[last] + (0..last).map(|i| flow[i][last]).sum::<f64>();
+            if outflow[last] <= 0.0 {
+                continue;
+            }
+            let via = flow[last].clone();
+            for i in 0..last {
+                let share = flow[i][last] / outflow[last];
+                if share > 0.0 {
+                    source[i] += share * source[last];
+                    for (j, inflow) in via[..last].iter().enumerate().filter(|(j, _)| *j != i) {
+                        flow[i][j] += share * inflow;
+                    }
+                }
+                loss[i] += loss[last] / outflow[last] * via[i];
+            }
+        }
+        for i in (0..count).filter(|&i| outflow[i] > 0.0).collect::<Vec<_>>() {
+            let sum: f64 = (0..i).map(|j| flow[i][j] * self.value[j]).sum();
+            self.value[i] = (sum + source[i]) / outflow[i];
+        }
+    }
+}
+
+/// The nodes of each group, ascending.
+fn members(group: &[u32], count: usize) -> Vec<Vec<u32>> {
+    let mut members = vec![Vec::new(); count];
+    for (node, &group) in (0..).zip(group) {
+        members[group as usize].push(node);
+    }
+    members
+}

@@ -1,0 +1,364 @@
+//! A host-only planner as a [`Link`]: everything but the strategy is the device's own code.
+//!
+//! ```text
+//! observation → Map, NearField → Chart → Plan (the strategy) → heading → Drive → command
+//! ```
+//!
+//! Map (with the capacity of the default image, so that a run ends for want of memory where the device's would), near
+//! field, clearance and drive are those of `fieldline_planner`; so are the rules for a blocked start and for what an end means.
+//! What differs from the planner's own step is what a [`Plan`] says. Departs from that step in one thing: a robot that looks
+//! around at its goal does so only where the turn is clear.
+
+use fieldline_device::convert;
+use fieldline_device::limits;
+use fieldline_device::session::{self, Boot};
+use fieldline_device::{SLOTS, TILES};
+use fieldline_planner::clearance::Disc;
+use fieldline_planner::config::Config;
+use fieldline_planner::drive::{Drive, Ground, Place, Surround, manoeuvre};
+use fieldline_planner::geometry::{Point, Pose, Twist};
+use fieldline_planner::map::Map;
+use fieldline_planner::map::integrate::is_level;
+use fieldline_planner::math;
+use fieldline_planner::near::NearField;
+use fieldline_planner::planner::{Input, starts_blocked};
+use fieldline_planner::status;
+use fieldline_protocol::message::{
+    Command, Control, Cost, Fault, FieldRow, Finish, Frontier, Identity, MAX_FRONTIERS,
+    Observation, Refusal, Start, Status, TILE_SKELETON_BYTES, Tile,
+};
+
+use super::chart::Chart;
+use crate::link::{Link, LinkError, LinkStats};
+
+/// Turn rate of a robot that looks around at its goal, radians a second: the planner's.
+const LOOK_AROUND_RADPS: f32 = 0.6;
+/// Clearance kept in that turn, metres: the drive's when creeping.
+const LOOK_AROUND_MARGIN_M: f32 = 0.025;
+/// Time for which a plan must find nothing before the exploration is over, milliseconds.
+const EMPTY_MS: u32 = 1_000;
+
+/// What a plan is made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'a> {
+    /// The known space.
+    pub chart: &'a Chart,
+    /// The robot.
+    pub pose: Pose,
+    /// The host's clock, milliseconds.
+    pub time_ms: u32,
+}
+
+/// What a strategy says of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outlook {
+    /// There is a way to unexplored space.
+    Way,
+    /// There is none.
+    Nothing,
+}
+
+/// A strategy: where to go next.
+pub trait Plan {
+    /// Forget everything.
+    fn reset(&mut self);
+
+    /// Look at the scene of this step.
+    fn plan(&mut self, scene: &Scene<'_>) -> Outlook;
+
+    /// The heading that the plan asks for at a point near the robot, radians; `None` where it asks for none.
+    fn heading_at(&self, scene: &Scene<'_>, point: Point) -> Option<f32>;
+
+    /// Goals that were given up, and why.
+    fn dropped(&self) -> Vec<status::Frontier>;
+
+    /// Solver cycles of the last plan.
+    fn cycles(&self) -> u16 {
+        0
+    }
+
+    /// A row of the last field around the robot.
+    fn field_row(&self, _row: u8) -> Option<FieldRow> {
+        None
+    }
+}
+
+/// A strategy at work.
+#[derive(Debug)]
+pub struct Session<P> {
+    /// The strategy.
+    pub plan: P,
+    config: Option<Config>,
+    status: Status,
+    paused: bool,
+    started: bool,
+    had_way: bool,
+    empty_since_ms: Option<u32>,
+    map: Box<Map<TILES, SLOTS>>,
+    near: NearField,
+    drive: Drive,
+    chart: Chart,
+    scratch: Vec<u32>,
+    calls: u64,
+}
+
+impl<P: Plan> Session<P> {
+    /// Before a start.
+    #[must_use]
+    pub fn new(plan: P) -> Self {
+        Self {
+            plan,
+            config: None,
+            status: Status::Idle,
+            paused: false,
+            started: false,
+            had_way: false,
+            empty_since_ms: None,
+            map: Box::new(Map::new()),
+            near: NearField::new(),
+            drive: Drive::new(),
+            chart: Chart::new(),
+            scratch: vec![0; manoeuvre::SCRATCH_WORDS],
+            calls: 0,
+        }
+    }
+
+    fn status(&self) -> Status {
+        match self.status {
+            Status::Exploring if self.paused => Status::Paused,
+            status => status,
+        }
+    }
+
+    fn start(&mut self, start: &Start) -> Result<(), Refusal> {
+        limits::check_start(start, SLOTS)?;
+        let config = convert::config(start);
+        self.map.reset(config.box_tiles.0, config.box_tiles.1);
+        self.near.clear();
+        self.drive = Drive::new();
+        self.chart = Chart::new();
+        self.plan.reset();
+        self.config = Some(config);
+        self.status = Status::Exploring;
+        self.paused = false;
+        self.started = false;
+        self.had_way = false;
+        self.empty_since_ms = None;
+        Ok(())
+    }
+
+    fn step(&mut self, config: &Config, input: &Input<'_>) -> Command {
+        self.sense(config, input);
+        if self.status != Status::Exploring {
+            return standing(self.status);
+        }
+        let disc = Disc::new(config.robot_radius_m);
+        self.chart.draw(self.map.tiles(), &disc, input.pose.point());
+        let scene = Scene {
+            chart: &self.chart,
+            pose: input.pose,
+            time_ms: input.time_ms,
+        };
+        match self.plan.plan(&scene) {
+            Outlook::Way => {
+                self.had_way = true;
+                self.empty_since_ms = None;
+            }
+            Outlook::Nothing => {
+                let since = *self.empty_since_ms.get_or_insert(input.time_ms);
+                if input.time_ms.wrapping_sub(since) >= EMPTY_MS {
+                    self.status = self.conclude();
+                }
+                return standing(self.status);
+            }
+        }
+        self.follow(config, input)
+    }
+
+    /// Scans and odometry into the map and the near field.
+    fn sense(&mut self, config: &Config, input: &Input<'_>) {
+        if !self.started {
+            self.started = true;
+            if starts_blocked(config, input) {
+                self.status = Status::Fault(Fault::StartBlocked);
+            }
+        }
+        self.map.observe(config, input);
+        for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
+            if is_level(laser) {
+                self.near.update(&input.pose, laser, ranges_mm);
+            }
+        }
+    }
+
+    /// Why there is nothing left within reach.
+    fn conclude(&self) -> Status {
+        if self.map.pool_full() {
+            Status::Fault(Fault::MapFull)
+        } else if self.map.out_of_box() {
+            Status::Fault(Fault::OutOfBox)
+        } else if self.had_way {
+            Status::Finished(Finish::Explored)
+        } else {
+            Status::Finished(Finish::BoxedIn)
+        }
+    }
+
+    /// Drive where the plan says.
+    fn follow(&mut self, config: &Config, input: &Input<'_>) -> Command {
+        let pose = input.pose;
+        let scene = Scene {
+            chart: &self.chart,
+            pose,
+            time_ms: input.time_ms,
+        };
+        let plan = &self.plan;
+        let surround = Surround::new(&pose, self.near.points());
+        let heading = plan.heading_at(&scene, pose.point());
+        let velocity = if heading.is_some() {
+            let heading_there = |place: Place| {
+                let there = plan.heading_at(&scene, ahead(&pose, place));
+                there.map(|heading| math::wrap(heading - pose.yaw_rad))
+            };
+            let ground = Ground {
+                surround: &surround,
+                heading_at: heading_there,
+                potential_at: None,
+            };
+            self.drive
+                .follow(config, &ground, input.velocity, &mut self.scratch)
+        } else {
+            look_around(config, input, &surround)
+        };
+        Command {
+            velocity: convert::wire_twist(&velocity),
+            status: Status::Exploring,
+            heading: convert::quantity(heading.unwrap_or(pose.yaw_rad)),
+            cost: Cost {
+                cycles: self.plan.cycles(),
+                ..Cost::default()
+            },
+            ..Command::default()
+        }
+    }
+}
+
+/// A turn on the spot where that touches nothing.
+fn look_around(config: &Config, input: &Input<'_>, surround: &Surround) -> Twist {
+    let turn = Twist {
+        linear_mps: 0.0,
+        angular_radps: LOOK_AROUND_RADPS,
+    };
+    if surround.admits(turn, input.velocity, config, LOOK_AROUND_MARGIN_M) {
+        turn
+    } else {
+        Twist::default()
+    }
+}
+
+/// A place relative to the robot, in the map.
+fn ahead(pose: &Pose, place: Place) -> Point {
+    let (sin, cos) = math::sin_cos(pose.yaw_rad);
+    Point {
+        x_m: pose.x_m + place.x_m * cos - place.y_m * sin,
+        y_m: pose.y_m + place.x_m * sin + place.y_m * cos,
+    }
+}
+
+/// Zero velocity, and why.
+fn standing(status: Status) -> Command {
+    Command {
+        status,
+        ..Command::default()
+    }
+}
+
+fn input(observation: &Observation) -> Input<'_> {
+    let scan = |number: usize| match observation.scans.get(number) {
+        Some(scan) => scan.ranges_mm.as_slice(),
+        None => &[],
+    };
+    Input {
+        time_ms: observation.time_ms,
+        pose: convert::pose(&observation.pose),
+        velocity: convert::twist(&observation.velocity),
+        scans: [scan(0), scan(1)],
+    }
+}
+
+fn refused(refusal: Refusal) -> LinkError {
+    LinkError::Refused(refusal.to_string())
+}
+
+impl<P: Plan> Link for Session<P> {
+    fn hello(&mut self) -> Result<Identity, LinkError> {
+        Ok(session::identity(Boot::default(), TILES, SLOTS))
+    }
+
+    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
+        self.calls += 1;
+        match control {
+            Control::Start(start) => self.start(start).map_err(refused)?,
+            Control::Reset => {
+                self.config = None;
+                self.status = Status::Idle;
+            }
+            _ if self.config.is_none() => return Err(refused(Refusal::NotStarted)),
+            Control::Pause => self.paused = true,
+            Control::Resume => self.paused = false,
+            Control::Stop => self.status = Status::Finished(Finish::Stopped),
+        }
+        Ok(self.status())
+    }
+
+    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
+        self.calls += 1;
+        let Some(config) = self.config.take() else {
+            return Err(refused(Refusal::NotStarted));
+        };
+        let command = if !limits::matches(observation, config.lasers.iter().map(|l| l.beams)) {
+            standing(Status::Fault(Fault::BadObservation))
+        } else if self.status() == Status::Exploring {
+            self.step(&config, &input(observation))
+        } else {
+            standing(self.status())
+        };
+        self.config = Some(config);
+        Ok(command)
+    }
+
+    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
+        self.calls += 1;
+        let cells = self.map.tiles().packed(x.into(), y.into());
+        Ok(cells.map(|cells| Tile {
+            x,
+            y,
+            cells: cells.into_iter().collect(),
+            skeleton: [0; TILE_SKELETON_BYTES].into_iter().collect(),
+        }))
+    }
+
+    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
+        self.calls += 1;
+        Ok(self.plan.field_row(row))
+    }
+
+    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
+        self.calls += 1;
+        let dropped = self.plan.dropped();
+        Ok(dropped
+            .iter()
+            .take(MAX_FRONTIERS)
+            .map(convert::wire_frontier)
+            .collect())
+    }
+
+    /// Every call counts as a frame sent and one received.
+    fn stats(&self) -> LinkStats {
+        LinkStats {
+            sent: self.calls,
+            received: self.calls,
+            ..LinkStats::default()
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! What a step costs the emulated chip: instructions, counted exactly, and the deepest stack.
+//!
+//! Instructions are not cycles: a Cortex-M4 takes between one and two cycles for most of them.
+
+use host_sim::report::Report;
+
+use crate::golden;
+use crate::table::Table;
+
+/// Instructions that a step may take: about 50 ms at 168 MHz.
+pub const MOST_INSTRUCTIONS: f64 = 6e6;
+
+/// How far the figures may drift from the golden ones: another compiler arranges the code otherwise.
+pub const DRIFT: f64 = 0.05;
+
+/// One line a run.
+#[must_use]
+pub fn table(reports: &[Report]) -> Table {
+    let mut table = Table::new(1, &["world", "steps", "p50", "p99", "most", "stack bytes"]);
+    for report in reports {
+        let of = report.planner.instructions.unwrap_or_default();
+        let mut row = vec![report.world.clone(), report.steps.to_string()];
+        row.extend([of.p50, of.p99, of.max].map(|count| format!("{count:.0}")));
+        row.push(report.planner.stack_bytes.unwrap_or(0).to_string());
+        table.row(row);
+    }
+    table
+}
+
+/// Every step was counted, and none took too long.
+///
+/// # Panics
+/// If not so.
+pub fn assert_within_budget(reports: &[Report]) {
+    for report in reports {
+        let world = &report.world;
+        let Some(of) = report.planner.instructions else {
+            panic!("{world}: nothing was counted");
+        };
+        assert!(
+            of.p50 > 0.0 && of.max <= MOST_INSTRUCTIONS,
+            "{world}: {of:?}"
+        );
+        assert!(
+            report.planner.stack_bytes.is_some(),
+            "{world}: no stack was measured"
+        );
+    }
+}
+
+/// Compare with golden file `name`, and with the budget.
+///
+/// # Panics
+/// If either does not hold.
+pub fn check(name: &str, reports: &[Report]) {
+    golden::compare_about(name, &table(reports).to_string(), DRIFT);
+    assert_within_budget(reports);
+}

@@ -1,0 +1,201 @@
+//! Whole explorations, several at a time, and what a table says of each.
+//!
+//! A run is lockstep and seeded, so its report does not depend on the machine, nor on what else runs; only the number of
+//! runs at a time does. Units in tables: seconds of simulated time, metres, per cent of what can be seen.
+
+use core::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::Mutex;
+
+use host_sim::link::Link;
+use host_sim::link::direct::Direct;
+use host_sim::report::Report;
+use host_sim::trial::mission::{Mission, explore};
+use host_sim::trial::{Flow, Progress, Watch};
+use host_sim::world::World;
+
+use crate::table::{Table, number};
+
+/// The strategy of the device.
+pub const FRONTIER: &str = "frontier";
+/// It, and the baselines.
+pub const STRATEGIES: &[&str] = &[FRONTIER];
+
+/// One exploration.
+#[derive(Clone, Copy, Debug)]
+pub struct Run<'a> {
+    /// Where.
+    pub world: &'a World,
+    /// What plans.
+    pub strategy: &'a str,
+    /// Decides the noise.
+    pub seed: u64,
+}
+
+/// Nobody looks on.
+#[derive(Clone, Copy, Debug)]
+pub struct Unseen;
+
+impl Watch for Unseen {
+    fn step(&mut self, _: &Progress) -> Flow {
+        Flow::Continue
+    }
+}
+
+impl Run<'_> {
+    /// Explore by the direct link.
+    ///
+    /// # Panics
+    /// If it cannot begin.
+    #[must_use]
+    pub fn go(&self) -> Report {
+        self.go_by("direct", planner(self.strategy).as_mut())
+    }
+
+    /// Explore by a link, and say so under its name.
+    ///
+    /// # Panics
+    /// If it cannot begin.
+    pub fn go_by(&self, name: &str, link: &mut dyn Link) -> Report {
+        let mission = Mission {
+            strategy: self.strategy.into(),
+            link: name.into(),
+            seed: self.seed,
+            ..Mission::default()
+        };
+        match explore(&mission, self.world, link, &mut Unseen) {
+            Ok((report, _)) => report,
+            Err(error) => panic!("{} by {name}: {error}", self.world.name()),
+        }
+    }
+}
+
+/// What plans so, without bytes in between.
+///
+/// # Panics
+/// If nothing does.
+fn planner(strategy: &str) -> Box<dyn Link> {
+    match strategy {
+        FRONTIER => Box::new(Direct::new()),
+        other => panic!("no strategy is called {other}"),
+    }
+}
+
+/// Every world with every strategy and seed, in that order.
+#[must_use]
+pub fn each<'a>(worlds: &'a [World], strategies: &[&'a str], seeds: u64) -> Vec<Run<'a>> {
+    let mut runs = Vec::new();
+    for world in worlds {
+        for &strategy in strategies {
+            runs.extend((0..seeds).map(|seed| Run {
+                world,
+                strategy,
+                seed,
+            }));
+        }
+    }
+    runs
+}
+
+/// Explores all of them, one on each core at a time; the reports are in the order of the runs.
+///
+/// # Panics
+/// If one cannot begin.
+#[must_use]
+pub fn sweep(runs: &[Run<'_>]) -> Vec<Report> {
+    let next = AtomicUsize::new(0);
+    let done = Mutex::new(Vec::new());
+    let workers = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| {
+                while let Some((k, run)) = take(&next, runs) {
+                    let report = run.go();
+                    if let Ok(mut done) = done.lock() {
+                        done.push((k, report));
+                    }
+                }
+            });
+        }
+    });
+    let mut done = done.into_inner().unwrap_or_default();
+    done.sort_by_key(|(k, _)| *k);
+    assert_eq!(done.len(), runs.len(), "a run was lost");
+    done.into_iter().map(|(_, report)| report).collect()
+}
+
+fn take<'a, 'w>(next: &AtomicUsize, runs: &'a [Run<'w>]) -> Option<(usize, &'a Run<'w>)> {
+    let k = next.fetch_add(1, Ordering::Relaxed);
+    runs.get(k).map(|run| (k, run))
+}
+
+/// One line a run.
+#[must_use]
+pub fn table(reports: &[Report]) -> Table {
+    let mut table = Table::new(
+        3,
+        &[
+            "world", "strategy", "ended", "seed", "known %", "T90 s", "T99 s", "end s", "path m",
+            "overlap", "hits", "clear m", "left", "digest",
+        ],
+    );
+    for report in reports {
+        let (coverage, safety) = (&report.coverage, &report.safety);
+        table.row(vec![
+            report.world.clone(),
+            report.strategy.clone(),
+            format!("{}({})", report.outcome.status, report.outcome.reason),
+            report.seed.to_string(),
+            format!("{:.2}", coverage.fraction * 100.0),
+            number(coverage.t90_s, 1),
+            number(coverage.t99_s, 1),
+            format!("{:.1}", report.sim_time_s),
+            format!("{:.1}", report.path_length_m),
+            number(coverage.overlap, 3),
+            (safety.collisions + safety.falls + safety.tips).to_string(),
+            number(safety.min_clearance_m, 3),
+            report.outcome.residual_frontiers.len().to_string(),
+            report.digest.chars().take(8).collect(),
+        ]);
+    }
+    table
+}
+
+/// One line for each world and strategy, of its runs over the seeds.
+///
+/// T99 is a mean only where every run came so far; `hits` and `unfinished` are sums.
+#[must_use]
+pub fn means(reports: &[Report]) -> Table {
+    let mut table = Table::new(
+        2,
+        &[
+            "world",
+            "strategy",
+            "known %",
+            "T90 s",
+            "T99 s",
+            "path m",
+            "overlap",
+            "hits",
+            "unfinished",
+        ],
+    );
+    for group in reports.chunk_by(|a, b| (&a.world, &a.strategy) == (&b.world, &b.strategy)) {
+        let mean = |of: &dyn Fn(&Report) -> Option<f64>| {
+            let values: Option<Vec<f64>> = group.iter().map(of).collect();
+            values.map(|values| values.iter().sum::<f64>() / values.len() as f64)
+        };
+        let hits = |r: &Report| r.safety.collisions + r.safety.falls + r.safety.tips;
+        table.row(vec![
+            group[0].world.clone(),
+            group[0].strategy.clone(),
+            number(mean(&|r| Some(r.coverage.fraction * 100.0)), 2),
+            number(mean(&|r| r.coverage.t90_s), 1),
+            number(mean(&|r| r.coverage.t99_s), 1),
+            number(mean(&|r| Some(r.path_length_m)), 1),
+            number(mean(&|r| r.coverage.overlap), 3),
+            group.iter().map(hits).sum::<u32>().to_string(),
+            group.iter().filter(|r| !r.explored()).count().to_string(),
+        ]);
+    }
+    table
+}

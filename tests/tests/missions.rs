@@ -1,0 +1,187 @@
+//! Whole explorations with noisy lasers: what must hold of every run, and golden tables of how each went.
+//!
+//! `golden/missions.txt` has the built-in worlds; `tests/run --full` adds the baselines, and the worlds drawn by others where
+//! there are any, in the other tables. A changed row is a changed behaviour.
+
+use std::fmt::Write as _;
+
+use fieldline_tests::runs::{self, FRONTIER, Run};
+use fieldline_tests::{full, golden, worlds};
+use host_sim::report::Report;
+use host_sim::world::World;
+
+/// Share of what can be seen that must be known at the end.
+const LEAST_COVERAGE: f64 = 0.98;
+/// Seeds of every world, from 0.
+const SEEDS: u64 = 5;
+
+/// What must hold of an exploration by the device's strategy.
+fn faults(report: &Report) -> Vec<String> {
+    let (outcome, safety) = (&report.outcome, &report.safety);
+    let mut faults = Vec::new();
+    if !report.explored() {
+        faults.push(format!("{} ({})", outcome.status, outcome.reason));
+    }
+    if report.coverage.fraction < LEAST_COVERAGE {
+        faults.push(format!("coverage {:.4}", report.coverage.fraction));
+    }
+    for (count, what) in [
+        (safety.collisions, "collisions"),
+        (safety.falls, "falls"),
+        (safety.tips, "tips"),
+    ] {
+        if count > 0 {
+            faults.push(format!("{count} {what}"));
+        }
+    }
+    if report.debug.map_matches_mirror != Some(true) {
+        faults.push("the device's map is not what it was shown".into());
+    }
+    faults
+}
+
+fn assert_explored(reports: &[Report]) {
+    let mut list = String::new();
+    for report in reports.iter().filter(|report| report.strategy == FRONTIER) {
+        for fault in faults(report) {
+            let _ = writeln!(list, "{} seed {}: {fault}", report.world, report.seed);
+        }
+    }
+    assert!(list.is_empty(), "\n{list}");
+}
+
+fn builtins(names: &[&str]) -> Vec<World> {
+    names.iter().map(|name| worlds::builtin(name)).collect()
+}
+
+#[test]
+fn built_in_worlds_are_explored_whole_and_untouched() {
+    let worlds = builtins(&worlds::EXPLORABLE);
+    let reports = runs::sweep(&runs::each(&worlds, &[FRONTIER], SEEDS));
+    golden::compare("missions.txt", &runs::table(&reports).to_string());
+    assert_explored(&reports);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_run_and_another_one_another() {
+    let world = worlds::builtin("narrow-doors");
+    let digest = |seed| {
+        let (world, strategy) = (&world, FRONTIER);
+        let run = Run {
+            world,
+            strategy,
+            seed,
+        };
+        run.go().digest
+    };
+    assert_eq!(digest(7), digest(7));
+    assert_ne!(digest(7), digest(8));
+}
+
+/// Nothing can be seen of the one room, and only a part of the other, through a gap that the robot does not fit through.
+#[test]
+fn a_room_that_cannot_be_reached_is_left_and_listed() {
+    let worlds = builtins(&["unreachable-room"]);
+    for report in runs::sweep(&runs::each(&worlds, &[FRONTIER], SEEDS)) {
+        let seed = report.seed;
+        assert!(report.explored(), "seed {seed}: {:?}", report.outcome);
+        assert_eq!(report.safety.collisions, 0, "seed {seed}");
+        let left = &report.outcome.residual_frontiers;
+        assert!(
+            left.iter().any(|frontier| frontier.reason == "unreachable"),
+            "seed {seed}: {left:?}"
+        );
+    }
+}
+
+#[test]
+fn a_robot_that_starts_boxed_in_says_so() {
+    let worlds = builtins(&["boxed-in"]);
+    for report in runs::sweep(&runs::each(&worlds, &[FRONTIER], SEEDS)) {
+        let outcome = (
+            report.outcome.status.as_str(),
+            report.outcome.reason.as_str(),
+        );
+        assert_eq!(outcome, ("finished", "boxed-in"), "seed {}", report.seed);
+        assert_eq!(report.safety.collisions, 0);
+        assert!(report.sim_time_s < 30.0, "{} s", report.sim_time_s);
+    }
+}
+
+#[test]
+fn a_hall_larger_than_the_lasers_see_is_explored() {
+    let world = worlds::builtin("empty-hall");
+    let [width, height] = world.size_m();
+    assert!(
+        width > 24.0 && height > 24.0,
+        "more than twice their 12 m: from its middle no wall is seen"
+    );
+    for start in [0, 1] {
+        let mission = host_sim::trial::mission::Mission {
+            start,
+            ..Default::default()
+        };
+        let mut link = host_sim::link::direct::Direct::new();
+        let (report, _) =
+            host_sim::trial::mission::explore(&mission, &world, &mut link, &mut runs::Unseen)
+                .expect("the start is free");
+        assert_eq!(faults(&report), Vec::<String>::new(), "start {start}");
+    }
+}
+
+/// The tool refuses it; a device that is not asked by the tool says so itself.
+#[test]
+fn a_start_inside_a_wall_is_refused_by_name_and_remedy() {
+    use host_sim::link::direct::Direct;
+    use host_sim::trial::mission::{Mission, explore};
+    use host_sim::world::{Occupancy, Start};
+
+    let wall = Start {
+        x_m: 0.05,
+        y_m: 0.05,
+        yaw_rad: 0.0,
+    };
+    let plan: Occupancy = worlds::builtin("office").occupancy().clone();
+    let world = World::flat("walled", plan, vec![wall]);
+    let error = explore(
+        &Mission::default(),
+        &world,
+        &mut Direct::new(),
+        &mut runs::Unseen,
+    )
+    .expect_err("there is no room for a robot in a wall");
+    let text = error.to_string();
+    assert!(
+        text.contains("walled") && text.contains("robots[0]") && !text.contains('\n'),
+        "{text}"
+    );
+}
+
+#[test]
+fn full_tables_of_the_built_in_worlds() {
+    if !full() {
+        return println!("skipped: FIELDLINE_FULL=1 or tests/run --full asks for it");
+    }
+    check_all("missions-full.txt", &builtins(&worlds::EXPLORABLE));
+}
+
+#[test]
+fn full_tables_of_worlds_drawn_by_others() {
+    if !full() {
+        return println!("skipped: FIELDLINE_FULL=1 or tests/run --full asks for it");
+    }
+    if let Some(worlds) = worlds::drawn_by_others() {
+        check_all("missions-data.txt", &worlds);
+    }
+}
+
+fn check_all(name: &str, worlds: &[World]) {
+    let reports = runs::sweep(&runs::each(worlds, runs::STRATEGIES, SEEDS));
+    let text = format!(
+        "Means over {SEEDS} seeds.\n\n{}\nEvery run.\n\n{}",
+        runs::means(&reports),
+        runs::table(&reports)
+    );
+    golden::compare(name, &text);
+    assert_explored(&reports);
+}
