@@ -3,7 +3,7 @@
 //! `golden/missions.txt` has the built-in worlds, one run of each baseline beside them; `tests/run --full` adds more of these, and the worlds drawn by others where
 //! there are any, in the other tables. A changed row is a changed behaviour.
 
-use std::fmt::Write as _;
+use core::fmt::Write as _;
 
 use fieldline_tests::runs::{self, FRONTIER, Run};
 use fieldline_tests::{full, golden, worlds};
