@@ -1,6 +1,6 @@
 //! Following a way by looking ahead on it (pure pursuit): the heading towards the farthest point of the way within 1 m to
-//! which the straight line is passable, and nowhere nearer to an obstacle than the way itself. So doors are passed the way the
-//! route passes them, in the middle, where a local planner on an inflated costmap would pass them, too.
+//! which the straight line is passable, and nowhere nearer to an obstacle than the way itself or 0.4 m. So doors are passed the
+//! way the route passes them, in the middle, where a local planner on an inflated costmap would pass them, too.
 //!
 //! Units: metres, radians.
 
@@ -12,6 +12,8 @@ use crate::baseline::chart::Chart;
 
 /// How far along the way to look, metres.
 pub const LOOK_AHEAD_M: f32 = 1.0;
+/// Squared distance to an obstacle, in cells, that is room enough: 0.4 m.
+const ROOMY: u8 = 16;
 /// This near to the goal the robot has arrived, metres: the default goal tolerance of ROS 2's navigation.
 pub const ARRIVED_M: f32 = 0.25;
 
@@ -42,7 +44,7 @@ pub fn heading(chart: &Chart, inflation: &Inflation, way: &[Point], at: Point) -
     let mut target = *ahead.first().or(way.last())?;
     let room = |point: Point| {
         let index = inflation.frame().index(point.cell());
-        index.map_or(0, |index| inflation.square(index))
+        index.map_or(0, |index| inflation.square(index).min(ROOMY))
     };
     let (mut last, mut length_m) = (*way.get(nearest)?, 0.0);
     let mut least = room(last).min(room(at));
