@@ -91,10 +91,12 @@ impl Madman {
         } else {
             1 + self.random.below(2)
         };
-        let across = 1 + self.random.below(20) as u8;
         let mut start = Start {
             strategy: Strategy::Frontier,
-            box_tiles: (across, 1 + self.random.below(20) as u8),
+            box_tiles: (
+                2 * self.random.between(2, 10) as u8,
+                self.random.between(4, 20) as u8,
+            ),
             lasers: (0..count).map(|k| self.laser(k == 0)).collect(),
             robot_radius_mm: self.random.between(50, 2000) as u16,
             max_linear: self.narrow().max(I4F12::DELTA),
