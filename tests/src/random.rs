@@ -1,5 +1,6 @@
-//! Numbers that look random and are the same every time: xorshift64*, from S. Vigna, "An experimental exploration of
-//! Marsaglia's xorshift generators, scrambled", ACM TOMS 42(4), 2016.
+//! Numbers that look random and are the same every time: xorshift64* (Vigna 2016).
+//!
+//! Vigna 2016: S. Vigna, "An experimental exploration of Marsaglia's xorshift generators, scrambled", ACM TOMS 42(4), 2016.
 
 /// A seeded source.
 #[derive(Clone, Debug)]

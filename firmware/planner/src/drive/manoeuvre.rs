@@ -2,7 +2,7 @@
 //!
 //! In a passage narrower than the robot's diagonal it cannot turn everywhere, and following the field alone wedges it. The
 //! search (A* over poses, in the manner of hybrid A*) starts where the robot stands and ends at a pose from which the field
-//! can be followed: aligned with the field's heading *there*, with [`GO_ON_M`] free ahead; or, dearer, aligned against it
+//! can be followed: aligned with the field's heading *there*, with `GO_ON_M` free ahead; or, dearer, aligned against it
 //! with as much free behind. The end must also be farther along the field than the start, or the robot would go to and fro
 //! before a tight corner. Poses are kept exactly; of those that fall into the same cell of 3 cm × 3 cm × 7.5° only the
 //! first is. It works in instalments while the robot stands, so no step takes long.

@@ -1,11 +1,11 @@
 //! A scan into the map: every beam frees the cells it went through and marks the cell it ended in.
 //!
 //! The level laser carries occupancy: its beams run in the plane. The tilted laser marks what stands higher than
-//! [`STEP_M`] above the robot's ground, and frees nothing, because its beams run above the cells they cross.
+//! `STEP_M` above the robot's ground, and frees nothing, because its beams run above the cells they cross.
 //! Cells are visited by Amanatides–Woo traversal.
 //!
 //! Robustness, each rule with its reason:
-//! - a beam does not erode an obstacle within [`GUARD_M`] of its own end: at a grazing angle it runs through the wall's
+//! - a beam does not erode an obstacle within `GUARD_M` of its own end: at a grazing angle it runs through the wall's
 //!   own cells first;
 //! - a lone no-return between two returns is a dropout, and a no-return stops at the first obstacle: it must not tunnel;
 //! - near the robot beams are denser than cells, so only every second (fourth) frees cells there, and only every fourth beam is
@@ -171,7 +171,7 @@ fn traverse(beam: &Beam, from_m: f32, mut visit: impl FnMut(Cell, f32) -> bool) 
 }
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
-    /// Enter one scan of `laser`, taken at `pose`. Cells without room are counted in [`Map::lost`](Map::no_room).
+    /// Enter one scan of `laser`, taken at `pose`. What there is no room for sets [`Map::out_of_box`] or [`Map::pool_full`].
     pub fn integrate(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
         if is_level(laser) {
             for beam in level_beams(pose, laser, ranges_mm) {

@@ -9,7 +9,7 @@
 //! unexplored cells among them attract nothing), drive, and the rule that ends every run: an unexplored cell that the field
 //! leads to and that comes no nearer for [`PATIENCE_MS`] is given up, with those within [`DROP_RADIUS_M`] of it; they
 //! hold no value from then on but are relaxed like free cells. What is stronger than in [Prestes et al.]: the field is solved
-//! for 1 − p to convergence by [`multigrid`], where a fixed number of sweeps of p leaves it flat away from the frontiers. So
+//! for 1 − p to convergence by `multigrid`, where a fixed number of sweeps of p leaves it flat away from the frontiers. So
 //! the paper's known failure, flattening, cannot end a run here. The other one, indecision between far goals, is in the
 //! method and stays.
 //!

@@ -17,7 +17,7 @@ const REACH: i32 = 5;
 /// The robot's radius, cells.
 const RADIUS: f32 = 3.0;
 
-/// Squared distances to the nearest obstacle, at most [`FREE_FROM`].
+/// Squared distances to the nearest obstacle, at most `FREE_FROM`.
 #[derive(Clone, Debug, Default)]
 pub struct Inflation {
     frame: Frame,

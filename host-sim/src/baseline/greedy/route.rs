@@ -6,7 +6,7 @@
 //! cells.
 //!
 //! Invariant: costs are integers, so that the same map gives the same way everywhere. Units: a straight step is
-//! [`STRAIGHT`].
+//! `STRAIGHT`.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
