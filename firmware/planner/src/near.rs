@@ -89,7 +89,8 @@ impl NearField {
     fn forget(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
         let from = sensor_point(pose, laser);
         let mut index = 0;
-        while let (Some(&point), Some(&returns)) = (self.points.get(index), self.returns.get(index)) {
+        while let (Some(&point), Some(&returns)) = (self.points.get(index), self.returns.get(index))
+        {
             let stays = within_reach(pose, point)
                 && !is_inside(pose, point)
                 && match sight(pose, laser, ranges_mm, from, point) {
@@ -178,19 +179,33 @@ enum Sight {
     None,
 }
 
+/// Judged by the two beams that pass the point on either side: at a corner one meets it, or nothing, and the other goes by.
 fn sight(pose: &Pose, laser: &Laser, ranges_mm: &[u16], from: Point, point: Point) -> Sight {
     let (dx, dy) = (point.x_m - from.x_m, point.y_m - from.y_m);
     let bearing = math::wrap(math::atan2(dy, dx) - pose.yaw_rad - laser.first_bearing_rad);
-    let index = math::floor(bearing / laser.bearing_step_rad + 0.5);
-    if index < 0 || index >= ranges_mm.len() as i32 {
+    let right = math::floor(bearing / laser.bearing_step_rad);
+    if right < 0 || right + 1 >= ranges_mm.len() as i32 {
         return Sight::None;
     }
-    let range = informative_range_mm(ranges_mm, index as usize, laser.range_limit_mm);
-    let beyond = range.map(|range| f32::from(range) * 1e-3 - math::sqrt(dx * dx + dy * dy));
-    match beyond {
-        Some(beyond) if beyond > THROUGH_M => Sight::Through,
-        Some(beyond) if beyond > -THROUGH_M => Sight::At,
-        _ => Sight::None,
+    let distance = math::sqrt(dx * dx + dy * dy);
+    let beyond = |index: usize| {
+        informative_range_mm(ranges_mm, index, laser.range_limit_mm)
+            .map(|range| f32::from(range) * 1e-3 - distance)
+    };
+    let beyond = [beyond(right as usize), beyond(right as usize + 1)];
+    if beyond
+        .iter()
+        .flatten()
+        .any(|beyond| beyond.abs() <= THROUGH_M)
+    {
+        Sight::At
+    } else if beyond
+        .iter()
+        .all(|beyond| beyond.is_some_and(|beyond| beyond > THROUGH_M))
+    {
+        Sight::Through
+    } else {
+        Sight::None
     }
 }
 

@@ -94,7 +94,13 @@ impl Choice {
         let bit = |(number, motion): (usize, &Motion)| {
             u8::from(admits(motion.velocity(period_s))) << number
         };
-        Self(MOTIONS.iter().enumerate().map(bit).fold(0, |set, bit| set | bit))
+        Self(
+            MOTIONS
+                .iter()
+                .enumerate()
+                .map(bit)
+                .fold(0, |set, bit| set | bit),
+        )
     }
 
     /// Every motion.
