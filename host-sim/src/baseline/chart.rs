@@ -189,10 +189,7 @@ impl Chart {
     /// Known cells that the robot's centre can get to from `robot`, counted up to `most`.
     #[must_use]
     pub fn room(&self, robot: Cell, most: usize) -> usize {
-        let home = self
-            .frame
-            .index(robot)
-            .filter(|&home| self.is_way(home));
+        let home = self.frame.index(robot).filter(|&home| self.is_way(home));
         let mut reached: Vec<usize> = home.into_iter().collect();
         let mut next = 0;
         while let Some(&index) = reached.get(next).filter(|_| reached.len() < most) {

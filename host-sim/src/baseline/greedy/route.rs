@@ -1,9 +1,8 @@
-//! Cheapest ways over the known passable cells from where the robot stands (Dijkstra), as ROS's global planner finds them on an
-//! inflated costmap.
+//! Cheapest ways from where the robot stands (Dijkstra), as ROS's global planner finds them on an inflated costmap.
 //!
-//! A step costs its length times the [`Prices`] of the cell that it leads to. Unlike navfn's, a way goes through known cells
-//! only, so that every goal on it can be driven to; its steps are straight or diagonal, a diagonal one only between two free
-//! cells.
+//! A step costs its length times the [`Prices`] of the cell that it leads to; one onto an unknown cell the dearest price, as
+//! navfn has it with its default `allow_unknown`. Ways lead over passable cells only, and steps are straight or diagonal, a
+//! diagonal one only between two passable cells.
 //!
 //! Invariant: costs are integers, so that the same map gives the same way everywhere. Units: a straight step is
 //! [`STRAIGHT`].
@@ -13,7 +12,7 @@ use std::collections::BinaryHeap;
 
 use fieldline_planner::geometry::{CELL_M, Cell, Point};
 
-use super::inflation::{Inflation, Prices};
+use super::inflation::{Inflation, Prices, UNKNOWN_PERCENT};
 use crate::baseline::chart::Chart;
 
 /// Length of a straight step, and of a diagonal one.
@@ -63,7 +62,12 @@ impl Routes {
                 continue;
             }
             for (near, step) in steps(chart, index).into_iter().flatten() {
-                let total = cost + step * prices.percent(inflation.square(near)) / 100;
+                let percent = if chart.is_unknown(near) {
+                    UNKNOWN_PERCENT
+                } else {
+                    prices.percent(inflation.square(near))
+                };
+                let total = cost + step * percent / 100;
                 if total < self.cost[near] {
                     self.cost[near] = total;
                     self.length[near] = self.length[index] + step;
@@ -100,12 +104,12 @@ impl Routes {
 /// The steps from a cell and their lengths.
 fn steps(chart: &Chart, index: usize) -> [Option<(usize, u32)>; 8] {
     let four = chart.frame().four(index);
-    let open = four.map(|near| chart.is_way(near));
+    let open = four.map(|near| chart.is_passable(near));
     let width = chart.frame().width;
     let [east, north, west, south] = four;
     let straight = |k: usize| open[k].then_some((four[k], STRAIGHT));
     let diagonal = |a: usize, b: usize, to: usize| {
-        (open[a] && open[b] && chart.is_way(to)).then_some((to, DIAGONAL))
+        (open[a] && open[b] && chart.is_passable(to)).then_some((to, DIAGONAL))
     };
     [
         straight(0),
@@ -137,7 +141,8 @@ mod tests {
         assert_eq!(at(14, 9), Some(0.0));
         assert!((at(20, 9).unwrap() - 0.6).abs() < 1e-5);
         assert!((at(18, 12).unwrap() - (0.1 + 3.0 * 0.141)).abs() < 1e-5);
-        assert_eq!(at(-1, 9), None, "the unknown is no way");
+        // The robot fits into the unknown, too.
+        assert!((at(-1, 9).unwrap() - 1.5).abs() < 1e-5);
     }
 
     #[test]
