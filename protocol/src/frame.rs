@@ -188,6 +188,8 @@ impl Frame<'_> {
     ///
     /// # Errors
     /// [`BodyError`]; a frame from a device is malformed.
+    // On a small stack the decoder's temporaries must be gone before the request is answered.
+    #[inline(never)]
     pub fn request(&self) -> Result<Request, BodyError> {
         match self.kind {
             Kind::Greeting => self.check_version()?,

@@ -27,6 +27,7 @@ extern crate std;
 
 pub mod check;
 pub mod cobs;
+mod explain;
 pub mod frame;
 pub mod message;
 pub mod schema;

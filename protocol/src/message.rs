@@ -16,8 +16,6 @@
 //!
 //! Every quantity of 32 bits is an `I16F16` and every one of 16 bits an `I4F12`; the exact-byte tests hold that.
 
-use core::fmt;
-
 use fixed::types::{I4F12, I16F16};
 use heapless::Vec;
 use postcard_schema::Schema;
@@ -126,7 +124,8 @@ pub enum Strategy {
 pub struct Start {
     /// Which strategy plans.
     pub strategy: Strategy,
-    /// The map's box in tiles of 3.2 m, across and up; their product is at most the device's tile slots.
+    /// The map's box in tiles of 3.2 m, across (an even number) and up, both at least 4; their product is at most the device's tile
+    /// slots.
     pub box_tiles: (u8, u8),
     /// The laser scanners.
     pub lasers: Vec<Laser, MAX_SCANS>,
@@ -456,52 +455,4 @@ pub enum Reply {
     Refused(Refusal),
     /// The program crashed; it stands still and reboots.
     Crash(Crash),
-}
-
-impl fmt::Display for Parameter {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Lasers => "lasers must be one or two",
-            Self::Beams => "a laser's beams must be 1 to 181",
-            Self::RangeLimit => "a laser's range limit must be 1 to 16382 mm",
-            Self::Bearing => {
-                "a laser's beams must lie within one turn, at a positive step of bearing"
-            }
-            Self::Pitch => {
-                "the first laser must be level and the second look down by less than 90°"
-            }
-            Self::Mount => "a laser must sit above the ground, at most 2 m from the centre",
-            Self::Radius => "the robot's radius must be 50 to 2000 mm",
-            Self::MaxLinear => "the greatest speed must be positive",
-            Self::MaxAngular => "the greatest turn rate must be positive",
-        })
-    }
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotGreeted => f.write_str("no hello since it booted; say hello first"),
-            Self::NotStarted => f.write_str("no session is running; start one first"),
-            Self::OutOfOrder => f.write_str("a request older than the last one answered"),
-            Self::BadBox => {
-                f.write_str("the map's box does not fit its tile slots; ask for a smaller box")
-            }
-            Self::BadParameter(parameter) => write!(f, "bad parameter: {parameter}"),
-            Self::UnknownStrategy => f.write_str("the strategy is not in this image"),
-        }
-    }
-}
-
-impl core::error::Error for Refusal {}
-
-impl fmt::Display for Crash {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.cause {
-            Cause::Panic => write!(f, "panic at {}:{}", self.file, self.at),
-            Cause::Fault => write!(f, "processor fault at {:#010x}", self.at),
-            Cause::StackOverflow => f.write_str("stack overflow"),
-            Cause::Watchdog => f.write_str("watchdog: the main loop did not come round"),
-        }
-    }
 }

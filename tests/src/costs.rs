@@ -31,7 +31,7 @@ pub fn table(reports: &[Report]) -> Table {
 ///
 /// # Panics
 /// If not so.
-pub fn assert_within_budget(reports: &[Report]) {
+fn assert_within_budget(reports: &[Report]) {
     for report in reports {
         let world = &report.world;
         let Some(of) = report.planner.instructions else {

@@ -35,8 +35,8 @@ pub struct Image {
     pub flash: u64,
     /// Sections that take up flash or memory, by address.
     pub sections: Vec<Section>,
-    /// Names of all symbols.
-    pub symbols: Vec<String>,
+    /// Every symbol and its address.
+    pub symbols: Vec<(String, u64)>,
 }
 
 /// Why an image could not be read.
@@ -80,12 +80,21 @@ impl Image {
             })
             .collect();
         sections.sort_by_key(|section| section.address);
-        let symbols = elf.symbols().filter_map(|symbol| symbol.name().ok());
+        let symbols = elf
+            .symbols()
+            .filter_map(|symbol| Some((symbol.name().ok()?.to_owned(), symbol.address())));
         Ok(Self {
             flash,
             sections,
-            symbols: symbols.map(str::to_owned).collect(),
+            symbols: symbols.collect(),
         })
+    }
+
+    /// The address of a symbol.
+    #[must_use]
+    pub fn address(&self, name: &str) -> Option<u64> {
+        let found = self.symbols.iter().find(|(symbol, _)| symbol == name);
+        found.map(|(_, address)| *address)
     }
 
     /// Bytes reserved in `memory`.

@@ -10,8 +10,10 @@ use host_sim::link::{LinkError, image, qemu};
 /// Instead of `None` where `FIELDLINE_HIL=1` says that the emulator must be there.
 #[must_use]
 pub fn image() -> Option<PathBuf> {
-    let tried = image::image().and_then(|image| qemu::open_line(&image).map(|_| image));
-    required(tried)
+    available(|| {
+        let image = image::image()?;
+        qemu::open_line(&image).map(|_| image)
+    })
 }
 
 /// The image, if this machine can build it; else as [`image()`].
@@ -20,13 +22,18 @@ pub fn image() -> Option<PathBuf> {
 /// As [`image()`].
 #[must_use]
 pub fn image_alone() -> Option<PathBuf> {
-    required(image::image())
+    available(image::image)
 }
 
-fn required(tried: Result<PathBuf, LinkError>) -> Option<PathBuf> {
-    match tried {
+fn available(find: impl FnOnce() -> Result<PathBuf, LinkError>) -> Option<PathBuf> {
+    let wanted = std::env::var("FIELDLINE_HIL").unwrap_or_default();
+    if wanted == "0" {
+        println!("skipped: FIELDLINE_HIL=0");
+        return None;
+    }
+    match find() {
         Ok(image) => Some(image),
-        Err(error) if crate::is_set("FIELDLINE_HIL") => panic!("{error}"),
+        Err(error) if wanted == "1" => panic!("{error}"),
         Err(error) => {
             println!("skipped: {error}");
             None

@@ -3,6 +3,7 @@
 //! | file | what |
 //! | --- | --- |
 //! | [`golden`] | committed tables: compare, or rewrite with `BLESS=1` |
+//! | [`random`] | seeded numbers |
 //! | [`table`] | columns of text |
 //! | [`runs`] | whole explorations, several at a time, and their row in a table |
 //! | [`worlds`] | the built-in worlds by kind; worlds drawn by others, where there are any |
@@ -11,12 +12,14 @@
 //! | [`elf`] | what an image takes of flash and memory |
 //!
 //! Three environment variables decide what a test run does: `BLESS=1` rewrites golden files, `FIELDLINE_FULL=1` adds
-//! what takes long, `FIELDLINE_HIL=1` makes a missing emulator a failure instead of a skipped test.
+//! what takes long, `FIELDLINE_HIL=1` makes a missing emulator a failure instead of a skipped test, and `FIELDLINE_HIL=0`
+//! leaves out what needs the image.
 
 pub mod costs;
 pub mod elf;
 pub mod emulator;
 pub mod golden;
+pub mod random;
 pub mod runs;
 pub mod table;
 pub mod worlds;

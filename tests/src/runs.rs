@@ -6,6 +6,7 @@
 use core::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
 
+use host_sim::baseline::{Bvp, GreedyFrontier, Session};
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::report::Report;
@@ -17,8 +18,8 @@ use crate::table::{Table, number};
 
 /// The strategy of the device.
 pub const FRONTIER: &str = "frontier";
-/// It, and the baselines.
-pub const STRATEGIES: &[&str] = &[FRONTIER];
+/// Those that only the host has the memory for.
+pub const BASELINES: [&str; 2] = ["bvp", "greedy-frontier"];
 
 /// One exploration.
 #[derive(Clone, Copy, Debug)]
@@ -76,16 +77,22 @@ impl Run<'_> {
 fn planner(strategy: &str) -> Box<dyn Link> {
     match strategy {
         FRONTIER => Box::new(Direct::new()),
+        "bvp" => Box::new(Session::new(Bvp::new())),
+        "greedy-frontier" => Box::new(Session::new(GreedyFrontier::default())),
         other => panic!("no strategy is called {other}"),
     }
 }
 
-/// Every world with every strategy and seed, in that order.
+/// Every world with the device's strategy and `seeds` seeds, and with the baselines and `baseline_seeds` seeds.
 #[must_use]
-pub fn each<'a>(worlds: &'a [World], strategies: &[&'a str], seeds: u64) -> Vec<Run<'a>> {
+pub fn each(worlds: &[World], seeds: u64, baseline_seeds: u64) -> Vec<Run<'_>> {
+    let strategies = || {
+        let baselines = BASELINES.iter().map(move |name| (*name, baseline_seeds));
+        core::iter::once((FRONTIER, seeds)).chain(baselines)
+    };
     let mut runs = Vec::new();
     for world in worlds {
-        for &strategy in strategies {
+        for (strategy, seeds) in strategies() {
             runs.extend((0..seeds).map(|seed| Run {
                 world,
                 strategy,

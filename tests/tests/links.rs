@@ -11,7 +11,7 @@ use fieldline_protocol::BAUD;
 use fieldline_protocol::message::{Observation, Status, Strategy, Twist};
 use fieldline_tests::costs;
 use fieldline_tests::runs::{FRONTIER, Run};
-use fieldline_tests::{emulator, golden, worlds};
+use fieldline_tests::{emulator, worlds};
 use host_sim::link::endpoint::{Endpoint, Patience};
 use host_sim::link::fault::{Faults, Faulty};
 use host_sim::link::loopback::{LocalDevice, loopback};
@@ -112,12 +112,7 @@ fn the_emulated_chip_explores_as_the_host_does_and_within_its_means() {
         assert_same(&world, &clean(&world), &report);
         report
     });
-    costs::assert_within_budget(&reports);
-    golden::compare_about(
-        "costs.txt",
-        &costs::table(&reports).to_string(),
-        costs::DRIFT,
-    );
+    costs::check("costs.txt", &reports);
 }
 
 #[test]

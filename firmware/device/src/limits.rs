@@ -1,5 +1,6 @@
 //! Which parameters a session may have.
 
+use fieldline_planner::map::Tiles;
 use fieldline_protocol::message::{
     Laser, MAX_BEAMS, NO_RETURN_MM, Observation, Parameter, Refusal, Start,
 };
@@ -16,13 +17,13 @@ const REACH: I4F12 = I4F12::lit("2");
 /// Radii that a robot may have, millimetres.
 const RADII_MM: core::ops::RangeInclusive<u16> = 50..=2000;
 
-/// Whether a session may run with these parameters in `slots` tile places.
+/// Whether a session may run with these parameters in a map of this size.
 ///
 /// # Errors
 /// The first parameter that is out of its range.
-pub fn check_start(start: &Start, slots: usize) -> Result<(), Refusal> {
+pub fn check_start<const TILES: usize, const SLOTS: usize>(start: &Start) -> Result<(), Refusal> {
     let (across, up) = start.box_tiles;
-    if across == 0 || up == 0 || usize::from(across) * usize::from(up) > slots {
+    if !Tiles::<TILES, SLOTS>::fits(across, up) {
         return Err(Refusal::BadBox);
     }
     let limits = [
@@ -104,9 +105,9 @@ mod tests {
 
     #[test]
     fn good_parameters_pass() {
-        assert_eq!(check_start(&start(), 400), Ok(()));
+        assert_eq!(check_start::<4, 400>(&start()), Ok(()));
         let upward = |laser: &mut Laser| laser.bearing_step = I16F16::lit("0.0349");
-        assert_eq!(check_start(&with_laser(upward), 400), Ok(()));
+        assert_eq!(check_start::<4, 400>(&with_laser(upward)), Ok(()));
     }
 
     #[test]
@@ -186,30 +187,33 @@ mod tests {
             (with_laser(|laser| laser.x = I4F12::MIN), Parameter::Mount),
         ];
         for (start, parameter) in cases {
-            assert_eq!(check_start(start, 400), bad(*parameter), "{start:?}");
+            assert_eq!(check_start::<4, 400>(start), bad(*parameter), "{start:?}");
         }
         let mut tilted = start();
         tilted.lasers[0].pitch = I4F12::lit("0.35");
-        assert_eq!(check_start(&tilted, 400), bad(Parameter::Pitch));
+        assert_eq!(check_start::<4, 400>(&tilted), bad(Parameter::Pitch));
     }
 
     #[test]
     fn the_box_fits_the_slots() {
-        for (box_tiles, slots, fits) in [
-            ((20, 20), 400, true),
-            ((30, 12), 400, true),
-            ((21, 20), 400, false),
-            ((0, 20), 400, false),
-            ((20, 0), 400, false),
-            ((255, 255), 400, false),
-            ((1, 1), 1, true),
+        for (box_tiles, fits) in [
+            ((20, 20), true),
+            ((30, 12), true),
+            ((100, 4), true),
+            ((4, 4), true),
+            ((21, 19), false),
+            ((22, 20), false),
+            ((0, 20), false),
+            ((20, 0), false),
+            ((2, 100), false),
+            ((254, 255), false),
         ] {
             let start = Start {
                 box_tiles,
                 ..start()
             };
             let expected = if fits { Ok(()) } else { Err(Refusal::BadBox) };
-            assert_eq!(check_start(&start, slots), expected, "{box_tiles:?}");
+            assert_eq!(check_start::<4, 400>(&start), expected, "{box_tiles:?}");
         }
     }
 

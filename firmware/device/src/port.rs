@@ -123,6 +123,8 @@ impl<S: Read + ReadReady + Write, P: InputPin, L: OutputPin> Port<S, P, L> {
     }
 }
 
+/// Never inlined: its buffers must not lie under a step.
+#[inline(never)]
 fn take_log<B: Board>(session: &mut Session, board: &mut B) {
     let mut log = [0; MAX_LOG_BYTES];
     let room = session.log_room();

@@ -1,18 +1,19 @@
 //! Bytes from one producer (an interrupt, a logger) to one consumer (the main loop), without locks.
 //!
-//! Invariant: `tail` ≤ `head` ≤ `staged` ≤ `tail` + N, counted on wrapping 32-bit indices; N is a power of two. The producer
-//! alone writes `head` and `staged`, the consumer alone `tail`. Two producers or two consumers at once lose bytes but nothing worse.
+//! Invariant: all three places are below N; going round, `tail` is never passed by `staged`, so one byte of the N stays unused. The
+//! producer alone writes `head` and `staged`, the consumer alone `tail`. Two producers or two consumers at once lose bytes but nothing
+//! worse.
 
-use core::sync::atomic::{AtomicU8, AtomicU32, Ordering};
+use core::sync::atomic::{AtomicU8, AtomicU32, AtomicUsize, Ordering};
 
-/// A ring of `N` bytes.
+/// A ring with room for `N` − 1 bytes.
 #[derive(Debug)]
 pub struct Ring<const N: usize> {
     bytes: [AtomicU8; N],
     /// Written up to here and not yet given to the consumer.
-    staged: AtomicU32,
-    head: AtomicU32,
-    tail: AtomicU32,
+    staged: AtomicUsize,
+    head: AtomicUsize,
+    tail: AtomicUsize,
     lost: AtomicU32,
 }
 
@@ -22,20 +23,19 @@ impl<const N: usize> Default for Ring<N> {
     }
 }
 
-impl<const N: usize> Ring<N> {
-    const MASK: u32 = {
-        assert!(N.is_power_of_two() && N <= 1 << 31);
-        N as u32 - 1
-    };
+const fn after(place: usize, size: usize) -> usize {
+    if place + 1 < size { place + 1 } else { 0 }
+}
 
+impl<const N: usize> Ring<N> {
     /// An empty ring.
     #[must_use]
     pub const fn new() -> Self {
         Self {
             bytes: [const { AtomicU8::new(0) }; N],
-            staged: AtomicU32::new(0),
-            head: AtomicU32::new(0),
-            tail: AtomicU32::new(0),
+            staged: AtomicUsize::new(0),
+            head: AtomicUsize::new(0),
+            tail: AtomicUsize::new(0),
             lost: AtomicU32::new(0),
         }
     }
@@ -50,12 +50,11 @@ impl<const N: usize> Ring<N> {
     /// Producer: writes a byte that the consumer does not see yet; false, and the byte is lost and counted, if the ring is full.
     pub fn stage(&self, byte: u8) -> bool {
         let at = self.staged.load(Ordering::Relaxed);
-        let used = at.wrapping_sub(self.tail.load(Ordering::Acquire));
-        let place = self.bytes.get((at & Self::MASK) as usize);
-        match place {
-            Some(place) if used <= Self::MASK => {
+        let next = after(at, N);
+        match self.bytes.get(at) {
+            Some(place) if next != self.tail.load(Ordering::Acquire) => {
                 place.store(byte, Ordering::Relaxed);
-                self.staged.store(at.wrapping_add(1), Ordering::Relaxed);
+                self.staged.store(next, Ordering::Relaxed);
                 true
             }
             _ => {
@@ -84,9 +83,8 @@ impl<const N: usize> Ring<N> {
         if tail == self.head.load(Ordering::Acquire) {
             return None;
         }
-        let place = self.bytes.get((tail & Self::MASK) as usize)?;
-        let byte = place.load(Ordering::Relaxed);
-        self.tail.store(tail.wrapping_add(1), Ordering::Release);
+        let byte = self.bytes.get(tail)?.load(Ordering::Relaxed);
+        self.tail.store(after(tail, N), Ordering::Release);
         Some(byte)
     }
 
@@ -126,7 +124,7 @@ mod tests {
 
     #[test]
     fn first_in_first_out_and_full_loses_the_newest() {
-        let ring = Ring::<4>::new();
+        let ring = Ring::<5>::new();
         (1..=6).for_each(|byte| ring.push(byte));
         assert_eq!((all(&ring), ring.lost()), ([1, 2, 3, 4].into(), 2));
         ring.push(7);
@@ -137,7 +135,7 @@ mod tests {
 
     #[test]
     fn staged_bytes_come_all_or_not_at_all() {
-        let ring = Ring::<4>::new();
+        let ring = Ring::<5>::new();
         ring.push(1);
         assert!(ring.stage(2) && ring.stage(3));
         assert_eq!(all(&ring), [1]);

@@ -12,7 +12,7 @@ use fieldline_protocol::frame::{
     encode_reply, overhead,
 };
 use fieldline_protocol::message::{
-    Control, Counters, Crash, Identity, Refusal, Reply, Request, Status,
+    Command, Control, Counters, Crash, Identity, Observation, Refusal, Reply, Request, Status,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use heapless::Deque;
@@ -91,6 +91,7 @@ impl Session {
     }
 
     /// Boots, with `tile_pool` tiles and `tile_slots` places for them. The hello waits to be sent.
+    #[inline(never)]
     pub fn boot(&mut self, boot: Boot, tile_pool: usize, tile_slots: usize) {
         info!("boot {=u32}", boot.boots);
         *self = Self::new();
@@ -198,6 +199,7 @@ impl Session {
     }
 
     /// Puts log bytes on the line: as many as [`Session::log_room`] says, and gives how many that were.
+    #[inline(never)]
     pub fn log(&mut self, bytes: &[u8]) -> usize {
         let count = bytes.len().min(self.log_room());
         let mut frame = [0; MAX_REPLY_FRAME];
@@ -211,6 +213,7 @@ impl Session {
         count
     }
 
+    #[inline(never)]
     fn turn_away(&mut self, sequence: u16, version: u16, schema: u32) {
         warning!(
             "host speaks protocol {=u16}, schema {=u32:#x}: refused",
@@ -241,7 +244,7 @@ impl Session {
             return self.greet(sequence, *nonce);
         }
         if self.nonce.is_none() {
-            return self.say(sequence, &Reply::Refused(Refusal::NotGreeted));
+            return self.refuse(sequence, Refusal::NotGreeted);
         }
         match self
             .answered
@@ -251,15 +254,25 @@ impl Session {
             Some(0) => self.repeat(),
             Some(ahead) if ahead >= 0x8000 => {
                 self.counters.dropped = self.counters.dropped.wrapping_add(1);
-                self.say(sequence, &Reply::Refused(Refusal::OutOfOrder));
+                self.refuse(sequence, Refusal::OutOfOrder);
             }
             _ => {
-                let reply = self.answer(request, memory, meter);
-                self.keep(sequence, &reply);
+                if let Request::Observation(observation) = request {
+                    let command = self.observe(observation, memory, meter);
+                    self.keep_command(sequence, command);
+                } else {
+                    self.attend(sequence, request, memory);
+                }
             }
         }
     }
 
+    #[inline(never)]
+    fn refuse(&mut self, sequence: u16, refusal: Refusal) {
+        self.say(sequence, &Reply::Refused(refusal));
+    }
+
+    #[inline(never)]
     fn greet(&mut self, sequence: u16, nonce: u32) {
         if self.nonce != Some(nonce) {
             info!("host {=u32:#x}", nonce);
@@ -275,42 +288,59 @@ impl Session {
         self.say(sequence, &Reply::Hello(self.identity.clone()));
     }
 
-    fn answer<M: Meter, const TILES: usize, const SLOTS: usize>(
+    /// The step. What lies on the stack here lies under the planner's own, so there is little: the replies are built by functions
+    /// of their own, never inlined.
+    #[inline(never)]
+    fn observe<M: Meter, const TILES: usize, const SLOTS: usize>(
         &mut self,
-        request: &Request,
+        observation: &Observation,
         memory: &mut Memory<'_, TILES, SLOTS>,
         meter: &mut M,
-    ) -> Reply {
-        let reply = match request {
-            Request::Hello { .. } => Ok(Reply::Hello(self.identity.clone())),
-            Request::Control(control) => {
-                self.reset |= matches!(control, Control::Reset);
-                self.stale = false;
-                self.pilot.control(memory, control).map(Reply::Control)
-            }
-            Request::Observation(observation) => {
-                self.stale = false;
-                meter.start();
-                let command = self.pilot.observe(memory, observation);
-                let instructions = meter.stop();
-                command.map(|mut command| {
-                    command.counters = self.counters();
-                    command.cost.instructions = instructions;
-                    command.cost.stack_bytes = meter.stack_bytes();
-                    Reply::Command(command)
-                })
-            }
-            Request::Tile { x, y } => Ok(Reply::Tile(Pilot::tile(memory, *x, *y))),
-            Request::FieldRow { row } => Ok(Reply::FieldRow(Pilot::field_row(memory, *row))),
-            Request::Frontiers => Ok(Reply::Frontiers(Pilot::frontiers(memory))),
-        };
-        reply.unwrap_or_else(|refusal| {
-            warning!("refused request");
-            Reply::Refused(refusal)
+    ) -> Result<Command, Refusal> {
+        self.stale = false;
+        meter.start();
+        let command = self.pilot.observe(memory, observation);
+        let instructions = meter.stop();
+        command.map(|mut command| {
+            command.counters = self.counters();
+            command.cost.instructions = instructions;
+            command.cost.stack_bytes = meter.stack_bytes();
+            command
         })
     }
 
+    #[inline(never)]
+    fn keep_command(&mut self, sequence: u16, command: Result<Command, Refusal>) {
+        let reply = command.map_or_else(Reply::Refused, Reply::Command);
+        self.keep(sequence, &reply);
+    }
+
+    /// Answers everything but hellos and observations.
+    #[inline(never)]
+    fn attend<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        sequence: u16,
+        request: &Request,
+        memory: &mut Memory<'_, TILES, SLOTS>,
+    ) {
+        let reply = match request {
+            Request::Control(control) => {
+                self.reset |= matches!(control, Control::Reset);
+                self.stale = false;
+                let status = self.pilot.control(memory, control);
+                status.map_or_else(Reply::Refused, Reply::Control)
+            }
+            Request::Tile { x, y } => Reply::Tile(Pilot::tile(memory, *x, *y)),
+            Request::FieldRow { row } => Reply::FieldRow(Pilot::field_row(memory, *row)),
+            Request::Frontiers => Reply::Frontiers(Pilot::frontiers(memory)),
+            // Answered before it came here.
+            Request::Hello { .. } | Request::Observation(_) => Reply::Refused(Refusal::OutOfOrder),
+        };
+        self.keep(sequence, &reply);
+    }
+
     /// Says a reply that need not be kept.
+    #[inline(never)]
     fn say(&mut self, sequence: u16, reply: &Reply) {
         let mut frame = [0; MAX_REPLY_FRAME];
         if let Ok(length) = encode_reply(sequence, reply, &mut frame) {

@@ -1,6 +1,6 @@
 //! The near field: the laser's own points around the robot, exact where the map's cells are coarse.
 //!
-//! A door of 0.65 m leaves 8 cm beside a 3-AT, less than a map cell. So the points within [`REACH_M`] are kept as measured, also
+//! A door of 0.65 m leaves 8 cm beside a 3-AT, less than a map cell. So the points within `REACH_M` are kept as measured, also
 //! those that have left the field of view: a point is dropped when the scan that replaces it looks at or beyond its place,
 //! and kept while it is out of view or hidden. Behind the robot, where it only turns and backs out, less is kept.
 //!

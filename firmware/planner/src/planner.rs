@@ -471,9 +471,18 @@ fn steer<const TILES: usize, const SLOTS: usize>(
         Twist::default()
     };
     Output {
-        velocity,
+        velocity: within_limits(config, velocity),
         heading_rad: math::wrap(input.pose.yaw_rad + here.unwrap_or(0.0)),
         ..Output::default()
+    }
+}
+
+/// No faster than the session allows, whatever a manoeuvre has in mind.
+fn within_limits(config: &Config, wish: Twist) -> Twist {
+    let (linear, angular) = (config.max_linear_mps, config.max_angular_radps);
+    Twist {
+        linear_mps: wish.linear_mps.min(linear).max(-linear),
+        angular_radps: wish.angular_radps.min(angular).max(-angular),
     }
 }
 

@@ -27,7 +27,7 @@ const INSIDE: u64 = (1 << SIDE) - 1;
 pub struct View {
     /// Least map cell.
     pub origin: Cell,
-    /// Map cells along a window cell.
+    /// Map cells along a window cell; 0 before the first look.
     pub scale: i32,
     /// The robot's centre may be here.
     pub passable: Rows,
@@ -52,13 +52,13 @@ fn squeeze(word: u32, scale: i32) -> u64 {
 }
 
 impl View {
-    /// A window of nothing.
+    /// A window of nothing: all zeros, so that a static one costs no flash.
     #[must_use]
     pub const fn new() -> Self {
         let origin = Cell { x: 0, y: 0 };
         Self {
             origin,
-            scale: 1,
+            scale: 0,
             passable: [0; SIDE],
             obstacle: [0; SIDE],
         }
@@ -113,8 +113,8 @@ impl View {
     /// The window cell of a map cell, if it is in the window.
     #[must_use]
     pub fn place(&self, cell: Cell) -> Option<(usize, usize)> {
-        let x = (cell.x - self.origin.x).div_euclid(self.scale);
-        let y = (cell.y - self.origin.y).div_euclid(self.scale);
+        let x = (cell.x - self.origin.x).checked_div_euclid(self.scale)?;
+        let y = (cell.y - self.origin.y).checked_div_euclid(self.scale)?;
         let inside = |at: i32| (0..SIDE as i32).contains(&at);
         (inside(x) && inside(y)).then_some((x as usize, y as usize))
     }

@@ -143,7 +143,7 @@ impl<P: Plan> Session<P> {
     }
 
     fn start(&mut self, start: &Start) -> Result<(), Refusal> {
-        limits::check_start(start, SLOTS)?;
+        limits::check_start::<TILES, SLOTS>(start)?;
         let config = convert::config(start);
         self.map.reset(config.box_tiles.0, config.box_tiles.1);
         self.near.clear();

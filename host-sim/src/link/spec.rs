@@ -8,11 +8,14 @@ use fieldline_protocol::BAUD;
 use super::direct::Direct;
 use super::endpoint::{Endpoint, Patience};
 use super::fault::{Faults, Faulty};
+#[cfg(unix)]
 use super::image::image;
 use super::line::Line;
 use super::loopback::LocalDevice;
+#[cfg(unix)]
+use super::qemu;
 use super::stream::fresh_nonce;
-use super::{Link, LinkError, qemu, serial};
+use super::{Link, LinkError, serial};
 
 /// Which rung.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -134,10 +137,15 @@ impl LinkSpec {
                 "a direct link has no bytes to break; use --link loopback with --fault".into(),
             )),
             Self::Loopback => Ok(end(LocalDevice::new(), Patience::VIRTUAL, 1, options)),
+            #[cfg(unix)]
             Self::Qemu => {
                 let line = qemu::open_line(&image()?)?;
                 Ok(end(line, patience, fresh_nonce(), options))
             }
+            #[cfg(not(unix))]
+            Self::Qemu => Err(LinkError::Io(
+                "the emulator is reached by a Unix socket, which this system has not; use --link serial with QEMU's -serial option".into(),
+            )),
             Self::Serial { device, baud } => {
                 let line = serial::open_line(device, *baud)?;
                 Ok(end(line, patience, fresh_nonce(), options))

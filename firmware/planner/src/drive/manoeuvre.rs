@@ -2,7 +2,7 @@
 //!
 //! In a passage narrower than the robot's diagonal it cannot turn everywhere, and following the field alone wedges it. The
 //! search (A* over poses, in the manner of hybrid A*) starts where the robot stands and ends at a pose from which the field
-//! can be followed: aligned with the field's heading *there*, with [`GO_ON_M`] free ahead; or, dearer, aligned against it
+//! can be followed: aligned with the field's heading *there*, with `GO_ON_M` free ahead; or, dearer, aligned against it
 //! with as much free behind. The end must also be farther along the field than the start, or the robot would go to and fro
 //! before a tight corner. Poses are kept exactly; of those that fall into the same cell of 3 cm × 3 cm × 7.5° only the
 //! first is. It works in instalments while the robot stands, so no step takes long.
@@ -128,7 +128,16 @@ pub enum Found {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Search {
     open: Open,
-    margin_m: f32,
+    attempt: Attempt,
+}
+
+/// What a search asks of a way out.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Attempt {
+    /// The clearance kept, metres.
+    pub margin_m: f32,
+    /// It must lead farther along the field.
+    pub progress: bool,
 }
 
 /// What a search runs on: what stands around, and the field's heading at a place, radians left of the robot's present one, or
@@ -158,7 +167,7 @@ impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
     }
 
     /// Whether the field can be followed from here: forwards, or against the alignment backwards.
-    fn leads_on(&self, place: Place, length_m: f32, margin_m: f32) -> bool {
+    fn leads_on(&self, place: Place, length_m: f32, attempt: Attempt) -> bool {
         let aligned = self.misalignment(place).is_some_and(|error| {
             let error = if length_m < 0.0 {
                 math::wrap(error + math::PI)
@@ -168,17 +177,19 @@ impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
             error.abs() < ALIGNED_RAD
         });
         aligned
-            && self.is_progress(place.after(length_m, 0.0))
-            && self.surround.is_arc_clear(place, length_m, 0.0, margin_m)
+            && (!attempt.progress || self.is_progress(place.after(length_m, 0.0)))
+            && self
+                .surround
+                .is_arc_clear(place, length_m, 0.0, attempt.margin_m)
     }
 }
 
 impl Search {
-    /// Begin where the robot stands, keeping `margin_m`.
-    pub fn start(margin_m: f32, scratch: &mut [u32]) -> Self {
+    /// Begin where the robot stands.
+    pub fn start(attempt: Attempt, scratch: &mut [u32]) -> Self {
         let mut search = Self {
             open: Open::default(),
-            margin_m,
+            attempt,
         };
         if let Some((visited, nodes)) = scratch.split_at_mut_checked(VISITED_WORDS) {
             visited.fill(0);
@@ -188,10 +199,10 @@ impl Search {
         search
     }
 
-    /// The margin kept.
+    /// What is asked.
     #[must_use]
-    pub const fn margin_m(&self) -> f32 {
-        self.margin_m
+    pub const fn attempt(&self) -> Attempt {
+        self.attempt
     }
 
     /// Look at `budget` more poses.
@@ -211,10 +222,10 @@ impl Search {
             if node.is_end {
                 return Found::Plan(self.trace(nodes, index, BACKWARD));
             }
-            if ground.leads_on(node.place, GO_ON_M, self.margin_m) {
+            if ground.leads_on(node.place, GO_ON_M, self.attempt) {
                 return Found::Plan(self.trace(nodes, index, FORWARD));
             }
-            if ground.leads_on(node.place, -GO_ON_M, self.margin_m) {
+            if ground.leads_on(node.place, -GO_ON_M, self.attempt) {
                 let cost = node.cost + REVERSE_COST;
                 self.open.push(
                     nodes,
@@ -242,7 +253,7 @@ impl Search {
     ) -> bool {
         for (number, motion) in MOTIONS.iter().enumerate() {
             let place = node.place.after(motion.length_m, motion.turn_rad);
-            if !visit(visited, place) || !ground.surround.is_clear(place, self.margin_m) {
+            if !visit(visited, place) || !ground.surround.is_clear(place, self.attempt.margin_m) {
                 continue;
             }
             let cost = node.cost + motion.cost;
@@ -334,7 +345,13 @@ mod tests {
             heading_at,
             potential_at: None,
         };
-        let mut search = Search::start(0.02, &mut scratch);
+        let mut search = Search::start(
+            Attempt {
+                margin_m: 0.02,
+                progress: true,
+            },
+            &mut scratch,
+        );
         loop {
             match search.advance(&ground, 100, &mut scratch) {
                 Found::Plan(plan) => return Some((plan, surround)),

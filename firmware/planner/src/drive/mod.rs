@@ -13,7 +13,7 @@ pub mod manoeuvre;
 mod open;
 pub mod surround;
 
-pub use manoeuvre::{Found, Ground, Plan, Search};
+pub use manoeuvre::{Attempt, Found, Ground, Plan, Search};
 pub use surround::{Place, Surround};
 
 use crate::config::Config;
@@ -24,9 +24,22 @@ use crate::math;
 const MARGIN_M: f32 = 0.06;
 /// Clearance kept when creeping through a narrow place, metres: two sigma of a range.
 const CREEP_MARGIN_M: f32 = 0.025;
-/// Clearances planned for in a manoeuvre, metres, the wider first. The nearest of many points of a wall is two sigma nearer
-/// than the wall, so there is more room than the narrower one says.
-const PLAN_MARGINS_M: [f32; 2] = [0.03, 0.012];
+/// What is asked of a manoeuvre, less and less. The nearest of many points of a wall is two sigma nearer than the wall, so there
+/// is more room than the narrower clearance says; the last attempt only wants the robot to stand elsewhere.
+const ATTEMPTS: [Attempt; 3] = [
+    Attempt {
+        margin_m: 0.03,
+        progress: true,
+    },
+    Attempt {
+        margin_m: 0.012,
+        progress: true,
+    },
+    Attempt {
+        margin_m: 0.012,
+        progress: false,
+    },
+];
 /// Clearance kept while a manoeuvre is driven, metres.
 const PLAN_KEPT_M: f32 = 0.008;
 /// Speed at and below which the robot creeps, metres a second.
@@ -93,7 +106,7 @@ impl Drive {
             if is_moving(now) {
                 return Twist::default();
             }
-            self.search = Some(Search::start(PLAN_MARGINS_M[0], scratch));
+            self.search = Some(Search::start(ATTEMPTS[0], scratch));
         }
         self.go_on_searching(ground, scratch);
         Twist::default()
@@ -114,10 +127,11 @@ impl Drive {
                 self.search = None;
             }
             Found::Nothing => {
-                let narrower = PLAN_MARGINS_M
+                let tried = ATTEMPTS
                     .iter()
-                    .find(|&&margin_m| margin_m < search.margin_m());
-                self.search = narrower.map(|&margin_m| Search::start(margin_m, scratch));
+                    .position(|&attempt| attempt == search.attempt());
+                let next = tried.and_then(|tried| ATTEMPTS.get(tried + 1));
+                self.search = next.map(|&attempt| Search::start(attempt, scratch));
             }
         }
     }

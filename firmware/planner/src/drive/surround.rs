@@ -1,6 +1,6 @@
 //! The near field seen from the robot, and whether a motion touches it.
 //!
-//! The robot is its rectangle. A motion is clear if the rectangle, at places at most [`CHECK_EVERY_M`] apart for any part of it,
+//! The robot is its rectangle. A motion is clear if the rectangle, at places at most `CHECK_EVERY_M` apart for any part of it,
 //! keeps a margin from every near point; a point that is nearer than the margin already may hardly come nearer.
 //!
 //! Units: metres, seconds, radians; robot frame, x forward.

@@ -33,7 +33,7 @@ const STEEPEST_COLD: f32 = 1.25;
 /// Raise what is too low, in sweeps up and down over the rows that may hold such cells: those with something new, and
 /// those beside a row that changed.
 pub(super) fn raise(window: &mut Window) {
-    let steepest = if window.cold { STEEPEST_COLD } else { STEEPEST };
+    let steepest = if window.warm { STEEPEST } else { STEEPEST_COLD };
     let mut upward = true;
     while window.unraised != 0 {
         for step in 0..SIDE {
@@ -48,7 +48,7 @@ pub(super) fn raise(window: &mut Window) {
         }
         upward = !upward;
     }
-    window.cold = false;
+    window.warm = true;
 }
 
 /// Raise the cells of a row to what their neighbours give. Answers whether one changed.

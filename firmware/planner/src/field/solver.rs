@@ -147,7 +147,7 @@ fn run_multigrid(
 
 fn run_gauss_seidel(window: &mut Window, config: &SolverConfig, solution: &mut Solution) {
     // What has risen part of the way is worth keeping.
-    window.cold = false;
+    window.warm = true;
     for _ in solution.cycles..config.max_cycles {
         for _ in 1..SWEEPS_PER_CYCLE {
             gauss_seidel::sweep(window);

@@ -116,8 +116,8 @@ pub struct Window {
     pub(super) goal: [u64; SIDE],
     /// Free cells that no goal can be reached from.
     unreached: u16,
-    /// No cell has a value worth keeping.
-    pub(super) cold: bool,
+    /// Some cell has a value worth keeping. A new window is all zeros, so that a static one costs no flash.
+    pub(super) warm: bool,
     /// Rows that may hold cells far too low for the multigrid (see `seed`).
     pub(super) unraised: u64,
     /// Where the multigrid's next blocks begin.
@@ -135,7 +135,7 @@ impl Window {
             reached: [0; SIDE],
             goal: [0; SIDE],
             unreached: 0,
-            cold: true,
+            warm: false,
             unraised: 0,
             origin: Origin::Even,
         }
@@ -143,7 +143,7 @@ impl Window {
 
     /// Forget the field, so that the next solve starts cold; boundary and preferences stay.
     pub fn clear(&mut self) {
-        self.cold = true;
+        self.warm = false;
         self.unraised = ROW;
         self.q.fill(0.0);
         self.origin = Origin::Even;
@@ -214,7 +214,7 @@ impl Window {
             mask.fill(0);
         }
         self.unreached = 0;
-        self.cold = true;
+        self.warm = false;
         self.unraised = 0;
         self.origin = Origin::Even;
     }

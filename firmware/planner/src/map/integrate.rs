@@ -1,14 +1,15 @@
 //! A scan into the map: every beam frees the cells it went through and marks the cell it ended in.
 //!
 //! The level laser carries occupancy: its beams run in the plane. The tilted laser marks what stands higher than
-//! [`STEP_M`] above the robot's ground, and frees nothing, because its beams run above the cells they cross.
+//! `STEP_M` above the robot's ground, and frees nothing, because its beams run above the cells they cross.
 //! Cells are visited by Amanatides–Woo traversal.
 //!
 //! Robustness, each rule with its reason:
-//! - a beam does not erode an obstacle within [`GUARD_M`] of its own end: at a grazing angle it runs through the wall's
+//! - a beam does not erode an obstacle within `GUARD_M` of its own end: at a grazing angle it runs through the wall's
 //!   own cells first;
 //! - a lone no-return between two returns is a dropout, and a no-return stops at the first obstacle: it must not tunnel;
-//! - near the robot beams are denser than cells, so only every second (fourth) frees cells there.
+//! - near the robot beams are denser than cells, so only every second (fourth) frees cells there, and only every fourth beam is
+//!   evidence for what is free already.
 //!
 //! Units: metres, radians; ranges in millimetres.
 
@@ -170,7 +171,7 @@ fn traverse(beam: &Beam, from_m: f32, mut visit: impl FnMut(Cell, f32) -> bool) 
 }
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
-    /// Enter one scan of `laser`, taken at `pose`. Cells without room are counted in [`Map::lost`](Map::no_room).
+    /// Enter one scan of `laser`, taken at `pose`. What there is no room for sets [`Map::out_of_box`] or [`Map::pool_full`].
     pub fn integrate(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
         if is_level(laser) {
             for beam in level_beams(pose, laser, ranges_mm) {
@@ -210,32 +211,27 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             return;
         }
         let mut cursor = Cursor::default();
-        let guard_from = if beam.hit {
+        let guard_from_m = if beam.hit {
             beam.length_m - GUARD_M
         } else {
             f32::MAX
         };
+        // Free cells are passed again and again; every fourth beam is witness enough.
+        let witness = beam.number & 3 == 0;
         traverse(beam, beam.free_from_m, |cell, leaves_m| {
             if beam.hit && leaves_m >= beam.length_m {
                 return false;
             }
-            self.pass(&mut cursor, cell, leaves_m > guard_from, !beam.hit)
+            match self.tiles.class_at(&mut cursor, cell) {
+                Class::Free if !witness => true,
+                Class::Obstacle | Class::Negative if leaves_m > guard_from_m => true,
+                class => self.pass(cell, class) && (beam.hit || class.is_open()),
+            }
         });
     }
 
-    /// A beam went through; false where it must not go on.
-    fn pass(
-        &mut self,
-        cursor: &mut Cursor,
-        cell: Cell,
-        guarded: bool,
-        stop_at_obstacle: bool,
-    ) -> bool {
-        let class = self.tiles.class_at(cursor, cell);
-        let obstacle = matches!(class, Class::Obstacle | Class::Negative);
-        if obstacle && guarded {
-            return true;
-        }
+    /// A beam went through a cell; false where there is no room to note it.
+    fn pass(&mut self, cell: Cell, class: Class) -> bool {
         let now = if self.evidence.covers(cell) {
             self.evidence.pass(cell, class)
         } else if class == Class::Unknown {
@@ -243,10 +239,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         } else {
             class
         };
-        if now != class && !self.store(cell, now) {
-            return false;
-        }
-        !(obstacle && stop_at_obstacle)
+        now == class || self.store(cell, now)
     }
 
     fn hit(&mut self, cell: Cell) {

@@ -31,6 +31,12 @@ pub enum Class {
 }
 
 impl Class {
+    /// Nothing is known to stand here.
+    #[must_use]
+    pub const fn is_open(self) -> bool {
+        matches!(self, Self::Unknown | Self::Free)
+    }
+
     const fn from_bits(low: u32, high: u32) -> Self {
         match (low, high) {
             (0, 0) => Self::Unknown,

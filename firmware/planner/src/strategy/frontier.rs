@@ -34,11 +34,11 @@ const REACHED_STEPS: u32 = 3;
 /// Time at a reached goal after which it is dropped, milliseconds: two turns on the spot.
 const LOOK_MS: u32 = 5_000;
 /// Time without moving after which a goal is dropped, milliseconds.
-const STANDING_MS: u32 = 24_000;
+const STANDING_MS: u32 = 14_000;
 /// A robot that moved less than this has not moved, metres.
 const MOVED_M: f32 = 0.3;
 /// Goals dropped in a row without moving after which the robot is stuck.
-const STUCK_DROPS: u8 = 3;
+const STUCK_DROPS: u8 = 4;
 /// Head start of the present goal, coarse steps: what turning about costs.
 const HEAD_START: u32 = 10;
 /// Rounds in a row without a field at the robot after which a goal is dropped.

@@ -76,6 +76,8 @@ impl Board {
         chip.GPIOA
             .moder()
             .modify(|_, w| w.moder9().alternate().moder10().alternate());
+        // An unplugged line is an idle line.
+        chip.GPIOA.pupdr().modify(|_, w| w.pupdr10().pull_up());
         chip.GPIOA
             .afrh()
             .modify(|_, w| w.afrh9().af7().afrh10().af7());

@@ -8,7 +8,7 @@ use core::arch::global_asm;
 use core::panic::PanicInfo;
 use core::ptr;
 
-use cortex_m_rt::ExceptionFrame;
+use cortex_m_rt::{ExceptionFrame, exception};
 use fieldline_protocol::frame::{MAX_REPLY_FRAME, encode_reply};
 use fieldline_protocol::message::{CRASH_FILE_BYTES, Cause, Crash, Reply};
 
@@ -111,6 +111,12 @@ extern "C" fn report_fault(frame: usize) -> ! {
         }
     };
     end(&crash)
+}
+
+/// An interrupt that nobody asked for.
+#[exception]
+unsafe fn DefaultHandler(number: i16) {
+    panic!("interrupt {}", number);
 }
 
 #[panic_handler]

@@ -7,7 +7,7 @@ use core::cell::UnsafeCell;
 use critical_section::RestoreState;
 use fieldline_device::ring::Ring;
 
-static LOG: Ring<1024> = Ring::new();
+static LOG: Ring<512> = Ring::new();
 
 #[defmt::global_logger]
 struct Logger;

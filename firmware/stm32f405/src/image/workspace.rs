@@ -4,7 +4,7 @@
 //! have what the chip has. One image serves all: it reads a word at each place and takes the first that answers. A read of nothing
 //! is a bus fault, which `crash.rs` turns into "no".
 
-use core::mem::{align_of, size_of};
+use core::mem::{MaybeUninit, align_of, size_of};
 use core::ptr;
 
 use fieldline_planner::Workspace;
@@ -28,11 +28,14 @@ pub(crate) fn place() -> &'static mut Workspace {
     let Some(place) = [CCM, EXTRA_SRAM].into_iter().find(answers) else {
         panic!("no memory for the workspace");
     };
-    let workspace = ptr::without_provenance_mut::<Workspace>(place);
+    let workspace = ptr::without_provenance_mut::<MaybeUninit<Workspace>>(place);
     // SAFETY: there are 64 KB at `place` (both ends answered), enough and aligned for a workspace (asserted above); the linker puts nothing
     // there (memory.x), and this is called once, so the reference is unique. What is written is a valid workspace.
-    unsafe {
-        workspace.write(const { Workspace::new() });
-        &mut *workspace
-    }
+    let place = unsafe { &mut *workspace };
+    clear(place)
+}
+
+#[inline(never)]
+fn clear(place: &mut MaybeUninit<Workspace>) -> &mut Workspace {
+    place.write(Workspace::new())
 }

@@ -10,7 +10,7 @@
 //!
 //! As the package does by default, the search looks at the map without inflation, so that a door as wide as the minimum size
 //! counts; whether the robot fits through is the global planner's business. A frontier is driven to at a cell with a way to it
-//! at most [`APPROACH_CELLS`] from one of its own, the goal tolerance of ROS 2's default planner.
+//! at most `APPROACH_CELLS` from one of its own, the goal tolerance of ROS 2's default planner.
 //!
 //! Units: metres; a frontier's size is its number of cells times the side of one.
 

@@ -20,7 +20,7 @@ const RADIUS: f32 = 3.0;
 /// Price of an unknown cell, per cent: navfn counts it as 253, the dearest that can be passed.
 pub const UNKNOWN_PERCENT: u32 = 506;
 
-/// Squared distances to the nearest obstacle, at most [`FREE_FROM`].
+/// Squared distances to the nearest obstacle, at most `FREE_FROM`.
 #[derive(Clone, Debug, Default)]
 pub struct Inflation {
     frame: Frame,

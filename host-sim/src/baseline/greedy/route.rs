@@ -5,7 +5,7 @@
 //! diagonal one only between two passable cells.
 //!
 //! Invariant: costs are integers, so that the same map gives the same way everywhere. Units: a straight step is
-//! [`STRAIGHT`].
+//! `STRAIGHT`.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;

@@ -1,0 +1,185 @@
+//! The session's state, and what the other tests of this crate share.
+
+use std::boxed::Box;
+
+use fieldline_planner::{State, Workspace};
+use fieldline_protocol::message::{
+    Control, Fault, Finish, Laser, Observation, Refusal, Scan, Start, Status, Strategy, Twist,
+};
+use fixed::types::{I4F12, I16F16};
+
+use super::{Memory, Pilot};
+
+/// The 3-AT with a level and a tilted laser of 181 beams over 180°.
+pub(crate) fn start() -> Start {
+    let level = Laser {
+        x: I4F12::lit("0.1"),
+        y: I4F12::ZERO,
+        z: I4F12::lit("0.4"),
+        pitch: I4F12::ZERO,
+        first_bearing: I16F16::lit("-1.5708"),
+        bearing_step: I16F16::lit("0.017453"),
+        beams: 181,
+        range_limit_mm: 12_000,
+    };
+    let tilted = Laser {
+        pitch: I4F12::lit("0.349"),
+        ..level
+    };
+    Start {
+        strategy: Strategy::Frontier,
+        box_tiles: (20, 20),
+        lasers: [level, tilted].into_iter().collect(),
+        robot_radius_mm: 300,
+        max_linear: I4F12::lit("0.7"),
+        max_angular: I4F12::lit("2.44"),
+    }
+}
+
+/// A matching observation in the middle of nothing.
+pub(crate) fn observation(time_ms: u32) -> Observation {
+    let scan = Scan {
+        ranges_mm: [4000; 181].into_iter().collect(),
+    };
+    Observation {
+        time_ms,
+        scans: [scan.clone(), scan].into_iter().collect(),
+        ..Observation::default()
+    }
+}
+
+pub(crate) struct Bench {
+    state: Box<State<4, 400>>,
+    workspace: Box<Workspace>,
+}
+
+impl Bench {
+    pub(crate) fn new() -> Self {
+        Self {
+            state: Box::new(State::new()),
+            workspace: Box::new(Workspace::new()),
+        }
+    }
+
+    pub(crate) fn memory(&mut self) -> Memory<'_, 4, 400> {
+        Memory {
+            state: &mut self.state,
+            workspace: &mut self.workspace,
+        }
+    }
+}
+
+fn started() -> (Pilot, Bench) {
+    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let status = pilot.control(&mut bench.memory(), &Control::Start(start()));
+    assert_eq!(status, Ok(Status::Exploring));
+    (pilot, bench)
+}
+
+#[test]
+fn nothing_happens_before_a_start() {
+    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    assert_eq!(pilot.status(), Status::Idle);
+    for control in [Control::Pause, Control::Resume, Control::Stop] {
+        let refused = pilot.control(&mut bench.memory(), &control);
+        assert_eq!(refused, Err(Refusal::NotStarted), "{control:?}");
+    }
+    let refused = pilot.observe(&mut bench.memory(), &observation(0));
+    assert_eq!(refused, Err(Refusal::NotStarted));
+}
+
+#[test]
+fn a_refused_start_leaves_the_session_as_it_was() {
+    let (mut pilot, mut bench) = started();
+    let bad = Start {
+        box_tiles: (0, 1),
+        ..start()
+    };
+    let refused = pilot.control(&mut bench.memory(), &Control::Start(bad));
+    assert_eq!(refused, Err(Refusal::BadBox));
+    assert_eq!(pilot.status(), Status::Exploring);
+}
+
+#[test]
+fn pause_holds_and_resume_goes_on() {
+    let (mut pilot, mut bench) = started();
+    let paused = pilot.control(&mut bench.memory(), &Control::Pause);
+    assert_eq!(paused, Ok(Status::Paused));
+    let command = pilot
+        .observe(&mut bench.memory(), &observation(100))
+        .unwrap();
+    assert_eq!(
+        (command.status, command.velocity),
+        (Status::Paused, Twist::default())
+    );
+    let resumed = pilot.control(&mut bench.memory(), &Control::Resume);
+    assert_eq!(resumed, Ok(Status::Exploring));
+}
+
+#[test]
+fn a_stopped_session_stays_stopped() {
+    let (mut pilot, mut bench) = started();
+    let stopped = Status::Finished(Finish::Stopped);
+    assert_eq!(
+        pilot.control(&mut bench.memory(), &Control::Stop),
+        Ok(stopped)
+    );
+    assert_eq!(
+        pilot.control(&mut bench.memory(), &Control::Resume),
+        Ok(stopped)
+    );
+    let command = pilot
+        .observe(&mut bench.memory(), &observation(100))
+        .unwrap();
+    assert_eq!(
+        (command.status, command.velocity),
+        (stopped, Twist::default())
+    );
+}
+
+#[test]
+fn the_emergency_stop_holds_until_released_and_resumed() {
+    let (mut pilot, mut bench) = started();
+    pilot.set_emergency_stop(true);
+    let command = pilot
+        .observe(&mut bench.memory(), &observation(100))
+        .unwrap();
+    assert_eq!(
+        (command.status, command.velocity),
+        (Status::EmergencyStop, Twist::default())
+    );
+    let held = pilot.control(&mut bench.memory(), &Control::Resume);
+    assert_eq!(held, Ok(Status::EmergencyStop), "still pressed");
+    let held = pilot.control(&mut bench.memory(), &Control::Start(start()));
+    assert_eq!(held, Ok(Status::EmergencyStop), "still pressed");
+    pilot.set_emergency_stop(false);
+    assert_eq!(
+        pilot.status(),
+        Status::EmergencyStop,
+        "released is not resumed"
+    );
+    let resumed = pilot.control(&mut bench.memory(), &Control::Resume);
+    assert_eq!(resumed, Ok(Status::Exploring));
+}
+
+#[test]
+fn a_wrong_observation_is_a_fault_that_passes() {
+    let (mut pilot, mut bench) = started();
+    let mut wrong = observation(100);
+    wrong.scans[1].ranges_mm.pop();
+    let command = pilot.observe(&mut bench.memory(), &wrong).unwrap();
+    assert_eq!(command.status, Status::Fault(Fault::BadObservation));
+    assert_eq!(command.velocity, Twist::default());
+    assert_eq!(pilot.status(), Status::Exploring);
+}
+
+#[test]
+fn a_reset_ends_the_session_but_not_the_emergency_stop() {
+    let (mut pilot, mut bench) = started();
+    pilot.set_emergency_stop(true);
+    let status = pilot.control(&mut bench.memory(), &Control::Reset);
+    assert_eq!(status, Ok(Status::EmergencyStop));
+    pilot.set_emergency_stop(false);
+    let refused = pilot.observe(&mut bench.memory(), &observation(0));
+    assert_eq!(refused, Err(Refusal::NotStarted));
+}
