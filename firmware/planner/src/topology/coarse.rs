@@ -43,10 +43,10 @@ pub(super) fn mark_border(border: Border, cells: &[u32], marks: &mut [u32], per_
     let explored = |mark: u32, index| at(cells, index) & !mark;
     match border {
         Border::Explored => {
-            touching::<false>(marks, per_row, |mark, index| (mark, explored(mark, index)))
+            touching::<false>(marks, per_row, |mark, index| (mark, explored(mark, index)));
         }
         Border::Unexplored => {
-            touching::<true>(marks, per_row, |mark, index| (explored(mark, index), mark))
+            touching::<true>(marks, per_row, |mark, index| (explored(mark, index), mark));
         }
     }
 }
