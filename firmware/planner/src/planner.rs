@@ -27,7 +27,7 @@ use crate::near::NearField;
 use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::{Known, Lent, Outlook};
 use crate::strategy::{self, Road};
-use crate::topology::Topology;
+use crate::topology::{Space, Topology};
 use crate::view::{self, Rows, SCALES, View};
 
 /// Range code: nothing came back, so free up to the range limit.
@@ -131,7 +131,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     pub fn reset(&mut self, config: &Config) {
         self.map.reset(config.box_tiles.0, config.box_tiles.1);
         self.near.clear();
-        self.topology.reset();
+        self.topology.reset(Space::default());
         self.strategy.reset();
         self.drive = Drive::new();
         self.status = Status::Exploring;
