@@ -28,6 +28,7 @@ pub mod map;
 pub mod math;
 pub mod near;
 pub mod planner;
+pub mod remainder;
 pub mod skeleton;
 pub mod status;
 pub mod strategy;
