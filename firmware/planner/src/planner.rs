@@ -22,8 +22,10 @@ use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, desce
 use crate::geometry::{Cell, Point, Pose, Twist};
 use crate::map::Map;
 use crate::map::integrate::is_level;
+use crate::map::tiles::NoRoom;
 use crate::math;
 use crate::near::NearField;
+use crate::remainder::{self, no_room};
 use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::{Known, Lent, Outlook};
 use crate::strategy::{self, Road};
@@ -104,6 +106,10 @@ pub struct Workspace {
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     const CHECK: () = {
         assert!(SLOTS * 16 + RING <= SCRATCH, "the wave fits the scratch");
+        assert!(
+            remainder::scratch_words(SLOTS) <= SCRATCH,
+            "the flood at the end fits the scratch"
+        );
         assert!(
             drive::manoeuvre::SCRATCH_WORDS <= SCRATCH,
             "a search fits the scratch"
@@ -385,12 +391,40 @@ fn replan<const TILES: usize, const SLOTS: usize>(
     let outlook = state.strategy.replan(&known, robot, input.time_ms, lent);
     match outlook {
         Outlook::Nothing => {
-            state.strategy.list_leftovers(&known);
-            state.status = conclude(state, &mut workspace.view, disc, robot.cell());
+            let wanting = list_ways_out(state, workspace, disc, robot.cell());
+            list_leftovers(state, disc);
+            state.status = conclude(state, &mut workspace.view, disc, robot.cell(), wanting);
         }
         Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
         Outlook::Road | Outlook::Unsure => {}
     }
+}
+
+/// List what the robot can get to and cannot go on from for want of room in the map; which room that is. What lies beyond
+/// the map and cannot be reached is no fault.
+fn list_ways_out<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    disc: &Disc,
+    robot: Cell,
+) -> Option<NoRoom> {
+    let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
+    no_room(&state.map, disc, robot, scratch, |cell| {
+        state.strategy.list_way_out(cell);
+    })
+}
+
+/// List the frontiers that were never within reach.
+fn list_leftovers<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
+    disc: &Disc,
+) {
+    let known = Known {
+        topology: &state.topology,
+        tiles: state.map.tiles(),
+        disc,
+    };
+    state.strategy.list_leftovers(&known);
 }
 
 /// Why there is no frontier left within reach.
@@ -399,17 +433,15 @@ fn conclude<const TILES: usize, const SLOTS: usize>(
     view: &mut View,
     disc: &Disc,
     robot: Cell,
+    wanting: Option<NoRoom>,
 ) -> Status {
     view.look_around(state.map.tiles(), disc, robot, 1);
     view.free_robot(robot);
-    if state.map.pool_full() {
-        Status::Fault(Fault::MapFull)
-    } else if state.map.out_of_box() {
-        Status::Fault(Fault::OutOfBox)
-    } else if room_cells(view, robot) < BOX_CELLS {
-        Status::Finished(Finish::BoxedIn)
-    } else {
-        Status::Finished(Finish::Explored)
+    match wanting {
+        Some(NoRoom::Pool) => Status::Fault(Fault::MapFull),
+        Some(NoRoom::Box) => Status::Fault(Fault::OutOfBox),
+        None if room_cells(view, robot) < BOX_CELLS => Status::Finished(Finish::BoxedIn),
+        None => Status::Finished(Finish::Explored),
     }
 }
 

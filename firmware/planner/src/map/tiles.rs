@@ -298,23 +298,44 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.pool.get(usize::from(entry.checked_sub(1)?))
     }
 
+    /// The extent with a tile outside it.
+    fn grown(&self, tile_x: i32, tile_y: i32) -> Result<Extent, NoRoom> {
+        let grown = match self.extent {
+            Some(extent) => extent.with(tile_x, tile_y),
+            None => Extent {
+                least: (tile_x, tile_y),
+                greatest: (tile_x, tile_y),
+            },
+        };
+        if grown.width() > self.width || grown.height() > self.height {
+            Err(NoRoom::Box)
+        } else if usize::from(self.used) >= TILES {
+            Err(NoRoom::Pool)
+        } else {
+            Ok(grown)
+        }
+    }
+
+    /// Whether a tile is stored, or could be.
+    ///
+    /// # Errors
+    /// [`NoRoom`] where the box or the pool cannot hold it.
+    pub fn room(&self, tile_x: i32, tile_y: i32) -> Result<(), NoRoom> {
+        if self.is_touched(tile_x, tile_y) {
+            Ok(())
+        } else if !self.in_extent(tile_x, tile_y) {
+            self.grown(tile_x, tile_y).map(|_| ())
+        } else if usize::from(self.used) >= TILES {
+            Err(NoRoom::Pool)
+        } else {
+            Ok(())
+        }
+    }
+
     /// Pool index of the tile, taking a fresh one on first touch.
     fn touch(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
         if !self.in_extent(tile_x, tile_y) {
-            let grown = match self.extent {
-                Some(extent) => extent.with(tile_x, tile_y),
-                None => Extent {
-                    least: (tile_x, tile_y),
-                    greatest: (tile_x, tile_y),
-                },
-            };
-            if grown.width() > self.width || grown.height() > self.height {
-                return Err(NoRoom::Box);
-            }
-            if usize::from(self.used) >= TILES {
-                return Err(NoRoom::Pool);
-            }
-            self.extent = Some(grown);
+            self.extent = Some(self.grown(tile_x, tile_y)?);
         }
         let slot = self.slot(tile_x, tile_y);
         let entry = self.directory.get_mut(slot).ok_or(NoRoom::Box)?;
