@@ -20,6 +20,7 @@ use crate::config::Config;
 use crate::drive::{self, Drive, Ground, Place, Surround};
 use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, descent, solve};
 use crate::geometry::{Cell, Point, Pose, Twist};
+use crate::laps::{Laps, Stage};
 use crate::map::Map;
 use crate::map::integrate::is_level;
 use crate::map::tiles::NoRoom;
@@ -277,12 +278,13 @@ impl Workspace {
     }
 }
 
-/// One step: what was sensed in, what to drive out.
+/// One step: what was sensed in, what to drive out. `laps` hears of each stage's end.
 pub fn step<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     input: Input<'_>,
+    laps: &mut impl Laps,
 ) -> Output {
     if state.status != Status::Exploring {
         return Output {
@@ -291,9 +293,12 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         };
     }
     sense(config, state, &input);
+    laps.lap(Stage::Sense);
     // A search for a manoeuvre has the scratch; until it is over the robot stands and plans nothing else.
     if state.drive.is_searching() {
-        return steer(config, state, workspace, &input);
+        let output = steer(config, state, workspace, &input);
+        laps.lap(Stage::Drive);
+        return output;
     }
     let disc = Disc::new(config.robot_radius_m);
     // A new skeleton is planned on in the step after it was finished, so that no step does both.
@@ -301,10 +306,12 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     if planned {
         state.fresh = false;
         replan(state, workspace, &disc, &input);
+        laps.lap(Stage::Plan);
     } else {
         state.fresh = state
             .topology
             .advance(state.map.tiles(), &disc, config.topology_units);
+        laps.lap(Stage::Topology);
     }
     if state.status != Status::Exploring {
         return Output {
@@ -312,11 +319,12 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
             ..Output::default()
         };
     }
-    let view = &mut workspace.view;
-    let Some(goal) = local_goal(state, &disc, &input, view) else {
+    let Some(goal) = local_goal(state, &disc, &input, &mut workspace.view) else {
+        laps.lap(Stage::Window);
         return Output::default();
     };
-    charge(&mut workspace.window, &mut workspace.window_at, view, &goal);
+    charge(workspace, &goal);
+    laps.lap(Stage::Window);
     // A step that planned a road has spent the time of two cycles on it.
     let most = config.solver.max_cycles;
     let solver = SolverConfig {
@@ -324,11 +332,14 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         ..config.solver
     };
     let solution = solve(&mut workspace.window, &mut workspace.scratch, &solver);
-    Output {
+    laps.lap(Stage::Solve);
+    let output = Output {
         cycles: solution.cycles + solution.sweeps,
         budget_exhausted: solution.stop == Stop::Budget,
         ..steer(config, state, workspace, &input)
-    }
+    };
+    laps.lap(Stage::Drive);
+    output
 }
 
 /// Scans and odometry into the map and the near field.
@@ -595,7 +606,13 @@ fn goal_cells(view: &View, cell: Cell) -> Option<Rows> {
 }
 
 /// Set the window's boundary, keeping the field of the last window where they overlap.
-fn charge(window: &mut Window, at: &mut Option<(Cell, i32)>, view: &View, goal: &Rows) {
+fn charge(workspace: &mut Workspace, goal: &Rows) {
+    let Workspace {
+        window,
+        window_at: at,
+        view,
+        ..
+    } = workspace;
     match *at {
         Some((origin, scale)) if scale == view.scale => {
             let steps = |to: i32, from: i32| (to - from) / scale;
