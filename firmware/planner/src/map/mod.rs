@@ -6,6 +6,7 @@
 pub mod evidence;
 pub mod integrate;
 pub mod tiles;
+mod walk;
 
 pub use evidence::Evidence;
 pub use tiles::{Class, Tiles};

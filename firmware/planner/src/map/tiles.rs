@@ -14,6 +14,7 @@ use crate::geometry::Cell;
 
 /// Cells along a tile's side.
 pub const TILE_SIDE: i32 = 32;
+const TILE_ROWS: usize = TILE_SIDE as usize;
 
 /// What is known of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,14 +46,6 @@ impl Class {
             _ => Self::Negative,
         }
     }
-}
-
-/// Remembers the tile of the last cell looked up: consecutive cells of a beam share it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Cursor {
-    tile: Option<(i32, i32)>,
-    /// Pool index + 1 of it, 0 where there is none (yet).
-    index: u16,
 }
 
 /// A cell that the map has no room for.
@@ -136,7 +129,7 @@ const fn max(a: i32, b: i32) -> i32 {
     if a > b { a } else { b }
 }
 
-type TileRows = [[u32; 2]; TILE_SIDE as usize];
+type TileRows = [[u32; 2]; TILE_ROWS];
 type Trail = [u16; TILE_SIDE as usize / 2];
 
 /// A tile that a reader goes through.
@@ -144,6 +137,50 @@ type Trail = [u16; TILE_SIDE as usize / 2];
 struct Column<'a> {
     rows: &'a TileRows,
     trail: &'a Trail,
+}
+
+/// A tile that a beam goes through. Rows count from 0 to 31, columns are bits.
+#[derive(Debug)]
+pub(super) struct Page<'a> {
+    rows: &'a mut TileRows,
+    edits: &'a mut u32,
+}
+
+impl Page<'_> {
+    /// Whether a cell is known to be traversable.
+    #[inline(always)]
+    pub(super) fn is_free(&self, row: usize, bit: u32) -> bool {
+        self.rows
+            .get(row % TILE_ROWS)
+            .is_some_and(|[low, high]| low & !high & bit != 0)
+    }
+
+    /// What is known of a cell.
+    pub(super) fn class(&self, row: usize, bit: u32) -> Class {
+        self.rows
+            .get(row % TILE_ROWS)
+            .map_or(Class::Unknown, |[low, high]| {
+                Class::from_bits(low & bit, high & bit)
+            })
+    }
+
+    /// Store what is known of a cell.
+    #[inline(always)]
+    pub(super) fn set(&mut self, row: usize, bit: u32, class: Class) {
+        if let Some(words) = self.rows.get_mut(row % TILE_ROWS) {
+            *self.edits = self.edits.wrapping_add(u32::from(write(words, bit, class)));
+        }
+    }
+}
+
+/// Write a cell's class into the words of its row; whether it changed.
+#[inline(always)]
+const fn write([low, high]: &mut [u32; 2], bit: u32, class: Class) -> bool {
+    let code = class as u32;
+    let old = (*low, *high);
+    *low = *low & !bit | bit & (code & 1).wrapping_neg();
+    *high = *high & !bit | bit & (code >> 1 & 1).wrapping_neg();
+    old.0 != *low || old.1 != *high
 }
 
 /// Reads rows of 64 cells one after another; tiles are looked up once in 32 rows.
@@ -298,23 +335,44 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.pool.get(usize::from(entry.checked_sub(1)?))
     }
 
+    /// The extent with a tile outside it.
+    fn grown(&self, tile_x: i32, tile_y: i32) -> Result<Extent, NoRoom> {
+        let grown = match self.extent {
+            Some(extent) => extent.with(tile_x, tile_y),
+            None => Extent {
+                least: (tile_x, tile_y),
+                greatest: (tile_x, tile_y),
+            },
+        };
+        if grown.width() > self.width || grown.height() > self.height {
+            Err(NoRoom::Box)
+        } else if usize::from(self.used) >= TILES {
+            Err(NoRoom::Pool)
+        } else {
+            Ok(grown)
+        }
+    }
+
+    /// Whether a tile is stored, or could be.
+    ///
+    /// # Errors
+    /// [`NoRoom`] where the box or the pool cannot hold it.
+    pub fn room(&self, tile_x: i32, tile_y: i32) -> Result<(), NoRoom> {
+        if self.is_touched(tile_x, tile_y) {
+            Ok(())
+        } else if !self.in_extent(tile_x, tile_y) {
+            self.grown(tile_x, tile_y).map(|_| ())
+        } else if usize::from(self.used) >= TILES {
+            Err(NoRoom::Pool)
+        } else {
+            Ok(())
+        }
+    }
+
     /// Pool index of the tile, taking a fresh one on first touch.
     fn touch(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
         if !self.in_extent(tile_x, tile_y) {
-            let grown = match self.extent {
-                Some(extent) => extent.with(tile_x, tile_y),
-                None => Extent {
-                    least: (tile_x, tile_y),
-                    greatest: (tile_x, tile_y),
-                },
-            };
-            if grown.width() > self.width || grown.height() > self.height {
-                return Err(NoRoom::Box);
-            }
-            if usize::from(self.used) >= TILES {
-                return Err(NoRoom::Pool);
-            }
-            self.extent = Some(grown);
+            self.extent = Some(self.grown(tile_x, tile_y)?);
         }
         let slot = self.slot(tile_x, tile_y);
         let entry = self.directory.get_mut(slot).ok_or(NoRoom::Box)?;
@@ -348,30 +406,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// # Errors
     /// [`NoRoom`] where the box or the pool cannot hold it; the map is then unchanged.
     pub fn set(&mut self, cell: Cell, class: Class) -> Result<(), NoRoom> {
-        let index = self.touch(cell.x >> 5, cell.y >> 5)?;
-        let row = self
-            .pool
-            .get_mut(index)
-            .and_then(|rows| rows.get_mut((cell.y & 31) as usize));
-        let Some([low, high]) = row else {
-            return Err(NoRoom::Pool);
-        };
-        let bit = 1u32 << (cell.x & 31);
-        let code = class as u8;
-        let old = (*low, *high);
-        *low = if code & 1 == 0 {
-            *low & !bit
-        } else {
-            *low | bit
-        };
-        *high = if code & 2 == 0 {
-            *high & !bit
-        } else {
-            *high | bit
-        };
-        if old != (*low, *high) {
-            self.edits = self.edits.wrapping_add(1);
-        }
+        let mut page = self.open((cell.x >> 5, cell.y >> 5))?;
+        page.set((cell.y & 31) as usize, 1 << (cell.x & 31), class);
         Ok(())
     }
 
@@ -420,27 +456,16 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         })
     }
 
-    /// What is known of a cell, looked up by a cursor that remembers the tile of the last one.
-    pub(super) fn class_at(&self, cursor: &mut Cursor, cell: Cell) -> Class {
-        let tile = (cell.x >> 5, cell.y >> 5);
-        if cursor.tile != Some(tile) || cursor.index == 0 {
-            cursor.tile = Some(tile);
-            cursor.index = if self.in_extent(tile.0, tile.1) {
-                self.directory
-                    .get(self.slot(tile.0, tile.1))
-                    .copied()
-                    .unwrap_or(0)
-            } else {
-                0
-            };
-        }
-        let rows = usize::from(cursor.index)
-            .checked_sub(1)
-            .and_then(|index| self.pool.get(index));
-        let Some([low, high]) = rows.and_then(|rows| rows.get((cell.y & 31) as usize)) else {
-            return Class::Unknown;
-        };
-        Class::from_bits(low >> (cell.x & 31) & 1, high >> (cell.x & 31) & 1)
+    /// A tile to be read and written cell by cell, given out if it was not yet.
+    ///
+    /// # Errors
+    /// [`NoRoom`] where the box or the pool cannot hold it; the map is then unchanged.
+    pub(super) fn open(&mut self, (tile_x, tile_y): (i32, i32)) -> Result<Page<'_>, NoRoom> {
+        let index = self.touch(tile_x, tile_y)?;
+        Ok(Page {
+            rows: self.pool.get_mut(index).ok_or(NoRoom::Pool)?,
+            edits: &mut self.edits,
+        })
     }
 
     /// A tile's cells, two bits each, row by row from the least y with the least x in the low bits; `None` where nothing

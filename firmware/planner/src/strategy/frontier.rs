@@ -165,23 +165,33 @@ impl Frontier {
         };
         for site in goals.sites() {
             let cell = known.topology.frame().cell(site);
-            let group = self
-                .dropped
-                .iter_mut()
-                .find(|left| near(left.cell, cell, GROUP_RADIUS_M));
-            match group {
-                Some(left) => left.cells = left.cells.saturating_add(1),
-                // A full list names enough of them.
-                None => {
-                    let left = Leftover {
-                        cell,
-                        cells: 1,
-                        reason: Residue::Unreachable,
-                    };
-                    let _ = self.dropped.push(left);
-                }
-            }
+            self.list(cell, Residue::Unreachable);
         }
+    }
+
+    /// List a cell beyond which the map has no room; a goal dropped beside it was dropped for that.
+    pub fn list_way_out(&mut self, cell: Cell) {
+        if let Some(left) = self.list(cell, Residue::OutOfBounds) {
+            left.reason = Residue::OutOfBounds;
+        }
+    }
+
+    /// Count a cell to the group it is near to, or begin one.
+    fn list(&mut self, cell: Cell, reason: Residue) -> Option<&mut Leftover> {
+        let group = |left: &Leftover| near(left.cell, cell, GROUP_RADIUS_M);
+        if let Some(k) = self.dropped.iter().position(group) {
+            let left = self.dropped.get_mut(k)?;
+            left.cells = left.cells.saturating_add(1);
+            return Some(left);
+        }
+        let left = Leftover {
+            cell,
+            cells: 1,
+            reason,
+        };
+        // A full list names enough of them.
+        self.dropped.push(left).ok()?;
+        self.dropped.last_mut()
     }
 
     fn find_road<const TILES: usize, const SLOTS: usize>(
