@@ -593,21 +593,7 @@ fn local_goal<const TILES: usize, const SLOTS: usize>(
 /// The passable window cells of a coarse cell, if there are any.
 fn goal_cells(view: &View, cell: Cell) -> Option<Rows> {
     let mut rows: Rows = [0; SIDE];
-    let mut any = false;
-    for k in 0..4 {
-        let part = Cell {
-            x: cell.x + (k & 1),
-            y: cell.y + (k >> 1),
-        };
-        if let Some(place) = view
-            .place(part)
-            .filter(|&place| View::has(&view.passable, place))
-        {
-            View::put(&mut rows, place);
-            any = true;
-        }
-    }
-    any.then_some(rows)
+    view.mark(&mut rows, cell).then_some(rows)
 }
 
 /// Set the window's boundary, keeping the field of the last window where they overlap.

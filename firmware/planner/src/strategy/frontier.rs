@@ -390,28 +390,12 @@ fn targets(space: &WaveSpace<'_>, frame: Frame, view: &View) -> Rows {
                 bits &= bits - 1;
                 let site = Site { x, y: y as u16 };
                 if space.residues.get(site).is_some() {
-                    mark(&mut targets, view, frame.cell(site));
+                    view.mark(&mut targets, frame.cell(site));
                 }
             }
         }
     }
     targets
-}
-
-/// Mark the passable window cells of a coarse cell.
-fn mark(rows: &mut Rows, view: &View, cell: Cell) {
-    for k in 0..4 {
-        let part = Cell {
-            x: cell.x + (k & 1),
-            y: cell.y + (k >> 1),
-        };
-        if let Some(place) = view
-            .place(part)
-            .filter(|&place| View::has(&view.passable, place))
-        {
-            View::put(rows, place);
-        }
-    }
 }
 
 /// A centre cell in a window cell that the wave came to.
