@@ -337,7 +337,7 @@ fn leak<const TILES: usize, const SLOTS: usize>(
     let mut wet: Rows = [0; SIDE];
     road.cells().iter().copied().find(|&cell| {
         wet.fill(0);
-        mark(&mut wet, view, cell);
+        view.mark(&mut wet, cell);
         wet.iter()
             .zip(&reached)
             .all(|(cell, reached)| cell & reached == 0)
