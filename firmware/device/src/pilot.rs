@@ -12,7 +12,7 @@
 //! pilot is the link without bytes: the session calls the same functions, so the stream of commands is the same.
 
 use fieldline_planner::field::SIDE;
-use fieldline_planner::planner::{self, CellKind, Input, Output};
+use fieldline_planner::planner::{self, CellKind, Output};
 use fieldline_planner::{Config, Laps, State, Workspace, step};
 use fieldline_protocol::message::{
     Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, Frontier, MAX_FRONTIERS,
@@ -161,7 +161,7 @@ impl Pilot {
             return Ok(standing(self.status()));
         }
         let (state, workspace) = (&mut *memory.state, &mut *memory.workspace);
-        let output = step(config, state, workspace, input(observation), laps);
+        let output = step(config, state, workspace, convert::input(observation), laps);
         self.planned = convert::wire_status(output.status);
         if self.planned != Status::Exploring {
             info!("exploration ended");
@@ -231,19 +231,6 @@ fn field_row(row: u8, found: &planner::FieldRow) -> FieldRow {
         scale: found.scale,
         q: found.q.into_iter().collect(),
         cells: found.kinds.chunks(4).map(pack).collect(),
-    }
-}
-
-fn input(observation: &Observation) -> Input<'_> {
-    let scan = |number: usize| match observation.scans.get(number) {
-        Some(scan) => scan.ranges_mm.as_slice(),
-        None => &[],
-    };
-    Input {
-        time_ms: observation.time_ms,
-        pose: convert::pose(&observation.pose),
-        velocity: convert::twist(&observation.velocity),
-        scans: [scan(0), scan(1)],
     }
 }
 

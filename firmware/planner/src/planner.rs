@@ -300,7 +300,11 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         laps.lap(Stage::Drive);
         return output;
     }
-    let disc = Disc::new(config.robot_radius_m);
+    let disc = Disc::new(if state.strategy.is_second_chance() {
+        config.tight_radius_m
+    } else {
+        config.robot_radius_m
+    });
     // A new skeleton is planned on in the step after it was finished, so that no step does both.
     let planned = state.fresh;
     if planned {
@@ -394,6 +398,7 @@ fn replan<const TILES: usize, const SLOTS: usize>(
         view: &mut workspace.view,
     };
     let robot = input.pose.point();
+    state.strategy.cut(&mut state.topology);
     let known = Known {
         topology: &state.topology,
         tiles: state.map.tiles(),
@@ -588,21 +593,7 @@ fn local_goal<const TILES: usize, const SLOTS: usize>(
 /// The passable window cells of a coarse cell, if there are any.
 fn goal_cells(view: &View, cell: Cell) -> Option<Rows> {
     let mut rows: Rows = [0; SIDE];
-    let mut any = false;
-    for k in 0..4 {
-        let part = Cell {
-            x: cell.x + (k & 1),
-            y: cell.y + (k >> 1),
-        };
-        if let Some(place) = view
-            .place(part)
-            .filter(|&place| View::has(&view.passable, place))
-        {
-            View::put(&mut rows, place);
-            any = true;
-        }
-    }
-    any.then_some(rows)
+    view.mark(&mut rows, cell).then_some(rows)
 }
 
 /// Set the window's boundary, keeping the field of the last window where they overlap.

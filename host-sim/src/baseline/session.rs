@@ -294,19 +294,6 @@ fn standing(status: Status) -> Command {
     }
 }
 
-fn input(observation: &Observation) -> Input<'_> {
-    let scan = |number: usize| match observation.scans.get(number) {
-        Some(scan) => scan.ranges_mm.as_slice(),
-        None => &[],
-    };
-    Input {
-        time_ms: observation.time_ms,
-        pose: convert::pose(&observation.pose),
-        velocity: convert::twist(&observation.velocity),
-        scans: [scan(0), scan(1)],
-    }
-}
-
 fn refused(refusal: Refusal) -> LinkError {
     LinkError::Refused(refusal.to_string())
 }
@@ -340,7 +327,7 @@ impl<P: Plan> Link for Session<P> {
         let command = if !limits::matches(observation, config.lasers.iter().map(|l| l.beams)) {
             standing(Status::Fault(Fault::BadObservation))
         } else if self.status() == Status::Exploring {
-            self.step(&config, &input(observation))
+            self.step(&config, &convert::input(observation))
         } else {
             standing(self.status())
         };

@@ -13,6 +13,7 @@ pub mod tum;
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::link::LinkStats;
 pub use grid_map::{GridMap, MapCell};
 
 /// Version of the schema: it grows by one when a field changes its meaning or goes.
@@ -194,21 +195,6 @@ pub struct Field {
     pub heading_error_deg: Option<Percentiles>,
     /// Steps whose solver ran out of budget.
     pub budget_exhausted: u64,
-}
-
-/// Counters of the link, both ends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct LinkStats {
-    /// Frames sent by the host.
-    pub sent: u64,
-    /// Frames received and accepted by the host.
-    pub received: u64,
-    /// Requests sent again.
-    pub retries: u64,
-    /// Frames dropped for framing, length, format or order.
-    pub dropped: u64,
-    /// Frames dropped for a bad checksum.
-    pub crc_errors: u64,
 }
 
 /// Cross-checks of the tool on itself.

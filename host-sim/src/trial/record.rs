@@ -197,25 +197,6 @@ impl Record {
             budget_exhausted: self.steps.iter().filter(exhausted).count() as u64,
         }
     }
-
-    /// The report's part on the link.
-    #[must_use]
-    pub fn link_report(&self) -> report::LinkStats {
-        let LinkStats {
-            sent,
-            received,
-            retries,
-            dropped,
-            crc_errors,
-        } = self.link_stats;
-        report::LinkStats {
-            sent,
-            received,
-            retries,
-            dropped,
-            crc_errors,
-        }
-    }
 }
 
 fn centre_m(cell: i16) -> f64 {

@@ -80,11 +80,9 @@ fn touching<const CORNERS: bool>(
         let mut here = column(marks, &below, 0);
         for word in 0..per_row {
             let after = column(marks, &below, word + 1);
-            let side = usize::from(CORNERS);
-            let near = |[a, b, c]: [[u32; 2]; 3]| {
-                b[side] << 1 | a[side] >> 31 | b[side] >> 1 | c[side] << 31
-            };
-            let beside = here[1] | near([before, here, after]);
+            let sides = |rows: [u32; 2]| if CORNERS { rows[1] } else { rows[0] };
+            let [west, middle, east] = [before, here, after].map(sides);
+            let beside = here[1] | middle << 1 | west >> 31 | middle >> 1 | east << 31;
             if let Some(mark) = marks.get_mut(start + word) {
                 *mark = beside & split(*mark, start + word).1;
             }
