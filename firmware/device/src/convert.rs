@@ -88,12 +88,16 @@ fn laser(laser: &wire::Laser) -> config::Laser {
 /// A session's parameters off the wire.
 #[must_use]
 pub fn config(start: &wire::Start) -> Config {
+    let default = Config::pioneer_3at(start.lasers.iter().map(laser).collect());
+    let robot_radius_m = f32::from(start.robot_radius_mm) / 1000.0;
     Config {
         box_tiles: start.box_tiles,
-        robot_radius_m: f32::from(start.robot_radius_mm) / 1000.0,
+        robot_radius_m,
+        // A robot of another size is narrower by the same part.
+        tight_radius_m: robot_radius_m * (default.tight_radius_m / default.robot_radius_m),
         max_linear_mps: float(start.max_linear),
         max_angular_radps: float(start.max_angular),
-        ..Config::pioneer_3at(start.lasers.iter().map(laser).collect())
+        ..default
     }
 }
 

@@ -300,7 +300,11 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         laps.lap(Stage::Drive);
         return output;
     }
-    let disc = Disc::new(config.robot_radius_m);
+    let disc = Disc::new(if state.strategy.is_second_chance() {
+        config.tight_radius_m
+    } else {
+        config.robot_radius_m
+    });
     // A new skeleton is planned on in the step after it was finished, so that no step does both.
     let planned = state.fresh;
     if planned {
@@ -394,6 +398,7 @@ fn replan<const TILES: usize, const SLOTS: usize>(
         view: &mut workspace.view,
     };
     let robot = input.pose.point();
+    state.strategy.cut(&mut state.topology);
     let known = Known {
         topology: &state.topology,
         tiles: state.map.tiles(),

@@ -10,10 +10,11 @@ mod coarse;
 
 use self::coarse::Border;
 use crate::clearance::{Disc, Strip, for_each_strip};
-use crate::geometry::Cell;
+use crate::geometry::{CELL_M, Cell};
 use crate::grid::{Plane, PlaneMut, Shape, Site};
 use crate::map::Tiles;
 use crate::map::tiles::Extent;
+use crate::math;
 use crate::skeleton::{Progress, Thinning};
 
 /// Which cells are thinned, and what a frontier cell is.
@@ -184,6 +185,27 @@ impl<const SLOTS: usize> Topology<SLOTS> {
     #[must_use]
     pub fn skeleton(&self) -> Option<Plane<'_>> {
         Plane::new(self.frame.shape, self.skeleton.as_flattened()).ok()
+    }
+
+    /// Take the cells within `radius_m` of a map cell out of the published skeleton.
+    pub fn cut(&mut self, around: Cell, radius_m: f32) {
+        let reach = math::floor(radius_m / (2.0 * CELL_M)) + 1;
+        let frame = self.frame;
+        let Ok(mut plane) = PlaneMut::new(frame.shape, self.skeleton.as_flattened_mut()) else {
+            return;
+        };
+        for dy in -reach..=reach {
+            for dx in -reach..=reach {
+                let far2 = (dx * dx + dy * dy) as f32 * (4.0 * CELL_M * CELL_M);
+                let cell = Cell {
+                    x: around.x + 2 * dx,
+                    y: around.y + 2 * dy,
+                };
+                if let Some(site) = frame.site(cell).filter(|_| far2 <= radius_m * radius_m) {
+                    plane.clear(site);
+                }
+            }
+        }
     }
 
     /// The frontier cells of the published skeleton; `None` once the next round has begun, which needs their memory.
