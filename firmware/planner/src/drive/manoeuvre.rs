@@ -170,8 +170,19 @@ pub struct Search {
 pub struct Attempt {
     /// The clearance kept, metres.
     pub margin_m: f32,
-    /// It must lead farther along the field.
-    pub progress: bool,
+    /// Where it must lead.
+    pub leads: Leads,
+}
+
+/// Where a way out must lead. No value is zero: so an idle drive is all zeros, and takes no place in the image's flash.
+#[repr(u8)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Leads {
+    /// Elsewhere.
+    #[default]
+    Elsewhere = 1,
+    /// Farther along the field.
+    Farther = 2,
 }
 
 /// What a search runs on: what stands around, and the field's heading at a place, radians left of the robot's present one, or
@@ -211,7 +222,7 @@ impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
             error.abs() < ALIGNED_RAD
         });
         aligned
-            && (!attempt.progress || self.is_progress(place.after(length_m, 0.0)))
+            && (attempt.leads == Leads::Elsewhere || self.is_progress(place.after(length_m, 0.0)))
             && self
                 .surround
                 .is_arc_clear(place, length_m, 0.0, attempt.margin_m)
@@ -392,7 +403,7 @@ mod tests {
         let mut search = Search::start(
             Attempt {
                 margin_m: 0.02,
-                progress: true,
+                leads: Leads::Farther,
             },
             Choice::ALL,
             &mut scratch,

@@ -13,7 +13,7 @@ pub mod manoeuvre;
 mod open;
 pub mod surround;
 
-pub use manoeuvre::{Attempt, Choice, Found, Ground, Plan, Search};
+pub use manoeuvre::{Attempt, Choice, Found, Ground, Leads, Plan, Search};
 pub use surround::{Place, Surround};
 
 use crate::config::Config;
@@ -29,15 +29,15 @@ const CREEP_MARGIN_M: f32 = 0.025;
 const ATTEMPTS: [Attempt; 3] = [
     Attempt {
         margin_m: 0.03,
-        progress: true,
+        leads: Leads::Farther,
     },
     Attempt {
         margin_m: 0.012,
-        progress: true,
+        leads: Leads::Farther,
     },
     Attempt {
         margin_m: 0.012,
-        progress: false,
+        leads: Leads::Elsewhere,
     },
 ];
 /// Clearance kept while a manoeuvre is driven, metres.
