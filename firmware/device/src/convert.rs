@@ -6,6 +6,7 @@
 
 use fieldline_planner::config::{self, Config};
 use fieldline_planner::geometry::{Pose, Twist};
+use fieldline_planner::planner::Input;
 use fieldline_planner::status::{self, Frontier, Residue};
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
@@ -44,6 +45,21 @@ pub fn twist(twist: &wire::Twist) -> Twist {
     Twist {
         linear_mps: float(twist.linear),
         angular_radps: float(twist.angular),
+    }
+}
+
+/// An observation off the wire; a scan that it lacks is empty.
+#[must_use]
+pub fn input(observation: &wire::Observation) -> Input<'_> {
+    let scan = |number: usize| match observation.scans.get(number) {
+        Some(scan) => scan.ranges_mm.as_slice(),
+        None => &[],
+    };
+    Input {
+        time_ms: observation.time_ms,
+        pose: pose(&observation.pose),
+        velocity: twist(&observation.velocity),
+        scans: [scan(0), scan(1)],
     }
 }
 

@@ -177,23 +177,33 @@ impl Frontier {
         };
         for site in goals.sites() {
             let cell = known.topology.frame().cell(site);
-            let group = self
-                .dropped
-                .iter_mut()
-                .find(|left| near(left.cell, cell, GROUP_RADIUS_M));
-            match group {
-                Some(left) => left.cells = left.cells.saturating_add(1),
-                // A full list names enough of them.
-                None => {
-                    let left = Leftover {
-                        cell,
-                        cells: 1,
-                        reason: Residue::Unreachable,
-                    };
-                    let _ = self.dropped.push(left);
-                }
-            }
+            self.list(cell, Residue::Unreachable);
         }
+    }
+
+    /// List a cell beyond which the map has no room; a goal dropped beside it was dropped for that.
+    pub fn list_way_out(&mut self, cell: Cell) {
+        if let Some(left) = self.list(cell, Residue::OutOfBounds) {
+            left.reason = Residue::OutOfBounds;
+        }
+    }
+
+    /// Count a cell to the group it is near to, or begin one.
+    fn list(&mut self, cell: Cell, reason: Residue) -> Option<&mut Leftover> {
+        let group = |left: &Leftover| near(left.cell, cell, GROUP_RADIUS_M);
+        if let Some(k) = self.dropped.iter().position(group) {
+            let left = self.dropped.get_mut(k)?;
+            left.cells = left.cells.saturating_add(1);
+            return Some(left);
+        }
+        let left = Leftover {
+            cell,
+            cells: 1,
+            reason,
+        };
+        // A full list names enough of them.
+        self.dropped.push(left).ok()?;
+        self.dropped.last_mut()
     }
 
     fn find_road<const TILES: usize, const SLOTS: usize>(
@@ -327,7 +337,7 @@ fn leak<const TILES: usize, const SLOTS: usize>(
     let mut wet: Rows = [0; SIDE];
     road.cells().iter().copied().find(|&cell| {
         wet.fill(0);
-        mark(&mut wet, view, cell);
+        view.mark(&mut wet, cell);
         wet.iter()
             .zip(&reached)
             .all(|(cell, reached)| cell & reached == 0)
@@ -380,28 +390,12 @@ fn targets(space: &WaveSpace<'_>, frame: Frame, view: &View) -> Rows {
                 bits &= bits - 1;
                 let site = Site { x, y: y as u16 };
                 if space.residues.get(site).is_some() {
-                    mark(&mut targets, view, frame.cell(site));
+                    view.mark(&mut targets, frame.cell(site));
                 }
             }
         }
     }
     targets
-}
-
-/// Mark the passable window cells of a coarse cell.
-fn mark(rows: &mut Rows, view: &View, cell: Cell) {
-    for k in 0..4 {
-        let part = Cell {
-            x: cell.x + (k & 1),
-            y: cell.y + (k >> 1),
-        };
-        if let Some(place) = view
-            .place(part)
-            .filter(|&place| View::has(&view.passable, place))
-        {
-            View::put(rows, place);
-        }
-    }
 }
 
 /// A centre cell in a window cell that the wave came to.
