@@ -11,6 +11,7 @@
 use heapless::Vec;
 
 use super::Road;
+use super::nearest::Centres;
 use super::patience::{Patience, Verdict};
 use crate::bits::{Adjacency, flood};
 use crate::clearance::Disc;
@@ -21,7 +22,7 @@ use crate::map::Tiles;
 use crate::skeleton::{Residues, WaveSpace, Wavefront};
 use crate::status::{Frontier as Leftover, Residue};
 use crate::topology::{Frame, Topology};
-use crate::view::{Rows, SCALES, View};
+use crate::view::{Rows, View};
 
 /// Goals dropped at the most; the list is the report's too.
 pub const MOST_DROPPED: usize = 32;
@@ -222,7 +223,14 @@ impl Frontier {
             ring: &mut *lent.ring,
         };
         self.spread(&mut space, goals, frame);
-        let entry = entry(&space, frame, known, robot.cell(), lent.view)?;
+        let centres = Centres {
+            tiles: known.tiles,
+            disc: known.disc,
+            frame,
+            way,
+        };
+        let is_reached = |site| space.residues.get(site).is_some();
+        let entry = centres.nearest(robot.cell(), lent.view, is_reached)?;
         Some(walk_down(&space, frame, known.tiles, entry))
     }
 
@@ -351,73 +359,6 @@ fn ahead(road: &Road, robot: Point) -> Option<Cell> {
         .iter()
         .copied()
         .find(|&cell| !near(cell, robot, BAR_AHEAD_M))
-}
-
-/// The centre cell nearest to the robot, by steps through passable cells, that the wave came to.
-fn entry<const TILES: usize, const SLOTS: usize>(
-    space: &WaveSpace<'_>,
-    frame: Frame,
-    known: &Known<'_, TILES, SLOTS>,
-    robot: Cell,
-    view: &mut View,
-) -> Option<Site> {
-    SCALES.iter().find_map(|&scale| {
-        view.look_around(known.tiles, known.disc, robot, scale);
-        view.free_robot(robot);
-        let targets = targets(space, frame, view);
-        let mut seeds: Rows = [0; SIDE];
-        View::put(&mut seeds, view.place(robot)?);
-        let met = flood(&view.passable, &mut seeds, &targets, Adjacency::Four)?;
-        reached_site(
-            space,
-            frame,
-            view,
-            (usize::from(met.site.x), usize::from(met.site.y)),
-        )
-    })
-}
-
-/// The passable window cells that hold a centre cell which the wave came to.
-fn targets(space: &WaveSpace<'_>, frame: Frame, view: &View) -> Rows {
-    let mut targets: Rows = [0; SIDE];
-    let least = (view.origin.y - frame.origin.y).div_euclid(2);
-    let rows = least.max(0) as usize..(least + SIDE as i32 * view.scale / 2 + 1).max(0) as usize;
-    for y in rows.start..rows.end.min(frame.shape.rows()) {
-        for word in 0..frame.shape.words_per_row() {
-            let mut bits = space.way.word(y, word);
-            while bits != 0 {
-                let x = (word * 32) as u16 + bits.trailing_zeros() as u16;
-                bits &= bits - 1;
-                let site = Site { x, y: y as u16 };
-                if space.residues.get(site).is_some() {
-                    view.mark(&mut targets, frame.cell(site));
-                }
-            }
-        }
-    }
-    targets
-}
-
-/// A centre cell in a window cell that the wave came to.
-fn reached_site(
-    space: &WaveSpace<'_>,
-    frame: Frame,
-    view: &View,
-    (x, y): (usize, usize),
-) -> Option<Site> {
-    let least = Cell {
-        x: view.origin.x + x as i32 * view.scale,
-        y: view.origin.y + y as i32 * view.scale,
-    };
-    let coarse = (view.scale / 2).max(1);
-    (0..coarse * coarse).find_map(|k| {
-        let cell = Cell {
-            x: least.x + k % coarse * 2,
-            y: least.y + k / coarse * 2,
-        };
-        let site = frame.site(cell)?;
-        (space.way.get(site) && space.residues.get(site).is_some()).then_some(site)
-    })
 }
 
 /// The road from the entry to the frontier, and one cell into the unexplored beyond it.
