@@ -5,12 +5,14 @@
 //! fro. A goal that is reached and stays unexplored, or that comes no nearer, is dropped, with its reason; a way that cannot be
 //! driven is barred ([`Patience`]); so no run hangs on a cell that cannot be seen. When nothing else is left, everything gets a
 //! second chance, as for a robot that fits more narrowly: at 10 cm a cell, a gap that it just fits through may look closed.
+//! Then what cannot be driven to is looked at from a [`Lookout`].
 //!
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
 
 use heapless::Vec;
 
 use super::Road;
+use super::lookout::Lookout;
 use super::nearest::Centres;
 use super::patience::{Patience, Verdict};
 use crate::bits::{Adjacency, flood};
@@ -18,7 +20,8 @@ use crate::clearance::Disc;
 use crate::field::SIDE;
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::{Plane, Site};
-use crate::map::Tiles;
+use crate::map::{Class, Tiles};
+use crate::math;
 use crate::skeleton::{Residues, WaveSpace, Wavefront};
 use crate::status::{Frontier as Leftover, Residue};
 use crate::topology::{Frame, Topology};
@@ -38,6 +41,10 @@ const BAR_RADIUS_M: f32 = 0.4;
 const BAR_AHEAD_M: f32 = 0.5;
 /// Head start of the present goal, coarse steps: what turning about costs.
 const HEAD_START: u32 = 10;
+/// Lookouts of a run at the most.
+const MOST_LOOKOUTS: u8 = 100;
+/// Nearer than this to a lookout the straight way there counts, metres.
+const NEAR_LOOKOUT_M: f32 = 2.0;
 /// Rounds in a row that must find nothing before the exploration is over: noise may close a way for a moment.
 const EMPTY_ROUNDS: u8 = 5;
 
@@ -50,6 +57,9 @@ pub struct Frontier {
     patience: Patience,
     empty_rounds: u8,
     second_chance: bool,
+    /// Where the robot goes to see what it cannot drive to, and how many there were.
+    lookout: Option<Lookout>,
+    lookouts: u8,
 }
 
 /// What is known of the space, for a round of planning.
@@ -81,8 +91,10 @@ pub enum Outlook {
     Road,
     /// None was found; the next round decides.
     Unsure,
-    /// No frontier can be reached.
+    /// No frontier can be reached, and the last lookout is done with.
     Nothing,
+    /// What is left is behind gaps in which the robot cannot go on.
+    Wedged,
     /// The robot cannot move, whatever the goal.
     Stuck,
 }
@@ -103,6 +115,8 @@ impl Frontier {
             patience: Patience::new(),
             empty_rounds: 0,
             second_chance: false,
+            lookout: None,
+            lookouts: 0,
         }
     }
 
@@ -147,10 +161,15 @@ impl Frontier {
     ) -> Outlook {
         let road = self.find_road(known, robot, &mut lent);
         self.patience.note_motion(robot, time_ms);
-        let Some(road) = road else {
+        if let Some(road) = road {
+            (self.lookout, self.empty_rounds) = (None, 0);
+            self.adopt(road);
+        } else if let Some((lookout, road)) = self.road_to_lookout(known, robot, &mut lent) {
+            self.adopt(road);
+            return self.go_and_look(lookout, robot, time_ms);
+        } else {
             return self.do_without();
-        };
-        self.adopt(road);
+        }
         match self.patience.judge(self.road.steps(), time_ms) {
             Verdict::GoOn => {}
             Verdict::Drop(reason) => self.drop_goal(reason),
@@ -163,8 +182,57 @@ impl Frontier {
         ) {
             (false, _) => Outlook::Road,
             // What is left is behind gaps that turned out too narrow.
-            (true, true) => Outlook::Nothing,
+            (true, true) => Outlook::Wedged,
             (true, false) => Outlook::Stuck,
+        }
+    }
+
+    /// Whether it is worth while to search for another lookout.
+    #[must_use]
+    pub const fn may_look(&self) -> bool {
+        self.lookouts < MOST_LOOKOUTS
+    }
+
+    /// Whether a gap was looked through, or given up.
+    #[must_use]
+    pub fn is_gone(&self, gap: Cell) -> bool {
+        self.dropped
+            .iter()
+            .any(|dropped| near(dropped.cell, gap, DROP_RADIUS_M))
+    }
+
+    /// See what is behind a gap.
+    pub fn look_from(&mut self, lookout: Lookout) {
+        self.lookout = Some(lookout);
+        self.lookouts = self.lookouts.saturating_add(1);
+        self.patience.begin_anew();
+    }
+
+    /// On the way to a lookout, or at it.
+    fn go_and_look(&mut self, lookout: Lookout, robot: Point, time_ms: u32) -> Outlook {
+        let corner = lookout.stand.corner();
+        let straight = math::sqrt(
+            (corner.x_m - robot.x_m) * (corner.x_m - robot.x_m)
+                + (corner.y_m - robot.y_m) * (corner.y_m - robot.y_m),
+        );
+        let steps = if straight < NEAR_LOOKOUT_M {
+            (straight / (2.0 * CELL_M)) as u32
+        } else {
+            self.road
+                .steps()
+                .max((NEAR_LOOKOUT_M / (2.0 * CELL_M)) as u32)
+        };
+        let reason = match self.patience.judge(steps, time_ms) {
+            Verdict::GoOn => return Outlook::Road,
+            Verdict::Drop(reason) => reason,
+            Verdict::BarLeak | Verdict::BarAhead => Residue::Unreachable,
+        };
+        self.give_up(lookout.gap, reason);
+        self.lookout = None;
+        if self.patience.is_stuck() {
+            Outlook::Wedged
+        } else {
+            Outlook::Unsure
         }
     }
 
@@ -222,7 +290,9 @@ impl Frontier {
             residues,
             ring: &mut *lent.ring,
         };
-        self.spread(&mut space, goals, frame);
+        if !self.spread(&mut space, goals, frame) {
+            return None;
+        }
         let centres = Centres {
             tiles: known.tiles,
             disc: known.disc,
@@ -234,8 +304,28 @@ impl Frontier {
         Some(walk_down(&space, frame, known.tiles, entry))
     }
 
-    /// Wave from every frontier cell that was not dropped; those beside the present goal first.
-    fn spread(&self, space: &mut WaveSpace<'_>, goals: Plane<'_>, frame: Frame) {
+    /// The way to the lookout, as long as there is something to see from it.
+    fn road_to_lookout<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        known: &Known<'_, TILES, SLOTS>,
+        robot: Point,
+        lent: &mut Lent<'_>,
+    ) -> Option<(Lookout, Road)> {
+        let lookout = self.lookout.take()?;
+        if known.tiles.class(lookout.beyond) != Class::Unknown {
+            return None;
+        }
+        let road = road_to(lookout.stand, known, robot, lent);
+        if road.is_none() {
+            self.give_up(lookout.gap, Residue::Unreachable);
+        }
+        self.lookout = road.is_some().then_some(lookout);
+        Some((lookout, road?))
+    }
+
+    /// Wave from every frontier cell that was not dropped; those beside the present goal first. Whether there are any.
+    fn spread(&self, space: &mut WaveSpace<'_>, goals: Plane<'_>, frame: Frame) -> bool {
+        let mut any = false;
         let mut wave = Wavefront::new();
         wave.start(space);
         let present =
@@ -249,7 +339,7 @@ impl Frontier {
                         .any(|dropped| near(dropped.cell, cell, DROP_RADIUS_M))
                 };
                 if present(cell) == favoured && !dropped() {
-                    wave.seed(space, site);
+                    any |= wave.seed(space, site);
                 }
             }
             if favoured {
@@ -258,6 +348,7 @@ impl Frontier {
         }
         // Without a budget it always comes to its end.
         let _ = wave.advance(space, None, u32::MAX);
+        any
     }
 
     /// The window has no way from the robot to its local goal, though the skeleton, coarser, had one.
@@ -266,7 +357,6 @@ impl Frontier {
     }
 
     fn adopt(&mut self, road: Road) {
-        self.empty_rounds = 0;
         let same =
             !self.road.is_empty() && near(road.goal(), self.road.goal(), 2.0 * DROP_RADIUS_M);
         if !same {
@@ -310,12 +400,17 @@ impl Frontier {
     }
 
     fn drop_goal(&mut self, reason: Residue) {
+        self.give_up(self.road.goal(), reason);
+    }
+
+    /// Take nothing near this cell as a goal any more.
+    fn give_up(&mut self, cell: Cell, reason: Residue) {
         if self.dropped.is_full() {
             self.dropped.remove(0);
         }
         // There is room now.
         let _ = self.dropped.push(Leftover {
-            cell: self.road.goal(),
+            cell,
             cells: 1,
             reason,
         });
@@ -359,6 +454,44 @@ fn ahead(road: &Road, robot: Point) -> Option<Cell> {
         .iter()
         .copied()
         .find(|&cell| !near(cell, robot, BAR_AHEAD_M))
+}
+
+/// The road to a place that need not be a centre cell, but has one near.
+fn road_to<const TILES: usize, const SLOTS: usize>(
+    place: Cell,
+    known: &Known<'_, TILES, SLOTS>,
+    robot: Point,
+    lent: &mut Lent<'_>,
+) -> Option<Road> {
+    let frame = known.topology.frame();
+    let way = known.topology.skeleton()?;
+    let residues = Residues::new(frame.shape, &mut *lent.residues).ok()?;
+    let mut space = WaveSpace {
+        way,
+        residues,
+        ring: &mut *lent.ring,
+    };
+    let centres = Centres {
+        tiles: known.tiles,
+        disc: known.disc,
+        frame,
+        way,
+    };
+    let nearest = centres.nearest(place, lent.view, |_| true)?;
+    let mut wave = Wavefront::new();
+    wave.start(&mut space);
+    wave.seed(&mut space, nearest);
+    // Without a budget it always comes to its end.
+    let _ = wave.advance(&mut space, None, u32::MAX);
+    let is_reached = |site| space.residues.get(site).is_some();
+    let entry = centres.nearest(robot.cell(), lent.view, is_reached)?;
+    let way = core::iter::once(entry).chain(space.residues.descent(entry));
+    let mut road = Road::along(way.map(|site| frame.cell(site)));
+    road.lead_to(Cell {
+        x: place.x & !1,
+        y: place.y & !1,
+    });
+    Some(road)
 }
 
 /// The road from the entry to the frontier, and one cell into the unexplored beyond it.

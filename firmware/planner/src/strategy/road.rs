@@ -63,6 +63,22 @@ impl Road {
         road
     }
 
+    /// Lead straight on to a cell, which becomes the goal; the window finds the way round what stands between.
+    pub fn lead_to(&mut self, goal: Cell) {
+        let from = self.goal;
+        let (dx, dy) = (goal.x - from.x, goal.y - from.y);
+        let steps = dx.abs().max(dy.abs()) / 2;
+        for step in 1..=steps {
+            // What does not fit is counted only.
+            let _ = self.cells.push(Cell {
+                x: (from.x + dx * step / steps) & !1,
+                y: (from.y + dy * step / steps) & !1,
+            });
+            self.steps += 1;
+        }
+        self.goal = goal;
+    }
+
     /// Let the road end one cell farther, without changing its goal.
     pub fn extend(&mut self, cell: Option<Cell>) {
         if let Some(cell) = cell {
