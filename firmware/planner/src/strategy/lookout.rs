@@ -359,3 +359,6 @@ fn look_on<const TILES: usize, const SLOTS: usize>(
     let has_room = tiles.room(middle.x >> 5, middle.y >> 5).is_ok();
     (has_room && dark.into_iter().all(|on| is(Class::Unknown, on))).then_some(middle)
 }
+
+#[cfg(test)]
+mod tests;
