@@ -24,6 +24,7 @@ pub mod drive;
 pub mod field;
 pub mod geometry;
 pub mod grid;
+pub mod laps;
 pub mod map;
 pub mod math;
 pub mod near;
@@ -36,4 +37,5 @@ pub mod topology;
 pub mod view;
 
 pub use config::Config;
+pub use laps::{Laps, Stage};
 pub use planner::{Input, Output, State, Workspace, step};
