@@ -421,7 +421,7 @@ fn bad_worlds_are_refused_in_one_line() {
     let mut header = png::Encoder::new(&mut png, 40, 40);
     header.set_color(png::ColorType::Grayscale);
     let mut writer = header.write_header().unwrap();
-    let speckled: Vec<u8> = (0..1600_u32).map(|k| (k * k * 37 >> 3) as u8).collect();
+    let speckled: Vec<u8> = (0..1600_u32).map(|k| ((k * k * 37) >> 3) as u8).collect();
     writer.write_image_data(&speckled).unwrap();
     writer.finish().unwrap();
     for length in [8, 20, 40, png.len() / 2, png.len() - 13] {
