@@ -424,7 +424,7 @@ fn replan<const TILES: usize, const SLOTS: usize>(
             let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
             state.lookouts.begin(state.map.tiles().extent(), scratch);
         }
-        Outlook::Nothing | Outlook::Wedged => finish(state, workspace, disc, robot.cell()),
+        Outlook::Nothing => finish(state, workspace, disc, robot.cell()),
         Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
         Outlook::Road | Outlook::Unsure => {}
     }
@@ -509,6 +509,7 @@ fn conclude<const TILES: usize, const SLOTS: usize>(
     match wanting {
         Some(NoRoom::Pool) => Status::Fault(Fault::MapFull),
         Some(NoRoom::Box) => Status::Fault(Fault::OutOfBox),
+        None if state.strategy.is_stuck() => Status::Fault(Fault::Stuck),
         None if room_cells(view, robot) < BOX_CELLS => Status::Finished(Finish::BoxedIn),
         None => Status::Finished(Finish::Explored),
     }

@@ -57,6 +57,8 @@ pub struct Frontier {
     patience: Patience,
     empty_rounds: u8,
     second_chance: bool,
+    /// It got wedged at both chances, and only looks any more.
+    only_looks: bool,
     /// Where the robot goes to see what it cannot drive to, and how many there were.
     lookout: Option<Lookout>,
     lookouts: u8,
@@ -93,8 +95,6 @@ pub enum Outlook {
     Unsure,
     /// No frontier can be reached, and the last lookout is done with.
     Nothing,
-    /// What is left is behind gaps in which the robot cannot go on.
-    Wedged,
     /// The robot cannot move, whatever the goal.
     Stuck,
 }
@@ -115,6 +115,7 @@ impl Frontier {
             patience: Patience::new(),
             empty_rounds: 0,
             second_chance: false,
+            only_looks: false,
             lookout: None,
             lookouts: 0,
         }
@@ -176,15 +177,25 @@ impl Frontier {
             Verdict::BarLeak => self.bar(leak(&self.road, known, robot, lent.view)),
             Verdict::BarAhead => self.bar(ahead(&self.road, robot)),
         }
-        match (
-            self.patience.is_stuck(),
-            self.second_chance && self.patience.moved(),
-        ) {
+        match (self.patience.is_stuck(), self.second_chance) {
             (false, _) => Outlook::Road,
-            // What is left is behind gaps that turned out too narrow.
-            (true, true) => Outlook::Wedged,
-            (true, false) => Outlook::Stuck,
+            (true, false) => self.begin_second_chance(),
+            (true, true) => self.only_look(),
         }
+    }
+
+    /// What is left is behind gaps in which the robot cannot go on. Somewhere else there may be something to see.
+    fn only_look(&mut self) -> Outlook {
+        self.only_looks = true;
+        self.patience.begin_next_try();
+        self.forget_road();
+        Outlook::Nothing
+    }
+
+    /// Whether the robot could not leave the place where it got wedged.
+    #[must_use]
+    pub const fn is_stuck(&self) -> bool {
+        self.only_looks && !self.patience.moved()
     }
 
     /// Whether it is worth while to search for another lookout.
@@ -229,10 +240,10 @@ impl Frontier {
         };
         self.give_up(lookout.gap, reason);
         self.lookout = None;
-        if self.patience.is_stuck() {
-            Outlook::Wedged
-        } else {
-            Outlook::Unsure
+        match (self.patience.is_stuck(), self.is_stuck()) {
+            (true, true) => Outlook::Stuck,
+            (true, false) => self.only_look(),
+            (false, _) => Outlook::Unsure,
         }
     }
 
@@ -281,6 +292,9 @@ impl Frontier {
         robot: Point,
         lent: &mut Lent<'_>,
     ) -> Option<Road> {
+        if self.only_looks {
+            return None;
+        }
         let frame = known.topology.frame();
         let way = known.topology.skeleton()?;
         let goals = known.topology.frontier()?;
@@ -369,19 +383,24 @@ impl Frontier {
     fn do_without(&mut self) -> Outlook {
         self.forget_road();
         if !self.second_chance {
-            self.second_chance = true;
-            self.patience.begin_second_chance();
-            self.bars.clear();
-            self.dropped
-                .retain(|dropped| dropped.reason != Residue::NoProgress);
-            return Outlook::Unsure;
+            return self.begin_second_chance();
         }
         self.empty_rounds = self.empty_rounds.saturating_add(1);
-        if self.empty_rounds >= EMPTY_ROUNDS {
+        if self.only_looks || self.empty_rounds >= EMPTY_ROUNDS {
             Outlook::Nothing
         } else {
             Outlook::Unsure
         }
+    }
+
+    fn begin_second_chance(&mut self) -> Outlook {
+        self.second_chance = true;
+        self.patience.begin_next_try();
+        self.bars.clear();
+        self.dropped
+            .retain(|dropped| dropped.reason != Residue::NoProgress);
+        self.forget_road();
+        Outlook::Unsure
     }
 
     fn forget_road(&mut self) {
