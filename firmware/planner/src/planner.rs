@@ -39,8 +39,6 @@ use crate::view::{self, Rows, SCALES, View};
 pub const NO_RETURN_MM: u16 = 16_383;
 /// Range code: no information.
 pub const INVALID_MM: u16 = 0;
-/// Turn rate of a robot that looks around at its goal, radians a second.
-const LOOK_AROUND_RADPS: f32 = 0.6;
 /// A robot whose centre has less room than this, in cells, is boxed in: one square metre.
 const BOX_CELLS: u32 = 100;
 /// The robot that starts inside something sees it nearer than this everywhere, metres.
@@ -564,10 +562,7 @@ fn steer<const TILES: usize, const SLOTS: usize>(
         )
     } else if is_at_goal(window, (origin, scale), input.pose.point()) {
         // In the goal's own cell there is no slope: look around until it is explored.
-        Twist {
-            linear_mps: 0.0,
-            angular_radps: LOOK_AROUND_RADPS,
-        }
+        state.drive.look_around(config, &surround, input.velocity)
     } else {
         state.strategy.note_flat();
         Twist::default()
