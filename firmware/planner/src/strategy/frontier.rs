@@ -43,8 +43,6 @@ const BAR_AHEAD_M: f32 = 0.5;
 const HEAD_START: u32 = 10;
 /// Lookouts of a run at the most.
 const MOST_LOOKOUTS: u8 = 100;
-/// Nearer than this to a lookout the straight way there counts, metres.
-const NEAR_LOOKOUT_M: f32 = 2.0;
 /// Rounds in a row that must find nothing before the exploration is over: noise may close a way for a moment.
 const EMPTY_ROUNDS: u8 = 5;
 
@@ -59,6 +57,8 @@ pub struct Frontier {
     second_chance: bool,
     /// It got wedged at both chances, and only looks any more.
     only_looks: bool,
+    /// It had not moved before that since the second chance began.
+    immobile: bool,
     /// Where the robot goes to see what it cannot drive to, and how many there were.
     lookout: Option<Lookout>,
     lookouts: u8,
@@ -116,6 +116,7 @@ impl Frontier {
             empty_rounds: 0,
             second_chance: false,
             only_looks: false,
+            immobile: false,
             lookout: None,
             lookouts: 0,
         }
@@ -166,8 +167,9 @@ impl Frontier {
             (self.lookout, self.empty_rounds) = (None, 0);
             self.adopt(road);
         } else if let Some((lookout, road)) = self.road_to_lookout(known, robot, &mut lent) {
-            self.adopt(road);
-            return self.go_and_look(lookout, robot, time_ms);
+            let along_centre = road.steps();
+            self.adopt(road.leading_to(lookout.stand));
+            return self.go_and_look(lookout, along_centre, robot, time_ms);
         } else {
             return self.do_without();
         }
@@ -187,15 +189,16 @@ impl Frontier {
     /// What is left is behind gaps in which the robot cannot go on. Somewhere else there may be something to see.
     fn only_look(&mut self) -> Outlook {
         self.only_looks = true;
+        self.immobile = !self.patience.moved();
         self.patience.begin_next_try();
         self.forget_road();
         Outlook::Nothing
     }
 
-    /// Whether the robot could not leave the place where it got wedged.
+    /// Whether the robot could not move at any of its chances.
     #[must_use]
     pub const fn is_stuck(&self) -> bool {
-        self.only_looks && !self.patience.moved()
+        self.immobile
     }
 
     /// Whether it is worth while to search for another lookout.
@@ -219,20 +222,18 @@ impl Frontier {
         self.patience.begin_anew();
     }
 
-    /// On the way to a lookout, or at it.
-    fn go_and_look(&mut self, lookout: Lookout, robot: Point, time_ms: u32) -> Outlook {
-        let corner = lookout.stand.corner();
-        let straight = math::sqrt(
-            (corner.x_m - robot.x_m) * (corner.x_m - robot.x_m)
-                + (corner.y_m - robot.y_m) * (corner.y_m - robot.y_m),
-        );
-        let steps = if straight < NEAR_LOOKOUT_M {
-            (straight / (2.0 * CELL_M)) as u32
-        } else {
-            self.road
-                .steps()
-                .max((NEAR_LOOKOUT_M / (2.0 * CELL_M)) as u32)
-        };
+    /// On the way to a lookout, so many steps along centre cells and then straight, or at it.
+    fn go_and_look(
+        &mut self,
+        lookout: Lookout,
+        along_centre: u32,
+        robot: Point,
+        time_ms: u32,
+    ) -> Outlook {
+        let stand = lookout.stand.corner();
+        let (dx, dy) = (stand.x_m - robot.x_m, stand.y_m - robot.y_m);
+        let straight = math::sqrt(dx * dx + dy * dy) / (2.0 * CELL_M);
+        let steps = along_centre.max(straight as u32);
         let reason = match self.patience.judge(steps, time_ms) {
             Verdict::GoOn => return Outlook::Road,
             Verdict::Drop(reason) => reason,
@@ -240,10 +241,11 @@ impl Frontier {
         };
         self.give_up(lookout.gap, reason);
         self.lookout = None;
-        match (self.patience.is_stuck(), self.is_stuck()) {
-            (true, true) => Outlook::Stuck,
-            (true, false) => self.only_look(),
+        match (self.patience.is_stuck(), self.only_looks) {
             (false, _) => Outlook::Unsure,
+            (true, false) => self.only_look(),
+            (true, true) if self.patience.moved() => self.only_look(),
+            (true, true) => Outlook::Stuck,
         }
     }
 
@@ -475,7 +477,7 @@ fn ahead(road: &Road, robot: Point) -> Option<Cell> {
         .find(|&cell| !near(cell, robot, BAR_AHEAD_M))
 }
 
-/// The road to a place that need not be a centre cell, but has one near.
+/// The road to the centre cell nearest to a place.
 fn road_to<const TILES: usize, const SLOTS: usize>(
     place: Cell,
     known: &Known<'_, TILES, SLOTS>,
@@ -505,12 +507,7 @@ fn road_to<const TILES: usize, const SLOTS: usize>(
     let is_reached = |site| space.residues.get(site).is_some();
     let entry = centres.nearest(robot.cell(), lent.view, is_reached)?;
     let way = core::iter::once(entry).chain(space.residues.descent(entry));
-    let mut road = Road::along(way.map(|site| frame.cell(site)));
-    road.lead_to(Cell {
-        x: place.x & !1,
-        y: place.y & !1,
-    });
-    Some(road)
+    Some(Road::along(way.map(|site| frame.cell(site))))
 }
 
 /// The road from the entry to the frontier, and one cell into the unexplored beyond it.

@@ -7,7 +7,7 @@
 //!
 //! ```text
 //! gap      free, and unexplored at a side
-//! beyond   gap + d, gap + 2 d, … are free, and then three are unexplored     (d nearly along the edge of a shadow)
+//! beyond   gap + d, gap + 2 d, … are free, and then five are unexplored      (d nearly along the edge of a shadow)
 //! stand    the first reached cell of gap − d, gap − 2 d, …, all free
 //! cost     |robot − stand| + |stand − gap|
 //! ```
@@ -26,8 +26,8 @@ use crate::reached::Flood;
 
 /// Rays from a gap, all around.
 const RAYS: i32 = 64;
-/// Unexplored cells that a ray must find at its end: less is the noise at a wall's foot.
-const LEAST_BEYOND: i32 = 3;
+/// Unexplored cells that a ray must find at its end, half a metre: less is hardly worth the way.
+const LEAST_BEYOND: i32 = 5;
 /// Cells that a ray goes on and back at the most: a laser of 8 m sees farther, but little of what is behind.
 const MOST_ON: i32 = 30;
 const MOST_BACK: i32 = 60;

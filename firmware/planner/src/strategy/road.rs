@@ -63,9 +63,14 @@ impl Road {
         road
     }
 
-    /// Lead straight on to a cell, which becomes the goal; the window finds the way round what stands between.
-    pub fn lead_to(&mut self, goal: Cell) {
+    /// The road that leads straight on to a place, which becomes the goal; the window finds the way round what stands between.
+    #[must_use]
+    pub fn leading_to(mut self, place: Cell) -> Self {
         let from = self.goal;
+        let goal = Cell {
+            x: place.x & !1,
+            y: place.y & !1,
+        };
         let (dx, dy) = (goal.x - from.x, goal.y - from.y);
         let steps = dx.abs().max(dy.abs()) / 2;
         for step in 1..=steps {
@@ -77,6 +82,7 @@ impl Road {
             self.steps += 1;
         }
         self.goal = goal;
+        self
     }
 
     /// Let the road end one cell farther, without changing its goal.
