@@ -25,7 +25,7 @@ use crate::map::Map;
 use crate::map::integrate::is_level;
 use crate::map::tiles::NoRoom;
 use crate::math;
-use crate::near::NearField;
+use crate::near::{self, NearField};
 use crate::reached;
 use crate::remainder::no_room;
 use crate::status::{Fault, Finish, Frontier, Status};
@@ -544,6 +544,8 @@ fn steer<const TILES: usize, const SLOTS: usize>(
     let here = heading_at(Place::default());
     let mut surround = Surround::empty();
     surround.see(&input.pose, state.near.points());
+    let cells = near::obstacle_cells(state.map.tiles(), input.pose.point());
+    surround.remember(&input.pose, cells);
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
             let (x, y) = view::position((origin, scale), ahead(&input.pose, place));

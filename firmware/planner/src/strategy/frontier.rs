@@ -33,7 +33,7 @@ pub const MOST_DROPPED: usize = 32;
 const DROP_RADIUS_M: f32 = 0.5;
 /// Leftover cells this near are one group, metres.
 const GROUP_RADIUS_M: f32 = 2.0;
-/// Ways barred at the most; the oldest gives way.
+/// Ways barred at the most; what would need one more is no goal any more.
 const MOST_BARS: usize = 8;
 /// Around a bar the skeleton is cut, metres: the width of a door.
 const BAR_RADIUS_M: f32 = 0.4;
@@ -179,7 +179,8 @@ impl Frontier {
             Verdict::BarLeak => self.bar(leak(&self.road, known, robot, lent.view)),
             Verdict::BarAhead => self.bar(ahead(&self.road, robot)),
         }
-        match (self.patience.is_stuck(), self.second_chance) {
+        let enough = self.patience.is_stuck() || self.dropped.is_full();
+        match (enough, self.second_chance) {
             (false, _) => Outlook::Road,
             (true, false) => self.begin_second_chance(),
             (true, true) => self.only_look(),
@@ -203,8 +204,8 @@ impl Frontier {
 
     /// Whether it is worth while to search for another lookout.
     #[must_use]
-    pub const fn may_look(&self) -> bool {
-        self.lookouts < MOST_LOOKOUTS
+    pub fn may_look(&self) -> bool {
+        self.lookouts < MOST_LOOKOUTS && !self.dropped.is_full()
     }
 
     /// Whether a gap was looked through, or given up.
@@ -412,12 +413,10 @@ impl Frontier {
 
     fn bar(&mut self, cell: Option<Cell>) {
         let cell = cell.unwrap_or(self.road.goal());
-        if self.bars.is_full() {
-            self.bars.remove(0);
+        match self.bars.push(cell) {
+            Ok(()) => self.forget_road(),
+            Err(_) => self.drop_goal(Residue::NoProgress),
         }
-        // There is room now.
-        let _ = self.bars.push(cell);
-        self.forget_road();
     }
 
     fn drop_goal(&mut self, reason: Residue) {
