@@ -4,10 +4,12 @@ mod coverage;
 mod localization;
 mod overlap;
 mod reach;
+mod ride;
 mod safety;
 
 pub use coverage::{Coverage, DIRECTIONS, MAP_CELL_M, Truth, map_cells, truth};
 pub use localization::Localization;
 pub use overlap::{EARLIER_M, NEAR_M, Overlap};
 pub use reach::{CellSet, START_SLACK_M};
+pub use ride::Ride;
 pub use safety::Safety;

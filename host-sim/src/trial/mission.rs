@@ -204,7 +204,7 @@ impl Body for Simulator<'_> {
     }
 
     fn truth(&self) -> Stamped {
-        record::stamped(self.time_ms(), &self.pose().to_wire())
+        record::stamped(self.time_ms(), &self.above_start(self.pose()).to_wire())
     }
 }
 
