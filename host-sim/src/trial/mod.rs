@@ -20,6 +20,7 @@ use fieldline_protocol::message::{Command, Control, Observation, Start, Status, 
 
 use crate::link::{Link, LinkError};
 use crate::report::tum::Stamped;
+use crate::sim::Loss;
 use freeze::FreezeDetector;
 
 pub use ending::Ending;
@@ -39,6 +40,10 @@ pub trait Body {
     fn drive(&mut self, velocity: Option<Twist>);
     /// Where the robot truly is, in the frame of the observations' poses.
     fn truth(&self) -> Stamped;
+    /// Why the robot cannot go on any more, if so.
+    fn loss(&self) -> Option<Loss> {
+        None
+    }
 }
 
 /// Keeps account of what became known.
@@ -133,6 +138,9 @@ fn explore(setup: &Setup, cast: &mut Cast<'_>, record: &mut Record) -> Ending {
             return ending;
         }
         cast.body.drive(Some(command.velocity));
+        if let Some(loss) = cast.body.loss() {
+            return Ending::Lost(loss);
+        }
     }
 }
 

@@ -35,6 +35,8 @@ pub struct Record {
     pub coverage: f64,
     /// Metres driven, by the true pose.
     pub path_m: f64,
+    /// Sum of all changes of the true height from step to step, metres.
+    pub climb_m: f64,
     /// Of the commands so far.
     pub digest: Digest,
     /// The device's map.
@@ -60,6 +62,7 @@ impl Default for Record {
             steps: Vec::new(),
             coverage: 0.0,
             path_m: 0.0,
+            climb_m: 0.0,
             digest: Digest::default(),
             map: GridMap::default(),
             tiles: BTreeMap::new(),
@@ -108,6 +111,7 @@ impl Record {
                 step.truth.y_m - last.truth.y_m,
             );
             self.path_m += dx.hypot(dy);
+            self.climb_m += (step.truth.z_m - last.truth.z_m).abs();
         }
         self.digest.add(&step.command);
         self.coverage = coverage;

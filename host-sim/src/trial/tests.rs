@@ -9,6 +9,7 @@ use fixed::types::{I4F12, I16F16};
 use super::{Body, Cast, Ending, Flow, Progress, Record, Setup, Survey, Watch, run};
 use crate::link::{Link, LinkError, LinkStats};
 use crate::report::tum::Stamped;
+use crate::sim::Loss;
 
 /// A point that drives along x.
 #[derive(Default)]
@@ -16,6 +17,8 @@ struct Point {
     time_ms: u32,
     x_m: f64,
     driven: Vec<Option<Twist>>,
+    /// Beyond this it falls, if anywhere.
+    rim_m: Option<f64>,
 }
 
 impl Body for Point {
@@ -39,8 +42,14 @@ impl Body for Point {
         Stamped {
             time_ms: self.time_ms,
             x_m: self.x_m,
+            z_m: self.x_m * if self.x_m < 0.2 { 0.5 } else { -1.0 },
             ..Stamped::default()
         }
+    }
+    fn loss(&self) -> Option<Loss> {
+        self.rim_m
+            .filter(|rim_m| self.x_m > *rim_m)
+            .map(|_| Loss::Fell)
     }
 }
 
@@ -194,6 +203,33 @@ fn a_fault_ends_the_run() {
     let (record, ..) = ends(vec![command(Status::Fault(Fault::MapFull), 0.0)]);
     assert_eq!(record.ending, Ending::Fault(Fault::MapFull));
     assert_eq!(record.steps.len(), 1);
+}
+
+#[test]
+fn a_robot_that_fell_ends_the_run_at_once() {
+    let mut link = Script::new(vec![command(Status::Exploring, 0.5)]);
+    let mut body = Point {
+        rim_m: Some(0.22),
+        ..Point::default()
+    };
+    let record = trial(&mut link, &mut body, u32::MAX);
+    assert_eq!(record.ending, Ending::Lost(Loss::Fell));
+    // Five periods of 5 cm go beyond the rim; the fifth is the last that was commanded.
+    assert_eq!((record.steps.len(), body.driven.len()), (5, 5 + 30));
+    assert_eq!(link.controls.last(), Some(&Control::Stop));
+}
+
+#[test]
+fn climb_is_the_sum_of_all_ups_and_downs() {
+    let (record, ..) = ends(vec![
+        command(Status::Exploring, 0.5),
+        command(Status::Exploring, 0.5),
+        command(Status::Exploring, 0.5),
+        command(Status::Exploring, 0.5),
+        command(Status::Finished(Finish::Explored), 0.0),
+    ]);
+    // Heights 0, 0.025, 0.05, 0.075, −0.2.
+    assert!((record.climb_m - 0.35).abs() < 1e-3, "{}", record.climb_m);
 }
 
 #[test]
