@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
+use host_sim::robot::{Limits, LimitsError};
 
 use super::baselines;
 
@@ -33,8 +34,8 @@ pub(super) enum Command {
 
 #[derive(Debug, Args)]
 pub(super) struct ExploreArgs {
-    /// World files (YAML for ROS map servers) or names of built-in worlds
-    #[arg(value_name = "WORLD", default_values_t = [String::from("office")])]
+    /// World files (YAML for ROS map servers) or names of built-in worlds; WORLD@N starts at its start N
+    #[arg(value_name = "WORLD[@N]", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
     /// What plans: frontier on the device, or a baseline on the host
     #[arg(long, default_value = baselines::FRONTIER, value_parser = baselines::parse)]
@@ -45,12 +46,24 @@ pub(super) struct ExploreArgs {
     /// Decides every random number of the run
     #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<u64>)]
     pub(super) seed: u64,
-    /// Which of the world's start poses, from 0
+    /// Which of the world's start poses, from 0, where WORLD@N does not say it
     #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<usize>)]
     pub(super) start: usize,
     /// What the robot believes of its motion
     #[arg(long, value_enum, default_value_t = OdometryArg::Truth)]
     pub(super) odometry: OdometryArg,
+    /// Standard deviation of roll and pitch, degrees [default: 0 with truth, 0.5 with noisy]
+    #[arg(long, value_name = "DEG", value_parser = imu_noise)]
+    pub(super) imu_noise: Option<f64>,
+    /// Standard deviation of the lasers' ranges, metres [default: 0.01]
+    #[arg(long, value_name = "M", value_parser = laser_noise)]
+    pub(super) laser_noise: Option<f64>,
+    /// Ground that counts as reachable, degrees and metres, any of [default: climb=20,side=15,step=0.07,drop=0.07]
+    #[arg(long, value_name = "LIMITS", value_parser = working)]
+    pub(super) limits: Option<Limits>,
+    /// Ground that the robot does not survive, any of [default: climb=30,side=25,step=0.1,drop=0.15]
+    #[arg(long, value_name = "LIMITS", value_parser = failing)]
+    pub(super) failing: Option<Limits>,
     /// Simulated seconds after which a run ends
     #[arg(long, value_name = "S", default_value = "3600", value_parser = time_limit)]
     pub(super) time_limit: u32,
@@ -83,6 +96,10 @@ impl Default for ExploreArgs {
             seed: 0,
             start: 0,
             odometry: OdometryArg::Truth,
+            imu_noise: None,
+            laser_noise: None,
+            limits: None,
+            failing: None,
             time_limit: 3_600_000,
             out: None,
             realtime: false,
@@ -160,6 +177,33 @@ fn time_limit(text: &str) -> Result<u32, String> {
     }
 }
 
+/// The usual working limits, changed.
+fn working(text: &str) -> Result<Limits, LimitsError> {
+    Limits::WORKING.changed(text)
+}
+
+/// The usual failing limits, changed.
+fn failing(text: &str) -> Result<Limits, LimitsError> {
+    Limits::FAILING.changed(text)
+}
+
+/// Degrees.
+fn imu_noise(text: &str) -> Result<f64, String> {
+    deviation(text, 20.0, "degrees")
+}
+
+/// Metres.
+fn laser_noise(text: &str) -> Result<f64, String> {
+    deviation(text, 1.0, "metres")
+}
+
+fn deviation(text: &str, most: f64, unit: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (0.0..=most).contains(&number) => Ok(number),
+        _ => Err(format!("give {unit} from 0 to {most}")),
+    }
+}
+
 /// `AxB` metres to tiles.
 fn map_shape(text: &str) -> Result<(u8, u8), String> {
     let side = |text: &str| text.trim().parse::<f64>().ok().filter(|m| *m > 0.0);
@@ -172,7 +216,7 @@ fn map_shape(text: &str) -> Result<(u8, u8), String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Cli, ExploreArgs, map_shape, time_limit};
+    use super::{Cli, ExploreArgs, imu_noise, laser_noise, map_shape, time_limit};
     use clap::{CommandFactory as _, Parser as _};
 
     #[test]
@@ -195,6 +239,9 @@ mod tests {
         for bad in ["0", "-3", "nan", "inf", "soon", "1e9"] {
             assert!(time_limit(bad).is_err(), "{bad}");
         }
+        assert_eq!(imu_noise("1.5"), Ok(1.5));
+        assert!(imu_noise("21").is_err() && laser_noise("-0.1").is_err());
+        assert!(laser_noise("nan").is_err() && laser_noise("x").is_err());
         assert_eq!(map_shape("128x32"), Ok((40, 10)));
         for bad in ["128", "x", "-1x5", "0x5", "axb", "nanx3"] {
             assert!(map_shape(bad).is_err(), "{bad}");
