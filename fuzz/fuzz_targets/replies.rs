@@ -21,6 +21,9 @@ fuzz_target!(|data: &[u8]| {
     }
     receiver.push(0);
     let length = encode_reply(77, &Reply::Tile(None), &mut out).unwrap();
-    let heard = out[..length].iter().filter(|byte| receiver.push(**byte).is_some()).count();
+    let heard = out[..length]
+        .iter()
+        .filter(|byte| receiver.push(**byte).is_some())
+        .count();
     assert_eq!(heard, 1, "wedged");
 });

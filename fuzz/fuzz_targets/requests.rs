@@ -21,6 +21,9 @@ fuzz_target!(|data: &[u8]| {
     }
     receiver.push(0);
     let length = encode_request(77, &Request::Frontiers, &mut out).unwrap();
-    let heard = out[..length].iter().filter(|byte| receiver.push(**byte).is_some()).count();
+    let heard = out[..length]
+        .iter()
+        .filter(|byte| receiver.push(**byte).is_some())
+        .count();
     assert_eq!(heard, 1, "wedged");
 });

@@ -54,7 +54,10 @@ fuzz_target!(|data: &[u8]| {
         feed(&mut session, &request(0, &hello));
         // Bodies separated by a byte that is rare in varints, each sealed, with a number of its own.
         for (step, body) in data.split(|byte| *byte == 0xfe).enumerate() {
-            feed(&mut session, &sealed::frame(Kind::Request, step as u16 + 1, body));
+            feed(
+                &mut session,
+                &sealed::frame(Kind::Request, step as u16 + 1, body),
+            );
             session.tick(step as u32 * 100);
         }
         feed(&mut session, data);

@@ -81,6 +81,7 @@ fn byte_faults_to_the_emulated_chip_change_no_command() {
     let patience = Patience {
         attempt: Duration::from_millis(400),
         attempts: 40,
+        ..Patience::LOCKSTEP
     };
     let mut link = Endpoint::new(line, patience, 1);
     assert_eq!(

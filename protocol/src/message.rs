@@ -226,9 +226,9 @@ pub enum Finish {
 pub enum Fault {
     /// The start pose lies in an obstacle.
     StartBlocked,
-    /// Every tile of the map's pool is in use.
+    /// A way leads on, and every tile of the map's pool is in use.
     MapFull,
-    /// The known extent would not fit the map's box.
+    /// A way leads out of the map's box.
     OutOfBox,
     /// An observation did not match the session's lasers.
     BadObservation,
@@ -251,11 +251,32 @@ pub struct Counters {
     pub stale_stops: u32,
 }
 
+/// Instructions of a step's stages; their sum is [`Cost::instructions`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Stages {
+    /// Taking this request apart, and putting the reply before it together.
+    pub session: u32,
+    /// Scans and odometry into the map.
+    pub sense: u32,
+    /// An instalment of the skeleton.
+    pub topology: u32,
+    /// The wave over a new skeleton, and the road.
+    pub plan: u32,
+    /// The window's cells and boundary.
+    pub window: u32,
+    /// The window's field.
+    pub solve: u32,
+    /// Descent, drive, and the search for a manoeuvre.
+    pub drive: u32,
+}
+
 /// What one step cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Cost {
     /// Instructions of the whole step (exact in the emulator, timer ticks on silicon, 0 on a host).
     pub instructions: u32,
+    /// The same by stages.
+    pub stages: Stages,
     /// Deepest stack so far, bytes; 0 where not measured.
     pub stack_bytes: u32,
     /// Multigrid cycles or sweeps spent on the window.

@@ -12,7 +12,7 @@ use fieldline_protocol::frame::encode_log;
 use fieldline_protocol::message::{
     Cause, Command, Control, Cost, Counters, Crash, Fault, FieldRow, Finish, Frontier, INVALID_MM,
     Identity, Laser, NO_RETURN_MM, Observation, Parameter, Pose, Refusal, Reply, Request, Residue,
-    Scan, Start, Status, Strategy, TILE_BYTES, TILE_SKELETON_BYTES, Tile, Twist,
+    Scan, Stages, Start, Status, Strategy, TILE_BYTES, TILE_SKELETON_BYTES, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -272,6 +272,15 @@ fn reply_command() {
             },
             cost: Cost {
                 instructions: 1_000_000,
+                stages: Stages {
+                    session: 1,
+                    sense: 2,
+                    topology: 3,
+                    plan: 4,
+                    window: 5,
+                    solve: 128,
+                    drive: 7,
+                },
                 stack_bytes: 4096,
                 cycles: 3,
                 budget_exhausted: true,
@@ -283,7 +292,8 @@ fn reply_command() {
             1,    // exploring
             0xff, 0xff, 0x03, // heading −0.5 rad = −32768/65536
             0xc8, 0x01, 1, 2, 3, 4, // counters
-            0xc0, 0x84, 0x3d, 0x80, 0x20, 3, 1, // cost
+            0xc0, 0x84, 0x3d, 1, 2, 3, 4, 5, 0x80, 0x01, 7, // instructions, by stages
+            0x80, 0x20, 3, 1, // the rest of the cost
         ],
     );
 }

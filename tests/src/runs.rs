@@ -3,6 +3,7 @@
 //! A run is lockstep and seeded, so its report does not depend on the machine, nor on what else runs; only the number of
 //! runs at a time does. Units in tables: seconds of simulated time, metres, per cent of what can be seen.
 
+use core::ops::Range;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
 
@@ -83,17 +84,17 @@ fn planner(strategy: &str) -> Box<dyn Link> {
     }
 }
 
-/// Every world with the device's strategy and `seeds` seeds, and with the baselines and `baseline_seeds` seeds.
+/// Every world with the device's strategy and these seeds, and with each baseline and its seeds.
 #[must_use]
-pub fn each(worlds: &[World], seeds: u64, baseline_seeds: u64) -> Vec<Run<'_>> {
+pub fn each(worlds: &[World], seeds: Range<u64>, baseline_seeds: Range<u64>) -> Vec<Run<'_>> {
     let strategies = || {
-        let baselines = BASELINES.iter().map(move |name| (*name, baseline_seeds));
-        core::iter::once((FRONTIER, seeds)).chain(baselines)
+        let baselines = BASELINES.map(|name| (name, baseline_seeds.clone()));
+        core::iter::once((FRONTIER, seeds.clone())).chain(baselines)
     };
     let mut runs = Vec::new();
     for world in worlds {
         for (strategy, seeds) in strategies() {
-            runs.extend((0..seeds).map(|seed| Run {
+            runs.extend(seeds.map(|seed| Run {
                 world,
                 strategy,
                 seed,
@@ -167,6 +168,43 @@ pub fn table(reports: &[Report]) -> Table {
     table
 }
 
+/// The mean of a quantity that every run has.
+fn mean(reports: &[&Report], of: impl Fn(&Report) -> Option<f64>) -> Option<f64> {
+    let values: Option<Vec<f64>> = reports.iter().map(|report| of(report)).collect();
+    let values = values.filter(|values| !values.is_empty())?;
+    Some(values.iter().sum::<f64>() / values.len() as f64)
+}
+
+/// One line for each world: the mean T99 of the device's strategy beside the better baseline's.
+///
+/// A baseline of which a run did not come so far is not the better one; the ratio is above 1 where the device is slower.
+#[must_use]
+pub fn beside(reports: &[Report]) -> Table {
+    let mut table = Table::new(
+        2,
+        &["world", "better baseline", "its T99 s", "T99 s", "ratio"],
+    );
+    for group in reports.chunk_by(|a, b| a.world == b.world) {
+        let t99_s = |strategy: &str| {
+            let runs: Vec<&Report> = group.iter().filter(|r| r.strategy == strategy).collect();
+            mean(&runs, |report| report.coverage.t99_s)
+        };
+        let better = BASELINES
+            .iter()
+            .filter_map(|name| Some((*name, t99_s(name)?)))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let (own_s, its_s) = (t99_s(FRONTIER), better.map(|(_, t99_s)| t99_s));
+        table.row(vec![
+            group[0].world.clone(),
+            better.map_or("-", |(name, _)| name).into(),
+            number(its_s, 1),
+            number(own_s, 1),
+            number(own_s.zip(its_s).map(|(own, its)| own / its), 2),
+        ]);
+    }
+    table
+}
+
 /// One line for each world and strategy, of its runs over the seeds.
 ///
 /// T99 is a mean only where every run came so far; `hits` and `unfinished` are sums.
@@ -187,10 +225,8 @@ pub fn means(reports: &[Report]) -> Table {
         ],
     );
     for group in reports.chunk_by(|a, b| (&a.world, &a.strategy) == (&b.world, &b.strategy)) {
-        let mean = |of: &dyn Fn(&Report) -> Option<f64>| {
-            let values: Option<Vec<f64>> = group.iter().map(of).collect();
-            values.map(|values| values.iter().sum::<f64>() / values.len() as f64)
-        };
+        let runs: Vec<&Report> = group.iter().collect();
+        let mean = |of: &dyn Fn(&Report) -> Option<f64>| mean(&runs, of);
         let hits = |r: &Report| r.safety.collisions + r.safety.falls + r.safety.tips;
         table.row(vec![
             group[0].world.clone(),
@@ -205,4 +241,74 @@ pub fn means(reports: &[Report]) -> Table {
         ]);
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Run, beside, each, means};
+    use crate::worlds::builtin;
+    use host_sim::report::Report;
+
+    /// Reports of one world that say what they are given.
+    fn told(rows: &[(&str, Option<f64>)]) -> Vec<Report> {
+        let world = builtin("boxed-in");
+        let run = Run {
+            world: &world,
+            strategy: "frontier",
+            seed: 0,
+        };
+        let blank = run.go();
+        let report = |&(strategy, t99_s): &(&str, Option<f64>)| {
+            let mut report = blank.clone();
+            report.strategy = strategy.into();
+            report.coverage.t99_s = t99_s;
+            report
+        };
+        rows.iter().map(report).collect()
+    }
+
+    #[test]
+    fn the_baselines_have_their_own_seeds() {
+        let worlds = [builtin("loop"), builtin("hall")];
+        let runs = each(&worlds, 3..5, 7..8);
+        let told: Vec<_> = runs.iter().map(|run| (run.strategy, run.seed)).collect();
+        let one = [
+            ("frontier", 3),
+            ("frontier", 4),
+            ("bvp", 7),
+            ("greedy-frontier", 7),
+        ];
+        assert_eq!(told, [one, one].concat());
+    }
+
+    #[test]
+    fn a_baseline_that_did_not_come_so_far_is_not_the_better_one() {
+        let reports = told(&[
+            ("frontier", Some(100.0)),
+            ("frontier", Some(110.0)),
+            ("bvp", Some(60.0)),
+            ("bvp", None),
+            ("greedy-frontier", Some(80.0)),
+            ("greedy-frontier", Some(88.0)),
+        ]);
+        let text = beside(&reports).to_string();
+        let row: Vec<&str> = text.lines().nth(1).unwrap().split_whitespace().collect();
+        assert_eq!(
+            row,
+            ["boxed-in", "greedy-frontier", "84.0", "105.0", "1.25"]
+        );
+        let text = beside(&told(&[("frontier", None), ("bvp", Some(1.0))])).to_string();
+        assert!(
+            text.ends_with("bvp                    1.0      -      -\n"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_mean_is_of_what_every_run_has() {
+        let reports = told(&[("bvp", Some(60.0)), ("bvp", None), ("frontier", Some(5.0))]);
+        let text = means(&reports).to_string();
+        let t99 = |line: usize| text.lines().nth(line).unwrap().split_whitespace().nth(4);
+        assert_eq!((t99(1), t99(2)), (Some("-"), Some("5.0")), "{text}");
+    }
 }

@@ -4,17 +4,22 @@ mod skeleton_common;
 
 use fieldline_planner::grid::{PlaneMut, Region, ShapeError};
 use fieldline_planner::skeleton::{Progress, Thinning, marks_for};
-use skeleton_common::{Map, Rng, any_map, discs, noise, rooms};
+use skeleton_common::{Map, Rng, any_anchors, any_map, discs, noise, rooms};
 
 type AnyThinning = Thinning<16>;
 
 /// Thin in one go; the skeleton and the work it took.
 fn thin(map: &Map) -> (Map, u32) {
+    thin_around(map, &[])
+}
+
+/// The same, with anchors.
+fn thin_around(map: &Map, anchors: &[u32]) -> (Map, u32) {
     let mut words = map.words();
     let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
     let mut thinning = AnyThinning::new();
     thinning.start(map.shape(), map.shape().whole()).unwrap();
-    let Progress::Done { left } = thinning.advance(&mut plane, &[], u32::MAX) else {
+    let Progress::Done { left } = thinning.advance(&mut plane, anchors, u32::MAX) else {
         panic!("an endless budget was spent");
     };
     (map.with_words(&words), u32::MAX - left)
@@ -57,11 +62,57 @@ fn keeps_every_piece_and_every_hole() {
 }
 
 #[test]
+fn anchors_are_kept_and_all_else_is_the_naive_thinning_around_them() {
+    let mut rng = Rng::new(8);
+    let mut held = 0;
+    for round in 0..1000 {
+        let map = any_map(&mut rng);
+        let anchors = any_anchors(&mut rng, &map);
+        let (skeleton, _) = thin_around(&map, &anchors.words());
+        let expected = map.thinned_around(&anchors);
+        assert!(
+            skeleton == expected,
+            "map {round}\n{}\nanchors\n{}\nours\n{}\nexpected\n{}",
+            map.print(),
+            anchors.print(),
+            skeleton.print(),
+            expected.print()
+        );
+        let bare = map.thinned();
+        for (i, cell) in map.cells.iter().enumerate() {
+            let anchor = *cell && anchors.cells[i];
+            assert!(!anchor || skeleton.cells[i], "map {round}, cell {i}");
+            held += usize::from(anchor && !bare.cells[i]);
+        }
+    }
+    assert!(held > 100_000, "the anchors held too little: {held}");
+}
+
+#[test]
+fn anchors_keep_every_piece_and_every_hole_and_make_none() {
+    let mut rng = Rng::new(9);
+    for _ in 0..300 {
+        let map = any_map(&mut rng);
+        let anchors = any_anchors(&mut rng, &map);
+        let (skeleton, _) = thin_around(&map, &anchors.words());
+        let count = |map: &Map| (map.pieces(true, true), map.pieces(false, false));
+        assert_eq!(
+            count(&skeleton),
+            count(&map),
+            "{}\nanchors\n{}",
+            map.print(),
+            anchors.print()
+        );
+    }
+}
+
+#[test]
 fn instalments_change_nothing() {
     let mut rng = Rng::new(3);
     for _ in 0..300 {
         let map = any_map(&mut rng);
-        let (expected, work) = thin(&map);
+        let anchors = any_anchors(&mut rng, &map).words();
+        let (expected, work) = thin_around(&map, &anchors);
         let mut words = map.words();
         let mut thinning = AnyThinning::new();
         thinning.start(map.shape(), map.shape().whole()).unwrap();
@@ -70,7 +121,7 @@ fn instalments_change_nothing() {
         loop {
             let budget = rng.below(largest + 1) as u32;
             let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
-            match thinning.advance(&mut plane, &[], budget) {
+            match thinning.advance(&mut plane, &anchors, budget) {
                 Progress::Pending => spent += budget,
                 Progress::Done { left } => {
                     spent += budget - left;

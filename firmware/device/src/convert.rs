@@ -6,6 +6,7 @@
 
 use fieldline_planner::config::{self, Config};
 use fieldline_planner::geometry::{Pose, Twist};
+use fieldline_planner::planner::Input;
 use fieldline_planner::status::{self, Frontier, Residue};
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
@@ -47,6 +48,21 @@ pub fn twist(twist: &wire::Twist) -> Twist {
     }
 }
 
+/// An observation off the wire; a scan that it lacks is empty.
+#[must_use]
+pub fn input(observation: &wire::Observation) -> Input<'_> {
+    let scan = |number: usize| match observation.scans.get(number) {
+        Some(scan) => scan.ranges_mm.as_slice(),
+        None => &[],
+    };
+    Input {
+        time_ms: observation.time_ms,
+        pose: pose(&observation.pose),
+        velocity: twist(&observation.velocity),
+        scans: [scan(0), scan(1)],
+    }
+}
+
 /// A velocity onto the wire.
 #[must_use]
 pub fn wire_twist(twist: &Twist) -> wire::Twist {
@@ -72,12 +88,16 @@ fn laser(laser: &wire::Laser) -> config::Laser {
 /// A session's parameters off the wire.
 #[must_use]
 pub fn config(start: &wire::Start) -> Config {
+    let default = Config::pioneer_3at(start.lasers.iter().map(laser).collect());
+    let robot_radius_m = f32::from(start.robot_radius_mm) / 1000.0;
     Config {
         box_tiles: start.box_tiles,
-        robot_radius_m: f32::from(start.robot_radius_mm) / 1000.0,
+        robot_radius_m,
+        // A robot of another size is narrower by the same part.
+        tight_radius_m: robot_radius_m * (default.tight_radius_m / default.robot_radius_m),
         max_linear_mps: float(start.max_linear),
         max_angular_radps: float(start.max_angular),
-        ..Config::pioneer_3at(start.lasers.iter().map(laser).collect())
+        ..default
     }
 }
 

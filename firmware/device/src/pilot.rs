@@ -12,8 +12,8 @@
 //! pilot is the link without bytes: the session calls the same functions, so the stream of commands is the same.
 
 use fieldline_planner::field::SIDE;
-use fieldline_planner::planner::{self, CellKind, Input, Output};
-use fieldline_planner::{Config, State, Workspace, step};
+use fieldline_planner::planner::{self, CellKind, Output};
+use fieldline_planner::{Config, Laps, State, Workspace, step};
 use fieldline_protocol::message::{
     Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, Frontier, MAX_FRONTIERS,
     MAX_SCANS, Observation, Refusal, Start, Status, Tile, Twist,
@@ -142,7 +142,7 @@ impl Pilot {
     }
 
     /// One step. An observation that does not match the session's lasers steps nothing and is answered with zero
-    /// velocity and [`Fault::BadObservation`]; the next good one goes on.
+    /// velocity and [`Fault::BadObservation`]; the next good one goes on. `laps` hears of the step's stages.
     ///
     /// # Errors
     /// [`Refusal::NotStarted`] without a session.
@@ -150,6 +150,7 @@ impl Pilot {
         &mut self,
         memory: &mut Memory<'_, TILES, SLOTS>,
         observation: &Observation,
+        laps: &mut impl Laps,
     ) -> Result<Command, Refusal> {
         let config = self.config.as_ref().ok_or(Refusal::NotStarted)?;
         if !limits::matches(observation, config.lasers.iter().map(|laser| laser.beams)) {
@@ -159,7 +160,8 @@ impl Pilot {
         if self.status() != Status::Exploring {
             return Ok(standing(self.status()));
         }
-        let output = step(config, memory.state, memory.workspace, input(observation));
+        let (state, workspace) = (&mut *memory.state, &mut *memory.workspace);
+        let output = step(config, state, workspace, convert::input(observation), laps);
         self.planned = convert::wire_status(output.status);
         if self.planned != Status::Exploring {
             info!("exploration ended");
@@ -229,19 +231,6 @@ fn field_row(row: u8, found: &planner::FieldRow) -> FieldRow {
         scale: found.scale,
         q: found.q.into_iter().collect(),
         cells: found.kinds.chunks(4).map(pack).collect(),
-    }
-}
-
-fn input(observation: &Observation) -> Input<'_> {
-    let scan = |number: usize| match observation.scans.get(number) {
-        Some(scan) => scan.ranges_mm.as_slice(),
-        None => &[],
-    };
-    Input {
-        time_ms: observation.time_ms,
-        pose: convert::pose(&observation.pose),
-        velocity: convert::twist(&observation.velocity),
-        scans: [scan(0), scan(1)],
     }
 }
 

@@ -19,7 +19,7 @@ use heapless::Deque;
 
 use crate::STALE_MS;
 use crate::log::{info, warning};
-use crate::meter::Meter;
+use crate::meter::{self, Meter, Stopwatch};
 use crate::pilot::{Memory, Pilot};
 use crate::signal::Signal;
 
@@ -61,6 +61,10 @@ pub struct Session {
     heard_ms: u32,
     stale: bool,
     reset: bool,
+    /// The meter's count when the present request was complete.
+    began: u32,
+    /// What the last command's reply cost.
+    reply_cost: u32,
 }
 
 impl Default for Session {
@@ -87,6 +91,8 @@ impl Session {
             heard_ms: 0,
             stale: false,
             reset: false,
+            began: 0,
+            reply_cost: 0,
         }
     }
 
@@ -109,6 +115,7 @@ impl Session {
         let Some(frame) = self.receiver.push(byte) else {
             return;
         };
+        self.began = meter.count();
         let (sequence, greets) = (frame.sequence, frame.kind == Kind::Greeting);
         match frame.request() {
             Ok(request) => self.take(sequence, &request, memory, meter),
@@ -258,8 +265,12 @@ impl Session {
             }
             _ => {
                 if let Request::Observation(observation) = request {
+                    meter.start();
                     let command = self.observe(observation, memory, meter);
+                    let done = meter.count();
                     self.keep_command(sequence, command);
+                    self.reply_cost = meter.count().wrapping_sub(done);
+                    meter.stop();
                 } else {
                     self.attend(sequence, request, memory);
                 }
@@ -298,12 +309,15 @@ impl Session {
         meter: &mut M,
     ) -> Result<Command, Refusal> {
         self.stale = false;
-        meter.start();
-        let command = self.pilot.observe(memory, observation);
-        let instructions = meter.stop();
+        let mut watch = Stopwatch::new(meter, self.began, self.reply_cost);
+        watch.lap_of_session();
+        let command = self.pilot.observe(memory, observation, &mut watch);
+        watch.lap_of_session();
+        let stages = watch.stages();
         command.map(|mut command| {
             command.counters = self.counters();
-            command.cost.instructions = instructions;
+            command.cost.instructions = meter::sum(&stages);
+            command.cost.stages = stages;
             command.cost.stack_bytes = meter.stack_bytes();
             command
         })

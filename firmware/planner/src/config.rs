@@ -34,6 +34,8 @@ pub struct Config {
     pub box_tiles: (u8, u8),
     /// Radius that the robot needs, metres. Default: 0.30.
     pub robot_radius_m: f32,
+    /// Radius in the second chance, metres: half the robot's width less what a cell may be in error. Default: 0.22.
+    pub tight_radius_m: f32,
     /// Greatest speed, metres a second. Default: 0.7 (Pioneer 3-AT).
     pub max_linear_mps: f32,
     /// Greatest turn rate, radians a second. Default: 2.44 (140°/s).
@@ -58,6 +60,7 @@ impl Config {
             lasers,
             box_tiles: (20, 20),
             robot_radius_m: 0.30,
+            tight_radius_m: 0.22,
             max_linear_mps: 0.7,
             max_angular_radps: 2.44,
             linear_accel_mps2: 0.3,

@@ -1,6 +1,18 @@
 //! Exploration by harmonic potential in a skeleton-charged window: a pure planner without heap, clock, I/O or log.
+//!
+//! What a session or an observation says cannot make it panic: indices that depend on it go through `get`, in every room but the
+//! solver's own loops (`field`), whose bounds are the window's constant shape; each of those says so where it is declared.
 #![no_std]
 #![forbid(unsafe_code)]
+#![cfg_attr(
+    not(test),
+    deny(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::indexing_slicing
+    )
+)]
 
 #[cfg(test)]
 extern crate std;
@@ -12,10 +24,12 @@ pub mod drive;
 pub mod field;
 pub mod geometry;
 pub mod grid;
+pub mod laps;
 pub mod map;
 pub mod math;
 pub mod near;
 pub mod planner;
+pub mod remainder;
 pub mod skeleton;
 pub mod status;
 pub mod strategy;
@@ -23,4 +37,5 @@ pub mod topology;
 pub mod view;
 
 pub use config::Config;
+pub use laps::{Laps, Stage};
 pub use planner::{Input, Output, State, Workspace, step};

@@ -1,15 +1,23 @@
-//! The near field: the laser's own points around the robot, exact where the map's cells are coarse.
+//! The near field: what the level laser met around the robot, exact where the map's cells are coarse.
 //!
-//! A door of 0.65 m leaves 8 cm beside a 3-AT, less than a map cell. So the points within `REACH_M` are kept as measured, also
-//! those that have left the field of view: a point is dropped when the scan that replaces it looks at or beyond its place,
-//! and kept while it is out of view or hidden. Behind the robot, where it only turns and backs out, less is kept.
+//! A door of 0.65 m leaves 8 cm beside a 3-AT, less than a map cell. So the points within `REACH_M` are kept, also those that
+//! have left the field of view. A point is the mean of the returns that fell on it,
 //!
-//! Invariant: at most [`MOST_POINTS`] points, the farthest give way.
+//! ```text
+//! p ← p + (r − p) / n,    n = min(returns so far, MOST_RETURNS)
+//! ```
+//!
+//! because of many single returns of a wall the nearest, which is the one that would count, is two or three sigma too near. It
+//! goes when a beam passes through its place, when the robot stands on it, and when it leaves the view with one return only:
+//! a false one, which nothing could disprove any more. Behind the robot, where it only turns and backs out, less is kept.
+//!
+//! Invariant: at most [`MOST_POINTS`] points, the farthest give way; as many counts as points.
 //! Units: metres, odometry frame.
 
 use heapless::Vec;
 
 use crate::config::Laser;
+use crate::drive::surround::{HALF_LENGTH_M, HALF_WIDTH_M};
 use crate::geometry::{Point, Pose};
 use crate::map::integrate::{informative_range_mm, level_beams, sensor_point};
 use crate::math;
@@ -20,17 +28,24 @@ pub const MOST_POINTS: usize = 256;
 pub const REACH_M: f32 = 1.2;
 /// The same to the sides and behind, metres: half its diagonal and the longest leg backwards.
 const REACH_BEHIND_M: f32 = 0.8;
-/// Least distance between neighbours of one scan, metres.
-const SPACING_M: f32 = 0.03;
+/// Returns this near to a point are returns of it, metres: two sigma of a range and some. What is rounded off a sharp corner is
+/// a third of it.
+const SAME_M: f32 = 0.025;
+/// Returns in a mean at the most; later ones count as much as the last of these.
+const MOST_RETURNS: u8 = 8;
 /// Difference of range within which two adjacent beams hit the same thing, millimetres.
 const COMPANY_MM: u16 = 250;
-/// A beam that ends this little short of a point still looked at it, metres: five sigma of a range.
-const LOOKED_AT_M: f32 = 0.05;
+/// A beam that ends this far behind a point went through its place, metres: five sigma of a range.
+const THROUGH_M: f32 = 0.05;
+/// A point this far inside the robot's rectangle is none, metres: the robot stands there.
+const INSIDE_M: f32 = 0.01;
 
 /// What stands around the robot.
 #[derive(Debug, Default)]
 pub struct NearField {
     points: Vec<Point, MOST_POINTS>,
+    /// Returns of each point.
+    returns: Vec<u8, MOST_POINTS>,
 }
 
 fn distance2(a: Point, b: Point) -> f32 {
@@ -42,12 +57,16 @@ impl NearField {
     /// Nothing around.
     #[must_use]
     pub const fn new() -> Self {
-        Self { points: Vec::new() }
+        Self {
+            points: Vec::new(),
+            returns: Vec::new(),
+        }
     }
 
     /// Forget everything.
     pub fn clear(&mut self) {
         self.points.clear();
+        self.returns.clear();
     }
 
     /// The points.
@@ -58,21 +77,50 @@ impl NearField {
 
     /// Enter the level laser's scan, taken at `pose`.
     pub fn update(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
-        let from = sensor_point(pose, laser);
-        self.points.retain(|&point| {
-            within_reach(pose, point) && !looked_at(pose, laser, ranges_mm, from, point)
-        });
-        let mut last: Option<Point> = None;
+        self.forget(pose, laser, ranges_mm);
         for beam in level_beams(pose, laser, ranges_mm).filter(|beam| beam.hit) {
-            if !has_company(ranges_mm, beam.number) {
-                continue;
-            }
             let end = beam.end();
-            let crowded = last.is_some_and(|last| distance2(last, end) < SPACING_M * SPACING_M);
-            if !crowded && within_reach(pose, end) {
-                self.insert(pose.point(), end);
-                last = Some(end);
+            if within_reach(pose, end) && has_company(ranges_mm, beam.number) {
+                self.enter(pose.point(), end);
             }
+        }
+    }
+
+    fn forget(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
+        let from = sensor_point(pose, laser);
+        let mut index = 0;
+        while let (Some(&point), Some(&returns)) = (self.points.get(index), self.returns.get(index))
+        {
+            let stays = within_reach(pose, point)
+                && !is_inside(pose, point)
+                && match sight(pose, laser, ranges_mm, from, point) {
+                    Sight::At => true,
+                    Sight::Through => false,
+                    Sight::None => returns > 1,
+                };
+            if stays {
+                index += 1;
+            } else {
+                self.points.swap_remove(index);
+                self.returns.swap_remove(index);
+            }
+        }
+    }
+
+    /// A return: of a point that is there, or a new point.
+    fn enter(&mut self, centre: Point, end: Point) {
+        let near = |&&mut point: &&mut Point| {
+            (point.x_m - end.x_m).abs() < SAME_M && distance2(point, end) < SAME_M * SAME_M
+        };
+        let known = self.points.iter_mut().zip(&mut self.returns);
+        let mut known = known.filter(|(point, _)| near(point));
+        if let Some((point, returns)) = known.next() {
+            *returns = (*returns + 1).min(MOST_RETURNS);
+            let part = 1.0 / f32::from(*returns);
+            point.x_m += part * (end.x_m - point.x_m);
+            point.y_m += part * (end.y_m - point.y_m);
+        } else {
+            self.insert(centre, end);
         }
     }
 
@@ -87,9 +135,11 @@ impl NearField {
                 return;
             }
             self.points.swap_remove(farthest);
+            self.returns.swap_remove(farthest);
         }
-        // There is room now, so this cannot fail.
+        // There is room now, so these cannot fail.
         let _ = self.points.push(point);
+        let _ = self.returns.push(1);
     }
 }
 
@@ -111,17 +161,52 @@ fn within_reach(pose: &Pose, point: Point) -> bool {
     far2 < reach * reach
 }
 
-/// Whether this scan saw the place of `point`: in its view, and not hidden behind something nearer.
-fn looked_at(pose: &Pose, laser: &Laser, ranges_mm: &[u16], from: Point, point: Point) -> bool {
+/// Whether the robot's rectangle covers a point, by more than the error of one.
+fn is_inside(pose: &Pose, point: Point) -> bool {
+    let (sin, cos) = math::sin_cos(pose.yaw_rad);
+    let (dx, dy) = (point.x_m - pose.x_m, point.y_m - pose.y_m);
+    let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
+    along.abs() < HALF_LENGTH_M - INSIDE_M && across.abs() < HALF_WIDTH_M - INSIDE_M
+}
+
+/// What a scan says of the place of a point.
+enum Sight {
+    /// A beam ended there.
+    At,
+    /// A beam went through.
+    Through,
+    /// Nothing: it is out of view, or hidden behind something nearer.
+    None,
+}
+
+/// Judged by the two beams that pass the point on either side: at a corner one meets it, or nothing, and the other goes by.
+fn sight(pose: &Pose, laser: &Laser, ranges_mm: &[u16], from: Point, point: Point) -> Sight {
     let (dx, dy) = (point.x_m - from.x_m, point.y_m - from.y_m);
     let bearing = math::wrap(math::atan2(dy, dx) - pose.yaw_rad - laser.first_bearing_rad);
-    let index = math::floor(bearing / laser.bearing_step_rad + 0.5);
-    if index < 0 || index >= ranges_mm.len() as i32 {
-        return false;
+    let right = math::floor(bearing / laser.bearing_step_rad);
+    if right < 0 || right + 1 >= ranges_mm.len() as i32 {
+        return Sight::None;
     }
     let distance = math::sqrt(dx * dx + dy * dy);
-    informative_range_mm(ranges_mm, index as usize, laser.range_limit_mm)
-        .is_some_and(|range| f32::from(range) * 1e-3 + LOOKED_AT_M >= distance)
+    let beyond = |index: usize| {
+        informative_range_mm(ranges_mm, index, laser.range_limit_mm)
+            .map(|range| f32::from(range) * 1e-3 - distance)
+    };
+    let beyond = [beyond(right as usize), beyond(right as usize + 1)];
+    if beyond
+        .iter()
+        .flatten()
+        .any(|beyond| beyond.abs() <= THROUGH_M)
+    {
+        Sight::At
+    } else if beyond
+        .iter()
+        .all(|beyond| beyond.is_some_and(|beyond| beyond > THROUGH_M))
+    {
+        Sight::Through
+    } else {
+        Sight::None
+    }
 }
 
 #[cfg(test)]

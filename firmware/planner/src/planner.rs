@@ -20,14 +20,17 @@ use crate::config::Config;
 use crate::drive::{self, Drive, Ground, Place, Surround};
 use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, descent, solve};
 use crate::geometry::{Cell, Point, Pose, Twist};
+use crate::laps::{Laps, Stage};
 use crate::map::Map;
 use crate::map::integrate::is_level;
+use crate::map::tiles::NoRoom;
 use crate::math;
 use crate::near::NearField;
+use crate::remainder::{self, no_room};
 use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::{Known, Lent, Outlook};
 use crate::strategy::{self, Road};
-use crate::topology::Topology;
+use crate::topology::{Space, Topology};
 use crate::view::{self, Rows, SCALES, View};
 
 /// Range code: nothing came back, so free up to the range limit.
@@ -105,6 +108,10 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     const CHECK: () = {
         assert!(SLOTS * 16 + RING <= SCRATCH, "the wave fits the scratch");
         assert!(
+            remainder::scratch_words(SLOTS) <= SCRATCH,
+            "the flood at the end fits the scratch"
+        );
+        assert!(
             drive::manoeuvre::SCRATCH_WORDS <= SCRATCH,
             "a search fits the scratch"
         );
@@ -131,7 +138,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     pub fn reset(&mut self, config: &Config) {
         self.map.reset(config.box_tiles.0, config.box_tiles.1);
         self.near.clear();
-        self.topology.reset();
+        self.topology.reset(Space::default());
         self.strategy.reset();
         self.drive = Drive::new();
         self.status = Status::Exploring;
@@ -271,12 +278,13 @@ impl Workspace {
     }
 }
 
-/// One step: what was sensed in, what to drive out.
+/// One step: what was sensed in, what to drive out. `laps` hears of each stage's end.
 pub fn step<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     input: Input<'_>,
+    laps: &mut impl Laps,
 ) -> Output {
     if state.status != Status::Exploring {
         return Output {
@@ -285,20 +293,29 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         };
     }
     sense(config, state, &input);
+    laps.lap(Stage::Sense);
     // A search for a manoeuvre has the scratch; until it is over the robot stands and plans nothing else.
     if state.drive.is_searching() {
-        return steer(config, state, workspace, &input);
+        let output = steer(config, state, workspace, &input);
+        laps.lap(Stage::Drive);
+        return output;
     }
-    let disc = Disc::new(config.robot_radius_m);
+    let disc = Disc::new(if state.strategy.is_second_chance() {
+        config.tight_radius_m
+    } else {
+        config.robot_radius_m
+    });
     // A new skeleton is planned on in the step after it was finished, so that no step does both.
     let planned = state.fresh;
     if planned {
         state.fresh = false;
         replan(state, workspace, &disc, &input);
+        laps.lap(Stage::Plan);
     } else {
         state.fresh = state
             .topology
             .advance(state.map.tiles(), &disc, config.topology_units);
+        laps.lap(Stage::Topology);
     }
     if state.status != Status::Exploring {
         return Output {
@@ -306,11 +323,12 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
             ..Output::default()
         };
     }
-    let view = &mut workspace.view;
-    let Some(goal) = local_goal(state, &disc, &input, view) else {
+    let Some(goal) = local_goal(state, &disc, &input, &mut workspace.view) else {
+        laps.lap(Stage::Window);
         return Output::default();
     };
-    charge(&mut workspace.window, &mut workspace.window_at, view, &goal);
+    charge(workspace, &goal);
+    laps.lap(Stage::Window);
     // A step that planned a road has spent the time of two cycles on it.
     let most = config.solver.max_cycles;
     let solver = SolverConfig {
@@ -318,11 +336,14 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         ..config.solver
     };
     let solution = solve(&mut workspace.window, &mut workspace.scratch, &solver);
-    Output {
+    laps.lap(Stage::Solve);
+    let output = Output {
         cycles: solution.cycles + solution.sweeps,
         budget_exhausted: solution.stop == Stop::Budget,
         ..steer(config, state, workspace, &input)
-    }
+    };
+    laps.lap(Stage::Drive);
+    output
 }
 
 /// Scans and odometry into the map and the near field.
@@ -377,6 +398,7 @@ fn replan<const TILES: usize, const SLOTS: usize>(
         view: &mut workspace.view,
     };
     let robot = input.pose.point();
+    state.strategy.cut(&mut state.topology);
     let known = Known {
         topology: &state.topology,
         tiles: state.map.tiles(),
@@ -385,12 +407,40 @@ fn replan<const TILES: usize, const SLOTS: usize>(
     let outlook = state.strategy.replan(&known, robot, input.time_ms, lent);
     match outlook {
         Outlook::Nothing => {
-            state.strategy.list_leftovers(&known);
-            state.status = conclude(state, &mut workspace.view, disc, robot.cell());
+            let wanting = list_ways_out(state, workspace, disc, robot.cell());
+            list_leftovers(state, disc);
+            state.status = conclude(state, &mut workspace.view, disc, robot.cell(), wanting);
         }
         Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
         Outlook::Road | Outlook::Unsure => {}
     }
+}
+
+/// List what the robot can get to and cannot go on from for want of room in the map; which room that is. What lies beyond
+/// the map and cannot be reached is no fault.
+fn list_ways_out<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    disc: &Disc,
+    robot: Cell,
+) -> Option<NoRoom> {
+    let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
+    no_room(&state.map, disc, robot, scratch, |cell| {
+        state.strategy.list_way_out(cell);
+    })
+}
+
+/// List the frontiers that were never within reach.
+fn list_leftovers<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
+    disc: &Disc,
+) {
+    let known = Known {
+        topology: &state.topology,
+        tiles: state.map.tiles(),
+        disc,
+    };
+    state.strategy.list_leftovers(&known);
 }
 
 /// Why there is no frontier left within reach.
@@ -399,17 +449,15 @@ fn conclude<const TILES: usize, const SLOTS: usize>(
     view: &mut View,
     disc: &Disc,
     robot: Cell,
+    wanting: Option<NoRoom>,
 ) -> Status {
     view.look_around(state.map.tiles(), disc, robot, 1);
     view.free_robot(robot);
-    if state.map.pool_full() {
-        Status::Fault(Fault::MapFull)
-    } else if state.map.out_of_box() {
-        Status::Fault(Fault::OutOfBox)
-    } else if room_cells(view, robot) < BOX_CELLS {
-        Status::Finished(Finish::BoxedIn)
-    } else {
-        Status::Finished(Finish::Explored)
+    match wanting {
+        Some(NoRoom::Pool) => Status::Fault(Fault::MapFull),
+        Some(NoRoom::Box) => Status::Fault(Fault::OutOfBox),
+        None if room_cells(view, robot) < BOX_CELLS => Status::Finished(Finish::BoxedIn),
+        None => Status::Finished(Finish::Explored),
     }
 }
 
@@ -545,25 +593,17 @@ fn local_goal<const TILES: usize, const SLOTS: usize>(
 /// The passable window cells of a coarse cell, if there are any.
 fn goal_cells(view: &View, cell: Cell) -> Option<Rows> {
     let mut rows: Rows = [0; SIDE];
-    let mut any = false;
-    for k in 0..4 {
-        let part = Cell {
-            x: cell.x + (k & 1),
-            y: cell.y + (k >> 1),
-        };
-        if let Some(place) = view
-            .place(part)
-            .filter(|&place| View::has(&view.passable, place))
-        {
-            View::put(&mut rows, place);
-            any = true;
-        }
-    }
-    any.then_some(rows)
+    view.mark(&mut rows, cell).then_some(rows)
 }
 
 /// Set the window's boundary, keeping the field of the last window where they overlap.
-fn charge(window: &mut Window, at: &mut Option<(Cell, i32)>, view: &View, goal: &Rows) {
+fn charge(workspace: &mut Workspace, goal: &Rows) {
+    let Workspace {
+        window,
+        window_at: at,
+        view,
+        ..
+    } = workspace;
     match *at {
         Some((origin, scale)) if scale == view.scale => {
             let steps = |to: i32, from: i32| (to - from) / scale;

@@ -26,9 +26,9 @@ pub enum Finish {
 pub enum Fault {
     /// The start pose lies in an obstacle.
     StartBlocked,
-    /// Every tile of the map's pool is in use.
+    /// A way leads on, and every tile of the map's pool is in use.
     MapFull,
-    /// The known extent would not fit the map's box.
+    /// A way leads out of the map's box.
     OutOfBox,
     /// An observation did not match the session's lasers.
     BadObservation,

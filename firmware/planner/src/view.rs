@@ -142,6 +142,23 @@ impl View {
         }
     }
 
+    /// Set the passable window cells of a coarse cell, whose least map cell is `least`; whether there are any.
+    pub fn mark(&self, rows: &mut Rows, least: Cell) -> bool {
+        let mut any = false;
+        for k in 0..4 {
+            let part = Cell {
+                x: least.x + (k & 1),
+                y: least.y + (k >> 1),
+            };
+            let passable = |place: &_| Self::has(&self.passable, *place);
+            if let Some(place) = self.place(part).filter(passable) {
+                Self::put(rows, place);
+                any = true;
+            }
+        }
+        any
+    }
+
     /// Let the robot out where its own cell is not passable (it stands nearer to something than its radius, or the map is
     /// wrong by a cell): within four cells of it, whatever does not touch an obstacle counts as passable; failing
     /// that, whatever is no obstacle.

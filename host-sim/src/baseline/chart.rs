@@ -186,6 +186,23 @@ impl Chart {
         self.has(index, PASSABLE | UNKNOWN)
     }
 
+    /// Known cells that the robot's centre can get to from `robot`, counted up to `most`.
+    #[must_use]
+    pub fn room(&self, robot: Cell, most: usize) -> usize {
+        let home = self.frame.index(robot).filter(|&home| self.is_way(home));
+        let mut reached: Vec<usize> = home.into_iter().collect();
+        let mut next = 0;
+        while let Some(&index) = reached.get(next).filter(|_| reached.len() < most) {
+            next += 1;
+            for near in self.frame.four(index) {
+                if self.is_way(near) && !reached.contains(&near) {
+                    reached.push(near);
+                }
+            }
+        }
+        reached.len().min(most)
+    }
+
     fn has(&self, index: usize, what: u8) -> bool {
         self.flags
             .get(index)
@@ -293,8 +310,10 @@ pub(super) mod sketch {
 
     /// The same for a robot of this radius.
     pub(crate) fn chart_for(rows: &[&str], radius_m: f32) -> (Chart, Point) {
-        let mut tiles: Box<Tiles<64, 64>> = Box::new(Tiles::new());
-        tiles.reset(8, 8);
+        let mut tiles: Box<Tiles<128, 128>> = Box::new(Tiles::new());
+        let long = rows.iter().any(|row| row.len() > 200);
+        let (across, up) = if long { (32, 4) } else { (10, 10) };
+        tiles.reset(across, up);
         let mut robot = Cell::default();
         for (y, row) in (0..).zip(rows.iter().rev()) {
             for (x, character) in (0..).zip(row.chars()) {
@@ -362,6 +381,18 @@ mod tests {
         let at = |x, y| chart.frame().index(Cell { x, y }).unwrap();
         assert!(chart.is_unknown(at(4, 0)) && !chart.is_unexplored(at(4, 0)));
         assert!(chart.is_passable(at(4, 2)) && !chart.is_passable(at(4, 1)));
+    }
+
+    #[test]
+    fn room_is_what_can_be_come_to() {
+        let rows = [
+            "#######", //
+            "#..#..#", "#.R#..#", "#######",
+        ];
+        let (chart, robot) = chart(&rows);
+        assert_eq!(chart.room(robot.cell(), 100), 4);
+        assert_eq!(chart.room(robot.cell(), 3), 3);
+        assert_eq!(chart.room(Cell { x: 0, y: 0 }, 100), 0, "inside the wall");
     }
 
     #[test]

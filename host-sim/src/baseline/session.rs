@@ -5,9 +5,10 @@
 //! ```
 //!
 //! Map (with the capacity of the default image, so that a run ends for want of memory where the device's would), near
-//! field, clearance and drive are those of `fieldline_planner`; so are the rules for a blocked start and for what an end means.
-//! What differs from the planner's own step is what a [`Plan`] says. Departs from that step in one thing: a robot that looks
-//! around at its goal does so only where the turn is clear.
+//! field, clearance and drive are those of `fieldline_planner`; so are the rules for a blocked start, for what an end means, and
+//! that nothing is planned while the drive searches for a manoeuvre. What differs from the planner's own step is what a
+//! [`Plan`] says. Departs from that step in one thing: a robot that looks around at its goal does so only where the turn is
+//! clear.
 
 use fieldline_device::convert;
 use fieldline_device::limits;
@@ -16,7 +17,7 @@ use fieldline_device::{SLOTS, TILES};
 use fieldline_planner::clearance::Disc;
 use fieldline_planner::config::Config;
 use fieldline_planner::drive::{Drive, Ground, Place, Surround, manoeuvre};
-use fieldline_planner::geometry::{Point, Pose, Twist};
+use fieldline_planner::geometry::{Cell, Point, Pose, Twist};
 use fieldline_planner::map::Map;
 use fieldline_planner::map::integrate::is_level;
 use fieldline_planner::math;
@@ -37,6 +38,8 @@ const LOOK_AROUND_RADPS: f32 = 0.6;
 const LOOK_AROUND_MARGIN_M: f32 = 0.025;
 /// Time for which a plan must find nothing before the exploration is over, milliseconds.
 const EMPTY_MS: u32 = 1_000;
+/// A robot whose centre has less room than this, in cells, is boxed in: the planner's one square metre.
+const BOX_CELLS: usize = 100;
 
 /// What a plan is made from.
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +59,8 @@ pub enum Outlook {
     Way,
     /// There is none.
     Nothing,
+    /// The robot cannot move, whatever the goal.
+    Stuck,
 }
 
 /// A strategy: where to go next.
@@ -69,12 +74,21 @@ pub trait Plan {
     /// The heading that the plan asks for at a point near the robot, radians; `None` where it asks for none.
     fn heading_at(&self, scene: &Scene<'_>, point: Point) -> Option<f32>;
 
+    /// How far along the plan a point near the robot is, by a factor that is 1 where the robot stands and that doubles in
+    /// about 0.1 m in a passage as wide as the robot, as the planner's q does.
+    fn potential_at(&self, scene: &Scene<'_>, point: Point) -> f32;
+
     /// Goals that were given up, and why.
     fn dropped(&self) -> Vec<status::Frontier>;
 
     /// Solver cycles of the last plan.
     fn cycles(&self) -> u16 {
         0
+    }
+
+    /// Whether the last plan's solver ran out of cycles.
+    fn is_exhausted(&self) -> bool {
+        false
     }
 
     /// A row of the last field around the robot.
@@ -92,7 +106,6 @@ pub struct Session<P> {
     status: Status,
     paused: bool,
     started: bool,
-    had_way: bool,
     empty_since_ms: Option<u32>,
     map: Box<Map<TILES, SLOTS>>,
     near: NearField,
@@ -112,7 +125,6 @@ impl<P: Plan> Session<P> {
             status: Status::Idle,
             paused: false,
             started: false,
-            had_way: false,
             empty_since_ms: None,
             map: Box::new(Map::new()),
             near: NearField::new(),
@@ -142,7 +154,6 @@ impl<P: Plan> Session<P> {
         self.status = Status::Exploring;
         self.paused = false;
         self.started = false;
-        self.had_way = false;
         self.empty_since_ms = None;
         Ok(())
     }
@@ -152,27 +163,31 @@ impl<P: Plan> Session<P> {
         if self.status != Status::Exploring {
             return standing(self.status);
         }
-        let disc = Disc::new(config.robot_radius_m);
-        self.chart.draw(self.map.tiles(), &disc, input.pose.point());
-        let scene = Scene {
-            chart: &self.chart,
-            pose: input.pose,
-            time_ms: input.time_ms,
-        };
+        if !self.drive.is_searching() {
+            let disc = Disc::new(config.robot_radius_m);
+            self.chart.draw(self.map.tiles(), &disc, input.pose.point());
+            self.look(input);
+        }
+        if self.status == Status::Exploring && self.empty_since_ms.is_none() {
+            self.follow(config, input)
+        } else {
+            standing(self.status)
+        }
+    }
+
+    /// Let the strategy look at the scene.
+    fn look(&mut self, input: &Input<'_>) {
+        let scene = scene(&self.chart, input);
         match self.plan.plan(&scene) {
-            Outlook::Way => {
-                self.had_way = true;
-                self.empty_since_ms = None;
-            }
+            Outlook::Way => self.empty_since_ms = None,
+            Outlook::Stuck => self.status = Status::Fault(Fault::Stuck),
             Outlook::Nothing => {
                 let since = *self.empty_since_ms.get_or_insert(input.time_ms);
                 if input.time_ms.wrapping_sub(since) >= EMPTY_MS {
-                    self.status = self.conclude();
+                    self.status = self.conclude(input.pose.point().cell());
                 }
-                return standing(self.status);
             }
         }
-        self.follow(config, input)
     }
 
     /// Scans and odometry into the map and the near field.
@@ -192,26 +207,22 @@ impl<P: Plan> Session<P> {
     }
 
     /// Why there is nothing left within reach.
-    fn conclude(&self) -> Status {
+    fn conclude(&self, robot: Cell) -> Status {
         if self.map.pool_full() {
             Status::Fault(Fault::MapFull)
         } else if self.map.out_of_box() {
             Status::Fault(Fault::OutOfBox)
-        } else if self.had_way {
-            Status::Finished(Finish::Explored)
-        } else {
+        } else if self.chart.room(robot, BOX_CELLS) < BOX_CELLS {
             Status::Finished(Finish::BoxedIn)
+        } else {
+            Status::Finished(Finish::Explored)
         }
     }
 
     /// Drive where the plan says.
     fn follow(&mut self, config: &Config, input: &Input<'_>) -> Command {
         let pose = input.pose;
-        let scene = Scene {
-            chart: &self.chart,
-            pose,
-            time_ms: input.time_ms,
-        };
+        let scene = scene(&self.chart, input);
         let plan = &self.plan;
         let surround = Surround::new(&pose, self.near.points());
         let heading = plan.heading_at(&scene, pose.point());
@@ -220,10 +231,11 @@ impl<P: Plan> Session<P> {
                 let there = plan.heading_at(&scene, ahead(&pose, place));
                 there.map(|heading| math::wrap(heading - pose.yaw_rad))
             };
+            let potential_there = |place: Place| plan.potential_at(&scene, ahead(&pose, place));
             let ground = Ground {
                 surround: &surround,
                 heading_at: heading_there,
-                potential_at: None,
+                potential_at: Some(&potential_there),
             };
             self.drive
                 .follow(config, &ground, input.velocity, &mut self.scratch)
@@ -236,10 +248,19 @@ impl<P: Plan> Session<P> {
             heading: convert::quantity(heading.unwrap_or(pose.yaw_rad)),
             cost: Cost {
                 cycles: self.plan.cycles(),
+                budget_exhausted: self.plan.is_exhausted(),
                 ..Cost::default()
             },
             ..Command::default()
         }
+    }
+}
+
+fn scene<'a>(chart: &'a Chart, input: &Input<'_>) -> Scene<'a> {
+    Scene {
+        chart,
+        pose: input.pose,
+        time_ms: input.time_ms,
     }
 }
 
@@ -270,19 +291,6 @@ fn standing(status: Status) -> Command {
     Command {
         status,
         ..Command::default()
-    }
-}
-
-fn input(observation: &Observation) -> Input<'_> {
-    let scan = |number: usize| match observation.scans.get(number) {
-        Some(scan) => scan.ranges_mm.as_slice(),
-        None => &[],
-    };
-    Input {
-        time_ms: observation.time_ms,
-        pose: convert::pose(&observation.pose),
-        velocity: convert::twist(&observation.velocity),
-        scans: [scan(0), scan(1)],
     }
 }
 
@@ -319,7 +327,7 @@ impl<P: Plan> Link for Session<P> {
         let command = if !limits::matches(observation, config.lasers.iter().map(|l| l.beams)) {
             standing(Status::Fault(Fault::BadObservation))
         } else if self.status() == Status::Exploring {
-            self.step(&config, &input(observation))
+            self.step(&config, &convert::input(observation))
         } else {
             standing(self.status())
         };

@@ -49,6 +49,18 @@ pub(super) fn place(strategy: &str, link: Option<&LinkSpec>) -> Result<LinkSpec>
     }
 }
 
+/// The refusal of what only the device's strategy has: windows to compare, bytes to break.
+pub(super) fn check(strategy: &str, check_field: bool, faults: bool) -> Result<()> {
+    match strategy {
+        FRONTIER => Ok(()),
+        _ if check_field => {
+            bail!("--strategy {strategy} solves no window; leave --check-field out")
+        }
+        _ if faults => bail!("--strategy {strategy} has no bytes to break; leave --fault out"),
+        _ => Ok(()),
+    }
+}
+
 /// What plans, ready for its hello.
 pub(super) fn open(strategy: &str, link: &LinkSpec, options: &Options) -> Result<Box<dyn Link>> {
     let baseline = BASELINES.iter().find(|(name, _)| *name == strategy);
@@ -60,7 +72,7 @@ pub(super) fn open(strategy: &str, link: &LinkSpec, options: &Options) -> Result
 
 #[cfg(test)]
 mod tests {
-    use super::{FRONTIER, parse, place};
+    use super::{FRONTIER, check, parse, place};
     use host_sim::link::spec::LinkSpec;
 
     #[test]
@@ -84,5 +96,14 @@ mod tests {
             .unwrap_err()
             .to_string();
         assert!(error.contains("bvp") && error.contains("direct"), "{error}");
+    }
+
+    #[test]
+    fn a_baseline_has_neither_windows_nor_bytes() {
+        assert!(check(FRONTIER, true, true).is_ok() && check("bvp", false, false).is_ok());
+        let words =
+            |check_field, faults| check("bvp", check_field, faults).unwrap_err().to_string();
+        assert!(words(true, false).contains("--check-field"));
+        assert!(words(false, true).contains("--fault"));
     }
 }

@@ -27,6 +27,7 @@ struct Errand {
 /// Explores every world; whether all of them ended explored.
 pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     let link = baselines::place(&args.strategy, args.link.as_ref())?;
+    baselines::check(&args.strategy, args.check_field, args.fault.is_some())?;
     let errands = errands(args, &mission(args, &link)?)?;
     let interrupt = Interrupt::listen()?;
     let mut all_explored = true;

@@ -62,7 +62,7 @@ impl Link for Direct {
     }
 
     fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        self.with(|pilot, memory| pilot.observe(memory, observation))
+        self.with(|pilot, memory| pilot.observe(memory, observation, &mut ()))
             .map_err(refused)
     }
 

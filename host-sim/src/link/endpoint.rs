@@ -27,6 +27,8 @@ pub struct Patience {
     pub attempt: Duration,
     /// Asked in all.
     pub attempts: u32,
+    /// For the first hello, in all: a device may still be booting, and a stranger should not keep anybody waiting.
+    pub greeting: Duration,
 }
 
 impl Patience {
@@ -34,21 +36,29 @@ impl Patience {
     pub const VIRTUAL: Self = Self {
         attempt: Duration::from_millis(40),
         attempts: 12,
+        greeting: Duration::from_millis(480),
     };
     /// In lockstep, where the simulated robot stands still while we wait: a loaded machine that emulates a chip may take seconds.
     pub const LOCKSTEP: Self = Self {
         attempt: Duration::from_secs(3),
         attempts: 10,
+        greeting: Duration::from_secs(30),
     };
-    /// The same time in steps of a fifth of a second at the most: a device that is still booting hears nothing, and a repeated hello
-    /// costs it nothing.
+    /// In lockstep with a board, which boots within a second after its port is opened, or is none of ours.
+    pub const SERIAL: Self = Self {
+        greeting: Duration::from_secs(4),
+        ..Self::LOCKSTEP
+    };
+
+    /// The greeting's time in steps of a fifth of a second at the most: a device that is still booting hears nothing, and a
+    /// repeated hello costs it nothing.
     #[must_use]
     pub fn for_hello(self) -> Self {
         let attempt = self.attempt.min(Duration::from_millis(200));
-        let total = self.attempt * self.attempts;
         Self {
             attempt,
-            attempts: (total.as_millis() / attempt.as_millis().max(1)) as u32,
+            attempts: (self.greeting.as_millis() / attempt.as_millis().max(1)) as u32,
+            ..self
         }
     }
 
@@ -56,6 +66,7 @@ impl Patience {
     pub const REAL_TIME: Self = Self {
         attempt: Duration::from_millis(95),
         attempts: 5,
+        greeting: Self::SERIAL.greeting,
     };
 }
 

@@ -20,20 +20,6 @@ pub trait Line {
     fn now(&self) -> Duration;
 }
 
-impl<L: Line + ?Sized> Line for Box<L> {
-    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
-        (**self).send(bytes)
-    }
-
-    fn receive(&mut self, into: &mut Vec<u8>, wait: Duration) -> Result<(), LinkError> {
-        (**self).receive(into, wait)
-    }
-
-    fn now(&self) -> Duration {
-        (**self).now()
-    }
-}
-
 impl<L: Line + ?Sized> Line for &mut L {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         (**self).send(bytes)

@@ -15,6 +15,7 @@ use core::fmt;
 use fieldline_protocol::message::{
     Command, Control, FieldRow, Frontier, Identity, Observation, Status, Tile,
 };
+use serde::{Deserialize, Serialize};
 
 pub mod digest;
 pub mod direct;
@@ -66,8 +67,8 @@ impl fmt::Display for LinkError {
 
 impl core::error::Error for LinkError {}
 
-/// Counters of a link since its hello.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// Counters of a link since its hello, as they stand in a report.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LinkStats {
     /// Frames sent.
     pub sent: u64,

@@ -32,11 +32,14 @@ pub fn open_line(device: &str, baud: u32) -> Result<SerialLine, LinkError> {
 /// As [`open_line`].
 pub fn serial(device: &str, baud: u32) -> Result<Endpoint<SerialLine>, LinkError> {
     let line = open_line(device, baud)?;
-    Ok(Endpoint::new(line, Patience::LOCKSTEP, fresh_nonce()))
+    Ok(Endpoint::new(line, Patience::SERIAL, fresh_nonce()))
 }
 
 fn explain(device: &str, error: &serialport::Error) -> String {
+    let there = std::path::Path::new(device).exists();
     let remedy = match error.kind() {
+        // Who locked it is no device to the library.
+        ErrorKind::NoDevice if there => "somebody else has it open; end that program first".into(),
         ErrorKind::NoDevice | ErrorKind::Io(IoKind::NotFound) => {
             format!("is there no such port? {}", available())
         }

@@ -126,10 +126,13 @@ impl LinkSpec {
     /// # Errors
     /// As [`LinkError`]; faults on a direct link, which has no bytes to break, are [`LinkError::Io`].
     pub fn open(&self, options: &Options) -> Result<Box<dyn Link>, LinkError> {
-        let patience = if options.real_time {
-            Patience::REAL_TIME
-        } else {
-            Patience::LOCKSTEP
+        let patience = |lockstep: Patience| Patience {
+            greeting: lockstep.greeting,
+            ..if options.real_time {
+                Patience::REAL_TIME
+            } else {
+                lockstep
+            }
         };
         match self {
             Self::Direct if options.faults == Faults::default() => Ok(Box::new(Direct::new())),
@@ -140,6 +143,7 @@ impl LinkSpec {
             #[cfg(unix)]
             Self::Qemu => {
                 let line = qemu::open_line(&image()?)?;
+                let patience = patience(Patience::LOCKSTEP);
                 Ok(end(line, patience, fresh_nonce(), options))
             }
             #[cfg(not(unix))]
@@ -148,6 +152,7 @@ impl LinkSpec {
             )),
             Self::Serial { device, baud } => {
                 let line = serial::open_line(device, *baud)?;
+                let patience = patience(Patience::SERIAL);
                 Ok(end(line, patience, fresh_nonce(), options))
             }
         }

@@ -14,6 +14,7 @@ pub mod tum;
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::link::LinkStats;
 pub use grid_map::{GridMap, MapCell};
 pub use terrain::Terrain;
 
@@ -152,8 +153,45 @@ pub struct Planner {
     pub wall_us: Option<Percentiles>,
     /// Instructions of a step on the device; `null` where it does not count them.
     pub instructions: Option<Percentiles>,
+    /// The same by stages, each over all steps: their greatest need not fall into one step.
+    pub stages: Option<Stages>,
     /// Deepest stack of the device; `null` where it does not measure it.
     pub stack_bytes: Option<u32>,
+}
+
+/// Instructions of a step's stages.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Stages {
+    /// Taking a request apart, and putting the reply before it together.
+    pub session: Percentiles,
+    /// Scans and odometry into the map.
+    pub sense: Percentiles,
+    /// An instalment of the skeleton.
+    pub topology: Percentiles,
+    /// The wave over a new skeleton, and the road.
+    pub plan: Percentiles,
+    /// The window's cells and boundary.
+    pub window: Percentiles,
+    /// The window's field.
+    pub solve: Percentiles,
+    /// Descent, drive, and the search for a manoeuvre.
+    pub drive: Percentiles,
+}
+
+impl Stages {
+    /// The stages by name, in the order of a step.
+    #[must_use]
+    pub const fn by_name(&self) -> [(&'static str, Percentiles); 7] {
+        [
+            ("session", self.session),
+            ("sense", self.sense),
+            ("topology", self.topology),
+            ("plan", self.plan),
+            ("window", self.window),
+            ("solve", self.solve),
+            ("drive", self.drive),
+        ]
+    }
 }
 
 /// Nearest-rank percentiles of the steps.
@@ -176,21 +214,6 @@ pub struct Field {
     pub heading_error_deg: Option<Percentiles>,
     /// Steps whose solver ran out of budget.
     pub budget_exhausted: u64,
-}
-
-/// Counters of the link, both ends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct LinkStats {
-    /// Frames sent by the host.
-    pub sent: u64,
-    /// Frames received and accepted by the host.
-    pub received: u64,
-    /// Requests sent again.
-    pub retries: u64,
-    /// Frames dropped for framing, length, format or order.
-    pub dropped: u64,
-    /// Frames dropped for a bad checksum.
-    pub crc_errors: u64,
 }
 
 /// Cross-checks of the tool on itself.

@@ -279,7 +279,7 @@ fn assemble(
         localization: record.localization(),
         planner: record.planner(),
         field: record.field(),
-        link_stats: record.link_report(),
+        link_stats: record.link_stats,
         digest: record.digest.to_string(),
         debug: report::Debug {
             map_matches_mirror: (!record.tiles.is_empty())

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use fieldline_protocol::message::{Command, Frontier, Observation, Pose, Status, Tile};
+use fieldline_protocol::message::{Command, Cost, Frontier, Observation, Pose, Status, Tile};
 
 use super::snapshot::Window;
 use super::{Ending, Progress, wording};
@@ -165,11 +165,24 @@ impl Record {
     pub fn planner(&self) -> report::Planner {
         let wall: Vec<f64> = self.steps.iter().map(|step| step.wall_us).collect();
         let costs = self.steps.iter().map(|step| step.command.cost);
-        let counted = costs.clone().filter(|cost| cost.instructions > 0);
-        let instructions: Vec<f64> = counted.map(|cost| f64::from(cost.instructions)).collect();
+        let counted: Vec<Cost> = costs.clone().filter(|cost| cost.instructions > 0).collect();
+        let of = |part: fn(&Cost) -> u32| {
+            let parts: Vec<f64> = counted.iter().map(|cost| f64::from(part(cost))).collect();
+            Percentiles::of(&parts)
+        };
+        let all = |part| of(part).unwrap_or_default();
         report::Planner {
             wall_us: Percentiles::of(&wall),
-            instructions: Percentiles::of(&instructions),
+            instructions: of(|cost| cost.instructions),
+            stages: (!counted.is_empty()).then(|| report::Stages {
+                session: all(|cost| cost.stages.session),
+                sense: all(|cost| cost.stages.sense),
+                topology: all(|cost| cost.stages.topology),
+                plan: all(|cost| cost.stages.plan),
+                window: all(|cost| cost.stages.window),
+                solve: all(|cost| cost.stages.solve),
+                drive: all(|cost| cost.stages.drive),
+            }),
             stack_bytes: costs
                 .map(|cost| cost.stack_bytes)
                 .max()
@@ -186,25 +199,6 @@ impl Record {
             worst_heading_error_deg: errors.map(|errors| errors.max),
             heading_error_deg: errors,
             budget_exhausted: self.steps.iter().filter(exhausted).count() as u64,
-        }
-    }
-
-    /// The report's part on the link.
-    #[must_use]
-    pub fn link_report(&self) -> report::LinkStats {
-        let LinkStats {
-            sent,
-            received,
-            retries,
-            dropped,
-            crc_errors,
-        } = self.link_stats;
-        report::LinkStats {
-            sent,
-            received,
-            retries,
-            dropped,
-            crc_errors,
         }
     }
 }

@@ -293,15 +293,19 @@ fn the_digest_is_of_the_commands_alone() {
 fn costs_are_reported_only_where_the_device_measures() {
     let mut measured = command(Status::Finished(Finish::Explored), 0.0).unwrap();
     measured.cost.instructions = 4_000_000;
+    measured.cost.stages.solve = 3_000_000;
     measured.cost.stack_bytes = 2_048;
     measured.cost.budget_exhausted = true;
     let (record, ..) = ends(vec![command(Status::Exploring, 0.1), Ok(measured)]);
     let planner = record.planner();
     assert_eq!(planner.instructions.unwrap().max, 4e6);
+    let stages = planner.stages.unwrap();
+    assert_eq!((stages.solve.p50, stages.drive.max), (3e6, 0.0));
     assert_eq!(planner.stack_bytes, Some(2_048));
     assert!(planner.wall_us.unwrap().p50 >= 0.0);
     assert_eq!(record.field().budget_exhausted, 1);
     let (record, ..) = ends(vec![command(Status::Finished(Finish::Explored), 0.0)]);
     assert_eq!(record.planner().instructions, None);
+    assert_eq!(record.planner().stages, None);
     assert_eq!(record.planner().stack_bytes, None);
 }

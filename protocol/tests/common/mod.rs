@@ -6,8 +6,8 @@ use fieldline_protocol::frame::{
 };
 use fieldline_protocol::message::{
     Cause, Command, Control, Cost, Counters, Crash, Fault, FieldRow, Finish, Frontier, Identity,
-    Laser, MAX_BEAMS, Observation, Parameter, Pose, Refusal, Reply, Request, Residue, Scan, Start,
-    Status, Strategy as Plan, Tile, Twist,
+    Laser, MAX_BEAMS, Observation, Parameter, Pose, Refusal, Reply, Request, Residue, Scan, Stages,
+    Start, Status, Strategy as Plan, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 use proptest::prelude::*;
@@ -270,26 +270,44 @@ fn counters() -> impl Strategy<Value = Counters> {
     )
 }
 
+fn stages() -> impl Strategy<Value = Stages> {
+    any::<[u32; 7]>().prop_map(
+        |[session, sense, topology, plan, window, solve, drive]| Stages {
+            session,
+            sense,
+            topology,
+            plan,
+            window,
+            solve,
+            drive,
+        },
+    )
+}
+
 fn command() -> impl Strategy<Value = Command> {
     (
         twist(),
         status(),
         long(),
         counters(),
+        stages(),
         any::<(u32, u32, u16, bool)>(),
     )
-        .prop_map(|(velocity, status, heading, counters, cost)| Command {
-            velocity,
-            status,
-            heading,
-            counters,
-            cost: Cost {
-                instructions: cost.0,
-                stack_bytes: cost.1,
-                cycles: cost.2,
-                budget_exhausted: cost.3,
+        .prop_map(
+            |(velocity, status, heading, counters, stages, cost)| Command {
+                velocity,
+                status,
+                heading,
+                counters,
+                cost: Cost {
+                    instructions: cost.0,
+                    stages,
+                    stack_bytes: cost.1,
+                    cycles: cost.2,
+                    budget_exhausted: cost.3,
+                },
             },
-        })
+        )
 }
 
 fn tile() -> impl Strategy<Value = Tile> {

@@ -159,6 +159,11 @@ impl Map {
 
     /// Guo–Hall thinning, cell by cell, from the paper's conditions.
     pub(crate) fn thinned(&self) -> Self {
+        self.thinned_around(&Self::new(self.columns, self.rows, false))
+    }
+
+    /// The same, where the cells of `anchors` are never deleted.
+    pub(crate) fn thinned_around(&self, anchors: &Self) -> Self {
         let mut map = self.clone();
         loop {
             let before = map.cells.clone();
@@ -166,7 +171,8 @@ impl Map {
                 let now = map.clone();
                 for y in 0..map.rows {
                     for x in 0..map.columns {
-                        if now.deletes(x as isize, y as isize, second) {
+                        let held = anchors.get(x as isize, y as isize);
+                        if !held && now.deletes(x as isize, y as isize, second) {
                             map.set(x, y, false);
                         }
                     }
@@ -242,6 +248,30 @@ pub(crate) fn site(x: usize, y: usize) -> Site {
         x: x as u16,
         y: y as u16,
     }
+}
+
+/// Cells of a map to be held fast, and some outside it: single ones, or the rims of a rectangle and of a disc.
+pub(crate) fn any_anchors(rng: &mut Rng, map: &Map) -> Map {
+    let mut anchors = Map::new(map.columns, map.rows, false);
+    if rng.percent(50) {
+        let density = [1, 5, 30, 90][rng.below(4)];
+        for cell in &mut anchors.cells {
+            *cell = rng.percent(density);
+        }
+        return anchors;
+    }
+    let (x, y) = (rng.below(map.columns), rng.below(map.rows));
+    let (width, height) = (2 + rng.below(40), 2 + rng.below(30));
+    anchors.rect(x, y, width, height, true);
+    anchors.rect(x + 1, y + 1, width - 2, height - 2, false);
+    let (x, y, radius) = (
+        rng.below(map.columns),
+        rng.below(map.rows),
+        2 + rng.below(20),
+    );
+    anchors.disc(x, y, radius, true);
+    anchors.disc(x, y, radius - 1, false);
+    anchors
 }
 
 /// Maps of all kinds, by seed: noise, rooms with doors, corridors, discs, an open hall with rubble.

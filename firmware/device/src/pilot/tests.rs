@@ -84,7 +84,7 @@ fn nothing_happens_before_a_start() {
         let refused = pilot.control(&mut bench.memory(), &control);
         assert_eq!(refused, Err(Refusal::NotStarted), "{control:?}");
     }
-    let refused = pilot.observe(&mut bench.memory(), &observation(0));
+    let refused = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
     assert_eq!(refused, Err(Refusal::NotStarted));
 }
 
@@ -106,7 +106,7 @@ fn pause_holds_and_resume_goes_on() {
     let paused = pilot.control(&mut bench.memory(), &Control::Pause);
     assert_eq!(paused, Ok(Status::Paused));
     let command = pilot
-        .observe(&mut bench.memory(), &observation(100))
+        .observe(&mut bench.memory(), &observation(100), &mut ())
         .unwrap();
     assert_eq!(
         (command.status, command.velocity),
@@ -129,7 +129,7 @@ fn a_stopped_session_stays_stopped() {
         Ok(stopped)
     );
     let command = pilot
-        .observe(&mut bench.memory(), &observation(100))
+        .observe(&mut bench.memory(), &observation(100), &mut ())
         .unwrap();
     assert_eq!(
         (command.status, command.velocity),
@@ -142,7 +142,7 @@ fn the_emergency_stop_holds_until_released_and_resumed() {
     let (mut pilot, mut bench) = started();
     pilot.set_emergency_stop(true);
     let command = pilot
-        .observe(&mut bench.memory(), &observation(100))
+        .observe(&mut bench.memory(), &observation(100), &mut ())
         .unwrap();
     assert_eq!(
         (command.status, command.velocity),
@@ -167,7 +167,7 @@ fn a_wrong_observation_is_a_fault_that_passes() {
     let (mut pilot, mut bench) = started();
     let mut wrong = observation(100);
     wrong.scans[1].ranges_mm.pop();
-    let command = pilot.observe(&mut bench.memory(), &wrong).unwrap();
+    let command = pilot.observe(&mut bench.memory(), &wrong, &mut ()).unwrap();
     assert_eq!(command.status, Status::Fault(Fault::BadObservation));
     assert_eq!(command.velocity, Twist::default());
     assert_eq!(pilot.status(), Status::Exploring);
@@ -180,6 +180,6 @@ fn a_reset_ends_the_session_but_not_the_emergency_stop() {
     let status = pilot.control(&mut bench.memory(), &Control::Reset);
     assert_eq!(status, Ok(Status::EmergencyStop));
     pilot.set_emergency_stop(false);
-    let refused = pilot.observe(&mut bench.memory(), &observation(0));
+    let refused = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
     assert_eq!(refused, Err(Refusal::NotStarted));
 }

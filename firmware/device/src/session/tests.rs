@@ -8,7 +8,7 @@ use fieldline_protocol::frame::{
     MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_request,
 };
 use fieldline_protocol::message::{
-    Command, Control, Counters, Crash, Refusal, Reply, Request, Status, Twist,
+    Command, Control, Counters, Crash, Refusal, Reply, Request, Stages, Status, Twist,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 
@@ -17,16 +17,18 @@ use crate::meter::Meter;
 use crate::pilot::tests::{Bench, observation, start};
 use crate::signal::Signal;
 
-/// Counts the steps that it measured.
+/// Counts the steps that it measured, and a thousand whenever it is asked.
 #[derive(Default)]
-struct Steps(u32);
+struct Steps(u32, u32);
 
 impl Meter for Steps {
     fn start(&mut self) {
         self.0 += 1;
     }
-    fn stop(&mut self) -> u32 {
-        1000 + self.0
+    fn stop(&mut self) {}
+    fn count(&mut self) -> u32 {
+        self.1 += 1000;
+        self.1
     }
     fn stack_bytes(&self) -> u32 {
         77
@@ -195,15 +197,23 @@ fn an_observation_is_answered_with_a_command_and_its_cost() {
     let mut talk = Talk::started();
     let command = talk.observe(2);
     assert_eq!(talk.steps.0, 1);
-    assert_eq!(
-        (command.cost.instructions, command.cost.stack_bytes),
-        (1001, 77)
-    );
+    assert_eq!(command.cost.stack_bytes, 77);
+    let stages = Stages {
+        session: 2000,
+        sense: 1000,
+        topology: 1000,
+        window: 1000,
+        ..Stages::default()
+    };
+    assert_eq!(command.cost.stages, stages);
+    assert_eq!(command.cost.instructions, 5000);
     let counters = Counters {
         received: 3,
         ..Counters::default()
     };
     assert_eq!(command.counters, counters);
+    let next = talk.observe(3);
+    assert_eq!(next.cost.stages.session, 3000, "with the reply before it");
 }
 
 #[test]

@@ -59,6 +59,16 @@ const fn motion(length_m: f32, turn_rad: f32, cost: f32) -> Motion {
     }
 }
 
+impl Motion {
+    fn velocity(self, period_s: f32) -> Twist {
+        let seconds = f32::from(PERIODS) * period_s;
+        Twist {
+            linear_mps: self.length_m / seconds,
+            angular_radps: self.turn_rad / seconds,
+        }
+    }
+}
+
 const MOTIONS: [Motion; 8] = [
     motion(0.0, TURN_RAD, 1.0),
     motion(0.0, -TURN_RAD, 1.0),
@@ -73,6 +83,33 @@ const MOTIONS: [Motion; 8] = [
 /// The straight ones, by number.
 const FORWARD: u8 = 2;
 const BACKWARD: u8 = 5;
+
+/// A set of motions, a bit each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Choice(u8);
+
+impl Choice {
+    /// The motions whose velocity, driven for `period_s` and more, is admitted.
+    pub fn of(period_s: f32, admits: impl Fn(Twist) -> bool) -> Self {
+        let bit = |(number, motion): (usize, &Motion)| {
+            u8::from(admits(motion.velocity(period_s))) << number
+        };
+        Self(
+            MOTIONS
+                .iter()
+                .enumerate()
+                .map(bit)
+                .fold(0, |set, bit| set | bit),
+        )
+    }
+
+    /// Every motion.
+    pub const ALL: Self = Self(u8::MAX);
+
+    const fn has(self, number: usize) -> bool {
+        self.0 >> number & 1 == 1
+    }
+}
 
 /// A manoeuvre in progress: motions by number, the next one last.
 #[derive(Clone, Debug, Default)]
@@ -100,16 +137,12 @@ impl Plan {
     /// The velocity of the next period, if the manoeuvre goes on.
     pub fn next(&mut self, period_s: f32) -> Option<Twist> {
         let motion = MOTIONS.get(usize::from(*self.motions.last()?))?;
-        let seconds = f32::from(PERIODS) * period_s;
         self.periods += 1;
         if self.periods >= PERIODS {
             self.periods = 0;
             self.motions.pop();
         }
-        Some(Twist {
-            linear_mps: motion.length_m / seconds,
-            angular_radps: motion.turn_rad / seconds,
-        })
+        Some(motion.velocity(period_s))
     }
 }
 
@@ -129,6 +162,7 @@ pub enum Found {
 pub struct Search {
     open: Open,
     attempt: Attempt,
+    first: Choice,
 }
 
 /// What a search asks of a way out.
@@ -136,8 +170,19 @@ pub struct Search {
 pub struct Attempt {
     /// The clearance kept, metres.
     pub margin_m: f32,
-    /// It must lead farther along the field.
-    pub progress: bool,
+    /// Where it must lead.
+    pub leads: Leads,
+}
+
+/// Where a way out must lead. No value is zero: so an idle drive is all zeros, and takes no place in the image's flash.
+#[repr(u8)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Leads {
+    /// Elsewhere.
+    #[default]
+    Elsewhere = 1,
+    /// Farther along the field.
+    Farther = 2,
 }
 
 /// What a search runs on: what stands around, and the field's heading at a place, radians left of the robot's present one, or
@@ -177,7 +222,7 @@ impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
             error.abs() < ALIGNED_RAD
         });
         aligned
-            && (!attempt.progress || self.is_progress(place.after(length_m, 0.0)))
+            && (attempt.leads == Leads::Elsewhere || self.is_progress(place.after(length_m, 0.0)))
             && self
                 .surround
                 .is_arc_clear(place, length_m, 0.0, attempt.margin_m)
@@ -185,11 +230,12 @@ impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
 }
 
 impl Search {
-    /// Begin where the robot stands.
-    pub fn start(attempt: Attempt, scratch: &mut [u32]) -> Self {
+    /// Begin where the robot stands, with one of the motions `first`: those that it can really set out with, braking and all.
+    pub fn start(attempt: Attempt, first: Choice, scratch: &mut [u32]) -> Self {
         let mut search = Self {
             open: Open::default(),
             attempt,
+            first,
         };
         if let Some((visited, nodes)) = scratch.split_at_mut_checked(VISITED_WORDS) {
             visited.fill(0);
@@ -203,6 +249,12 @@ impl Search {
     #[must_use]
     pub const fn attempt(&self) -> Attempt {
         self.attempt
+    }
+
+    /// What it may set out with.
+    #[must_use]
+    pub const fn first(&self) -> Choice {
+        self.first
     }
 
     /// Look at `budget` more poses.
@@ -252,6 +304,9 @@ impl Search {
         nodes: &mut [u32],
     ) -> bool {
         for (number, motion) in MOTIONS.iter().enumerate() {
+            if index == 0 && !self.first.has(number) {
+                continue;
+            }
             let place = node.place.after(motion.length_m, motion.turn_rad);
             if !visit(visited, place) || !ground.surround.is_clear(place, self.attempt.margin_m) {
                 continue;
@@ -348,8 +403,9 @@ mod tests {
         let mut search = Search::start(
             Attempt {
                 margin_m: 0.02,
-                progress: true,
+                leads: Leads::Farther,
             },
+            Choice::ALL,
             &mut scratch,
         );
         loop {

@@ -13,7 +13,7 @@ pub mod manoeuvre;
 mod open;
 pub mod surround;
 
-pub use manoeuvre::{Attempt, Found, Ground, Plan, Search};
+pub use manoeuvre::{Attempt, Choice, Found, Ground, Leads, Plan, Search};
 pub use surround::{Place, Surround};
 
 use crate::config::Config;
@@ -29,15 +29,15 @@ const CREEP_MARGIN_M: f32 = 0.025;
 const ATTEMPTS: [Attempt; 3] = [
     Attempt {
         margin_m: 0.03,
-        progress: true,
+        leads: Leads::Farther,
     },
     Attempt {
         margin_m: 0.012,
-        progress: true,
+        leads: Leads::Farther,
     },
     Attempt {
         margin_m: 0.012,
-        progress: false,
+        leads: Leads::Elsewhere,
     },
 ];
 /// Clearance kept while a manoeuvre is driven, metres.
@@ -106,7 +106,10 @@ impl Drive {
             if is_moving(now) {
                 return Twist::default();
             }
-            self.search = Some(Search::start(ATTEMPTS[0], scratch));
+            let first = Choice::of(config.period_s, |twist| {
+                surround.admits(twist, now, config, PLAN_KEPT_M)
+            });
+            self.search = Some(Search::start(ATTEMPTS[0], first, scratch));
         }
         self.go_on_searching(ground, scratch);
         Twist::default()
@@ -131,7 +134,8 @@ impl Drive {
                     .iter()
                     .position(|&attempt| attempt == search.attempt());
                 let next = tried.and_then(|tried| ATTEMPTS.get(tried + 1));
-                self.search = next.map(|&attempt| Search::start(attempt, scratch));
+                let first = search.first();
+                self.search = next.map(|&attempt| Search::start(attempt, first, scratch));
             }
         }
     }

@@ -70,9 +70,10 @@ fn gradient(window: &Window, x: usize, y: usize) -> Option<(f32, f32)> {
     if !window.is_reached(x, y) {
         return None;
     }
-    let at = index(x, y);
-    let q = &window.q;
-    Some((q[at + 1] - q[at - 1], q[at + STRIDE] - q[at - STRIDE]))
+    let south = index(x, y) - STRIDE;
+    let q = |at| window.q.get(at).copied();
+    let upright = q(south + 2 * STRIDE)? - q(south)?;
+    Some((q(south + STRIDE + 1)? - q(south + STRIDE - 1)?, upright))
 }
 
 fn cell_gradient(window: &Window, x: i32, y: i32) -> Option<(f32, f32)> {

@@ -31,11 +31,32 @@
 //! Directions: x right (east), y up (north), row 0 is the least y. Everything is f32 without fused operations, so that
 //! host and target compute the same bits.
 
+// The solver's inner loops index by shape alone: no number that comes from outside is an index here. `Window` guards its own.
+#[allow(
+    clippy::indexing_slicing,
+    reason = "runs lie within the masks, whose bits are below SIDE in each of SIDE rows; a margin of a row and a cell lies around them"
+)]
 mod gauss_seidel;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "block columns are below FINEST, one less than the pairs of a row; block rows start within the field"
+)]
 mod multigrid;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "levels are cut from a fixed scratch, sized by the same constants at compile time"
+)]
 mod pyramid;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "rows are bits of `awake`, which has SIDE of them"
+)]
 mod reach;
 mod runs;
+#[allow(
+    clippy::indexing_slicing,
+    reason = "as for the sweep: runs within the masks, a margin around them"
+)]
 mod seed;
 
 pub mod descent;

@@ -11,7 +11,7 @@
 //! In q-form `|p_r − p_n| = |q_r − q_n|`, and small values keep their precision: in a converged field it is right to
 //! 1e-4 down to 1e-30; in any other it is as right as the field.
 
-use super::window::{GOAL, SIDE, Window, index};
+use super::window::{GOAL, SIDE, Window};
 
 /// `K_n`, width of the kernel in cells [Terrain, Table I].
 pub const KERNEL_CELLS: usize = 20;
@@ -28,7 +28,7 @@ pub fn p_diff(window: &Window, x: usize, y: usize) -> f32 {
     for row in y.saturating_sub(half)..(y + half).min(SIDE) {
         for column in x.saturating_sub(half)..(x + half).min(SIDE) {
             if window.is_reached(column, row) && (column, row) != (x, y) {
-                sum += (window.q[index(column, row)] - q_robot).abs();
+                sum += (window.q(column, row) - q_robot).abs();
                 cells += 1;
             }
         }

@@ -170,8 +170,10 @@ fn mean_preference(window: &Window) -> f32 {
     for (y, &reached) in window.reached.iter().enumerate() {
         for run in Runs(reached) {
             cells += run.len() as f32;
-            let preferences = &window.preference[index(run.start, y)..][..run.len()];
-            sum += preferences.iter().map(|p| 2.0 * p.half()).sum::<f32>();
+            let start = index(run.start, y);
+            let preferences = window.preference.get(start..start + run.len());
+            let epsilons = preferences.unwrap_or_default().iter();
+            sum += epsilons.map(|p| 2.0 * p.half()).sum::<f32>();
         }
     }
     sum / cells

@@ -153,20 +153,25 @@ impl Window {
     /// Take a new boundary: bit x of row y of `free` and of `goal`; what is in neither is an obstacle, what is in both
     /// is a goal. A cell that stays keeps its value as a warm start.
     pub fn set_boundary(&mut self, free: &[u64; SIDE], goal: &[u64; SIDE]) {
-        let free = core::array::from_fn(|y| free[y] & !goal[y] & ROW);
-        let goal = core::array::from_fn(|y| goal[y] & ROW);
+        let goal = goal.map(|row| row & ROW);
+        let mut free = free.map(|row| row & ROW);
+        for (free, goal) in free.iter_mut().zip(&goal) {
+            *free &= !goal;
+        }
         let reached = reach::flood(&free, &goal);
+        let was_reached = core::mem::replace(&mut self.reached, reached);
+        let was_goal = core::mem::replace(&mut self.goal, goal);
+        let now = free.iter().zip(reached.iter().zip(&goal));
+        let was = was_reached.iter().zip(&was_goal);
         let mut unreached = 0;
-        for y in 0..SIDE {
-            unreached += (free[y] & !reached[y]).count_ones();
-            let before = self.reached[y] | self.goal[y];
-            self.fill(y, before & !reached[y], 0.0);
-            if (reached[y] & !before) | (goal[y] & !self.goal[y]) != 0 {
+        for (y, ((free, (reached, goal)), (was_reached, was_goal))) in now.zip(was).enumerate() {
+            unreached += (free & !reached).count_ones();
+            let before = was_reached | was_goal;
+            self.fill(y, before & !reached, 0.0);
+            if (reached & !before) | (goal & !was_goal) != 0 {
                 self.touch_rows(1 << y);
             }
         }
-        self.reached = reached;
-        self.goal = goal;
         self.unreached = unreached as u16;
         self.charge_goals();
     }
@@ -221,8 +226,11 @@ impl Window {
 
     /// Give cell (x, y) a preference; outside the window nothing happens.
     pub fn set_preference(&mut self, x: usize, y: usize, preference: Preference) {
-        if x < SIDE && y < SIDE {
-            self.preference[index(x, y)] = preference;
+        if x >= SIDE || y >= SIDE {
+            return;
+        }
+        if let Some(cell) = self.preference.get_mut(index(x, y)) {
+            *cell = preference;
             self.preferred |= preference != Preference::NONE;
         }
     }
@@ -230,9 +238,9 @@ impl Window {
     /// Give every cell (x, y) the preference `of(x, y)`.
     pub fn set_preferences(&mut self, mut of: impl FnMut(usize, usize) -> Preference) {
         self.preferred = false;
-        for y in 0..SIDE {
-            let row = &mut self.preference[index(0, y)..][..SIDE];
-            for (x, cell) in row.iter_mut().enumerate() {
+        let rows = self.preference.chunks_exact_mut(STRIDE).skip(1);
+        for (y, row) in rows.take(SIDE).enumerate() {
+            for (x, cell) in row.iter_mut().skip(1).take(SIDE).enumerate() {
                 *cell = of(x, y);
                 self.preferred |= *cell != Preference::NONE;
             }
@@ -242,33 +250,25 @@ impl Window {
     /// The preference of cell (x, y); none outside the window.
     #[must_use]
     pub fn preference(&self, x: usize, y: usize) -> Preference {
-        if x < SIDE && y < SIDE {
-            self.preference[index(x, y)]
-        } else {
-            Preference::NONE
-        }
+        at(&self.preference, x, y).unwrap_or(Preference::NONE)
     }
 
     /// q of cell (x, y), from 0 to [`GOAL`]; 0 outside the window.
     #[must_use]
     pub fn q(&self, x: usize, y: usize) -> f32 {
-        if x < SIDE && y < SIDE {
-            self.q[index(x, y)]
-        } else {
-            0.0
-        }
+        at(&self.q, x, y).unwrap_or(0.0)
     }
 
     /// Is (x, y) a free cell with a way to a goal?
     #[must_use]
     pub fn is_reached(&self, x: usize, y: usize) -> bool {
-        x < SIDE && y < SIDE && self.reached[y] >> x & 1 == 1
+        x < SIDE && self.reached.get(y).is_some_and(|row| row >> x & 1 == 1)
     }
 
     /// Is (x, y) a goal cell?
     #[must_use]
     pub fn is_goal(&self, x: usize, y: usize) -> bool {
-        x < SIDE && y < SIDE && self.goal[y] >> x & 1 == 1
+        x < SIDE && self.goal.get(y).is_some_and(|row| row >> x & 1 == 1)
     }
 
     /// Free cells with a way to a goal, bit x of row y.
@@ -290,15 +290,13 @@ impl Window {
 
     /// Set q on `cells` of row y.
     fn fill(&mut self, y: usize, cells: u64, value: f32) {
-        for run in Runs(cells) {
-            self.q[index(run.start, y)..][..run.len()].fill(value);
-        }
+        fill(&mut self.q, y, cells, value);
     }
 
     /// Set q on the goals.
     pub(super) fn charge_goals(&mut self) {
-        for y in 0..SIDE {
-            self.fill(y, self.goal[y], GOAL);
+        for (y, &goal) in self.goal.iter().enumerate() {
+            fill(&mut self.q, y, goal, GOAL);
         }
     }
 }
@@ -306,6 +304,26 @@ impl Window {
 impl Default for Window {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+/// What is stored for cell (x, y); nothing outside the window.
+#[inline]
+fn at<T: Copy>(cells: &[T; FLOATS], x: usize, y: usize) -> Option<T> {
+    if x < SIDE && y < SIDE {
+        cells.get(index(x, y)).copied()
+    } else {
+        None
+    }
+}
+
+/// Set q on `cells` of row y.
+fn fill(q: &mut [f32; FLOATS], y: usize, cells: u64, value: f32) {
+    for run in Runs(cells) {
+        let start = index(run.start, y);
+        if let Some(run) = q.get_mut(start..start + run.len()) {
+            run.fill(value);
+        }
     }
 }
 
@@ -324,12 +342,21 @@ fn slide<T: Copy + Default>(cells: &mut [T; FLOATS], dx: i32, dy: i32) {
     let (rows, _) = cells.as_chunks_mut::<STRIDE>();
     let (incoming, outgoing) = if dx >= 0 { (across, 0) } else { (0, across) };
     for row in rows.iter_mut() {
-        row[..=outgoing].fill(nothing);
-        row[SIDE + 1 - incoming..].fill(nothing);
+        row.iter_mut()
+            .take(outgoing + 1)
+            .for_each(|cell| *cell = nothing);
+        row.iter_mut()
+            .skip(SIDE + 1 - incoming)
+            .for_each(|cell| *cell = nothing);
     }
     let (incoming, outgoing) = if dy >= 0 { (up, 0) } else { (0, up) };
-    rows[..=outgoing].as_flattened_mut().fill(nothing);
-    rows[SIDE + 1 - incoming..].as_flattened_mut().fill(nothing);
+    let empty = [nothing; STRIDE];
+    rows.iter_mut()
+        .take(outgoing + 1)
+        .for_each(|row| *row = empty);
+    rows.iter_mut()
+        .skip(SIDE + 1 - incoming)
+        .for_each(|row| *row = empty);
 }
 
 #[cfg(test)]

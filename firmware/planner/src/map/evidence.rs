@@ -22,7 +22,7 @@ const FREE_UPTO: u8 = 7;
 const MOST: u8 = 15;
 
 /// The rolling window of counts.
-#[derive(Debug)]
+#[derive(Debug, PartialEq, Eq)]
 pub struct Evidence {
     /// Two cells a byte, row by row.
     counts: [[u8; EVIDENCE_SIDE as usize / 2]; EVIDENCE_SIDE as usize],
@@ -103,14 +103,19 @@ impl Evidence {
         x >= 0 && x < EVIDENCE_SIDE && y >= 0 && y < EVIDENCE_SIDE
     }
 
-    fn update(&mut self, cell: Cell, class: Class, change: impl Fn(u8) -> u8) -> Class {
+    /// The byte that holds a cell's count, and by how much it is shifted up.
+    #[inline(always)]
+    fn pair(&mut self, cell: Cell) -> Option<(&mut u8, i32)> {
         let (x, y) = (cell.x & (EVIDENCE_SIDE - 1), cell.y & (EVIDENCE_SIDE - 1));
-        let pair = self
-            .counts
-            .get_mut(y as usize)
-            .and_then(|row| row.get_mut(x as usize / 2));
-        let Some(pair) = pair else { return class };
-        let shift = (x & 1) * 4;
+        let row = self.counts.get_mut(y as usize)?;
+        Some((row.get_mut(x as usize / 2)?, (x & 1) * 4))
+    }
+
+    #[inline(always)]
+    fn update(&mut self, cell: Cell, class: Class, change: impl Fn(u8) -> u8) -> Class {
+        let Some((pair, shift)) = self.pair(cell) else {
+            return class;
+        };
         let count = match *pair >> shift & 15 {
             0 => initial(class),
             count => count,
@@ -132,6 +137,22 @@ impl Evidence {
     /// A beam went through this cell, whose class was `class`; returns its class now.
     pub fn pass(&mut self, cell: Cell, class: Class) -> Class {
         self.update(cell, class, |count| count.saturating_sub(1).max(1))
+    }
+
+    /// A beam went through this cell, which is known to be free and stays so; most such cells were seen often.
+    #[inline(always)]
+    pub fn pass_free(&mut self, cell: Cell) {
+        let Some((pair, shift)) = self.pair(cell) else {
+            return;
+        };
+        let count = *pair >> shift & 15;
+        if count != 1 {
+            let next = match count {
+                0 => initial(Class::Free) - 1,
+                count => count - 1,
+            };
+            *pair = *pair & !(15 << shift) | next << shift;
+        }
     }
 }
 

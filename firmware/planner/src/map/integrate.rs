@@ -13,8 +13,9 @@
 //!
 //! Units: metres, radians; ranges in millimetres.
 
-use super::Map;
-use super::tiles::{Class, Cursor, NoRoom};
+use super::tiles::{Class, NoRoom, Page};
+use super::walk::Walk;
+use super::{Evidence, Map};
 use crate::config::Laser;
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::math;
@@ -48,10 +49,20 @@ pub(crate) struct Beam {
 impl Beam {
     /// Its end.
     pub(crate) fn end(&self) -> Point {
+        self.at(self.length_m)
+    }
+
+    /// The point that far along it.
+    fn at(&self, along_m: f32) -> Point {
         Point {
-            x_m: self.from.x_m + self.direction.0 * self.length_m,
-            y_m: self.from.y_m + self.direction.1 * self.length_m,
+            x_m: self.from.x_m + self.direction.0 * along_m,
+            y_m: self.from.y_m + self.direction.1 * along_m,
         }
+    }
+
+    /// Free cells are passed again and again; every fourth beam is witness enough.
+    const fn is_witness(&self) -> bool {
+        self.number & 3 == 0
     }
 }
 
@@ -127,49 +138,6 @@ pub(crate) fn level_beams<'a>(
     })
 }
 
-/// Visit the cells along a beam from `from_m` on, each with the distance at which the beam leaves it, until the visitor
-/// says stop. The last cell is the one that holds the beam's end.
-fn traverse(beam: &Beam, from_m: f32, mut visit: impl FnMut(Cell, f32) -> bool) {
-    let start = Point {
-        x_m: beam.from.x_m + beam.direction.0 * from_m,
-        y_m: beam.from.y_m + beam.direction.1 * from_m,
-    };
-    let mut cell = start.cell();
-    let axis = |position: f32, index: i32, direction: f32| {
-        if direction > 1e-6 {
-            (
-                1,
-                ((index + 1) as f32 * CELL_M - position) / direction,
-                CELL_M / direction,
-            )
-        } else if direction < -1e-6 {
-            (
-                -1,
-                (index as f32 * CELL_M - position) / direction,
-                -CELL_M / direction,
-            )
-        } else {
-            (0, f32::MAX, 0.0)
-        }
-    };
-    let (step_x, mut next_x, every_x) = axis(start.x_m, cell.x, beam.direction.0);
-    let (step_y, mut next_y, every_y) = axis(start.y_m, cell.y, beam.direction.1);
-    let length = beam.length_m - from_m;
-    loop {
-        let leaves = if next_x < next_y { next_x } else { next_y };
-        if !visit(cell, leaves + from_m) || leaves >= length {
-            return;
-        }
-        if next_x < next_y {
-            cell.x += step_x;
-            next_x += every_x;
-        } else {
-            cell.y += step_y;
-            next_y += every_y;
-        }
-    }
-}
-
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Enter one scan of `laser`, taken at `pose`. What there is no room for sets [`Map::out_of_box`] or [`Map::pool_full`].
     pub fn integrate(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
@@ -207,39 +175,33 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 
     fn free_along(&mut self, beam: &Beam) {
-        if beam.length_m <= beam.free_from_m {
+        let from_m = beam.free_from_m;
+        let (start, length_m) = (beam.at(from_m), beam.length_m - from_m);
+        if length_m <= 0.0 {
             return;
         }
-        let mut cursor = Cursor::default();
-        let guard_from_m = if beam.hit {
-            beam.length_m - GUARD_M
-        } else {
-            f32::MAX
-        };
-        // Free cells are passed again and again; every fourth beam is witness enough.
-        let witness = beam.number & 3 == 0;
-        traverse(beam, beam.free_from_m, |cell, leaves_m| {
-            if beam.hit && leaves_m >= beam.length_m {
-                return false;
-            }
-            match self.tiles.class_at(&mut cursor, cell) {
-                Class::Free if !witness => true,
-                Class::Obstacle | Class::Negative if leaves_m > guard_from_m => true,
-                class => self.pass(cell, class) && (beam.hit || class.is_open()),
-            }
-        });
-    }
-
-    /// A beam went through a cell; false where there is no room to note it.
-    fn pass(&mut self, cell: Cell, class: Class) -> bool {
-        let now = if self.evidence.covers(cell) {
-            self.evidence.pass(cell, class)
-        } else if class == Class::Unknown {
-            Class::Free
-        } else {
-            class
-        };
-        now == class || self.store(cell, now)
+        let mut walk = Walk::new(start, beam.direction, length_m, beam.hit);
+        let mut goes_on = true;
+        while goes_on && !walk.is_over() {
+            let tile = walk.tile();
+            goes_on = match self.tiles.open(tile) {
+                Ok(page) => {
+                    let passing = Passing {
+                        evidence: &mut self.evidence,
+                        page,
+                        tile,
+                        guard_from_m: length_m - GUARD_M,
+                        stops_at_obstacle: !beam.hit,
+                    };
+                    if beam.is_witness() {
+                        passing.through::<true>(&mut walk)
+                    } else {
+                        passing.through::<false>(&mut walk)
+                    }
+                }
+                Err(no_room) => self.note(no_room),
+            };
+        }
     }
 
     fn hit(&mut self, cell: Cell) {
@@ -254,19 +216,20 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    /// Store, remembering what there was no room for; false if there was none.
-    fn store(&mut self, cell: Cell, class: Class) -> bool {
-        match self.tiles.set(cell, class) {
-            Ok(()) => true,
-            Err(NoRoom::Box) => {
-                self.out_of_box = true;
-                false
-            }
-            Err(NoRoom::Pool) => {
-                self.pool_full = true;
-                false
-            }
+    /// Store, remembering what there was no room for.
+    fn store(&mut self, cell: Cell, class: Class) {
+        if let Err(no_room) = self.tiles.set(cell, class) {
+            self.note(no_room);
         }
+    }
+
+    /// Remember what there was no room for; false, because there was none.
+    fn note(&mut self, no_room: NoRoom) -> bool {
+        match no_room {
+            NoRoom::Box => self.out_of_box = true,
+            NoRoom::Pool => self.pool_full = true,
+        }
+        false
     }
 
     fn mark_standing(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
@@ -294,58 +257,161 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 }
 
+/// A beam that goes through a tile.
+struct Passing<'a> {
+    evidence: &'a mut Evidence,
+    page: Page<'a>,
+    tile: (i32, i32),
+    /// From here on it does not erode obstacles.
+    guard_from_m: f32,
+    /// It met nothing, so an obstacle on its way is none of its business, and the end of it.
+    stops_at_obstacle: bool,
+}
+
+impl Passing<'_> {
+    /// Free the cells of the tile; whether the beam goes on in the next.
+    #[inline(never)]
+    fn through<const WITNESS: bool>(mut self, walk: &mut Walk) -> bool {
+        walk.cross(|row, bit, leaves_m| {
+            if !self.page.is_free(row, bit) {
+                return self.pass(row, bit, leaves_m);
+            }
+            if WITNESS {
+                let cell = Walk::cell(self.tile, row, bit);
+                if self.evidence.covers(cell) {
+                    self.evidence.pass_free(cell);
+                }
+            }
+            true
+        })
+    }
+
+    /// Note that the beam went through a cell not known to be free; whether it goes on.
+    #[inline(never)]
+    fn pass(&mut self, row: usize, bit: u32, leaves_m: f32) -> bool {
+        let class = self.page.class(row, bit);
+        if !class.is_open() && !self.stops_at_obstacle && leaves_m > self.guard_from_m {
+            return true;
+        }
+        let cell = Walk::cell(self.tile, row, bit);
+        let now = if self.evidence.covers(cell) {
+            self.evidence.pass(cell, class)
+        } else if class == Class::Unknown {
+            Class::Free
+        } else {
+            class
+        };
+        if now != class {
+            self.page.set(row, bit, now);
+        }
+        class.is_open() || !self.stops_at_obstacle
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::traverse;
     use super::*;
+    use crate::planner::NO_RETURN_MM;
 
-    fn beam(x_m: f32, y_m: f32, angle: f32, length_m: f32) -> Beam {
-        let (sin, cos) = math::sin_cos(angle);
-        Beam {
-            from: Point { x_m, y_m },
-            direction: (cos, sin),
-            length_m,
-            hit: true,
-            number: 0,
-            free_from_m: 0.0,
+    type Plan = Map<144, 144>;
+
+    fn laser() -> Laser {
+        Laser {
+            x_m: 0.0,
+            y_m: 0.0,
+            z_m: 0.4,
+            pitch_rad: 0.0,
+            first_bearing_rad: -math::PI / 2.0,
+            bearing_step_rad: math::PI / 180.0,
+            beams: 181,
+            range_limit_mm: 12_000,
         }
     }
 
-    /// Every cell that the segment passes more than a hair inside of must be visited, by dense sampling.
-    #[test]
-    fn the_traversal_visits_every_cell_of_the_segment_in_order() {
-        for k in 0..200 {
-            let b = beam(
-                0.013 * k as f32,
-                -0.7 + 0.01 * k as f32,
-                0.17 * k as f32,
-                0.05 + 0.02 * k as f32,
-            );
-            let mut cells = std::vec::Vec::new();
-            traverse(&b, 0.0, |cell, _| {
-                cells.push(cell);
-                true
-            });
-            for pair in cells.windows(2) {
-                assert_eq!(
-                    (pair[0].x - pair[1].x).abs() + (pair[0].y - pair[1].y).abs(),
-                    1
-                );
-            }
-            let mut at = 0;
-            for i in 0..=2000 {
-                let s = b.length_m * i as f32 / 2000.0;
-                let p = Point {
-                    x_m: b.from.x_m + b.direction.0 * s,
-                    y_m: b.from.y_m + b.direction.1 * s,
+    /// The slow twin of [`Map::free_along`]: cell by cell through the map's front door.
+    fn free_slowly(map: &mut Plan, beam: &Beam) {
+        let (start, length_m) = (beam.at(beam.free_from_m), beam.length_m - beam.free_from_m);
+        let mut walk = Walk::new(start, beam.direction, length_m, beam.hit);
+        let mut goes_on = length_m > 0.0;
+        while goes_on && !walk.is_over() {
+            let tile = walk.tile();
+            goes_on = walk.cross(|row, bit, leaves_m| {
+                let cell = Walk::cell(tile, row, bit);
+                let class = map.class(cell);
+                let kept = match class {
+                    Class::Free => !beam.is_witness(),
+                    Class::Unknown => false,
+                    _ => beam.hit && leaves_m > length_m - GUARD_M,
                 };
-                let inside = |v: f32| (v / CELL_M - (v / CELL_M).round()).abs() > 1e-3;
-                if inside(p.x_m) && inside(p.y_m) {
-                    while at < cells.len() && cells[at] != p.cell() {
-                        at += 1;
-                    }
-                    assert!(at < cells.len(), "beam {k} misses {:?}", p.cell());
+                if kept {
+                    return true;
                 }
+                let now = if map.evidence.covers(cell) {
+                    map.evidence.pass(cell, class)
+                } else if class == Class::Unknown {
+                    Class::Free
+                } else {
+                    class
+                };
+                if map.tiles.set(cell, now).is_err() {
+                    return false;
+                }
+                beam.hit || class.is_open()
+            });
+        }
+    }
+
+    fn random(seed: &mut u32) -> u32 {
+        *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        *seed >> 8
+    }
+
+    /// A scan of a messy room: walls at some distance, holes in them, noise.
+    fn scan(seed: &mut u32) -> [u16; 181] {
+        let wall = 1_000 + random(seed) % 8_000;
+        core::array::from_fn(|i| match random(seed) % 8 {
+            0 => NO_RETURN_MM,
+            1 => INVALID_MM,
+            _ if i / 20 % 3 == 0 => NO_RETURN_MM,
+            _ => (wall + random(seed) % 300) as u16,
+        })
+    }
+
+    #[test]
+    fn going_by_tiles_is_going_by_cells() {
+        let mut seed = 7;
+        // The small box is too small for the walk: what there is no room for must not differ either.
+        for side in [6, 12] {
+            let (mut fast, mut slow) = (Plan::new(), Plan::new());
+            for map in [&mut fast, &mut slow] {
+                map.reset(side, side);
+                map.evidence.reset(Cell::default());
+            }
+            for k in 0..60 {
+                let pose = Pose {
+                    x_m: 0.07 * k as f32 - 1.0,
+                    y_m: 0.003 * (random(&mut seed) % 100) as f32,
+                    yaw_rad: 0.2 * k as f32,
+                    ..Pose::default()
+                };
+                let ranges = scan(&mut seed);
+                fast.integrate(&pose, &laser(), &ranges);
+                for beam in level_beams(&pose, &laser(), &ranges) {
+                    free_slowly(&mut slow, &beam);
+                }
+                for beam in level_beams(&pose, &laser(), &ranges).filter(|beam| beam.hit) {
+                    slow.hit(beam.end().cell());
+                }
+                for map in [&mut fast, &mut slow] {
+                    map.evidence.follow(pose.point().cell());
+                }
+            }
+            assert!(fast.tiles.used() > 9);
+            // What there is no room for has no evidence either; the slow twin keeps some, which never tells.
+            assert!(side == 6 || fast.evidence == slow.evidence);
+            for tile in (-9..9).flat_map(|y| (-9..9).map(move |x| (x, y))) {
+                let of = |map: &Plan| map.tiles.packed(tile.0, tile.1);
+                assert_eq!(of(&fast), of(&slow), "tile {tile:?}");
             }
         }
     }

@@ -5,7 +5,9 @@
 
 pub mod evidence;
 pub mod integrate;
+pub mod rows;
 pub mod tiles;
+mod walk;
 
 pub use evidence::Evidence;
 pub use tiles::{Class, Tiles};

@@ -10,10 +10,12 @@
 //! Invariant: `extent` covers every tile in use and is at most w by h tiles, so no two tiles share a slot.
 //! Units: cells of [`crate::geometry::CELL_M`].
 
+use super::rows::{Column, Row, RowReader};
 use crate::geometry::Cell;
 
 /// Cells along a tile's side.
 pub const TILE_SIDE: i32 = 32;
+pub(super) const TILE_ROWS: usize = TILE_SIDE as usize;
 
 /// What is known of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,14 +49,6 @@ impl Class {
     }
 }
 
-/// Remembers the tile of the last cell looked up: consecutive cells of a beam share it.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Cursor {
-    tile: Option<(i32, i32)>,
-    /// Pool index + 1 of it, 0 where there is none (yet).
-    index: u16,
-}
-
 /// A cell that the map has no room for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoRoom {
@@ -62,40 +56,6 @@ pub enum NoRoom {
     Box,
     /// Every tile of the pool is in use.
     Pool,
-}
-
-/// 64 cells of a row: bit k of each word is column x + k.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Row {
-    low: u64,
-    high: u64,
-    trail: u64,
-}
-
-impl Row {
-    /// Cells that stand in the way, of either sign.
-    #[must_use]
-    pub const fn obstacle(self) -> u64 {
-        self.high
-    }
-
-    /// Cells known to be traversable.
-    #[must_use]
-    pub const fn free(self) -> u64 {
-        self.low & !self.high
-    }
-
-    /// Cells on or beside the robot's way so far.
-    #[must_use]
-    pub const fn trail(self) -> u64 {
-        self.trail
-    }
-
-    /// Cells never measured.
-    #[must_use]
-    pub const fn unknown(self) -> u64 {
-        !(self.low | self.high)
-    }
 }
 
 /// Inclusive bounds in tiles.
@@ -136,61 +96,51 @@ const fn max(a: i32, b: i32) -> i32 {
     if a > b { a } else { b }
 }
 
-type TileRows = [[u32; 2]; TILE_SIDE as usize];
-type Trail = [u16; TILE_SIDE as usize / 2];
+pub(super) type TileRows = [[u32; 2]; TILE_ROWS];
+pub(super) type Trail = [u16; TILE_ROWS / 2];
 
-/// A tile that a reader goes through.
-#[derive(Clone, Copy, Debug)]
-struct Column<'a> {
-    rows: &'a TileRows,
-    trail: &'a Trail,
-}
-
-/// Reads rows of 64 cells one after another; tiles are looked up once in 32 rows.
+/// A tile that a beam goes through. Rows count from 0 to 31, columns are bits.
 #[derive(Debug)]
-pub struct RowReader<'a, const TILES: usize, const SLOTS: usize> {
-    tiles: &'a Tiles<TILES, SLOTS>,
-    x: i32,
-    tile_y: i32,
-    columns: [Option<Column<'a>>; 3],
+pub(super) struct Page<'a> {
+    rows: &'a mut TileRows,
+    edits: &'a mut u32,
 }
 
-impl<const TILES: usize, const SLOTS: usize> RowReader<'_, TILES, SLOTS> {
-    /// The 64 cells of row `y`.
-    pub fn row(&mut self, y: i32) -> Row {
-        if y >> 5 != self.tile_y {
-            self.tile_y = y >> 5;
-            for (k, column) in (0..).zip(&mut self.columns) {
-                *column = self.tiles.column((self.x >> 5) + k, self.tile_y);
-            }
-        }
-        let shift = (self.x & 31) as u32;
-        let [first, second, third] = self.columns.map(|column| read(column, y));
-        // The first tile's cells move down by the shift, the others follow it; the third only has cells when there is a shift.
-        let join = |first: u32, second: u32, third: u32| {
-            let whole = u64::from(second) << 32 | u64::from(first);
-            let beyond = u64::from(third) << 32 << (32 - shift);
-            if shift == 0 {
-                whole
-            } else {
-                whole >> shift | beyond
-            }
-        };
-        Row {
-            low: join(first[0], second[0], third[0]),
-            high: join(first[1], second[1], third[1]),
-            trail: join(first[2], second[2], third[2]),
+impl Page<'_> {
+    /// Whether a cell is known to be traversable.
+    #[inline(always)]
+    pub(super) fn is_free(&self, row: usize, bit: u32) -> bool {
+        self.rows
+            .get(row % TILE_ROWS)
+            .is_some_and(|[low, high]| low & !high & bit != 0)
+    }
+
+    /// What is known of a cell.
+    pub(super) fn class(&self, row: usize, bit: u32) -> Class {
+        self.rows
+            .get(row % TILE_ROWS)
+            .map_or(Class::Unknown, |[low, high]| {
+                Class::from_bits(low & bit, high & bit)
+            })
+    }
+
+    /// Store what is known of a cell.
+    #[inline(always)]
+    pub(super) fn set(&mut self, row: usize, bit: u32, class: Class) {
+        if let Some(words) = self.rows.get_mut(row % TILE_ROWS) {
+            *self.edits = self.edits.wrapping_add(u32::from(write(words, bit, class)));
         }
     }
 }
 
-/// Low, high and trail bits of a tile's row.
-fn read(column: Option<Column<'_>>, y: i32) -> [u32; 3] {
-    let Some(column) = column else { return [0; 3] };
-    let row = (y & 31) as usize;
-    let [low, high] = column.rows.get(row).copied().unwrap_or_default();
-    let trail = column.trail.get(row / 2).copied().unwrap_or(0);
-    [low, high, if trail == 0 { 0 } else { twice(trail) }]
+/// Write a cell's class into the words of its row; whether it changed.
+#[inline(always)]
+const fn write([low, high]: &mut [u32; 2], bit: u32, class: Class) -> bool {
+    let code = class as u32;
+    let old = (*low, *high);
+    *low = *low & !bit | bit & (code & 1).wrapping_neg();
+    *high = *high & !bit | bit & (code >> 1 & 1).wrapping_neg();
+    old.0 != *low || old.1 != *high
 }
 
 /// The tile pool and its directory. `TILES` tiles in the pool, `SLOTS` places in the box.
@@ -298,23 +248,44 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.pool.get(usize::from(entry.checked_sub(1)?))
     }
 
+    /// The extent with a tile outside it.
+    fn grown(&self, tile_x: i32, tile_y: i32) -> Result<Extent, NoRoom> {
+        let grown = match self.extent {
+            Some(extent) => extent.with(tile_x, tile_y),
+            None => Extent {
+                least: (tile_x, tile_y),
+                greatest: (tile_x, tile_y),
+            },
+        };
+        if grown.width() > self.width || grown.height() > self.height {
+            Err(NoRoom::Box)
+        } else if usize::from(self.used) >= TILES {
+            Err(NoRoom::Pool)
+        } else {
+            Ok(grown)
+        }
+    }
+
+    /// Whether a tile is stored, or could be.
+    ///
+    /// # Errors
+    /// [`NoRoom`] where the box or the pool cannot hold it.
+    pub fn room(&self, tile_x: i32, tile_y: i32) -> Result<(), NoRoom> {
+        if self.is_touched(tile_x, tile_y) {
+            Ok(())
+        } else if !self.in_extent(tile_x, tile_y) {
+            self.grown(tile_x, tile_y).map(|_| ())
+        } else if usize::from(self.used) >= TILES {
+            Err(NoRoom::Pool)
+        } else {
+            Ok(())
+        }
+    }
+
     /// Pool index of the tile, taking a fresh one on first touch.
     fn touch(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
         if !self.in_extent(tile_x, tile_y) {
-            let grown = match self.extent {
-                Some(extent) => extent.with(tile_x, tile_y),
-                None => Extent {
-                    least: (tile_x, tile_y),
-                    greatest: (tile_x, tile_y),
-                },
-            };
-            if grown.width() > self.width || grown.height() > self.height {
-                return Err(NoRoom::Box);
-            }
-            if usize::from(self.used) >= TILES {
-                return Err(NoRoom::Pool);
-            }
-            self.extent = Some(grown);
+            self.extent = Some(self.grown(tile_x, tile_y)?);
         }
         let slot = self.slot(tile_x, tile_y);
         let entry = self.directory.get_mut(slot).ok_or(NoRoom::Box)?;
@@ -348,30 +319,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// # Errors
     /// [`NoRoom`] where the box or the pool cannot hold it; the map is then unchanged.
     pub fn set(&mut self, cell: Cell, class: Class) -> Result<(), NoRoom> {
-        let index = self.touch(cell.x >> 5, cell.y >> 5)?;
-        let row = self
-            .pool
-            .get_mut(index)
-            .and_then(|rows| rows.get_mut((cell.y & 31) as usize));
-        let Some([low, high]) = row else {
-            return Err(NoRoom::Pool);
-        };
-        let bit = 1u32 << (cell.x & 31);
-        let code = class as u8;
-        let old = (*low, *high);
-        *low = if code & 1 == 0 {
-            *low & !bit
-        } else {
-            *low | bit
-        };
-        *high = if code & 2 == 0 {
-            *high & !bit
-        } else {
-            *high | bit
-        };
-        if old != (*low, *high) {
-            self.edits = self.edits.wrapping_add(1);
-        }
+        let mut page = self.open((cell.x >> 5, cell.y >> 5))?;
+        page.set((cell.y & 31) as usize, 1 << (cell.x & 31), class);
         Ok(())
     }
 
@@ -399,16 +348,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// A reader of rows of 64 cells from column `x` on.
     #[must_use]
     pub const fn reader(&self, x: i32) -> RowReader<'_, TILES, SLOTS> {
-        RowReader {
-            tiles: self,
-            x,
-            tile_y: i32::MIN,
-            columns: [None; 3],
-        }
+        RowReader::new(self, x)
     }
 
     /// The rows and the trail of a tile, if it is in the extent.
-    fn column(&self, tile_x: i32, tile_y: i32) -> Option<Column<'_>> {
+    pub(super) fn column(&self, tile_x: i32, tile_y: i32) -> Option<Column<'_>> {
         if !self.in_extent(tile_x, tile_y) {
             return None;
         }
@@ -420,27 +364,16 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         })
     }
 
-    /// What is known of a cell, looked up by a cursor that remembers the tile of the last one.
-    pub(super) fn class_at(&self, cursor: &mut Cursor, cell: Cell) -> Class {
-        let tile = (cell.x >> 5, cell.y >> 5);
-        if cursor.tile != Some(tile) || cursor.index == 0 {
-            cursor.tile = Some(tile);
-            cursor.index = if self.in_extent(tile.0, tile.1) {
-                self.directory
-                    .get(self.slot(tile.0, tile.1))
-                    .copied()
-                    .unwrap_or(0)
-            } else {
-                0
-            };
-        }
-        let rows = usize::from(cursor.index)
-            .checked_sub(1)
-            .and_then(|index| self.pool.get(index));
-        let Some([low, high]) = rows.and_then(|rows| rows.get((cell.y & 31) as usize)) else {
-            return Class::Unknown;
-        };
-        Class::from_bits(low >> (cell.x & 31) & 1, high >> (cell.x & 31) & 1)
+    /// A tile to be read and written cell by cell, given out if it was not yet.
+    ///
+    /// # Errors
+    /// [`NoRoom`] where the box or the pool cannot hold it; the map is then unchanged.
+    pub(super) fn open(&mut self, (tile_x, tile_y): (i32, i32)) -> Result<Page<'_>, NoRoom> {
+        let index = self.touch(tile_x, tile_y)?;
+        Ok(Page {
+            rows: self.pool.get_mut(index).ok_or(NoRoom::Pool)?,
+            edits: &mut self.edits,
+        })
     }
 
     /// A tile's cells, two bits each, row by row from the least y with the least x in the low bits; `None` where nothing
@@ -466,16 +399,6 @@ impl<const TILES: usize, const SLOTS: usize> Default for Tiles<TILES, SLOTS> {
     fn default() -> Self {
         Self::new()
     }
-}
-
-/// Every bit doubled.
-const fn twice(bits: u16) -> u32 {
-    let mut wide = bits as u32;
-    wide = (wide | wide << 8) & 0x00ff_00ff;
-    wide = (wide | wide << 4) & 0x0f0f_0f0f;
-    wide = (wide | wide << 2) & 0x3333_3333;
-    wide = (wide | wide << 1) & 0x5555_5555;
-    wide | wide << 1
 }
 
 #[cfg(test)]

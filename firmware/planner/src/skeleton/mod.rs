@@ -1,15 +1,17 @@
 //! The skeleton of the traversable space and distances along it.
 //!
-//! The *centre cells* are the skeleton of the space left by obstacles: known free and unknown cells together, cropped
-//! to the known box, so that paths may run through the unexplored [Ouroboros, step 1]. They are found by thinning
+//! The *centre cells* are the skeleton of the space left by obstacles: of what is known of it, or of the unexplored too,
+//! so that paths may run through it [Ouroboros, step 1]; see [`crate::topology::Space`]. They are found by thinning
 //! [Guo & Hall 1989, two subiterations], which keeps the space's pieces and holes: between two places the skeleton has a
-//! way exactly where the space has one. A [`Wavefront`] then counts the steps from any set of centre cells along the
-//! skeleton, and a [`Descent`] walks back down.
+//! way exactly where the space has one. Anchors, cells that are kept whatever the rule says, change neither. A
+//! [`Wavefront`] counts the steps from any set of centre cells along the skeleton, and a [`Descent`] walks back
+//! down.
 //!
 //! Departs from [Ouroboros, step 1]: the plane that is thinned has cells of 20 cm, one for 2 × 2 cells of the map, and holds
 //! the space of the robot's centre (obstacles grown by its radius) in place of the space itself. The skeleton charges
 //! the window and does not steer within it, so it need not be finer than the robot; a quarter of the cells and half
-//! the passes make it affordable on the microcontroller, and a way in it is a way for this robot's radius.
+//! the passes make it affordable on the microcontroller, and a way in it is a way for this robot's radius. Doors stay
+//! open: `tests/golden/doors.txt`.
 //!
 //! Both the thinning and the wavefront work under a budget: they stop when it is spent and go on later from exactly
 //! there, with the same result as without a stop. Neither knows how large a cell is.

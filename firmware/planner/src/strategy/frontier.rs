@@ -2,14 +2,16 @@
 //! [Ouroboros, Algorithm 1 without loop closing: lines 3, 4, 23–28].
 //!
 //! The goal that the robot is on its way to has a head start in the wave, so that two equally near goals do not pull it to and
-//! fro. A goal that is reached and stays unexplored, or to which the robot makes no progress, is dropped, with its reason; so no
-//! run hangs on a cell that cannot be seen. Those without progress get a second chance when nothing else is left.
+//! fro. A goal that is reached and stays unexplored, or that comes no nearer, is dropped, with its reason; a way that cannot be
+//! driven is barred ([`Patience`]); so no run hangs on a cell that cannot be seen. When nothing else is left, everything gets a
+//! second chance, as for a robot that fits more narrowly: at 10 cm a cell, a gap that it just fits through may look closed.
 //!
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
 
 use heapless::Vec;
 
 use super::Road;
+use super::patience::{Patience, Verdict};
 use crate::bits::{Adjacency, flood};
 use crate::clearance::Disc;
 use crate::field::SIDE;
@@ -27,22 +29,14 @@ pub const MOST_DROPPED: usize = 32;
 const DROP_RADIUS_M: f32 = 0.5;
 /// Leftover cells this near are one group, metres.
 const GROUP_RADIUS_M: f32 = 2.0;
-/// Time without progress after which a goal is dropped, milliseconds.
-const PATIENCE_MS: u32 = 12_000;
-/// A goal this near is reached, coarse steps.
-const REACHED_STEPS: u32 = 3;
-/// Time at a reached goal after which it is dropped, milliseconds: two turns on the spot.
-const LOOK_MS: u32 = 5_000;
-/// Time without moving after which a goal is dropped, milliseconds.
-const STANDING_MS: u32 = 14_000;
-/// A robot that moved less than this has not moved, metres.
-const MOVED_M: f32 = 0.3;
-/// Goals dropped in a row without moving after which the robot is stuck.
-const STUCK_DROPS: u8 = 4;
+/// Ways barred at the most; the oldest gives way.
+const MOST_BARS: usize = 8;
+/// Around a bar the skeleton is cut, metres: the width of a door.
+const BAR_RADIUS_M: f32 = 0.4;
+/// A robot that cannot go on is barred from its road this far ahead, metres: where its front meets what stops it.
+const BAR_AHEAD_M: f32 = 0.5;
 /// Head start of the present goal, coarse steps: what turning about costs.
 const HEAD_START: u32 = 10;
-/// Rounds in a row without a field at the robot after which a goal is dropped.
-const FLAT_ROUNDS: u8 = 4;
 /// Rounds in a row that must find nothing before the exploration is over: noise may close a way for a moment.
 const EMPTY_ROUNDS: u8 = 5;
 
@@ -51,16 +45,8 @@ const EMPTY_ROUNDS: u8 = 5;
 pub struct Frontier {
     road: Road,
     dropped: Vec<Leftover, MOST_DROPPED>,
-    /// Fewest steps so far to the present goal, and when.
-    fewest: u32,
-    since_ms: u32,
-    /// Where the robot last moved from, when, and how many goals it dropped since.
-    stood: Point,
-    stood_ms: u32,
-    stood_drops: u8,
-    /// The window had no way to the local goal since the last round, and in how many rounds before.
-    flat: bool,
-    flat_rounds: u8,
+    bars: Vec<Cell, MOST_BARS>,
+    patience: Patience,
     empty_rounds: u8,
     second_chance: bool,
 }
@@ -112,13 +98,8 @@ impl Frontier {
         Self {
             road: Road::new(),
             dropped: Vec::new(),
-            fewest: u32::MAX,
-            since_ms: 0,
-            stood: Point { x_m: 0.0, y_m: 0.0 },
-            stood_ms: 0,
-            stood_drops: 0,
-            flat: false,
-            flat_rounds: 0,
+            bars: Vec::new(),
+            patience: Patience::new(),
             empty_rounds: 0,
             second_chance: false,
         }
@@ -141,6 +122,19 @@ impl Frontier {
         &self.dropped
     }
 
+    /// Whether everything is tried a second time, more narrowly.
+    #[must_use]
+    pub const fn is_second_chance(&self) -> bool {
+        self.second_chance
+    }
+
+    /// Cut the published skeleton where ways are barred.
+    pub fn cut<const SLOTS: usize>(&self, topology: &mut Topology<SLOTS>) {
+        for &bar in &self.bars {
+            topology.cut(bar, BAR_RADIUS_M);
+        }
+    }
+
     /// A new skeleton is there: spread the wave from its frontier cells, move the robot to the skeleton, and walk down
     /// [Ouroboros, Algorithm 1, lines 3, 4, 24]. It works in what is lent.
     pub fn replan<const TILES: usize, const SLOTS: usize>(
@@ -148,11 +142,29 @@ impl Frontier {
         known: &Known<'_, TILES, SLOTS>,
         robot: Point,
         time_ms: u32,
-        lent: Lent<'_>,
+        mut lent: Lent<'_>,
     ) -> Outlook {
-        let road = self.find_road(known, robot, lent);
-        self.note_motion(robot, time_ms);
-        self.adopt(road, time_ms)
+        let road = self.find_road(known, robot, &mut lent);
+        self.patience.note_motion(robot, time_ms);
+        let Some(road) = road else {
+            return self.do_without();
+        };
+        self.adopt(road);
+        match self.patience.judge(self.road.steps(), time_ms) {
+            Verdict::GoOn => {}
+            Verdict::Drop(reason) => self.drop_goal(reason),
+            Verdict::BarLeak => self.bar(leak(&self.road, known, robot, lent.view)),
+            Verdict::BarAhead => self.bar(ahead(&self.road, robot)),
+        }
+        match (
+            self.patience.is_stuck(),
+            self.second_chance && self.patience.moved(),
+        ) {
+            (false, _) => Outlook::Road,
+            // What is left is behind gaps that turned out too narrow.
+            (true, true) => Outlook::Nothing,
+            (true, false) => Outlook::Stuck,
+        }
     }
 
     /// List the frontier cells that were never within reach, in groups, behind the goals that were dropped.
@@ -165,39 +177,49 @@ impl Frontier {
         };
         for site in goals.sites() {
             let cell = known.topology.frame().cell(site);
-            let group = self
-                .dropped
-                .iter_mut()
-                .find(|left| near(left.cell, cell, GROUP_RADIUS_M));
-            match group {
-                Some(left) => left.cells = left.cells.saturating_add(1),
-                // A full list names enough of them.
-                None => {
-                    let left = Leftover {
-                        cell,
-                        cells: 1,
-                        reason: Residue::Unreachable,
-                    };
-                    let _ = self.dropped.push(left);
-                }
-            }
+            self.list(cell, Residue::Unreachable);
         }
+    }
+
+    /// List a cell beyond which the map has no room; a goal dropped beside it was dropped for that.
+    pub fn list_way_out(&mut self, cell: Cell) {
+        if let Some(left) = self.list(cell, Residue::OutOfBounds) {
+            left.reason = Residue::OutOfBounds;
+        }
+    }
+
+    /// Count a cell to the group it is near to, or begin one.
+    fn list(&mut self, cell: Cell, reason: Residue) -> Option<&mut Leftover> {
+        let group = |left: &Leftover| near(left.cell, cell, GROUP_RADIUS_M);
+        if let Some(k) = self.dropped.iter().position(group) {
+            let left = self.dropped.get_mut(k)?;
+            left.cells = left.cells.saturating_add(1);
+            return Some(left);
+        }
+        let left = Leftover {
+            cell,
+            cells: 1,
+            reason,
+        };
+        // A full list names enough of them.
+        self.dropped.push(left).ok()?;
+        self.dropped.last_mut()
     }
 
     fn find_road<const TILES: usize, const SLOTS: usize>(
         &self,
         known: &Known<'_, TILES, SLOTS>,
         robot: Point,
-        lent: Lent<'_>,
+        lent: &mut Lent<'_>,
     ) -> Option<Road> {
         let frame = known.topology.frame();
         let way = known.topology.skeleton()?;
         let goals = known.topology.frontier()?;
-        let residues = Residues::new(frame.shape, lent.residues).ok()?;
+        let residues = Residues::new(frame.shape, &mut *lent.residues).ok()?;
         let mut space = WaveSpace {
             way,
             residues,
-            ring: lent.ring,
+            ring: &mut *lent.ring,
         };
         self.spread(&mut space, goals, frame);
         let entry = entry(&space, frame, known, robot.cell(), lent.view)?;
@@ -232,78 +254,51 @@ impl Frontier {
 
     /// The window has no way from the robot to its local goal, though the skeleton, coarser, had one.
     pub fn note_flat(&mut self) {
-        self.flat = true;
+        self.patience.note_flat();
     }
 
-    fn note_motion(&mut self, robot: Point, time_ms: u32) {
-        let (dx, dy) = (robot.x_m - self.stood.x_m, robot.y_m - self.stood.y_m);
-        if dx * dx + dy * dy > MOVED_M * MOVED_M {
-            (self.stood, self.stood_ms, self.stood_drops) = (robot, time_ms, 0);
-        }
-    }
-
-    fn adopt(&mut self, road: Option<Road>, time_ms: u32) -> Outlook {
-        let Some(road) = road else {
-            self.road.clear();
-            self.fewest = u32::MAX;
-            if !self.second_chance {
-                self.second_chance = true;
-                self.dropped
-                    .retain(|dropped| dropped.reason != Residue::NoProgress);
-                return Outlook::Unsure;
-            }
-            self.empty_rounds = self.empty_rounds.saturating_add(1);
-            return if self.empty_rounds >= EMPTY_ROUNDS {
-                Outlook::Nothing
-            } else {
-                Outlook::Unsure
-            };
-        };
+    fn adopt(&mut self, road: Road) {
         self.empty_rounds = 0;
         let same =
             !self.road.is_empty() && near(road.goal(), self.road.goal(), 2.0 * DROP_RADIUS_M);
-        if !same || road.steps() < self.fewest {
-            self.fewest = road.steps();
-            self.since_ms = time_ms;
+        if !same {
+            self.patience.begin_anew();
         }
         self.road = road;
-        self.give_up_if_idle(time_ms);
-        if self.stood_drops >= STUCK_DROPS {
-            Outlook::Stuck
+    }
+
+    /// No frontier is within reach.
+    fn do_without(&mut self) -> Outlook {
+        self.forget_road();
+        if !self.second_chance {
+            self.second_chance = true;
+            self.patience.begin_second_chance();
+            self.bars.clear();
+            self.dropped
+                .retain(|dropped| dropped.reason != Residue::NoProgress);
+            return Outlook::Unsure;
+        }
+        self.empty_rounds = self.empty_rounds.saturating_add(1);
+        if self.empty_rounds >= EMPTY_ROUNDS {
+            Outlook::Nothing
         } else {
-            Outlook::Road
+            Outlook::Unsure
         }
     }
 
-    /// Drop a goal that was reached and stays unexplored, that has no field, or that comes no nearer.
-    fn give_up_if_idle(&mut self, time_ms: u32) {
-        self.flat_rounds = if self.flat { self.flat_rounds + 1 } else { 0 };
-        self.flat = false;
-        if self.flat_rounds >= FLAT_ROUNDS {
-            self.flat_rounds = 0;
-            self.drop_goal(Residue::Unreachable);
-            return;
+    fn forget_road(&mut self) {
+        self.road.clear();
+        self.patience.begin_anew();
+    }
+
+    fn bar(&mut self, cell: Option<Cell>) {
+        let cell = cell.unwrap_or(self.road.goal());
+        if self.bars.is_full() {
+            self.bars.remove(0);
         }
-        let idle_ms = time_ms.wrapping_sub(self.since_ms);
-        let stood_ms = time_ms.wrapping_sub(self.stood_ms);
-        let reached = self.road.steps() <= REACHED_STEPS;
-        let patience_ms = match (reached, stood_ms > PATIENCE_MS / 2) {
-            (true, _) => LOOK_MS,
-            (false, false) => PATIENCE_MS,
-            (false, true) => STANDING_MS,
-        };
-        if idle_ms <= patience_ms {
-            return;
-        }
-        if !reached && stood_ms > STANDING_MS {
-            self.stood_ms = time_ms;
-            self.stood_drops += 1;
-        }
-        self.drop_goal(if reached {
-            Residue::Unobservable
-        } else {
-            Residue::NoProgress
-        });
+        // There is room now.
+        let _ = self.bars.push(cell);
+        self.forget_road();
     }
 
     fn drop_goal(&mut self, reason: Residue) {
@@ -316,8 +311,7 @@ impl Frontier {
             cells: 1,
             reason,
         });
-        self.road.clear();
-        self.fewest = u32::MAX;
+        self.forget_road();
     }
 }
 
@@ -325,6 +319,38 @@ impl Default for Frontier {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// The first cell of the road that the window's passable cells do not lead to.
+fn leak<const TILES: usize, const SLOTS: usize>(
+    road: &Road,
+    known: &Known<'_, TILES, SLOTS>,
+    robot: Point,
+    view: &mut View,
+) -> Option<Cell> {
+    view.look_around(known.tiles, known.disc, robot.cell(), 1);
+    view.free_robot(robot.cell());
+    let mut reached: Rows = [0; SIDE];
+    View::put(&mut reached, view.place(robot.cell())?);
+    // With no target it floods everything.
+    let _ = flood(&view.passable, &mut reached, &[0; SIDE], Adjacency::Four);
+    let mut wet: Rows = [0; SIDE];
+    road.cells().iter().copied().find(|&cell| {
+        wet.fill(0);
+        view.mark(&mut wet, cell);
+        wet.iter()
+            .zip(&reached)
+            .all(|(cell, reached)| cell & reached == 0)
+    })
+}
+
+/// The first cell of the road that is as far ahead of the robot as what stops it.
+fn ahead(road: &Road, robot: Point) -> Option<Cell> {
+    let robot = robot.cell();
+    road.cells()
+        .iter()
+        .copied()
+        .find(|&cell| !near(cell, robot, BAR_AHEAD_M))
 }
 
 /// The centre cell nearest to the robot, by steps through passable cells, that the wave came to.
@@ -364,28 +390,12 @@ fn targets(space: &WaveSpace<'_>, frame: Frame, view: &View) -> Rows {
                 bits &= bits - 1;
                 let site = Site { x, y: y as u16 };
                 if space.residues.get(site).is_some() {
-                    mark(&mut targets, view, frame.cell(site));
+                    view.mark(&mut targets, frame.cell(site));
                 }
             }
         }
     }
     targets
-}
-
-/// Mark the passable window cells of a coarse cell.
-fn mark(rows: &mut Rows, view: &View, cell: Cell) {
-    for k in 0..4 {
-        let part = Cell {
-            x: cell.x + (k & 1),
-            y: cell.y + (k >> 1),
-        };
-        if let Some(place) = view
-            .place(part)
-            .filter(|&place| View::has(&view.passable, place))
-        {
-            View::put(rows, place);
-        }
-    }
 }
 
 /// A centre cell in a window cell that the wave came to.

@@ -1,6 +1,7 @@
 //! The strategies: what is a boundary of the window at what potential, and what counts as finished.
 
 pub mod frontier;
+mod patience;
 pub mod road;
 
 pub use frontier::Frontier;

@@ -40,7 +40,6 @@ pub(crate) struct Board {
     timer: TIM2,
     watchdog: Option<IWDG>,
     emulated: bool,
-    began: u32,
     by_watchdog: bool,
     /// Which crash is due.
     #[cfg(feature = "crash-test")]
@@ -104,7 +103,6 @@ impl Board {
             timer: chip.TIM2,
             watchdog,
             emulated,
-            began: 0,
             by_watchdog,
             #[cfg(feature = "crash-test")]
             boots: 0,
@@ -210,15 +208,16 @@ impl Meter for Board {
         }
         #[cfg(feature = "crash-test")]
         crash::rehearse(self.boots);
-        self.began = self.timer.cnt().read().bits();
     }
 
-    fn stop(&mut self) -> u32 {
-        let ticks = self.timer.cnt().read().bits().wrapping_sub(self.began);
+    fn stop(&mut self) {
         if self.emulated {
             super::uart::listen();
         }
-        ticks
+    }
+
+    fn count(&mut self) -> u32 {
+        self.timer.cnt().read().bits()
     }
 
     fn stack_bytes(&self) -> u32 {

@@ -239,3 +239,129 @@ fn places(frame: Frame, homes: &[u32]) -> Vec<(u32, u32)> {
     };
     homes.iter().map(place).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Field, GOAL, Kind};
+    use crate::baseline::chart::sketch::chart;
+    use fieldline_planner::geometry::{Cell, Point};
+
+    const ROOMS: [&str; 17] = [
+        "##################################",
+        "#..............#.................#",
+        "#..............#.................#",
+        "#................................?",
+        "#..............#.................?",
+        "#..............#.................#",
+        "######..########.................#",
+        "#..............#.....#####.......#",
+        "#..............#.....#...#.......#",
+        "#.......R......#.....#...#.......#",
+        "#....................#...#.......#",
+        "#..............#.....##.##.......#",
+        "#..............#.................#",
+        "###.############.................#",
+        "#..#.............................#",
+        "#..#.............................#",
+        "##################################",
+    ];
+
+    fn solved(rows: &[&str], cycles: u32) -> (Field, Point) {
+        let (chart, robot) = chart(rows);
+        let mut field = Field::default();
+        field.charge(&chart, robot.cell(), |_| true);
+        (0..cycles).for_each(|_| field.cycle());
+        (field, robot)
+    }
+
+    fn cells(field: &Field) -> Vec<Cell> {
+        let cells = (0..field.frame.len()).map(|index| field.frame.cell(index));
+        cells
+            .filter(|&cell| matches!(field.kind(cell), Kind::Free(_)))
+            .collect()
+    }
+
+    /// Largest relative change that one more relaxation of any cell would make.
+    fn residual(field: &Field) -> f64 {
+        let one = |cell: Cell| {
+            let near = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+            let sum: f64 = near
+                .into_iter()
+                .map(|(dx, dy)| {
+                    field.q(Cell {
+                        x: cell.x + dx,
+                        y: cell.y + dy,
+                    })
+                })
+                .sum();
+            (sum / 4.0 / field.q(cell) - 1.0).abs()
+        };
+        cells(field).into_iter().map(one).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn it_converges_to_the_harmonic_field_in_a_few_cycles() {
+        let (field, _) = solved(&ROOMS, 12);
+        assert!(field.cells() > 300);
+        assert!(residual(&field) < 1e-3, "{:e}", residual(&field));
+        let (field, _) = solved(&ROOMS, 60);
+        assert!(residual(&field) < 1e-12, "{:e}", residual(&field));
+    }
+
+    #[test]
+    fn from_every_cell_the_descent_ends_in_a_goal() {
+        let (field, _) = solved(&ROOMS, 12);
+        for cell in cells(&field) {
+            let (goal, steps) = field.descend(cell).expect("no local minimum");
+            assert_eq!((field.kind(goal), field.q(goal)), (Kind::Goal, GOAL));
+            assert!(steps >= (goal.x - cell.x).unsigned_abs());
+        }
+    }
+
+    /// p itself, or q in f64 from a goal of 1, has no slope left at the far end: q falls by 2 − √3 a cell, to 1e-343.
+    #[test]
+    fn a_corridor_of_sixty_metres_keeps_its_slope() {
+        let wall = "#".repeat(602);
+        let corridor = format!("#R{}?", ".".repeat(599));
+        let (field, robot) = solved(&[&wall, &corridor, &wall], 40);
+        let (far, next) = (robot.cell(), Cell { x: 2, y: 1 });
+        assert!(field.q(far) / GOAL == 0.0 && field.q(far) > 0.0);
+        // At the closed end q₁ = q₂ / 4.
+        assert!((field.q(far) / field.q(next) - 0.25).abs() < 1e-9);
+        let (five, six) = (Cell { x: 50, y: 1 }, Cell { x: 51, y: 1 });
+        let ratio = field.q(five) / field.q(six);
+        assert!((ratio - (2.0 - 3.0_f64.sqrt())).abs() < 1e-9, "{ratio}");
+        assert!(field.heading_at(robot).unwrap().abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_warm_start_needs_fewer_cycles_than_a_cold_one() {
+        let (chart, robot) = chart(&ROOMS);
+        let (mut field, _) = solved(&ROOMS, 30);
+        // One of the two goals is given up: it becomes a free cell, and all others keep what they had.
+        let upper = Cell { x: 33, y: 13 };
+        field.charge(&chart, robot.cell(), |cell| cell != upper);
+        assert_eq!(field.kind(Cell { x: 33, y: 12 }), Kind::Goal);
+        let cycles = |mut field: Field| {
+            let mut count = 0;
+            while residual(&field) > 1e-6 {
+                field.cycle();
+                count += 1;
+            }
+            count
+        };
+        let mut cold = Field::default();
+        cold.charge(&chart, robot.cell(), |cell| cell != upper);
+        let (warm, cold) = (cycles(field), cycles(cold));
+        assert!(warm < cold, "{warm} {cold}");
+    }
+
+    #[test]
+    fn what_cannot_be_come_to_is_no_part_of_it() {
+        let (field, robot) = solved(&["#######", "#R.#.?#", "#######"], 1);
+        assert!(!field.has_goals() && field.cells() == 2);
+        assert_eq!(field.kind(Cell { x: 5, y: 1 }), Kind::Obstacle);
+        assert_eq!(field.heading_at(robot), None);
+        assert_eq!(field.descend(robot.cell()), None);
+    }
+}

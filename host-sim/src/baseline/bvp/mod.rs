@@ -7,11 +7,11 @@
 //!
 //! What is the same as for the planner's strategy: map, clearance (cells in which the robot does not fit are obstacles, so
 //! unexplored cells among them attract nothing), drive, and the rule that ends every run: an unexplored cell that the field
-//! leads to and that comes no nearer for [`PATIENCE_MS`] is given up, with those within [`DROP_RADIUS_M`] of it; they
-//! hold no value from then on but are relaxed like free cells. What is stronger than in [Prestes et al.]: the field is solved
-//! for 1 − p to convergence by `multigrid`, where a fixed number of sweeps of p leaves it flat away from the frontiers. So
-//! the paper's known failure, flattening, cannot end a run here. The other one, indecision between far goals, is in the
-//! method and stays.
+//! leads to and that comes no nearer is given up after a while ([`patience`]), with those within [`patience::DROP_RADIUS_M`] of it;
+//! they hold no value from then on but are relaxed like free cells. What is stronger than in [Prestes et al.]: the field is
+//! solved for 1 − p, to convergence, by multigrid, where a fixed number of sweeps of p leaves it flat away from the
+//! frontiers. So the paper's known failure, flattening, cannot end a run here. The other one, indecision between far goals, is
+//! in the method and stays.
 //!
 //! # What it would cost on the chip
 //! See [`Work`]: the grid grows with the building, which is why this baseline lives on the host.
@@ -19,20 +19,17 @@
 mod field;
 mod graph;
 mod multigrid;
+pub mod patience;
 
-use fieldline_planner::geometry::{CELL_M, Cell, Point};
-use fieldline_planner::status::{Frontier, Residue};
+use fieldline_planner::geometry::{Cell, Point};
+use fieldline_planner::math;
+use fieldline_planner::status::Frontier;
 use fieldline_protocol::message::{FIELD_SIDE, FieldRow};
 
 use super::session::{Outlook, Plan, Scene};
 use field::{Field, GOAL, Kind};
+use patience::Patience;
 
-/// Time without progress towards the goal that the field leads to, after which that goal is dropped, milliseconds.
-pub const PATIENCE_MS: u32 = 12_000;
-/// Around a dropped goal no other is one, metres.
-pub const DROP_RADIUS_M: f32 = 0.5;
-/// Goals nearer to each other than this are the same goal, metres.
-const SAME_GOAL_M: f32 = 1.0;
 /// Cycles in a step at the most.
 const MOST_CYCLES: u16 = 12;
 /// A heading that a cycle changes by less than this has converged, radians.
@@ -60,24 +57,10 @@ pub struct Work {
 pub struct Bvp {
     field: Field,
     robot: Cell,
-    dropped: Vec<Frontier>,
-    pursuit: Option<Pursuit>,
+    patience: Patience,
     cycles: u16,
+    exhausted: bool,
     work: Work,
-}
-
-/// The goal that the field leads to now.
-#[derive(Clone, Copy, Debug)]
-struct Pursuit {
-    goal: Cell,
-    /// Fewest steps to it so far, and when.
-    fewest: u32,
-    since_ms: u32,
-}
-
-fn near(a: Cell, b: Cell, radius_m: f32) -> bool {
-    let (dx, dy) = ((a.x - b.x) as f32 * CELL_M, (a.y - b.y) as f32 * CELL_M);
-    dx * dx + dy * dy < radius_m * radius_m
 }
 
 impl Bvp {
@@ -93,45 +76,33 @@ impl Bvp {
         self.work
     }
 
+    /// Set the field's boundary.
+    fn charge(&mut self, scene: &Scene<'_>) {
+        let patience = &self.patience;
+        let is_goal = |cell| !patience.is_dropped(cell);
+        self.field.charge(scene.chart, self.robot, is_goal);
+    }
+
     /// Cycles until the heading has settled, or no slope is left to find.
     fn relax(&mut self, at: Point) {
         let mut before = None;
         self.cycles = 0;
-        while self.cycles < MOST_CYCLES {
+        self.exhausted = false;
+        loop {
             self.field.cycle();
             self.cycles += 1;
             let heading = self.field.heading_at(at);
-            let settled = before.zip(heading).is_some_and(|(a, b): (f32, f32)| {
-                fieldline_planner::math::wrap(a - b).abs() < SETTLED_RAD
-            });
+            let settled = before
+                .zip(heading)
+                .is_some_and(|(a, b): (f32, f32)| math::wrap(a - b).abs() < SETTLED_RAD);
             if settled && self.field.descend(at.cell()).is_some() {
-                break;
+                return;
+            }
+            if self.cycles >= MOST_CYCLES {
+                self.exhausted = true;
+                return;
             }
             before = heading;
-        }
-    }
-
-    /// Drop the goal that the field leads to if the robot comes no nearer to it.
-    fn keep_going(&mut self, time_ms: u32) {
-        let Some((goal, steps)) = self.field.descend(self.robot) else {
-            return;
-        };
-        let pursuit = match self.pursuit {
-            Some(old) if near(old.goal, goal, SAME_GOAL_M) && steps >= old.fewest => old,
-            _ => Pursuit {
-                goal,
-                fewest: steps,
-                since_ms: time_ms,
-            },
-        };
-        self.pursuit = Some(pursuit);
-        if time_ms.wrapping_sub(pursuit.since_ms) > PATIENCE_MS {
-            self.dropped.push(Frontier {
-                cell: goal,
-                cells: 1,
-                reason: Residue::NoProgress,
-            });
-            self.pursuit = None;
         }
     }
 
@@ -154,31 +125,44 @@ impl Plan for Bvp {
     fn plan(&mut self, scene: &Scene<'_>) -> Outlook {
         let at = scene.pose.point();
         self.robot = at.cell();
-        let dropped = &self.dropped;
-        self.field.charge(scene.chart, self.robot, |cell| {
-            !dropped
-                .iter()
-                .any(|goal| near(goal.cell, cell, DROP_RADIUS_M))
-        });
+        self.charge(scene);
+        if !self.field.has_goals() && self.patience.try_again() {
+            self.charge(scene);
+        }
         if !self.field.has_goals() {
             return Outlook::Nothing;
         }
         self.relax(at);
         self.account(scene.chart.frame().len());
-        self.keep_going(scene.time_ms);
-        Outlook::Way
+        if let Some(goal) = self.field.descend(self.robot) {
+            self.patience.note(at, goal, scene.time_ms);
+        }
+        if self.patience.is_stuck() {
+            Outlook::Stuck
+        } else {
+            Outlook::Way
+        }
     }
 
     fn heading_at(&self, _scene: &Scene<'_>, point: Point) -> Option<f32> {
         self.field.heading_at(point)
     }
 
+    fn potential_at(&self, scene: &Scene<'_>, point: Point) -> f32 {
+        let here = self.field.q(scene.pose.point().cell());
+        (self.field.q(point.cell()) / here.max(f64::MIN_POSITIVE)) as f32
+    }
+
     fn dropped(&self) -> Vec<Frontier> {
-        self.dropped.clone()
+        self.patience.dropped().to_vec()
     }
 
     fn cycles(&self) -> u16 {
         self.cycles
+    }
+
+    fn is_exhausted(&self) -> bool {
+        self.exhausted
     }
 
     /// The part of the grid around the robot.
@@ -211,5 +195,124 @@ impl Plan for Bvp {
                 .collect(),
             cells: packed.into_iter().collect(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Bvp, MOST_CYCLES};
+    use crate::baseline::chart::sketch::chart;
+    use crate::baseline::session::{Outlook, Plan, Scene};
+    use fieldline_planner::geometry::{Cell, Point, Pose};
+    use fieldline_protocol::message::FIELD_SIDE;
+
+    fn pose(at: Point) -> Pose {
+        Pose {
+            x_m: at.x_m,
+            y_m: at.y_m,
+            ..Pose::default()
+        }
+    }
+
+    /// Follows the heading in steps of half a cell until it stands in an unexplored cell.
+    fn follow(rows: &[&str]) -> Option<Cell> {
+        let (chart, robot) = chart(rows);
+        let (mut bvp, mut at) = (Bvp::new(), robot);
+        for step in 0..400 {
+            if chart
+                .frame()
+                .index(at.cell())
+                .is_some_and(|i| chart.is_unexplored(i))
+            {
+                return Some(at.cell());
+            }
+            let scene = Scene {
+                chart: &chart,
+                pose: pose(at),
+                time_ms: step * 10,
+            };
+            assert_eq!(bvp.plan(&scene), Outlook::Way);
+            let (sin, cos) = bvp.heading_at(&scene, at)?.sin_cos();
+            at.x_m += 0.05 * cos;
+            at.y_m += 0.05 * sin;
+        }
+        None
+    }
+
+    #[test]
+    fn the_descent_reaches_the_frontier_round_corners_and_through_doors() {
+        let rows = [
+            "####################", //
+            "#........#.........#",
+            "#........#.........#",
+            "#..................#",
+            "#........#.........#",
+            "##########.........#",
+            "#........#.........#",
+            "#........#.........#",
+            "#R.......#........?#",
+            "#........#.........#",
+            "####################",
+        ];
+        // There is no door to the robot's room: nothing to come to.
+        let (closed, robot) = chart(&rows);
+        let scene = Scene {
+            chart: &closed,
+            pose: pose(robot),
+            time_ms: 0,
+        };
+        assert_eq!(Bvp::new().plan(&scene), Outlook::Nothing);
+        let mut opened = rows;
+        opened[5] = "####..####.........#";
+        assert_eq!(follow(&opened), Some(Cell { x: 18, y: 2 }));
+    }
+
+    #[test]
+    fn of_two_frontiers_the_nearer_or_the_larger_attracts() {
+        let rows = |left: &'static str, right: &'static str, robot: usize| {
+            let mut rows = [".".repeat(21), ".".repeat(21), ".".repeat(21)];
+            rows[1].replace_range(robot..=robot, "R");
+            rows.map(|row| format!("#{left}{row}{right}#")).to_vec()
+        };
+        let goal = |rows: Vec<String>| {
+            let wall = "#".repeat(rows[0].len());
+            let rows: Vec<&str> = core::iter::once(wall.as_str())
+                .chain(rows.iter().map(String::as_str))
+                .chain([wall.as_str()])
+                .collect();
+            follow(&rows).unwrap().x
+        };
+        assert!(goal(rows("?", "?", 7)) < 5, "the left is nearer");
+        assert!(goal(rows("?", "?", 13)) > 15, "the right is nearer");
+        let mut larger_right = rows("?", "?", 10);
+        larger_right[0].replace_range(1..2, "#");
+        assert!(goal(larger_right) > 15, "equally far, the right is larger");
+    }
+
+    #[test]
+    fn the_window_shown_is_the_grid_around_the_robot() {
+        let (chart, robot) = chart(&["#####", "#R.?#", "#####"]);
+        let mut bvp = Bvp::new();
+        assert_eq!(bvp.field_row(0), None, "nothing was solved yet");
+        let scene = Scene {
+            chart: &chart,
+            pose: pose(robot),
+            time_ms: 0,
+        };
+        assert_eq!(bvp.plan(&scene), Outlook::Way);
+        assert!(bvp.cycles() <= MOST_CYCLES && !bvp.is_exhausted());
+        let row = bvp.field_row(FIELD_SIDE as u8 / 2).unwrap();
+        let middle = FIELD_SIDE / 2;
+        let kind = |x: usize| row.cells[x / 4] >> (2 * (x % 4)) & 3;
+        assert_eq!(
+            [middle - 1, middle, middle + 1, middle + 2].map(kind),
+            [1, 0, 0, 2]
+        );
+        // q₁ = q₂/4 and q₂ = (q₁ + 1)/4.
+        let exact = [0.0, 1.0 / 15.0, 4.0 / 15.0, 1.0];
+        for (k, exact) in exact.into_iter().enumerate() {
+            assert!((row.q[middle - 1 + k] - exact).abs() < 1e-6, "{:?}", row.q);
+        }
+        assert_eq!(bvp.field_row(FIELD_SIDE as u8), None);
     }
 }

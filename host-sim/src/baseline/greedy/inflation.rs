@@ -17,6 +17,9 @@ const REACH: i32 = 5;
 /// The robot's radius, cells.
 const RADIUS: f32 = 3.0;
 
+/// Price of an unknown cell, per cent: navfn counts it as 253, the dearest that can be passed.
+pub const UNKNOWN_PERCENT: u32 = 506;
+
 /// Squared distances to the nearest obstacle, at most `FREE_FROM`.
 #[derive(Clone, Debug, Default)]
 pub struct Inflation {

@@ -41,6 +41,8 @@ pub use tuning::Tuning;
 const TOLERANCE_CELLS: i32 = 5;
 /// Time from one planning of the route to the next, milliseconds.
 const ROUTE_PERIOD_MS: u32 = 1_000;
+/// The potential along the way doubles in this, metres.
+const DOUBLES_IN_M: f32 = 0.1;
 
 /// The goal of the moment.
 #[derive(Clone, Copy, Debug)]
@@ -175,6 +177,12 @@ impl Plan for GreedyFrontier {
 
     fn heading_at(&self, scene: &Scene<'_>, point: Point) -> Option<f32> {
         pursuit::heading(scene.chart, &self.inflation, &self.way, point)
+    }
+
+    fn potential_at(&self, scene: &Scene<'_>, point: Point) -> f32 {
+        let remaining_m = |at: Point| pursuit::remaining_m(&self.way, at);
+        let ahead_m = remaining_m(scene.pose.point()) - remaining_m(point);
+        libm::exp2f(ahead_m / DOUBLES_IN_M)
     }
 
     fn dropped(&self) -> Vec<Leftover> {

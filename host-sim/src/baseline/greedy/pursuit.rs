@@ -67,6 +67,20 @@ pub fn heading(chart: &Chart, inflation: &Inflation, way: &[Point], at: Point) -
     (dx != 0.0 || dy != 0.0).then(|| math::atan2(dy, dx))
 }
 
+/// Length of the way from its point nearest to `at` to its end, metres.
+#[must_use]
+pub fn remaining_m(way: &[Point], at: Point) -> f32 {
+    let from = |point: Point| distance_m(point, at);
+    let nearest = way
+        .iter()
+        .enumerate()
+        .min_by(|a, b| from(*a.1).total_cmp(&from(*b.1)));
+    let rest = nearest.and_then(|(k, _)| way.get(k..)).unwrap_or_default();
+    rest.windows(2)
+        .map(|pair| distance_m(pair[0], pair[1]))
+        .sum()
+}
+
 /// Points of a straight line at most half a cell apart, without its beginning.
 fn along(from: Point, to: Point) -> impl Iterator<Item = Point> {
     let parts = (distance_m(from, to) / (0.5 * CELL_M)).ceil().max(1.0);
@@ -81,7 +95,7 @@ fn along(from: Point, to: Point) -> impl Iterator<Item = Point> {
 
 #[cfg(test)]
 mod tests {
-    use super::{has_arrived, heading};
+    use super::{has_arrived, heading, remaining_m};
     use crate::baseline::chart::sketch::chart;
     use crate::baseline::greedy::inflation::Inflation;
     use crate::baseline::greedy::route::Routes;
@@ -126,6 +140,15 @@ mod tests {
         let way = routes.way(&chart, goal);
         let angle = heading(&chart, &Inflation::new(&chart), &way, robot).unwrap();
         assert!((0.0..0.2).contains(&angle), "{angle}");
+    }
+
+    #[test]
+    fn what_remains_is_the_length_of_the_rest() {
+        let way: Vec<Point> = (0..=20).map(|x| Cell { x, y: 0 }.centre()).collect();
+        let at = |x_m| remaining_m(&way, Point { x_m, y_m: 0.3 });
+        assert!((at(0.05) - 2.0).abs() < 1e-5);
+        assert!((at(1.56) - 0.5).abs() < 1e-5);
+        assert_eq!(remaining_m(&[], Point::default()), 0.0);
     }
 
     #[test]

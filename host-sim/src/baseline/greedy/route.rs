@@ -1,9 +1,8 @@
-//! Cheapest ways over the known passable cells from where the robot stands (Dijkstra), as ROS's global planner finds them on an
-//! inflated costmap.
+//! Cheapest ways from where the robot stands (Dijkstra), as ROS's global planner finds them on an inflated costmap.
 //!
-//! A step costs its length times the [`Prices`] of the cell that it leads to. Unlike navfn's, a way goes through known cells
-//! only, so that every goal on it can be driven to; its steps are straight or diagonal, a diagonal one only between two free
-//! cells.
+//! A step costs its length times the [`Prices`] of the cell that it leads to; one onto an unknown cell the dearest price, as
+//! navfn has it with its default `allow_unknown`. Ways lead over passable cells only, and steps are straight or diagonal, a
+//! diagonal one only between two passable cells.
 //!
 //! Invariant: costs are integers, so that the same map gives the same way everywhere. Units: a straight step is
 //! `STRAIGHT`.
@@ -13,7 +12,7 @@ use std::collections::BinaryHeap;
 
 use fieldline_planner::geometry::{CELL_M, Cell, Point};
 
-use super::inflation::{Inflation, Prices};
+use super::inflation::{Inflation, Prices, UNKNOWN_PERCENT};
 use crate::baseline::chart::Chart;
 
 /// Length of a straight step, and of a diagonal one.
@@ -63,7 +62,12 @@ impl Routes {
                 continue;
             }
             for (near, step) in steps(chart, index).into_iter().flatten() {
-                let total = cost + step * prices.percent(inflation.square(near)) / 100;
+                let percent = if chart.is_unknown(near) {
+                    UNKNOWN_PERCENT
+                } else {
+                    prices.percent(inflation.square(near))
+                };
+                let total = cost + step * percent / 100;
                 if total < self.cost[near] {
                     self.cost[near] = total;
                     self.length[near] = self.length[index] + step;
@@ -100,12 +104,12 @@ impl Routes {
 /// The steps from a cell and their lengths.
 fn steps(chart: &Chart, index: usize) -> [Option<(usize, u32)>; 8] {
     let four = chart.frame().four(index);
-    let open = four.map(|near| chart.is_way(near));
+    let open = four.map(|near| chart.is_passable(near));
     let width = chart.frame().width;
     let [east, north, west, south] = four;
     let straight = |k: usize| open[k].then_some((four[k], STRAIGHT));
     let diagonal = |a: usize, b: usize, to: usize| {
-        (open[a] && open[b] && chart.is_way(to)).then_some((to, DIAGONAL))
+        (open[a] && open[b] && chart.is_passable(to)).then_some((to, DIAGONAL))
     };
     [
         straight(0),
@@ -137,7 +141,8 @@ mod tests {
         assert_eq!(at(14, 9), Some(0.0));
         assert!((at(20, 9).unwrap() - 0.6).abs() < 1e-5);
         assert!((at(18, 12).unwrap() - (0.1 + 3.0 * 0.141)).abs() < 1e-5);
-        assert_eq!(at(-1, 9), None, "the unknown is no way");
+        // The robot fits into the unknown, too.
+        assert!((at(-1, 9).unwrap() - 1.5).abs() < 1e-5);
     }
 
     #[test]
@@ -161,30 +166,50 @@ mod tests {
         assert_eq!(way.last(), Some(&Cell { x: 17, y: 1 }.centre()));
         let highest = way.iter().map(|point| point.cell().y).max();
         assert_eq!(highest, Some(4), "the middle of the room");
-        let corner = ["...", "#..", "R#."];
+        let corner = ["#####", "#...#", "##..#", "#R#.#", "#####"];
         let (chart, robot) = super::tests::chart(&corner);
         let routes = Routes::from(&chart, &Inflation::new(&chart), robot.cell());
-        let beyond = chart.frame().index(Cell { x: 1, y: 1 }).unwrap();
+        let beyond = chart.frame().index(Cell { x: 2, y: 2 }).unwrap();
         assert_eq!(routes.length_m(beyond), None);
     }
 
     #[test]
     fn a_gap_too_narrow_for_the_robot_is_no_way() {
         let rows = [
-            "...........", //
-            "...........",
-            "...........",
-            "###.....###",
-            "...........",
-            "...........",
-            ".....R.....",
+            "#############", //
+            "#...........#",
+            "#...........#",
+            "#...........#",
+            "####.....####",
+            "#...........#",
+            "#...........#",
+            "#.....R.....#",
+            "#...........#",
+            "#############",
         ];
         let across = |radius_m| {
             let (chart, robot) = chart_for(&rows, radius_m);
             let routes = Routes::from(&chart, &Inflation::new(&chart), robot.cell());
-            routes.length_m(chart.frame().index(Cell { x: 5, y: 6 }).unwrap())
+            routes.length_m(chart.frame().index(Cell { x: 6, y: 7 }).unwrap())
         };
-        assert!((across(0.2).unwrap() - 0.6).abs() < 1e-5);
+        assert!((across(0.2).unwrap() - 0.5).abs() < 1e-5);
         assert_eq!(across(0.4), None);
+    }
+
+    #[test]
+    fn a_way_leads_through_the_unknown_only_where_the_way_round_is_dearer() {
+        let length = |half_height: usize| {
+            let free = ".".repeat(21);
+            let mut rows = vec![free.as_str(); 13];
+            rows[6 - half_height..=6 + half_height].fill("..........?..........");
+            let (chart, _) = chart(&rows);
+            let robot = Cell { x: 1, y: 6 };
+            let routes = Routes::from(&chart, &Inflation::new(&chart), robot);
+            let beyond = chart.frame().index(Cell { x: 19, y: 6 });
+            routes.length_m(beyond.unwrap()).unwrap()
+        };
+        // An unknown cell is 0.406 m dearer than a free one; every row aside is two diagonal steps, 0.082 m.
+        assert!((length(3) - (1.8 + 4.0 * 0.082)).abs() < 1e-3);
+        assert!((length(5) - 1.8).abs() < 1e-3);
     }
 }

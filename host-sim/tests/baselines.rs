@@ -1,0 +1,116 @@
+//! The baselines in whole runs: they finish, touch nothing, end with the right reason, and do the same for the same seed.
+
+use host_sim::baseline::{Bvp, GreedyFrontier, Session};
+use host_sim::link::{Link, LinkError};
+use host_sim::report::Report;
+use host_sim::trial::mission::{self, Mission};
+use host_sim::trial::{Flow, Progress, Record, Watch};
+use host_sim::world::World;
+
+use fieldline_protocol::message::{Control, FIELD_SIDE, Finish, Observation, Status};
+
+struct Nobody;
+
+impl Watch for Nobody {
+    fn step(&mut self, _progress: &Progress) -> Flow {
+        Flow::Continue
+    }
+}
+
+const BASELINES: [&str; 2] = ["bvp", "greedy-frontier"];
+
+fn planner(name: &str) -> Box<dyn Link> {
+    match name {
+        "bvp" => Box::new(Session::new(Bvp::new())),
+        _ => Box::new(Session::new(GreedyFrontier::default())),
+    }
+}
+
+fn explore(name: &str, world: &str, seed: u64) -> (Report, Record) {
+    let mission = Mission {
+        strategy: name.into(),
+        seed,
+        ..Mission::default()
+    };
+    let world = World::builtin(world).expect("a built-in world");
+    mission::explore(&mission, &world, planner(name).as_mut(), &mut Nobody).expect("it begins")
+}
+
+#[test]
+fn they_explore_rooms_behind_doors_and_touch_nothing() {
+    for name in BASELINES {
+        let (report, record) = explore(name, "narrow-doors", 0);
+        assert!(report.explored(), "{name}: {:?}", report.outcome);
+        assert_eq!(report.safety.collisions, 0, "{name}");
+        assert!(
+            report.coverage.fraction > 0.98,
+            "{name}: {:?}",
+            report.coverage
+        );
+        assert_eq!(report.debug.map_matches_mirror, Some(true), "{name}");
+        assert_eq!(record.window.is_some(), name == "bvp");
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_run_and_another_one_another() {
+    for name in BASELINES {
+        let digest = |seed| explore(name, "loop", seed).0.digest;
+        assert_eq!(digest(3), digest(3), "{name}");
+        assert_ne!(digest(3), digest(4), "{name}");
+    }
+}
+
+#[test]
+fn a_closet_without_a_door_and_a_room_out_of_reach_end_with_their_reason() {
+    for name in BASELINES {
+        let (boxed_in, _) = explore(name, "boxed-in", 1);
+        assert_eq!(boxed_in.outcome.reason, "boxed-in", "{name}");
+        let (left, _) = explore(name, "unreachable-room", 1);
+        assert_eq!(left.outcome.reason, "explored", "{name}");
+        assert_eq!(left.safety.collisions, 0, "{name}");
+    }
+}
+
+#[test]
+fn the_field_of_the_full_grid_is_shown_around_the_robot() {
+    let (_, record) = explore("bvp", "loop", 0);
+    let window = record.window.expect("the last field");
+    assert_eq!(window.q.len(), FIELD_SIDE * FIELD_SIDE);
+    assert!(window.q.iter().all(|q| (0.0..=1.0).contains(q)));
+}
+
+/// What a session answers to requests in the wrong order, before it has seen anything.
+#[test]
+fn a_session_follows_the_rules_of_the_device() {
+    for name in BASELINES {
+        let mut link = planner(name);
+        let refused = link.observe(&Observation::default());
+        assert!(matches!(refused, Err(LinkError::Refused(_))), "{name}");
+        assert!(link.control(&Control::Pause).is_err(), "{name}");
+        let start = start();
+        assert_eq!(
+            link.control(&Control::Start(start.clone())),
+            Ok(Status::Exploring)
+        );
+        let mut bad = start;
+        bad.box_tiles = (200, 200);
+        assert!(link.control(&Control::Start(bad)).is_err(), "{name}");
+        assert_eq!(link.control(&Control::Pause), Ok(Status::Paused));
+        let stands = link.observe(&Observation::default()).expect("an answer");
+        assert_eq!(stands.velocity, Default::default(), "{name}");
+        assert_eq!(link.control(&Control::Resume), Ok(Status::Exploring));
+        let stopped = Status::Finished(Finish::Stopped);
+        assert_eq!(link.control(&Control::Stop), Ok(stopped), "{name}");
+        assert_eq!(link.control(&Control::Reset), Ok(Status::Idle), "{name}");
+        assert_eq!(link.tile(0, 0), Ok(None), "{name}");
+    }
+}
+
+fn start() -> fieldline_protocol::message::Start {
+    use fieldline_protocol::message::Strategy;
+    use host_sim::sim::{SimConfig, Simulator};
+    let world = World::builtin("loop").expect("a built-in world");
+    let simulator = Simulator::new(&world, SimConfig::default()).expect("the start is free");
+    simulator.start_message(Strategy::Frontier, (20, 20))
+}

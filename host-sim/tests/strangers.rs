@@ -1,0 +1,267 @@
+//! Who may be at the other end of a serial port: nobody, somebody else, a device of another schema, one that still boots. The program
+//! says which in one line, and starts nothing; on the line's own clock it takes less than five seconds.
+#![cfg(unix)]
+
+use core::sync::atomic::{AtomicBool, Ordering};
+use core::time::Duration;
+use std::io::{ErrorKind, Read as _, Write as _};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+
+use assert_cmd::Command;
+use fieldline_protocol::frame::{
+    BodyError, MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_reply,
+};
+use fieldline_protocol::message::{Reply, Request};
+use fieldline_protocol::{BAUD, SCHEMA, VERSION};
+use host_sim::link::endpoint::{Endpoint, Patience};
+use host_sim::link::line::Line;
+use host_sim::link::loopback::LocalDevice;
+use host_sim::link::{Link, LinkError, serial};
+use serialport::{SerialPort as _, TTYPort};
+
+/// Somebody at the far end of a pty: what came in, what to say.
+trait Peer: Send + 'static {
+    fn hear(&mut self, bytes: &[u8]) -> Vec<u8>;
+}
+
+impl<F: FnMut(&[u8]) -> Vec<u8> + Send + 'static> Peer for F {
+    fn hear(&mut self, bytes: &[u8]) -> Vec<u8> {
+        self(bytes)
+    }
+}
+
+/// A port with somebody at it, until this is dropped.
+struct Port {
+    name: String,
+    over: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Port {
+    fn with(mut peer: impl Peer) -> Self {
+        let (mut master, slave) = TTYPort::pair().expect("a pty");
+        let name = slave.name().expect("a name");
+        // It is the program's to open.
+        drop(slave);
+        master.set_timeout(Duration::from_millis(5)).expect("a pty");
+        let over = Arc::new(AtomicBool::new(false));
+        let told = over.clone();
+        let thread = std::thread::spawn(move || {
+            let mut bytes = [0; 4096];
+            while !told.load(Ordering::Relaxed) {
+                let count = match master.read(&mut bytes) {
+                    Ok(count) => count,
+                    Err(error) if error.kind() == ErrorKind::TimedOut => 0,
+                    // Nobody has opened the other end, or has closed it again.
+                    Err(_) => {
+                        std::thread::sleep(Duration::from_millis(5));
+                        continue;
+                    }
+                };
+                // A full line loses what is said on it.
+                let _ = master.write(&peer.hear(&bytes[..count]));
+            }
+        });
+        Self {
+            name,
+            over,
+            thread: Some(thread),
+        }
+    }
+}
+
+impl Drop for Port {
+    fn drop(&mut self) {
+        self.over.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+fn silent(_: &[u8]) -> Vec<u8> {
+    Vec::new()
+}
+
+/// Bytes of every value, and so frames of every kind of nonsense.
+fn gibberish() -> impl FnMut(&[u8]) -> Vec<u8> + Send {
+    let mut state = 1_u32;
+    move |_| {
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 24) as u8
+        };
+        (0..40).map(|_| next()).collect()
+    }
+}
+
+/// A device built from other sources: the greeting is all that it understands of us.
+fn foreigner() -> impl FnMut(&[u8]) -> Vec<u8> + Send {
+    let mut receiver = Receiver::<MAX_REQUEST_FRAME>::new(Side::Device);
+    move |bytes| {
+        let mut said = Vec::new();
+        for byte in bytes {
+            let Some(frame) = receiver.push(*byte) else {
+                continue;
+            };
+            let sequence = frame.sequence;
+            let greeted = matches!(
+                frame.request(),
+                Ok(Request::Hello { .. }) | Err(BodyError::Foreign { .. })
+            );
+            assert!(greeted, "nothing but hellos");
+            let reply = Reply::Incompatible {
+                version: VERSION,
+                schema: SCHEMA ^ 1,
+            };
+            let mut out = [0; MAX_REPLY_FRAME];
+            let length = encode_reply(sequence, &reply, &mut out).expect("it fits");
+            said.extend_from_slice(&out[..length]);
+        }
+        said
+    }
+}
+
+/// A device that hears nothing of the first `deaf` greetings, and after them says its hello of the boot.
+fn booting(deaf: usize) -> impl FnMut(&[u8]) -> Vec<u8> + Send {
+    let mut device = None;
+    let mut zeros = 0;
+    move |bytes| {
+        zeros += bytes.iter().filter(|byte| **byte == 0).count();
+        // A greeting asked again begins with a zero too.
+        if zeros < 2 * deaf {
+            return Vec::new();
+        }
+        let device = device.get_or_insert_with(LocalDevice::new);
+        device.send(bytes).expect("a device in this process");
+        let mut said = Vec::new();
+        let heard = device.receive(&mut said, Duration::ZERO);
+        heard.expect("a device in this process");
+        said
+    }
+}
+
+/// The program's exit status and last words when it is sent to explore by this port.
+fn explore(port: &Port) -> (i32, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = Command::new(env!("CARGO_BIN_EXE_host-sim"))
+        .current_dir(folder.path())
+        .args(["explore", "loop", "--time-limit", "2", "--json", "--link"])
+        .arg(format!("serial:{}", port.name))
+        .output()
+        .expect("runs");
+    let said = String::from_utf8(output.stderr).expect("text");
+    (output.status.code().expect("an exit status"), said)
+}
+
+#[track_caller]
+fn refused(peer: impl Peer, words: &[&str]) {
+    let port = Port::with(peer);
+    let (status, said) = explore(&port);
+    assert_eq!(status, 2, "{said}");
+    assert_eq!(said.lines().count(), 1, "{said}");
+    for word in [&port.name, "host-sim: --link serial:"]
+        .into_iter()
+        .map(|word| word as &str)
+        .chain(words.iter().copied())
+    {
+        assert!(said.contains(word), "no {word:?} in: {said}");
+    }
+}
+
+#[test]
+fn nobody_is_there() {
+    refused(silent, &["does not answer", "baud rate"]);
+}
+
+#[test]
+fn somebody_else_is_there() {
+    refused(gibberish(), &["no Fieldline frame", "another baud rate"]);
+}
+
+#[test]
+fn a_device_of_another_schema_is_there() {
+    let foreign = format!("{:#010x}", SCHEMA ^ 1);
+    refused(foreigner(), &[&foreign, "same source"]);
+}
+
+#[test]
+fn a_device_that_still_boots_is_waited_for() {
+    let port = Port::with(booting(3));
+    let (status, said) = explore(&port);
+    assert_eq!(status, 1, "{said}");
+    assert!(said.contains("the simulated time ran out"), "{said}");
+}
+
+#[test]
+fn a_device_on_a_pty_is_met_and_its_port_is_taken() {
+    let port = Port::with(booting(0));
+    let mut link = serial::serial(&port.name, BAUD).expect("a port");
+    assert_eq!(link.hello().expect("a device").boots, 1);
+    let (status, said) = explore(&port);
+    assert_eq!(status, 2, "{said}");
+    assert!(said.contains("somebody else has it open"), "{said}");
+}
+
+/// A line on which time passes only in waiting, with somebody at its end.
+struct Imagined<P> {
+    peer: P,
+    waiting: Vec<u8>,
+    now: Duration,
+}
+
+impl<P: Peer> Line for Imagined<P> {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        let said = self.peer.hear(bytes);
+        self.waiting.extend(said);
+        Ok(())
+    }
+    fn receive(&mut self, into: &mut Vec<u8>, wait: Duration) -> Result<(), LinkError> {
+        self.now += wait;
+        into.append(&mut self.waiting);
+        Ok(())
+    }
+    fn now(&self) -> Duration {
+        self.now
+    }
+}
+
+/// What becomes of a greeting, and how long it takes, in lockstep and in real time.
+fn greeted(peer: impl Fn() -> Box<dyn FnMut(&[u8]) -> Vec<u8> + Send>) -> Vec<Option<LinkError>> {
+    let outcomes = [Patience::SERIAL, Patience::REAL_TIME].map(|patience| {
+        let line = Imagined {
+            peer: peer(),
+            waiting: Vec::new(),
+            now: Duration::ZERO,
+        };
+        let mut link = Endpoint::new(line, patience, 7);
+        let outcome = link.hello().err();
+        assert!(link.now() <= Duration::from_secs(5), "{:?}", link.now());
+        outcome
+    });
+    outcomes.into()
+}
+
+#[test]
+fn a_stranger_is_told_within_five_seconds_and_a_board_has_three_to_boot() {
+    for outcome in greeted(|| Box::new(silent)) {
+        assert_eq!(outcome, Some(LinkError::Silent));
+    }
+    for outcome in greeted(|| Box::new(gibberish())) {
+        assert!(
+            matches!(outcome, Some(LinkError::Incompatible(_))),
+            "{outcome:?}"
+        );
+    }
+    for outcome in greeted(|| Box::new(foreigner())) {
+        assert!(
+            matches!(outcome, Some(LinkError::Incompatible(_))),
+            "{outcome:?}"
+        );
+    }
+    // Greeted every fifth of a second, it is deaf for three.
+    for outcome in greeted(|| Box::new(booting(15))) {
+        assert_eq!(outcome, None);
+    }
+}
