@@ -253,8 +253,10 @@ fn steep(footing: &Footing, heights_m: &[Option<f64>], cell: Cell) -> Truly {
             })
     };
     let (mut low_m, mut high_m) = (f64::INFINITY, f64::NEG_INFINITY);
-    for height_m in within(1).filter_map(|index| heights_m[index]) {
-        (low_m, high_m) = (low_m.min(height_m), high_m.max(height_m));
+    for height_m in within(1).map(|index| heights_m[index]) {
+        // A hole is below everything.
+        low_m = low_m.min(height_m.unwrap_or(f64::NEG_INFINITY));
+        high_m = high_m.max(height_m.unwrap_or(f64::NEG_INFINITY));
     }
     let (mut above, mut below) = (false, false);
     for index in within(cells).filter(|index| footing.covers(frame.cell(*index))) {
@@ -327,6 +329,16 @@ mod tests {
         // The hole is cut where a patch lacks a corner; its far rim, and the ground before it, are out of reach.
         assert_eq!(seen[57..63], *"vvvvvv");
         assert!(seen[43..56].chars().all(|c| c == '?'), "{seen}");
+    }
+
+    #[test]
+    fn the_rim_of_a_hole_without_a_floor_is_negative() {
+        // Ground that tilts towards the hole and ground that tilts away from it.
+        for tilt in [-0.02, 0.0, 0.02] {
+            let ground = |x: f64| if x > 5.0 { f64::NAN } else { tilt * x };
+            let seen = row(&truths(1.0, &[], ground));
+            assert_eq!(seen, format!("{}{}", ".".repeat(49), "v".repeat(31)));
+        }
     }
 
     #[test]

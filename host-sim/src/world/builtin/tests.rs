@@ -1,9 +1,8 @@
 //! Drawings stay as they are, and are as their descriptions say.
 
 use super::*;
-use crate::metrics::{CellSet, Coverage, Footing, HEADINGS};
-use crate::robot::{Footprint, Limits, RADIUS_M};
-use fieldline_planner::geometry::Cell;
+use crate::metrics::{CellSet, Coverage};
+use crate::robot::{Footprint, RADIUS_M};
 
 #[test]
 fn the_robot_fits_at_every_start_and_can_turn_there() {
@@ -89,66 +88,6 @@ fn ground_stays_as_it_is() {
         ("causeway", (520, 280, 3_972_178_064)),
     ];
     assert_eq!(prints, expected);
-}
-
-/// What is meant to be explored is reached from every start, and within the limits; what is not, is not.
-#[test]
-fn uneven_worlds_are_as_passable_as_the_description_says() {
-    let (mut shares, mut steepest) = (Vec::new(), Vec::new());
-    for builtin in builtins() {
-        let world = World::builtin(builtin.name).expect("listed");
-        if world.elevation().is_none() {
-            continue;
-        }
-        let footing = Footing::new(&world, world.starts()[0], RADIUS_M, &Limits::WORKING);
-        for (index, start) in world.starts().iter().enumerate() {
-            let cell = |m: f64| (m / 0.1).floor() as i32;
-            let place = Cell {
-                x: cell(start.x_m),
-                y: cell(start.y_m),
-            };
-            let headings = (0..HEADINGS).all(|k| footing.reaches_heading(place, k));
-            assert!(headings, "{} start {index}", builtin.name);
-        }
-        let frame = footing.frame();
-        let covered = (0..frame.len()).filter(|k| footing.covers(frame.cell(*k)));
-        let share = covered.count() as f64 / frame.len() as f64;
-        shares.push((builtin.name, (share * 100.0).round() as u32));
-        if ["slope", "waves"].contains(&builtin.name) {
-            let grade = (0..frame.len())
-                .filter(|k| footing.covers(frame.cell(*k)))
-                .map(|k| slope_deg(&world, frame.cell(k)))
-                .fold(0.0, f64::max);
-            steepest.push((builtin.name, grade.round() as u32));
-        }
-    }
-    // Per cent of the map's cells; the rest are walls, faces, holes, and what cannot be got to.
-    let expected = [
-        ("slope", 96),
-        ("holes", 89),
-        ("building", 93),
-        ("cliff", 91),
-        ("spiral", 79),
-        ("kerbs", 86),
-        ("waves", 97),
-        ("pass", 67),
-        ("causeway", 69),
-    ];
-    assert_eq!(shares, expected);
-    assert_eq!(steepest, [("slope", 18), ("waves", 13)]);
-}
-
-/// The slope over 0.4 m around a cell, degrees; 0 where a part of that has no ground.
-fn slope_deg(world: &World, cell: Cell) -> f64 {
-    let [x, y] = [cell.x, cell.y].map(|k| (f64::from(k) + 0.5) * 0.1);
-    let grade = |dx: f64, dy: f64| {
-        let ahead = world.ground_m(x + dx, y + dy)?;
-        Some((ahead - world.ground_m(x - dx, y - dy)?) / 0.4)
-    };
-    match (grade(0.2, 0.0), grade(0.0, 0.2)) {
-        (Some(a), Some(b)) => a.hypot(b).atan().to_degrees(),
-        _ => 0.0,
-    }
 }
 
 /// Share of the free floor around the first start that the robot's disc could see.

@@ -74,31 +74,4 @@ fn within([x, y]: [f64; 2], [x0, y0, x1, y1]: [f64; 4]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_ramp_is_level_at_both_ends_and_never_steeper_than_it_says() {
-        let at = |k: i32| ramp(0.01 * f64::from(k), 6.0, 1.0);
-        assert_eq!((at(-5), at(0)), (0.0, 0.0));
-        assert!((at(600) - 1.0).abs() < 1e-12 && (at(700) - 1.0).abs() < 1e-12);
-        assert!((at(300) - 0.5).abs() < 1e-12);
-        for k in 0..600 {
-            let grade = (at(k + 1) - at(k)) / 0.01;
-            assert!((0.0..=0.2 + 1e-9).contains(&grade), "{k}: {grade}");
-        }
-        assert!((at(1) - at(0)) < 1e-3 * 0.2 && (at(600) - at(599)) < 1e-3 * 0.2);
-    }
-
-    #[test]
-    fn bumps_keep_their_height_and_their_slopes() {
-        let mut most = 0.0_f64;
-        for k in 0..4000 {
-            let (x, y) = (0.37 * f64::from(k % 70), 0.41 * f64::from(k / 70));
-            let here = bumps(x, y, 0.1);
-            assert!(here.abs() <= 0.1);
-            most = most.max((bumps(x + 0.1, y, 0.1) - here).abs() / 0.1);
-        }
-        assert!(most < 3.0_f64.to_radians().tan() * 1.5, "{most}");
-    }
-}
+mod tests;
