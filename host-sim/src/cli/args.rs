@@ -10,6 +10,9 @@ use host_sim::robot::{Limits, LimitsError};
 
 use super::baselines;
 
+/// Pictures that a run may leave on its way.
+const MOST_SNAPSHOTS: usize = 500;
+
 /// Explore simulated buildings with the Fieldline planner; without a command, explore the built-in office.
 #[derive(Debug, Parser)]
 #[command(name = "host-sim", version)]
@@ -82,6 +85,9 @@ pub(super) struct ExploreArgs {
     /// Compare every step's heading with that of the converged window
     #[arg(long)]
     pub(super) check_field: bool,
+    /// Leave so many pictures of the run on its way, evenly in simulated time, in the folder snapshots
+    #[arg(long, value_name = "N", default_value = "0", value_parser = snapshots)]
+    pub(super) snapshots: usize,
     /// Print the reports, one JSON object a line, and nothing else
     #[arg(long)]
     pub(super) json: bool,
@@ -106,6 +112,7 @@ impl Default for ExploreArgs {
             fault: None,
             map_shape: None,
             check_field: false,
+            snapshots: 0,
             json: false,
         }
     }
@@ -177,6 +184,14 @@ fn time_limit(text: &str) -> Result<u32, String> {
     }
 }
 
+/// Pictures of a run: each is read over the link and held until the end.
+fn snapshots(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(number) if number <= MOST_SNAPSHOTS => Ok(number),
+        _ => Err(format!("give a whole number from 0 to {MOST_SNAPSHOTS}")),
+    }
+}
+
 /// The usual working limits, changed.
 fn working(text: &str) -> Result<Limits, LimitsError> {
     Limits::WORKING.changed(text)
@@ -216,7 +231,7 @@ fn map_shape(text: &str) -> Result<(u8, u8), String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Cli, ExploreArgs, imu_noise, laser_noise, map_shape, time_limit};
+    use super::{Cli, ExploreArgs, imu_noise, laser_noise, map_shape, snapshots, time_limit};
     use clap::{CommandFactory as _, Parser as _};
 
     #[test]
@@ -242,6 +257,8 @@ mod tests {
         assert_eq!(imu_noise("1.5"), Ok(1.5));
         assert!(imu_noise("21").is_err() && laser_noise("-0.1").is_err());
         assert!(laser_noise("nan").is_err() && laser_noise("x").is_err());
+        assert_eq!((snapshots("0"), snapshots("500")), (Ok(0), Ok(500)));
+        assert!(snapshots("501").is_err() && snapshots("-1").is_err());
         assert_eq!(map_shape("128x32"), Ok((40, 10)));
         for bad in ["128", "x", "-1x5", "0x5", "axb", "nanx3"] {
             assert!(map_shape(bad).is_err(), "{bad}");

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Result, bail};
 
 use host_sim::link::spec::{LinkSpec, Options};
-use host_sim::picture::{Scene, run_png};
 use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
 use host_sim::trial::Record;
@@ -14,6 +13,7 @@ use host_sim::trial::mission::{self, Mission, MissionError};
 use host_sim::world::World;
 
 use super::args::{ExploreArgs, OdometryArg};
+use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
 use super::{baselines, note, say};
 
@@ -137,7 +137,9 @@ fn explore(
         Err(MissionError::Link(error)) => bail!("--link {link}: {error}"),
         run => run?,
     };
-    folder::write(&errand.folder, &report, &record, &picture(&report, &record))?;
+    let album = Album::new(&errand.world, &report, &record);
+    folder::write(&errand.folder, &report, &record, &album.end())?;
+    folder::write_snapshots(&errand.folder, album.on_the_way())?;
     tell(args, &report, &record, &errand.folder)?;
     Ok(report.explored())
 }
@@ -164,6 +166,7 @@ fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         time_limit_ms: args.time_limit,
         box_tiles: args.map_shape,
         check_field: args.check_field,
+        snapshots: args.snapshots,
     })
 }
 
@@ -185,20 +188,6 @@ fn tell(args: &ExploreArgs, report: &Report, record: &Record, folder: &Path) -> 
     }
     note(&format!("{}: files in {}", report.world, folder.display()));
     Ok(())
-}
-
-fn picture(report: &Report, record: &Record) -> Vec<u8> {
-    let path: Vec<_> = record.steps.iter().map(|step| step.truth).collect();
-    let left = report.outcome.residual_frontiers.iter();
-    let residue: Vec<_> = left.map(|f| (f.x_m, f.y_m)).collect();
-    run_png(&Scene {
-        title: &report.headline(),
-        subtitle: &report.in_short(),
-        map: &record.map,
-        path: &path,
-        window: record.window.as_ref(),
-        residue: &residue,
-    })
 }
 
 #[cfg(test)]

@@ -48,6 +48,8 @@ pub struct Mission {
     pub box_tiles: Option<(u8, u8)>,
     /// Compare every heading with that of the converged window.
     pub check_field: bool,
+    /// How many moments of the run to keep for pictures.
+    pub snapshots: usize,
 }
 
 impl Default for Mission {
@@ -66,6 +68,7 @@ impl Default for Mission {
             time_limit_ms: 3_600_000,
             box_tiles: None,
             check_field: false,
+            snapshots: 0,
         }
     }
 }
@@ -146,11 +149,12 @@ pub fn explore(
         start: simulator.start_message(Strategy::Frontier, (across, up)),
         time_limit_ms: mission.time_limit_ms,
         check_field: mission.check_field,
+        snapshots: mission.snapshots,
     };
     let start = world.starts().get(mission.start).copied();
     let start = start.unwrap_or_default();
     let mut account = Account::new(&setup, world, start, &mission.working);
-    let record = run(
+    let mut record = run(
         &setup,
         &mut Cast {
             link,
@@ -159,6 +163,7 @@ pub fn explore(
             watch,
         },
     );
+    record.ground = account.ground.take();
     let report = assemble(mission, &simulator, &account, &record);
     Ok((report, record))
 }
@@ -194,8 +199,8 @@ fn sim_config(mission: &Mission) -> SimConfig {
 struct Account {
     mirror: Mirror,
     coverage: Coverage,
-    /// Where the robot can go on uneven ground.
-    footing: Option<Footing>,
+    /// What the ground is to the robot where it is uneven.
+    ground: Option<GroundTruth>,
 }
 
 impl Account {
@@ -209,7 +214,7 @@ impl Account {
                 Some(footing) => Coverage::on(footing),
                 None => Coverage::new(world, start, RADIUS_M, range_m),
             },
-            footing,
+            ground: footing.map(|footing| GroundTruth::new(world, &footing, working)),
         }
     }
 }
@@ -275,7 +280,7 @@ fn assemble(
         steps: record.steps.len() as u64,
         coverage: coverage(account, simulator),
         safety: safety(simulator),
-        terrain: terrain(simulator, account, record),
+        terrain: terrain(simulator, record),
         localization: record.localization(),
         planner: record.planner(),
         field: record.field(),
@@ -324,19 +329,13 @@ fn noise(config: &SimConfig) -> report::Noise {
     }
 }
 
-fn terrain(
-    simulator: &Simulator<'_>,
-    account: &Account,
-    record: &Record,
-) -> Option<report::Terrain> {
-    let footing = account.footing.as_ref()?;
-    let (world, config) = (simulator.world(), simulator.config());
+fn terrain(simulator: &Simulator<'_>, record: &Record) -> Option<report::Terrain> {
+    let (ground, config) = (record.ground.as_ref()?, simulator.config());
     // A map in a frame that drifts cannot be compared cell by cell.
     let still = !matches!(config.odometry, OdometryModel::Noisy(_));
     let comparable = still && !record.tiles.is_empty();
     let classes = comparable.then(|| {
-        let truth = GroundTruth::new(world, footing, &config.working);
-        let table = truth.compare(|cell| record.map.get(cell.x, cell.y));
+        let table = ground.compare(|cell| record.map.get(cell.x, cell.y));
         report::terrain::Classes::from(&table)
     });
     let terrain = report::Terrain {

@@ -10,6 +10,7 @@ pub mod mirror;
 pub mod mission;
 pub mod oracle;
 pub mod record;
+pub mod series;
 pub mod shape;
 pub mod snapshot;
 pub mod wording;
@@ -22,6 +23,8 @@ use crate::link::{Link, LinkError};
 use crate::report::tum::Stamped;
 use crate::sim::Loss;
 use freeze::FreezeDetector;
+use series::Series;
+use snapshot::Snapshot;
 
 pub use ending::Ending;
 pub use record::{Record, Step};
@@ -89,6 +92,8 @@ pub struct Setup {
     pub time_limit_ms: u32,
     /// Compare every step's heading with that of the converged window.
     pub check_field: bool,
+    /// How often map and window are read during the run, for pictures.
+    pub snapshots: usize,
 }
 
 /// Who takes part in a run.
@@ -107,17 +112,24 @@ pub struct Cast<'a> {
 /// Run until something ends it. The record holds whatever was learnt, however it ended.
 pub fn run(setup: &Setup, cast: &mut Cast<'_>) -> Record {
     let mut record = Record::default();
+    let mut series = Series::new(setup.snapshots);
     record.ending = match cast.link.control(&Control::Start(setup.start.clone())) {
         Ok(Status::Fault(fault)) => Ending::Fault(fault),
-        Ok(_) => explore(setup, cast, &mut record),
+        Ok(_) => explore(setup, cast, &mut record, &mut series),
         Err(error) => Ending::Link(error),
     };
+    record.snapshots = series.pick();
     bring_to_rest(cast, &record);
     read_out(cast, &mut record);
     record
 }
 
-fn explore(setup: &Setup, cast: &mut Cast<'_>, record: &mut Record) -> Ending {
+fn explore(
+    setup: &Setup,
+    cast: &mut Cast<'_>,
+    record: &mut Record,
+    series: &mut Series<Snapshot>,
+) -> Ending {
     let mut freeze = FreezeDetector::default();
     loop {
         let (observation, truth) = (cast.body.observe(), cast.body.truth());
@@ -133,6 +145,12 @@ fn explore(setup: &Setup, cast: &mut Cast<'_>, record: &mut Record) -> Ending {
             && let Err(error) = check_field(cast.link, &observation, &command, record)
         {
             return Ending::Link(error);
+        }
+        if series.is_due(observation.time_ms) {
+            match snapshot::take(cast.link, record) {
+                Ok(snapshot) => series.take(snapshot),
+                Err(error) => return Ending::Link(error),
+            }
         }
         if let Some(ending) = ended(setup, cast.watch, &mut freeze, record, &command) {
             return ending;
@@ -182,9 +200,7 @@ fn bring_to_rest(cast: &mut Cast<'_>, record: &Record) {
 /// Map, last window, residual frontiers and counters, as far as the link still answers.
 fn read_out(cast: &mut Cast<'_>, record: &mut Record) {
     if !matches!(record.ending, Ending::Link(_)) {
-        let start = record.steps.first().map(|step| step.estimate);
-        let start = start.unwrap_or_default();
-        if let Err(error) = snapshot::read(cast.link, start.x_m, start.y_m, record) {
+        if let Err(error) = snapshot::read(cast.link, record) {
             record.read_out_error = Some(error);
         }
     }

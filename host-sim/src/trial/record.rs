@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use fieldline_protocol::message::{Command, Cost, Frontier, Observation, Pose, Status, Tile};
 
-use super::snapshot::Window;
+use super::snapshot::{Snapshot, Window};
 use super::{Ending, Progress, wording};
 use crate::link::digest::Digest;
 use crate::link::{LinkError, LinkStats};
+use crate::metrics::GroundTruth;
 use crate::report::tum::Stamped;
 use crate::report::{self, GridMap, Percentiles};
 
@@ -47,6 +48,10 @@ pub struct Record {
     pub window: Option<Window>,
     /// Frontiers that were left.
     pub frontiers: Vec<Frontier>,
+    /// Map and window on the way, where that was asked for.
+    pub snapshots: Vec<Snapshot>,
+    /// What the true ground is to the robot, in an uneven world.
+    pub ground: Option<GroundTruth>,
     /// Angles between a step's heading and that of the converged window, where that was asked for.
     pub heading_errors_deg: Vec<f64>,
     /// Both ends' counters.
@@ -68,6 +73,8 @@ impl Default for Record {
             tiles: BTreeMap::new(),
             window: None,
             frontiers: Vec::new(),
+            snapshots: Vec::new(),
+            ground: None,
             heading_errors_deg: Vec::new(),
             link_stats: LinkStats::default(),
             read_out_error: None,

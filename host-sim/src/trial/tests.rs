@@ -149,6 +149,7 @@ fn trial(link: &mut Script, body: &mut Point, interrupt_ms: u32) -> Record {
         start: Start::default(),
         time_limit_ms: 120_000,
         check_field: false,
+        snapshots: 2,
     };
     let mut cast = Cast {
         link,
@@ -163,6 +164,22 @@ fn ends(answers: Vec<Result<Command, LinkError>>) -> (Record, Script, Point) {
     let (mut link, mut body) = (Script::new(answers), Point::default());
     let record = trial(&mut link, &mut body, u32::MAX);
     (record, link, body)
+}
+
+#[test]
+fn moments_are_kept_evenly_on_the_way() {
+    let mut link = Script::new(vec![command(Status::Exploring, 0.5)]);
+    let record = trial(&mut link, &mut Point::default(), 9_000);
+    assert_eq!(record.ending, Ending::Interrupted);
+    let moments = record.snapshots.iter();
+    let moments: Vec<_> = moments.map(|m| (m.progress.time_ms, m.steps)).collect();
+    // Taken at 0, 2, 4, 6 and 8 s, and thinned to every 4 s.
+    assert_eq!(moments, [(4_000, 41), (8_000, 81)]);
+    let last = &record.snapshots[1];
+    assert_eq!(
+        (last.progress.coverage, last.map.known()),
+        (0.081, 3 * 1024)
+    );
 }
 
 #[test]
