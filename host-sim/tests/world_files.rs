@@ -281,11 +281,11 @@ fn heights_that_cannot_be_meant_are_named_in_one_line() {
         ),
         (
             format!("{KEYS}elevation: {{image: z8.pgm, z_min: .nan, z_max: 1}}"),
-            "elevation.z_max: 1 is not above z_min (NaN)",
+            "value `.nan` is not a finite number at line 3, column 35; correct the YAML there",
         ),
         (
             format!("{KEYS}elevation: {{image: z8.pgm, z_min: 0, z_max: .inf}}"),
-            "elevation.z_max: inf is not above z_min (0)",
+            "value `.inf` is not a finite number at line 3, column 45; correct the YAML there",
         ),
         (
             format!("{KEYS}elevation: {{image: z8.pgm, z_min: 3, z_max: 1}}"),
@@ -322,7 +322,7 @@ fn a_start_over_no_data_or_on_a_cliff_is_refused_with_a_better_place() {
     let path = heights(&folder, "hole", hole, "robots: [[2, 5, 0]]");
     let error = World::load(&path).expect_err("a hole").to_string();
     assert!(
-        error.ends_with("robots[0]: (2.00, 5.00) has no ground under the robot's wheels (2.25 m from its centre); most room is at (10.25, 4.75)"),
+        error.ends_with("robots[0]: (2.00, 5.00) has no ground under the robot's wheels (2.25 m from its centre); most room is at (10.75, 4.75)"),
         "{error}"
     );
     // A metre a pixel from x = 10 on: 63°. The file loads, for limits are the run's; the run is refused.
@@ -335,12 +335,32 @@ fn a_start_over_no_data_or_on_a_cliff_is_refused_with_a_better_place() {
         .to_string();
     assert_eq!(
         error,
-        "cliff: robots[0]: the robot would tip over, at a pitch of -63.4 and a roll of 0.0 degrees; most room is at (9.75, 4.75)"
+        "cliff: robots[0]: the robot would tip over, at a pitch of -63.4 and a roll of 0.0 degrees; most room is at (4.75, 4.75)"
     );
-    // Without robots the start is easy ground, not the steep middle.
+    // Without robots the start is amid easy ground, far from the steep middle.
     let path = heights(&folder, "default", cliff, "");
     let start = World::load(&path).expect("loads").starts()[0];
-    assert_eq!((start.x_m, start.y_m), (9.75, 4.75));
+    assert_eq!((start.x_m, start.y_m), (4.75, 4.75));
+}
+
+#[test]
+fn transparent_pixels_have_no_surface() {
+    let folder = Folder::new("clear-ground");
+    // Two rows of four: the right half cannot be seen.
+    let row = [[10, 255], [10, 255], [10, 0], [10, 254]].concat();
+    let kind = (png::ColorType::GrayscaleAlpha, png::BitDepth::Eight);
+    png(
+        &folder.0.join("z.png"),
+        (4, 2),
+        kind,
+        &[&row[..], &row].concat(),
+    );
+    let text = "resolution: 2\norigin: [0, 0, 0]\nelevation: {image: z.png, z_min: 0, z_max: 25.5}\nrobots: [[1.5, 2, 0]]";
+    let world = World::load(&folder.write("world.yaml", text)).expect("loads");
+    let height = |x_m: f64| world.ground_m(x_m, 2.0);
+    assert!((height(1.5).expect("ground") - 1.0).abs() < 1e-12);
+    assert_eq!([3.5, 5.0, 7.5].map(height), [None; 3]);
+    assert!(world.notes().iter().any(|note| note.starts_with("50.0 %")));
 }
 
 #[test]
@@ -350,14 +370,14 @@ fn what_may_surprise_about_the_ground_is_noted() {
     folder.write("z.pgm", b"P2 2 2 255\n0 9 9 9\n");
     let elevation = "elevation: {image: z.pgm, z_min: 0, z_max: 12.75, no_data: 0, resolution: 1, origin: [0, 0]}";
     let text = format!(
-        "image: map.pgm\nresolution: 1\norigin: [0, 0, 0]\n{elevation}\nrobots: [[0.8, 0.4, 0]]\n"
+        "image: map.pgm\nresolution: 1\norigin: [0, 0, 0]\n{elevation}\nrobots: [[1.75, 0.5, 0]]\n"
     );
     let world = World::load(&folder.write("world.yaml", text)).expect("loads");
     assert_eq!(
         world.notes(),
         [
             "its heights come in steps of 0.050 m (8 bits over 12.75 m): slopes become stairs; 16 bits would be smooth",
-            "25.0 % of its heights are no_data: holes without a floor",
+            "25.0 % of its pixels have no surface: holes without a floor",
             "it does not cover the map: 50.0 % of the free floor lie beyond it, without ground",
         ]
     );

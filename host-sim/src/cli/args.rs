@@ -24,7 +24,7 @@ pub(super) struct Cli {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Explore worlds and leave a folder with report, map, trajectory, commands and picture of each
-    Explore(ExploreArgs),
+    Explore(Box<ExploreArgs>),
     /// List the built-in worlds
     Worlds {
         /// One JSON object a line

@@ -159,7 +159,7 @@ mod tests {
             names.collect::<std::collections::BTreeSet<_>>()
         };
         prepare(folder).unwrap();
-        write_snapshots(folder, std::iter::empty()).unwrap();
+        write_snapshots(folder, core::iter::empty()).unwrap();
         assert!(!series.exists());
         write_snapshots(folder, (0..12).map(|k| vec![k])).unwrap();
         assert_eq!(names().len(), 12);

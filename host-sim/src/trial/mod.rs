@@ -199,10 +199,10 @@ fn bring_to_rest(cast: &mut Cast<'_>, record: &Record) {
 
 /// Map, last window, residual frontiers and counters, as far as the link still answers.
 fn read_out(cast: &mut Cast<'_>, record: &mut Record) {
-    if !matches!(record.ending, Ending::Link(_)) {
-        if let Err(error) = snapshot::read(cast.link, record) {
-            record.read_out_error = Some(error);
-        }
+    if !matches!(record.ending, Ending::Link(_))
+        && let Err(error) = snapshot::read(cast.link, record)
+    {
+        record.read_out_error = Some(error);
     }
     record.link_stats = cast.link.stats();
 }

@@ -2,7 +2,8 @@
 //!
 //! Sample (i, j) sits at the centre of its pixel. A grey value v is the height
 //! `z_min + v / v_max (z_max − z_min)`; where 0 or the greatest value means "no surface", the remaining values span the
-//! same range. A patch between four samples is ground only if all four have a surface. Metres.
+//! same range. A transparent pixel has no surface either. A patch between four samples is ground only if all four have a
+//! surface. Metres.
 //!
 //! For rays, patches are grouped into blocks of [`BLOCK`] × [`BLOCK`] whose highest point is kept.
 
@@ -63,11 +64,13 @@ impl Elevation {
         origin_m: [f64; 2],
     ) -> Self {
         let mut heights_m = Vec::with_capacity(image.samples.len());
-        for row in image.samples.chunks_exact(image.width).rev() {
-            heights_m.extend(
-                row.iter()
-                    .map(|v| scale.height_m(*v, image.full).unwrap_or(f64::NAN)),
-            );
+        for row in (0..image.height).rev() {
+            let pixels = row * image.width..(row + 1) * image.width;
+            heights_m.extend(pixels.map(|k| {
+                let height_m = scale.height_m(image.samples[k], image.full);
+                let seen = height_m.filter(|_| !image.is_transparent(k));
+                seen.unwrap_or(f64::NAN)
+            }));
         }
         Self::new(
             [image.width, image.height],

@@ -132,7 +132,7 @@ impl<'a> Heights<'a> {
         let missing = ground.missing();
         if missing > 0.0 {
             notes.push(format!(
-                "{:.1} % of its heights are no_data: holes without a floor",
+                "{:.1} % of its pixels have no surface: holes without a floor",
                 missing * 100.0
             ));
         }

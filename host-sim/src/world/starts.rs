@@ -1,11 +1,14 @@
 //! Where a robot can be put down: free of walls, on ground that it can stand on.
 
+use super::distance::DistanceField;
 use super::occupancy::{Class, GridCell};
 use super::{Start, World, WorldError};
 use crate::robot::{Footprint, Limits, Pose, stand};
 
 /// Headings tried, all around.
 const HEADINGS: u32 = 8;
+/// Distance over which the slope of a place is taken, metres.
+const SLOPE_M: f64 = 0.1;
 
 impl World {
     /// The origin of the frame if the robot is at home there, else the place with most room around it.
@@ -61,9 +64,11 @@ impl World {
 
     /// The cell with most room around it on easy ground, facing along x; on any ground if none of it is easy.
     fn widest_place(&self) -> Start {
+        let barriers = self.elevation.is_some().then(|| self.barriers());
+        let room = barriers.as_ref().unwrap_or(&self.distance);
         let best = self
-            .widest_cell(|[x, y]| self.is_easy(x, y))
-            .or_else(|| self.widest_cell(|_| true));
+            .widest_cell(room, |[x, y]| self.is_easy(x, y))
+            .or_else(|| self.widest_cell(&self.distance, |_| true));
         let [x_m, y_m] = self
             .occupancy
             .centre(best.unwrap_or(GridCell { i: 0, j: 0 }));
@@ -74,13 +79,46 @@ impl World {
         }
     }
 
-    fn widest_cell(&self, admit: impl Fn([f64; 2]) -> bool) -> Option<GridCell> {
+    /// Distances from everything that a robot should not start beside: what is solid, holes, and ground too steep to be
+    /// crossed in any direction.
+    fn barriers(&self) -> DistanceField {
+        let mut plan = self.occupancy.clone();
+        for j in 0..plan.height() as i64 {
+            for i in 0..plan.width() as i64 {
+                let cell = GridCell { i, j };
+                let [x, y] = plan.centre(cell);
+                if !self.is_even(x, y) {
+                    plan.set(cell, Class::Wall);
+                }
+            }
+        }
+        DistanceField::new(&plan)
+    }
+
+    /// Is there ground, and no slope beyond the working limit to the side?
+    fn is_even(&self, x_m: f64, y_m: f64) -> bool {
+        let Some(here_m) = self.ground_m(x_m, y_m) else {
+            return false;
+        };
+        let steepest = libm::tan(Limits::WORKING.side_rad);
+        // Beyond the border the ground is taken as level.
+        [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]
+            .into_iter()
+            .filter_map(|[x, y]| self.ground_m(x_m + SLOPE_M * x, y_m + SLOPE_M * y))
+            .all(|beside_m| (beside_m - here_m).abs() <= steepest * SLOPE_M)
+    }
+
+    fn widest_cell(
+        &self,
+        room: &DistanceField,
+        admit: impl Fn([f64; 2]) -> bool,
+    ) -> Option<GridCell> {
         let mut best = None;
         let mut most_m = 0.0;
         for j in 0..self.occupancy.height() as i64 {
             for i in 0..self.occupancy.width() as i64 {
                 let cell = GridCell { i, j };
-                let room_m = self.distance.from_centre_m(cell);
+                let room_m = room.from_centre_m(cell);
                 if room_m > most_m && admit(self.occupancy.centre(cell)) {
                     (most_m, best) = (room_m, Some(cell));
                 }

@@ -5,6 +5,7 @@ use crate::metrics::{Footing, HEADINGS};
 use crate::robot::{Limits, RADIUS_M};
 use crate::sim::{Loss, SimConfig, Simulator};
 use crate::world::{GridCell, Start, World};
+use core::f64::consts::{FRAC_PI_2, PI};
 use fieldline_planner::geometry::Cell;
 use fieldline_protocol::message::Twist;
 use fixed::types::I4F12;
@@ -248,7 +249,7 @@ fn kerbs_stop_the_robot_from_below_and_fell_it_from_above() {
     }
     // Westwards off each island.
     for (west, fell) in [(2.4, false), (7.6, false), (12.8, true), (18.0, true)] {
-        let ([x, _], _, loss) = drive("kerbs", [west + 1.0, 7.0, 3.141_592_7], 7);
+        let ([x, _], _, loss) = drive("kerbs", [west + 1.0, 7.0, PI], 7);
         assert_eq!(loss, fell.then_some(Loss::Fell), "{west}");
         assert!(fell || x < west - 0.5, "{west}: {x}");
     }
@@ -258,9 +259,9 @@ fn kerbs_stop_the_robot_from_below_and_fell_it_from_above() {
 fn who_drives_on_over_a_rim_falls_and_against_a_cliff_stands() {
     for (name, start) in [
         ("holes", [14.0, 19.0, 0.0]),
-        ("cliff", [19.4, 13.5, 3.141_592_7]),
-        ("causeway", [13.0, 7.2, 1.570_796_3]),
-        ("causeway", [13.0, 7.2, -1.570_796_3]),
+        ("cliff", [19.4, 13.5, PI]),
+        ("causeway", [13.0, 7.2, FRAC_PI_2]),
+        ("causeway", [13.0, 7.2, -FRAC_PI_2]),
     ] {
         let (place, _, loss) = drive(name, start, 14);
         assert_eq!(loss, Some(Loss::Fell), "{name}: {place:?}");
