@@ -214,10 +214,10 @@ fn every_mistake_is_named_in_one_line() {
         (format!("image: tail.png\n{KEYS}"), "image tail.png: truncated; copy the whole file".into()),
         (format!("{good}robots: []"), "robots: a list of 0 is not a list of [x, y, yaw], at least one".into()),
         (format!("{good}robots: [[1]]"), "robots[0]: a list of 1 is not [x, y, yaw]".into()),
-        (format!("{good}robots: [[1.5, 2.5, 0]]"), "robots[0]: (1.50, 2.50) lies in a wall (0.00 m from its centre); most room is at (0.50, 3.50)".into()),
-        (format!("{good}robots: [[0.5, 3.5], [0.75, 2.5]]"), "robots[1]: (0.75, 2.50) is too close to a wall, the robot overlaps it (0.50 m from its centre); most room is at (0.50, 3.50)".into()),
-        (format!("{good}robots: [[9, 2.5]]"), "robots[0]: (9.00, 2.50) lies outside of the map (0.00 m from its centre); most room is at (0.50, 3.50)".into()),
-        (format!("image: dark.pgm\n{KEYS}"), "robots[0]: (-0.50, 2.50) lies in a wall (0.00 m from its centre); nothing is free anywhere, check negate and the thresholds".into()),
+        (format!("{good}robots: [[1.5, 2.5, 0]]"), "robots[0]: (1.50, 2.50) lies in a wall; most room is at (0.50, 3.50)".into()),
+        (format!("{good}robots: [[0.5, 3.5], [0.75, 2.5]]"), "robots[1]: (0.75, 2.50) is too close to a wall, the robot overlaps it; most room is at (0.50, 3.50)".into()),
+        (format!("{good}robots: [[9, 2.5]]"), "robots[0]: (9.00, 2.50) lies outside of the map; most room is at (0.50, 3.50)".into()),
+        (format!("image: dark.pgm\n{KEYS}"), "robots[0]: (-0.50, 2.50) lies in a wall; nothing is free anywhere, check negate and the thresholds".into()),
     ];
     for (text, complaint) in cases {
         assert_eq!(
@@ -322,7 +322,7 @@ fn a_start_over_no_data_or_on_a_cliff_is_refused_with_a_better_place() {
     let path = heights(&folder, "hole", hole, "robots: [[2, 5, 0]]");
     let error = World::load(&path).expect_err("a hole").to_string();
     assert!(
-        error.ends_with("robots[0]: (2.00, 5.00) has no ground under the robot's wheels (2.25 m from its centre); most room is at (10.75, 4.75)"),
+        error.ends_with("robots[0]: (2.00, 5.00) has no ground under the robot's wheels; most room is at (10.75, 4.75)"),
         "{error}"
     );
     // A metre a pixel from x = 10 on: 63°. The file loads, for limits are the run's; the run is refused.

@@ -47,19 +47,19 @@ pub(super) struct ExploreArgs {
     #[arg(long)]
     pub(super) link: Option<LinkSpec>,
     /// Decides every random number of the run
-    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<u64>)]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<u64>, allow_negative_numbers = true)]
     pub(super) seed: u64,
     /// Which of the world's start poses, from 0, where WORLD@N does not say it
-    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<usize>)]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<usize>, allow_negative_numbers = true)]
     pub(super) start: usize,
     /// What the robot believes of its motion
     #[arg(long, value_enum, default_value_t = OdometryArg::Truth)]
     pub(super) odometry: OdometryArg,
     /// Standard deviation of roll and pitch, degrees [default: 0 with truth, 0.5 with noisy]
-    #[arg(long, value_name = "DEG", value_parser = imu_noise)]
+    #[arg(long, value_name = "DEG", value_parser = imu_noise, allow_negative_numbers = true)]
     pub(super) imu_noise: Option<f64>,
     /// Standard deviation of the lasers' ranges, metres [default: 0.01]
-    #[arg(long, value_name = "M", value_parser = laser_noise)]
+    #[arg(long, value_name = "M", value_parser = laser_noise, allow_negative_numbers = true)]
     pub(super) laser_noise: Option<f64>,
     /// Ground that counts as reachable, degrees and metres, any of [default: climb=20,side=15,step=0.07,drop=0.07]
     #[arg(long, value_name = "LIMITS", value_parser = working)]
@@ -68,7 +68,7 @@ pub(super) struct ExploreArgs {
     #[arg(long, value_name = "LIMITS", value_parser = failing)]
     pub(super) failing: Option<Limits>,
     /// Simulated seconds after which a run ends
-    #[arg(long, value_name = "S", default_value = "3600", value_parser = time_limit)]
+    #[arg(long, value_name = "S", default_value = "3600", value_parser = time_limit, allow_negative_numbers = true)]
     pub(super) time_limit: u32,
     /// Folder of the run; of several runs, the folder of their folders [default: out/WORLD-STRATEGY-SEED]
     #[arg(long, value_name = "DIR")]
@@ -80,13 +80,13 @@ pub(super) struct ExploreArgs {
     #[arg(long, value_name = "SPEC")]
     pub(super) fault: Option<FaultArg>,
     /// Extent that the device's map can hold, in metres across and up, as in 128x32 [default: chosen for the world]
-    #[arg(long, value_name = "AxB", value_parser = map_shape)]
+    #[arg(long, value_name = "AxB", value_parser = map_shape, allow_hyphen_values = true)]
     pub(super) map_shape: Option<(u8, u8)>,
     /// Compare every step's heading with that of the converged window
     #[arg(long)]
     pub(super) check_field: bool,
     /// Leave so many pictures of the run on its way, evenly in simulated time, in the folder snapshots
-    #[arg(long, value_name = "N", default_value = "0", value_parser = snapshots)]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = snapshots, allow_negative_numbers = true)]
     pub(super) snapshots: usize,
     /// Print the reports, one JSON object a line, and nothing else
     #[arg(long)]
@@ -221,12 +221,14 @@ fn deviation(text: &str, most: f64, unit: &str) -> Result<f64, String> {
 
 /// `AxB` metres to tiles.
 fn map_shape(text: &str) -> Result<(u8, u8), String> {
-    let side = |text: &str| text.trim().parse::<f64>().ok().filter(|m| *m > 0.0);
+    let side = |text: &str| text.trim().parse::<f64>().ok();
     let sides = text.split_once('x');
-    match sides.and_then(|(a, b)| side(a).zip(side(b))) {
-        Some((across_m, up_m)) => Ok(host_sim::trial::shape::of_metres(across_m, up_m)),
-        None => Err("give metres across and up, as in 128x32".into()),
-    }
+    sides
+        .and_then(|(a, b)| side(a).zip(side(b)))
+        .and_then(|(across_m, up_m)| host_sim::trial::shape::of_metres(across_m, up_m))
+        .ok_or_else(|| {
+            "give metres across and up, each above 0 and at most 812, as in 128x32".into()
+        })
 }
 
 #[cfg(test)]
@@ -260,7 +262,8 @@ mod tests {
         assert_eq!((snapshots("0"), snapshots("500")), (Ok(0), Ok(500)));
         assert!(snapshots("501").is_err() && snapshots("-1").is_err());
         assert_eq!(map_shape("128x32"), Ok((40, 10)));
-        for bad in ["128", "x", "-1x5", "0x5", "axb", "nanx3"] {
+        assert_eq!(map_shape("1 x 1"), Ok((4, 4)));
+        for bad in ["128", "x", "-1x5", "0x5", "axb", "nanx3", "infx3", "3x1e9"] {
             assert!(map_shape(bad).is_err(), "{bad}");
         }
     }

@@ -167,6 +167,7 @@ fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         box_tiles: args.map_shape,
         check_field: args.check_field,
         snapshots: args.snapshots,
+        ..Mission::default()
     })
 }
 

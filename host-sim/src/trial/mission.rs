@@ -46,6 +46,8 @@ pub struct Mission {
     pub time_limit_ms: u32,
     /// The map's box in tiles; chosen for the world if `None`.
     pub box_tiles: Option<(u8, u8)>,
+    /// Time from one observation to the next, milliseconds.
+    pub period_ms: u32,
     /// Compare every heading with that of the converged window.
     pub check_field: bool,
     /// How many moments of the run to keep for pictures.
@@ -67,6 +69,7 @@ impl Default for Mission {
             failing: Limits::FAILING,
             time_limit_ms: 3_600_000,
             box_tiles: None,
+            period_ms: SimConfig::default().period_ms,
             check_field: false,
             snapshots: 0,
         }
@@ -173,6 +176,7 @@ fn sim_config(mission: &Mission) -> SimConfig {
     SimConfig {
         seed: mission.seed,
         start: mission.start,
+        period_ms: mission.period_ms,
         odometry: match (mission.noisy_odometry, mission.imu_rad) {
             (true, imu_rad) => {
                 let usual = OdometryNoise::default();

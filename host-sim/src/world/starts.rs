@@ -42,8 +42,7 @@ impl World {
             }
             Some(Class::Free) => return Ok(()),
         };
-        let room_m = self.distance.from_centre_m(self.occupancy.cell_at(x, y));
-        let reason = format!("({x:.2}, {y:.2}) {place} ({room_m:.2} m from its centre)");
+        let reason = format!("({x:.2}, {y:.2}) {place}");
         Err(self.bad_start(file, index, &reason))
     }
 

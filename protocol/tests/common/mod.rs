@@ -131,19 +131,23 @@ fn start() -> impl Strategy<Value = Start> {
         any::<(u8, u8)>(),
         list(laser()),
         any::<u16>(),
-        short(),
-        short(),
+        any::<u16>(),
+        [short(), short(), short(), short()],
     )
-        .prop_map(
-            |(box_tiles, lasers, robot_radius_mm, max_linear, max_angular)| Start {
+        .prop_map(|(box_tiles, lasers, robot_radius_mm, period_ms, limits)| {
+            let [max_linear, max_angular, linear_accel, angular_accel] = limits;
+            Start {
                 strategy: Plan::Frontier,
                 box_tiles,
                 lasers,
                 robot_radius_mm,
                 max_linear,
                 max_angular,
-            },
-        )
+                linear_accel,
+                angular_accel,
+                period_ms,
+            }
+        })
 }
 
 fn control() -> impl Strategy<Value = Control> {
@@ -358,6 +362,9 @@ fn refusal() -> impl Strategy<Value = Refusal> {
         Refusal::BadBox,
         Refusal::BadParameter(Parameter::Beams),
         Refusal::BadParameter(Parameter::MaxAngular),
+        Refusal::BadParameter(Parameter::LinearAccel),
+        Refusal::BadParameter(Parameter::AngularAccel),
+        Refusal::BadParameter(Parameter::Period),
         Refusal::UnknownStrategy,
     ])
 }

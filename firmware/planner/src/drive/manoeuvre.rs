@@ -165,6 +165,15 @@ pub struct Search {
     first: Choice,
 }
 
+/// What an instalment of a search may look at; it ends with the pose that uses up either.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// Poses taken from the open list.
+    pub poses: u32,
+    /// Near points, counted anew for each pose that is tried against all of them.
+    pub points: u32,
+}
+
 /// What a search asks of a way out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Attempt {
@@ -257,17 +266,21 @@ impl Search {
         self.first
     }
 
-    /// Look at `budget` more poses.
+    /// Look at more poses.
     pub fn advance<H: Fn(Place) -> Option<f32>>(
         &mut self,
         ground: &Ground<'_, H>,
-        budget: u32,
+        budget: Budget,
         scratch: &mut [u32],
     ) -> Found {
         let Some((visited, nodes)) = scratch.split_at_mut_checked(VISITED_WORDS) else {
             return Found::Nothing;
         };
-        for _ in 0..budget {
+        let mut points = 0;
+        for _ in 0..budget.poses {
+            if points >= budget.points {
+                break;
+            }
             let Some((index, node)) = self.open.pop(nodes) else {
                 return Found::Nothing;
             };
@@ -288,27 +301,33 @@ impl Search {
                     },
                 );
             }
-            if !self.expand(ground, (index, node), visited, nodes) {
+            let Some(tried) = self.expand(ground, (index, node), visited, nodes) else {
                 return Found::Nothing;
-            }
+            };
+            points += tried * ground.surround.points();
         }
         Found::Pending
     }
 
-    /// Enter the poses one motion away; false when there is no room for more.
+    /// Enter the poses one motion away; how many were tried, or `None` when there is no room for more.
     fn expand<H: Fn(Place) -> Option<f32>>(
         &mut self,
         ground: &Ground<'_, H>,
         (index, node): (u16, Node),
         visited: &mut [u32],
         nodes: &mut [u32],
-    ) -> bool {
+    ) -> Option<u32> {
+        let mut tried = 0;
         for (number, motion) in MOTIONS.iter().enumerate() {
             if index == 0 && !self.first.has(number) {
                 continue;
             }
             let place = node.place.after(motion.length_m, motion.turn_rad);
-            if !visit(visited, place) || !ground.surround.is_clear(place, self.attempt.margin_m) {
+            if !visit(visited, place) {
+                continue;
+            }
+            tried += 1;
+            if !ground.surround.is_clear(place, self.attempt.margin_m) {
                 continue;
             }
             let cost = node.cost + motion.cost;
@@ -324,10 +343,10 @@ impl Search {
                 is_end: false,
             };
             if !self.open.push(nodes, next) {
-                return false;
+                return None;
             }
         }
-        true
+        Some(tried)
     }
 
     /// The motions from the start to a node and on from there, the first one last; of a way too long, its beginning.
@@ -391,6 +410,11 @@ mod tests {
         points
     }
 
+    const BUDGET: Budget = Budget {
+        poses: 100,
+        points: 2_000,
+    };
+
     fn search(points: &[Point], pose: Pose, heading: f32) -> Option<(Plan, Surround)> {
         let mut scratch = std::vec![0; SCRATCH_WORDS];
         let surround = Surround::new(&pose, points);
@@ -409,7 +433,7 @@ mod tests {
             &mut scratch,
         );
         loop {
-            match search.advance(&ground, 100, &mut scratch) {
+            match search.advance(&ground, BUDGET, &mut scratch) {
                 Found::Plan(plan) => return Some((plan, surround)),
                 Found::Pending => {}
                 Found::Nothing => return None,
