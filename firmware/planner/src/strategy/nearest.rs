@@ -1,0 +1,83 @@
+//! The centre cell nearest to a place, by steps through passable cells [Ouroboros, Algorithm 1, lines 4 and 6:
+//! `moveToVoronoi`].
+//!
+//! Not the nearest as the crow flies, which may lie behind a wall. The search grows its window until it finds one.
+//!
+//! Units: map cells; sites of the topology's frame.
+
+use crate::bits::{Adjacency, flood};
+use crate::clearance::Disc;
+use crate::field::SIDE;
+use crate::geometry::Cell;
+use crate::grid::{Plane, Site};
+use crate::map::Tiles;
+use crate::topology::Frame;
+use crate::view::{Rows, SCALES, View};
+
+/// Where centre cells are looked for.
+#[derive(Debug)]
+pub(super) struct Centres<'a, const TILES: usize, const SLOTS: usize> {
+    pub(super) tiles: &'a Tiles<TILES, SLOTS>,
+    pub(super) disc: &'a Disc,
+    pub(super) frame: Frame,
+    pub(super) way: Plane<'a>,
+}
+
+impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
+    /// The centre cell nearest to `from` of those that `accepts` likes; a robot at `from` is let out.
+    pub(super) fn nearest(
+        &self,
+        from: Cell,
+        view: &mut View,
+        accepts: impl Fn(Site) -> bool,
+    ) -> Option<Site> {
+        SCALES.iter().find_map(|&scale| {
+            view.look_around(self.tiles, self.disc, from, scale);
+            view.free_robot(from);
+            let targets = self.targets(view, &accepts);
+            let mut seeds: Rows = [0; SIDE];
+            View::put(&mut seeds, view.place(from)?);
+            let met = flood(&view.passable, &mut seeds, &targets, Adjacency::Four)?;
+            self.site_in(view, met.site, &accepts)
+        })
+    }
+
+    /// The passable window cells that hold a centre cell.
+    fn targets(&self, view: &View, accepts: impl Fn(Site) -> bool) -> Rows {
+        let mut targets: Rows = [0; SIDE];
+        let least = (view.origin.y - self.frame.origin.y).div_euclid(2);
+        let first = least.max(0) as usize;
+        let last = (least + SIDE as i32 * view.scale / 2 + 1).max(0) as usize;
+        for y in first..last.min(self.frame.shape.rows()) {
+            for word in 0..self.frame.shape.words_per_row() {
+                let mut bits = self.way.word(y, word);
+                while bits != 0 {
+                    let x = (word * 32) as u16 + bits.trailing_zeros() as u16;
+                    bits &= bits - 1;
+                    let site = Site { x, y: y as u16 };
+                    if accepts(site) {
+                        view.mark(&mut targets, self.frame.cell(site));
+                    }
+                }
+            }
+        }
+        targets
+    }
+
+    /// A centre cell in a window cell.
+    fn site_in(&self, view: &View, place: Site, accepts: impl Fn(Site) -> bool) -> Option<Site> {
+        let least = Cell {
+            x: view.origin.x + i32::from(place.x) * view.scale,
+            y: view.origin.y + i32::from(place.y) * view.scale,
+        };
+        let coarse = (view.scale / 2).max(1);
+        (0..coarse * coarse).find_map(|k| {
+            let cell = Cell {
+                x: least.x + k % coarse * 2,
+                y: least.y + k / coarse * 2,
+            };
+            let site = self.frame.site(cell)?;
+            (self.way.get(site) && accepts(site)).then_some(site)
+        })
+    }
+}
