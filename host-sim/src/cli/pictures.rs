@@ -41,6 +41,7 @@ impl<'a> Album<'a> {
             window: self.record.window.as_ref(),
             residue: &residue,
             ground: self.ground,
+            room_for: None,
         })
     }
 
@@ -69,6 +70,7 @@ impl<'a> Album<'a> {
             window: snapshot.window.as_ref(),
             residue: &[],
             ground: self.ground,
+            room_for: Some(&self.record.map),
         })
     }
 }

@@ -56,6 +56,8 @@ pub struct Scene<'a> {
     pub residue: &'a [(f64, f64)],
     /// The true ground, in an uneven world.
     pub ground: Option<Ground<'a>>,
+    /// A map that the page must have room for too, so that the pictures of a series are of one size.
+    pub room_for: Option<&'a GridMap>,
 }
 
 /// A rectangle of map cells.
@@ -77,10 +79,16 @@ impl Extent {
         }
     }
 
+    fn is_empty(self) -> bool {
+        self.width == 0 || self.height == 0
+    }
+
     /// The least rectangle around two; one without cells counts for nothing.
     fn with(self, other: Self) -> Self {
-        if self.width * self.height == 0 {
+        if self.is_empty() {
             return other;
+        } else if other.is_empty() {
+            return self;
         }
         let (x, y) = (self.x.min(other.x), self.y.min(other.y));
         Self {
@@ -128,6 +136,9 @@ impl Frame {
     /// The frame of what is drawn.
     fn of(scene: &Scene<'_>) -> Self {
         let map = Extent::of(scene.map);
+        let map = scene
+            .room_for
+            .map_or(map, |room| map.with(Extent::of(room)));
         match scene.ground {
             None => Self::around(map, GOOD_SIDE),
             Some(ground) => Self::around(map.with(ground.extent()), GOOD_SIDE_OF_TWO),

@@ -72,6 +72,7 @@ fn colours_are_where_the_map_says() {
         window: Some(&window),
         residue: &[(-2.0, -3.0)],
         ground: None,
+        room_for: None,
     };
     let png = run_png(&scene);
     if let Ok(folder) = std::env::var("FIELDLINE_PICTURES") {
@@ -110,6 +111,7 @@ fn a_run_that_saw_nothing_still_has_a_picture() {
         window: None,
         residue: &[],
         ground: None,
+        room_for: None,
     };
     assert!(decode(&run_png(&scene)).width() > 400);
 }
@@ -131,6 +133,7 @@ fn the_true_ground_lies_beside_the_map_in_the_same_frame() {
         window: None,
         residue: &[],
         ground: Some(ground),
+        room_for: None,
     };
     let (page, frame) = (decode(&run_png(&scene)), Frame::of(&scene));
     let beside = frame.beside();
@@ -154,6 +157,29 @@ fn the_true_ground_lies_beside_the_map_in_the_same_frame() {
 }
 
 #[test]
+fn a_page_has_room_for_the_map_to_come() {
+    let (early, late) = (
+        GridMap::unknown(0, 0, 30, 20),
+        GridMap::unknown(-40, -10, 90, 120),
+    );
+    let size = |map, room_for| {
+        let page = decode(&run_png(&Scene {
+            title: "series",
+            subtitle: "",
+            map,
+            path: &[],
+            window: None,
+            residue: &[],
+            ground: None,
+            room_for,
+        }));
+        (page.width(), page.height())
+    };
+    assert_ne!(size(&early, None), size(&late, None));
+    assert_eq!(size(&early, Some(&late)), size(&late, None));
+}
+
+#[test]
 fn a_map_beyond_the_world_is_drawn_too() {
     let extent = |x, y, width, height| Extent {
         x,
@@ -164,6 +190,7 @@ fn a_map_beyond_the_world_is_drawn_too() {
     let both = extent(-5, 2, 10, 4).with(extent(0, 0, 8, 5));
     assert_eq!(both, extent(-5, 0, 13, 6));
     assert_eq!(extent(9, 9, 0, 0).with(both), both);
+    assert_eq!(both.with(extent(9, 9, 0, 4)), both);
 }
 
 #[test]
