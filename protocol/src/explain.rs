@@ -27,6 +27,8 @@ impl fmt::Display for Parameter {
                 "the angular acceleration must stop the robot from its greatest turn rate within 3 s"
             }
             Self::Period => "the time from one observation to the next must be 100 to 400 ms",
+            Self::Preference => "preferences must be from -2 to 0 and from 0 to 2: beyond, the field diverges",
+            Self::Terrain => "uneven ground needs two lasers, scales from 0 on, and heights and slopes that are no 0",
         })
     }
 }

@@ -117,6 +117,47 @@ pub enum Strategy {
     /// Nearest unexplored centre cell.
     #[default]
     Frontier,
+    /// The same on uneven ground: heights are measured, holes and edges kept off, level ground preferred.
+    Terrain(Terrain),
+}
+
+/// Which preferences shape the field on uneven ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum Preference {
+    /// None.
+    Off,
+    /// Ground at the robot's own height.
+    Height,
+    /// The whole window, against a field that grows flat.
+    Global,
+    /// Both.
+    #[default]
+    Both,
+}
+
+/// Parameters of uneven ground.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Terrain {
+    /// Which preferences are used.
+    pub preference: Preference,
+    /// What stands higher than this over the ground around it is an obstacle, metres.
+    pub obstacle: I4F12,
+    /// What the level laser meets nearer than this over ground not yet measured is an obstacle, metres.
+    pub near: I4F12,
+    /// Ground lower than this under what is beside it is a negative obstacle, metres; negative.
+    pub hole: I4F12,
+    /// Least preference, from −2 to 0.
+    pub least: I4F12,
+    /// Greatest preference, from 0 to 2.
+    pub most: I4F12,
+    /// Preference lost a metre of height, at least 0.
+    pub height_scale: I4F12,
+    /// Preference gained an e-th part of the field's steepness, at least 0.
+    pub global_scale: I16F16,
+    /// Steepest slope that may be driven on, radians.
+    pub climb: I4F12,
+    /// Highest edge that may be driven over, metres.
+    pub step: I4F12,
 }
 
 /// The session's parameters.
@@ -383,6 +424,10 @@ pub enum Parameter {
     AngularAccel,
     /// [`Start::period_ms`]: 100 to 400.
     Period,
+    /// [`Terrain::least`] and [`Terrain::most`]: from −2 to 0 and from 0 to 2, because beyond 2 the field diverges.
+    Preference,
+    /// Another of [`Terrain`]'s: a scale below 0, a height or slope of 0, a slope above 45°, or without a tilted laser.
+    Terrain,
 }
 
 /// Why a request was refused.

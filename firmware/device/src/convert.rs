@@ -7,7 +7,9 @@
 use fieldline_planner::config::{self, Config};
 use fieldline_planner::geometry::{Pose, Twist};
 use fieldline_planner::planner::Input;
+use fieldline_planner::math;
 use fieldline_planner::status::{self, Frontier, Residue};
+use fieldline_planner::terrain::{Mode, Terrain};
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
 
@@ -85,6 +87,28 @@ fn laser(laser: &wire::Laser) -> config::Laser {
     }
 }
 
+fn terrain(terrain: &wire::Terrain) -> Terrain {
+    let (sin, cos) = math::sin_cos(float(terrain.climb));
+    Terrain {
+        mode: match terrain.preference {
+            wire::Preference::Off => Mode::Off,
+            wire::Preference::Height => Mode::Height,
+            wire::Preference::Global => Mode::Global,
+            wire::Preference::Both => Mode::Both,
+        },
+        obstacle_m: float(terrain.obstacle),
+        near_m: float(terrain.near),
+        hole_m: float(terrain.hole),
+        least_preference: float(terrain.least),
+        most_preference: float(terrain.most),
+        height_scale: float(terrain.height_scale),
+        global_scale: float(terrain.global_scale),
+        // At most 45°: the session's limits see to it.
+        climb: sin / cos,
+        step_m: float(terrain.step),
+    }
+}
+
 /// A session's parameters off the wire.
 #[must_use]
 pub fn config(start: &wire::Start) -> Config {
@@ -100,6 +124,10 @@ pub fn config(start: &wire::Start) -> Config {
         linear_accel_mps2: float(start.linear_accel),
         angular_accel_radps2: float(start.angular_accel),
         period_s: f32::from(start.period_ms) / 1000.0,
+        terrain: match &start.strategy {
+            wire::Strategy::Frontier => None,
+            wire::Strategy::Terrain(parameters) => Some(terrain(parameters)),
+        },
         ..default
     }
 }

@@ -2,7 +2,7 @@
 
 use fieldline_planner::map::Tiles;
 use fieldline_protocol::message::{
-    Laser, MAX_BEAMS, NO_RETURN_MM, Observation, Parameter, Refusal, Start,
+    Laser, MAX_BEAMS, NO_RETURN_MM, Observation, Parameter, Refusal, Start, Strategy, Terrain,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -12,6 +12,10 @@ const TURN: I16F16 = I16F16::lit("6.2832");
 const RIGHT_ANGLE: I4F12 = I4F12::lit("1.5705");
 /// How far a level laser may tilt, radians: 12 m away it then looks 0.6 m off.
 const LEVEL: I4F12 = I4F12::lit("0.05");
+/// Strongest preference; beyond it the relaxation diverges.
+const STRONGEST: I4F12 = I4F12::lit("2");
+/// Steepest slope, radians: 45°.
+const STEEPEST: I4F12 = I4F12::lit("0.7855");
 /// How far from the centre a laser may sit, metres.
 const REACH: I4F12 = I4F12::lit("2");
 /// Radii that a robot may have, millimetres.
@@ -51,7 +55,33 @@ pub fn check_start<const TILES: usize, const SLOTS: usize>(start: &Start) -> Res
     for (number, laser) in start.lasers.iter().enumerate() {
         check_laser(laser, number == 0)?;
     }
-    Ok(())
+    match &start.strategy {
+        Strategy::Frontier => Ok(()),
+        Strategy::Terrain(terrain) => check_terrain(terrain, start.lasers.len()),
+    }
+}
+
+fn check_terrain(terrain: &Terrain, lasers: usize) -> Result<(), Refusal> {
+    let zero = I4F12::ZERO;
+    first_broken(&[
+        (
+            (-STRONGEST..=zero).contains(&terrain.least)
+                && (zero..=STRONGEST).contains(&terrain.most),
+            Parameter::Preference,
+        ),
+        (
+            terrain.height_scale >= zero
+                && terrain.global_scale >= I16F16::ZERO
+                && terrain.obstacle > zero
+                && terrain.near > zero
+                && terrain.hole < zero
+                && terrain.step > zero
+                && terrain.climb > zero
+                && terrain.climb <= STEEPEST
+                && lasers == 2,
+            Parameter::Terrain,
+        ),
+    ])
 }
 
 /// Whether this acceleration brakes from this speed within [`REST_S`].

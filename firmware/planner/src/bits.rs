@@ -157,6 +157,15 @@ pub(crate) fn ones(mut word: u32) -> impl Iterator<Item = u32> {
     })
 }
 
+/// The places of a row's bits, least first.
+pub(crate) fn ones64(mut row: u64) -> impl Iterator<Item = u32> {
+    core::iter::from_fn(move || {
+        let place = (row != 0).then(|| row.trailing_zeros());
+        row &= row.wrapping_sub(1);
+        place
+    })
+}
+
 /// Half a row's resolution: bit k of the result is set if any of columns 2 k and 2 k + 1 of either row is.
 #[must_use]
 pub fn halve_or(upper: u64, lower: u64) -> u32 {

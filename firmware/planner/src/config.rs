@@ -3,6 +3,7 @@
 use heapless::Vec;
 
 use crate::field::SolverConfig;
+use crate::terrain::Terrain;
 
 /// Where a laser sits and how it sweeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +51,8 @@ pub struct Config {
     pub solver: SolverConfig,
     /// Topological work in a step, thinning words. Default: 6,000.
     pub topology_units: u32,
+    /// How to go about uneven ground; on flat ground, where lasers see only what stands, `None`. Default: `None`.
+    pub terrain: Option<Terrain>,
 }
 
 impl Config {
@@ -71,6 +74,7 @@ impl Config {
                 ..SolverConfig::default()
             },
             topology_units: 6_000,
+            terrain: None,
         }
     }
 }

@@ -34,6 +34,7 @@ pub mod remainder;
 pub mod skeleton;
 pub mod status;
 pub mod strategy;
+pub mod terrain;
 pub mod topology;
 pub mod view;
 

@@ -18,7 +18,10 @@ use crate::bits::{Adjacency, flood};
 use crate::clearance::Disc;
 use crate::config::Config;
 use crate::drive::{self, Drive, Ground, Place, Surround};
-use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, descent, solve};
+use crate::field::preference::p_diff;
+use crate::field::{
+    GOAL, Preference, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, descent, solve,
+};
 use crate::geometry::{Cell, Point, Pose, Twist};
 use crate::laps::{Laps, Stage};
 use crate::map::Map;
@@ -32,6 +35,7 @@ use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::{Known, Lent, Outlook};
 use crate::strategy::lookout::{Found, Grounds};
 use crate::strategy::{self, Road, lookout};
+use crate::terrain::{Preferences, Terrain};
 use crate::topology::{Space, Topology};
 use crate::view::{self, Rows, SCALES, View};
 
@@ -79,6 +83,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     near: NearField,
     topology: Topology<SLOTS>,
     strategy: strategy::Frontier,
+    /// What ground is preferred, where it is uneven.
+    preferences: Preferences,
     /// What can only be seen is searched for, when nothing is left to drive to.
     lookouts: lookout::Search,
     drive: Drive,
@@ -128,6 +134,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             near: NearField::new(),
             topology: Topology::new(),
             strategy: strategy::Frontier::new(),
+            preferences: Preferences::new(),
             lookouts: lookout::Search::new(),
             drive: Drive::new(),
             status: Status::Exploring,
@@ -139,7 +146,8 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 
     /// Forget everything and take the box's shape from `config`.
     pub fn reset(&mut self, config: &Config) {
-        self.map.reset(config.box_tiles.0, config.box_tiles.1);
+        self.map.begin(config);
+        self.preferences = Preferences::new();
         self.near.clear();
         self.topology.reset(Space::default());
         self.strategy.reset();
@@ -321,7 +329,8 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     let planned = state.fresh;
     if planned {
         state.fresh = false;
-        replan(state, workspace, &disc, &input);
+        let uneven = config.terrain.is_some();
+        replan(state, workspace, &disc, (&input, uneven));
         laps.lap(Stage::Plan);
     } else {
         state.fresh = state
@@ -340,6 +349,9 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         return Output::default();
     };
     charge(workspace, &goal);
+    if let Some(terrain) = &config.terrain {
+        prefer(terrain, state, &mut workspace.window, &workspace.view, &input);
+    }
     laps.lap(Stage::Window);
     // A step that planned a road has spent the time of two cycles on it.
     let most = config.solver.max_cycles;
@@ -348,6 +360,9 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         ..config.solver
     };
     let solution = solve(&mut workspace.window, &mut workspace.scratch, &solver);
+    if config.terrain.is_some() {
+        note_flatness(state, workspace, &input);
+    }
     laps.lap(Stage::Solve);
     let output = Output {
         cycles: solution.cycles + solution.sweeps,
@@ -372,6 +387,10 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         }
     }
     state.map.observe(config, input);
+    if config.terrain.is_some() {
+        // Level beams end on slopes: what is near is what the map says.
+        return;
+    }
     for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
         if is_level(laser) {
             state.near.update(&input.pose, laser, ranges_mm);
@@ -399,7 +418,7 @@ fn replan<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     disc: &Disc,
-    input: &Input<'_>,
+    (input, uneven): (&Input<'_>, bool),
 ) {
     let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
     let (residues, ring) = words.split_at_mut(SLOTS * 16);
@@ -418,7 +437,8 @@ fn replan<const TILES: usize, const SLOTS: usize>(
     };
     let outlook = state.strategy.replan(&known, robot, input.time_ms, lent);
     match outlook {
-        Outlook::Nothing if state.strategy.may_look() => {
+        // On uneven ground what is seen through a gap is not measured by it.
+        Outlook::Nothing if state.strategy.may_look() && !uneven => {
             let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
             state.lookouts.begin(state.map.tiles().extent(), scratch);
         }
@@ -543,9 +563,14 @@ fn steer<const TILES: usize, const SLOTS: usize>(
     let heading_at = |place: Place| heading_at(window, (origin, scale), &input.pose, place);
     let here = heading_at(Place::default());
     let mut surround = Surround::empty();
-    surround.see(&input.pose, state.near.points());
-    let cells = near::obstacle_cells(state.map.tiles(), input.pose.point());
-    surround.remember(&input.pose, cells);
+    if config.terrain.is_some() {
+        let rims = near::rim_cells(state.map.tiles(), input.pose.point());
+        surround.keep_off(&input.pose, rims);
+    } else {
+        surround.see(&input.pose, state.near.points());
+        let cells = near::obstacle_cells(state.map.tiles(), input.pose.point());
+        surround.remember(&input.pose, cells);
+    }
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
             let (x, y) = view::position((origin, scale), ahead(&input.pose, place));
@@ -645,6 +670,36 @@ fn local_goal<const TILES: usize, const SLOTS: usize>(
 fn goal_cells(view: &View, cell: Cell) -> Option<Rows> {
     let mut rows: Rows = [0; SIDE];
     view.mark(&mut rows, cell).then_some(rows)
+}
+
+/// Give every cell of the window its preference [Maffei-Terrain, eqs. 3 to 5].
+fn prefer<const TILES: usize, const SLOTS: usize>(
+    terrain: &Terrain,
+    state: &State<TILES, SLOTS>,
+    window: &mut Window,
+    view: &View,
+    input: &Input<'_>,
+) {
+    let heights = state.map.heights();
+    let global = state.preferences.global(terrain);
+    window.set_preferences(|x, y| {
+        let height_m = heights.height_m(view.cell(x, y));
+        let difference_m = height_m.map(|height_m| height_m - input.pose.z_m);
+        let epsilon = state.preferences.of_cell(terrain, global, difference_m);
+        Preference::nearest(epsilon)
+    });
+}
+
+/// A field was solved: how flat it is around the robot decides the next one's preferences.
+fn note_flatness<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
+    workspace: &Workspace,
+    input: &Input<'_>,
+) {
+    let place = workspace.view.place(input.pose.point().cell());
+    if let Some((x, y)) = place.filter(|&(x, y)| workspace.window.is_reached(x, y)) {
+        state.preferences.note(p_diff(&workspace.window, x, y));
+    }
 }
 
 /// Set the window's boundary, keeping the field of the last window where they overlap.

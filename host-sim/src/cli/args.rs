@@ -6,7 +6,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
+use fieldline_protocol::message::{Preference, Terrain};
 use host_sim::robot::{Limits, LimitsError};
+use host_sim::trial::uneven::{self, TerrainError};
 
 use super::baselines;
 
@@ -40,9 +42,15 @@ pub(super) struct ExploreArgs {
     /// World files (YAML for ROS map servers) or names of built-in worlds; WORLD@N starts at its start N
     #[arg(value_name = "WORLD[@N]", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
-    /// What plans: frontier on the device, or a baseline on the host
+    /// What plans: frontier on the device, terrain there on uneven ground, or a baseline on the host
     #[arg(long, default_value = baselines::FRONTIER, value_parser = baselines::parse)]
     pub(super) strategy: String,
+    /// Which preferences shape the field of --strategy terrain
+    #[arg(long, value_enum, value_name = "WHICH")]
+    pub(super) preference: Option<PreferenceArg>,
+    /// Parameters of --strategy terrain, any of [default: h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005,climb=20,step=0.07]
+    #[arg(long, value_name = "PARAMETERS", value_parser = terrain)]
+    pub(super) terrain: Option<Terrain>,
     /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback; direct for baselines]
     #[arg(long)]
     pub(super) link: Option<LinkSpec>,
@@ -98,6 +106,8 @@ impl Default for ExploreArgs {
         Self {
             worlds: vec!["office".into()],
             strategy: baselines::FRONTIER.into(),
+            preference: None,
+            terrain: None,
             link: None,
             seed: 0,
             start: 0,
@@ -133,6 +143,29 @@ impl core::str::FromStr for FaultArg {
             words: words.into(),
             faults: words.parse()?,
         })
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum PreferenceArg {
+    /// None
+    Off,
+    /// For ground at the robot's own height
+    Height,
+    /// For all ground, against a field that grows flat
+    Global,
+    /// Their sum
+    Both,
+}
+
+impl From<PreferenceArg> for Preference {
+    fn from(which: PreferenceArg) -> Self {
+        match which {
+            PreferenceArg::Off => Self::Off,
+            PreferenceArg::Height => Self::Height,
+            PreferenceArg::Global => Self::Global,
+            PreferenceArg::Both => Self::Both,
+        }
     }
 }
 
@@ -200,6 +233,11 @@ fn working(text: &str) -> Result<Limits, LimitsError> {
 /// The usual failing limits, changed.
 fn failing(text: &str) -> Result<Limits, LimitsError> {
     Limits::FAILING.changed(text)
+}
+
+/// Table I, changed.
+fn terrain(text: &str) -> Result<Terrain, TerrainError> {
+    uneven::changed(uneven::table_i(), text)
 }
 
 /// Degrees.

@@ -10,6 +10,8 @@ use host_sim::link::spec::{LinkSpec, Options};
 
 /// The strategy on the device.
 pub(super) const FRONTIER: &str = "frontier";
+/// The same on uneven ground.
+pub(super) const TERRAIN: &str = "terrain";
 
 /// Makes a baseline.
 type Make = fn() -> Box<dyn Link>;
@@ -24,7 +26,8 @@ const BASELINES: &[(&str, Make)] = &[
 
 /// A known strategy's name, or what the known ones are.
 pub(super) fn parse(name: &str) -> Result<String, String> {
-    let known: Vec<&str> = core::iter::once(FRONTIER)
+    let known: Vec<&str> = [FRONTIER, TERRAIN]
+        .into_iter()
         .chain(BASELINES.iter().map(|(name, _)| *name))
         .collect();
     if known.contains(&name) {
@@ -40,8 +43,8 @@ pub(super) fn parse(name: &str) -> Result<String, String> {
 /// Where a strategy runs if nothing is said, and the refusal of where it cannot.
 pub(super) fn place(strategy: &str, link: Option<&LinkSpec>) -> Result<LinkSpec> {
     match (strategy, link) {
-        (FRONTIER, None) => Ok(LinkSpec::Loopback),
-        (FRONTIER, Some(link)) => Ok(link.clone()),
+        (FRONTIER | TERRAIN, None) => Ok(LinkSpec::Loopback),
+        (FRONTIER | TERRAIN, Some(link)) => Ok(link.clone()),
         (_, None | Some(LinkSpec::Direct)) => Ok(LinkSpec::Direct),
         (_, Some(link)) => bail!(
             "--strategy {strategy} runs on the host only, not by --link {link}; leave --link out or say direct"
@@ -52,7 +55,7 @@ pub(super) fn place(strategy: &str, link: Option<&LinkSpec>) -> Result<LinkSpec>
 /// The refusal of what only the device's strategy has: windows to compare, bytes to break.
 pub(super) fn check(strategy: &str, check_field: bool, faults: bool) -> Result<()> {
     match strategy {
-        FRONTIER => Ok(()),
+        FRONTIER | TERRAIN => Ok(()),
         _ if check_field => {
             bail!("--strategy {strategy} solves no window; leave --check-field out")
         }

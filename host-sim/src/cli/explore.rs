@@ -8,7 +8,9 @@ use anyhow::{Context as _, Result, bail};
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
+use fieldline_protocol::message::Strategy;
 use host_sim::trial::Record;
+use host_sim::trial::uneven;
 use host_sim::trial::mission::{self, Mission, MissionError};
 use host_sim::world::World;
 
@@ -144,6 +146,24 @@ fn explore(
     Ok(report.explored())
 }
 
+/// What the device is told to do.
+fn planning(args: &ExploreArgs) -> Result<Strategy> {
+    if args.strategy != baselines::TERRAIN {
+        if args.preference.is_some() || args.terrain.is_some() {
+            bail!(
+                "--preference and --terrain are for --strategy terrain, not for {}; leave them out",
+                args.strategy
+            );
+        }
+        return Ok(Strategy::Frontier);
+    }
+    let mut terrain = args.terrain.unwrap_or_else(uneven::table_i);
+    if let Some(which) = args.preference {
+        terrain.preference = which.into();
+    }
+    Ok(Strategy::Terrain(terrain))
+}
+
 fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     let working = args.limits.unwrap_or(Limits::WORKING);
     let failing = args.failing.unwrap_or(Limits::FAILING);
@@ -154,6 +174,7 @@ fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     }
     Ok(Mission {
         strategy: args.strategy.clone(),
+        planning: planning(args)?,
         link: link.to_string(),
         fault: args.fault.as_ref().map(|fault| fault.words.clone()),
         seed: args.seed,

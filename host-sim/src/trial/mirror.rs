@@ -25,7 +25,7 @@ impl Mirror {
     pub fn new(start: &Start) -> Self {
         let config = convert::config(start);
         let mut map = Box::new(Map::new());
-        map.reset(config.box_tiles.0, config.box_tiles.1);
+        map.begin(&config);
         Self { config, map }
     }
 

@@ -24,6 +24,8 @@ use crate::world::{Start, World, WorldError};
 pub struct Mission {
     /// Name of the strategy, for the report.
     pub strategy: String,
+    /// What the device is told to do.
+    pub planning: Strategy,
     /// Name of the link, for the report.
     pub link: String,
     /// The faults put on the link, for the report.
@@ -58,6 +60,7 @@ impl Default for Mission {
     fn default() -> Self {
         Self {
             strategy: "frontier".into(),
+            planning: Strategy::Frontier,
             link: "direct".into(),
             fault: None,
             seed: 0,
@@ -149,7 +152,7 @@ pub fn explore(
         return Err(MissionError::Box { across, up, slots });
     }
     let setup = Setup {
-        start: simulator.start_message(Strategy::Frontier, (across, up)),
+        start: simulator.start_message(mission.planning, (across, up)),
         time_limit_ms: mission.time_limit_ms,
         check_field: mission.check_field,
         snapshots: mission.snapshots,

@@ -12,6 +12,7 @@ pub mod oracle;
 pub mod record;
 pub mod series;
 pub mod shape;
+pub mod uneven;
 pub mod snapshot;
 pub mod wording;
 

@@ -10,7 +10,7 @@
 use heapless::Vec;
 
 use crate::config::Config;
-use crate::geometry::{Point, Pose, Twist};
+use crate::geometry::{CELL_M, Point, Pose, Twist};
 use crate::math;
 use crate::near::MOST_POINTS;
 
@@ -152,6 +152,25 @@ impl Surround {
             let points = self.threats.get(..seen).unwrap_or_default();
             if at.x_m < IN_VIEW_M && clearance_m > 0.0 && !points.iter().any(near) {
                 // What does not fit is not the only thing behind the robot.
+                let _ = self.threats.push(Threat { at, clearance_m });
+            }
+        }
+    }
+
+    /// Keep off cells (their middles) on all sides, by half a cell more than their middles say: any part of one may be what is not to be touched.
+    pub fn keep_off(&mut self, pose: &Pose, cells: impl Iterator<Item = Point>) {
+        let frame = Frame::of(pose);
+        self.threats.clear();
+        for at in cells.map(|cell| frame.within(cell)) {
+            let away = math::sqrt(at.x_m * at.x_m + at.y_m * at.y_m);
+            let part = ((away - 0.5 * CELL_M) / away.max(1e-3)).max(0.0);
+            let at = Point {
+                x_m: at.x_m * part,
+                y_m: at.y_m * part,
+            };
+            let clearance_m = overhang(at.x_m, at.y_m);
+            if clearance_m > 0.0 {
+                // What does not fit is not the only thing around the robot.
                 let _ = self.threats.push(Threat { at, clearance_m });
             }
         }

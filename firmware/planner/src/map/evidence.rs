@@ -55,6 +55,16 @@ impl Evidence {
         self.origin = Self::origin_around(centre);
     }
 
+    /// The memory of the counts, where there are none to be kept.
+    pub(super) fn bytes(&self) -> &[u8] {
+        self.counts.as_flattened()
+    }
+
+    /// The memory of the counts, where there are none to be kept.
+    pub(super) fn bytes_mut(&mut self) -> &mut [u8] {
+        self.counts.as_flattened_mut()
+    }
+
     const fn origin_around(centre: Cell) -> Cell {
         let half = EVIDENCE_SIDE / 2;
         Cell {

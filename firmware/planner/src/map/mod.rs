@@ -7,6 +7,7 @@ pub mod evidence;
 pub mod integrate;
 pub mod rows;
 pub mod tiles;
+mod uneven;
 mod walk;
 
 pub use evidence::Evidence;
@@ -28,6 +29,9 @@ pub struct Map<const TILES: usize, const SLOTS: usize> {
     evidence: Evidence,
     /// Where the robot was at the last observation.
     last_visit: Option<Cell>,
+    /// The least cell of the elevation window, once there is one.
+    window: Cell,
+    surveyed: bool,
     out_of_box: bool,
     pool_full: bool,
 }
@@ -40,8 +44,18 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             tiles: Tiles::new(),
             evidence: Evidence::new(),
             last_visit: None,
+            window: Cell { x: 0, y: 0 },
+            surveyed: false,
             out_of_box: false,
             pool_full: false,
+        }
+    }
+
+    /// Forget everything and begin a session.
+    pub fn begin(&mut self, config: &Config) {
+        self.reset(config.box_tiles.0, config.box_tiles.1);
+        if config.terrain.is_some() {
+            self.make_room_for_heights();
         }
     }
 
@@ -50,6 +64,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         self.tiles.reset(width, height);
         self.evidence.reset(Cell::default());
         self.last_visit = None;
+        self.surveyed = false;
         self.out_of_box = false;
         self.pool_full = false;
     }
@@ -57,6 +72,12 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Enter everything that an input says of the space.
     pub fn observe(&mut self, config: &Config, input: &Input<'_>) {
         let robot = input.pose.point();
+        if let Some(terrain) = &config.terrain {
+            self.free_footprint(robot, FOOTPRINT_M);
+            self.leave_trail(robot.cell());
+            self.survey(config, terrain, input);
+            return;
+        }
         self.evidence.follow(robot.cell());
         self.free_footprint(robot, FOOTPRINT_M);
         self.leave_trail(robot.cell());

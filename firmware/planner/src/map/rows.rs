@@ -24,6 +24,12 @@ impl Row {
         self.high
     }
 
+    /// Negative obstacles.
+    #[must_use]
+    pub const fn negative(self) -> u64 {
+        self.high & self.low
+    }
+
     /// Cells known to be traversable.
     #[must_use]
     pub const fn free(self) -> u64 {

@@ -152,6 +152,8 @@ pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     /// Where the robot has been in the tile of a slot: a row of 2 × 2-cell blocks each.
     trail: [Trail; SLOTS],
     used: u16,
+    /// Tiles at the pool's end that are lent to something else.
+    lent: u16,
     width: i32,
     height: i32,
     extent: Option<Extent>,
@@ -168,6 +170,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             directory: [0; SLOTS],
             trail: [[0; TILE_SIDE as usize / 2]; SLOTS],
             used: 0,
+            lent: 0,
             width: 0,
             height: 0,
             extent: None,
@@ -190,11 +193,38 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.directory.fill(0);
         self.trail.as_flattened_mut().fill(0);
         self.used = 0;
+        self.lent = 0;
         let fits = Self::fits(width, height);
         self.width = if fits { i32::from(width) } else { 0 };
         self.height = if fits { i32::from(height) } else { 0 };
         self.extent = None;
         self.edits = self.edits.wrapping_add(1);
+    }
+
+    /// Tiles of the pool that the map may use.
+    const fn capacity(&self) -> usize {
+        TILES - self.lent as usize
+    }
+
+    /// Keep the pool's last tiles out of the map, until the next reset, and clear them; at most all. To be done before anything is
+    /// stored.
+    pub(super) fn lend(&mut self, tiles: usize) {
+        let tiles = if tiles < TILES { tiles } else { TILES };
+        self.lent = tiles as u16;
+        self.lent_bytes_mut().fill(0);
+    }
+
+    /// The memory of the tiles that are lent.
+    pub(super) fn lent_bytes(&self) -> &[u8] {
+        let lent = self.pool.get(self.capacity()..).unwrap_or_default();
+        bytemuck::cast_slice(lent)
+    }
+
+    /// The memory of the tiles that are lent.
+    pub(super) fn lent_bytes_mut(&mut self) -> &mut [u8] {
+        let capacity = self.capacity();
+        let lent = self.pool.get_mut(capacity..).unwrap_or_default();
+        bytemuck::cast_slice_mut(lent)
     }
 
     /// Bounds of the tiles in use.
@@ -259,7 +289,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         };
         if grown.width() > self.width || grown.height() > self.height {
             Err(NoRoom::Box)
-        } else if usize::from(self.used) >= TILES {
+        } else if usize::from(self.used) >= self.capacity() {
             Err(NoRoom::Pool)
         } else {
             Ok(grown)
@@ -275,7 +305,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             Ok(())
         } else if !self.in_extent(tile_x, tile_y) {
             self.grown(tile_x, tile_y).map(|_| ())
-        } else if usize::from(self.used) >= TILES {
+        } else if usize::from(self.used) >= self.capacity() {
             Err(NoRoom::Pool)
         } else {
             Ok(())
@@ -287,13 +317,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         if !self.in_extent(tile_x, tile_y) {
             self.extent = Some(self.grown(tile_x, tile_y)?);
         }
-        let slot = self.slot(tile_x, tile_y);
+        let (slot, capacity) = (self.slot(tile_x, tile_y), self.capacity());
         let entry = self.directory.get_mut(slot).ok_or(NoRoom::Box)?;
         if *entry == 0 {
-            let fresh = self
-                .pool
-                .get_mut(usize::from(self.used))
-                .ok_or(NoRoom::Pool)?;
+            let mut room = self.pool.iter_mut().take(capacity);
+            let fresh = room.nth(usize::from(self.used)).ok_or(NoRoom::Pool)?;
             *fresh = [[0; 2]; TILE_SIDE as usize];
             self.used += 1;
             *entry = self.used;

@@ -1,0 +1,155 @@
+//! Heights and marks into classes, a row of the window at a time.
+//!
+//! | class | of a cell |
+//! | --- | --- |
+//! | obstacle | something stands there; or it is measured, and too high over a cell beside it |
+//! | negative obstacle | never measured, and its ground is gone |
+//! | free | measured and neither; or between measured cells on both sides that lead over it |
+//! | as before | anything else: what the map says stays, until something better is known |
+//!
+//! Too high over a cell `d` cells away means more than `climb · d + STEP` for d of 1 and 2, and over 4 cells more than the climb alone
+//! allows if both halves of the way take part: an edge, or a slope. The lower side stays free [*departs* from
+//! Maffei-Terrain, III-B: a mean over a kernel of 2 m blurs edges, and calls the upper side of every edge an obstacle a metre deep].
+//! An obstacle of the map is only freed where most cells around are measured too.
+//!
+//! Units: bits, bit k is column `origin.x + k`; heights in steps of [`fixed::types::I7F9`].
+
+use fixed::types::I7F9;
+
+use super::Terrain;
+use super::elevation::{Heights, WINDOW_SIDE};
+use crate::geometry::{CELL_M, Cell};
+use crate::map::rows::Row;
+
+/// What a mean may be off beside its neighbour, metres.
+const NOISE_M: f32 = 0.015;
+/// Beside a cell, to all sides.
+const ONE: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+/// Two away.
+const TWO: [(i32, i32); 8] = [
+    (2, 0),
+    (2, 2),
+    (0, 2),
+    (-2, 2),
+    (-2, 0),
+    (-2, -2),
+    (0, -2),
+    (2, -2),
+];
+/// Measured cells among the eight around that it takes to free an obstacle of the map.
+const WELL_KNOWN: u32 = 6;
+
+/// How much higher a cell may lie than one near it, in steps of a height.
+#[derive(Clone, Copy, Debug)]
+pub struct Steps {
+    one: i32,
+    two: i32,
+    two_corner: i32,
+    /// Over four cells, and over half of them.
+    four: i32,
+    half: i32,
+    /// Of a way over three cells, to either side.
+    bridge: i32,
+}
+
+impl Steps {
+    /// What a robot's limits allow.
+    #[must_use]
+    pub fn new(terrain: &Terrain) -> Self {
+        let steps = |metres: f32| i32::from(I7F9::saturating_from_num(metres).to_bits());
+        let rise = |cells: f32| terrain.climb * cells * CELL_M;
+        let edge = terrain.step_m + NOISE_M;
+        Self {
+            one: steps(0.25 * rise(1.0) + edge),
+            two: steps(0.5 * rise(2.0) + edge),
+            two_corner: steps(0.5 * rise(2.83) + edge),
+            four: steps(rise(4.0) + 2.0 * NOISE_M),
+            half: steps(0.3 * rise(4.0)),
+            bridge: steps(rise(3.0)),
+        }
+    }
+}
+
+/// The classes of a row, a bit a cell; what is in none of them stays as it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Classes {
+    /// Obstacles.
+    pub obstacle: u64,
+    /// Negative obstacles.
+    pub negative: u64,
+    /// Traversable.
+    pub free: u64,
+}
+
+/// Classify row `y` of the window, which the map holds as `known`.
+#[must_use]
+pub fn row(heights: &Heights<'_>, steps: &Steps, y: i32, known: Row) -> Classes {
+    let mut classes = Classes::default();
+    let origin = heights.origin();
+    for k in 0..WINDOW_SIDE {
+        let cell = Cell {
+            x: origin.x + k,
+            y,
+        };
+        let bit = 1_u64 << k;
+        let bits = |dx: i32, dy: i32| at(heights, cell, dx, dy);
+        if heights.is_standing(cell) {
+            classes.obstacle |= bit;
+        } else if let Some(height) = bits(0, 0) {
+            if is_too_high(steps, height, bits) {
+                classes.obstacle |= bit;
+            } else if known.obstacle() & bit == 0 || is_well_known(bits) {
+                classes.free |= bit;
+            }
+        } else if heights.is_sunken(cell) {
+            classes.negative |= bit;
+        } else if known.unknown() & bit != 0 && is_bridged(steps, bits) {
+            classes.free |= bit;
+        }
+    }
+    classes
+}
+
+#[inline(always)]
+fn at(heights: &Heights<'_>, cell: Cell, dx: i32, dy: i32) -> Option<i32> {
+    let near = Cell {
+        x: cell.x + dx,
+        y: cell.y + dy,
+    };
+    heights.fixed(near).map(|height| i32::from(height.to_bits()))
+}
+
+/// Whether a cell lies too high over one near it.
+#[inline(always)]
+fn is_too_high(steps: &Steps, height: i32, bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
+    let over = |(dx, dy): (i32, i32)| bits(dx, dy).map_or(i32::MIN, |low| height - low);
+    ONE.into_iter().any(|beside| over(beside) > steps.one)
+        || TWO.into_iter().any(|(dx, dy)| {
+            let corner = dx != 0 && dy != 0;
+            let drop = over((dx, dy));
+            drop > if corner { steps.two_corner } else { steps.two }
+                || (!corner
+                    && drop > steps.half
+                    && bits(2 * dx, 2 * dy).is_some_and(|low| {
+                        height - low > steps.four && height - low - drop > steps.half
+                    }))
+        })
+}
+
+/// Whether most cells around are measured.
+fn is_well_known(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
+    let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
+    let known = around.filter(|&(dx, dy)| bits(dx, dy).is_some()).count() as u32;
+    // The cell itself is one of them.
+    known > WELL_KNOWN
+}
+
+/// Whether measured cells on both sides, at most three apart, lead over a cell.
+fn is_bridged(steps: &Steps, bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
+    let leads = |a: Option<i32>, b: Option<i32>| {
+        a.zip(b).is_some_and(|(a, b)| (a - b).abs() <= steps.bridge)
+    };
+    [(1, 1), (1, 2), (2, 1)].into_iter().any(|(there, here)| {
+        leads(bits(there, 0), bits(-here, 0)) || leads(bits(0, there), bits(0, -here))
+    })
+}

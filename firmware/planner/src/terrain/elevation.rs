@@ -1,0 +1,249 @@
+//! The elevation window: 64 × 64 cells around the robot, each with the running mean of the heights measured in it.
+//!
+//! ```text
+//! h ← h + (z − h) / n,    n = min(measurements so far, MOST_COUNT)          [Maffei-Terrain, III-B]
+//! ```
+//!
+//! A height is an [`I7F9`]: ±64 m around the start in steps of 2 mm. Beside it lies a byte of marks: how often the cell was
+//! measured, how sure it is that something stands in it, and whether the ground seems to be gone.
+//!
+//! The window owns no memory. A session on flat ground has no use for it, and one on uneven ground none for the counts of
+//! [`crate::map::Evidence`], so the heights lie in the latter's 8 KB and the marks in the last tiles of the map's pool.
+//!
+//! Invariant: a slot belongs to exactly one cell of the window (cell mod 64), and strips that enter are cleared.
+//! Units: map cells, metres above the start.
+
+use fixed::types::I7F9;
+
+use crate::geometry::Cell;
+
+/// Cells along the window's side.
+pub const WINDOW_SIDE: i32 = 64;
+/// Cells of the window.
+pub const WINDOW_CELLS: usize = (WINDOW_SIDE * WINDOW_SIDE) as usize;
+/// Measurements that a mean remembers.
+const MOST_COUNT: u8 = 15;
+/// Bits of the count.
+const COUNT: u8 = 0x0f;
+/// Bits of what stands.
+const STANDING: u8 = 0x70;
+/// One hit of something that stands.
+const ONE_STANDING: u8 = 0x10;
+/// The ground seems to be gone.
+const SUNKEN: u8 = 0x80;
+/// Hits from which on something stands there: fewer are false returns.
+const SURE: u8 = 3;
+
+/// The window, for reading.
+#[derive(Clone, Copy, Debug)]
+pub struct Heights<'a> {
+    heights: &'a [[u8; 2]],
+    marks: &'a [u8],
+    /// Its least cell.
+    origin: Cell,
+}
+
+/// The window.
+#[derive(Debug)]
+pub struct Elevation<'a> {
+    heights: &'a mut [[u8; 2]],
+    marks: &'a mut [u8],
+    origin: &'a mut Cell,
+}
+
+/// Where a cell of the window at `origin` is stored; `None` outside of it.
+#[inline(always)]
+const fn slot(origin: Cell, cell: Cell) -> Option<usize> {
+    let (x, y) = (cell.x - origin.x, cell.y - origin.y);
+    // One comparison for both ends of each.
+    if (x as u32) < WINDOW_SIDE as u32 && (y as u32) < WINDOW_SIDE as u32 {
+        Some(((cell.y & (WINDOW_SIDE - 1)) * WINDOW_SIDE + (cell.x & (WINDOW_SIDE - 1))) as usize)
+    } else {
+        None
+    }
+}
+
+impl<'a> Heights<'a> {
+    /// A window whose least cell is `origin`, over memory for [`WINDOW_CELLS`] cells; what is missing was never measured.
+    #[must_use]
+    pub fn new(heights: &'a [u8], marks: &'a [u8], origin: Cell) -> Self {
+        let (heights, _) = heights.as_chunks();
+        Self {
+            heights,
+            marks,
+            origin,
+        }
+    }
+
+    /// Its least cell.
+    #[must_use]
+    pub const fn origin(&self) -> Cell {
+        self.origin
+    }
+
+    #[inline(always)]
+    fn mark(&self, slot: usize) -> u8 {
+        self.marks.get(slot).copied().unwrap_or(0)
+    }
+
+    /// The stored height of a cell; `None` where none was measured.
+    #[inline(always)]
+    #[must_use]
+    pub fn fixed(&self, cell: Cell) -> Option<I7F9> {
+        let slot = slot(self.origin, cell)?;
+        if self.mark(slot) & COUNT == 0 {
+            return None;
+        }
+        Some(I7F9::from_le_bytes(*self.heights.get(slot)?))
+    }
+
+    /// The mean height of a cell, metres; `None` where none was measured.
+    #[inline(always)]
+    #[must_use]
+    pub fn height_m(&self, cell: Cell) -> Option<f32> {
+        self.fixed(cell).map(metres)
+    }
+
+    /// How often a cell was measured, up to 15.
+    #[must_use]
+    pub fn count(&self, cell: Cell) -> u8 {
+        slot(self.origin, cell).map_or(0, |slot| self.mark(slot) & COUNT)
+    }
+
+    /// Whether something stands in a cell.
+    #[must_use]
+    pub fn is_standing(&self, cell: Cell) -> bool {
+        slot(self.origin, cell).is_some_and(|slot| self.mark(slot) & STANDING >= SURE * ONE_STANDING)
+    }
+
+    /// Whether the ground of a cell seems to be gone.
+    #[must_use]
+    pub fn is_sunken(&self, cell: Cell) -> bool {
+        slot(self.origin, cell).is_some_and(|slot| self.mark(slot) & SUNKEN != 0)
+    }
+}
+
+/// A stored height in metres.
+#[inline(always)]
+#[must_use]
+pub fn metres(height: I7F9) -> f32 {
+    const STEP_M: f32 = 1.0 / (1 << I7F9::FRAC_NBITS) as f32;
+    f32::from(height.to_bits()) * STEP_M
+}
+
+impl<'a> Elevation<'a> {
+    /// The window over memory for [`WINDOW_CELLS`] cells, all zeros at first.
+    #[must_use]
+    pub fn new(heights: &'a mut [u8], marks: &'a mut [u8], origin: &'a mut Cell) -> Self {
+        let (heights, _) = heights.as_chunks_mut();
+        Self {
+            heights,
+            marks,
+            origin,
+        }
+    }
+
+    /// The window, for reading.
+    #[inline(always)]
+    #[must_use]
+    pub fn read(&self) -> Heights<'_> {
+        Heights {
+            heights: self.heights,
+            marks: self.marks,
+            origin: *self.origin,
+        }
+    }
+
+    /// Keep the window around `centre`; nothing is known of cells that enter.
+    pub fn follow(&mut self, centre: Cell) {
+        let half = WINDOW_SIDE / 2;
+        let next = Cell {
+            x: centre.x - half,
+            y: centre.y - half,
+        };
+        let old = core::mem::replace(self.origin, next);
+        let (dx, dy) = (next.x - old.x, next.y - old.y);
+        if dx.abs() >= WINDOW_SIDE || dy.abs() >= WINDOW_SIDE {
+            self.marks.fill(0);
+            return;
+        }
+        let entering = |from: i32, to: i32| {
+            if to > from {
+                from + WINDOW_SIDE..to + WINDOW_SIDE
+            } else {
+                to..from
+            }
+        };
+        for y in entering(old.y, next.y) {
+            for x in next.x..next.x + WINDOW_SIDE {
+                self.clear(Cell { x, y });
+            }
+        }
+        for x in entering(old.x, next.x) {
+            for y in next.y..next.y + WINDOW_SIDE {
+                self.clear(Cell { x, y });
+            }
+        }
+    }
+
+    fn mark_mut(&mut self, cell: Cell) -> Option<&mut u8> {
+        self.marks.get_mut(slot(*self.origin, cell)?)
+    }
+
+    fn clear(&mut self, cell: Cell) {
+        if let Some(mark) = self.mark_mut(cell) {
+            *mark = 0;
+        }
+    }
+
+    /// Ground was measured in a cell: into its mean. Then the ground is not gone, and what stands there stands less surely. Outside the
+    /// window nothing happens.
+    pub fn measure(&mut self, cell: Cell, height_m: f32) {
+        let Some(slot) = slot(*self.origin, cell) else {
+            return;
+        };
+        let (Some(mark), Some(stored)) = (self.marks.get_mut(slot), self.heights.get_mut(slot))
+        else {
+            return;
+        };
+        let count = (*mark & COUNT).saturating_add(1).min(MOST_COUNT);
+        let height = I7F9::saturating_from_num(if height_m.is_nan() { 0.0 } else { height_m });
+        let mean = i32::from(if count == 1 {
+            height.to_bits()
+        } else {
+            I7F9::from_le_bytes(*stored).to_bits()
+        });
+        let off = i32::from(height.to_bits()) - mean;
+        let n = i32::from(count);
+        // Rounded to nearest, so that a mean does not creep downwards.
+        let mean = mean + (2 * off + n).div_euclid(2 * n);
+        *stored = I7F9::from_bits(mean as i16).to_le_bytes();
+        let standing = (*mark & STANDING).saturating_sub(ONE_STANDING) & STANDING;
+        *mark = standing | count;
+    }
+
+    /// Something was met that stands in a cell.
+    pub fn stand(&mut self, cell: Cell) {
+        if let Some(mark) = self.mark_mut(cell) {
+            let standing = (*mark & STANDING).saturating_add(2 * ONE_STANDING);
+            *mark = *mark & COUNT | standing.min(STANDING);
+        }
+    }
+
+    /// The ground of a cell that was never measured seems to be gone.
+    pub fn sink(&mut self, cell: Cell) {
+        if let Some(mark) = self.mark_mut(cell)
+            && *mark & COUNT == 0
+        {
+            *mark |= SUNKEN;
+        }
+    }
+
+    /// The robot stands on a cell.
+    pub fn tread(&mut self, cell: Cell, height_m: f32) {
+        if let Some(mark) = self.mark_mut(cell) {
+            *mark &= COUNT;
+        }
+        self.measure(cell, height_m);
+    }
+}

@@ -1,0 +1,270 @@
+//! Both scans into the elevation window: heights where beams met ground, marks where they met what stands, and marks where the ground is
+//! gone.
+//!
+//! A beam that ends in P is judged by the ground K measured nearest before it, `g` away over ground and `dh` lower:
+//!
+//! | case | it is |
+//! | --- | --- |
+//! | steeper than the climb, and `z − ĥ > h_obs` | obstacle (a): it stands over the mean ground ĥ of the kernel |
+//! | steeper than the climb, ĥ not known yet, nearer than `d_obs` | obstacle (b) |
+//! | below what the ground at K leads to expect, and the beam just passes over K | a rim at K: what lies between is gone |
+//! | that, and `dh < h_hole` | gone, P itself as well |
+//! | else, with K near enough | ground |
+//!
+//! Departs from [Maffei-Terrain, III-B] in three ways. (1) Obstacle (a) must also be steep, because level beams meet every slope that
+//! rises. (2) The paper's rule for holes, `h − h_robot < h_hole`, calls everything behind the brow of a long slope a hole, and misses a
+//! drop of 0.2 m, which fells a 3-AT. A beam over a rim tells the two apart: behind a brow the ground bends down before the beam loses it, so that
+//! the slope at K, carried on, foretells P; behind a rim it does not. (3) A ray back from P ends at K: what lies nearer is measured,
+//! and where it is not (the beam passes high over K) nothing is said of a rim that nobody saw.
+//!
+//! Around the start lies a disc that no laser ever sees; there the robot's own plane is taken for measured. Units: metres.
+
+use super::Terrain;
+use super::elevation::{Elevation, WINDOW_SIDE};
+use super::ray::{Attitude, Mount, Ray};
+use crate::config::{Config, Laser};
+use crate::field::preference::KERNEL_CELLS;
+use crate::geometry::{CELL_M, Cell, Point};
+use crate::map::integrate::{informative_range_mm, is_level};
+use crate::math;
+use crate::planner::Input;
+
+/// Radius around the start that the tilted beams never see, metres: they meet level ground at 1.39 m from the robot's centre.
+const BLIND_M: f32 = 1.35;
+/// The wheels stand on what is nearer than this, metres.
+const STANCE_M: f32 = 0.25;
+/// Errors of a height, from attitude, range and the cell's own extent, metres.
+const SLACK_M: f32 = 0.10;
+/// From one sample of a beam's way over ground to the next, metres.
+const SAMPLE_M: f32 = CELL_M;
+/// Farther than this from the robot the window may end, metres.
+const WITHIN_M: f32 = (WINDOW_SIDE / 2 - 1) as f32 * CELL_M;
+/// A level beam's end is ground if ground was measured this near before it, metres: otherwise it may be a wall.
+const LINKED_M: f32 = 0.45;
+/// Drops less deep are none, metres.
+const LEAST_DROP_M: f32 = 0.08;
+/// A beam passes just over K if it is no higher above it than this, metres.
+const GRAZING_M: f32 = 0.22;
+/// How far the slope at K is measured back, metres.
+const BASE_M: f32 = 0.3;
+/// The slope at K carried on foretells P to a part of the way this large.
+const BEND: f32 = 0.10;
+/// How far the ground is gone at the least where a beam came back from nothing, metres.
+const ABYSS_M: f32 = 0.8;
+/// The share of the kernel that must be measured for its mean to count.
+const ENOUGH: u16 = 8;
+
+/// Ground measured before the end of a beam.
+#[derive(Clone, Copy, Debug)]
+struct Footing {
+    /// Over ground, from the laser.
+    s_m: f32,
+    height_m: f32,
+}
+
+/// The two scans of a step on their way into the window.
+#[derive(Debug)]
+pub struct Survey<'a, 'm> {
+    elevation: &'a mut Elevation<'m>,
+    terrain: &'a Terrain,
+    attitude: Attitude,
+    robot: Point,
+    robot_z_m: f32,
+}
+
+impl<'a, 'm> Survey<'a, 'm> {
+    /// A survey from where the input says that the robot is.
+    #[must_use]
+    pub fn new(elevation: &'a mut Elevation<'m>, terrain: &'a Terrain, input: &Input<'_>) -> Self {
+        elevation.follow(input.pose.point().cell());
+        Self {
+            elevation,
+            terrain,
+            attitude: Attitude::of(&input.pose),
+            robot: input.pose.point(),
+            robot_z_m: input.pose.z_m,
+        }
+    }
+
+    /// Take everything in. `first` is the first survey of a session.
+    pub fn run(&mut self, config: &Config, input: &Input<'_>, first: bool) {
+        if first {
+            self.stand_on(BLIND_M);
+        }
+        self.stand_on(STANCE_M);
+        // The tilted laser measures the ground by which the level one is judged.
+        for level in [false, true] {
+            for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
+                if is_level(laser) == level {
+                    self.scan(laser, ranges_mm);
+                }
+            }
+        }
+    }
+
+    /// The robot's own plane is ground within a radius.
+    fn stand_on(&mut self, radius_m: f32) {
+        let reach = math::floor(radius_m / CELL_M) + 1;
+        let middle = self.robot.cell();
+        for y in middle.y - reach..=middle.y + reach {
+            for x in middle.x - reach..=middle.x + reach {
+                let cell = Cell { x, y };
+                let centre = cell.centre();
+                let (dx, dy) = (centre.x_m - self.robot.x_m, centre.y_m - self.robot.y_m);
+                if dx * dx + dy * dy <= radius_m * radius_m {
+                    self.elevation.tread(cell, self.attitude.plane_m(centre));
+                }
+            }
+        }
+    }
+
+    fn scan(&mut self, laser: &Laser, ranges_mm: &[u16]) {
+        let attitude = self.attitude;
+        let mount = Mount::new(&attitude, laser);
+        let level = is_level(laser);
+        for number in 0..ranges_mm.len() {
+            let limit = laser.range_limit_mm;
+            let Some(range) = informative_range_mm(ranges_mm, number, limit) else {
+                continue;
+            };
+            let Some(ray) = attitude.ray(&mount, number, f32::from(range.min(limit)) * 1e-3)
+            else {
+                continue;
+            };
+            if range < limit {
+                self.judge(&ray, level);
+            } else if !level {
+                self.judge_missing(&ray);
+            }
+        }
+    }
+
+    /// A beam that met something.
+    fn judge(&mut self, ray: &Ray, level: bool) {
+        let z_m = ray.height_m(ray.length_m);
+        let cell = ray.at(ray.length_m).cell();
+        let footing = self.look_back(ray, ray.length_m);
+        let (gap_m, rise_m) = (ray.length_m - footing.s_m, z_m - footing.height_m);
+        if rise_m > self.terrain.climb * gap_m + SLACK_M {
+            if self.stands(ray, cell, z_m) {
+                self.elevation.stand(cell);
+                return;
+            }
+            if level {
+                return;
+            }
+        } else if self.is_rim(ray, &footing, gap_m, rise_m) {
+            let deep = rise_m < self.terrain.hole_m;
+            let to_m = if deep { ray.length_m + 0.5 * SAMPLE_M } else { ray.length_m - SAMPLE_M };
+            self.sink(ray, footing.s_m, to_m);
+            if deep {
+                return;
+            }
+        }
+        let linked = gap_m <= LINKED_M || (!level && rise_m.abs() <= self.terrain.climb * gap_m);
+        if linked {
+            self.elevation.measure(cell, z_m);
+        }
+    }
+
+    /// A tilted beam that came back from nothing, though the ground should be near: there is none.
+    fn judge_missing(&mut self, ray: &Ray) {
+        let (ux, uy) = ray.along;
+        let closing = self.attitude.rise(ux, uy) - ray.slope;
+        let above_m = ray.from_z_m - self.attitude.plane_m(ray.from);
+        if closing < 0.1 || above_m > closing * WITHIN_M {
+            return;
+        }
+        let expected_m = above_m / closing;
+        let footing = self.look_back(ray, expected_m + ABYSS_M);
+        if ray.height_m(footing.s_m) - footing.height_m < GRAZING_M {
+            self.sink(ray, footing.s_m, expected_m + ABYSS_M);
+        }
+    }
+
+    /// The ground measured nearest before a length of a beam, the cell there left out; the robot's own if there is none.
+    fn look_back(&self, ray: &Ray, from_m: f32) -> Footing {
+        let heights = self.elevation.read();
+        let end = ray.at(from_m).cell();
+        let mut s_m = from_m.min(window_m(ray)) - 0.5 * SAMPLE_M;
+        while s_m > 0.2 {
+            let cell = ray.at(s_m).cell();
+            if cell != end
+                && let Some(height_m) = heights.height_m(cell)
+            {
+                return Footing { s_m, height_m };
+            }
+            s_m -= SAMPLE_M;
+        }
+        Footing {
+            s_m: 0.1,
+            height_m: self.robot_z_m,
+        }
+    }
+
+    /// Obstacle (a) or (b), of something steep.
+    fn stands(&self, ray: &Ray, cell: Cell, z_m: f32) -> bool {
+        match self.kernel_mean(cell) {
+            Some(mean_m) => z_m - mean_m > self.terrain.obstacle_m,
+            None => ray.length_m < self.terrain.near_m,
+        }
+    }
+
+    /// ĥ: mean height of the kernel's measured cells, every second one of every second row, if there are enough.
+    fn kernel_mean(&self, cell: Cell) -> Option<f32> {
+        let heights = self.elevation.read();
+        let half = KERNEL_CELLS as i32 / 2;
+        let (mut sum_m, mut count, mut all) = (0.0, 0_u16, 0_u16);
+        for dy in (-half..half).step_by(2) {
+            for dx in (-half..half).step_by(2) {
+                all += 1;
+                let near = Cell {
+                    x: cell.x + dx,
+                    y: cell.y + dy,
+                };
+                if let Some(height_m) = heights.height_m(near) {
+                    sum_m += height_m;
+                    count += 1;
+                }
+            }
+        }
+        (count * ENOUGH >= all).then(|| sum_m / f32::from(count))
+    }
+
+    /// Whether the ground falls away at K: the beam just passes over it, and P lies lower than the slope there foretells.
+    fn is_rim(&self, ray: &Ray, footing: &Footing, gap_m: f32, rise_m: f32) -> bool {
+        if rise_m > -LEAST_DROP_M || gap_m < 1.5 * SAMPLE_M {
+            return false;
+        }
+        let foretold_m = self.slope_at(ray, footing) * gap_m;
+        rise_m < foretold_m - LEAST_DROP_M - BEND * gap_m
+            && ray.height_m(footing.s_m) - footing.height_m < GRAZING_M
+    }
+
+    /// The slope of the ground along a beam up to K.
+    fn slope_at(&self, ray: &Ray, footing: &Footing) -> f32 {
+        let back = ray.at(footing.s_m - BASE_M).cell();
+        let most = self.terrain.climb;
+        let slope = match self.elevation.read().height_m(back) {
+            Some(height_m) => (footing.height_m - height_m) / BASE_M,
+            None => self.attitude.rise(ray.along.0, ray.along.1),
+        };
+        slope.clamp(-most, most)
+    }
+
+    /// What was never measured between two lengths of a beam is gone.
+    fn sink(&mut self, ray: &Ray, from_m: f32, to_m: f32) {
+        let to_m = to_m.min(window_m(ray));
+        let mut s_m = from_m + SAMPLE_M;
+        while s_m <= to_m {
+            self.elevation.sink(ray.at(s_m).cell());
+            s_m += SAMPLE_M;
+        }
+    }
+}
+
+/// How far a beam runs in the window at the least.
+fn window_m(ray: &Ray) -> f32 {
+    let (x, y) = (ray.along.0.abs(), ray.along.1.abs());
+    WITHIN_M / if x > y { x } else { y }
+}

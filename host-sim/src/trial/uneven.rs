@@ -1,0 +1,128 @@
+//! The parameters of uneven ground as text: `h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005`.
+//!
+//! The defaults are those of [Maffei-Terrain, Table I]; `climb` (degrees) and `step` (metres) are the robot's own. Whoever is asked
+//! for a preference beyond 2 either way says why not: the relaxation of the field diverges.
+
+use core::fmt;
+use core::str::FromStr;
+
+use fieldline_protocol::message::{Preference, Terrain};
+use fixed::types::{I4F12, I16F16};
+
+/// What the paper's robot was given, and the 3-AT's limits.
+#[must_use]
+pub fn table_i() -> Terrain {
+    Terrain {
+        preference: Preference::Both,
+        obstacle: I4F12::lit("0.30"),
+        near: I4F12::lit("1.5"),
+        hole: I4F12::lit("-0.60"),
+        least: I4F12::lit("-0.5"),
+        most: I4F12::lit("0.5"),
+        height_scale: I4F12::lit("2"),
+        global_scale: I16F16::lit("0.005"),
+        climb: I4F12::lit("0.349"),
+        step: I4F12::lit("0.07"),
+    }
+}
+
+/// Why a text gives no parameters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TerrainError(String);
+
+impl fmt::Display for TerrainError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let form = "write for instance h_obs=0.3,h_hole=-0.6,eps_gmax=0.5";
+        write!(f, "{}; {form}", self.0)
+    }
+}
+
+impl core::error::Error for TerrainError {}
+
+/// Least and greatest of a parameter, and why it ends there.
+fn bounds(name: &str) -> Option<([f64; 2], &'static str)> {
+    let diverges = "beyond 2 either way the potential leaves [0, 1] and the relaxation diverges";
+    Some(match name {
+        "eps_hmin" => ([-2.0, 0.0], diverges),
+        "eps_gmax" => ([0.0, 2.0], diverges),
+        "h_obs" => ([0.01, 7.0], "it is a height in metres"),
+        "d_obs" => ([0.01, 7.0], "it is a distance in metres"),
+        "h_hole" => ([-7.0, -0.01], "it is a height below the ground in metres"),
+        "lambda_h" => ([0.0, 7.0], "it is a scale"),
+        "lambda_g" => ([0.0, 100.0], "it is a scale"),
+        "climb" => ([1.0, 45.0], "it is a slope in degrees"),
+        "step" => ([0.01, 1.0], "it is a height in metres"),
+        _ => return None,
+    })
+}
+
+/// These parameters with those changed that a text names.
+///
+/// # Errors
+/// [`TerrainError`] for an unknown name, a text that is no number, and a number out of its bounds.
+pub fn changed(mut terrain: Terrain, text: &str) -> Result<Terrain, TerrainError> {
+    for part in text.split(',').map(str::trim) {
+        let Some((name, number)) = part.split_once('=') else {
+            return Err(TerrainError(format!("'{part}' is not name=number")));
+        };
+        let name = name.trim();
+        let Some(([least, most], reason)) = bounds(name) else {
+            return Err(TerrainError(format!("there is no parameter '{name}'")));
+        };
+        let value = f64::from_str(number.trim()).unwrap_or(f64::NAN);
+        if !(value >= least && value <= most) {
+            let text = format!("{name} must be from {least} to {most}, not '{number}': {reason}");
+            return Err(TerrainError(text));
+        }
+        let short = I4F12::saturating_from_num(value);
+        match name {
+            "eps_hmin" => terrain.least = short,
+            "eps_gmax" => terrain.most = short,
+            "h_obs" => terrain.obstacle = short,
+            "d_obs" => terrain.near = short,
+            "h_hole" => terrain.hole = short,
+            "lambda_h" => terrain.height_scale = short,
+            "lambda_g" => terrain.global_scale = I16F16::saturating_from_num(value),
+            "climb" => terrain.climb = I4F12::saturating_from_num(value.to_radians()),
+            _ => terrain.step = short,
+        }
+    }
+    Ok(terrain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{changed, table_i};
+    use fixed::types::{I4F12, I16F16};
+
+    #[test]
+    fn text_changes_what_it_names() {
+        let terrain = changed(table_i(), "h_hole=-0.75, lambda_g=0.25,eps_gmax=2").unwrap();
+        assert_eq!(terrain.hole, I4F12::lit("-0.75"));
+        assert_eq!(terrain.global_scale, I16F16::lit("0.25"));
+        assert_eq!(terrain.most, I4F12::lit("2"));
+        assert_eq!(terrain.least, table_i().least);
+    }
+
+    #[test]
+    fn a_preference_beyond_two_is_refused_with_the_reason() {
+        for text in ["eps_gmax=2.1", "eps_hmin=-2.001", "eps_hmin=0.5", "eps_gmax=nan"] {
+            let error = changed(table_i(), text).unwrap_err().to_string();
+            assert!(error.contains("diverges") && error.contains("2"), "{error}");
+        }
+    }
+
+    #[test]
+    fn nonsense_is_named() {
+        for (text, word) in [
+            ("", "''"),
+            ("h_obs", "'h_obs'"),
+            ("h_obs=-1", "'-1'"),
+            ("h_hole=0.6", "below the ground"),
+            ("gravity=9", "'gravity'"),
+        ] {
+            let error = changed(table_i(), text).unwrap_err().to_string();
+            assert!(error.contains(word) && error.contains("eps_gmax=0.5"), "{error}");
+        }
+    }
+}
