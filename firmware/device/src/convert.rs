@@ -5,7 +5,7 @@
 //! directions are integer arithmetic and the same bits on every machine.
 
 use fieldline_planner::config::{self, Config};
-use fieldline_planner::geometry::{Pose, Twist};
+use fieldline_planner::geometry::{CELL_M, Pose, Twist};
 use fieldline_planner::planner::Input;
 use fieldline_planner::math;
 use fieldline_planner::status::{self, Frontier, Residue};
@@ -113,17 +113,23 @@ fn terrain(terrain: &wire::Terrain) -> Terrain {
 #[must_use]
 pub fn config(start: &wire::Start) -> Config {
     let default = Config::pioneer_3at(start.lasers.iter().map(laser).collect());
+    let period_s = f32::from(start.period_ms) / 1000.0;
+    let max_linear_mps = float(start.max_linear);
     let robot_radius_m = f32::from(start.robot_radius_mm) / 1000.0;
     Config {
         box_tiles: start.box_tiles,
         robot_radius_m,
         // A robot of another size is narrower by the same part.
         tight_radius_m: robot_radius_m * (default.tight_radius_m / default.robot_radius_m),
-        max_linear_mps: float(start.max_linear),
+        max_linear_mps: match start.strategy {
+            wire::Strategy::Frontier => max_linear_mps,
+            // From one sweep over the ground to the next at most a cell.
+            wire::Strategy::Terrain(_) => max_linear_mps.min(CELL_M / period_s),
+        },
         max_angular_radps: float(start.max_angular),
         linear_accel_mps2: float(start.linear_accel),
         angular_accel_radps2: float(start.angular_accel),
-        period_s: f32::from(start.period_ms) / 1000.0,
+        period_s,
         terrain: match &start.strategy {
             wire::Strategy::Frontier => None,
             wire::Strategy::Terrain(parameters) => Some(terrain(parameters)),

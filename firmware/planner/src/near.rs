@@ -147,7 +147,7 @@ impl NearField {
 
 /// Whether a beam beside this one ended about as far. Within reach even a pole of 4 cm is hit by two; a lone point is a false
 /// return, and one that fell behind the robot would never be seen through.
-fn has_company(ranges_mm: &[u16], number: usize) -> bool {
+pub(crate) fn has_company(ranges_mm: &[u16], number: usize) -> bool {
     let range = |k: Option<usize>| k.and_then(|k| ranges_mm.get(k)).copied();
     let here = range(Some(number)).unwrap_or(0);
     let near =

@@ -36,6 +36,8 @@ const TWO: [(i32, i32); 8] = [
     (0, -2),
     (2, -2),
 ];
+/// How far the cells are that a bridge rests on, to either side.
+const BRIDGES: [(i32, i32); 6] = [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 1)];
 /// Measured cells among the eight around that it takes to free an obstacle of the map.
 const WELL_KNOWN: u32 = 6;
 
@@ -48,7 +50,7 @@ pub struct Steps {
     /// Over four cells, and over half of them.
     four: i32,
     half: i32,
-    /// Of a way over three cells, to either side.
+    /// From one end of a bridge to the other.
     bridge: i32,
 }
 
@@ -65,7 +67,7 @@ impl Steps {
             two_corner: steps(0.5 * rise(2.83) + edge),
             four: steps(rise(4.0) + 2.0 * NOISE_M),
             half: steps(0.3 * rise(4.0)),
-            bridge: steps(rise(3.0)),
+            bridge: steps(0.7 * rise(4.0)),
         }
     }
 }
@@ -97,7 +99,10 @@ pub fn row(heights: &Heights<'_>, steps: &Steps, y: i32, known: Row) -> Classes 
             classes.obstacle |= bit;
         } else if let Some(height) = bits(0, 0) {
             if is_too_high(steps, height, bits) {
-                classes.obstacle |= bit;
+                // Once may be a false return.
+                if heights.count(cell) > 1 {
+                    classes.obstacle |= bit;
+                }
             } else if known.obstacle() & bit == 0 || is_well_known(bits) {
                 classes.free |= bit;
             }
@@ -144,12 +149,12 @@ fn is_well_known(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
     known > WELL_KNOWN
 }
 
-/// Whether measured cells on both sides, at most three apart, lead over a cell.
+/// Whether measured cells on both sides, at most four apart, lead over a cell.
 fn is_bridged(steps: &Steps, bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
     let leads = |a: Option<i32>, b: Option<i32>| {
         a.zip(b).is_some_and(|(a, b)| (a - b).abs() <= steps.bridge)
     };
-    [(1, 1), (1, 2), (2, 1)].into_iter().any(|(there, here)| {
+    BRIDGES.into_iter().any(|(there, here)| {
         leads(bits(there, 0), bits(-here, 0)) || leads(bits(0, there), bits(0, -here))
     })
 }

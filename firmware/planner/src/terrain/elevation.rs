@@ -23,6 +23,8 @@ pub const WINDOW_SIDE: i32 = 64;
 pub const WINDOW_CELLS: usize = (WINDOW_SIDE * WINDOW_SIDE) as usize;
 /// Measurements that a mean remembers.
 const MOST_COUNT: u8 = 15;
+/// What is farther off a mean, in steps of a height, may be false: 0.15 m.
+const OUTLIER: i32 = I7F9::lit("0.15").to_bits() as i32;
 /// Bits of the count.
 const COUNT: u8 = 0x0f;
 /// Bits of what stands.
@@ -196,7 +198,8 @@ impl<'a> Elevation<'a> {
         }
     }
 
-    /// Ground was measured in a cell: into its mean. Then the ground is not gone, and what stands there stands less surely. Outside the
+    /// Ground was measured in a cell: into its mean. What is far off the mean is left out, for it may be a false return; but then the mean
+    /// counts for less, until it gives way, and where there was but one before, the lower one stays. Then the ground is not gone, and what stands there stands less surely. Outside the
     /// window nothing happens.
     pub fn measure(&mut self, cell: Cell, height_m: f32) {
         let Some(slot) = slot(*self.origin, cell) else {
@@ -215,6 +218,13 @@ impl<'a> Elevation<'a> {
         });
         let off = i32::from(height.to_bits()) - mean;
         let n = i32::from(count);
+        if off.abs() > OUTLIER {
+            *mark = *mark & !COUNT | count.saturating_sub(2).max(1);
+            if count == 2 && off < 0 {
+                *stored = height.to_le_bytes();
+            }
+            return;
+        }
         // Rounded to nearest, so that a mean does not creep downwards.
         let mean = mean + (2 * off + n).div_euclid(2 * n);
         *stored = I7F9::from_bits(mean as i16).to_le_bytes();

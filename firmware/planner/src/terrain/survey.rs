@@ -27,6 +27,7 @@ use crate::field::preference::KERNEL_CELLS;
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::map::integrate::{informative_range_mm, is_level};
 use crate::math;
+use crate::near::has_company;
 use crate::planner::Input;
 
 /// Radius around the start that the tilted beams never see, metres: they meet level ground at 1.39 m from the robot's centre.
@@ -44,13 +45,15 @@ const LINKED_M: f32 = 0.45;
 /// Drops less deep are none, metres.
 const LEAST_DROP_M: f32 = 0.08;
 /// A beam passes just over K if it is no higher above it than this, metres.
-const GRAZING_M: f32 = 0.22;
+const GRAZING_M: f32 = 0.15;
 /// How far the slope at K is measured back, metres.
 const BASE_M: f32 = 0.3;
 /// The slope at K carried on foretells P to a part of the way this large.
-const BEND: f32 = 0.10;
-/// How far the ground is gone at the least where a beam came back from nothing, metres.
-const ABYSS_M: f32 = 0.8;
+const BEND: f32 = 0.15;
+/// A beam is steep enough to tell a rim from a slope if it comes down by this part of the climb.
+const STEEP: f32 = 0.85;
+/// Behind a rim so much is marked, metres; what lies farther behind may be seen from elsewhere.
+const RIM_M: f32 = 0.6;
 /// The share of the kernel that must be measured for its mean to count.
 const ENOUGH: u16 = 8;
 
@@ -132,32 +135,31 @@ impl<'a, 'm> Survey<'a, 'm> {
                 continue;
             };
             if range < limit {
-                self.judge(&ray, level);
+                let sure = has_company(ranges_mm, number);
+                self.judge(&ray, (level, sure));
             } else if !level {
                 self.judge_missing(&ray);
             }
         }
     }
 
-    /// A beam that met something.
-    fn judge(&mut self, ray: &Ray, level: bool) {
+    /// A beam that met something; `sure` if the one beside it met something about as far.
+    fn judge(&mut self, ray: &Ray, (level, sure): (bool, bool)) {
         let z_m = ray.height_m(ray.length_m);
         let cell = ray.at(ray.length_m).cell();
         let footing = self.look_back(ray, ray.length_m);
         let (gap_m, rise_m) = (ray.length_m - footing.s_m, z_m - footing.height_m);
         if rise_m > self.terrain.climb * gap_m + SLACK_M {
-            if self.stands(ray, cell, z_m) {
+            let stands = self.stands(ray, cell, z_m);
+            if stands && sure {
                 self.elevation.stand(cell);
-                return;
             }
-            if level {
+            if stands || level {
                 return;
             }
         } else if self.is_rim(ray, &footing, gap_m, rise_m) {
-            let deep = rise_m < self.terrain.hole_m;
-            let to_m = if deep { ray.length_m + 0.5 * SAMPLE_M } else { ray.length_m - SAMPLE_M };
-            self.sink(ray, footing.s_m, to_m);
-            if deep {
+            self.sink(ray, footing.s_m, (footing.s_m + RIM_M).min(ray.length_m - SAMPLE_M));
+            if rise_m < self.terrain.hole_m {
                 return;
             }
         }
@@ -176,9 +178,9 @@ impl<'a, 'm> Survey<'a, 'm> {
             return;
         }
         let expected_m = above_m / closing;
-        let footing = self.look_back(ray, expected_m + ABYSS_M);
+        let footing = self.look_back(ray, expected_m + RIM_M);
         if ray.height_m(footing.s_m) - footing.height_m < GRAZING_M {
-            self.sink(ray, footing.s_m, expected_m + ABYSS_M);
+            self.sink(ray, footing.s_m, footing.s_m + RIM_M);
         }
     }
 
@@ -233,12 +235,20 @@ impl<'a, 'm> Survey<'a, 'm> {
 
     /// Whether the ground falls away at K: the beam just passes over it, and P lies lower than the slope there foretells.
     fn is_rim(&self, ray: &Ray, footing: &Footing, gap_m: f32, rise_m: f32) -> bool {
-        if rise_m > -LEAST_DROP_M || gap_m < 1.5 * SAMPLE_M {
+        if rise_m > -LEAST_DROP_M || gap_m < 1.5 * SAMPLE_M || !self.is_steep(ray) {
             return false;
         }
-        let foretold_m = self.slope_at(ray, footing) * gap_m;
-        rise_m < foretold_m - LEAST_DROP_M - BEND * gap_m
+        let slope = self.slope_at(ray, footing);
+        // What rises steeply up to K is a thing that stands, and casts a shadow.
+        slope < self.terrain.climb
+            && rise_m < slope * gap_m - LEAST_DROP_M - BEND * gap_m
             && ray.height_m(footing.s_m) - footing.height_m < GRAZING_M
+    }
+
+    /// Whether ground that a beam does not see behind K must be too steep to drive on: a beam that comes down more gently passes over
+    /// slopes too.
+    fn is_steep(&self, ray: &Ray) -> bool {
+        -ray.slope > STEEP * self.terrain.climb
     }
 
     /// The slope of the ground along a beam up to K.
@@ -247,9 +257,9 @@ impl<'a, 'm> Survey<'a, 'm> {
         let most = self.terrain.climb;
         let slope = match self.elevation.read().height_m(back) {
             Some(height_m) => (footing.height_m - height_m) / BASE_M,
-            None => self.attitude.rise(ray.along.0, ray.along.1),
+            None => self.attitude.rise(ray.along.0, ray.along.1).min(0.9 * most),
         };
-        slope.clamp(-most, most)
+        slope.max(-most)
     }
 
     /// What was never measured between two lengths of a beam is gone.
