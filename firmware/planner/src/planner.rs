@@ -436,6 +436,9 @@ fn replan<const TILES: usize, const SLOTS: usize>(
         disc,
     };
     let outlook = state.strategy.replan(&known, robot, input.time_ms, lent);
+    while uneven && let Some(cell) = state.strategy.take_unobserved() {
+        state.map.give_up_ground(cell);
+    }
     match outlook {
         // On uneven ground what is seen through a gap is not measured by it.
         Outlook::Nothing if state.strategy.may_look() && !uneven => {

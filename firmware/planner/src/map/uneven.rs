@@ -18,6 +18,9 @@ use crate::terrain::{Elevation, Heights, Terrain};
 /// Tiles that hold the marks.
 const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::TileRows>();
 
+/// Cells around a goal that are given up with it.
+const GIVEN_UP: i32 = 3;
+
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// From here on the window of heights lies where the counts were.
     pub(super) fn make_room_for_heights(&mut self) {
@@ -42,6 +45,19 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         let steps = Steps::new(terrain);
         for y in self.window.y..self.window.y + WINDOW_SIDE {
             self.classify(&steps, y);
+        }
+    }
+
+    /// The robot stood by a cell, and neither it nor what is around it was measured: it will not be, and may well be gone.
+    pub fn give_up_ground(&mut self, goal: Cell) {
+        for y in goal.y - GIVEN_UP..=goal.y + GIVEN_UP + 1 {
+            for x in goal.x - GIVEN_UP..=goal.x + GIVEN_UP + 1 {
+                let cell = Cell { x, y };
+                if self.tiles.class(cell) == Class::Unknown {
+                    // Where there is no room nothing is known in any case.
+                    let _ = self.tiles.set(cell, Class::Negative);
+                }
+            }
         }
     }
 

@@ -139,6 +139,13 @@ impl Frontier {
         &self.dropped
     }
 
+    /// A goal that was reached and stayed unexplored, taken off the list.
+    pub fn take_unobserved(&mut self) -> Option<Cell> {
+        let unobserved = |left: &Leftover| left.reason == Residue::Unobservable;
+        let place = self.dropped.iter().position(unobserved)?;
+        Some(self.dropped.remove(place).cell)
+    }
+
     /// Whether everything is tried a second time, more narrowly.
     #[must_use]
     pub const fn is_second_chance(&self) -> bool {

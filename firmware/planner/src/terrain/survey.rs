@@ -172,6 +172,9 @@ impl<'a, 'm> Survey<'a, 'm> {
     /// A tilted beam that came back from nothing, though the ground should be near: there is none.
     fn judge_missing(&mut self, ray: &Ray) {
         let (ux, uy) = ray.along;
+        if !self.is_steep(ray) {
+            return;
+        }
         let closing = self.attitude.rise(ux, uy) - ray.slope;
         let above_m = ray.from_z_m - self.attitude.plane_m(ray.from);
         if closing < 0.1 || above_m > closing * WITHIN_M {
@@ -179,7 +182,7 @@ impl<'a, 'm> Survey<'a, 'm> {
         }
         let expected_m = above_m / closing;
         let footing = self.look_back(ray, expected_m + RIM_M);
-        if ray.height_m(footing.s_m) - footing.height_m < GRAZING_M {
+        if self.is_grazing(ray, &footing) {
             self.sink(ray, footing.s_m, footing.s_m + RIM_M);
         }
     }
@@ -242,6 +245,13 @@ impl<'a, 'm> Survey<'a, 'm> {
         // What rises steeply up to K is a thing that stands, and casts a shadow.
         slope < self.terrain.climb
             && rise_m < slope * gap_m - LEAST_DROP_M - BEND * gap_m
+            && self.is_grazing(ray, &footing)
+    }
+
+    /// Whether a beam just passes over K, which is sure.
+    fn is_grazing(&self, ray: &Ray, footing: &Footing) -> bool {
+        let cell = ray.at(footing.s_m).cell();
+        self.elevation.read().count(cell) > 1
             && ray.height_m(footing.s_m) - footing.height_m < GRAZING_M
     }
 
