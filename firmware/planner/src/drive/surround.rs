@@ -22,6 +22,8 @@ pub const HALF_WIDTH_M: f32 = 0.2485;
 const HALF_DIAGONAL_M: f32 = 0.355;
 /// A place of the robot is checked every so many metres that any part of it moved.
 const CHECK_EVERY_M: f32 = 0.05;
+/// How far the bumpers stick out beyond where the wheels touch the ground, less half a cell and a margin, metres.
+const BUMPER_M: f32 = 0.05;
 /// Cells of the map that count at the most.
 const MOST_CELLS: usize = 64;
 /// A cell of the map with a near point this near to its middle is known better by that, metres: in the cell, or at its side.
@@ -157,13 +159,16 @@ impl Surround {
         }
     }
 
-    /// Keep off cells (their middles) on all sides, by half a cell more than their middles say: any part of one may be what is not to be touched.
-    pub fn keep_off(&mut self, pose: &Pose, cells: impl Iterator<Item = Point>) {
+    /// Keep off cells (their middles) on all sides, by half a cell more than their middles say: any part of one may be what is not to be
+    /// touched. Over unknown ground, which is marked, the bumpers may reach, but not the wheels.
+    pub fn keep_off(&mut self, pose: &Pose, cells: impl Iterator<Item = (Point, bool)>) {
         let frame = Frame::of(pose);
         self.threats.clear();
-        for at in cells.map(|cell| frame.within(cell)) {
+        for (cell, unknown) in cells {
+            let at = frame.within(cell);
             let away = math::sqrt(at.x_m * at.x_m + at.y_m * at.y_m);
-            let part = ((away - 0.5 * CELL_M) / away.max(1e-3)).max(0.0);
+            let nearer_m = if unknown { -BUMPER_M } else { 0.5 * CELL_M };
+            let part = ((away - nearer_m) / away.max(1e-3)).max(0.0);
             let at = Point {
                 x_m: at.x_m * part,
                 y_m: at.y_m * part,
