@@ -65,7 +65,7 @@ impl Steps {
             one: steps(0.25 * rise(1.0) + edge),
             two: steps(0.5 * rise(2.0) + edge),
             two_corner: steps(0.5 * rise(2.83) + edge),
-            four: steps(rise(4.0) + 2.0 * NOISE_M),
+            four: steps(rise(4.0) + NOISE_M),
             half: steps(0.3 * rise(4.0)),
             bridge: steps(0.7 * rise(4.0)),
         }

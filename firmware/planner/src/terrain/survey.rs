@@ -241,6 +241,9 @@ impl<'a, 'm> Survey<'a, 'm> {
         if rise_m > -LEAST_DROP_M || gap_m < 1.5 * SAMPLE_M || !self.is_steep(ray) {
             return false;
         }
+        if rise_m < self.terrain.hole_m && -rise_m > STEEP * self.terrain.climb * gap_m {
+            return self.elevation.read().count(ray.at(footing.s_m).cell()) > 1;
+        }
         let slope = self.slope_at(ray, footing);
         // What rises steeply up to K is a thing that stands, and casts a shadow.
         slope < self.terrain.climb
