@@ -180,7 +180,7 @@ pub fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
 }
 
 /// The middles of the cells around the robot that it must not touch on uneven ground, as far as they border on free cells:
-/// obstacles of either sign, and ground never measured, which is marked.
+/// obstacles of either sign, and, marked, ground never measured.
 pub fn rim_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,

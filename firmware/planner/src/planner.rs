@@ -329,7 +329,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     let planned = state.fresh;
     if planned {
         state.fresh = false;
-        let uneven = config.terrain.is_some();
+        let uneven = config.terrain.as_ref();
         replan(state, workspace, &disc, (&input, uneven));
         laps.lap(Stage::Plan);
     } else {
@@ -418,7 +418,7 @@ fn replan<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     disc: &Disc,
-    (input, uneven): (&Input<'_>, bool),
+    (input, uneven): (&Input<'_>, Option<&Terrain>),
 ) {
     let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
     let (residues, ring) = words.split_at_mut(SLOTS * 16);
@@ -436,12 +436,14 @@ fn replan<const TILES: usize, const SLOTS: usize>(
         disc,
     };
     let outlook = state.strategy.replan(&known, robot, input.time_ms, lent);
-    while uneven && let Some(cell) = state.strategy.take_unobserved() {
-        state.map.give_up_ground(cell);
+    while let Some(terrain) = uneven
+        && let Some(cell) = state.strategy.take_unobserved()
+    {
+        state.map.give_up_ground(terrain, cell);
     }
     match outlook {
         // On uneven ground what is seen through a gap is not measured by it.
-        Outlook::Nothing if state.strategy.may_look() && !uneven => {
+        Outlook::Nothing if state.strategy.may_look() && uneven.is_none() => {
             let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
             state.lookouts.begin(state.map.tiles().extent(), scratch);
         }

@@ -58,7 +58,7 @@ impl Mirror {
     }
 
     /// Whether these tiles are this map: all of it, and nothing else. On uneven ground the planner also gives up ground that it never
-    /// got to see; what it so holds for a negative obstacle is not compared, because the observations alone do not tell.
+    /// got to see, and the observations alone do not tell when: what it holds for a negative obstacle and what is unknown here is not compared.
     #[must_use]
     pub fn equals(&self, tiles: &BTreeMap<(i16, i16), Tile>) -> bool {
         let reach = |of: fn(&(i16, i16)) -> i16| {
@@ -73,7 +73,8 @@ impl Mirror {
                 match (&ours, theirs) {
                     (Some(ours), Some(theirs)) if self.config.terrain.is_some() => {
                         ours.iter().zip(theirs).all(|(ours, theirs)| {
-                            let given_up = theirs & theirs >> 1 & 0x55;
+                            let known = (ours | ours >> 1) & 0x55;
+                            let given_up = theirs & theirs >> 1 & 0x55 | !known & 0x55;
                             (ours ^ theirs) & !(given_up | given_up << 1) == 0
                         })
                     }

@@ -23,7 +23,7 @@ const HALF_DIAGONAL_M: f32 = 0.355;
 /// A place of the robot is checked every so many metres that any part of it moved.
 const CHECK_EVERY_M: f32 = 0.05;
 /// How far the bumpers stick out ahead of where the wheels touch the ground, less a margin, metres.
-const BUMPER_M: f32 = 0.09;
+const BUMPER_M: f32 = 0.05;
 /// Cells of the map that count at the most.
 const MOST_CELLS: usize = 64;
 /// A cell of the map with a near point this near to its middle is known better by that, metres: in the cell, or at its side.

@@ -48,14 +48,17 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    /// The robot stood by a cell, and neither it nor what is around it was measured: it will not be, and may well be gone.
-    pub fn give_up_ground(&mut self, goal: Cell) {
+    /// The robot stood by a cell, and neither it nor what is around it was measured. Behind a brow ground stays out of view: where what is
+    /// measured on both sides leads over it gently it is taken for free, and else for gone.
+    pub fn give_up_ground(&mut self, terrain: &Terrain, goal: Cell) {
         for y in goal.y - GIVEN_UP..=goal.y + GIVEN_UP + 1 {
             for x in goal.x - GIVEN_UP..=goal.x + GIVEN_UP + 1 {
                 let cell = Cell { x, y };
                 if self.tiles.class(cell) == Class::Unknown {
+                    let leads_over = classify::leads_over(&self.heights(), terrain, cell);
+                    let class = if leads_over { Class::Free } else { Class::Negative };
                     // Where there is no room nothing is known in any case.
-                    let _ = self.tiles.set(cell, Class::Negative);
+                    let _ = self.tiles.set(cell, class);
                 }
             }
         }

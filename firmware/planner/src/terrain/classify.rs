@@ -38,6 +38,10 @@ const TWO: [(i32, i32); 8] = [
 ];
 /// How far the cells are that a bridge rests on, to either side.
 const BRIDGES: [(i32, i32); 6] = [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 1)];
+/// How far to either side ground is looked for over a brow, cells.
+const BROW: i32 = 10;
+/// Ground that leads over a brow is no steeper than this part of the climb: a rim casts a shadow as steep as the tilted beams.
+const GENTLE: f32 = 0.75;
 /// Measured cells among the eight around that it takes to free an obstacle of the map.
 const WELL_KNOWN: u32 = 6;
 
@@ -147,6 +151,34 @@ fn is_well_known(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
     let known = around.filter(|&(dx, dy)| bits(dx, dy).is_some()).count() as u32;
     // The cell itself is one of them.
     known > WELL_KNOWN
+}
+
+/// Whether the nearest measured cells on both sides of a cell that was never measured lead over it gently, in all directions in which there
+/// are two, and nothing between them is known to be gone.
+#[must_use]
+pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell) -> bool {
+    let reach = |dx: i32, dy: i32| {
+        (1..=BROW).find_map(|far| {
+            let near = Cell {
+                x: cell.x + far * dx,
+                y: cell.y + far * dy,
+            };
+            let stops = heights.is_sunken(near) || heights.is_standing(near);
+            let height = heights.height_m(near);
+            (stops || height.is_some()).then_some((far, height.filter(|_| !stops)))
+        })
+    };
+    let (mut ways, mut gentle) = (0, 0);
+    for (dx, dy, cells) in [(1, 0, 1.0), (1, 1, 1.41), (0, 1, 1.0), (-1, 1, 1.41)] {
+        if let (Some((there, high)), Some((here, low))) = (reach(dx, dy), reach(-dx, -dy)) {
+            let way_m = (there + here) as f32 * cells * CELL_M;
+            let most_m = GENTLE * terrain.climb * way_m;
+            ways += 1;
+            let rise = high.zip(low).map(|(high, low)| (high - low).abs());
+            gentle += i32::from(rise.is_some_and(|rise_m| rise_m <= most_m));
+        }
+    }
+    ways > 0 && ways == gentle
 }
 
 /// Whether measured cells on both sides, at most four apart, lead over a cell.

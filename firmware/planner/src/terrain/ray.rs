@@ -139,3 +139,86 @@ impl<'a> Mount<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Attitude, Mount};
+    use crate::config::Laser;
+    use crate::geometry::{Point, Pose};
+    use crate::math;
+
+    fn laser(pitch_rad: f32) -> Laser {
+        Laser {
+            x_m: 0.15,
+            y_m: 0.0,
+            z_m: 0.45,
+            pitch_rad,
+            first_bearing_rad: -0.5 * math::PI,
+            bearing_step_rad: math::PI / 180.0,
+            beams: 181,
+            range_limit_mm: 12_000,
+        }
+    }
+
+    #[test]
+    fn a_tilted_beam_meets_level_ground_where_trigonometry_says() {
+        let attitude = Attitude::of(&Pose::default());
+        let laser = laser(20.0_f32.to_radians());
+        let mount = Mount::new(&attitude, &laser);
+        let range_m = 0.45 / 20.0_f32.to_radians().sin();
+        let ray = attitude.ray(&mount, 90, range_m).expect("it goes ahead");
+        assert!((ray.length_m - 0.45 / 20.0_f32.to_radians().tan()).abs() < 1e-4);
+        assert!(ray.height_m(ray.length_m).abs() < 1e-4);
+        let end = ray.at(ray.length_m);
+        assert!((end.x_m - 1.3864).abs() < 1e-3 && end.y_m.abs() < 1e-4, "{end:?}");
+    }
+
+    /// On a slope the plane under the robot is the slope, and a level beam runs along it, whichever way the robot faces.
+    #[test]
+    fn level_beams_keep_their_height_over_the_robots_plane() {
+        for (pitch_rad, roll_rad, yaw_rad) in
+            [(-0.3, 0.0, 0.0), (0.2, 0.1, 1.0), (0.0, -0.25, -2.5), (0.1, 0.2, 3.0)]
+        {
+            let pose = Pose {
+                x_m: 3.0,
+                y_m: -2.0,
+                z_m: 1.5,
+                roll_rad,
+                pitch_rad,
+                yaw_rad,
+            };
+            let attitude = Attitude::of(&pose);
+            let laser = laser(0.0);
+            let mount = Mount::new(&attitude, &laser);
+            let over = |point: Point, z_m: f32| z_m - attitude.plane_m(point);
+            for number in [0, 45, 90, 120, 180] {
+                let ray = attitude.ray(&mount, number, 2.0).expect("no cliff face");
+                let (near, far) = (ray.at(0.1), ray.at(ray.length_m));
+                let near_m = over(near, ray.height_m(0.1));
+                let far_m = over(far, ray.height_m(ray.length_m));
+                assert!((near_m - far_m).abs() < 1e-4, "{near_m} {far_m}");
+                // Measured upright the distance from a tilted plane is longer.
+                assert!(near_m > 0.449 && near_m < 0.49, "{near_m}");
+            }
+        }
+    }
+
+    #[test]
+    fn nose_up_looks_farther_and_the_left_wheel_up_lifts_the_left() {
+        let at = |pitch_rad, roll_rad| {
+            Attitude::of(&Pose {
+                pitch_rad,
+                roll_rad,
+                ..Pose::default()
+            })
+        };
+        assert!(at(-0.2, 0.0).rise(1.0, 0.0) > 0.2);
+        assert!(at(0.0, 0.2).rise(0.0, 1.0) > 0.2);
+        let laser = laser(0.35);
+        let slope = |attitude: Attitude| {
+            let mount = Mount::new(&attitude, &laser);
+            attitude.ray(&mount, 90, 1.0).expect("ahead").slope
+        };
+        assert!(slope(at(-0.2, 0.0)) > slope(at(0.0, 0.0)));
+    }
+}
