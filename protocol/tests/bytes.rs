@@ -11,8 +11,9 @@ use fieldline_protocol::check::Kind;
 use fieldline_protocol::frame::encode_log;
 use fieldline_protocol::message::{
     Cause, Command, Control, Cost, Counters, Crash, Fault, FieldRow, Finish, Frontier, INVALID_MM,
-    Identity, Laser, NO_RETURN_MM, Observation, Parameter, Pose, Refusal, Reply, Request, Residue,
-    Scan, Stages, Start, Status, Strategy, TILE_BYTES, TILE_SKELETON_BYTES, Tile, Twist,
+    Identity, Laser, NO_RETURN_MM, Observation, Parameter, Pose, Preference, Refusal, Reply,
+    Request, Residue, Scan, Stages, Start, Status, Strategy, TILE_BYTES, TILE_SKELETON_BYTES,
+    Terrain, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -80,6 +81,44 @@ fn schema() -> Vec<u8> {
 #[test]
 fn request_hello() {
     request_is(hello(300), &[&[0, 1][..], &schema(), &[0xac, 2]].concat());
+}
+
+#[test]
+fn request_control_start_on_uneven_ground() {
+    let terrain = Terrain {
+        preference: Preference::Global,
+        obstacle: short(0.25),
+        near: short(1.5),
+        hole: short(-0.5),
+        least: short(-0.5),
+        most: short(2.0),
+        height_scale: short(2.0),
+        global_scale: long(0.25),
+        climb: short(0.5),
+        step: short(0.0625),
+    };
+    request_is(
+        Request::Control(Control::Start(Start {
+            strategy: Strategy::Terrain(terrain),
+            ..Start::default()
+        })),
+        &[
+            1, 0, // Control, Start
+            1, 2, // Terrain, global
+            0x80, 0x10, // obstacle 0.25 m = 1024/4096
+            0x80, 0x60, // near 1.5 m = 6144/4096
+            0xff, 0x1f, // hole -0.5 m = -2048/4096, zigzag 4095
+            0xff, 0x1f, // least -0.5
+            0x80, 0x80, 0x01, // most 2 = 8192/4096
+            0x80, 0x80, 0x01, // height scale 2
+            0x80, 0x80, 0x02, // global scale 1/4 = 16384/65536
+            0x80, 0x20, // climb 0.5 rad = 2048/4096
+            0x80, 0x04, // step 1/16 m = 256/4096
+            0, 0, // box
+            0, // no lasers
+            0, 0, 0, 0, 0, 0, // radius, speeds, accelerations, period
+        ],
+    );
 }
 
 #[test]

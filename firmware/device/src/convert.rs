@@ -6,8 +6,8 @@
 
 use fieldline_planner::config::{self, Config};
 use fieldline_planner::geometry::{CELL_M, Pose, Twist};
-use fieldline_planner::planner::Input;
 use fieldline_planner::math;
+use fieldline_planner::planner::Input;
 use fieldline_planner::status::{self, Frontier, Residue};
 use fieldline_planner::terrain::{Mode, Terrain};
 use fieldline_protocol::message as wire;

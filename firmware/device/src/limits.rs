@@ -141,7 +141,9 @@ pub fn matches(observation: &Observation, beams: impl ExactSizeIterator<Item = u
 
 #[cfg(test)]
 mod tests {
-    use fieldline_protocol::message::{Laser, Observation, Parameter, Refusal, Scan, Start};
+    use fieldline_protocol::message::{
+        Laser, Observation, Parameter, Refusal, Scan, Start, Strategy, Terrain,
+    };
     use fixed::types::{I4F12, I16F16};
 
     use super::{check_start, matches};
@@ -285,6 +287,49 @@ mod tests {
         let mut tilted = start();
         tilted.lasers[0].pitch = I4F12::lit("0.35");
         assert_eq!(check_start::<4, 400>(&tilted), bad(Parameter::Pitch));
+    }
+
+    #[test]
+    fn the_limits_of_uneven_ground_are_kept() {
+        let good = Terrain {
+            obstacle: I4F12::lit("0.3"),
+            near: I4F12::lit("1.5"),
+            hole: I4F12::lit("-0.6"),
+            least: I4F12::lit("-2"),
+            most: I4F12::lit("2"),
+            climb: I4F12::lit("0.35"),
+            step: I4F12::lit("0.07"),
+            ..Terrain::default()
+        };
+        let check = |change: &dyn Fn(&mut Terrain)| {
+            let mut terrain = good;
+            change(&mut terrain);
+            let strategy = Strategy::Terrain(terrain);
+            check_start::<4, 400>(&Start {
+                strategy,
+                ..start()
+            })
+        };
+        assert_eq!(check(&|_| {}), Ok(()));
+        let bad: [(&dyn Fn(&mut Terrain), Parameter); 7] = [
+            (&|t| t.most = I4F12::lit("2.001"), Parameter::Preference),
+            (&|t| t.most = -I4F12::DELTA, Parameter::Preference),
+            (&|t| t.least = I4F12::lit("-2.001"), Parameter::Preference),
+            (&|t| t.least = I4F12::DELTA, Parameter::Preference),
+            (&|t| t.hole = I4F12::ZERO, Parameter::Terrain),
+            (&|t| t.climb = I4F12::ONE, Parameter::Terrain),
+            (&|t| t.height_scale = -I4F12::DELTA, Parameter::Terrain),
+        ];
+        for (change, parameter) in bad {
+            assert_eq!(check(change), Err(Refusal::BadParameter(parameter)));
+        }
+        let one_laser = Start {
+            strategy: Strategy::Terrain(good),
+            lasers: start().lasers.into_iter().take(1).collect(),
+            ..start()
+        };
+        let refused = Err(Refusal::BadParameter(Parameter::Terrain));
+        assert_eq!(check_start::<4, 400>(&one_laser), refused);
     }
 
     #[test]

@@ -350,7 +350,13 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     };
     charge(workspace, &goal);
     if let Some(terrain) = &config.terrain {
-        prefer(terrain, state, &mut workspace.window, &workspace.view, &input);
+        prefer(
+            terrain,
+            state,
+            &mut workspace.window,
+            &workspace.view,
+            &input,
+        );
     }
     laps.lap(Stage::Window);
     // A step that planned a road has spent the time of two cycles on it.

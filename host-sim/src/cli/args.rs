@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use fieldline_protocol::message::{Preference, Terrain};
 use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
-use fieldline_protocol::message::{Preference, Terrain};
 use host_sim::robot::{Limits, LimitsError};
 use host_sim::trial::uneven::{self, TerrainError};
 

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
 
+use fieldline_protocol::message::Strategy;
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
-use fieldline_protocol::message::Strategy;
 use host_sim::trial::Record;
-use host_sim::trial::uneven;
 use host_sim::trial::mission::{self, Mission, MissionError};
+use host_sim::trial::uneven;
 use host_sim::world::World;
 
 use super::args::{ExploreArgs, OdometryArg};

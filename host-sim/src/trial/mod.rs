@@ -12,8 +12,8 @@ pub mod oracle;
 pub mod record;
 pub mod series;
 pub mod shape;
-pub mod uneven;
 pub mod snapshot;
+pub mod uneven;
 pub mod wording;
 
 use std::time::Instant;

@@ -106,7 +106,12 @@ mod tests {
 
     #[test]
     fn a_preference_beyond_two_is_refused_with_the_reason() {
-        for text in ["eps_gmax=2.1", "eps_hmin=-2.001", "eps_hmin=0.5", "eps_gmax=nan"] {
+        for text in [
+            "eps_gmax=2.1",
+            "eps_hmin=-2.001",
+            "eps_hmin=0.5",
+            "eps_gmax=nan",
+        ] {
             let error = changed(table_i(), text).unwrap_err().to_string();
             assert!(error.contains("diverges") && error.contains("2"), "{error}");
         }
@@ -122,7 +127,10 @@ mod tests {
             ("gravity=9", "'gravity'"),
         ] {
             let error = changed(table_i(), text).unwrap_err().to_string();
-            assert!(error.contains(word) && error.contains("eps_gmax=0.5"), "{error}");
+            assert!(
+                error.contains(word) && error.contains("eps_gmax=0.5"),
+                "{error}"
+            );
         }
     }
 }

@@ -169,7 +169,11 @@ impl Surround {
             let away = math::sqrt(at.x_m * at.x_m + at.y_m * at.y_m);
             let part = ((away - 0.5 * CELL_M) / away.max(1e-3)).max(0.0);
             // Ahead and behind the bumpers reach farther than the wheels, at the sides they do not.
-            let beyond_m = if unknown { BUMPER_M.copysign(at.x_m) } else { 0.0 };
+            let beyond_m = if unknown {
+                BUMPER_M.copysign(at.x_m)
+            } else {
+                0.0
+            };
             let at = Point {
                 x_m: at.x_m * part + beyond_m,
                 y_m: at.y_m * part,

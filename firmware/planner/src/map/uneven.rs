@@ -56,7 +56,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                 let cell = Cell { x, y };
                 if self.tiles.class(cell) == Class::Unknown {
                     let leads_over = classify::leads_over(&self.heights(), terrain, cell);
-                    let class = if leads_over { Class::Free } else { Class::Negative };
+                    let class = if leads_over {
+                        Class::Free
+                    } else {
+                        Class::Negative
+                    };
                     // Where there is no room nothing is known in any case.
                     let _ = self.tiles.set(cell, class);
                 }
@@ -69,16 +73,16 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         let known = self.tiles.row(x, y);
         let classes = classify::row(&self.heights(), steps, y, known);
         let changed = [
-            (Class::Obstacle, classes.obstacle & !(known.obstacle() & !known.negative())),
+            (
+                Class::Obstacle,
+                classes.obstacle & !(known.obstacle() & !known.negative()),
+            ),
             (Class::Negative, classes.negative & !known.negative()),
             (Class::Free, classes.free & !known.free()),
         ];
         for (class, cells) in changed {
             for k in ones64(cells) {
-                let cell = Cell {
-                    x: x + k as i32,
-                    y,
-                };
+                let cell = Cell { x: x + k as i32, y };
                 match self.tiles.set(cell, class) {
                     Ok(()) => {}
                     Err(NoRoom::Box) => self.out_of_box = true,

@@ -93,10 +93,7 @@ pub fn row(heights: &Heights<'_>, steps: &Steps, y: i32, known: Row) -> Classes 
     let mut classes = Classes::default();
     let origin = heights.origin();
     for k in 0..WINDOW_SIDE {
-        let cell = Cell {
-            x: origin.x + k,
-            y,
-        };
+        let cell = Cell { x: origin.x + k, y };
         let bit = 1_u64 << k;
         let bits = |dx: i32, dy: i32| at(heights, cell, dx, dy);
         if heights.is_standing(cell) {
@@ -125,7 +122,9 @@ fn at(heights: &Heights<'_>, cell: Cell, dx: i32, dy: i32) -> Option<i32> {
         x: cell.x + dx,
         y: cell.y + dy,
     };
-    heights.fixed(near).map(|height| i32::from(height.to_bits()))
+    heights
+        .fixed(near)
+        .map(|height| i32::from(height.to_bits()))
 }
 
 /// Whether a cell lies too high over one near it.

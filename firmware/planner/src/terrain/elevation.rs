@@ -115,7 +115,8 @@ impl<'a> Heights<'a> {
     /// Whether something stands in a cell.
     #[must_use]
     pub fn is_standing(&self, cell: Cell) -> bool {
-        slot(self.origin, cell).is_some_and(|slot| self.mark(slot) & STANDING >= SURE * ONE_STANDING)
+        slot(self.origin, cell)
+            .is_some_and(|slot| self.mark(slot) & STANDING >= SURE * ONE_STANDING)
     }
 
     /// Whether the ground of a cell seems to be gone.
@@ -363,7 +364,10 @@ mod tests {
         bench.window().sink(CELL);
         assert!(!bench.read().is_sunken(CELL));
         bench.window().stand(CELL);
-        assert!(!bench.read().is_standing(CELL), "once may be a false return");
+        assert!(
+            !bench.read().is_standing(CELL),
+            "once may be a false return"
+        );
         bench.window().stand(CELL);
         assert!(bench.read().is_standing(CELL));
         for _ in 0..2 {

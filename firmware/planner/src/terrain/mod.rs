@@ -26,6 +26,9 @@ pub mod preference;
 pub mod ray;
 pub mod survey;
 
+#[cfg(test)]
+mod tests;
+
 pub use elevation::{Elevation, Heights};
 pub use preference::{Mode, Preferences};
 

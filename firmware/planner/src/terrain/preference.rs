@@ -6,8 +6,8 @@
 //! ε(x, y)        = ε_global + ε_height(x, y), within [ε_hmin, ε_gmax]     (eq. 5)
 //! ```
 //!
-//! `p_diff` is that of the last field ([`crate::field::preference`]). Below 1e-10 the field around the robot is so flat that ε_height is
-//! left out until `p_diff` is above 1e-4 again. Where it is 0, ε_global is at its limit. Before the first field it is 0.
+//! `p_diff` is that of the last field ([`crate::field::preference`]). Below 1e-10 the field around the robot is so flat that `ε_height` is
+//! left out until `p_diff` is above 1e-4 again. Where it is 0, `ε_global` is at its limit. Before the first field it is 0.
 
 use super::Terrain;
 use crate::math;
@@ -22,9 +22,9 @@ pub const STEEP_AGAIN: f32 = 1e-4;
 pub enum Mode {
     /// None.
     Off,
-    /// ε_height.
+    /// `ε_height`.
     Height,
-    /// ε_global.
+    /// `ε_global`.
     Global,
     /// Their sum.
     #[default]
@@ -86,7 +86,7 @@ impl Preferences {
         self.p_diff
     }
 
-    /// ε_global, if it is used.
+    /// `ε_global`, if it is used.
     #[must_use]
     pub fn global(&self, terrain: &Terrain) -> f32 {
         match (terrain.mode, self.p_diff) {
@@ -95,7 +95,7 @@ impl Preferences {
         }
     }
 
-    /// ε of a cell, given ε_global and how much its height differs from the robot's, if that is known [eq. 5].
+    /// ε of a cell, given `ε_global` and how much its height differs from the robot's, if that is known [eq. 5].
     #[must_use]
     pub fn of_cell(&self, terrain: &Terrain, global: f32, difference_m: Option<f32>) -> f32 {
         let heights = matches!(terrain.mode, Mode::Height | Mode::Both) && !self.ignores_heights;
@@ -113,9 +113,7 @@ mod tests {
 
     use super::{Mode, Preferences, STEEP_AGAIN, TOO_FLAT, of_flatness, of_height};
     use crate::field::preference::p_diff;
-    use crate::field::{
-        GOAL, Preference, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, solve,
-    };
+    use crate::field::{GOAL, Preference, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, solve};
     use crate::terrain::Terrain;
 
     /// Pseudorandom numbers in [0, 1).
@@ -144,11 +142,14 @@ mod tests {
             max_cycles: 200,
             ..SolverConfig::default()
         };
-        assert_eq!(solve(&mut window, &mut scratch, &config).stop, Stop::Converged);
+        assert_eq!(
+            solve(&mut window, &mut scratch, &config).stop,
+            Stop::Converged
+        );
         window
     }
 
-    /// The mean of |q_r − q_n| over the kernel, by the book.
+    /// The mean of `|q_r − q_n|` over the kernel, by the book.
     fn exact_p_diff(window: &Window, x: i32, y: i32) -> f64 {
         let q = |x: i32, y: i32| f64::from(window.q(x as usize, y as usize)) / f64::from(GOAL);
         let (mut sum, mut cells) = (0.0, 0.0);
@@ -163,7 +164,7 @@ mod tests {
         sum / cells
     }
 
-    /// Random windows, heights and parameters: eqs. 3 to 5 and p_diff against doubles.
+    /// Random windows, heights and parameters: eqs. 3 to 5 and `p_diff` against doubles.
     #[test]
     fn random_states_equal_the_formulas_in_doubles() {
         let mut random = Random(7);
@@ -176,7 +177,10 @@ mod tests {
             let mut goal = [0; SIDE];
             goal[(random.next() * 61.0) as usize] = 1 << (random.next() * 61.0) as u32;
             let window = solved(&free, &goal, 0.0);
-            let (x, y) = ((random.next() * 61.0) as usize, (random.next() * 61.0) as usize);
+            let (x, y) = (
+                (random.next() * 61.0) as usize,
+                (random.next() * 61.0) as usize,
+            );
             if !window.is_reached(x, y) {
                 continue;
             }
@@ -203,13 +207,20 @@ mod tests {
             let exact_height =
                 (-f64::from(scale_h) * f64::from(difference).abs()).max(f64::from(least));
             assert!(close(of_height(&terrain, difference), exact_height));
-            let counts = if flatness < TOO_FLAT { 0.0 } else { exact_height };
+            let counts = if flatness < TOO_FLAT {
+                0.0
+            } else {
+                exact_height
+            };
             let sum = exact_global + counts;
             let exact = sum.clamp(f64::from(least), f64::from(most));
             let ours = preferences.of_cell(&terrain, global, Some(difference));
             // A sum of opposite signs is as right as its terms.
             let error = (f64::from(ours) - exact).abs();
-            assert!(error <= 1e-4 * exact.abs().max(exact_global), "{ours} {exact}");
+            assert!(
+                error <= 1e-4 * exact.abs().max(exact_global),
+                "{ours} {exact}"
+            );
         }
     }
 

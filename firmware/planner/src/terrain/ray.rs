@@ -170,15 +170,21 @@ mod tests {
         assert!((ray.length_m - 0.45 / 20.0_f32.to_radians().tan()).abs() < 1e-4);
         assert!(ray.height_m(ray.length_m).abs() < 1e-4);
         let end = ray.at(ray.length_m);
-        assert!((end.x_m - 1.3864).abs() < 1e-3 && end.y_m.abs() < 1e-4, "{end:?}");
+        assert!(
+            (end.x_m - 1.3864).abs() < 1e-3 && end.y_m.abs() < 1e-4,
+            "{end:?}"
+        );
     }
 
     /// On a slope the plane under the robot is the slope, and a level beam runs along it, whichever way the robot faces.
     #[test]
     fn level_beams_keep_their_height_over_the_robots_plane() {
-        for (pitch_rad, roll_rad, yaw_rad) in
-            [(-0.3, 0.0, 0.0), (0.2, 0.1, 1.0), (0.0, -0.25, -2.5), (0.1, 0.2, 3.0)]
-        {
+        for (pitch_rad, roll_rad, yaw_rad) in [
+            (-0.3, 0.0, 0.0),
+            (0.2, 0.1, 1.0),
+            (0.0, -0.25, -2.5),
+            (0.1, 0.2, 3.0),
+        ] {
             let pose = Pose {
                 x_m: 3.0,
                 y_m: -2.0,

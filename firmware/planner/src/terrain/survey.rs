@@ -130,8 +130,7 @@ impl<'a, 'm> Survey<'a, 'm> {
             let Some(range) = informative_range_mm(ranges_mm, number, limit) else {
                 continue;
             };
-            let Some(ray) = attitude.ray(&mount, number, f32::from(range.min(limit)) * 1e-3)
-            else {
+            let Some(ray) = attitude.ray(&mount, number, f32::from(range.min(limit)) * 1e-3) else {
                 continue;
             };
             if range < limit {
@@ -158,7 +157,11 @@ impl<'a, 'm> Survey<'a, 'm> {
                 return;
             }
         } else if self.is_rim(ray, &footing, gap_m, rise_m) {
-            self.sink(ray, footing.s_m, (footing.s_m + RIM_M).min(ray.length_m - SAMPLE_M));
+            self.sink(
+                ray,
+                footing.s_m,
+                (footing.s_m + RIM_M).min(ray.length_m - SAMPLE_M),
+            );
             if rise_m < self.terrain.hole_m {
                 return;
             }
@@ -248,7 +251,7 @@ impl<'a, 'm> Survey<'a, 'm> {
         // What rises steeply up to K is a thing that stands, and casts a shadow.
         slope < self.terrain.climb
             && rise_m < slope * gap_m - LEAST_DROP_M - BEND * gap_m
-            && self.is_grazing(ray, &footing)
+            && self.is_grazing(ray, footing)
     }
 
     /// Whether a beam just passes over K, which is sure.
