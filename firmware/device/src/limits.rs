@@ -311,7 +311,8 @@ mod tests {
             })
         };
         assert_eq!(check(&|_| {}), Ok(()));
-        let bad: [(&dyn Fn(&mut Terrain), Parameter); 7] = [
+        type Change = &'static dyn Fn(&mut Terrain);
+        let bad: [(Change, Parameter); 7] = [
             (&|t| t.most = I4F12::lit("2.001"), Parameter::Preference),
             (&|t| t.most = -I4F12::DELTA, Parameter::Preference),
             (&|t| t.least = I4F12::lit("-2.001"), Parameter::Preference),

@@ -189,7 +189,7 @@ fn flat_ground_needs_all_tiles_and_uneven_ground_lends_some() {
         x_m: 3.2 * tile,
         y_m: 1.6,
     };
-    let mut map: Box<Map<20, 400>> = Box::new(Map::new());
+    let mut map = Box::<Map<20, 400>>::default();
     let flat = Config {
         terrain: None,
         ..config()
