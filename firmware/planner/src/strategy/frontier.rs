@@ -168,6 +168,30 @@ impl Frontier {
         }
     }
 
+    /// Follow a road to another goal in this round, one that does not become fewer steps away all the time. A way that
+    /// cannot be driven is barred as on the road to a frontier; the goal is the caller's.
+    pub(super) fn follow<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        road: Road,
+        known: &Known<'_, TILES, SLOTS>,
+        robot: Point,
+        time_ms: u32,
+        view: &mut View,
+    ) -> Outlook {
+        self.patience.note_motion(robot, time_ms);
+        self.adopt(road);
+        match self.patience.judge(self.road.steps(), time_ms) {
+            Verdict::GoOn | Verdict::Drop(_) => {}
+            Verdict::BarLeak => self.bar(leak(&self.road, known, robot, view)),
+            Verdict::BarAhead => self.bar(ahead(&self.road, robot)),
+        }
+        if self.patience.is_stuck() {
+            Outlook::Stuck
+        } else {
+            Outlook::Road
+        }
+    }
+
     /// List the frontier cells that were never within reach, in groups, behind the goals that were dropped.
     pub fn list_leftovers<const TILES: usize, const SLOTS: usize>(
         &mut self,

@@ -2,8 +2,10 @@
 
 pub mod frontier;
 mod nearest;
+pub mod ouroboros;
 mod patience;
 pub mod road;
 
 pub use frontier::Frontier;
+pub use ouroboros::Ouroboros;
 pub use road::Road;

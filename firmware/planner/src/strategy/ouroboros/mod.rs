@@ -1,0 +1,482 @@
+//! Strategy *ouroboros*: explore, and close every loop on the way [Ouroboros, Algorithm 1].
+//!
+//! ```text
+//! line 3:      update the Voronoi cells                              (topology, the space that is not obstacle)
+//! line 4:      move the robot to the Voronoi                         (nearest)
+//! lines 5–10:  move, disable or generate the tractor point           (tractor, marks, crumbs)
+//! line 12:     propagate from it, the robot as a blocker
+//! lines 13–17: the loop road, by the previous shield if there is one (loop_road)
+//! line 19:     the shield                                            (shield)
+//! line 21:     propagate from it, the shield as a blocker
+//! line 24:     else propagate from the unexplored                    (frontier)
+//! line 26:     none is left: the exploration is complete
+//! ```
+//!
+//! A round takes up to three calls of [`Ouroboros::advance`], each with one wave at most, all on the same published
+//! skeleton. Between two calls nothing of the wave is needed, so its memory may serve elsewhere.
+//!
+//! What is kept from round to round lies in the map's cells, not in the skeleton's: tractor point, shield, marks and path outlast any
+//! number of skeletons. Departs from [Ouroboros, line 18]: a loop road that is not found is missed for
+//! [`LOST_ROUNDS`] rounds before the loop is lost, since a skeleton may grow a spur under the robot for a moment.
+//!
+//! Units: map cells, metres, milliseconds.
+
+pub mod crumbs;
+pub mod detour;
+pub mod ground;
+pub mod loop_road;
+pub mod marks;
+pub mod shield;
+pub mod tractor;
+
+#[cfg(test)]
+mod exploring;
+#[cfg(test)]
+mod scenes;
+
+use self::crumbs::Crumbs;
+use self::detour::{Detour, Limits};
+use self::ground::Ground;
+use self::loop_road::{LoopRoad, build_shield};
+use self::marks::Marks;
+use self::shield::Shield;
+use self::tractor::Fate;
+use super::Frontier;
+use super::frontier::{Known, Lent, Outlook};
+use super::nearest::Centres;
+use super::road::Road;
+use crate::clearance::Disc;
+use crate::geometry::{CELL_M, Cell, Pose};
+use crate::grid::Site;
+use crate::map::Tiles;
+use crate::math;
+use crate::skeleton::branches::surroundings;
+use crate::skeleton::{Barrier, Residues, WaveSpace, Wavefront};
+use crate::topology::Topology;
+
+/// Rounds in a row without a loop road after which the loop is lost.
+const LOST_ROUNDS: u8 = 3;
+/// Metres along a step of the skeleton.
+const STEP_M: f32 = 2.0 * CELL_M;
+/// Cells that a blocker takes out of the skeleton at the most: the robot's surroundings.
+const BLOCKED: usize = 9;
+
+/// What a round is at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// Lines 3 to 19.
+    Look,
+    /// Line 21, to the robot's cell.
+    Close(Site),
+    /// Line 24.
+    Explore,
+}
+
+/// What the strategy remembers; `SLOTS` as the map's.
+#[derive(Debug)]
+pub struct Ouroboros<const SLOTS: usize> {
+    frontier: Frontier,
+    limits: Limits,
+    /// `previousTractorPoint`, a coarse cell.
+    tractor: Option<Cell>,
+    /// `previousShield`: a loop is being closed.
+    shield: Option<Shield>,
+    marks: Marks<SLOTS>,
+    crumbs: Crumbs,
+    detour: Detour,
+    /// Length expected of the loop, metres.
+    loop_m: f32,
+    lost_rounds: u8,
+    stage: Stage,
+    robot: Option<Cell>,
+    tally: Tally,
+}
+
+/// What became of loops.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Tractor points that were reached by the way ahead.
+    pub closed: u16,
+    /// Loops that turned out not to exist, or not to be worth the way.
+    pub given_up: u16,
+}
+
+/// What a round works on.
+#[derive(Debug)]
+pub struct Round<'a, const TILES: usize, const SLOTS: usize> {
+    /// The published skeleton, of [`crate::topology::Space::NotObstacle`]; whole again after each call.
+    pub topology: &'a mut Topology<SLOTS>,
+    /// The map.
+    pub tiles: &'a Tiles<TILES, SLOTS>,
+    /// The robot's disc.
+    pub disc: &'a Disc,
+    /// Where the robot is.
+    pub pose: Pose,
+    /// The host's clock, milliseconds.
+    pub time_ms: u32,
+}
+
+impl<const SLOTS: usize> Ouroboros<SLOTS> {
+    /// At the start [Ouroboros, line 1].
+    #[must_use]
+    pub const fn new(limits: Limits) -> Self {
+        Self {
+            frontier: Frontier::new(),
+            limits,
+            tractor: None,
+            shield: None,
+            marks: Marks::new(),
+            crumbs: Crumbs::new(),
+            detour: Detour::new(),
+            loop_m: 0.0,
+            lost_rounds: 0,
+            stage: Stage::Look,
+            robot: None,
+            tally: Tally {
+                closed: 0,
+                given_up: 0,
+            },
+        }
+    }
+
+    /// Forget everything; the map's box is so many tiles across and up.
+    pub fn reset(&mut self, box_tiles: (i32, i32)) {
+        self.frontier.reset();
+        self.marks.reset(box_tiles);
+        (self.tractor, self.shield) = (None, None);
+        (self.crumbs, self.detour) = (Crumbs::new(), Detour::new());
+        (self.loop_m, self.lost_rounds) = (0.0, 0);
+        (self.stage, self.robot) = (Stage::Look, None);
+        self.tally = Tally::default();
+    }
+
+    /// The tractor point, a coarse cell.
+    #[must_use]
+    pub const fn tractor(&self) -> Option<Cell> {
+        self.tractor
+    }
+
+    /// The shield behind the robot; its cells are obstacles in the window. There is one while a loop is being closed.
+    #[must_use]
+    pub const fn shield(&self) -> Option<&Shield> {
+        self.shield.as_ref()
+    }
+
+    /// Length expected of the loop that is being closed, metres.
+    #[must_use]
+    pub const fn loop_m(&self) -> f32 {
+        self.loop_m
+    }
+
+    /// The surroundings of closed loops.
+    #[must_use]
+    pub const fn marks(&self) -> &Marks<SLOTS> {
+        &self.marks
+    }
+
+    /// What became of loops.
+    #[must_use]
+    pub const fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// The way to the tractor point, or to a frontier.
+    #[must_use]
+    pub const fn road(&self) -> &Road {
+        self.frontier.road()
+    }
+
+    /// What drives to frontiers: bars, leftovers, the second chance.
+    #[must_use]
+    pub const fn frontier(&self) -> &Frontier {
+        &self.frontier
+    }
+
+    /// The same, to note what the window says.
+    pub const fn frontier_mut(&mut self) -> &mut Frontier {
+        &mut self.frontier
+    }
+
+    /// The robot is here; to be called in every step.
+    pub fn note_pose(&mut self, pose: &Pose) {
+        let robot = pose.point().cell();
+        self.crumbs.note(robot);
+        let last = self.robot.replace(robot);
+        if self.shield.is_some() {
+            self.marks.note(robot);
+            let stride_m = last.map_or(0.0, |last| distance_m(last, robot));
+            self.detour.note(stride_m, self.loop_m);
+        }
+    }
+
+    /// Go on with the round on the published skeleton; `None` when it needs another call on the same one, else what it says.
+    ///
+    /// The first call of a round comes when a skeleton was published, after [`Frontier::cut`].
+    pub fn advance<const TILES: usize>(
+        &mut self,
+        mut round: Round<'_, TILES, SLOTS>,
+        mut lent: Lent<'_>,
+    ) -> Option<Outlook> {
+        match core::mem::replace(&mut self.stage, Stage::Look) {
+            Stage::Look => self.look(&mut round, &mut lent),
+            Stage::Close(robot) => self.close(&mut round, &mut lent, robot),
+            Stage::Explore => Some(self.explore(&round, lent)),
+        }
+    }
+
+    /// Lines 3 to 19: tractor point, loop road and shield.
+    fn look<const TILES: usize>(
+        &mut self,
+        round: &mut Round<'_, TILES, SLOTS>,
+        lent: &mut Lent<'_>,
+    ) -> Option<Outlook> {
+        self.stage = Stage::Explore;
+        let robot = round.nearest(round.pose.point().cell(), lent)?;
+        if self.tractor.is_some() {
+            self.move_tractor(round, lent);
+        } else {
+            self.tractor = self.generate_tractor(round, lent);
+        }
+        let tractor = round.topology.frame().site(self.tractor?)?;
+        round.propagate(tractor, surroundings(robot), None, lent)?;
+        match self.build(round, lent, robot) {
+            Some(shield) => {
+                self.shield = Some(shield);
+                self.lost_rounds = 0;
+                self.stage = Stage::Close(robot);
+            }
+            None if self.shield.is_some() => return self.lose(),
+            None => {}
+        }
+        None
+    }
+
+    /// Lines 5 to 8.
+    fn move_tractor<const TILES: usize>(
+        &mut self,
+        round: &Round<'_, TILES, SLOTS>,
+        lent: &mut Lent<'_>,
+    ) {
+        let centre = self
+            .tractor
+            .filter(|&tractor| round.ground().is_some_and(|ground| ground.is_open(tractor)))
+            .and_then(|tractor| round.nearest(tractor, lent))
+            .map(|site| round.topology.frame().cell(site));
+        let is_closing = self.shield.is_some();
+        match centre.map(|centre| tractor::fate(centre, &round.pose, is_closing)) {
+            Some(Fate::Stays) => self.tractor = centre,
+            Some(Fate::Reached) if is_closing => {
+                self.tally.closed += 1;
+                self.marks.keep();
+                self.disable_tractor();
+            }
+            // It has fallen on an obstacle, or is of no use.
+            None | Some(Fate::Reached | Fate::Stale) => {
+                self.marks.forget();
+                self.disable_tractor();
+            }
+        }
+    }
+
+    /// Line 8.
+    fn disable_tractor(&mut self) {
+        (self.tractor, self.shield) = (None, None);
+        (self.lost_rounds, self.loop_m) = (0, 0.0);
+    }
+
+    /// Line 10.
+    fn generate_tractor<const TILES: usize>(
+        &self,
+        round: &Round<'_, TILES, SLOTS>,
+        lent: &mut Lent<'_>,
+    ) -> Option<Cell> {
+        let candidate = tractor::candidate(&self.crumbs, &self.marks, &round.pose)?;
+        let centre = round.topology.frame().cell(round.nearest(candidate, lent)?);
+        tractor::suits(centre, candidate, &self.marks, &round.pose).then_some(centre)
+    }
+
+    /// Lines 13 to 19, on the wave that has come from the tractor point.
+    fn build<const TILES: usize>(
+        &mut self,
+        round: &Round<'_, TILES, SLOTS>,
+        lent: &mut Lent<'_>,
+        robot: Site,
+    ) -> Option<Shield> {
+        let ground = round.ground()?;
+        let residues = Residues::new(ground.frame.shape, lent.residues).ok()?;
+        let road = LoopRoad::find(
+            &ground,
+            &residues,
+            (robot, &round.pose),
+            self.shield.as_ref(),
+        )?;
+        self.loop_m = road.steps() as f32 * STEP_M;
+        let frontier_m = round.topology.frontier()?.count() as f32 * STEP_M;
+        let limits = &self.limits;
+        if self.shield.is_some() {
+            if limits.is_too_long(self.loop_m, frontier_m) || self.detour.is_over(limits) {
+                self.give_up();
+                return None;
+            }
+        } else if !limits.is_worth(self.loop_m, frontier_m) {
+            return None;
+        }
+        let shield = build_shield(&ground, &residues, &road, round.pose.point().cell())?;
+        if self.shield.is_none() {
+            self.begin_loop(
+                core::iter::once(road.back).chain(residues.descent(road.back)),
+                &ground,
+            );
+        }
+        Some(shield)
+    }
+
+    /// A loop is begun: its surroundings are those of the way back, and of the way that the robot will come.
+    fn begin_loop<const TILES: usize>(
+        &mut self,
+        back: impl Iterator<Item = Site>,
+        ground: &Ground<'_, TILES, SLOTS>,
+    ) {
+        self.detour = Detour::new();
+        self.marks.forget();
+        for site in back {
+            self.marks.note(ground.frame.cell(site));
+        }
+    }
+
+    /// The loop is not to hold the robot; nor is another try at it.
+    fn give_up(&mut self) {
+        self.tally.given_up += 1;
+        self.marks.keep();
+        self.disable_tractor();
+    }
+
+    /// No loop road, or no shield, although a loop was being closed: the way so far is good for some rounds more.
+    fn lose(&mut self) -> Option<Outlook> {
+        self.lost_rounds += 1;
+        if self.lost_rounds < LOST_ROUNDS {
+            self.stage = Stage::Look;
+            return Some(Outlook::Road);
+        }
+        self.shield = None;
+        self.marks.forget();
+        None
+    }
+
+    /// Line 21: the way to the tractor point, the shield behind the robot.
+    fn close<const TILES: usize>(
+        &mut self,
+        round: &mut Round<'_, TILES, SLOTS>,
+        lent: &mut Lent<'_>,
+        robot: Site,
+    ) -> Option<Outlook> {
+        let road = self.road_to_tractor(round, lent, robot);
+        if let Some(road) = road {
+            let robot = round.pose.point();
+            let known = round.known();
+            return Some(
+                self.frontier
+                    .follow(road, &known, robot, round.time_ms, lent.view),
+            );
+        }
+        self.stage = Stage::Explore;
+        self.lose()
+    }
+
+    fn road_to_tractor<const TILES: usize>(
+        &self,
+        round: &mut Round<'_, TILES, SLOTS>,
+        lent: &mut Lent<'_>,
+        robot: Site,
+    ) -> Option<Road> {
+        let frame = round.topology.frame();
+        let tractor = frame.site(self.tractor?)?;
+        let shield = self.shield?;
+        let cells = shield.cells().filter_map(|cell| frame.site(cell));
+        round.propagate(tractor, cells, Some(robot), lent)?;
+        let residues = Residues::new(frame.shape, lent.residues).ok()?;
+        residues.get(robot)?;
+        let way = core::iter::once(robot).chain(residues.descent(robot));
+        Some(Road::along(way.map(|site| frame.cell(site))))
+    }
+
+    /// Lines 24 and 26.
+    fn explore<const TILES: usize>(
+        &mut self,
+        round: &Round<'_, TILES, SLOTS>,
+        lent: Lent<'_>,
+    ) -> Outlook {
+        let robot = round.pose.point();
+        self.frontier
+            .replan(&round.known(), robot, round.time_ms, lent)
+    }
+}
+
+impl<const TILES: usize, const SLOTS: usize> Round<'_, TILES, SLOTS> {
+    fn known(&self) -> Known<'_, TILES, SLOTS> {
+        Known {
+            topology: self.topology,
+            tiles: self.tiles,
+            disc: self.disc,
+        }
+    }
+
+    fn ground(&self) -> Option<Ground<'_, TILES, SLOTS>> {
+        Some(Ground {
+            tiles: self.tiles,
+            disc: self.disc,
+            frame: self.topology.frame(),
+            way: self.topology.skeleton()?,
+        })
+    }
+
+    /// `moveToVoronoi`: the centre cell nearest to a map cell.
+    fn nearest(&self, from: Cell, lent: &mut Lent<'_>) -> Option<Site> {
+        let ground = self.ground()?;
+        let here = ground.frame.site(from);
+        if let Some(site) = here.filter(|&site| ground.way.get(site)) {
+            return Some(site);
+        }
+        let centres = Centres {
+            tiles: self.tiles,
+            disc: self.disc,
+            frame: ground.frame,
+            way: ground.way,
+        };
+        centres.nearest(from, lent.view, |_| true)
+    }
+
+    /// `propagatePotential`: a wave from `goal` over the centre cells, without the blocked ones, everywhere or until it comes to
+    /// a cell.
+    fn propagate(
+        &mut self,
+        goal: Site,
+        blocked: impl Iterator<Item = Site>,
+        until: Option<Site>,
+        lent: &mut Lent<'_>,
+    ) -> Option<()> {
+        let mut plane = self.topology.skeleton_mut()?;
+        // A shield that cuts one branch has fewer centre cells than the robot's surroundings may have.
+        let barrier = Barrier::<BLOCKED>::raise(&mut plane, blocked).ok()?;
+        let shape = plane.shape();
+        if let Ok(residues) = Residues::new(shape, &mut *lent.residues) {
+            let mut space = WaveSpace {
+                way: plane.view(),
+                residues,
+                ring: &mut *lent.ring,
+            };
+            let mut wave = Wavefront::new();
+            wave.start(&mut space);
+            wave.seed(&mut space, goal);
+            // Without a budget it always comes to its end.
+            let _ = wave.advance(&mut space, until, u32::MAX);
+        }
+        barrier.lower(&mut plane);
+        Some(())
+    }
+}
+
+fn distance_m(a: Cell, b: Cell) -> f32 {
+    let (dx, dy) = ((a.x - b.x) as f32, (a.y - b.y) as f32);
+    math::sqrt(dx * dx + dy * dy) * CELL_M
+}
