@@ -7,12 +7,18 @@
 //! Units: map cells.
 
 use crate::geometry::CELL_M;
+use crate::map::rows::{HALO, Line};
 use crate::map::{Class, Tiles};
 use crate::math;
 
-/// Greatest radius, cells.
+/// Greatest radius, cells; less than a line's halo.
 pub const MOST_RADIUS: usize = 6;
-const RING: usize = 2 * MOST_RADIUS + 1;
+/// Rows kept at a time: those of a disc, rounded up so that a row's place is a mask away.
+const RING: usize = (2 * MOST_RADIUS + 1).next_power_of_two();
+
+/// Rows of the map around the present one.
+#[derive(Debug, Default)]
+struct Ring([Line; RING]);
 
 /// A disc as half widths: row dy covers columns −h..=h.
 #[derive(Clone, Copy, Debug)]
@@ -41,12 +47,41 @@ impl Disc {
     }
 }
 
-fn widen(row: u64, half: u8) -> u64 {
-    let mut wide = row;
-    for _ in 0..half {
-        wide |= wide << 1 | wide >> 1;
+impl Ring {
+    #[inline(always)]
+    fn get(&self, row: i32) -> Line {
+        let place = row.rem_euclid(RING as i32) as usize;
+        self.0.get(place).copied().unwrap_or_default()
     }
-    wide
+
+    #[inline(always)]
+    fn put(&mut self, row: i32, line: Line) {
+        if let Some(place) = self.0.get_mut(row.rem_euclid(RING as i32) as usize) {
+            *place = line;
+        }
+    }
+
+    /// The cells of a row whose disc holds an obstacle. From the middle of the disc outwards its rows are less and less
+    /// wide: what was found so far is widened by the difference, and the rest at the end.
+    #[inline(always)]
+    fn blocked(&self, row: i32, disc: &Disc) -> u64 {
+        let (mut found, mut half) = (0, 0);
+        for (dy, &width) in (0..=disc.reach).zip(&disc.half_widths) {
+            let width = width.unwrap_or(0);
+            found = widen(found, half.max(width) - width);
+            half = width;
+            found |= self.get(row - dy).around | self.get(row + dy).around;
+        }
+        widen(found, half)
+    }
+}
+
+#[inline(always)]
+fn widen(row: u64, by: u8) -> u64 {
+    if row == 0 {
+        return 0;
+    }
+    (0..by).fold(row, |wide, _| wide | wide << 1 | wide >> 1)
 }
 
 /// 32 cells of a row.
@@ -68,41 +103,21 @@ pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
     height: i32,
     mut visit: impl FnMut(i32, Strip),
 ) {
-    // Columns x − 16 .. x + 48, so that the middle 32 see a halo of 16.
-    let mut reader = tiles.reader(x - 16);
-    let mut ahead = tiles.reader(x - 16);
-    let mut ring = [0u64; RING];
-    let slot = |row: i32| (row - y + MOST_RADIUS as i32).rem_euclid(RING as i32) as usize;
+    let mut reader = tiles.reader(x - HALO);
+    let mut ring = Ring::default();
     for row in y - disc.reach..y + disc.reach {
-        if let Some(place) = ring.get_mut(slot(row)) {
-            *place = ahead.row(row).obstacle();
-        }
+        ring.put(row, reader.line(row));
     }
     for row in y..y + height {
-        if let Some(place) = ring.get_mut(slot(row + disc.reach)) {
-            *place = ahead.row(row + disc.reach).obstacle();
-        }
-        let mut blocked = 0;
-        for dy in -disc.reach..=disc.reach {
-            let half = disc
-                .half_widths
-                .get(dy.unsigned_abs() as usize)
-                .copied()
-                .flatten();
-            if let (Some(half), Some(&near)) = (half, ring.get(slot(row + dy)))
-                && near != 0
-            {
-                blocked |= widen(near, half);
-            }
-        }
-        let here = reader.row(row);
-        let middle = |bits: u64| (bits >> 16) as u32;
+        ring.put(row + disc.reach, reader.line(row + disc.reach));
+        let here = ring.get(row);
+        let blocked = (ring.blocked(row, disc) >> HALO) as u32;
         visit(
             row,
             Strip {
-                passable: middle(!blocked | (here.trail() & !here.obstacle())),
-                unknown: middle(here.unknown()),
-                obstacle: middle(here.obstacle()),
+                passable: !blocked | (here.trail & !here.obstacle()),
+                unknown: here.unknown,
+                obstacle: here.obstacle(),
             },
         );
     }

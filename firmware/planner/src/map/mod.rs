@@ -5,6 +5,7 @@
 
 pub mod evidence;
 pub mod integrate;
+pub mod rows;
 pub mod tiles;
 mod walk;
 

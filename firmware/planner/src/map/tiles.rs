@@ -10,11 +10,12 @@
 //! Invariant: `extent` covers every tile in use and is at most w by h tiles, so no two tiles share a slot.
 //! Units: cells of [`crate::geometry::CELL_M`].
 
+use super::rows::{Column, Row, RowReader};
 use crate::geometry::Cell;
 
 /// Cells along a tile's side.
 pub const TILE_SIDE: i32 = 32;
-const TILE_ROWS: usize = TILE_SIDE as usize;
+pub(super) const TILE_ROWS: usize = TILE_SIDE as usize;
 
 /// What is known of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -57,40 +58,6 @@ pub enum NoRoom {
     Pool,
 }
 
-/// 64 cells of a row: bit k of each word is column x + k.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Row {
-    low: u64,
-    high: u64,
-    trail: u64,
-}
-
-impl Row {
-    /// Cells that stand in the way, of either sign.
-    #[must_use]
-    pub const fn obstacle(self) -> u64 {
-        self.high
-    }
-
-    /// Cells known to be traversable.
-    #[must_use]
-    pub const fn free(self) -> u64 {
-        self.low & !self.high
-    }
-
-    /// Cells on or beside the robot's way so far.
-    #[must_use]
-    pub const fn trail(self) -> u64 {
-        self.trail
-    }
-
-    /// Cells never measured.
-    #[must_use]
-    pub const fn unknown(self) -> u64 {
-        !(self.low | self.high)
-    }
-}
-
 /// Inclusive bounds in tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extent {
@@ -129,15 +96,8 @@ const fn max(a: i32, b: i32) -> i32 {
     if a > b { a } else { b }
 }
 
-type TileRows = [[u32; 2]; TILE_ROWS];
-type Trail = [u16; TILE_SIDE as usize / 2];
-
-/// A tile that a reader goes through.
-#[derive(Clone, Copy, Debug)]
-struct Column<'a> {
-    rows: &'a TileRows,
-    trail: &'a Trail,
-}
+pub(super) type TileRows = [[u32; 2]; TILE_ROWS];
+pub(super) type Trail = [u16; TILE_ROWS / 2];
 
 /// A tile that a beam goes through. Rows count from 0 to 31, columns are bits.
 #[derive(Debug)]
@@ -181,53 +141,6 @@ const fn write([low, high]: &mut [u32; 2], bit: u32, class: Class) -> bool {
     *low = *low & !bit | bit & (code & 1).wrapping_neg();
     *high = *high & !bit | bit & (code >> 1 & 1).wrapping_neg();
     old.0 != *low || old.1 != *high
-}
-
-/// Reads rows of 64 cells one after another; tiles are looked up once in 32 rows.
-#[derive(Debug)]
-pub struct RowReader<'a, const TILES: usize, const SLOTS: usize> {
-    tiles: &'a Tiles<TILES, SLOTS>,
-    x: i32,
-    tile_y: i32,
-    columns: [Option<Column<'a>>; 3],
-}
-
-impl<const TILES: usize, const SLOTS: usize> RowReader<'_, TILES, SLOTS> {
-    /// The 64 cells of row `y`.
-    pub fn row(&mut self, y: i32) -> Row {
-        if y >> 5 != self.tile_y {
-            self.tile_y = y >> 5;
-            for (k, column) in (0..).zip(&mut self.columns) {
-                *column = self.tiles.column((self.x >> 5) + k, self.tile_y);
-            }
-        }
-        let shift = (self.x & 31) as u32;
-        let [first, second, third] = self.columns.map(|column| read(column, y));
-        // The first tile's cells move down by the shift, the others follow it; the third only has cells when there is a shift.
-        let join = |first: u32, second: u32, third: u32| {
-            let whole = u64::from(second) << 32 | u64::from(first);
-            let beyond = u64::from(third) << 32 << (32 - shift);
-            if shift == 0 {
-                whole
-            } else {
-                whole >> shift | beyond
-            }
-        };
-        Row {
-            low: join(first[0], second[0], third[0]),
-            high: join(first[1], second[1], third[1]),
-            trail: join(first[2], second[2], third[2]),
-        }
-    }
-}
-
-/// Low, high and trail bits of a tile's row.
-fn read(column: Option<Column<'_>>, y: i32) -> [u32; 3] {
-    let Some(column) = column else { return [0; 3] };
-    let row = (y & 31) as usize;
-    let [low, high] = column.rows.get(row).copied().unwrap_or_default();
-    let trail = column.trail.get(row / 2).copied().unwrap_or(0);
-    [low, high, if trail == 0 { 0 } else { twice(trail) }]
 }
 
 /// The tile pool and its directory. `TILES` tiles in the pool, `SLOTS` places in the box.
@@ -435,16 +348,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// A reader of rows of 64 cells from column `x` on.
     #[must_use]
     pub const fn reader(&self, x: i32) -> RowReader<'_, TILES, SLOTS> {
-        RowReader {
-            tiles: self,
-            x,
-            tile_y: i32::MIN,
-            columns: [None; 3],
-        }
+        RowReader::new(self, x)
     }
 
     /// The rows and the trail of a tile, if it is in the extent.
-    fn column(&self, tile_x: i32, tile_y: i32) -> Option<Column<'_>> {
+    pub(super) fn column(&self, tile_x: i32, tile_y: i32) -> Option<Column<'_>> {
         if !self.in_extent(tile_x, tile_y) {
             return None;
         }
@@ -491,16 +399,6 @@ impl<const TILES: usize, const SLOTS: usize> Default for Tiles<TILES, SLOTS> {
     fn default() -> Self {
         Self::new()
     }
-}
-
-/// Every bit doubled.
-const fn twice(bits: u16) -> u32 {
-    let mut wide = bits as u32;
-    wide = (wide | wide << 8) & 0x00ff_00ff;
-    wide = (wide | wide << 4) & 0x0f0f_0f0f;
-    wide = (wide | wide << 2) & 0x3333_3333;
-    wide = (wide | wide << 1) & 0x5555_5555;
-    wide | wide << 1
 }
 
 #[cfg(test)]

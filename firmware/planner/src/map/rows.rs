@@ -1,0 +1,228 @@
+//! Rows of the map, 64 cells at a time, as everything that plans reads them.
+//!
+//! A reader goes up through the map, row by row; it looks tiles up once in 32 rows. Bit k of a word is column x + k.
+//!
+//! Units: map cells.
+
+use super::tiles::{TILE_ROWS, TileRows, Tiles, Trail};
+
+/// Columns to the left of a [`Line`]'s own that its halo begins.
+pub const HALO: i32 = 16;
+
+/// 64 cells of a row: bit k of each word is column x + k.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Row {
+    low: u64,
+    high: u64,
+    trail: u64,
+}
+
+impl Row {
+    /// Cells that stand in the way, of either sign.
+    #[must_use]
+    pub const fn obstacle(self) -> u64 {
+        self.high
+    }
+
+    /// Cells known to be traversable.
+    #[must_use]
+    pub const fn free(self) -> u64 {
+        self.low & !self.high
+    }
+
+    /// Cells on or beside the robot's way so far.
+    #[must_use]
+    pub const fn trail(self) -> u64 {
+        self.trail
+    }
+
+    /// Cells never measured.
+    #[must_use]
+    pub const fn unknown(self) -> u64 {
+        !(self.low | self.high)
+    }
+}
+
+/// 32 cells of a row, and what stands up to [`HALO`] columns beside them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Line {
+    /// Cells that stand in the way, [`HALO`] columns farther to the left: bit `HALO` is the first cell.
+    pub around: u64,
+    /// Cells never measured.
+    pub unknown: u32,
+    /// Cells on or beside the robot's way so far.
+    pub trail: u32,
+}
+
+impl Line {
+    /// Cells that stand in the way, of either sign.
+    #[must_use]
+    pub const fn obstacle(self) -> u32 {
+        (self.around >> HALO) as u32
+    }
+}
+
+/// A tile that a reader goes through.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Column<'a> {
+    pub(super) rows: &'a TileRows,
+    pub(super) trail: &'a Trail,
+}
+
+impl Column<'_> {
+    /// A tile that nothing is known of.
+    const EMPTY: Self = Self {
+        rows: &[[0; 2]; TILE_ROWS],
+        trail: &[0; TILE_ROWS / 2],
+    };
+
+    /// Low and high bits of a row.
+    #[inline(always)]
+    fn classes(&self, row: usize) -> [u32; 2] {
+        self.rows.get(row % TILE_ROWS).copied().unwrap_or_default()
+    }
+
+    /// Blocks of the trail in a row.
+    #[inline(always)]
+    fn blocks(&self, row: usize) -> u16 {
+        let row = row % TILE_ROWS / 2;
+        self.trail.get(row).copied().unwrap_or_default()
+    }
+}
+
+/// Reads rows one after another.
+#[derive(Debug)]
+pub struct RowReader<'a, const TILES: usize, const SLOTS: usize> {
+    tiles: &'a Tiles<TILES, SLOTS>,
+    x: i32,
+    tile_y: i32,
+    columns: [Column<'a>; 3],
+}
+
+impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
+    /// A reader from column `x` on.
+    pub(super) const fn new(tiles: &'a Tiles<TILES, SLOTS>, x: i32) -> Self {
+        Self {
+            tiles,
+            x,
+            tile_y: i32::MIN,
+            columns: [Column::EMPTY; 3],
+        }
+    }
+
+    /// Look up the tiles of a row; its number in them, and by how much their columns are shifted.
+    #[inline(always)]
+    fn turn_to(&mut self, y: i32) -> (usize, u32) {
+        if y >> 5 != self.tile_y {
+            self.turn_page(y >> 5);
+        }
+        ((y & 31) as usize, (self.x & 31) as u32)
+    }
+
+    #[inline(never)]
+    fn turn_page(&mut self, tile_y: i32) {
+        self.tile_y = tile_y;
+        for (k, column) in (0..).zip(&mut self.columns) {
+            let found = self.tiles.column((self.x >> 5) + k, tile_y);
+            *column = found.unwrap_or(Column::EMPTY);
+        }
+    }
+
+    /// The 64 cells of row `y`.
+    pub fn row(&mut self, y: i32) -> Row {
+        let (row, shift) = self.turn_to(y);
+        let [first, second, third] = self.columns.map(|column| column.classes(row));
+        let trail = self.columns.map(|column| twice(column.blocks(row)));
+        Row {
+            low: join(first[0], second[0], third[0], shift),
+            high: join(first[1], second[1], third[1], shift),
+            trail: join(trail[0], trail[1], trail[2], shift),
+        }
+    }
+
+    /// The 32 cells of row `y` that begin [`HALO`] columns to the right of the reader.
+    #[inline(always)]
+    pub fn line(&mut self, y: i32) -> Line {
+        let (row, shift) = self.turn_to(y);
+        let [first, second, third] = self.columns.map(|column| column.classes(row));
+        let around = join(first[1], second[1], third[1], shift);
+        // The cells begin in the first tile or in the second, and end in the next.
+        let from = shift + HALO as u32;
+        let [left, middle, right] = &self.columns;
+        let (low, pair) = if from < 32 {
+            (cut(first[0], second[0], from), [left, middle])
+        } else {
+            (cut(second[0], third[0], from - 32), [middle, right])
+        };
+        let [one, other] = pair.map(|column| column.blocks(row));
+        let trail = if one | other == 0 {
+            0
+        } else {
+            cut(twice(one), twice(other), from % 32)
+        };
+        Line {
+            around,
+            unknown: !(low | (around >> HALO) as u32),
+            trail,
+        }
+    }
+}
+
+/// 64 bits from bit `shift` (below 32) of the first word on.
+#[inline(always)]
+const fn join(first: u32, second: u32, third: u32, shift: u32) -> u64 {
+    (cut(second, third, shift) as u64) << 32 | cut(first, second, shift) as u64
+}
+
+/// 32 bits from bit `from` (below 32) of the first word on.
+#[inline(always)]
+const fn cut(first: u32, second: u32, from: u32) -> u32 {
+    first >> from | second << 1 << (31 - from)
+}
+
+/// Every bit doubled.
+const fn twice(bits: u16) -> u32 {
+    let mut wide = bits as u32;
+    wide = (wide | wide << 8) & 0x00ff_00ff;
+    wide = (wide | wide << 4) & 0x0f0f_0f0f;
+    wide = (wide | wide << 2) & 0x3333_3333;
+    wide = (wide | wide << 1) & 0x5555_5555;
+    wide | wide << 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Cell;
+    use crate::map::Class;
+
+    #[test]
+    fn a_line_is_the_middle_of_a_row() {
+        let mut tiles = Tiles::<16, 16>::new();
+        tiles.reset(4, 4);
+        let mut seed = 3u32;
+        for _ in 0..4000 {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let cell = Cell {
+                x: (seed >> 8) as i32 % 96,
+                y: (seed >> 16) as i32 % 70,
+            };
+            let class = [Class::Free, Class::Obstacle][(seed >> 5 & 1) as usize];
+            tiles.set(cell, class).unwrap();
+            if seed >> 27 == 0 {
+                tiles.note_visit(cell);
+            }
+        }
+        for x in -20..90 {
+            let mut reader = tiles.reader(x);
+            for y in -3..75 {
+                let (row, line) = (tiles.row(x, y), reader.line(y));
+                let middle = |bits: u64| (bits >> HALO) as u32;
+                assert_eq!(line.around, row.obstacle());
+                assert_eq!(line.obstacle(), middle(row.obstacle()));
+                assert_eq!(line.unknown, middle(row.unknown()));
+                assert_eq!(line.trail, middle(row.trail()));
+            }
+        }
+    }
+}
