@@ -117,6 +117,8 @@ pub enum Strategy {
     /// Nearest unexplored centre cell.
     #[default]
     Frontier,
+    /// The same, and every loop on the way is closed.
+    Ouroboros,
 }
 
 /// The session's parameters.

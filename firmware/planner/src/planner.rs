@@ -29,8 +29,9 @@ use crate::near::NearField;
 use crate::remainder::{self, no_room};
 use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::{Known, Lent, Outlook};
-use crate::strategy::{self, Road};
-use crate::topology::{Space, Topology};
+use crate::strategy::ouroboros::{Ouroboros, Round};
+use crate::strategy::{Road, Strategist};
+use crate::topology::Topology;
 use crate::view::{self, Rows, SCALES, View};
 
 /// Range code: nothing came back, so free up to the range limit.
@@ -78,7 +79,7 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     map: Map<TILES, SLOTS>,
     near: NearField,
     topology: Topology<SLOTS>,
-    strategy: strategy::Frontier,
+    strategy: Strategist<SLOTS>,
     drive: Drive,
     status: Status,
     started: bool,
@@ -125,7 +126,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             map: Map::new(),
             near: NearField::new(),
             topology: Topology::new(),
-            strategy: strategy::Frontier::new(),
+            strategy: Strategist::new(),
             drive: Drive::new(),
             status: Status::Exploring,
             started: false,
@@ -138,8 +139,9 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     pub fn reset(&mut self, config: &Config) {
         self.map.reset(config.box_tiles.0, config.box_tiles.1);
         self.near.clear();
-        self.topology.reset(Space::default());
-        self.strategy.reset();
+        self.topology
+            .reset(Strategist::<SLOTS>::space(config.strategy));
+        self.strategy.reset(config);
         self.drive = Drive::new();
         self.status = Status::Exploring;
         self.started = false;
@@ -161,7 +163,13 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// The way to the present goal.
     #[must_use]
     pub const fn road(&self) -> &Road {
-        self.strategy.road()
+        self.strategy.frontier.road()
+    }
+
+    /// What is known of loops, where the session's strategy closes them.
+    #[must_use]
+    pub const fn ouroboros(&self) -> Option<&Ouroboros<SLOTS>> {
+        self.strategy.ouroboros()
     }
 
     /// The cells of a tile (two bits each: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle), or `None` where
@@ -195,7 +203,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// Frontiers left over, and why.
     #[must_use]
     pub fn frontiers(&self) -> &[Frontier] {
-        self.strategy.dropped()
+        self.strategy.frontier.dropped()
     }
 }
 
@@ -300,7 +308,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         laps.lap(Stage::Drive);
         return output;
     }
-    let disc = Disc::new(if state.strategy.is_second_chance() {
+    let disc = Disc::new(if state.strategy.frontier.is_second_chance() {
         config.tight_radius_m
     } else {
         config.robot_radius_m
@@ -308,8 +316,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     // A new skeleton is planned on in the step after it was finished, so that no step does both.
     let planned = state.fresh;
     if planned {
-        state.fresh = false;
-        replan(state, workspace, &disc, &input);
+        state.fresh = !replan(config, state, workspace, &disc, &input);
         laps.lap(Stage::Plan);
     } else {
         state.fresh = state
@@ -360,6 +367,7 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         }
     }
     state.map.observe(config, input);
+    state.strategy.note_pose(&input.pose);
     for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
         if is_level(laser) {
             state.near.update(&input.pose, laser, ranges_mm);
@@ -382,13 +390,14 @@ pub fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
     })
 }
 
-/// A new skeleton: find the way to the nearest frontier, or find that there is none.
+/// A new skeleton: find the way to go, or find that there is none. Whether that is done, or the next step must go on with it.
 fn replan<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     disc: &Disc,
     input: &Input<'_>,
-) {
+) -> bool {
     let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
     let (residues, ring) = words.split_at_mut(SLOTS * 16);
     let (residues, _) = residues.as_chunks_mut::<2>();
@@ -397,23 +406,28 @@ fn replan<const TILES: usize, const SLOTS: usize>(
         ring,
         view: &mut workspace.view,
     };
-    let robot = input.pose.point();
-    state.strategy.cut(&mut state.topology);
-    let known = Known {
-        topology: &state.topology,
+    let round = Round {
+        topology: &mut state.topology,
         tiles: state.map.tiles(),
         disc,
+        pose: input.pose,
+        time_ms: input.time_ms,
+        limits: &config.loops,
     };
-    let outlook = state.strategy.replan(&known, robot, input.time_ms, lent);
+    let Some(outlook) = state.strategy.advance(round, lent) else {
+        return false;
+    };
+    let robot = input.pose.point().cell();
     match outlook {
         Outlook::Nothing => {
-            let wanting = list_ways_out(state, workspace, disc, robot.cell());
+            let wanting = list_ways_out(state, workspace, disc, robot);
             list_leftovers(state, disc);
-            state.status = conclude(state, &mut workspace.view, disc, robot.cell(), wanting);
+            state.status = conclude(state, &mut workspace.view, disc, robot, wanting);
         }
         Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
         Outlook::Road | Outlook::Unsure => {}
     }
+    true
 }
 
 /// List what the robot can get to and cannot go on from for want of room in the map; which room that is. What lies beyond
@@ -426,7 +440,7 @@ fn list_ways_out<const TILES: usize, const SLOTS: usize>(
 ) -> Option<NoRoom> {
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
     no_room(&state.map, disc, robot, scratch, |cell| {
-        state.strategy.list_way_out(cell);
+        state.strategy.frontier.list_way_out(cell);
     })
 }
 
@@ -440,7 +454,7 @@ fn list_leftovers<const TILES: usize, const SLOTS: usize>(
         tiles: state.map.tiles(),
         disc,
     };
-    state.strategy.list_leftovers(&known);
+    state.strategy.frontier.list_leftovers(&known);
 }
 
 /// Why there is no frontier left within reach.
@@ -515,7 +529,7 @@ fn steer<const TILES: usize, const SLOTS: usize>(
             angular_radps: LOOK_AROUND_RADPS,
         }
     } else {
-        state.strategy.note_flat();
+        state.strategy.frontier.note_flat();
         Twist::default()
     };
     Output {
@@ -578,12 +592,15 @@ fn local_goal<const TILES: usize, const SLOTS: usize>(
     input: &Input<'_>,
     view: &mut View,
 ) -> Option<Rows> {
-    let (robot, road) = (input.pose.point(), state.strategy.road());
+    let (robot, road) = (input.pose.point(), state.strategy.frontier.road());
     if road.is_empty() {
         return None;
     }
     SCALES.iter().find_map(|&scale| {
         view.look_around(state.map.tiles(), disc, robot.cell(), scale);
+        if let Some(shield) = state.strategy.shield() {
+            shield.cells().for_each(|cell| view.block(cell));
+        }
         view.free_robot(robot.cell());
         road.local_goals(robot)
             .find_map(|cell| goal_cells(view, cell))

@@ -36,7 +36,7 @@ pub(super) struct ExploreArgs {
     /// World files (YAML for ROS map servers) or names of built-in worlds
     #[arg(value_name = "WORLD", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
-    /// What plans: frontier on the device, or a baseline on the host
+    /// What plans: frontier or ouroboros on the device, or a baseline on the host
     #[arg(long, default_value = baselines::FRONTIER, value_parser = baselines::parse)]
     pub(super) strategy: String,
     /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback; direct for baselines]

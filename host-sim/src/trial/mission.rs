@@ -104,6 +104,21 @@ impl From<LinkError> for MissionError {
     }
 }
 
+/// The strategies on the device, by name.
+pub const STRATEGIES: [(&str, Strategy); 2] = [
+    ("frontier", Strategy::Frontier),
+    ("ouroboros", Strategy::Ouroboros),
+];
+
+/// The strategy on the device of this name; a baseline has none.
+#[must_use]
+pub fn on_device(name: &str) -> Option<Strategy> {
+    let mut known = STRATEGIES.iter();
+    known
+        .find(|(known, _)| *known == name)
+        .map(|(_, strategy)| *strategy)
+}
+
 /// Whether the robot can stand where the mission starts, before anything else is spent on it.
 ///
 /// # Errors
@@ -131,7 +146,10 @@ pub fn explore(
         return Err(MissionError::Box { across, up, slots });
     }
     let setup = Setup {
-        start: simulator.start_message(Strategy::Frontier, (across, up)),
+        start: simulator.start_message(
+            on_device(&mission.strategy).unwrap_or_default(),
+            (across, up),
+        ),
         time_limit_ms: mission.time_limit_ms,
         check_field: mission.check_field,
     };

@@ -15,6 +15,7 @@ use super::{Ouroboros, Round};
 use crate::clearance::Disc;
 use crate::geometry::{Cell, Pose};
 use crate::map::{Class, Tiles};
+use crate::strategy::Frontier;
 use crate::strategy::frontier::Outlook;
 use crate::topology::{Space, Topology};
 
@@ -30,6 +31,8 @@ struct Exploration {
     tiles: Tiles<TILES, SLOTS>,
     topology: Topology<SLOTS>,
     strategy: Ouroboros<SLOTS>,
+    frontier: Frontier,
+    limits: Limits,
     memory: Memory,
     robot: (i32, i32),
     pose: Pose,
@@ -45,7 +48,7 @@ impl Exploration {
         tiles.reset(8, 6);
         let mut topology = Topology::new();
         topology.reset(Space::NotObstacle { anchored: true });
-        let mut strategy = Ouroboros::new(limits);
+        let mut strategy = Ouroboros::new();
         strategy.reset(tiles.box_tiles());
         let mut robot = (0, 0);
         let mut turned = BTreeMap::new();
@@ -64,6 +67,8 @@ impl Exploration {
             tiles,
             topology,
             strategy,
+            frontier: Frontier::new(),
+            limits,
             memory: Memory::new(),
             robot,
             pose,
@@ -108,7 +113,7 @@ impl Exploration {
         let disc = Disc::new(POINT_M);
         self.strategy.note_pose(&self.pose);
         while !self.topology.advance(&self.tiles, &disc, u32::MAX) {}
-        self.strategy.frontier().cut(&mut self.topology);
+        self.frontier.cut(&mut self.topology);
         let before = self.topology.skeleton().unwrap().words().to_vec();
         for calls in 1.. {
             assert!(calls <= 4, "a round that does not end");
@@ -118,8 +123,9 @@ impl Exploration {
                 disc: &disc,
                 pose: self.pose,
                 time_ms,
+                limits: &self.limits,
             };
-            let outlook = self.strategy.advance(round, self.memory.lend());
+            let outlook = self.strategy.advance(&mut self.frontier, round, self.memory.lend());
             assert_eq!(self.topology.skeleton().unwrap().words(), before, "it stays cut");
             if let Some(outlook) = outlook {
                 return outlook;
@@ -134,7 +140,7 @@ impl Exploration {
 
     /// Some cells on towards the part of the road that is a little ahead.
     fn go(&mut self) {
-        let cells = self.strategy.road().cells();
+        let cells = self.frontier.road().cells();
         let here = at(self.robot.0 as usize, self.robot.1 as usize);
         let far = |cell: &Cell| (cell.x - here.x).abs().max((cell.y - here.y).abs());
         let Some(nearest) = (0..cells.len().min(20)).min_by_key(|&k| far(&cells[k])) else {

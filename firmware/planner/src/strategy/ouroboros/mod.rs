@@ -75,8 +75,6 @@ enum Stage {
 /// What the strategy remembers; `SLOTS` as the map's.
 #[derive(Debug)]
 pub struct Ouroboros<const SLOTS: usize> {
-    frontier: Frontier,
-    limits: Limits,
     /// `previousTractorPoint`, a coarse cell.
     tractor: Option<Cell>,
     /// `previousShield`: a loop is being closed.
@@ -114,15 +112,15 @@ pub struct Round<'a, const TILES: usize, const SLOTS: usize> {
     pub pose: Pose,
     /// The host's clock, milliseconds.
     pub time_ms: u32,
+    /// Bounds of a loop.
+    pub limits: &'a Limits,
 }
 
 impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// At the start [Ouroboros, line 1].
     #[must_use]
-    pub const fn new(limits: Limits) -> Self {
+    pub const fn new() -> Self {
         Self {
-            frontier: Frontier::new(),
-            limits,
             tractor: None,
             shield: None,
             marks: Marks::new(),
@@ -141,7 +139,6 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
 
     /// Forget everything; the map's box is so many tiles across and up.
     pub fn reset(&mut self, box_tiles: (i32, i32)) {
-        self.frontier.reset();
         self.marks.reset(box_tiles);
         (self.tractor, self.shield) = (None, None);
         (self.crumbs, self.detour) = (Crumbs::new(), Detour::new());
@@ -180,23 +177,6 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         self.tally
     }
 
-    /// The way to the tractor point, or to a frontier.
-    #[must_use]
-    pub const fn road(&self) -> &Road {
-        self.frontier.road()
-    }
-
-    /// What drives to frontiers: bars, leftovers, the second chance.
-    #[must_use]
-    pub const fn frontier(&self) -> &Frontier {
-        &self.frontier
-    }
-
-    /// The same, to note what the window says.
-    pub const fn frontier_mut(&mut self) -> &mut Frontier {
-        &mut self.frontier
-    }
-
     /// The robot is here; to be called in every step.
     pub fn note_pose(&mut self, pose: &Pose) {
         let robot = pose.point().cell();
@@ -211,16 +191,22 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
 
     /// Go on with the round on the published skeleton; `None` when it needs another call on the same one, else what it says.
     ///
-    /// The first call of a round comes when a skeleton was published, after [`Frontier::cut`].
+    /// The first call of a round comes when a skeleton was published, after [`Frontier::cut`]. The road, to the tractor point or to
+    /// the unexplored, becomes the one of `frontier`, which bars ways and drops goals.
     pub fn advance<const TILES: usize>(
         &mut self,
+        frontier: &mut Frontier,
         mut round: Round<'_, TILES, SLOTS>,
         mut lent: Lent<'_>,
     ) -> Option<Outlook> {
         match core::mem::replace(&mut self.stage, Stage::Look) {
             Stage::Look => self.look(&mut round, &mut lent),
-            Stage::Close(robot) => self.close(&mut round, &mut lent, robot),
-            Stage::Explore => Some(self.explore(&round, lent)),
+            Stage::Close(robot) => self.close(frontier, &mut round, &mut lent, robot),
+            // Lines 24 and 26.
+            Stage::Explore => {
+                let robot = round.pose.point();
+                Some(frontier.replan(&round.known(), robot, round.time_ms, lent))
+            }
         }
     }
 
@@ -312,7 +298,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         )?;
         self.loop_m = road.steps() as f32 * STEP_M;
         let frontier_m = round.topology.frontier()?.count() as f32 * STEP_M;
-        let limits = &self.limits;
+        let limits = round.limits;
         if self.shield.is_some() {
             if limits.is_too_long(self.loop_m, frontier_m) || self.detour.is_over(limits) {
                 self.give_up();
@@ -366,6 +352,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// Line 21: the way to the tractor point, the shield behind the robot.
     fn close<const TILES: usize>(
         &mut self,
+        frontier: &mut Frontier,
         round: &mut Round<'_, TILES, SLOTS>,
         lent: &mut Lent<'_>,
         robot: Site,
@@ -374,10 +361,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         if let Some(road) = road {
             let robot = round.pose.point();
             let known = round.known();
-            return Some(
-                self.frontier
-                    .follow(road, &known, robot, round.time_ms, lent.view),
-            );
+            return Some(frontier.follow(road, &known, robot, round.time_ms, lent.view));
         }
         self.stage = Stage::Explore;
         self.lose()
@@ -399,21 +383,16 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         let way = core::iter::once(robot).chain(residues.descent(robot));
         Some(Road::along(way.map(|site| frame.cell(site))))
     }
+}
 
-    /// Lines 24 and 26.
-    fn explore<const TILES: usize>(
-        &mut self,
-        round: &Round<'_, TILES, SLOTS>,
-        lent: Lent<'_>,
-    ) -> Outlook {
-        let robot = round.pose.point();
-        self.frontier
-            .replan(&round.known(), robot, round.time_ms, lent)
+impl<const SLOTS: usize> Default for Ouroboros<SLOTS> {
+    fn default() -> Self {
+        Self::new()
     }
 }
 
 impl<const TILES: usize, const SLOTS: usize> Round<'_, TILES, SLOTS> {
-    fn known(&self) -> Known<'_, TILES, SLOTS> {
+    pub(super) fn known(&self) -> Known<'_, TILES, SLOTS> {
         Known {
             topology: self.topology,
             tiles: self.tiles,

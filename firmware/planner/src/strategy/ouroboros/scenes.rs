@@ -9,6 +9,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use super::Round;
+use super::detour::Limits;
 use super::ground::Ground;
 use super::loop_road::{LoopRoad, build_shield};
 use super::shield::{Flaw, Shield};
@@ -34,6 +35,7 @@ pub(super) struct Scene {
     pub(super) topology: Topology<SLOTS>,
     pub(super) disc: Disc,
     pub(super) pose: Pose,
+    limits: Limits,
 }
 
 /// The coarse cell at a column and row of the picture.
@@ -125,6 +127,7 @@ impl Scene {
             topology,
             disc,
             pose,
+            limits: Limits::default(),
         }
     }
 
@@ -142,6 +145,7 @@ impl Scene {
             disc: &self.disc,
             pose: self.pose,
             time_ms: 0,
+            limits: &self.limits,
         }
     }
 
