@@ -11,6 +11,9 @@ pub const CRUMBS: usize = 32;
 /// Cells from one crumb to the next.
 pub const STRIDE_CELLS: i32 = 4;
 
+/// A crumb this far away says where the robot came from.
+const CAME_CELLS: i32 = 8;
+
 /// The last crumbs, in a ring.
 #[derive(Debug)]
 pub struct Crumbs {
@@ -58,6 +61,16 @@ impl Crumbs {
                 y: i32::from(y),
             })
         })
+    }
+
+    /// Where the robot came from: the last crumb that it has left behind by [`CAME_CELLS`]; its heading says nothing of it when it
+    /// turns on the spot.
+    #[must_use]
+    pub fn came_from(&self, robot: Cell) -> Option<Cell> {
+        let far = |crumb: &Cell| {
+            (crumb.x - robot.x).abs().max((crumb.y - robot.y).abs()) >= CAME_CELLS
+        };
+        self.newest_first().find(far)
     }
 }
 

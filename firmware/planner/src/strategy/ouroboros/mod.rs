@@ -17,7 +17,8 @@
 //!
 //! What is kept from round to round lies in the map's cells, not in the skeleton's: tractor point, shield, marks and path outlast any
 //! number of skeletons. Departs from [Ouroboros, line 18]: a loop road that is not found is missed for
-//! [`LOST_ROUNDS`] rounds before the loop is lost, since a skeleton may grow a spur under the robot for a moment.
+//! [`LOST_ROUNDS`] rounds before the loop is lost, since a skeleton may grow a spur under the robot for a moment; and loops that
+//! are lost again and again are given up, or the robot might begin and lose the same one for ever.
 //!
 //! Units: map cells, metres, milliseconds.
 
@@ -56,6 +57,8 @@ use crate::topology::Topology;
 
 /// Rounds in a row without a loop road after which the loop is lost.
 const LOST_ROUNDS: u8 = 3;
+/// Loops lost after which the next one that is lost is given up, since a loop was last closed or given up.
+const MOST_LOST: u8 = 3;
 /// Metres along a step of the skeleton.
 const STEP_M: f32 = 2.0 * CELL_M;
 /// Cells that a blocker takes out of the skeleton at the most: the robot's surroundings.
@@ -85,6 +88,7 @@ pub struct Ouroboros<const SLOTS: usize> {
     /// Length expected of the loop, metres.
     loop_m: f32,
     lost_rounds: u8,
+    lost_loops: u8,
     stage: Stage,
     robot: Option<Cell>,
     tally: Tally,
@@ -128,6 +132,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             detour: Detour::new(),
             loop_m: 0.0,
             lost_rounds: 0,
+            lost_loops: 0,
             stage: Stage::Look,
             robot: None,
             tally: Tally {
@@ -142,7 +147,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         self.marks.reset(box_tiles);
         (self.tractor, self.shield) = (None, None);
         (self.crumbs, self.detour) = (Crumbs::new(), Detour::new());
-        (self.loop_m, self.lost_rounds) = (0.0, 0);
+        (self.loop_m, self.lost_rounds, self.lost_loops) = (0.0, 0, 0);
         (self.stage, self.robot) = (Stage::Look, None);
         self.tally = Tally::default();
     }
@@ -253,8 +258,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             Some(Fate::Stays) => self.tractor = centre,
             Some(Fate::Reached) if is_closing => {
                 self.tally.closed += 1;
-                self.marks.keep();
-                self.disable_tractor();
+                self.settle();
             }
             // It has fallen on an obstacle, or is of no use.
             None | Some(Fate::Reached | Fate::Stale) => {
@@ -290,30 +294,28 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     ) -> Option<Shield> {
         let ground = round.ground()?;
         let residues = Residues::new(ground.frame.shape, lent.residues).ok()?;
-        let road = LoopRoad::find(
-            &ground,
-            &residues,
-            (robot, &round.pose),
-            self.shield.as_ref(),
-        )?;
+        let came = self.crumbs.came_from(round.pose.point().cell())?;
+        let shield = self.shield.as_ref();
+        let road = LoopRoad::find(&ground, &residues, (robot, came), shield)?;
         self.loop_m = road.steps() as f32 * STEP_M;
         let frontier_m = round.topology.frontier()?.count() as f32 * STEP_M;
+        let meet = ground.cell(road.meet);
         let limits = round.limits;
         if self.shield.is_some() {
             if limits.is_too_long(self.loop_m, frontier_m) || self.detour.is_over(limits) {
                 self.give_up();
                 return None;
             }
-        } else if !limits.is_worth(self.loop_m, frontier_m) {
+        } else if !limits.is_worth(self.loop_m, frontier_m)
+            || distance_m(meet, ground.cell(robot)) < tractor::LEAST_BEHIND_M
+        {
             return None;
         }
         let shield = build_shield(&ground, &residues, &road, round.pose.point().cell())?;
         if self.shield.is_none() {
-            self.begin_loop(
-                core::iter::once(road.back).chain(residues.descent(road.back)),
-                &ground,
-            );
+            self.begin_loop(road.back(&residues), &ground);
         }
+        self.tractor = Some(meet);
         Some(shield)
     }
 
@@ -323,7 +325,9 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         back: impl Iterator<Item = Site>,
         ground: &Ground<'_, TILES, SLOTS>,
     ) {
-        self.detour = Detour::new();
+        if self.lost_loops == 0 {
+            self.detour = Detour::new();
+        }
         self.marks.forget();
         for site in back {
             self.marks.note(ground.frame.cell(site));
@@ -333,7 +337,13 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// The loop is not to hold the robot; nor is another try at it.
     fn give_up(&mut self) {
         self.tally.given_up += 1;
+        self.settle();
+    }
+
+    /// No other tractor point is to be made here.
+    fn settle(&mut self) {
         self.marks.keep();
+        self.lost_loops = 0;
         self.disable_tractor();
     }
 
@@ -344,8 +354,13 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             self.stage = Stage::Look;
             return Some(Outlook::Road);
         }
-        self.shield = None;
-        self.marks.forget();
+        self.lost_loops += 1;
+        if self.lost_loops > MOST_LOST {
+            self.give_up();
+        } else {
+            (self.shield, self.lost_rounds) = (None, 0);
+            self.marks.forget();
+        }
         None
     }
 

@@ -61,6 +61,17 @@ pub(super) fn pose_in(cell: Cell, yaw_rad: f32) -> Pose {
     }
 }
 
+/// The cell so many cells behind a robot.
+fn behind(pose: &Pose, cells: i32) -> Cell {
+    let (sin, cos) = crate::math::sin_cos(pose.yaw_rad);
+    let back = |at: i32, along: f32| at - (along * cells as f32) as i32;
+    let here = pose.point().cell();
+    Cell {
+        x: back(here.x, cos),
+        y: back(here.y, sin),
+    }
+}
+
 /// Memory of a wave.
 pub(super) struct Memory {
     residues: Vec<[u32; 2]>,
@@ -173,7 +184,8 @@ impl Scene {
             .unwrap();
         let ground = self.ground();
         let residues = Residues::new(ground.frame.shape, &mut memory.residues).unwrap();
-        let road = LoopRoad::find(&ground, &residues, (robot, &pose), previous)?;
+        let came = behind(&pose, 10);
+        let road = LoopRoad::find(&ground, &residues, (robot, came), previous)?;
         let walk = |head: Site| -> Vec<Cell> {
             let sites = core::iter::once(head).chain(residues.descent(head));
             sites.map(|site| ground.frame.cell(site)).collect()
