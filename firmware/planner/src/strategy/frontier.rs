@@ -254,8 +254,13 @@ impl Frontier {
             way,
         };
         let is_reached = |site| space.residues.get(site).is_some();
-        let entry = centres.nearest(robot.cell(), lent.view, is_reached)?;
-        Some(walk_down(&space, frame, known.tiles, entry))
+        let robot = robot.cell();
+        let Some(entry) = centres.nearest(robot, lent.view, is_reached) else {
+            let (entry, line) = centres.nearest_by_air(robot, is_reached)?;
+            return Some(walk_down(&space, frame, known.tiles, line, entry));
+        };
+        let at_once = core::iter::empty();
+        Some(walk_down(&space, frame, known.tiles, at_once, entry))
     }
 
     /// Wave from every frontier cell that was not dropped; those beside the present goal first.
@@ -385,11 +390,12 @@ fn ahead(road: &Road, robot: Point) -> Option<Cell> {
         .find(|&cell| !near(cell, robot, BAR_AHEAD_M))
 }
 
-/// The road from the entry to the frontier, and one cell into the unexplored beyond it.
+/// The road from the cells before the entry to the frontier, and one cell into the unexplored beyond it.
 fn walk_down<const TILES: usize, const SLOTS: usize>(
     space: &WaveSpace<'_>,
     frame: Frame,
     tiles: &Tiles<TILES, SLOTS>,
+    before: impl Iterator<Item = Cell>,
     entry: Site,
 ) -> Road {
     let way = core::iter::once(entry).chain(space.residues.descent(entry));
@@ -398,7 +404,7 @@ fn walk_down<const TILES: usize, const SLOTS: usize>(
         last = site;
         frame.cell(site)
     });
-    let mut road = Road::along(cells);
+    let mut road = Road::along(before.chain(cells));
     road.extend(unexplored_beside(frame.cell(last), tiles));
     road
 }
