@@ -82,9 +82,7 @@ mod tests {
     fn unknown_strategies_are_named_with_the_known() {
         let error = parse("magic").unwrap_err();
         assert!(
-            error.contains("'magic'")
-                && error.contains("frontier")
-                && error.contains("ouroboros"),
+            error.contains("'magic'") && error.contains("frontier") && error.contains("ouroboros"),
             "{error}"
         );
     }

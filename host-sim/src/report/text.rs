@@ -47,6 +47,13 @@ impl Report {
             ),
             format!("  planner   {}", self.cost()),
         ];
+        if self.loops.loops > 0 {
+            let super::Loops {
+                loops_closed,
+                loops,
+            } = self.loops;
+            lines.push(format!("  loops     {loops_closed} of {loops} closed"));
+        }
         if let Some(error_m) = self.localization.max_error_m.filter(|m| *m > 1e-3) {
             let mean_m = self.localization.mean_error_m.unwrap_or(0.0);
             lines.push(format!(

@@ -12,7 +12,7 @@ use fieldline_protocol::message::{Observation, Status, Strategy, Twist};
 use super::mirror::Mirror;
 use super::{Body, Cast, Record, Setup, Survey, Watch, record, run, shape};
 use crate::link::{Link, LinkError};
-use crate::metrics::Coverage;
+use crate::metrics::{CellSet, Coverage, Loops};
 use crate::report::tum::Stamped;
 use crate::report::{self, Report, SCHEMA_VERSION};
 use crate::robot::{OdometryModel, OdometryNoise, RADIUS_M, laser};
@@ -251,6 +251,7 @@ fn assemble(
         path_length_m: simulator.path_length_m(),
         steps: record.steps.len() as u64,
         coverage: coverage(account, simulator),
+        loops: loops(simulator, record),
         safety: safety(simulator),
         localization: record.localization(),
         planner: record.planner(),
@@ -274,6 +275,19 @@ fn coverage(account: &Account, simulator: &Simulator<'_>) -> report::Coverage {
         t90_s: coverage.t90_s(),
         t99_s: coverage.t99_s(),
         overlap: Some(simulator.overlap()),
+    }
+}
+
+fn loops(simulator: &Simulator<'_>, record: &Record) -> report::Loops {
+    let world = simulator.world();
+    let start = world.starts().get(simulator.config().start).copied();
+    let reach = CellSet::reach(world, start.unwrap_or_default(), RADIUS_M);
+    let truth = record.steps.iter().map(|step| step.truth);
+    let path: Vec<[f64; 2]> = truth.map(|truth| [truth.x_m, truth.y_m]).collect();
+    let loops = Loops::judge(world, &reach, &path);
+    report::Loops {
+        loops_closed: loops.closed,
+        loops: loops.of,
     }
 }
 

@@ -56,7 +56,11 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
             let (dx, dy) = apart(self.frame.cell(*site));
             dx * dx + dy * dy
         };
-        let site = self.way.sites().filter(|&site| accepts(site)).min_by_key(distance2)?;
+        let site = self
+            .way
+            .sites()
+            .filter(|&site| accepts(site))
+            .min_by_key(distance2)?;
         let (dx, dy) = apart(self.frame.cell(site));
         let steps = dx.abs().max(dy.abs()) / 2;
         let line = (0..steps).map(move |k| Cell {

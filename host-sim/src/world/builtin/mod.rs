@@ -7,7 +7,10 @@ mod cases;
 mod cave;
 mod cluttered;
 mod hall;
+mod loops;
 mod office;
+mod places;
+mod poses;
 mod ring;
 
 use super::occupancy::Occupancy;
@@ -25,7 +28,7 @@ pub struct Builtin {
 }
 
 /// Every built-in world.
-const BUILTINS: [Builtin; 9] = [
+const BUILTINS: [Builtin; 16] = [
     Builtin {
         name: "office",
         description: "nine furnished rooms with doors of 0.8 to 0.9 m along a corridor, 24 x 14 m",
@@ -79,6 +82,48 @@ const BUILTINS: [Builtin; 9] = [
         description: "the robot starts in a closet of 1 x 1 m that has no door",
         plan: cases::boxed_in,
         starts: &[[3.0, 3.0, 0.0]],
+    },
+    Builtin {
+        name: "ouroboros-a",
+        description: "four adjacent loops of corridors, 44, 46, 58 and 78 m",
+        plan: loops::a,
+        starts: &poses::A,
+    },
+    Builtin {
+        name: "ouroboros-b",
+        description: "three adjacent loops of corridors in a row, 72 m each",
+        plan: loops::b,
+        starts: &poses::B,
+    },
+    Builtin {
+        name: "ouroboros-c",
+        description: "rooms along corridors that close no loop, 23 x 25 m",
+        plan: places::c,
+        starts: &poses::C,
+    },
+    Builtin {
+        name: "ouroboros-d",
+        description: "a square of 20 x 20 m with small round obstacles, as of trees",
+        plan: places::d,
+        starts: &poses::D,
+    },
+    Builtin {
+        name: "tdbvp-adjacent",
+        description: "three loops of corridors, each beside both others, 72 m each",
+        plan: loops::adjacent,
+        starts: &poses::ADJACENT,
+    },
+    Builtin {
+        name: "tdbvp-nested",
+        description: "a loop of corridors of 88 m, and one of 48 m within its block",
+        plan: loops::nested,
+        starts: &poses::NESTED,
+    },
+    Builtin {
+        name: "tdbvp-floor",
+        description: "a floor of 72 x 13 m with loops of 90 m and 60 m and halls at both ends",
+        plan: loops::floor_72,
+        starts: &poses::FLOOR,
     },
 ];
 

@@ -67,9 +67,8 @@ impl Crumbs {
     /// turns on the spot.
     #[must_use]
     pub fn came_from(&self, robot: Cell) -> Option<Cell> {
-        let far = |crumb: &Cell| {
-            (crumb.x - robot.x).abs().max((crumb.y - robot.y).abs()) >= CAME_CELLS
-        };
+        let far =
+            |crumb: &Cell| (crumb.x - robot.x).abs().max((crumb.y - robot.y).abs()) >= CAME_CELLS;
         self.newest_first().find(far)
     }
 }

@@ -43,7 +43,10 @@ struct Exploration {
 
 impl Exploration {
     fn new(world: &str, limits: Limits) -> Self {
-        let world: Vec<Vec<char>> = world.split_whitespace().map(|r| r.chars().collect()).collect();
+        let world: Vec<Vec<char>> = world
+            .split_whitespace()
+            .map(|r| r.chars().collect())
+            .collect();
         let mut tiles = Tiles::new();
         tiles.reset(8, 6);
         let mut topology = Topology::new();
@@ -86,7 +89,8 @@ impl Exploration {
     /// Everything within sight into the map.
     fn see(&mut self) {
         let (x, y) = self.robot;
-        for to in (y - SIGHT..=y + SIGHT).flat_map(|j| (x - SIGHT..=x + SIGHT).map(move |i| (i, j))) {
+        for to in (y - SIGHT..=y + SIGHT).flat_map(|j| (x - SIGHT..=x + SIGHT).map(move |i| (i, j)))
+        {
             let (dx, dy) = (to.0 - x, to.1 - y);
             if dx * dx + dy * dy > SIGHT * SIGHT || to.0 < 0 || to.1 < 0 {
                 continue;
@@ -101,7 +105,11 @@ impl Exploration {
             if (0..steps).any(|k| self.is_obstacle(on(k))) || to.1 as usize >= self.world.len() {
                 continue;
             }
-            let class = if self.is_obstacle(to) { Class::Obstacle } else { Class::Free };
+            let class = if self.is_obstacle(to) {
+                Class::Obstacle
+            } else {
+                Class::Free
+            };
             for part in quarters(at(to.0 as usize, to.1 as usize)) {
                 self.tiles.set(part, class).unwrap();
             }
@@ -125,8 +133,14 @@ impl Exploration {
                 time_ms,
                 limits: &self.limits,
             };
-            let outlook = self.strategy.advance(&mut self.frontier, round, self.memory.lend());
-            assert_eq!(self.topology.skeleton().unwrap().words(), before, "it stays cut");
+            let outlook = self
+                .strategy
+                .advance(&mut self.frontier, round, self.memory.lend());
+            assert_eq!(
+                self.topology.skeleton().unwrap().words(),
+                before,
+                "it stays cut"
+            );
             if let Some(outlook) = outlook {
                 return outlook;
             }
@@ -135,7 +149,9 @@ impl Exploration {
     }
 
     fn is_shield(&self, (x, y): (i32, i32)) -> bool {
-        self.strategy.shield().is_some_and(|shield| shield.holds(at(x as usize, y as usize)))
+        self.strategy
+            .shield()
+            .is_some_and(|shield| shield.holds(at(x as usize, y as usize)))
     }
 
     /// Some cells on towards the part of the road that is a little ahead.
@@ -182,7 +198,9 @@ impl Exploration {
                 *sum = (sum.0 + x as f64, sum.1 + y as f64, sum.2 + 1.0);
             }
         }
-        sums.into_iter().map(|(c, (x, y, n))| (c, (x / n, y / n))).collect()
+        sums.into_iter()
+            .map(|(c, (x, y, n))| (c, (x / n, y / n)))
+            .collect()
     }
 
     /// The shortest way over free cells that are no shield, without the first cell.
@@ -221,13 +239,20 @@ impl Exploration {
                 Outlook::Road | Outlook::Unsure => self.go(),
             }
         }
-        panic!("still exploring after {MOST_ROUNDS} rounds\n{}", self.drawn());
+        panic!(
+            "still exploring after {MOST_ROUNDS} rounds\n{}",
+            self.drawn()
+        );
     }
 
     /// The islands that the robot has been round.
     fn rounded(&self) -> String {
         let round = |[_, least, most]: [f64; 3]| most - least > 0.97 * core::f64::consts::TAU;
-        self.turned.iter().filter(|(_, turned)| round(**turned)).map(|(c, _)| *c).collect()
+        self.turned
+            .iter()
+            .filter(|(_, turned)| round(**turned))
+            .map(|(c, _)| *c)
+            .collect()
     }
 
     fn unknown(&self) -> usize {
@@ -306,7 +331,6 @@ const ADJACENT: &str = "
     #........................................................................#
     #........................................................................#
     ##########################################################################";
-
 
 const NESTED: &str = "
     ###################################################################
@@ -387,8 +411,21 @@ const TREES: &str = "
 #[test]
 fn pictures() {
     for world in [NESTED, ROOMS, TREES] {
-        let mut exploration = Exploration::new(world, Limits { least_m: 5.0, ..Limits::default() });
+        let mut exploration = Exploration::new(
+            world,
+            Limits {
+                least_m: 5.0,
+                ..Limits::default()
+            },
+        );
         let rounds = exploration.run();
-        std::println!("{rounds} rounds, path {}, {:?}, round {}, unknown {}\n{}", exploration.path.len(), exploration.strategy.tally(), exploration.rounded(), exploration.unknown(), exploration.drawn());
+        std::println!(
+            "{rounds} rounds, path {}, {:?}, round {}, unknown {}\n{}",
+            exploration.path.len(),
+            exploration.strategy.tally(),
+            exploration.rounded(),
+            exploration.unknown(),
+            exploration.drawn()
+        );
     }
 }

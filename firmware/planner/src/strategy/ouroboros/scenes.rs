@@ -237,7 +237,6 @@ fn assert_picture(drawn: &str, expected: &str) {
     assert!(drawn == expected.join("\n"), "\n{drawn}\n");
 }
 
-
 const RING: &str = "
     #########################
     #.......................#
@@ -375,7 +374,15 @@ const TWO_LOOPS: &str = "
 
 #[test]
 fn pictures() {
-    for picture in [RING, NO_LOOP, UNKNOWN_LOOP, OPEN_END, UNEXPLORED_END, FORK, TWO_LOOPS] {
-    std::println!("{}\n", Scene::parse(picture).drawn(None));
+    for picture in [
+        RING,
+        NO_LOOP,
+        UNKNOWN_LOOP,
+        OPEN_END,
+        UNEXPLORED_END,
+        FORK,
+        TWO_LOOPS,
+    ] {
+        std::println!("{}\n", Scene::parse(picture).drawn(None));
     }
 }
