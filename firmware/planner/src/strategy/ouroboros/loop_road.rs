@@ -4,24 +4,30 @@
 //! ways or more there is a loop: the road's *back* is what the shield will be built across, its *front* is where the robot
 //! is to go. Neither is stored: each is the descent from its head, down the wave's distances.
 //!
-//! - Fresh: the back is the way most towards where the robot came from, the front the shortest of the others.
-//! - While a loop is being closed, the back must pass by the previous shield: without that, a robot among adjacent loops might
-//!   go from one to the next and close none.
+//! - Fresh ([`LoopRoad`]): the back is the way most towards where the robot came from, the front the shortest of the others.
+//! - While a loop is being closed ([`way_back`]), the back leads to the previous shield: without that, a robot among adjacent loops
+//!   might go from one to the next and close none.
 //!
-//! Departs from [Ouroboros]: what blocks is the robot's cell with its eight neighbours, since a skeleton that is two cells thick
-//! or a staircase leads past a single cell, and the heads are the cells just outside. And the two ways may meet before the tractor
-//! point, where it is not on the loop but on a branch that leads there: then the loop ends where they meet ([`LoopRoad::meet`]). A shield
-//! farther down would cut both ways, and the robot would leave the loop before it has come to the tractor point.
+//! Departs from [Ouroboros]:
+//!
+//! - What blocks is the robot's cell with its eight neighbours, since a skeleton that is two cells thick or a staircase leads past a
+//!   single cell, and the heads are the cells just outside.
+//! - The two ways may meet before the tractor point, where it is not on the loop but on a branch that leads there: then the loop ends
+//!   where they meet ([`LoopRoad::meet`]). A shield farther down would cut both ways, and the robot would leave the loop before it
+//!   has come to the tractor point.
+//! - The previous shield is asked for by a wave from it, not by the descent to the tractor point: that takes the shortest way, and
+//!   with a shorter loop beside the one that is being closed it does not come by the shield, although the loop is there. That the
+//!   tractor point can be reached on the shield's other side is what the wave after it shows [line 21].
 //!
 //! Units: steps along the skeleton, 20 cm and a little more.
 
 use super::ground::Ground;
 use super::shield::Shield;
 use crate::geometry::Cell;
-use crate::grid::Site;
+use crate::grid::{Plane, Site};
 use crate::math;
 use crate::skeleton::Residues;
-use crate::skeleton::branches::ways;
+use crate::skeleton::branches::{MOST_WAYS, ways};
 
 /// Steps from the robot's cell to a head.
 const TO_HEAD: u32 = 2;
@@ -50,34 +56,25 @@ struct Way {
     steps: u32,
     /// How much it leads back: the cosine of the angle to where the robot came from, times the distance there.
     back: f32,
-    /// It passes by the previous shield.
-    shielded: bool,
 }
 
 impl LoopRoad {
-    /// The loop that the wave found round `robot`, the robot's cell, which `came` from there; `None` if there is none, or while a
-    /// loop is being closed behind `shield`, none through that.
+    /// The loop that the wave found round `robot`, the robot's cell, which `came` from there; `None` if there is
+    /// none.
     #[must_use]
     pub fn find<const TILES: usize, const SLOTS: usize>(
         ground: &Ground<'_, TILES, SLOTS>,
         residues: &Residues<'_>,
         (robot, came): (Site, Cell),
-        shield: Option<&Shield>,
     ) -> Option<Self> {
         let heads = ways(ground.way, robot);
         let reached = heads.iter().filter(|head| residues.get(**head).is_some());
-        let ways: heapless::Vec<Way, { crate::skeleton::branches::MOST_WAYS }> = reached
-            .map(|&head| Way::measure(ground, residues, (robot, came), head, shield))
+        let ways: heapless::Vec<Way, MOST_WAYS> = reached
+            .map(|&head| Way::measure(ground, residues, (robot, came), head))
             .collect();
-        let is_back = |way: &&Way| shield.is_none() || way.shielded;
-        let back = ways
-            .iter()
-            .filter(is_back)
-            .max_by(|a, b| a.back.total_cmp(&b.back))?;
-        let front = ways
-            .iter()
-            .filter(|way| way.head != back.head && !(shield.is_some() && way.shielded))
-            .min_by_key(|way| way.steps)?;
+        let back = ways.iter().max_by(|a, b| a.back.total_cmp(&b.back))?;
+        let others = ways.iter().filter(|way| way.head != back.head);
+        let front = others.min_by_key(|way| way.steps)?;
         let (meet, tail_steps) = meet(residues, back, front)?;
         Some(Self {
             back: back.head,
@@ -125,58 +122,56 @@ impl Way {
         residues: &Residues<'_>,
         (robot, came): (Site, Cell),
         head: Site,
-        shield: Option<&Shield>,
     ) -> Self {
-        let mut steps = TO_HEAD;
-        let mut shielded = false;
-        let holds = |site: Site| shield.is_some_and(|shield| shield.holds(ground.cell(site)));
-        for site in down(residues, head) {
-            steps += 1;
-            shielded = shielded || holds(site);
-        }
         let apart = |a: Cell, b: Cell| ((a.x - b.x) as f32, (a.y - b.y) as f32);
         let here = ground.cell(robot);
         let ((x, y), (to_x, to_y)) = (apart(ground.cell(head), here), apart(came, here));
         Self {
             head,
-            steps: steps - 1,
+            steps: steps_from(residues, head),
             back: (x * to_x + y * to_y) / math::sqrt(x * x + y * y),
-            shielded,
         }
     }
 }
 
+/// Steps from the robot's cell by a head to where the wave came from.
+fn steps_from(residues: &Residues<'_>, head: Site) -> u32 {
+    TO_HEAD + residues.descent(head).count() as u32
+}
+
+/// The way back to the previous shield, from which the wave has come: its cells from just behind the robot on. The other ways lead
+/// there round the loop.
+pub fn way_back<'a>(
+    way: Plane<'_>,
+    residues: &'a Residues<'_>,
+    robot: Site,
+) -> Option<impl Iterator<Item = Site> + use<'a>> {
+    let heads = ways(way, robot);
+    let reached = heads.iter().filter(|head| residues.get(**head).is_some());
+    let back = reached.min_by_key(|head| steps_from(residues, **head))?;
+    Some(down(residues, *back))
+}
+
 /// The first valid shield along the road's back, from the robot on [Ouroboros, III-C, fourth step].
 ///
-/// `None` when the end of the loop is reached, or [`MOST_TRIED`] cells were looked at, without one.
+/// `None` when the cells come to their end, or [`MOST_TRIED`] of them were looked at, without one.
 #[must_use]
 pub fn build_shield<const TILES: usize, const SLOTS: usize>(
     ground: &Ground<'_, TILES, SLOTS>,
-    residues: &Residues<'_>,
-    road: &LoopRoad,
+    back: impl Iterator<Item = Site>,
     robot: Cell,
 ) -> Option<Shield> {
     let mut span: Span = [None; SPAN];
-    let mut tried = 0;
-    for site in road.back(residues) {
+    back.take(MOST_TRIED + SPAN - 1).find_map(|site| {
         span.rotate_left(1);
         span[SPAN - 1] = Some(ground.cell(site));
-        let (Some(near), Some(at), Some(far)) = (span[0], span[SPAN / 2], span[SPAN - 1]) else {
-            continue;
-        };
-        tried += 1;
-        if tried > MOST_TRIED {
-            return None;
-        }
-        if let Ok(shield) = Shield::build(ground, at, [far, near], robot) {
-            return Some(shield);
-        }
-    }
-    None
+        let [near, at, far] = [span[0]?, span[SPAN / 2]?, span[SPAN - 1]?];
+        Shield::build(ground, at, [far, near], robot).ok()
+    })
 }
 
 /// Cells of the road by which its direction at the middle one is known.
 const SPAN: usize = 5;
 type Span = [Option<Cell>; SPAN];
 /// Cells of the road that are tried: the nearest 8 m. What a shield costs is bounded, and so is the search.
-const MOST_TRIED: u32 = 40;
+const MOST_TRIED: usize = 40;

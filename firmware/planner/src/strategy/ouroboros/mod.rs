@@ -38,7 +38,7 @@ mod scenes;
 use self::crumbs::Crumbs;
 use self::detour::{Detour, Limits};
 use self::ground::Ground;
-use self::loop_road::{LoopRoad, build_shield};
+use self::loop_road::{LoopRoad, build_shield, way_back};
 use self::marks::Marks;
 use self::shield::Shield;
 use self::tractor::Fate;
@@ -85,8 +85,9 @@ pub struct Ouroboros<const SLOTS: usize> {
     marks: Marks<SLOTS>,
     crumbs: Crumbs,
     detour: Detour,
-    /// Length expected of the loop, metres.
+    /// Length expected of the loop, and of the way back from where it was begun, metres.
     loop_m: f32,
+    back_m: f32,
     lost_rounds: u8,
     lost_loops: u8,
     stage: Stage,
@@ -131,6 +132,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             crumbs: Crumbs::new(),
             detour: Detour::new(),
             loop_m: 0.0,
+            back_m: 0.0,
             lost_rounds: 0,
             lost_loops: 0,
             stage: Stage::Look,
@@ -147,7 +149,8 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         self.marks.reset(box_tiles);
         (self.tractor, self.shield) = (None, None);
         (self.crumbs, self.detour) = (Crumbs::new(), Detour::new());
-        (self.loop_m, self.lost_rounds, self.lost_loops) = (0.0, 0, 0);
+        (self.loop_m, self.back_m) = (0.0, 0.0);
+        (self.lost_rounds, self.lost_loops) = (0, 0);
         (self.stage, self.robot) = (Stage::Look, None);
         self.tally = Tally::default();
     }
@@ -229,8 +232,11 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             self.tractor = self.generate_tractor(round, lent);
         }
         let tractor = round.topology.frame().site(self.tractor?)?;
-        round.propagate(tractor, surroundings(robot), None, lent)?;
-        match self.build(round, lent, robot) {
+        let shield = match self.shield {
+            Some(previous) => renew(previous, round, lent, robot),
+            None => self.begin(round, lent, [robot, tractor]),
+        };
+        match shield {
             Some(shield) => {
                 self.shield = Some(shield);
                 self.lost_rounds = 0;
@@ -285,53 +291,39 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         tractor::suits(centre, candidate, &self.marks, &round.pose).then_some(centre)
     }
 
-    /// Lines 13 to 19, on the wave that has come from the tractor point.
-    fn build<const TILES: usize>(
+    /// Lines 12 and 17 to 19: a loop that is worth closing, and the shield behind the robot.
+    fn begin<const TILES: usize>(
         &mut self,
-        round: &Round<'_, TILES, SLOTS>,
+        round: &mut Round<'_, TILES, SLOTS>,
         lent: &mut Lent<'_>,
-        robot: Site,
+        [robot, tractor]: [Site; 2],
     ) -> Option<Shield> {
+        round.propagate(tractor, surroundings(robot), None, lent)?;
         let ground = round.ground()?;
         let residues = Residues::new(ground.frame.shape, lent.residues).ok()?;
-        let came = self.crumbs.came_from(round.pose.point().cell())?;
-        let shield = self.shield.as_ref();
-        let road = LoopRoad::find(&ground, &residues, (robot, came), shield)?;
-        self.loop_m = road.steps() as f32 * STEP_M;
-        let frontier_m = round.topology.frontier()?.count() as f32 * STEP_M;
+        let here = round.pose.point().cell();
+        let came = self.crumbs.came_from(here)?;
+        let road = LoopRoad::find(&ground, &residues, (robot, came))?;
         let meet = ground.cell(road.meet);
-        let limits = round.limits;
-        if self.shield.is_some() {
-            if limits.is_too_long(self.loop_m, frontier_m) || self.detour.is_over(limits) {
-                self.give_up();
-                return None;
-            }
-        } else if !limits.is_worth(self.loop_m, frontier_m)
-            || distance_m(meet, ground.cell(robot)) < tractor::LEAST_BEHIND_M
+        let loop_m = road.steps() as f32 * STEP_M;
+        if !round.limits.is_worth(loop_m, round.frontier_m()?)
+            || !tractor::may_be_at(meet, &self.marks, &round.pose)
         {
             return None;
         }
-        let shield = build_shield(&ground, &residues, &road, round.pose.point().cell())?;
-        if self.shield.is_none() {
-            self.begin_loop(road.back(&residues), &ground);
-        }
+        let shield = build_shield(&ground, road.back(&residues), here)?;
         self.tractor = Some(meet);
-        Some(shield)
-    }
-
-    /// A loop is begun: its surroundings are those of the way back, and of the way that the robot will come.
-    fn begin_loop<const TILES: usize>(
-        &mut self,
-        back: impl Iterator<Item = Site>,
-        ground: &Ground<'_, TILES, SLOTS>,
-    ) {
+        self.loop_m = loop_m;
+        self.back_m = road.back(&residues).count() as f32 * STEP_M;
         if self.lost_loops == 0 {
             self.detour = Detour::new();
         }
+        // The loop's surroundings are those of the way back, and of the way that the robot will come.
         self.marks.forget();
-        for site in back {
-            self.marks.note(ground.frame.cell(site));
+        for site in road.back(&residues) {
+            self.marks.note(ground.cell(site));
         }
+        Some(shield)
     }
 
     /// The loop is not to hold the robot; nor is another try at it.
@@ -374,6 +366,13 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     ) -> Option<Outlook> {
         let road = self.road_to_tractor(round, lent, robot);
         if let Some(road) = road {
+            self.loop_m = self.back_m + road.steps() as f32 * STEP_M;
+            let too_long = round.limits.is_too_long(self.loop_m, round.frontier_m()?);
+            if too_long || self.detour.is_over(round.limits) {
+                self.stage = Stage::Explore;
+                self.give_up();
+                return None;
+            }
             let robot = round.pose.point();
             let known = round.known();
             return Some(frontier.follow(road, &known, robot, round.time_ms, lent.view));
@@ -424,6 +423,11 @@ impl<const TILES: usize, const SLOTS: usize> Round<'_, TILES, SLOTS> {
         })
     }
 
+    /// Metres of frontier that are left.
+    fn frontier_m(&self) -> Option<f32> {
+        Some(self.topology.frontier()?.count() as f32 * STEP_M)
+    }
+
     /// `moveToVoronoi`: the centre cell nearest to a map cell.
     fn nearest(&self, from: Cell, lent: &mut Lent<'_>) -> Option<Site> {
         let ground = self.ground()?;
@@ -468,6 +472,24 @@ impl<const TILES: usize, const SLOTS: usize> Round<'_, TILES, SLOTS> {
         barrier.lower(&mut plane);
         Some(())
     }
+}
+
+/// Lines 14 and 19: the shield on the way from the robot back to the previous one; that one, if there is no better and it stands.
+fn renew<const TILES: usize, const SLOTS: usize>(
+    mut previous: Shield,
+    round: &mut Round<'_, TILES, SLOTS>,
+    lent: &mut Lent<'_>,
+    robot: Site,
+) -> Option<Shield> {
+    let ground = round.ground()?;
+    let on_it = previous.cells().find(|&cell| ground.is_centre(cell))?;
+    let from = ground.frame.site(on_it)?;
+    round.propagate(from, surroundings(robot), None, lent)?;
+    let ground = round.ground()?;
+    let residues = Residues::new(ground.frame.shape, lent.residues).ok()?;
+    let back = way_back(ground.way, &residues, robot)?;
+    let next = build_shield(&ground, back, round.pose.point().cell());
+    next.or_else(|| previous.stretch(&ground).is_ok().then_some(previous))
 }
 
 fn distance_m(a: Cell, b: Cell) -> f32 {

@@ -185,7 +185,7 @@ impl Scene {
         let ground = self.ground();
         let residues = Residues::new(ground.frame.shape, &mut memory.residues).unwrap();
         let came = behind(&pose, 10);
-        let road = LoopRoad::find(&ground, &residues, (robot, came), previous)?;
+        let road = LoopRoad::find(&ground, &residues, (robot, came))?;
         let walk = |head: Site| -> Vec<Cell> {
             let sites = core::iter::once(head).chain(residues.descent(head));
             sites.map(|site| ground.frame.cell(site)).collect()
@@ -195,7 +195,7 @@ impl Scene {
         Some(Found {
             back: walk(road.back),
             front: walk(road.front),
-            shield: build_shield(&ground, &residues, &road, pose.point().cell()),
+            shield: build_shield(&ground, road.back(&residues), pose.point().cell()),
         })
     }
 

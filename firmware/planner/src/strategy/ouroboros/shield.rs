@@ -84,13 +84,7 @@ impl Shield {
         if shield.along == (0, 0) {
             return Err(Flaw::OffBranch);
         }
-        for side in [0, 1] {
-            let reach = shield.reach_obstacle(ground, side).ok_or(Flaw::OpenEnd)?;
-            if let Some(place) = shield.reach.get_mut(side) {
-                *place = reach;
-            }
-        }
-        shield.check_cut(ground)?;
+        shield.stretch(ground)?;
         let touches = |cell: Cell| {
             let far = |a: i32, b: i32| ((a >> 1) - (b >> 1)).abs() > CLEAR_CELLS;
             !(far(cell.x, robot.x) || far(cell.y, robot.y))
@@ -99,6 +93,23 @@ impl Shield {
             return Err(Flaw::AtRobot);
         }
         Ok(shield)
+    }
+
+    /// Let it reach from obstacle to obstacle, as they are now.
+    ///
+    /// # Errors
+    /// When they are not there, or it cuts more than a branch.
+    pub fn stretch<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        ground: &Ground<'_, TILES, SLOTS>,
+    ) -> Result<(), Flaw> {
+        for side in [0, 1] {
+            let reach = self.reach_obstacle(ground, side).ok_or(Flaw::OpenEnd)?;
+            if let Some(place) = self.reach.get_mut(side) {
+                *place = reach;
+            }
+        }
+        self.check_cut(ground)
     }
 
     /// Cells to one side before the space ends; `None` if it does not, or what is there was never measured.

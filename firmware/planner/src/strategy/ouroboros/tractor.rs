@@ -72,6 +72,12 @@ pub fn suits<const SLOTS: usize>(
         && !marks.is_marked(centre)
 }
 
+/// Whether it may be moved to a cell of the way behind the robot: far enough from it, and not marked.
+#[must_use]
+pub fn may_be_at<const SLOTS: usize>(cell: Cell, marks: &Marks<SLOTS>, robot: &Pose) -> bool {
+    distance_m(cell, robot.point().cell()) >= LEAST_BEHIND_M && !marks.is_marked(cell)
+}
+
 fn is_behind(cell: Cell, robot: &Pose) -> bool {
     let (sin, cos) = math::sin_cos(robot.yaw_rad);
     let at = robot.point().cell();
