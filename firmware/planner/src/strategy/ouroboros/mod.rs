@@ -239,7 +239,6 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         match shield {
             Some(shield) => {
                 self.shield = Some(shield);
-                self.lost_rounds = 0;
                 self.stage = Stage::Close(robot);
             }
             None if self.shield.is_some() => return self.lose(),
@@ -366,6 +365,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     ) -> Option<Outlook> {
         let road = self.road_to_tractor(round, lent, robot);
         if let Some(road) = road {
+            self.lost_rounds = 0;
             self.loop_m = self.back_m + road.steps() as f32 * STEP_M;
             let too_long = round.limits.is_too_long(self.loop_m, round.frontier_m()?);
             if too_long || self.detour.is_over(round.limits) {
