@@ -73,6 +73,12 @@ pub struct Simulator<'w> {
     overlap: Overlap,
 }
 
+/// The greatest wire quantity that promises no more than this.
+fn at_most(quantity: f64) -> I4F12 {
+    let least_step = f64::from(1_u32 << I4F12::FRAC_NBITS);
+    I4F12::saturating_from_num((quantity * least_step).floor() / least_step)
+}
+
 impl<'w> Simulator<'w> {
     /// Puts the robot at its start.
     ///
@@ -234,6 +240,9 @@ impl<'w> Simulator<'w> {
             robot_radius_mm: (RADIUS_M * 1000.0) as u16,
             max_linear: I4F12::saturating_from_num(limits.linear_mps),
             max_angular: I4F12::saturating_from_num(limits.angular_radps),
+            linear_accel: at_most(limits.acceleration_mps2.min(limits.braking_mps2)),
+            angular_accel: at_most(limits.angular_radps2),
+            period_ms: u16::try_from(self.config.period_ms).unwrap_or(u16::MAX),
         }
     }
 

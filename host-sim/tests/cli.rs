@@ -417,6 +417,44 @@ fn bad_worlds_are_refused_in_one_line() {
     fs::write(folder.path().join("short.png"), png).unwrap();
     edit("png.yaml", "walls.pgm", "short.png");
     refused(&folder, &["explore", "png.yaml"], &["short.png"]);
+    let mut png = Vec::new();
+    let mut header = png::Encoder::new(&mut png, 40, 40);
+    header.set_color(png::ColorType::Grayscale);
+    let mut writer = header.write_header().unwrap();
+    let speckled: Vec<u8> = (0..1600_u32).map(|k| ((k * k * 37) >> 3) as u8).collect();
+    writer.write_image_data(&speckled).unwrap();
+    writer.finish().unwrap();
+    for length in [8, 20, 40, png.len() / 2, png.len() - 13] {
+        fs::write(folder.path().join("short.png"), &png[..length]).unwrap();
+        refused(
+            &folder,
+            &["explore", "png.yaml"],
+            &["short.png", "truncated", "copy the whole file"],
+        );
+    }
+    // Numbers that are none, or none that a robot could drive in.
+    for (from, to, words) in [
+        ("resolution: 0.1", "resolution: .nan", "finite"),
+        ("resolution: 0.1", "resolution: -0.1", "above 0 m"),
+        ("resolution: 0.1", "resolution: 1e9", "1000 m a side"),
+        ("origin: [0, 0, 0]", "origin: [.inf, 0, 0]", "finite"),
+        ("origin: [0, 0, 0]", "origin: [500000, 0, 0]", "3000 m"),
+        ("origin: [0, 0, 0]", "origin: [0, 0, 1]", "yaw"),
+        (
+            "free_thresh: 0.196",
+            "free_thresh: 0.9",
+            "free_thresh (0.9)",
+        ),
+        ("negate: 0", "negate: 2", "0 or 1"),
+        ("[2, 2, 0]", "[.nan, 2, 0]", "finite"),
+    ] {
+        edit("number.yaml", from, to);
+        refused(
+            &folder,
+            &["explore", "number.yaml"],
+            &["number.yaml", words],
+        );
+    }
     // A good world before a bad one is not run.
     refused(&folder, &["explore", "good.yaml", "key.yaml"], &["colour"]);
 }
@@ -446,13 +484,38 @@ fn bad_arguments_are_refused_in_one_line() {
     );
     explore(&["--odometry", "gps"], &["gps", "truth, noisy"]);
     explore(&["--start", "7"], &["robots[7]", "2 starts"]);
-    explore(&["--start", "-1"], &["-1"]);
-    explore(&["--seed", "x"], &["'x'", "whole number"]);
-    explore(&["--time-limit", "0"], &["'0'", "above 0"]);
-    explore(&["--map-shape", "64"], &["'64'", "128x32"]);
+    for bad in ["x", "-1", "1.5", "99999999999999999999"] {
+        explore(&["--start", bad], &[bad, "whole number"]);
+        explore(&["--seed", bad], &[bad, "whole number"]);
+    }
+    for bad in ["0", "-5", "nan", "inf", "1e300"] {
+        explore(&["--time-limit", bad], &[bad, "above 0"]);
+    }
+    for bad in ["64", "-5x5", "nanx5", "infx5", "0x9"] {
+        explore(&["--map-shape", bad], &[bad, "128x32"]);
+    }
+    for bad in ["", ","] {
+        explore(&["--fault", bad], &["no fault is named", "drop=P"]);
+    }
+    explore(&["--fault", "drop=nan"], &["drop=nan", "0 to 0.5"]);
+    explore(&["--fault", "reset@-1"], &["reset@-1", "from 1 on"]);
+    explore(
+        &["--fault", "drop=0.1,drop=0.2"],
+        &["'drop'", "given twice"],
+    );
+    explore(
+        &["--strategy", "bvp", "--fault", "drop=0.1"],
+        &["bvp", "leave --fault out"],
+    );
+    explore(
+        &["--strategy", "bvp", "--link", "qemu"],
+        &["bvp", "leave --link out"],
+    );
+    refused(&folder, &["explore", ""], &["without a name", "office"]);
     explore(&["--map-shape", "500x500"], &["--map-shape", "400"]);
     fs::write(folder.path().join("file"), "").unwrap();
     explore(&["--out", "file/sub"], &["file/sub", "--out"]);
+    explore(&["--out", "file"], &["file", "--out"]);
     refused(&folder, &["explor"], &["explor", "--help"]);
     refused(&folder, &["explore", "--fast"], &["--fast", "--help"]);
 }
@@ -506,36 +569,4 @@ fn bad_windows_are_refused_in_one_line() {
         &["solve", "w.txt", "--out", "no/where.csv"],
         &["no/where.csv", "--out"],
     );
-}
-
-/// Something answers at the other end of the line, but it is no Fieldline device.
-#[cfg(unix)]
-#[test]
-fn a_peer_that_is_not_us_is_refused_in_one_line() {
-    use serialport::{SerialPort as _, TTYPort};
-    use std::io::{Read as _, Write as _};
-    let folder = folder();
-    let (mut peer, line) = TTYPort::pair().expect("a pty");
-    let device = line.name().expect("its name");
-    peer.set_timeout(core::time::Duration::from_millis(50))
-        .unwrap();
-    let talk = std::thread::spawn(move || {
-        let mut heard = [0; 256];
-        // Until the line is closed at the other end.
-        for _ in 0..400 {
-            match peer.read(&mut heard) {
-                Ok(_) => peer.write_all(b"\r\nlogin: \0\x07garbage\0").unwrap_or(()),
-                Err(error) if error.kind() == std::io::ErrorKind::TimedOut => {}
-                Err(_) => break,
-            }
-        }
-    });
-    let link = format!("serial:{device}");
-    refused(
-        &folder,
-        &["explore", "loop", "--realtime", "--link", &link],
-        &[&device],
-    );
-    drop(line);
-    talk.join().unwrap();
 }

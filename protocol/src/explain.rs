@@ -20,6 +20,13 @@ impl fmt::Display for Parameter {
             Self::Radius => "the robot's radius must be 50 to 2000 mm",
             Self::MaxLinear => "the greatest speed must be positive",
             Self::MaxAngular => "the greatest turn rate must be positive",
+            Self::LinearAccel => {
+                "the linear acceleration must stop the robot from its greatest speed within 3 s"
+            }
+            Self::AngularAccel => {
+                "the angular acceleration must stop the robot from its greatest turn rate within 3 s"
+            }
+            Self::Period => "the time from one observation to the next must be 100 to 400 ms",
         })
     }
 }

@@ -137,6 +137,12 @@ pub struct Start {
     pub max_linear: I4F12,
     /// Greatest turn rate, radians a second.
     pub max_angular: I4F12,
+    /// Acceleration and braking that the robot can be relied on for, metres a second squared.
+    pub linear_accel: I4F12,
+    /// The same of its turn rate, radians a second squared.
+    pub angular_accel: I4F12,
+    /// Time from one observation to the next, milliseconds; a command is driven for so long.
+    pub period_ms: u16,
 }
 
 /// What the host wants of the session.
@@ -373,6 +379,12 @@ pub enum Parameter {
     MaxLinear,
     /// [`Start::max_angular`]: positive.
     MaxAngular,
+    /// [`Start::linear_accel`]: from the greatest speed to rest in 3 s at the most.
+    LinearAccel,
+    /// [`Start::angular_accel`]: from the greatest turn rate to rest in 3 s at the most.
+    AngularAccel,
+    /// [`Start::period_ms`]: 100 to 400.
+    Period,
 }
 
 /// Why a request was refused.

@@ -83,6 +83,13 @@ fn request_hello() {
 }
 
 #[test]
+fn strategies_have_their_numbers() {
+    for (strategy, number) in [(Strategy::Frontier, 0), (Strategy::Ouroboros, 1)] {
+        assert_eq!(postcard::to_allocvec(&strategy).unwrap(), [number]);
+    }
+}
+
+#[test]
 fn request_control_start() {
     let laser = Laser {
         x: short(0.5),
@@ -102,6 +109,9 @@ fn request_control_start() {
             robot_radius_mm: 300,
             max_linear: short(0.75),
             max_angular: short(2.5),
+            linear_accel: short(0.25),
+            angular_accel: short(1.75),
+            period_ms: 200,
         })),
         &[
             1, 0, // Control, Start
@@ -118,6 +128,9 @@ fn request_control_start() {
             0xac, 0x02, // radius 300 mm
             0x80, 0x30, // 0.75 m/s
             0x80, 0xa0, 0x01, // 2.5 rad/s
+            0x80, 0x10, // 0.25 m/s² = 1024/4096
+            0x80, 0x70, // 1.75 rad/s² = 7168/4096
+            0xc8, 0x01, // 200 ms
         ],
     );
 }
@@ -374,6 +387,9 @@ fn reply_refused() {
         (Refusal::BadParameter(Parameter::Radius), &[7, 4, 6]),
         (Refusal::BadParameter(Parameter::MaxLinear), &[7, 4, 7]),
         (Refusal::BadParameter(Parameter::MaxAngular), &[7, 4, 8]),
+        (Refusal::BadParameter(Parameter::LinearAccel), &[7, 4, 9]),
+        (Refusal::BadParameter(Parameter::AngularAccel), &[7, 4, 10]),
+        (Refusal::BadParameter(Parameter::Period), &[7, 4, 11]),
         (Refusal::UnknownStrategy, &[7, 5]),
     ] {
         reply_is(Reply::Refused(refusal), body);

@@ -94,6 +94,9 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         robot_radius_mm: u16::MAX,
         max_linear: far,
         max_angular: far,
+        linear_accel: far,
+        angular_accel: far,
+        period_ms: u16::MAX,
     }));
     let file = "f".repeat(CRASH_FILE_BYTES).as_str().try_into().unwrap();
     let crash = Crash {

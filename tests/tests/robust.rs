@@ -101,7 +101,17 @@ impl Madman {
             robot_radius_mm: self.random.between(50, 2000) as u16,
             max_linear: self.narrow().max(I4F12::DELTA),
             max_angular: self.narrow().max(I4F12::DELTA),
+            linear_accel: I4F12::MAX,
+            angular_accel: I4F12::MAX,
+            period_ms: self.random.between(100, 400) as u16,
         };
+        for (speed, accel) in [
+            (start.max_linear, &mut start.linear_accel),
+            (start.max_angular, &mut start.angular_accel),
+        ] {
+            let least = i64::from(speed.to_bits()) / 3 + 1;
+            *accel = I4F12::from_bits(self.random.between(least, i64::from(i16::MAX)) as i16);
+        }
         if self.random.once_in(30) {
             start.box_tiles = (self.random.bits() as u8, self.random.bits() as u8);
             start.robot_radius_mm = self.random.bits() as u16;

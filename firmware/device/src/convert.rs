@@ -101,6 +101,9 @@ pub fn config(start: &wire::Start) -> Config {
         tight_radius_m: robot_radius_m * (default.tight_radius_m / default.robot_radius_m),
         max_linear_mps: float(start.max_linear),
         max_angular_radps: float(start.max_angular),
+        linear_accel_mps2: float(start.linear_accel),
+        angular_accel_radps2: float(start.angular_accel),
+        period_s: f32::from(start.period_ms) / 1000.0,
         ..default
     }
 }
@@ -148,7 +151,34 @@ mod tests {
     use fieldline_protocol::message as wire;
     use fixed::types::{I4F12, I16F16};
 
-    use super::{float, quantity, wire_frontier, wire_twist};
+    use super::{config, float, quantity, wire_frontier, wire_twist};
+
+    #[test]
+    fn a_session_takes_its_limits_from_the_host() {
+        let start = wire::Start {
+            box_tiles: (30, 12),
+            robot_radius_mm: 250,
+            max_linear: I4F12::lit("0.5"),
+            max_angular: I4F12::lit("1.5"),
+            linear_accel: I4F12::lit("0.25"),
+            angular_accel: I4F12::lit("0.75"),
+            period_ms: 125,
+            ..wire::Start::default()
+        };
+        let config = config(&start);
+        assert_eq!(config.box_tiles, (30, 12));
+        assert_eq!(
+            [
+                config.robot_radius_m,
+                config.max_linear_mps,
+                config.max_angular_radps,
+                config.linear_accel_mps2,
+                config.angular_accel_radps2,
+                config.period_s,
+            ],
+            [0.25, 0.5, 1.5, 0.25, 0.75, 0.125]
+        );
+    }
 
     #[test]
     fn every_short_quantity_survives_both_ways() {

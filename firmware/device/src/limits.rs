@@ -16,6 +16,12 @@ const LEVEL: I4F12 = I4F12::lit("0.05");
 const REACH: I4F12 = I4F12::lit("2");
 /// Radii that a robot may have, millimetres.
 const RADII_MM: core::ops::RangeInclusive<u16> = 50..=2000;
+/// Time in which a robot must come to rest from its greatest speed, seconds: the drive looks four seconds ahead, a period and
+/// the braking after it.
+const REST_S: i32 = 3;
+/// Periods that a session may have, milliseconds: at most the stale limit less what a retry takes, and long enough to step in.
+const PERIODS_MS: core::ops::RangeInclusive<u16> = 100..=400;
+const _: () = assert!(*PERIODS_MS.end() < crate::STALE_MS);
 
 /// Whether a session may run with these parameters in a map of this size.
 ///
@@ -31,12 +37,26 @@ pub fn check_start<const TILES: usize, const SLOTS: usize>(start: &Start) -> Res
         (RADII_MM.contains(&start.robot_radius_mm), Parameter::Radius),
         (start.max_linear > I4F12::ZERO, Parameter::MaxLinear),
         (start.max_angular > I4F12::ZERO, Parameter::MaxAngular),
+        (
+            comes_to_rest(start.max_linear, start.linear_accel),
+            Parameter::LinearAccel,
+        ),
+        (
+            comes_to_rest(start.max_angular, start.angular_accel),
+            Parameter::AngularAccel,
+        ),
+        (PERIODS_MS.contains(&start.period_ms), Parameter::Period),
     ];
     first_broken(&limits)?;
     for (number, laser) in start.lasers.iter().enumerate() {
         check_laser(laser, number == 0)?;
     }
     Ok(())
+}
+
+/// Whether this acceleration brakes from this speed within [`REST_S`].
+fn comes_to_rest(speed: I4F12, acceleration: I4F12) -> bool {
+    i32::from(acceleration.to_bits()) * REST_S >= i32::from(speed.to_bits())
 }
 
 fn check_laser(laser: &Laser, level: bool) -> Result<(), Refusal> {
@@ -106,6 +126,13 @@ mod tests {
     #[test]
     fn good_parameters_pass() {
         assert_eq!(check_start::<4, 400>(&start()), Ok(()));
+        let slow = Start {
+            linear_accel: I4F12::lit("0.234"),
+            angular_accel: I4F12::lit("0.814"),
+            period_ms: 400,
+            ..start()
+        };
+        assert_eq!(check_start::<4, 400>(&slow), Ok(()));
         let upward = |laser: &mut Laser| laser.bearing_step = I16F16::lit("0.0349");
         assert_eq!(check_start::<4, 400>(&with_laser(upward)), Ok(()));
     }
@@ -148,6 +175,42 @@ mod tests {
                     ..start()
                 },
                 Parameter::MaxAngular,
+            ),
+            (
+                Start {
+                    // 0.7 m/s in a hair more than 3 s.
+                    linear_accel: I4F12::lit("0.233"),
+                    ..start()
+                },
+                Parameter::LinearAccel,
+            ),
+            (
+                Start {
+                    linear_accel: I4F12::MIN,
+                    ..start()
+                },
+                Parameter::LinearAccel,
+            ),
+            (
+                Start {
+                    angular_accel: I4F12::lit("0.813"),
+                    ..start()
+                },
+                Parameter::AngularAccel,
+            ),
+            (
+                Start {
+                    period_ms: 99,
+                    ..start()
+                },
+                Parameter::Period,
+            ),
+            (
+                Start {
+                    period_ms: 401,
+                    ..start()
+                },
+                Parameter::Period,
             ),
             (with_laser(|laser| laser.beams = 0), Parameter::Beams),
             (with_laser(|laser| laser.beams = 182), Parameter::Beams),

@@ -39,19 +39,17 @@ pub enum Space {
     #[default]
     KnownFree,
     /// All passable cells, explored or not, from a box slightly larger than the known area, so that ways may run through
-    /// the unexplored [Ouroboros, step 1].
-    NotObstacle {
-        /// Whether the same frontier cells are anchors. If not, the frontier cells are the unexplored cells beside an
-        /// explored one that the thinning happens to leave, as in the paper.
-        anchored: bool,
-    },
+    /// the unexplored [Ouroboros, step 1]. The frontier cells are the unexplored cells beside an explored one that the thinning happens to leave, as in the paper.
+    NotObstacle,
+    /// [`Self::NotObstacle`], with the anchors of [`Self::KnownFree`].
+    AnchoredNotObstacle,
 }
 
 impl Space {
     const fn border(self) -> Border {
         match self {
-            Self::KnownFree | Self::NotObstacle { anchored: true } => Border::Explored,
-            Self::NotObstacle { anchored: false } => Border::Unexplored,
+            Self::KnownFree | Self::AnchoredNotObstacle => Border::Explored,
+            Self::NotObstacle => Border::Unexplored,
         }
     }
 }
@@ -280,7 +278,7 @@ impl<const SLOTS: usize> Topology<SLOTS> {
             let index = (up * 16 + k) * frame.shape.words_per_row() + word;
             let cells = match self.space {
                 Space::KnownFree => explored,
-                Space::NotObstacle { .. } => explored | unexplored,
+                Space::NotObstacle | Space::AnchoredNotObstacle => explored | unexplored,
             };
             for (plane, half) in [
                 (&mut self.next, cells),

@@ -43,16 +43,16 @@ pub(super) struct ExploreArgs {
     #[arg(long)]
     pub(super) link: Option<LinkSpec>,
     /// Decides every random number of the run
-    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<u64>)]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<u64>, allow_negative_numbers = true)]
     pub(super) seed: u64,
     /// Which of the world's start poses, from 0
-    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<usize>)]
+    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<usize>, allow_negative_numbers = true)]
     pub(super) start: usize,
     /// What the robot believes of its motion
     #[arg(long, value_enum, default_value_t = OdometryArg::Truth)]
     pub(super) odometry: OdometryArg,
     /// Simulated seconds after which a run ends
-    #[arg(long, value_name = "S", default_value = "3600", value_parser = time_limit)]
+    #[arg(long, value_name = "S", default_value = "3600", value_parser = time_limit, allow_negative_numbers = true)]
     pub(super) time_limit: u32,
     /// Folder of the run; of several runs, the folder of their folders [default: out/WORLD-STRATEGY-SEED]
     #[arg(long, value_name = "DIR")]
@@ -64,7 +64,7 @@ pub(super) struct ExploreArgs {
     #[arg(long, value_name = "SPEC")]
     pub(super) fault: Option<FaultArg>,
     /// Extent that the device's map can hold, in metres across and up, as in 128x32 [default: chosen for the world]
-    #[arg(long, value_name = "AxB", value_parser = map_shape)]
+    #[arg(long, value_name = "AxB", value_parser = map_shape, allow_hyphen_values = true)]
     pub(super) map_shape: Option<(u8, u8)>,
     /// Compare every step's heading with that of the converged window
     #[arg(long)]
@@ -162,12 +162,14 @@ fn time_limit(text: &str) -> Result<u32, String> {
 
 /// `AxB` metres to tiles.
 fn map_shape(text: &str) -> Result<(u8, u8), String> {
-    let side = |text: &str| text.trim().parse::<f64>().ok().filter(|m| *m > 0.0);
+    let side = |text: &str| text.trim().parse::<f64>().ok();
     let sides = text.split_once('x');
-    match sides.and_then(|(a, b)| side(a).zip(side(b))) {
-        Some((across_m, up_m)) => Ok(host_sim::trial::shape::of_metres(across_m, up_m)),
-        None => Err("give metres across and up, as in 128x32".into()),
-    }
+    sides
+        .and_then(|(a, b)| side(a).zip(side(b)))
+        .and_then(|(across_m, up_m)| host_sim::trial::shape::of_metres(across_m, up_m))
+        .ok_or_else(|| {
+            "give metres across and up, each above 0 and at most 812, as in 128x32".into()
+        })
 }
 
 #[cfg(test)]
@@ -196,7 +198,8 @@ mod tests {
             assert!(time_limit(bad).is_err(), "{bad}");
         }
         assert_eq!(map_shape("128x32"), Ok((40, 10)));
-        for bad in ["128", "x", "-1x5", "0x5", "axb", "nanx3"] {
+        assert_eq!(map_shape("1 x 1"), Ok((4, 4)));
+        for bad in ["128", "x", "-1x5", "0x5", "axb", "nanx3", "infx3", "3x1e9"] {
             assert!(map_shape(bad).is_err(), "{bad}");
         }
     }

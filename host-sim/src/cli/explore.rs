@@ -124,6 +124,7 @@ fn mission(args: &ExploreArgs, link: &LinkSpec) -> Mission {
         time_limit_ms: args.time_limit,
         box_tiles: args.map_shape,
         check_field: args.check_field,
+        ..Mission::default()
     }
 }
 

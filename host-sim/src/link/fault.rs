@@ -50,8 +50,12 @@ pub struct Faults {
 /// Why a fault specification was not understood.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FaultsError {
+    /// No fault at all.
+    Nothing,
     /// A word that is no fault.
     Unknown(String),
+    /// A fault that was named before.
+    Twice(String),
     /// Not a probability.
     BadProbability(String),
     /// Not a frame's number.
@@ -60,11 +64,11 @@ pub enum FaultsError {
 
 impl fmt::Display for FaultsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const KNOWN: &str = "use drop=P, duplicate=P, corrupt=P, truncate=P, delay=P, reset@N, silent@N, separated by commas";
         match self {
-            Self::Unknown(word) => write!(
-                f,
-                "unknown fault '{word}'; use drop=P, duplicate=P, corrupt=P, truncate=P, delay=P, reset@N, silent@N, separated by commas"
-            ),
+            Self::Nothing => write!(f, "no fault is named; {KNOWN}"),
+            Self::Unknown(word) => write!(f, "unknown fault '{word}'; {KNOWN}"),
+            Self::Twice(name) => write!(f, "'{name}' is given twice; keep one"),
             Self::BadProbability(word) => {
                 write!(f, "bad probability in '{word}'; it must be 0 to 0.5")
             }
@@ -85,12 +89,18 @@ impl FromStr for Faults {
 
     fn from_str(text: &str) -> Result<Self, FaultsError> {
         let mut faults = Self::default();
-        for word in text
-            .split(',')
-            .map(str::trim)
-            .filter(|word| !word.is_empty())
-        {
+        let mut named = Vec::new();
+        let words = text.split(',').map(str::trim);
+        for word in words.filter(|word| !word.is_empty()) {
             faults.read(word)?;
+            let name = word.split(['=', '@']).next().unwrap_or(word).trim();
+            if named.contains(&name) {
+                return Err(FaultsError::Twice(name.into()));
+            }
+            named.push(name);
+        }
+        if named.is_empty() {
+            return Err(FaultsError::Nothing);
         }
         Ok(faults)
     }
@@ -391,7 +401,6 @@ mod tests {
                 silent_at: Some(200),
             }
         );
-        assert_eq!("".parse(), Ok(Faults::default()));
     }
 
     #[test]
@@ -401,6 +410,15 @@ mod tests {
             error("drop=0.1,loss=0.1"),
             FaultsError::Unknown("loss=0.1".into())
         );
+        for text in ["", " , "] {
+            assert_eq!(error(text), FaultsError::Nothing);
+        }
+        for (text, name) in [
+            ("drop=0.1,drop=0.2", "drop"),
+            ("reset@3, drop=0, reset @4", "reset"),
+        ] {
+            assert_eq!(error(text), FaultsError::Twice(name.into()));
+        }
         assert_eq!(error("drop"), FaultsError::Unknown("drop".into()));
         assert_eq!(error("explode@3"), FaultsError::Unknown("explode@3".into()));
         for text in ["drop=1", "drop=-0.1", "drop=", "drop=NaN", "drop=2%"] {

@@ -186,6 +186,10 @@ fn the_start_message_announces_what_is_simulated() {
     assert!(close(start.lasers[1].x, 0.15) && close(start.lasers[1].z, 0.45));
     assert!(close(start.lasers[1].pitch, 20.0_f64.to_radians()));
     assert!(close(start.max_linear, 0.7) && close(start.max_angular, 140.0_f64.to_radians()));
+    // Braking is better than the 0.3 m/s² of speeding up; what is promised of both is the less, rounded down.
+    assert_eq!(start.linear_accel, I4F12::from_bits(1228));
+    assert_eq!(start.angular_accel, I4F12::from_bits(7148));
+    assert_eq!(start.period_ms, 200);
 }
 
 #[test]

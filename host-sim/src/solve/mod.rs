@@ -54,7 +54,7 @@ pub struct Answer {
     pub heading_rad: Option<f32>,
     /// Mean `|p_r − p|` around the robot; `null` without a robot.
     pub p_diff: Option<f32>,
-    /// No goal can be reached (from the robot, if there is one): there is nothing to follow.
+    /// Nothing of any goal is felt (at the robot, if there is one): there is nothing to follow.
     pub flat: bool,
 }
 
@@ -83,7 +83,8 @@ pub fn run(sheet: &Sheet, epsilon: Option<&[Vec<f32>]>, solver: Solver) -> Solve
     let heading = sheet
         .robot
         .and_then(|(x, y)| descent::heading(&window, x, y));
-    let unreached = |(x, y)| !window.is_reached(x, y) && !window.is_goal(x, y);
+    // No way to a goal, or so far from it, or so much repelled, that nothing of it is left.
+    let flat_at = |(x, y)| window.q(x, y) == 0.0;
     let answer = Answer {
         solver: solver.name(),
         method: match solution.method {
@@ -102,7 +103,7 @@ pub fn run(sheet: &Sheet, epsilon: Option<&[Vec<f32>]>, solver: Solver) -> Solve
         residual: solution.residual,
         heading_rad: heading,
         p_diff: sheet.robot.map(|(x, y)| preference::p_diff(&window, x, y)),
-        flat: solution.stop == Stop::Flat || sheet.robot.is_some_and(unreached),
+        flat: solution.stop == Stop::Flat || sheet.robot.is_some_and(flat_at),
     };
     let q = |y: usize| {
         let scaled = |x| f64::from(window.q(x, y)) / f64::from(GOAL);

@@ -38,6 +38,8 @@ pub struct Mission {
     pub time_limit_ms: u32,
     /// The map's box in tiles; chosen for the world if `None`.
     pub box_tiles: Option<(u8, u8)>,
+    /// Time from one observation to the next, milliseconds.
+    pub period_ms: u32,
     /// Compare every heading with that of the converged window.
     pub check_field: bool,
 }
@@ -53,6 +55,7 @@ impl Default for Mission {
             noisy_odometry: false,
             time_limit_ms: 3_600_000,
             box_tiles: None,
+            period_ms: SimConfig::default().period_ms,
             check_field: false,
         }
     }
@@ -171,6 +174,7 @@ fn sim_config(mission: &Mission) -> SimConfig {
     SimConfig {
         seed: mission.seed,
         start: mission.start,
+        period_ms: mission.period_ms,
         odometry: if mission.noisy_odometry {
             OdometryModel::Noisy(OdometryNoise::default())
         } else {

@@ -1,10 +1,12 @@
-//! The shape of the map's box: so many tiles across and up, at most the device's slots in all.
+//! The shape of the map's box: so many tiles across (an even number) and up, at least 4 each, at most the device's slots in all.
 //!
 //! The box is toroidal: the known extent must fit it, wherever it lies. An extent that is not aligned with the tiles
 //! touches one tile more than its length says.
 
 /// Side of a tile, metres.
 pub const TILE_M: f64 = 3.2;
+/// Tiles that a box has at the least, either way.
+const LEAST: u32 = 4;
 
 /// The box for a world of this size: square where that holds the world, else as long as the world. Where not even that fits,
 /// square, and the run will say so.
@@ -13,33 +15,53 @@ pub const TILE_M: f64 = 3.2;
 /// for that is taken all the same, since walls at both ends are rarely touched.
 #[must_use]
 pub fn for_world(size_m: [f64; 2], slots: u16) -> (u8, u8) {
-    let slots = u32::from(slots).max(1);
-    let side = slots.isqrt();
-    [1, 0]
+    let slots = u32::from(slots);
+    let side = even_down(slots.isqrt());
+    let square = (side, side);
+    let (across, up) = [1, 0]
         .into_iter()
         .find_map(|spare| {
-            let [across, up] = size_m.map(|m| (m / TILE_M).ceil().max(1.0) as u32 + spare);
-            match (across.max(up) <= side, across * up <= slots) {
-                (true, _) => Some((side, side)),
-                (false, true) if across > up => Some((across, slots / across)),
-                (false, true) => Some((slots / up, up)),
-                _ => None,
-            }
+            let least = size_m.map(|m| tiles(m).saturating_add(spare));
+            let [across, up] = least;
+            let wide = even_up(across);
+            let long = if across > up {
+                (wide, slots / wide)
+            } else {
+                (even_down(slots / up), up)
+            };
+            [square, long]
+                .into_iter()
+                .find(|&(across, up)| across >= least[0] && up >= least[1] && up >= LEAST)
         })
-        .map_or((narrow(side), narrow(side)), |(across, up)| {
-            (narrow(across), narrow(up))
-        })
+        .unwrap_or(square);
+    (narrow(across), narrow(up))
 }
 
-/// The box of so many metres, rounded up to tiles.
+/// The box of so many metres, rounded up to what a device can have; `None` if no device could.
 #[must_use]
-pub fn of_metres(across_m: f64, up_m: f64) -> (u8, u8) {
-    let tiles = |metres: f64| narrow((metres / TILE_M - 1e-9).ceil().max(1.0) as u32);
-    (tiles(across_m), tiles(up_m))
+pub fn of_metres(across_m: f64, up_m: f64) -> Option<(u8, u8)> {
+    let possible = |metres: f64| metres > 0.0 && metres <= f64::from(u8::MAX - 1) * TILE_M;
+    (possible(across_m) && possible(up_m)).then(|| {
+        let [across, up] = [across_m, up_m].map(|m| tiles(m - 1e-9).max(LEAST));
+        (narrow(even_up(across)), narrow(up))
+    })
+}
+
+/// Tiles that a length takes.
+fn tiles(metres: f64) -> u32 {
+    (metres / TILE_M).ceil().max(1.0) as u32
+}
+
+const fn even_up(tiles: u32) -> u32 {
+    tiles.saturating_add(tiles % 2)
+}
+
+const fn even_down(tiles: u32) -> u32 {
+    tiles - tiles % 2
 }
 
 fn narrow(tiles: u32) -> u8 {
-    u8::try_from(tiles).unwrap_or(u8::MAX)
+    u8::try_from(tiles).unwrap_or(u8::MAX - 1)
 }
 
 #[cfg(test)]
@@ -56,8 +78,9 @@ mod tests {
     fn long_worlds_get_a_long_box_that_holds_them() {
         for (size, expected) in [
             ([114.0, 30.0], (36, 11)),
-            ([114.0, 28.0], (37, 10)),
+            ([114.0, 28.0], (38, 10)),
             ([30.0, 96.0], (12, 31)),
+            ([30.0, 112.0], (10, 35)),
             ([72.0, 13.0], (24, 16)),
         ] {
             let (across, up) = for_world(size, 400);
@@ -73,9 +96,28 @@ mod tests {
     }
 
     #[test]
-    fn metres_round_up_to_tiles() {
-        assert_eq!(of_metres(64.0, 64.0), (20, 20));
-        assert_eq!(of_metres(64.1, 3.0), (21, 1));
-        assert_eq!(of_metres(1e9, 0.0), (255, 1));
+    fn metres_round_up_to_what_a_device_can_have() {
+        assert_eq!(of_metres(64.0, 64.0), Some((20, 20)));
+        assert_eq!(of_metres(64.1, 3.0), Some((22, 4)));
+        assert_eq!(of_metres(3.2, 812.8), Some((4, 254)));
+        for bad in [0.0, -3.0, 813.0, 1e9, f64::INFINITY, f64::NAN] {
+            assert_eq!(of_metres(bad, 5.0), None, "{bad}");
+            assert_eq!(of_metres(5.0, bad), None, "{bad}");
+        }
+    }
+
+    /// Whatever the world, a device of the default image takes the box.
+    #[test]
+    fn every_world_gets_a_box_that_the_device_takes() {
+        for across in (1..2000).step_by(7) {
+            for up in (1..2000).step_by(11) {
+                let size = [f64::from(across) / 10.0, f64::from(up) / 10.0];
+                let (width, height) = for_world(size, 400);
+                assert!(
+                    fieldline_planner::map::Tiles::<1, 400>::fits(width, height),
+                    "{size:?}: {width} x {height}"
+                );
+            }
+        }
     }
 }

@@ -53,6 +53,11 @@ pub enum WorldError {
 impl fmt::Display for WorldError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Unreadable { file, .. } if file.is_empty() => write!(
+                f,
+                "a world without a name; give a world file or a built-in world: {}",
+                builtin::names().join(", ")
+            ),
             Self::Unreadable { file, reason } => write!(
                 f,
                 "{file}: cannot read this world ({reason}); give a world file or a built-in world: {}",

@@ -41,6 +41,11 @@ const KEYS: [&str; 10] = [
 /// Keys of its `elevation`.
 const ELEVATION_KEYS: [&str; 6] = ["image", "z_min", "z_max", "no_data", "resolution", "origin"];
 
+/// Greatest side of a world, metres.
+const LARGEST_M: f64 = 1_000.0;
+/// Greatest distance of a world's corner from the frame's axes, metres: frontiers are sent as cells of 0.1 m in 16 bits.
+const FARTHEST_M: f64 = 3_000.0;
+
 /// Reads, checks and builds.
 pub(super) fn load(path: &Path) -> Result<World, WorldError> {
     let file = path.display().to_string();
@@ -86,6 +91,7 @@ impl Loader<'_> {
                 return Err(self.value(keys.bad("image", reason)));
             }
         };
+        self.check_extent(&occupancy, &keys)?;
         let name = self.path.file_stem().unwrap_or_default().to_string_lossy();
         let mut world = World::new(&name, occupancy, elevation, plan.wall_height_m, Vec::new());
         world.starts = match plan.starts {
@@ -96,6 +102,29 @@ impl Loader<'_> {
             world.check_start(&self.file, index, *start)?;
         }
         Ok(world)
+    }
+
+    /// A world that neither the wire's cells nor this machine's memory can hold is a resolution or an origin misread.
+    fn check_extent(&self, plan: &Occupancy, keys: &Table<'_>) -> Result<(), WorldError> {
+        let sides = [plan.width(), plan.height()].map(|cells| cells as f64 * plan.resolution_m());
+        if sides.iter().any(|side| *side > LARGEST_M) {
+            let reason = format!(
+                "{} x {} pixels of {} m are more than {LARGEST_M} m a side; give metres a pixel",
+                plan.width(),
+                plan.height(),
+                plan.resolution_m()
+            );
+            return Err(self.value(keys.bad("resolution", &reason)));
+        }
+        let [x, y] = plan.origin_m();
+        let reach = [x, y, x + sides[0], y + sides[1]];
+        if reach.iter().any(|at| at.abs() > FARTHEST_M) {
+            let reason = format!(
+                "({x}, {y}) is farther than {FARTHEST_M} m; move the frame's origin to the world"
+            );
+            return Err(self.value(keys.bad("origin", &reason)));
+        }
+        Ok(())
     }
 
     fn elevation(&self, heights: &Heights<'_>) -> Result<Elevation, WorldError> {
@@ -316,11 +345,10 @@ impl World {
         } else {
             format!("most room is at ({:.2}, {:.2})", best.x_m, best.y_m)
         };
-        let room_m = self.distance.from_centre_m(self.occupancy.cell_at(x, y));
         Err(WorldError::Start {
             file: file.to_owned(),
             index,
-            reason: format!("({x:.2}, {y:.2}) {place} ({room_m:.2} m from its centre); {remedy}"),
+            reason: format!("({x:.2}, {y:.2}) {place}; {remedy}"),
         })
     }
 

@@ -39,6 +39,9 @@ pub(crate) fn start() -> Start {
         robot_radius_mm: 300,
         max_linear: I4F12::from_num(0.7),
         max_angular: I4F12::from_num(2.44),
+        linear_accel: I4F12::from_num(0.3),
+        angular_accel: I4F12::from_num(1.745),
+        period_ms: 200,
     }
 }
 

@@ -127,21 +127,28 @@ fn laser() -> impl Strategy<Value = Laser> {
 }
 
 fn start() -> impl Strategy<Value = Start> {
+    let strategy = prop_oneof![Just(Plan::Frontier), Just(Plan::Ouroboros)];
     (
-        any::<(u8, u8)>(),
+        (strategy, any::<(u8, u8)>()),
         list(laser()),
         any::<u16>(),
-        short(),
-        short(),
+        any::<u16>(),
+        [short(), short(), short(), short()],
     )
         .prop_map(
-            |(box_tiles, lasers, robot_radius_mm, max_linear, max_angular)| Start {
-                strategy: Plan::Frontier,
-                box_tiles,
-                lasers,
-                robot_radius_mm,
-                max_linear,
-                max_angular,
+            |((strategy, box_tiles), lasers, robot_radius_mm, period_ms, limits)| {
+                let [max_linear, max_angular, linear_accel, angular_accel] = limits;
+                Start {
+                    strategy,
+                    box_tiles,
+                    lasers,
+                    robot_radius_mm,
+                    max_linear,
+                    max_angular,
+                    linear_accel,
+                    angular_accel,
+                    period_ms,
+                }
             },
         )
 }
@@ -358,6 +365,9 @@ fn refusal() -> impl Strategy<Value = Refusal> {
         Refusal::BadBox,
         Refusal::BadParameter(Parameter::Beams),
         Refusal::BadParameter(Parameter::MaxAngular),
+        Refusal::BadParameter(Parameter::LinearAccel),
+        Refusal::BadParameter(Parameter::AngularAccel),
+        Refusal::BadParameter(Parameter::Period),
         Refusal::UnknownStrategy,
     ])
 }

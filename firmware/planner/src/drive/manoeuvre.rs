@@ -165,13 +165,33 @@ pub struct Search {
     first: Choice,
 }
 
+/// What an instalment of a search may look at; it ends with the pose that uses up either.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// Poses taken from the open list.
+    pub poses: u32,
+    /// Near points, counted anew for each pose that is tried against all of them.
+    pub points: u32,
+}
+
 /// What a search asks of a way out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Attempt {
     /// The clearance kept, metres.
     pub margin_m: f32,
-    /// It must lead farther along the field.
-    pub progress: bool,
+    /// Where it must lead.
+    pub leads: Leads,
+}
+
+/// Where a way out must lead. No value is zero: so an idle drive is all zeros, and takes no place in the image's flash.
+#[repr(u8)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Leads {
+    /// Elsewhere.
+    #[default]
+    Elsewhere = 1,
+    /// Farther along the field.
+    Farther = 2,
 }
 
 /// What a search runs on: what stands around, and the field's heading at a place, radians left of the robot's present one, or
@@ -211,7 +231,7 @@ impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
             error.abs() < ALIGNED_RAD
         });
         aligned
-            && (!attempt.progress || self.is_progress(place.after(length_m, 0.0)))
+            && (attempt.leads == Leads::Elsewhere || self.is_progress(place.after(length_m, 0.0)))
             && self
                 .surround
                 .is_arc_clear(place, length_m, 0.0, attempt.margin_m)
@@ -246,17 +266,21 @@ impl Search {
         self.first
     }
 
-    /// Look at `budget` more poses.
+    /// Look at more poses.
     pub fn advance<H: Fn(Place) -> Option<f32>>(
         &mut self,
         ground: &Ground<'_, H>,
-        budget: u32,
+        budget: Budget,
         scratch: &mut [u32],
     ) -> Found {
         let Some((visited, nodes)) = scratch.split_at_mut_checked(VISITED_WORDS) else {
             return Found::Nothing;
         };
-        for _ in 0..budget {
+        let mut points = 0;
+        for _ in 0..budget.poses {
+            if points >= budget.points {
+                break;
+            }
             let Some((index, node)) = self.open.pop(nodes) else {
                 return Found::Nothing;
             };
@@ -277,27 +301,33 @@ impl Search {
                     },
                 );
             }
-            if !self.expand(ground, (index, node), visited, nodes) {
+            let Some(tried) = self.expand(ground, (index, node), visited, nodes) else {
                 return Found::Nothing;
-            }
+            };
+            points += tried * ground.surround.points();
         }
         Found::Pending
     }
 
-    /// Enter the poses one motion away; false when there is no room for more.
+    /// Enter the poses one motion away; how many were tried, or `None` when there is no room for more.
     fn expand<H: Fn(Place) -> Option<f32>>(
         &mut self,
         ground: &Ground<'_, H>,
         (index, node): (u16, Node),
         visited: &mut [u32],
         nodes: &mut [u32],
-    ) -> bool {
+    ) -> Option<u32> {
+        let mut tried = 0;
         for (number, motion) in MOTIONS.iter().enumerate() {
             if index == 0 && !self.first.has(number) {
                 continue;
             }
             let place = node.place.after(motion.length_m, motion.turn_rad);
-            if !visit(visited, place) || !ground.surround.is_clear(place, self.attempt.margin_m) {
+            if !visit(visited, place) {
+                continue;
+            }
+            tried += 1;
+            if !ground.surround.is_clear(place, self.attempt.margin_m) {
                 continue;
             }
             let cost = node.cost + motion.cost;
@@ -313,10 +343,10 @@ impl Search {
                 is_end: false,
             };
             if !self.open.push(nodes, next) {
-                return false;
+                return None;
             }
         }
-        true
+        Some(tried)
     }
 
     /// The motions from the start to a node and on from there, the first one last; of a way too long, its beginning.
@@ -380,6 +410,11 @@ mod tests {
         points
     }
 
+    const BUDGET: Budget = Budget {
+        poses: 100,
+        points: 2_000,
+    };
+
     fn search(points: &[Point], pose: Pose, heading: f32) -> Option<(Plan, Surround)> {
         let mut scratch = std::vec![0; SCRATCH_WORDS];
         let surround = Surround::new(&pose, points);
@@ -392,13 +427,13 @@ mod tests {
         let mut search = Search::start(
             Attempt {
                 margin_m: 0.02,
-                progress: true,
+                leads: Leads::Farther,
             },
             Choice::ALL,
             &mut scratch,
         );
         loop {
-            match search.advance(&ground, 100, &mut scratch) {
+            match search.advance(&ground, BUDGET, &mut scratch) {
                 Found::Plan(plan) => return Some((plan, surround)),
                 Found::Pending => {}
                 Found::Nothing => return None,

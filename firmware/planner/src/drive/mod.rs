@@ -13,7 +13,7 @@ pub mod manoeuvre;
 mod open;
 pub mod surround;
 
-pub use manoeuvre::{Attempt, Choice, Found, Ground, Plan, Search};
+pub use manoeuvre::{Attempt, Budget, Choice, Found, Ground, Leads, Plan, Search};
 pub use surround::{Place, Surround};
 
 use crate::config::Config;
@@ -29,15 +29,15 @@ const CREEP_MARGIN_M: f32 = 0.025;
 const ATTEMPTS: [Attempt; 3] = [
     Attempt {
         margin_m: 0.03,
-        progress: true,
+        leads: Leads::Farther,
     },
     Attempt {
         margin_m: 0.012,
-        progress: true,
+        leads: Leads::Farther,
     },
     Attempt {
         margin_m: 0.012,
-        progress: false,
+        leads: Leads::Elsewhere,
     },
 ];
 /// Clearance kept while a manoeuvre is driven, metres.
@@ -51,8 +51,11 @@ const TURN_FIRST_RAD: f32 = 0.9;
 /// An error smaller than this is none, radians.
 const ALIGNED_RAD: f32 = 0.12;
 
-/// Poses looked at in a step of a search.
-const SEARCH_NODES: u32 = 250;
+/// Instalment of a search: what a step may look at.
+const SEARCH_BUDGET: Budget = Budget {
+    poses: 250,
+    points: 60_000,
+};
 /// Speed backwards where there is no room to turn, metres a second.
 const REVERSE_MPS: f32 = 0.15;
 /// An error this near to half a turn can be driven backwards, radians.
@@ -123,7 +126,7 @@ impl Drive {
         let Some(search) = &mut self.search else {
             return;
         };
-        match search.advance(ground, SEARCH_NODES, scratch) {
+        match search.advance(ground, SEARCH_BUDGET, scratch) {
             Found::Pending => {}
             Found::Plan(plan) => {
                 self.plan = plan;

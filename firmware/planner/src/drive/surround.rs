@@ -112,6 +112,12 @@ impl Surround {
         }
     }
 
+    /// How many points there are.
+    #[must_use]
+    pub fn points(&self) -> u32 {
+        self.threats.len() as u32
+    }
+
     /// Distance of the nearest point from the robot, metres.
     #[must_use]
     pub fn clearance_m(&self) -> f32 {

@@ -11,11 +11,12 @@ pub const MAX_ROWS: usize = 2048;
 
 const _: () = assert!(MAX_WORDS_PER_ROW * MAX_ROWS <= 1 << 16);
 
-/// Rows and words of a plane.
+/// Rows and words of a plane. Kept less one: a shape is never empty, and the least one is all zeros, so that a static
+/// planner costs no flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
-    words_per_row: u16,
-    rows: u16,
+    more_words: u16,
+    more_rows: u16,
 }
 
 /// A rectangle of whole words inside a plane.
@@ -76,8 +77,8 @@ impl core::error::Error for ShapeError {}
 impl Shape {
     /// One word.
     pub const UNIT: Self = Self {
-        words_per_row: 1,
-        rows: 1,
+        more_words: 0,
+        more_rows: 0,
     };
 
     /// A shape of `rows` rows of `words_per_row` words (32 cells each).
@@ -95,21 +96,21 @@ impl Shape {
             return Err(ShapeError::TooTall(rows));
         }
         Ok(Self {
-            words_per_row: words_per_row as u16,
-            rows: rows as u16,
+            more_words: words_per_row as u16 - 1,
+            more_rows: rows as u16 - 1,
         })
     }
 
     /// Words in a row.
     #[must_use]
     pub const fn words_per_row(self) -> usize {
-        self.words_per_row as usize
+        self.more_words as usize + 1
     }
 
     /// Rows.
     #[must_use]
     pub const fn rows(self) -> usize {
-        self.rows as usize
+        self.more_rows as usize + 1
     }
 
     /// Columns.
@@ -135,17 +136,17 @@ impl Shape {
     pub const fn whole(self) -> Region {
         Region {
             first_row: 0,
-            rows: self.rows,
+            rows: self.more_rows + 1,
             first_word: 0,
-            words: self.words_per_row,
+            words: self.more_words + 1,
         }
     }
 
     /// The smallest region that holds both corners and all between; corners outside are moved to the border.
     #[must_use]
     pub fn region(self, one: Site, other: Site) -> Region {
-        let row = |y: u16| y.min(self.rows - 1);
-        let word = |x: u16| (x / 32).min(self.words_per_row - 1);
+        let row = |y: u16| y.min(self.more_rows);
+        let word = |x: u16| (x / 32).min(self.more_words);
         let (top, bottom) = (row(one.y.min(other.y)), row(one.y.max(other.y)));
         let (left, right) = (word(one.x.min(other.x)), word(one.x.max(other.x)));
         Region {
@@ -183,13 +184,14 @@ impl Region {
     /// The part of the region that lies in a plane of this shape.
     #[must_use]
     pub(crate) fn within(self, shape: Shape) -> Self {
-        let first_row = self.first_row.min(shape.rows);
-        let first_word = self.first_word.min(shape.words_per_row);
+        let (rows, words) = (shape.more_rows + 1, shape.more_words + 1);
+        let first_row = self.first_row.min(rows);
+        let first_word = self.first_word.min(words);
         Self {
             first_row,
-            rows: self.rows.min(shape.rows - first_row),
+            rows: self.rows.min(rows - first_row),
             first_word,
-            words: self.words.min(shape.words_per_row - first_word),
+            words: self.words.min(words - first_word),
         }
     }
 }

@@ -27,49 +27,62 @@ use crate::grid::{Region, Shape, triple};
 pub(super) struct Patch {
     /// Index of the region's first word.
     origin: u32,
-    per_row: NonZeroU32,
+    /// Words in a row, less one: zeros are a patch of nothing.
+    more_per_row: u32,
     rows: u32,
     /// Words from a row to the next.
     stride: u16,
 }
 
 impl Patch {
+    /// Of nothing.
+    pub(super) const NONE: Self = Self {
+        origin: 0,
+        more_per_row: 0,
+        rows: 0,
+        stride: 0,
+    };
+
     pub(super) const fn new(shape: Shape, region: Region) -> Self {
         let stride = shape.words_per_row() as u16;
-        let (per_row, rows) = match NonZeroU32::new(region.words as u32) {
-            Some(words) => (words, region.rows as u32),
-            None => (NonZeroU32::MIN, 0),
+        let (more_per_row, rows) = match (region.words as u32).checked_sub(1) {
+            Some(more) => (more, region.rows as u32),
+            None => (0, 0),
         };
         Self {
             origin: region.first_row as u32 * stride as u32 + region.first_word as u32,
-            per_row,
+            more_per_row,
             rows,
             stride,
         }
     }
 
     pub(super) const fn words_per_row(&self) -> u32 {
-        self.per_row.get()
+        self.per_row().get()
+    }
+
+    const fn per_row(&self) -> NonZeroU32 {
+        NonZeroU32::MIN.saturating_add(self.more_per_row)
     }
 
     /// Words in the region.
     pub(super) const fn size(&self) -> usize {
-        (self.rows * self.per_row.get()) as usize
+        (self.rows * self.per_row().get()) as usize
     }
 
     /// Where word number `count` is in the plane.
     #[inline(always)]
     pub(super) fn index(&self, count: u32) -> usize {
-        let gap = u32::from(self.stride) - self.per_row.get();
-        (self.origin + count + count / self.per_row * gap) as usize
+        let gap = u32::from(self.stride) - self.per_row().get();
+        (self.origin + count + count / self.per_row() * gap) as usize
     }
 
     /// The cells of word number `count` that the first (or second) subiteration deletes.
     #[inline(always)]
     pub(super) fn deletions<const SECOND: bool>(&self, words: &[u32], count: u32) -> u32 {
-        let row = count / self.per_row;
-        let word = count - row * self.per_row.get();
-        let sides = sides(word, self.per_row.get());
+        let row = count / self.per_row();
+        let word = count - row * self.per_row().get();
+        let sides = sides(word, self.per_row().get());
         let index = self.origin + word + row * u32::from(self.stride);
         if row.wrapping_sub(1) < self.rows.wrapping_sub(2)
             && let Some([above, here, below]) = self.rows_around(words, index)

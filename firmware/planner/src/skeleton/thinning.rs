@@ -45,11 +45,11 @@ pub struct Thinning<const M: usize> {
     touched_from_before: bool,
     /// What the present group and the one before it lose, by the lowest bit of the group.
     losses: [Losses; 2],
-    /// Whether the present pass, and the one before, deleted anything.
+    /// Whether the present pass deleted anything, and whether the one before it did not.
     deleted: bool,
-    deleted_before: bool,
+    quiet_before: bool,
     passes: u16,
-    done: bool,
+    running: bool,
 }
 
 /// What the words of a group lose, before it is deleted.
@@ -80,7 +80,7 @@ impl<const M: usize> Thinning<M> {
     pub const fn new() -> Self {
         Self {
             shape: Shape::UNIT,
-            patch: Patch::new(Shape::UNIT, Shape::UNIT.whole()),
+            patch: Patch::NONE,
             marks: [[0; M]; 2],
             second: false,
             window: Window {
@@ -93,9 +93,9 @@ impl<const M: usize> Thinning<M> {
             touched_from_before: false,
             losses: [Losses::NONE; 2],
             deleted: false,
-            deleted_before: true,
+            quiet_before: false,
             passes: 0,
-            done: true,
+            running: false,
         }
     }
 
@@ -114,8 +114,8 @@ impl<const M: usize> Thinning<M> {
         (self.shape, self.patch) = (shape, Patch::new(shape, region));
         self.losses.iter_mut().for_each(Losses::clear);
         (self.second, self.todo) = (false, 0);
-        (self.deleted, self.deleted_before) = (false, true);
-        (self.passes, self.done) = (0, region.size() == 0);
+        (self.deleted, self.quiet_before) = (false, false);
+        (self.passes, self.running) = (0, region.size() != 0);
         for marks in &mut self.marks {
             for (group, mark) in marks.iter_mut().enumerate() {
                 *mark = words_of_group(region.size(), group);
@@ -134,7 +134,7 @@ impl<const M: usize> Thinning<M> {
     /// Whether the plane holds its skeleton.
     #[must_use]
     pub const fn is_done(&self) -> bool {
-        self.done
+        !self.running
     }
 
     /// Go on with at most `budget` units of work, on the plane that was started with and not written since. Cells set in
@@ -146,7 +146,7 @@ impl<const M: usize> Thinning<M> {
         debug_assert_eq!(plane.shape(), self.shape, "another plane than at the start");
         let words = plane.words_mut();
         let mut left = budget;
-        while !self.done {
+        while self.running {
             let through = if self.second {
                 self.pass::<true>(words, anchors, &mut left)
             } else {
@@ -277,8 +277,8 @@ impl<const M: usize> Thinning<M> {
         self.delete(groups.saturating_sub(2), words);
         self.delete(groups.saturating_sub(1), words);
         self.passes = self.passes.saturating_add(1);
-        self.done = !self.deleted && !self.deleted_before;
-        self.deleted_before = core::mem::take(&mut self.deleted);
+        self.running = self.deleted || !self.quiet_before;
+        self.quiet_before = !core::mem::take(&mut self.deleted);
         self.second = !self.second;
         self.begin_pass();
     }

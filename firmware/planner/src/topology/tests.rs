@@ -10,8 +10,8 @@ use crate::map::{Class, Tiles};
 
 const SPACES: [Space; 3] = [
     Space::KnownFree,
-    Space::NotObstacle { anchored: true },
-    Space::NotObstacle { anchored: false },
+    Space::AnchoredNotObstacle,
+    Space::NotObstacle,
 ];
 
 /// The scene's coarse cells, row 0 first: `#` obstacle, `.` free, `?` never measured.

@@ -1,6 +1,6 @@
 //! Whole explorations of small worlds: every loop is closed, and nothing holds the robot.
 //!
-//! A crude robot: it sees every coarse cell within 4 m that no obstacle hides, and in each round goes some cells along the
+//! A crude robot: it sees every coarse cell within 1.6 m that no obstacle hides, and in each round goes some cells along the
 //! road, by the shortest way that does not lead through the shield. Worlds are pictures as in [`super::scenes`]; digits are obstacles that
 //! name what a loop goes round.
 
@@ -11,7 +11,7 @@ use std::vec::Vec;
 use super::detour::Limits;
 use super::ground::quarters;
 use super::scenes::{Memory, POINT_M, SLOTS, TILES, at, pose_in};
-use super::{Ouroboros, Round};
+use super::{Ouroboros, Round, Tally};
 use crate::clearance::Disc;
 use crate::geometry::{Cell, Pose};
 use crate::map::{Class, Tiles};
@@ -19,8 +19,8 @@ use crate::strategy::Frontier;
 use crate::strategy::frontier::Outlook;
 use crate::topology::{Space, Topology};
 
-/// Cells that the robot sees.
-const SIGHT: i32 = 20;
+/// Cells that the robot sees: as much of these loops as 12 m are of one of 70 m.
+const SIGHT: i32 = 8;
 /// Cells that it goes in a round.
 const STRIDE: usize = 3;
 /// Rounds after which something holds the robot.
@@ -408,24 +408,117 @@ const TREES: &str = "
     #................................................#
     ##################################################";
 
+/// Every island is gone round, and nothing is left unknown.
+#[track_caller]
+fn assert_closes_all(world: &str) {
+    let mut exploration = Exploration::new(world, Limits::default());
+    exploration.run();
+    let islands: String = exploration.turned.keys().collect();
+    assert_eq!(exploration.rounded(), islands, "\n{}", exploration.drawn());
+    assert_eq!(exploration.unknown(), 0, "\n{}", exploration.drawn());
+    assert!(exploration.strategy.tally().closed > 0);
+}
+
 #[test]
-fn pictures() {
-    for world in [NESTED, ROOMS, TREES] {
-        let mut exploration = Exploration::new(
-            world,
-            Limits {
-                least_m: 5.0,
-                ..Limits::default()
-            },
+fn loops_in_a_row_of_halls_are_closed() {
+    assert_closes_all(THREE_LOOPS);
+}
+
+#[test]
+fn adjacent_loops_do_not_trap_the_robot() {
+    assert_closes_all(ADJACENT);
+}
+
+#[test]
+fn nested_loops_are_closed() {
+    assert_closes_all(NESTED);
+}
+
+#[test]
+fn rooms_without_a_loop_do_not_hold_the_robot() {
+    let mut exploration = Exploration::new(ROOMS, Limits::default());
+    exploration.run();
+    assert_eq!(exploration.unknown(), 0, "\n{}", exploration.drawn());
+    let most = 2 * exploration
+        .world
+        .iter()
+        .flatten()
+        .filter(|c| **c == '.')
+        .count();
+    assert!(
+        exploration.path.len() < most,
+        "{} cells",
+        exploration.path.len()
+    );
+}
+
+#[test]
+fn small_obstacles_make_no_loop_and_everything_is_seen() {
+    let mut exploration = Exploration::new(TREES, Limits::default());
+    exploration.run();
+    assert_eq!(exploration.unknown(), 0, "\n{}", exploration.drawn());
+}
+
+#[test]
+fn a_tractor_point_that_falls_on_an_obstacle_is_gone_and_its_loop_with_it() {
+    let mut exploration = Exploration::new(ADJACENT, Limits::default());
+    exploration.see();
+    let mut time_ms = 0;
+    while exploration.strategy.shield().is_none() {
+        time_ms += 800;
+        assert_ne!(
+            exploration.plan(time_ms),
+            Outlook::Nothing,
+            "no loop was begun"
         );
-        let rounds = exploration.run();
-        std::println!(
-            "{rounds} rounds, path {}, {:?}, round {}, unknown {}\n{}",
-            exploration.path.len(),
-            exploration.strategy.tally(),
-            exploration.rounded(),
-            exploration.unknown(),
-            exploration.drawn()
-        );
+        exploration.go();
     }
+    let tractor = exploration.strategy.tractor().unwrap();
+    // The map is replaced: where the tractor point is, there is a thing of 0.6 m.
+    for part in (-2..4).flat_map(|dy| (-2..4).map(move |dx| (dx, dy))) {
+        let cell = Cell {
+            x: tractor.x + part.0,
+            y: tractor.y + part.1,
+        };
+        exploration.tiles.set(cell, Class::Obstacle).unwrap();
+    }
+    let _ = exploration.plan(time_ms + 800);
+    assert_eq!(exploration.strategy.tractor(), None);
+    assert_eq!(exploration.strategy.shield(), None);
+    assert_eq!(exploration.strategy.tally().closed, 0, "it was not reached");
+    assert!(
+        !exploration.strategy.marks().is_marked(tractor),
+        "nor is anything marked"
+    );
+    assert!(
+        !exploration.frontier.road().is_empty(),
+        "the robot goes on exploring"
+    );
+}
+
+#[test]
+fn a_loop_that_is_not_worth_the_way_is_not_begun() {
+    let limits = Limits {
+        least_m: 500.0,
+        ..Limits::default()
+    };
+    let mut exploration = Exploration::new(ADJACENT, limits);
+    exploration.run();
+    assert_eq!(exploration.strategy.tally(), Tally::default());
+    assert_eq!(exploration.unknown(), 0);
+}
+
+#[test]
+fn a_loop_that_takes_too_long_is_given_up() {
+    // The way round a block is 20 m and more; half of that is too far here.
+    let limits = Limits {
+        detour: 0.2,
+        slack_m: 2.0,
+        ..Limits::default()
+    };
+    let mut exploration = Exploration::new(ADJACENT, limits);
+    exploration.run();
+    let tally = exploration.strategy.tally();
+    assert!(tally.given_up > 0, "{tally:?}");
+    assert_eq!(exploration.unknown(), 0, "it went on all the same");
 }
