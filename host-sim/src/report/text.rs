@@ -122,6 +122,7 @@ mod tests {
              \x20 coverage  90 % after 3:21, 99 % after 5:00; driven again 31 %\n\
              \x20 safety    0 collisions, 0 falls, 0 tips; least clearance 0.080 m\n\
              \x20 planner   3125 steps, 0.41 ms each by loopback (p99 1.20)\n\
+             \x20 loops     1 of 2 closed\n\
              \x20 left      4 cells at (3.0, -1.2): unreachable"
         );
     }

@@ -139,7 +139,7 @@ impl<'a> Branch<'a> {
 
     /// The neighbour of a passage that lies across from `before`: of its other run, a side rather than a corner.
     fn across(&self, here: Site, before: Site) -> Option<Site> {
-        let ring = |k: usize| here.offset(RING[k % 8].0, RING[k % 8].1);
+        let ring = |k: usize| RING.get(k % 8).and_then(|&(dx, dy)| here.offset(dx, dy));
         let is_set = |k: usize| ring(k).is_some_and(|near| self.plane.get(near));
         let from = (0..8).find(|&k| ring(k) == Some(before))?;
         // Out of the run that `before` is in, then as far as the next run goes.
@@ -187,7 +187,11 @@ pub const MOST_WAYS: usize = 8;
 /// begins here. Cells that touch each other belong to one way.
 #[must_use]
 pub fn ways(plane: Plane<'_>, site: Site) -> heapless::Vec<Site, MOST_WAYS> {
-    let ring = |k: usize| site.offset(FAR_RING[k % 16].0, FAR_RING[k % 16].1);
+    let ring = |k: usize| {
+        FAR_RING
+            .get(k % 16)
+            .and_then(|&(dx, dy)| site.offset(dx, dy))
+    };
     let leads_out =
         |k: usize| ring(k).is_some_and(|far| plane.get(far) && touches_inside(plane, site, far));
     let mut ways = heapless::Vec::new();

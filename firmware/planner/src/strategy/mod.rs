@@ -33,6 +33,10 @@ pub struct Strategist<const SLOTS: usize> {
 /// With its tag of its own, so that the value without anything is all zeros and costs no flash as a static one.
 #[derive(Debug)]
 #[repr(u8)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "no heap to box into; one lives at a time"
+)]
 enum More<const SLOTS: usize> {
     Nothing,
     Ouroboros(Ouroboros<SLOTS>),
@@ -66,7 +70,7 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     pub const fn space(strategy: Strategy) -> Space {
         match strategy {
             Strategy::Frontier => Space::KnownFree,
-            Strategy::Ouroboros => Space::NotObstacle { anchored: true },
+            Strategy::Ouroboros => Space::AnchoredNotObstacle,
         }
     }
 

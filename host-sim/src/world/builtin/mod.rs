@@ -1,4 +1,4 @@
-//! The worlds that come with the simulator, drawn here: five places to explore and four cases to get wrong.
+//! The worlds that come with the simulator, drawn here: five places to explore, four cases to get wrong, and seven published sizes.
 //!
 //! All have cells of 5 cm, walls at least 0.2 m thick, and their lower left corner at the origin. A drawing is a
 //! function of nothing: it is the same everywhere and always.
@@ -200,6 +200,13 @@ mod tests {
             ("narrow-doors", (44_784, 3_584_075_896)),
             ("unreachable-room", (50_296, 2_037_409_664)),
             ("boxed-in", (14_016, 405_072_896)),
+            ("ouroboros-a", (149_600, 804_963_840)),
+            ("ouroboros-b", (140_800, 3_408_814_080)),
+            ("ouroboros-c", (214_172, 3_718_203_840)),
+            ("ouroboros-d", (156_762, 2_793_279_844)),
+            ("tdbvp-adjacent", (140_800, 1_353_605_120)),
+            ("tdbvp-nested", (111_200, 3_258_082_816)),
+            ("tdbvp-floor", (180_328, 1_935_914_624)),
         ];
         assert_eq!(prints, expected);
     }

@@ -50,7 +50,7 @@ impl Exploration {
         let mut tiles = Tiles::new();
         tiles.reset(8, 6);
         let mut topology = Topology::new();
-        topology.reset(Space::NotObstacle { anchored: true });
+        topology.reset(Space::AnchoredNotObstacle);
         let mut strategy = Ouroboros::new();
         strategy.reset(tiles.box_tiles());
         let mut robot = (0, 0);

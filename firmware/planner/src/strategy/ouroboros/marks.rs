@@ -56,7 +56,7 @@ impl<const SLOTS: usize> Marks<SLOTS> {
 
     /// The path of the loop that is being closed comes by here.
     pub fn note(&mut self, cell: Cell) {
-        let span = |at: i32| at - NEAR_CELLS >> SHIFT..=at + NEAR_CELLS >> SHIFT;
+        let span = |at: i32| (at - NEAR_CELLS) >> SHIFT..=(at + NEAR_CELLS) >> SHIFT;
         for y in span(cell.y) {
             for x in span(cell.x) {
                 let (slot, bit) = self.place(x, y);

@@ -107,7 +107,7 @@ pub struct Tally {
 /// What a round works on.
 #[derive(Debug)]
 pub struct Round<'a, const TILES: usize, const SLOTS: usize> {
-    /// The published skeleton, of [`crate::topology::Space::NotObstacle`]; whole again after each call.
+    /// The published skeleton, of [`crate::topology::Space::AnchoredNotObstacle`]; whole again after each call.
     pub topology: &'a mut Topology<SLOTS>,
     /// The map.
     pub tiles: &'a Tiles<TILES, SLOTS>,

@@ -130,7 +130,7 @@ impl Scene {
         }
         let disc = Disc::new(POINT_M);
         let mut topology = Topology::new();
-        topology.reset(Space::NotObstacle { anchored: true });
+        topology.reset(Space::AnchoredNotObstacle);
         while !topology.advance(&tiles, &disc, u32::MAX) {}
         Self {
             picture,
