@@ -12,7 +12,7 @@
 //! knows a place when it is 1 m away. The island is in one piece and the path never enters it, so any of its cells serves; the one
 //! nearest to its middle is taken.
 
-use std::f64::consts::TAU;
+use core::f64::consts::TAU;
 
 use super::CellSet;
 use crate::world::{GridCell, World};
