@@ -117,7 +117,7 @@ pub enum Strategy {
     /// Nearest unexplored centre cell.
     #[default]
     Frontier,
-    /// The same, and every loop on the way is closed.
+    /// The same, closing loops on the way.
     Ouroboros,
 }
 

@@ -32,7 +32,7 @@ pub enum Strategy {
     /// Go to the nearest unexplored centre cell; see [`crate::strategy::frontier`].
     #[default]
     Frontier,
-    /// Close every loop on the way; see [`crate::strategy::ouroboros`].
+    /// Close loops on the way; see [`crate::strategy::ouroboros`].
     Ouroboros,
 }
 

@@ -27,6 +27,7 @@ pub mod detour;
 pub mod ground;
 pub mod loop_road;
 pub mod marks;
+pub mod round;
 pub mod shield;
 pub mod tractor;
 
@@ -36,33 +37,26 @@ mod exploring;
 mod scenes;
 
 use self::crumbs::Crumbs;
-use self::detour::{Detour, Limits};
-use self::ground::Ground;
+use self::detour::Detour;
 use self::loop_road::{LoopRoad, build_shield, way_back};
 use self::marks::Marks;
+pub use self::round::Round;
+use self::round::STEP_M;
 use self::shield::Shield;
 use self::tractor::Fate;
 use super::Frontier;
-use super::frontier::{Known, Lent, Outlook};
-use super::nearest::Centres;
+use super::frontier::{Lent, Outlook};
 use super::road::Road;
-use crate::clearance::Disc;
 use crate::geometry::{CELL_M, Cell, Pose};
 use crate::grid::Site;
-use crate::map::Tiles;
 use crate::math;
+use crate::skeleton::Residues;
 use crate::skeleton::branches::surroundings;
-use crate::skeleton::{Barrier, Residues, WaveSpace, Wavefront};
-use crate::topology::Topology;
 
 /// Rounds in a row without a loop road after which the loop is lost.
 const LOST_ROUNDS: u8 = 3;
 /// Loops lost after which the next one that is lost is given up, since a loop was last closed or given up.
 const MOST_LOST: u8 = 3;
-/// Metres along a step of the skeleton.
-const STEP_M: f32 = 2.0 * CELL_M;
-/// Cells that a blocker takes out of the skeleton at the most: the robot's surroundings.
-const BLOCKED: usize = 9;
 
 /// What a round is at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,23 +96,6 @@ pub struct Tally {
     pub closed: u16,
     /// Loops that turned out not to exist, or not to be worth the way.
     pub given_up: u16,
-}
-
-/// What a round works on.
-#[derive(Debug)]
-pub struct Round<'a, const TILES: usize, const SLOTS: usize> {
-    /// The published skeleton, of [`crate::topology::Space::AnchoredNotObstacle`]; whole again after each call.
-    pub topology: &'a mut Topology<SLOTS>,
-    /// The map.
-    pub tiles: &'a Tiles<TILES, SLOTS>,
-    /// The robot's disc.
-    pub disc: &'a Disc,
-    /// Where the robot is.
-    pub pose: Pose,
-    /// The host's clock, milliseconds.
-    pub time_ms: u32,
-    /// Bounds of a loop.
-    pub limits: &'a Limits,
 }
 
 impl<const SLOTS: usize> Ouroboros<SLOTS> {
@@ -402,75 +379,6 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
 impl<const SLOTS: usize> Default for Ouroboros<SLOTS> {
     fn default() -> Self {
         Self::new()
-    }
-}
-
-impl<const TILES: usize, const SLOTS: usize> Round<'_, TILES, SLOTS> {
-    pub(super) fn known(&self) -> Known<'_, TILES, SLOTS> {
-        Known {
-            topology: self.topology,
-            tiles: self.tiles,
-            disc: self.disc,
-        }
-    }
-
-    fn ground(&self) -> Option<Ground<'_, TILES, SLOTS>> {
-        Some(Ground {
-            tiles: self.tiles,
-            disc: self.disc,
-            frame: self.topology.frame(),
-            way: self.topology.skeleton()?,
-        })
-    }
-
-    /// Metres of frontier that are left.
-    fn frontier_m(&self) -> Option<f32> {
-        Some(self.topology.frontier()?.count() as f32 * STEP_M)
-    }
-
-    /// `moveToVoronoi`: the centre cell nearest to a map cell.
-    fn nearest(&self, from: Cell, lent: &mut Lent<'_>) -> Option<Site> {
-        let ground = self.ground()?;
-        let here = ground.frame.site(from);
-        if let Some(site) = here.filter(|&site| ground.way.get(site)) {
-            return Some(site);
-        }
-        let centres = Centres {
-            tiles: self.tiles,
-            disc: self.disc,
-            frame: ground.frame,
-            way: ground.way,
-        };
-        centres.nearest(from, lent.view, |_| true)
-    }
-
-    /// `propagatePotential`: a wave from `goal` over the centre cells, without the blocked ones, everywhere or until it comes to
-    /// a cell.
-    fn propagate(
-        &mut self,
-        goal: Site,
-        blocked: impl Iterator<Item = Site>,
-        until: Option<Site>,
-        lent: &mut Lent<'_>,
-    ) -> Option<()> {
-        let mut plane = self.topology.skeleton_mut()?;
-        // A shield that cuts one branch has fewer centre cells than the robot's surroundings may have.
-        let barrier = Barrier::<BLOCKED>::raise(&mut plane, blocked).ok()?;
-        let shape = plane.shape();
-        if let Ok(residues) = Residues::new(shape, &mut *lent.residues) {
-            let mut space = WaveSpace {
-                way: plane.view(),
-                residues,
-                ring: &mut *lent.ring,
-            };
-            let mut wave = Wavefront::new();
-            wave.start(&mut space);
-            wave.seed(&mut space, goal);
-            // Without a budget it always comes to its end.
-            let _ = wave.advance(&mut space, until, u32::MAX);
-        }
-        barrier.lower(&mut plane);
-        Some(())
     }
 }
 
