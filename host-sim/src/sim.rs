@@ -1,21 +1,24 @@
 //! The robot in its world, driven step by step: observation out, command in.
 //!
 //! Time is simulated and counted in whole milliseconds. One [`Simulator::drive`] is one control period, cut into
-//! substeps; in each the drive follows its target, the footprint is tried at the pose it would reach, and something solid there
-//! stops it. Nothing but the seed decides: same world, configuration and commands, same run, bit for bit.
+//! substeps; in each the drive follows its target, the slope slows and shifts what becomes of it, the footprint is tried
+//! at the pose it would reach, and something solid there stops it: a wall, or ground too high to climb. Ground that is gone,
+//! or too steep, ends the drive for good. Nothing but the seed decides: same world, configuration and commands, same run, bit for bit.
 
 use fieldline_protocol::message::{Observation, Start, Strategy, Twist};
 use fixed::types::I4F12;
 
-use crate::metrics::{Localization, Overlap, Safety};
+use crate::metrics::{Localization, Overlap, Ride, Safety};
 use crate::robot::{
-    Drive, DriveLimits, Footprint, LaserNoise, LaserScanner, Odometry, OdometryModel, Pose,
-    RADIUS_M, Source, Velocity, laser, stand,
+    Contacts, Drive, DriveLimits, Footprint, LaserNoise, LaserScanner, Limits, Mishap, Odometry,
+    OdometryModel, Pose, RADIUS_M, Source, Traction, Velocity, laser, stand,
 };
 use crate::world::{World, WorldError};
 
 /// A contact is over once the robot is this far from everything, metres.
 const CONTACT_OVER_M: f64 = 0.01;
+/// A contact with the ground is over once the robot is this far from where it began, metres.
+const EDGE_OVER_M: f64 = 0.05;
 
 /// The parameters of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +33,12 @@ pub struct SimConfig {
     pub laser_noise: LaserNoise,
     /// What the drive can do. Default: [`DriveLimits::default`].
     pub limits: DriveLimits,
+    /// The ground that the robot is at home on; what is beyond is counted. Default: [`Limits::WORKING`].
+    pub working: Limits,
+    /// The ground that it does not survive. Default: [`Limits::FAILING`].
+    pub failing: Limits,
+    /// How slopes slow and shift it. Default: [`Traction::default`].
+    pub traction: Traction,
     /// Time between observations, milliseconds. Default: 200.
     pub period_ms: u32,
     /// Longest substep, milliseconds. Default: 10.
@@ -46,11 +55,23 @@ impl Default for SimConfig {
             odometry: OdometryModel::Truth,
             laser_noise: LaserNoise::default(),
             limits: DriveLimits::default(),
+            working: Limits::WORKING,
+            failing: Limits::FAILING,
+            traction: Traction::default(),
             period_ms: 200,
             substep_ms: 10,
             stale_ms: 500,
         }
     }
+}
+
+/// Why a robot cannot go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loss {
+    /// A wheel lost the ground.
+    Fell,
+    /// It stood too steep.
+    Tipped,
 }
 
 /// A run in progress.
@@ -68,7 +89,13 @@ pub struct Simulator<'w> {
     lasers: [LaserScanner; 2],
     path_length_m: f64,
     in_contact: bool,
+    /// The wheels on uneven ground.
+    contacts: Option<Contacts>,
+    /// Where ground last stopped the robot, if it has not left that place.
+    stopped_at: Option<Pose>,
+    loss: Option<Loss>,
     safety: Safety,
+    ride: Ride,
     localization: Localization,
     overlap: Overlap,
 }
@@ -93,19 +120,16 @@ impl<'w> Simulator<'w> {
             });
         };
         world.check_start(world.name(), config.start, *start)?;
-        let pose = Pose {
-            x_m: start.x_m,
-            y_m: start.y_m,
-            yaw_rad: crate::robot::wrap(start.yaw_rad),
-            ..Pose::default()
-        };
-        let Some(pose) = stand(world, &pose) else {
-            return Err(WorldError::Start {
-                file: world.name().to_owned(),
-                index: config.start,
-                reason: "there is no ground under the robot; choose a place with a surface".into(),
-            });
-        };
+        let planar = start.pose();
+        let pose = stand(world, &planar).unwrap_or(planar);
+        if !config.failing.holds_attitude(pose.pitch_rad, pose.roll_rad) {
+            let reason = format!(
+                "the robot would tip over, at a pitch of {:.1} and a roll of {:.1} degrees",
+                pose.pitch_rad.to_degrees(),
+                pose.roll_rad.to_degrees()
+            );
+            return Err(world.bad_start(world.name(), config.start, &reason));
+        }
         let scanner =
             |laser, sources| LaserScanner::new(&laser, config.laser_noise, config.seed, sources);
         let mut simulator = Self {
@@ -124,7 +148,11 @@ impl<'w> Simulator<'w> {
             ],
             path_length_m: 0.0,
             in_contact: false,
+            contacts: world.elevation().and(Contacts::at(world, &pose)),
+            stopped_at: None,
+            loss: None,
             safety: Safety::default(),
+            ride: Ride::default(),
             localization: Localization::default(),
             overlap: Overlap::default(),
         };
@@ -137,14 +165,9 @@ impl<'w> Simulator<'w> {
     pub fn observe(&mut self) -> Observation {
         self.localization
             .add(self.pose.distance_m(self.odometry.pose()));
-        let believed = self.odometry.pose();
-        let above_start = Pose {
-            z_m: believed.z_m - self.start_z_m,
-            ..*believed
-        };
         let mut observation = Observation {
             time_ms: self.time_ms,
-            pose: above_start.to_wire(),
+            pose: self.above_start(self.odometry.pose()).to_wire(),
             velocity: self.odometry.velocity().to_wire(),
             ..Observation::default()
         };
@@ -169,11 +192,14 @@ impl<'w> Simulator<'w> {
                 self.drive.command(Velocity::default());
             }
             let seconds = f64::from(step_ms) / 1000.0;
-            let velocity = self.drive.advance(seconds);
+            let forwards = self.drive.velocity().linear_mps >= 0.0;
+            let share = self.config.traction.speed_share(&self.pose, forwards);
+            let velocity = self.drive.advance(seconds, share);
             if self.substep(velocity, seconds) {
                 forward_m += velocity.linear_mps * seconds;
                 turn_rad += velocity.angular_radps * seconds;
             }
+            self.ride.add(&self.pose, &self.config.working, seconds);
             self.time_ms += step_ms;
         }
         self.overlap.add(self.pose.x_m, self.pose.y_m);
@@ -182,49 +208,93 @@ impl<'w> Simulator<'w> {
             .advance(&self.pose, forward_m, turn_rad, velocity);
     }
 
-    /// Moves if nothing solid is in the way, and says whether it did. A robot that fell lies where it fell.
+    /// Moves if nothing is in the way, and says whether it did. A robot that fell or tipped lies where it was.
     fn substep(&mut self, velocity: Velocity, seconds: f64) -> bool {
-        let next = self.pose.driven(velocity, seconds);
-        if self.safety.falls > 0 {
+        if self.loss.is_some() {
             self.drive.halt();
             return false;
         }
-        if self
-            .footprint
-            .overlaps(self.world, next.x_m, next.y_m, next.yaw_rad)
-        {
-            self.drive.halt();
-            self.safety.collisions += u32::from(!self.in_contact);
-            self.in_contact = true;
-            self.safety.min_clearance_m = 0.0;
-            return false;
-        }
-        let Some(next) = stand(self.world, &next) else {
-            self.drive.halt();
-            self.safety.falls += 1;
-            return false;
+        let shift = self.config.traction.shift(&self.pose, velocity, seconds);
+        let next = match self.attempt(&shift.applied(&self.pose)) {
+            Ok(next) => next,
+            Err(mishap) => {
+                self.suffer(mishap);
+                return false;
+            }
         };
-        self.path_length_m += velocity.linear_mps.abs() * seconds;
+        self.path_length_m += shift.driven_m.abs();
         self.pose = next;
+        if self
+            .stopped_at
+            .is_some_and(|at| at.distance_m(&next) >= EDGE_OVER_M)
+        {
+            self.stopped_at = None;
+        }
         self.track_clearance();
         true
     }
 
+    /// The stance at a planar pose near by.
+    fn attempt(&mut self, next: &Pose) -> Result<Pose, Mishap> {
+        let walled = |pose: &Pose| self.footprint.overlaps(self.world, pose);
+        if walled(next) {
+            return self.walled();
+        }
+        let Some(mut contacts) = self.contacts else {
+            return Ok(*next);
+        };
+        let stance = contacts.go(self.world, &self.pose, next, &self.config.failing);
+        match stance {
+            Ok(stance) if walled(&stance) => self.walled(),
+            Ok(stance) => {
+                self.contacts = Some(contacts);
+                Ok(stance)
+            }
+            Err(Mishap::Blocked) => {
+                let again = self.stopped_at.is_some();
+                self.safety.collisions += u32::from(!again);
+                self.stopped_at.get_or_insert(self.pose);
+                Err(Mishap::Blocked)
+            }
+            Err(mishap) => Err(mishap),
+        }
+    }
+
+    /// A wall is in the way.
+    fn walled(&mut self) -> Result<Pose, Mishap> {
+        self.safety.collisions += u32::from(!self.in_contact);
+        self.in_contact = true;
+        Err(Mishap::Blocked)
+    }
+
+    /// Stops, and keeps account of what cannot be undone.
+    fn suffer(&mut self, mishap: Mishap) {
+        self.drive.halt();
+        match mishap {
+            Mishap::Blocked => self.safety.min_clearance_m = 0.0,
+            Mishap::Fallen => {
+                self.safety.falls += 1;
+                self.loss = Some(Loss::Fell);
+            }
+            Mishap::Tipped => {
+                self.safety.tips += 1;
+                self.loss = Some(Loss::Tipped);
+            }
+        }
+    }
+
     /// Measures the clearance where it may be a new least, or end a contact.
     fn track_clearance(&mut self) {
-        let Pose {
-            x_m, y_m, yaw_rad, ..
-        } = self.pose;
         let needed_m = if self.in_contact {
             CONTACT_OVER_M
         } else {
             self.safety.min_clearance_m
         };
-        if self.footprint.clearance_bound_m(self.world, x_m, y_m) >= needed_m {
+        if self.footprint.clearance_bound_m(self.world, &self.pose) >= needed_m {
             self.in_contact = false;
             return;
         }
-        let clearance_m = self.footprint.clearance_m(self.world, x_m, y_m, yaw_rad);
+        let clearance_m = self.footprint.clearance_m(self.world, &self.pose);
         self.in_contact &= clearance_m < CONTACT_OVER_M;
         self.safety.min_clearance_m = self.safety.min_clearance_m.min(clearance_m);
     }
@@ -288,7 +358,34 @@ impl<'w> Simulator<'w> {
         self.odometry.pose()
     }
 
-    /// Metres driven, forwards and backwards.
+    /// A pose with its height counted from the start, as odometry does.
+    #[must_use]
+    pub fn above_start(&self, pose: &Pose) -> Pose {
+        Pose {
+            z_m: pose.z_m - self.start_z_m,
+            ..*pose
+        }
+    }
+
+    /// Height of the start in the world, metres.
+    #[must_use]
+    pub fn start_z_m(&self) -> f64 {
+        self.start_z_m
+    }
+
+    /// Why the robot cannot go on, if so.
+    #[must_use]
+    pub fn loss(&self) -> Option<Loss> {
+        self.loss
+    }
+
+    /// How the ground was driven over so far.
+    #[must_use]
+    pub fn ride(&self) -> Ride {
+        self.ride
+    }
+
+    /// Metres driven, forwards and backwards, up and down.
     #[must_use]
     pub fn path_length_m(&self) -> f64 {
         self.path_length_m
@@ -297,7 +394,7 @@ impl<'w> Simulator<'w> {
     /// Is the robot up against something?
     #[must_use]
     pub fn in_contact(&self) -> bool {
-        self.in_contact
+        self.in_contact || self.stopped_at.is_some()
     }
 
     /// Collisions, falls, tips and clearance so far.

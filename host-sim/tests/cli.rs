@@ -170,6 +170,41 @@ fn one_world_goes_straight_into_out_and_the_time_limit_ends_it() {
 }
 
 #[test]
+fn snapshots_of_an_uneven_run_change_nothing_but_leave_pictures() {
+    let folder = folder();
+    let run = |more: &[&str]| {
+        let arguments = ["explore", "causeway@1", "--time-limit", "13", "--json"];
+        let (status, stdout, _) = outcome(&folder, &[&arguments, more].concat());
+        assert_eq!(status, 1, "the time is up");
+        reports(&stdout).remove(0)
+    };
+    let plain = run(&["--link", "direct"]);
+    assert_eq!(plain["start"], 1);
+    assert_eq!(plain["terrain"]["working"]["climb_deg"], 20.0);
+    assert!(plain["terrain"]["classes"]["cells"][0][1].as_u64().unwrap() > 1_000);
+    let home = folder.path().join("out/causeway@1-frontier-0");
+    assert_eq!(files(&home), FILES, "no series unless asked for");
+    for link in ["direct", "loopback"] {
+        let taken = run(&["--link", link, "--snapshots", "3"]);
+        assert_eq!(taken["digest"], plain["digest"]);
+        assert_eq!(taken["coverage"], plain["coverage"]);
+        let series = home.join("snapshots");
+        assert_eq!(files(&series), ["001.png", "002.png", "003.png"]);
+        let pictures = files(&series).into_iter().map(|name| series.join(name));
+        let pictures: Vec<_> = pictures.chain([home.join("run.png")]).collect();
+        let sizes = pictures.iter().map(|path| {
+            let png = fs::read(path).unwrap();
+            assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+            // Width and height.
+            png[16..24].to_vec()
+        });
+        let mut sizes: Vec<_> = sizes.collect();
+        sizes.dedup();
+        assert_eq!(sizes.len(), 1, "all of one size: they make a film");
+    }
+}
+
+#[test]
 fn the_rung_and_faults_on_it_change_no_command() {
     let folder = folder();
     let digest = |more: &[&str]| {
@@ -491,6 +526,18 @@ fn bad_arguments_are_refused_in_one_line() {
     for bad in ["0", "-5", "nan", "inf", "1e300"] {
         explore(&["--time-limit", bad], &[bad, "above 0"]);
     }
+    explore(&["--snapshots", "501"], &["'501'", "0 to 500"]);
+    explore(&["--imu-noise", "90"], &["'90'", "degrees from 0 to 20"]);
+    explore(&["--laser-noise", "-1"], &["'-1'", "metres from 0 to 1"]);
+    explore(
+        &["--limits", "climb=steep"],
+        &["climb", "degrees and metres"],
+    );
+    explore(
+        &["--limits", "climb=40"],
+        &["--limits climb=40", "--failing"],
+    );
+    refused(&folder, &["explore", "loop@7"], &["robots[7]", "2 starts"]);
     for bad in ["64", "-5x5", "nanx5", "infx5", "0x9"] {
         explore(&["--map-shape", bad], &[bad, "128x32"]);
     }

@@ -187,7 +187,7 @@ fn every_mistake_is_named_in_one_line() {
     let known = "image, resolution, origin, negate, occupied_thresh, free_thresh, mode, wall_height, elevation, robots";
     let cases = [
         (format!("{good}robot: []"), format!("robot: unknown key; known are {known}")),
-        (heights("z_min: 0, z_max: 1, nodata: 0"), "elevation.nodata: unknown key; known are image, z_min, z_max, no_data, resolution, origin".into()),
+        (heights("z_min: 0, z_max: 1, nodata: 0"), "elevation.nodata: unknown key; known are image, z_min, z_max, no_data, bits, resolution, origin".into()),
         (String::new(), format!("nothing is not a table; write `key: value` with {known}")),
         ("image: [".into(), "unclosed bracket '[' at line 1, column 8; correct the YAML there".into()),
         (format!("{good}resolution: 2"), "duplicate mapping key: resolution not allowed here at line 4, column 1; correct the YAML there".into()),
@@ -229,12 +229,169 @@ fn every_mistake_is_named_in_one_line() {
 }
 
 #[test]
+fn heights_that_cannot_be_meant_are_named_in_one_line() {
+    let folder = Folder::new("bad-heights");
+    let white = |width: usize, height: usize| {
+        let mut bytes = format!("P5 {width} {height} 255\n").into_bytes();
+        bytes.extend(vec![254; width * height]);
+        bytes
+    };
+    folder.write("map.pgm", white(6, 4));
+    folder.write("small.pgm", white(3, 2));
+    folder.write("z8.pgm", white(6, 4));
+    let mut wide = b"P5 6 4 65535\n".to_vec();
+    wide.extend(vec![77; 48]);
+    folder.write("z16.pgm", &wide);
+    folder.write("claimed.pgm", &wide[..wide.len() - 24]);
+    folder.write(
+        "empty.pgm",
+        b"P2 6 4 9\n0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n",
+    );
+    let world = |image: &str, rest: &str| {
+        format!("image: map.pgm\n{KEYS}elevation: {{image: {image}, z_min: 0, z_max: 1{rest}}}\n")
+    };
+    let cases = [
+        (
+            world("small.pgm", ""),
+            "image small.pgm: 3 x 2 pixels of heights, but the map has 6 x 4; give elevation a resolution and an origin of its own, or images of one size",
+        ),
+        (
+            world("z8.pgm", ", bits: 16"),
+            "image z8.pgm: 8-bit grey (values up to 255), but elevation.bits says 16; save it with 16 bits, or correct bits",
+        ),
+        (
+            world("z16.pgm", ", bits: 8"),
+            "image z16.pgm: 16-bit grey (values up to 65535), but elevation.bits says 8; save it with 8 bits, or correct bits",
+        ),
+        (
+            world("z8.pgm", ", bits: 12"),
+            "elevation.bits: 12 is neither 8 nor 16",
+        ),
+        (
+            world("z8.pgm", ", no_data: 65535"),
+            "image z8.pgm: values go up to 255 (8 bits), so none can be no_data (65535); save it with 16 bits, or correct no_data",
+        ),
+        (
+            world("claimed.pgm", ""),
+            "image claimed.pgm: its header claims samples of 16 bits (a greatest value above 255), but it holds one byte a pixel; set the greatest value to 255, or save it with 16 bits",
+        ),
+        (
+            world("empty.pgm", ", no_data: 0"),
+            "image empty.pgm: no pixel of it has a surface; check no_data",
+        ),
+        (
+            format!("{KEYS}elevation: {{image: z8.pgm, z_min: .nan, z_max: 1}}"),
+            "value `.nan` is not a finite number at line 3, column 35; correct the YAML there",
+        ),
+        (
+            format!("{KEYS}elevation: {{image: z8.pgm, z_min: 0, z_max: .inf}}"),
+            "value `.inf` is not a finite number at line 3, column 45; correct the YAML there",
+        ),
+        (
+            format!("{KEYS}elevation: {{image: z8.pgm, z_min: 3, z_max: 1}}"),
+            "elevation.z_max: 1 is not above z_min (3)",
+        ),
+    ];
+    for (text, complaint) in cases {
+        assert_eq!(
+            folder.complaint(&text),
+            format!("world.yaml: {complaint}"),
+            "{text}"
+        );
+    }
+}
+
+/// A world of 20 × 10 m at 0.5 m a pixel, of these heights and this start.
+fn heights(folder: &Folder, name: &str, value: impl Fn(usize) -> u16, more: &str) -> PathBuf {
+    let mut bytes = b"P5 40 20 65535\n".to_vec();
+    for _ in 0..20 {
+        bytes.extend((0..40).flat_map(|i| value(i).to_be_bytes()));
+    }
+    folder.write(&format!("{name}.pgm"), bytes);
+    let keys = "resolution: 0.5\norigin: [0, 0, 0]\n";
+    let elevation = format!(
+        "elevation: {{image: {name}.pgm, z_min: 0, z_max: 6.5535, no_data: 0, bits: 16}}\n"
+    );
+    folder.write(&format!("{name}.yaml"), format!("{keys}{elevation}{more}"))
+}
+
+#[test]
+fn a_start_over_no_data_or_on_a_cliff_is_refused_with_a_better_place() {
+    let folder = Folder::new("bad-ground");
+    let hole = |i: usize| if i < 12 { 0 } else { 1000 };
+    let path = heights(&folder, "hole", hole, "robots: [[2, 5, 0]]");
+    let error = World::load(&path).expect_err("a hole").to_string();
+    assert!(
+        error.ends_with("robots[0]: (2.00, 5.00) has no ground under the robot's wheels; most room is at (10.75, 4.75)"),
+        "{error}"
+    );
+    // A metre a pixel from x = 10 on: 63°. The file loads, for limits are the run's; the run is refused.
+    let cliff = |i: usize| 1000 + 10_000 * i.saturating_sub(20).min(5) as u16;
+    let path = heights(&folder, "cliff", cliff, "robots: [[11.5, 5, 0]]");
+    let world = World::load(&path).expect("loads");
+    let config = host_sim::sim::SimConfig::default();
+    let error = host_sim::sim::Simulator::new(&world, config)
+        .expect_err("too steep")
+        .to_string();
+    assert_eq!(
+        error,
+        "cliff: robots[0]: the robot would tip over, at a pitch of -63.4 and a roll of 0.0 degrees; most room is at (4.75, 4.75)"
+    );
+    // Without robots the start is amid easy ground, far from the steep middle.
+    let path = heights(&folder, "default", cliff, "");
+    let start = World::load(&path).expect("loads").starts()[0];
+    assert_eq!((start.x_m, start.y_m), (4.75, 4.75));
+}
+
+#[test]
+fn transparent_pixels_have_no_surface() {
+    let folder = Folder::new("clear-ground");
+    // Two rows of four: the right half cannot be seen.
+    let row = [[10, 255], [10, 255], [10, 0], [10, 254]].concat();
+    let kind = (png::ColorType::GrayscaleAlpha, png::BitDepth::Eight);
+    png(
+        &folder.0.join("z.png"),
+        (4, 2),
+        kind,
+        &[&row[..], &row].concat(),
+    );
+    let text = "resolution: 2\norigin: [0, 0, 0]\nelevation: {image: z.png, z_min: 0, z_max: 25.5}\nrobots: [[1.5, 2, 0]]";
+    let world = World::load(&folder.write("world.yaml", text)).expect("loads");
+    let height = |x_m: f64| world.ground_m(x_m, 2.0);
+    assert!((height(1.5).expect("ground") - 1.0).abs() < 1e-12);
+    assert_eq!([3.5, 5.0, 7.5].map(height), [None; 3]);
+    assert!(world.notes().iter().any(|note| note.starts_with("50.0 %")));
+}
+
+#[test]
+fn what_may_surprise_about_the_ground_is_noted() {
+    let folder = Folder::new("notes");
+    folder.write("map.pgm", b"P2 4 2 255\n254 254 254 254 254 254 254 254\n");
+    folder.write("z.pgm", b"P2 2 2 255\n0 9 9 9\n");
+    let elevation = "elevation: {image: z.pgm, z_min: 0, z_max: 12.75, no_data: 0, resolution: 1, origin: [0, 0]}";
+    let text = format!(
+        "image: map.pgm\nresolution: 1\norigin: [0, 0, 0]\n{elevation}\nrobots: [[1.75, 0.5, 0]]\n"
+    );
+    let world = World::load(&folder.write("world.yaml", text)).expect("loads");
+    assert_eq!(
+        world.notes(),
+        [
+            "its heights come in steps of 0.050 m (8 bits over 12.75 m): slopes become stairs; 16 bits would be smooth",
+            "25.0 % of its pixels have no surface: holes without a floor",
+            "it does not cover the map: 50.0 % of the free floor lie beyond it, without ground",
+        ]
+    );
+    assert_eq!(World::open("slope").expect("built in").notes(), [""; 0]);
+}
+
+#[test]
 fn an_unknown_world_lists_the_built_in_ones() {
     let error = World::open("ofice").expect_err("no such world").to_string();
     assert_eq!(
         error,
         "ofice: cannot read this world (No such file or directory (os error 2)); give a world file or a built-in world: \
-         office, cave, loop, cluttered, hall, empty-hall, narrow-doors, unreachable-room, boxed-in"
+         office, cave, loop, cluttered, hall, empty-hall, narrow-doors, unreachable-room, boxed-in, slope, holes, building, \
+         cliff, spiral, kerbs, waves, pass, causeway"
     );
 }
 

@@ -18,6 +18,11 @@ pub const EXPLORABLE: [&str; 7] = [
 /// Built-in worlds that are there to get wrong.
 pub const SPECIAL: [&str; 2] = ["unreachable-room", "boxed-in"];
 
+/// Built-in worlds of uneven ground.
+pub const UNEVEN: [&str; 9] = [
+    "slope", "holes", "building", "cliff", "spiral", "kerbs", "waves", "pass", "causeway",
+];
+
 /// A built-in world.
 ///
 /// # Panics
@@ -66,11 +71,16 @@ fn data_folder() -> PathBuf {
 
 #[cfg(test)]
 mod tests {
-    use super::{EXPLORABLE, SPECIAL};
+    use super::{EXPLORABLE, SPECIAL, UNEVEN};
 
     #[test]
     fn every_built_in_world_is_of_one_kind() {
-        let mut known: Vec<_> = EXPLORABLE.iter().chain(&SPECIAL).copied().collect();
+        let mut known: Vec<_> = EXPLORABLE
+            .iter()
+            .chain(&SPECIAL)
+            .chain(&UNEVEN)
+            .copied()
+            .collect();
         let mut there: Vec<_> = host_sim::world::builtins()
             .iter()
             .map(|world| world.name)

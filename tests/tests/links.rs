@@ -211,6 +211,7 @@ fn witnessed(link: &mut dyn Link, world: &World) -> (Record, Vec<Period>) {
         start: robot.start_message(Strategy::Frontier, (20, 20)),
         time_limit_ms: 600_000,
         check_field: false,
+        snapshots: 0,
     };
     let mut body = Witness {
         robot,

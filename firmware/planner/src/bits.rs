@@ -148,6 +148,15 @@ fn first_common(one: &[u64], other: &[u64], mut rows: Range<usize>) -> Option<Si
     })
 }
 
+/// The places of a word's bits, least first.
+pub(crate) fn ones(mut word: u32) -> impl Iterator<Item = u32> {
+    core::iter::from_fn(move || {
+        let place = (word != 0).then(|| word.trailing_zeros());
+        word &= word.wrapping_sub(1);
+        place
+    })
+}
+
 /// Half a row's resolution: bit k of the result is set if any of columns 2 k and 2 k + 1 of either row is.
 #[must_use]
 pub fn halve_or(upper: u64, lower: u64) -> u32 {

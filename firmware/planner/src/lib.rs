@@ -29,6 +29,7 @@ pub mod map;
 pub mod math;
 pub mod near;
 pub mod planner;
+pub mod reached;
 pub mod remainder;
 pub mod skeleton;
 pub mod status;

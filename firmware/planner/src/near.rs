@@ -16,9 +16,11 @@
 
 use heapless::Vec;
 
+use crate::bits::ones;
 use crate::config::Laser;
 use crate::drive::surround::{HALF_LENGTH_M, HALF_WIDTH_M};
-use crate::geometry::{Point, Pose};
+use crate::geometry::{CELL_M, Cell, Point, Pose};
+use crate::map::Tiles;
 use crate::map::integrate::{informative_range_mm, level_beams, sensor_point};
 use crate::math;
 
@@ -151,6 +153,30 @@ fn has_company(ranges_mm: &[u16], number: usize) -> bool {
     let near =
         |beside: Option<u16>| beside.is_some_and(|beside| beside.abs_diff(here) < COMPANY_MM);
     near(range(number.checked_sub(1))) || near(range(Some(number + 1)))
+}
+
+/// The middles of the map's obstacle cells within reach behind the robot: what [`NearField`] never met, or has forgotten.
+pub fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    robot: Point,
+) -> impl Iterator<Item = Point> + '_ {
+    let reach = math::floor(REACH_BEHIND_M / CELL_M);
+    let Cell { x, y } = robot.cell();
+    let across = (1 << (2 * reach + 1)) - 1;
+    (y - reach..=y + reach).flat_map(move |y| {
+        let row = tiles.row(x - reach, y).obstacle() as u32 & across;
+        ones(row).map(move |k| {
+            let corner = Cell {
+                x: x - reach + k as i32,
+                y,
+            }
+            .corner();
+            Point {
+                x_m: corner.x_m + 0.5 * CELL_M,
+                y_m: corner.y_m + 0.5 * CELL_M,
+            }
+        })
+    })
 }
 
 fn within_reach(pose: &Pose, point: Point) -> bool {

@@ -25,12 +25,14 @@ use crate::map::Map;
 use crate::map::integrate::is_level;
 use crate::map::tiles::NoRoom;
 use crate::math;
-use crate::near::NearField;
-use crate::remainder::{self, no_room};
+use crate::near::{self, NearField};
+use crate::reached;
+use crate::remainder::no_room;
 use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::{Known, Lent, Outlook};
+use crate::strategy::lookout::{Found, Grounds};
 use crate::strategy::ouroboros::{Ouroboros, Round};
-use crate::strategy::{Road, Strategist};
+use crate::strategy::{Road, Strategist, lookout};
 use crate::topology::Topology;
 use crate::view::{self, Rows, SCALES, View};
 
@@ -38,8 +40,6 @@ use crate::view::{self, Rows, SCALES, View};
 pub const NO_RETURN_MM: u16 = 16_383;
 /// Range code: no information.
 pub const INVALID_MM: u16 = 0;
-/// Turn rate of a robot that looks around at its goal, radians a second.
-const LOOK_AROUND_RADPS: f32 = 0.6;
 /// A robot whose centre has less room than this, in cells, is boxed in: one square metre.
 const BOX_CELLS: u32 = 100;
 /// The robot that starts inside something sees it nearer than this everywhere, metres.
@@ -80,6 +80,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     near: NearField,
     topology: Topology<SLOTS>,
     strategy: Strategist<SLOTS>,
+    /// What can only be seen is searched for, when nothing is left to drive to.
+    lookouts: lookout::Search,
     drive: Drive,
     status: Status,
     started: bool,
@@ -109,7 +111,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     const CHECK: () = {
         assert!(SLOTS * 16 + RING <= SCRATCH, "the wave fits the scratch");
         assert!(
-            remainder::scratch_words(SLOTS) <= SCRATCH,
+            reached::scratch_words(SLOTS) <= SCRATCH,
             "the flood at the end fits the scratch"
         );
         assert!(
@@ -127,6 +129,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             near: NearField::new(),
             topology: Topology::new(),
             strategy: Strategist::new(),
+            lookouts: lookout::Search::new(),
             drive: Drive::new(),
             status: Status::Exploring,
             started: false,
@@ -142,6 +145,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.topology
             .reset(Strategist::<SLOTS>::space(config.strategy));
         self.strategy.reset(config);
+        self.lookouts = lookout::Search::new();
         self.drive = Drive::new();
         self.status = Status::Exploring;
         self.started = false;
@@ -308,6 +312,14 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         laps.lap(Stage::Drive);
         return output;
     }
+    if state.lookouts.is_running() {
+        look_for_lookouts(config, state, workspace, &input);
+        laps.lap(Stage::Plan);
+        return Output {
+            status: state.status,
+            ..Output::default()
+        };
+    }
     let disc = Disc::new(if state.strategy.frontier.is_second_chance() {
         config.tight_radius_m
     } else {
@@ -419,15 +431,54 @@ fn replan<const TILES: usize, const SLOTS: usize>(
     };
     let robot = input.pose.point().cell();
     match outlook {
-        Outlook::Nothing => {
-            let wanting = list_ways_out(state, workspace, disc, robot);
-            list_leftovers(state, disc);
-            state.status = conclude(state, &mut workspace.view, disc, robot, wanting);
+        Outlook::Nothing if state.strategy.frontier.may_look() => {
+            let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
+            state.lookouts.begin(state.map.tiles().extent(), scratch);
         }
+        Outlook::Nothing => finish(state, workspace, disc, robot),
         Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
         Outlook::Road | Outlook::Unsure => {}
     }
     true
+}
+
+/// Nothing is left to drive to: search on for what can be seen, and go there or be done.
+fn look_for_lookouts<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    input: &Input<'_>,
+) {
+    let robot = input.pose.point().cell();
+    let [wide, narrow] = [config.robot_radius_m, config.tight_radius_m].map(Disc::new);
+    let grounds = Grounds {
+        tiles: state.map.tiles(),
+        discs: [&wide, &narrow],
+        robot,
+    };
+    let is_gone = |gap| state.strategy.frontier.is_gone(gap);
+    let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
+    match state.lookouts.advance(&grounds, is_gone, scratch) {
+        Found::Pending => {}
+        Found::Lookout(lookout) => {
+            state.strategy.frontier.look_from(lookout);
+            // The skeleton was not touched meanwhile.
+            state.fresh = true;
+        }
+        Found::Nothing => finish(state, workspace, &narrow, robot),
+    }
+}
+
+/// Nothing is left to do: list what is left over, and say why.
+fn finish<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    disc: &Disc,
+    robot: Cell,
+) {
+    let wanting = list_ways_out(state, workspace, disc, robot);
+    list_leftovers(state, disc);
+    state.status = conclude(state, &mut workspace.view, disc, robot, wanting);
 }
 
 /// List what the robot can get to and cannot go on from for want of room in the map; which room that is. What lies beyond
@@ -470,6 +521,7 @@ fn conclude<const TILES: usize, const SLOTS: usize>(
     match wanting {
         Some(NoRoom::Pool) => Status::Fault(Fault::MapFull),
         Some(NoRoom::Box) => Status::Fault(Fault::OutOfBox),
+        None if state.strategy.frontier.is_stuck() => Status::Fault(Fault::Stuck),
         None if room_cells(view, robot) < BOX_CELLS => Status::Finished(Finish::BoxedIn),
         None => Status::Finished(Finish::Explored),
     }
@@ -506,6 +558,8 @@ fn steer<const TILES: usize, const SLOTS: usize>(
     let here = heading_at(Place::default());
     let mut surround = Surround::empty();
     surround.see(&input.pose, state.near.points());
+    let cells = near::obstacle_cells(state.map.tiles(), input.pose.point());
+    surround.remember(&input.pose, cells);
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
             let (x, y) = view::position((origin, scale), ahead(&input.pose, place));
@@ -524,10 +578,7 @@ fn steer<const TILES: usize, const SLOTS: usize>(
         )
     } else if is_at_goal(window, (origin, scale), input.pose.point()) {
         // In the goal's own cell there is no slope: look around until it is explored.
-        Twist {
-            linear_mps: 0.0,
-            angular_radps: LOOK_AROUND_RADPS,
-        }
+        state.drive.look_around(config, &surround, input.velocity)
     } else {
         state.strategy.frontier.note_flat();
         Twist::default()

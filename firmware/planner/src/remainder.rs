@@ -4,31 +4,15 @@
 //! box is. So the explored passable cells are flooded from the robot, and where the flood comes to the side of a tile behind
 //! which nothing can be stored, a way leads out.
 //!
-//! ```text
-//! open    = coarse cells with a passable, free map cell              (at most one word for two tiles and row)
-//! reached = the smallest set with: near the robot, or open and beside a reached cell at a side
-//! ```
-//!
-//! Done once, at the end of a run, in lent memory: two million instructions for the loading of a full pool, and some hundred
-//! thousand for each time that the ways change from up to down.
+//! Done once, at the end of a run.
 //!
 //! Units: coarse cells of 20 cm, 16 × 16 in a tile.
 
-use crate::clearance::{Disc, for_each_strip};
+use crate::clearance::Disc;
 use crate::geometry::Cell;
-use crate::map::tiles::{Extent, NoRoom};
+use crate::map::tiles::NoRoom;
 use crate::map::{Map, Tiles};
-
-/// Coarse cells along a tile's side.
-const SIDE: usize = 16;
-/// Coarse cells around the robot's own from which the flood starts: it may stand nearer to something than its radius.
-const START_REACH: i32 = 2;
-
-/// Words of memory that [`ways_out`] needs for a box of so many tile places: two planes, and two tiles side by side share a word.
-#[must_use]
-pub const fn scratch_words(slots: usize) -> usize {
-    SIDE * slots
-}
+use crate::reached::{Flood, each};
 
 /// Which room the map wants for what the robot can get to, if any; `found` hears of every place where it ends, see
 /// [`ways_out`]. A map that refused nothing wants none.
@@ -53,7 +37,7 @@ pub fn no_room<const TILES: usize, const SLOTS: usize>(
 /// Call `found` with the least map cell of every explored coarse cell that the robot can get to and that borders on a
 /// tile the map has no room for, and say why it has none; with the robot's own if it stands on such a tile.
 ///
-/// `scratch` is of any content, and must have [`scratch_words`] words; with fewer, nothing is found.
+/// `scratch` is of any content, and must have [`scratch_words`](crate::reached::scratch_words) words; with fewer, nothing is found.
 pub fn ways_out<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     disc: &Disc,
@@ -71,9 +55,11 @@ pub fn ways_out<const TILES: usize, const SLOTS: usize>(
     let Some(mut flood) = Flood::new(extent, scratch) else {
         return;
     };
-    flood.load(tiles, disc);
+    for tile in each(extent) {
+        flood.load(tiles, disc, tile);
+    }
     flood.start(robot);
-    flood.run();
+    while flood.sweep() {}
     for (tile_x, tile_y) in each(extent) {
         for side in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
             if let Err(why) = tiles.room(tile_x + side.0, tile_y + side.1) {
@@ -83,186 +69,17 @@ pub fn ways_out<const TILES: usize, const SLOTS: usize>(
     }
 }
 
-/// The tiles of an extent.
-fn each(extent: Extent) -> impl Iterator<Item = (i32, i32)> {
-    let rows = extent.least.1..=extent.greatest.1;
-    rows.flat_map(move |y| (extent.least.0..=extent.greatest.0).map(move |x| (x, y)))
-}
-
-/// The flood's planes, row by row, as wide as the extent.
-struct Flood<'a> {
-    extent: Extent,
-    per_row: usize,
-    open: &'a mut [u32],
-    reached: &'a mut [u32],
-}
-
-impl<'a> Flood<'a> {
-    /// All clear.
-    fn new(extent: Extent, scratch: &'a mut [u32]) -> Option<Self> {
-        let per_row = usize::try_from(extent.width()).ok()?.div_ceil(2);
-        let words = per_row * SIDE * usize::try_from(extent.height()).ok()?;
-        let (open, reached) = scratch.get_mut(..2 * words)?.split_at_mut(words);
-        open.fill(0);
-        reached.fill(0);
-        Some(Self {
-            extent,
-            per_row,
-            open,
-            reached,
-        })
-    }
-
-    /// Coarse column and row of a map cell, as far as there are any.
-    fn place(&self, cell: Cell) -> Option<(usize, usize)> {
-        let x = usize::try_from((cell.x >> 1) - self.extent.least.0 * SIDE as i32).ok()?;
-        let y = usize::try_from((cell.y >> 1) - self.extent.least.1 * SIDE as i32).ok()?;
-        (x / 32 < self.per_row).then_some((x, y))
-    }
-
-    fn is_reached(&self, cell: Cell) -> bool {
-        self.place(cell).is_some_and(|(x, y)| {
-            let word = self.reached.get(y * self.per_row + x / 32);
-            word.is_some_and(|word| word >> (x % 32) & 1 == 1)
-        })
-    }
-
-    /// Mark what is open in every stored tile.
-    fn load<const TILES: usize, const SLOTS: usize>(
-        &mut self,
-        tiles: &Tiles<TILES, SLOTS>,
-        disc: &Disc,
-    ) {
-        let stored = each(self.extent).filter(|&(x, y)| tiles.is_touched(x, y));
-        for (tile_x, tile_y) in stored {
-            let corner = Cell {
-                x: tile_x * 32,
-                y: tile_y * 32,
-            };
-            let Some((x, row)) = self.place(corner) else {
-                continue;
-            };
-            for_each_strip(tiles, disc, (corner.x, corner.y), 32, |y, strip| {
-                let free = strip.passable & !strip.unknown & !strip.obstacle;
-                let row = row + ((y - corner.y) / 2) as usize;
-                if let Some(word) = self.open.get_mut(row * self.per_row + x / 32) {
-                    *word |= halve(free) << (x % 32);
-                }
-            });
-        }
-    }
-
-    /// Reach what is open around the robot.
-    fn start(&mut self, robot: Cell) {
-        for dy in -START_REACH..=START_REACH {
-            for dx in -START_REACH..=START_REACH {
-                let near = Cell {
-                    x: robot.x + 2 * dx,
-                    y: robot.y + 2 * dy,
-                };
-                let Some((x, y)) = self.place(near) else {
-                    continue;
-                };
-                let index = y * self.per_row + x / 32;
-                let open = self.open.get(index).copied().unwrap_or(0);
-                if let Some(word) = self.reached.get_mut(index) {
-                    *word |= open & 1 << (x % 32);
-                }
-            }
-        }
-    }
-
-    /// Up and down the rows until nothing changes; every sweep but the last reaches something new, so it ends.
-    fn run(&mut self) {
-        let rows = self.open.len() / self.per_row.max(1);
-        loop {
-            let mut changed = false;
-            for row in 0..rows {
-                changed |= self.spread(row, row.checked_sub(1));
-            }
-            for row in (0..rows).rev() {
-                changed |= self.spread(row, Some(row + 1));
-            }
-            if !changed {
-                return;
-            }
-        }
-    }
-
-    /// Take over what the row beside has reached, and fill the runs that hold any of it. Answers whether that is new.
-    fn spread(&mut self, row: usize, beside: Option<usize>) -> bool {
-        let mut changed = false;
-        let mut carry = false;
-        for word in 0..self.per_row {
-            let seeds = beside.and_then(|beside| self.reached.get(beside * self.per_row + word));
-            let seeds = seeds.copied().unwrap_or(0);
-            changed |= self.fill(row * self.per_row + word, seeds, &mut carry, |bits| bits);
-        }
-        let mut carry = false;
-        for word in (0..self.per_row).rev() {
-            changed |= self.fill(row * self.per_row + word, 0, &mut carry, u32::reverse_bits);
-        }
-        changed
-    }
-
-    /// Fill a word's runs from their reached cells and `seeds` on towards the high end, in the order of bits that `turn` gives;
-    /// `carry` says whether the run that begins the word was reached in the one before, and then whether the last was.
-    fn fill(
-        &mut self,
-        index: usize,
-        seeds: u32,
-        carry: &mut bool,
-        turn: impl Fn(u32) -> u32,
-    ) -> bool {
-        let open = turn(self.open.get(index).copied().unwrap_or(0));
-        let Some(word) = self.reached.get_mut(index) else {
-            return false;
-        };
-        let before = turn(*word);
-        let seeds = open & (before | turn(seeds) | u32::from(*carry));
-        // A carry started at a seed clears the run's bits up to its end.
-        let (sum, over) = open.overflowing_add(seeds);
-        let after = open & !sum | seeds;
-        *word = turn(after);
-        *carry = over;
-        after != before
-    }
-
-    /// The reached cells along one side of a tile.
-    fn along(&self, tile: (i32, i32), side: (i32, i32), mut found: impl FnMut(Cell)) {
-        let last = 2 * (SIDE as i32 - 1);
-        for k in 0..SIDE as i32 {
-            let at = |side: i32| match side {
-                0 => 2 * k,
-                1 => last,
-                _ => 0,
-            };
-            let cell = Cell {
-                x: tile.0 * 32 + at(side.0),
-                y: tile.1 * 32 + at(side.1),
-            };
-            if self.is_reached(cell) {
-                found(cell);
-            }
-        }
-    }
-}
-
-/// Bits 2 k and 2 k + 1 joined into bit k.
-fn halve(word: u32) -> u32 {
-    crate::bits::halve_or(u64::from(word), 0)
-}
-
 #[cfg(test)]
 mod tests {
     use std::boxed::Box;
     use std::vec::Vec;
 
-    use super::{scratch_words, ways_out};
+    use super::ways_out;
     use crate::clearance::Disc;
     use crate::geometry::Cell;
     use crate::map::tiles::NoRoom;
     use crate::map::{Class, Tiles};
+    use crate::reached::scratch_words;
 
     const SLOTS: usize = 24;
 

@@ -6,8 +6,12 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
+use host_sim::robot::{Limits, LimitsError};
 
 use super::baselines;
+
+/// Pictures that a run may leave on its way.
+const MOST_SNAPSHOTS: usize = 500;
 
 /// Explore simulated buildings with the Fieldline planner; without a command, explore the built-in office.
 #[derive(Debug, Parser)]
@@ -20,7 +24,7 @@ pub(super) struct Cli {
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Explore worlds and leave a folder with report, map, trajectory, commands and picture of each
-    Explore(ExploreArgs),
+    Explore(Box<ExploreArgs>),
     /// List the built-in worlds
     Worlds {
         /// One JSON object a line
@@ -33,8 +37,8 @@ pub(super) enum Command {
 
 #[derive(Debug, Args)]
 pub(super) struct ExploreArgs {
-    /// World files (YAML for ROS map servers) or names of built-in worlds
-    #[arg(value_name = "WORLD", default_values_t = [String::from("office")])]
+    /// World files (YAML for ROS map servers) or names of built-in worlds; WORLD@N starts at its start N
+    #[arg(value_name = "WORLD[@N]", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
     /// What plans: frontier or ouroboros on the device, or a baseline on the host
     #[arg(long, default_value = baselines::FRONTIER, value_parser = baselines::parse)]
@@ -45,12 +49,24 @@ pub(super) struct ExploreArgs {
     /// Decides every random number of the run
     #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<u64>, allow_negative_numbers = true)]
     pub(super) seed: u64,
-    /// Which of the world's start poses, from 0
+    /// Which of the world's start poses, from 0, where WORLD@N does not say it
     #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<usize>, allow_negative_numbers = true)]
     pub(super) start: usize,
     /// What the robot believes of its motion
     #[arg(long, value_enum, default_value_t = OdometryArg::Truth)]
     pub(super) odometry: OdometryArg,
+    /// Standard deviation of roll and pitch, degrees [default: 0 with truth, 0.5 with noisy]
+    #[arg(long, value_name = "DEG", value_parser = imu_noise, allow_negative_numbers = true)]
+    pub(super) imu_noise: Option<f64>,
+    /// Standard deviation of the lasers' ranges, metres [default: 0.01]
+    #[arg(long, value_name = "M", value_parser = laser_noise, allow_negative_numbers = true)]
+    pub(super) laser_noise: Option<f64>,
+    /// Ground that counts as reachable, degrees and metres, any of [default: climb=20,side=15,step=0.07,drop=0.07]
+    #[arg(long, value_name = "LIMITS", value_parser = working)]
+    pub(super) limits: Option<Limits>,
+    /// Ground that the robot does not survive, any of [default: climb=30,side=25,step=0.1,drop=0.15]
+    #[arg(long, value_name = "LIMITS", value_parser = failing)]
+    pub(super) failing: Option<Limits>,
     /// Simulated seconds after which a run ends
     #[arg(long, value_name = "S", default_value = "3600", value_parser = time_limit, allow_negative_numbers = true)]
     pub(super) time_limit: u32,
@@ -69,6 +85,9 @@ pub(super) struct ExploreArgs {
     /// Compare every step's heading with that of the converged window
     #[arg(long)]
     pub(super) check_field: bool,
+    /// Leave so many pictures of the run on its way, evenly in simulated time, in the folder snapshots
+    #[arg(long, value_name = "N", default_value = "0", value_parser = snapshots, allow_negative_numbers = true)]
+    pub(super) snapshots: usize,
     /// Print the reports, one JSON object a line, and nothing else
     #[arg(long)]
     pub(super) json: bool,
@@ -83,12 +102,17 @@ impl Default for ExploreArgs {
             seed: 0,
             start: 0,
             odometry: OdometryArg::Truth,
+            imu_noise: None,
+            laser_noise: None,
+            limits: None,
+            failing: None,
             time_limit: 3_600_000,
             out: None,
             realtime: false,
             fault: None,
             map_shape: None,
             check_field: false,
+            snapshots: 0,
             json: false,
         }
     }
@@ -160,6 +184,41 @@ fn time_limit(text: &str) -> Result<u32, String> {
     }
 }
 
+/// Pictures of a run: each is read over the link and held until the end.
+fn snapshots(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(number) if number <= MOST_SNAPSHOTS => Ok(number),
+        _ => Err(format!("give a whole number from 0 to {MOST_SNAPSHOTS}")),
+    }
+}
+
+/// The usual working limits, changed.
+fn working(text: &str) -> Result<Limits, LimitsError> {
+    Limits::WORKING.changed(text)
+}
+
+/// The usual failing limits, changed.
+fn failing(text: &str) -> Result<Limits, LimitsError> {
+    Limits::FAILING.changed(text)
+}
+
+/// Degrees.
+fn imu_noise(text: &str) -> Result<f64, String> {
+    deviation(text, 20.0, "degrees")
+}
+
+/// Metres.
+fn laser_noise(text: &str) -> Result<f64, String> {
+    deviation(text, 1.0, "metres")
+}
+
+fn deviation(text: &str, most: f64, unit: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(number) if (0.0..=most).contains(&number) => Ok(number),
+        _ => Err(format!("give {unit} from 0 to {most}")),
+    }
+}
+
 /// `AxB` metres to tiles.
 fn map_shape(text: &str) -> Result<(u8, u8), String> {
     let side = |text: &str| text.trim().parse::<f64>().ok();
@@ -174,7 +233,7 @@ fn map_shape(text: &str) -> Result<(u8, u8), String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Cli, ExploreArgs, map_shape, time_limit};
+    use super::{Cli, ExploreArgs, imu_noise, laser_noise, map_shape, snapshots, time_limit};
     use clap::{CommandFactory as _, Parser as _};
 
     #[test]
@@ -197,6 +256,11 @@ mod tests {
         for bad in ["0", "-3", "nan", "inf", "soon", "1e9"] {
             assert!(time_limit(bad).is_err(), "{bad}");
         }
+        assert_eq!(imu_noise("1.5"), Ok(1.5));
+        assert!(imu_noise("21").is_err() && laser_noise("-0.1").is_err());
+        assert!(laser_noise("nan").is_err() && laser_noise("x").is_err());
+        assert_eq!((snapshots("0"), snapshots("500")), (Ok(0), Ok(500)));
+        assert!(snapshots("501").is_err() && snapshots("-1").is_err());
         assert_eq!(map_shape("128x32"), Ok((40, 10)));
         assert_eq!(map_shape("1 x 1"), Ok((4, 4)));
         for bad in ["128", "x", "-1x5", "0x5", "axb", "nanx3", "infx3", "3x1e9"] {

@@ -7,6 +7,7 @@
 mod args;
 mod baselines;
 mod explore;
+mod pictures;
 mod progress;
 mod solve;
 mod worlds;

@@ -5,6 +5,9 @@
 //! - lies in a reached cell, or
 //! - one of [`DIRECTIONS`] level rays from it meets a reached cell within the laser's range before anything solid.
 //!
+//! On uneven ground the denominator is what the robot covers from wherever it can get within its limits
+//! ([`Footing`]).
+//!
 //! The numerator counts only cells of the denominator, so that a map smeared beyond the walls earns nothing. Once
 //! known, a cell stays counted until [`Coverage::recount`].
 //!
@@ -12,6 +15,8 @@
 
 use fieldline_planner::geometry::Cell;
 
+use super::footing::Footing;
+use super::frame::Frame;
 use super::reach::CellSet;
 use crate::world::{GridCell, Start, Walk, World};
 
@@ -63,6 +68,20 @@ impl Coverage {
             .collect();
         Self {
             cells,
+            known: 0,
+            seen_at_s: [None; 2],
+        }
+    }
+
+    /// What a robot on uneven ground covers from wherever it can get.
+    #[must_use]
+    pub fn on(footing: &Footing) -> Self {
+        let frame = *footing.frame();
+        let cells = (0..frame.len())
+            .map(|index| frame.cell(index))
+            .filter(|cell| footing.covers(*cell));
+        Self {
+            cells: cells.collect(),
             known: 0,
             seen_at_s: [None; 2],
         }
@@ -139,14 +158,9 @@ impl Coverage {
 }
 
 /// The map cells that lie at least partly in the world, row by row.
-pub fn map_cells(world: &World) -> impl Iterator<Item = Cell> {
-    let [x0, y0] = world.occupancy().origin_m();
-    let [width, height] = world.size_m();
-    let first = |m: f64| (m / MAP_CELL_M).floor() as i32;
-    // A world that ends with a cell, give or take rounding, does not reach into the next.
-    let last = |m: f64| (m / MAP_CELL_M - 1e-6).ceil() as i32;
-    let columns = first(x0)..last(x0 + width);
-    (first(y0)..last(y0 + height)).flat_map(move |y| columns.clone().map(move |x| Cell { x, y }))
+pub fn map_cells(world: &World) -> impl Iterator<Item = Cell> + use<> {
+    let frame = Frame::of(world);
+    (0..frame.len()).map(move |index| frame.cell(index))
 }
 
 /// What the true world has in a map cell.
@@ -177,7 +191,7 @@ pub fn truth(world: &World, cell: Cell) -> Truth {
 }
 
 /// The centre of a map cell, metres.
-fn centre_m(cell: Cell) -> [f64; 2] {
+pub(super) fn centre_m(cell: Cell) -> [f64; 2] {
     [cell.x, cell.y].map(|k| (f64::from(k) + 0.5) * MAP_CELL_M)
 }
 

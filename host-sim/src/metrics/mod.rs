@@ -1,15 +1,23 @@
 //! What a run is judged by, on the true world.
 
 mod coverage;
+mod footing;
+mod frame;
+mod ground_truth;
 mod localization;
 mod loops;
 mod overlap;
 mod reach;
+mod ride;
 mod safety;
 
 pub use coverage::{Coverage, DIRECTIONS, MAP_CELL_M, Truth, map_cells, truth};
+pub use footing::{Footing, HEADINGS, is_gentle};
+pub use frame::Frame;
+pub use ground_truth::{GroundTruth, Score, Table, Truly};
 pub use localization::Localization;
 pub use loops::{LEAST_M, Loops};
 pub use overlap::{EARLIER_M, NEAR_M, Overlap};
 pub use reach::{CellSet, START_SLACK_M};
+pub use ride::Ride;
 pub use safety::Safety;

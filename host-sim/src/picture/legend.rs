@@ -1,13 +1,16 @@
 //! Words and keys around the map: title, scale bar, what each colour means, and the time scale of the path.
 
 use super::canvas::Canvas;
+use super::ground::greyed;
 use super::palette::{self, Rgb};
-use super::{Frame, HEADER, MARGIN, Scene, layers};
+use super::{Frame, Ground, HEADER, MARGIN, Scene, layers};
 
 /// Pixels from one line of the legend to the next.
 const LINE: f32 = 29.0;
 /// Height of the time scale, pixels.
 const TIME_BAR: f32 = 118.0;
+/// Height of the scale of heights, pixels.
+const HEIGHT_BAR: f32 = 78.0;
 
 /// Two lines above the map.
 pub(super) fn title(canvas: &mut Canvas, scene: &Scene<'_>) {
@@ -37,6 +40,15 @@ pub(super) fn scale_bar(canvas: &mut Canvas, frame: &Frame) {
     canvas.text(at, 14.0, &label, palette::INK);
 }
 
+/// What a map beside the robot's own is, under it.
+pub(super) fn caption(canvas: &mut Canvas, frame: &Frame, words: &str) {
+    let at = (
+        frame.left as f32,
+        (frame.top + frame.height()) as f32 + 28.0,
+    );
+    canvas.text(at, 14.0, words, palette::INK);
+}
+
 /// 1, 2 or 5 times a power of ten, not above `metres` where that is at least one.
 fn round_length(metres: f32) -> f32 {
     let lengths = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
@@ -48,11 +60,18 @@ fn round_length(metres: f32) -> f32 {
 pub(super) fn panel(canvas: &mut Canvas, left: i32, scene: &Scene<'_>) {
     let (left, mut y) = (left as f32, HEADER as f32 + 8.0);
     let mid = left + 13.0;
-    for (colour, words) in [
+    let cells = [
         (palette::FREE, "free"),
         (palette::OBSTACLE, "obstacle"),
+        (palette::NEGATIVE, "negative obstacle"),
         (palette::UNKNOWN, "not measured"),
-    ] {
+    ];
+    // On level ground nothing is negative.
+    let level = scene.ground.is_none();
+    for (colour, words) in cells {
+        if level && colour == palette::NEGATIVE {
+            continue;
+        }
         swatch(canvas, (left, y), colour);
         label(canvas, left, y, words);
         y += LINE;
@@ -82,6 +101,38 @@ pub(super) fn panel(canvas: &mut Canvas, left: i32, scene: &Scene<'_>) {
         y += LINE;
     }
     time_bar(canvas, left, y + 4.0, scene);
+    if let Some(ground) = &scene.ground {
+        ground_keys(canvas, left, y + TIME_BAR + 38.0, ground);
+    }
+}
+
+/// The keys of the true ground: its heights above the start, and what is not to be driven on.
+fn ground_keys(canvas: &mut Canvas, left: f32, mut y: f32, ground: &Ground<'_>) {
+    let [low_m, high_m] = ground.span_m();
+    for i in 0..HEIGHT_BAR as i32 {
+        let colour = palette::height(1.0 - i as f32 / HEIGHT_BAR);
+        canvas.rect((left + 6.0, y + i as f32), 14.0, 1.5, colour.alpha(1.0));
+    }
+    label(canvas, left, y + 6.0, &signed(high_m));
+    let contour = format!("contours of {} m", ground.contour_m());
+    label(canvas, left, y + HEIGHT_BAR / 2.0, &contour);
+    label(canvas, left, y + HEIGHT_BAR - 5.0, &signed(low_m));
+    y += HEIGHT_BAR + 28.0;
+    for (colour, words) in [
+        (palette::STEEP_UP, "rises too steeply"),
+        (palette::NEGATIVE, "falls too steeply, hole"),
+        (palette::STEEP_BOTH, "either, by the side"),
+        (greyed(palette::height(0.5)), "out of reach"),
+    ] {
+        swatch(canvas, (left, y), colour);
+        label(canvas, left, y, words);
+        y += LINE;
+    }
+}
+
+/// A height above the start.
+fn signed(height_m: f64) -> String {
+    format!("{height_m:+.2} m from the start")
 }
 
 fn swatch(canvas: &mut Canvas, (left, y): (f32, f32), colour: Rgb) {

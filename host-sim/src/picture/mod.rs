@@ -1,9 +1,11 @@
-//! `run.png`: the map, the skeleton, the last window's field and the path coloured by time, with a legend.
+//! `run.png`: the map, the skeleton, the last window's field and the path coloured by time, with a legend; in an uneven world the
+//! true ground beside it, in the same frame.
 //!
 //! A map cell is a square of whole pixels, two to six but for the smallest maps, so that the map stays crisp; everything else is antialiased. North
 //! is up.
 
 mod canvas;
+mod ground;
 mod layers;
 mod legend;
 mod palette;
@@ -14,6 +16,8 @@ use crate::report::tum::Stamped;
 use crate::trial::snapshot::Window;
 use canvas::{Canvas, Spot};
 
+pub use ground::Ground;
+
 /// Pixels around everything.
 const MARGIN: i32 = 28;
 /// Pixels for the two lines of title.
@@ -22,14 +26,18 @@ const HEADER: i32 = 78;
 const FOOTER: i32 = 46;
 /// Pixels for the legend to the right.
 const PANEL: i32 = 236;
-/// The legend's least height, pixels.
-const PANEL_HEIGHT: i32 = 470;
+/// The legend's least height, pixels; and with the ground's keys.
+const PANEL_HEIGHT: [i32; 2] = [470, 770];
+/// Pixels between two maps side by side.
+const GAP: i32 = 24;
 /// The least width of the map's part, so that the title fits.
 const LEAST_WIDTH: i32 = 420;
 /// Cells of unknown around the map.
 const RIM: i32 = 3;
 /// The picture's side that a map of any size should not pass by much, pixels.
 const GOOD_SIDE: i32 = 1_500;
+/// The same where two maps lie side by side.
+const GOOD_SIDE_OF_TWO: i32 = 1_000;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +54,50 @@ pub struct Scene<'a> {
     pub window: Option<&'a Window>,
     /// Frontiers that were left, metres.
     pub residue: &'a [(f64, f64)],
+    /// The true ground, in an uneven world.
+    pub ground: Option<Ground<'a>>,
+    /// A map that the page must have room for too, so that the pictures of a series are of one size.
+    pub room_for: Option<&'a GridMap>,
+}
+
+/// A rectangle of map cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Extent {
+    x: i32,
+    y: i32,
+    width: i32,
+    height: i32,
+}
+
+impl Extent {
+    fn of(map: &GridMap) -> Self {
+        Self {
+            x: map.origin_x,
+            y: map.origin_y,
+            width: map.width as i32,
+            height: map.height as i32,
+        }
+    }
+
+    fn is_empty(self) -> bool {
+        self.width == 0 || self.height == 0
+    }
+
+    /// The least rectangle around two; one without cells counts for nothing.
+    fn with(self, other: Self) -> Self {
+        if self.is_empty() {
+            return other;
+        } else if other.is_empty() {
+            return self;
+        }
+        let (x, y) = (self.x.min(other.x), self.y.min(other.y));
+        Self {
+            x,
+            y,
+            width: (self.x + self.width).max(other.x + other.width) - x,
+            height: (self.y + self.height).max(other.y + other.height) - y,
+        }
+    }
 }
 
 /// Where the map lies on the page.
@@ -61,22 +113,43 @@ struct Frame {
 }
 
 impl Frame {
-    fn around(map: &GridMap) -> Self {
-        let side = |cells: usize| cells.max(1) as i32 + 2 * RIM;
-        let (columns, rows) = (side(map.width), side(map.height));
+    /// A map of this extent, drawn so that `good_side` pixels are enough for it if they can be.
+    fn around(extent: Extent, good_side: i32) -> Self {
+        let side = |cells: i32| cells.max(1) + 2 * RIM;
+        let (columns, rows) = (side(extent.width), side(extent.height));
         let longest = columns.max(rows);
         // A closet is drawn larger, so that its marks do not cover it.
-        let cell_px = (GOOD_SIDE / longest)
+        let cell_px = (good_side / longest)
             .clamp(2, 6)
             .max((LEAST_WIDTH / longest).min(14));
         Self {
             left: MARGIN + (LEAST_WIDTH - columns * cell_px).max(0) / 2,
             top: HEADER,
             cell_px,
-            origin_x: map.origin_x - RIM,
-            origin_y: map.origin_y - RIM,
+            origin_x: extent.x - RIM,
+            origin_y: extent.y - RIM,
             columns,
             rows,
+        }
+    }
+
+    /// The frame of what is drawn.
+    fn of(scene: &Scene<'_>) -> Self {
+        let map = Extent::of(scene.map);
+        let map = scene
+            .room_for
+            .map_or(map, |room| map.with(Extent::of(room)));
+        match scene.ground {
+            None => Self::around(map, GOOD_SIDE),
+            Some(ground) => Self::around(map.with(ground.extent()), GOOD_SIDE_OF_TWO),
+        }
+    }
+
+    /// The same to the right of this one.
+    fn beside(&self) -> Self {
+        Self {
+            left: self.left + self.width() + GAP,
+            ..*self
         }
     }
 
@@ -127,28 +200,43 @@ impl Frame {
 /// The PNG file of a run; empty only if the page is too large for memory.
 #[must_use]
 pub fn run_png(scene: &Scene<'_>) -> Vec<u8> {
-    let frame = Frame::around(scene.map);
-    let width = 2 * MARGIN + frame.width().max(LEAST_WIDTH) + PANEL;
-    let height = HEADER + (frame.height() + FOOTER).max(PANEL_HEIGHT) + MARGIN;
+    let frame = Frame::of(scene);
+    let beside = scene.ground.map(|ground| (frame.beside(), ground));
+    let right = beside.map_or(frame, |(frame, _)| frame);
+    let maps = (right.left + right.width()).max(MARGIN + LEAST_WIDTH);
+    let width = maps + PANEL + MARGIN;
+    let keys = PANEL_HEIGHT[usize::from(beside.is_some())];
+    let height = HEADER + (frame.height() + FOOTER).max(keys) + MARGIN;
     let page = Canvas::new(width.unsigned_abs(), height.unsigned_abs(), palette::PAGE);
     let Some(mut canvas) = page else {
         return Vec::new();
     };
-    layers::map(&mut canvas, &frame, scene.map);
-    if let Some(window) = scene.window {
-        layers::field(&mut canvas, &frame, window, scene.map);
+    robots_map(&mut canvas, &frame, scene);
+    if let Some((frame, ground)) = &beside {
+        ground::cells(&mut canvas, frame, ground);
+        layers::path(&mut canvas, frame, scene.path);
+        layers::ends(&mut canvas, frame, scene.path);
+        legend::caption(&mut canvas, frame, "true ground");
     }
-    layers::skeleton(&mut canvas, &frame, scene.map);
-    if let Some(window) = scene.window {
-        layers::arrows(&mut canvas, &frame, window);
-    }
-    layers::path(&mut canvas, &frame, scene.path);
-    layers::residue(&mut canvas, &frame, scene.residue);
-    layers::ends(&mut canvas, &frame, scene.path);
     legend::title(&mut canvas, scene);
     legend::scale_bar(&mut canvas, &frame);
-    legend::panel(&mut canvas, width - MARGIN - PANEL + 32, scene);
+    legend::panel(&mut canvas, maps + 32, scene);
     canvas.png().unwrap_or_default()
+}
+
+/// What the robot made of it.
+fn robots_map(canvas: &mut Canvas, frame: &Frame, scene: &Scene<'_>) {
+    layers::map(canvas, frame, scene.map);
+    if let Some(window) = scene.window {
+        layers::field(canvas, frame, window, scene.map);
+    }
+    layers::skeleton(canvas, frame, scene.map);
+    if let Some(window) = scene.window {
+        layers::arrows(canvas, frame, window);
+    }
+    layers::path(canvas, frame, scene.path);
+    layers::residue(canvas, frame, scene.residue);
+    layers::ends(canvas, frame, scene.path);
 }
 
 #[cfg(test)]

@@ -18,6 +18,10 @@ pub(super) const FREE: Rgb = Rgb(0xff, 0xff, 0xff);
 pub(super) const OBSTACLE: Rgb = Rgb(0x2b, 0x33, 0x3d);
 /// Holes and cliffs.
 pub(super) const NEGATIVE: Rgb = Rgb(0x8a, 0x5a, 0x3b);
+/// Ground that rises too steeply.
+pub(super) const STEEP_UP: Rgb = Rgb(0x56, 0x60, 0x6c);
+/// Ground that rises too steeply from one side and falls too steeply from the other.
+pub(super) const STEEP_BOTH: Rgb = Rgb(0x70, 0x5d, 0x54);
 /// Lines of five metres.
 pub(super) const GRID: Rgb = Rgb(0xec, 0xef, 0xf2);
 /// The skeleton.
@@ -40,7 +44,14 @@ impl Rgb {
         Color::from_rgba8(self.0, self.1, self.2, opacity)
     }
 
-    fn mix(self, other: Self, share: f32) -> Self {
+    /// Brighter or darker by a factor.
+    pub(super) fn lit(self, light: f32) -> Self {
+        let channel = |v: u8| (f32::from(v) * light).clamp(0.0, 255.0) as u8;
+        Self(channel(self.0), channel(self.1), channel(self.2))
+    }
+
+    /// Some of the way to another colour.
+    pub(super) fn mix(self, other: Self, share: f32) -> Self {
         let channel = |a: u8, b: u8| (f32::from(a) + (f32::from(b) - f32::from(a)) * share) as u8;
         Self(
             channel(self.0, other.0),
@@ -72,6 +83,17 @@ pub(super) fn field(share: f32) -> Rgb {
     along(&STOPS, share)
 }
 
+/// Ground from the lowest to the highest: a dull teal over green to sand, growing lighter all the way.
+pub(super) fn height(share: f32) -> Rgb {
+    const STOPS: [Rgb; 4] = [
+        Rgb(0x5f, 0x93, 0x9c),
+        Rgb(0x93, 0xb8, 0x96),
+        Rgb(0xcf, 0xd0, 0x9c),
+        Rgb(0xf6, 0xe6, 0xc8),
+    ];
+    along(&STOPS, share)
+}
+
 fn along(stops: &[Rgb], share: f32) -> Rgb {
     let place = share.clamp(0.0, 1.0) * (stops.len() - 1) as f32;
     let i = (place as usize).min(stops.len() - 2);
@@ -80,16 +102,25 @@ fn along(stops: &[Rgb], share: f32) -> Rgb {
 
 #[cfg(test)]
 mod tests {
-    use super::{Rgb, time};
+    use super::{Rgb, height, time};
 
     #[test]
-    fn the_time_scale_grows_lighter_all_the_way() {
+    fn scales_of_time_and_height_grow_lighter_all_the_way() {
         let light = |Rgb(r, g, b): Rgb| {
             0.2126 * f32::from(r) + 0.7152 * f32::from(g) + 0.0722 * f32::from(b)
         };
-        let scale: Vec<f32> = (0..=100).map(|i| light(time(i as f32 / 100.0))).collect();
-        assert!(scale.windows(2).all(|pair| pair[0] <= pair[1] + 0.8));
-        assert!(scale[100] - scale[0] > 120.0);
+        let spread = |scale: fn(f32) -> Rgb| {
+            let scale: Vec<f32> = (0..=100).map(|i| light(scale(i as f32 / 100.0))).collect();
+            assert!(scale.windows(2).all(|pair| pair[0] <= pair[1] + 0.8));
+            scale[100] - scale[0]
+        };
+        assert!(spread(time) > 120.0 && spread(height) > 80.0);
+    }
+
+    #[test]
+    fn light_keeps_within_white() {
+        assert_eq!(Rgb(100, 200, 240).lit(1.2), Rgb(120, 240, 255));
+        assert_eq!(Rgb(100, 200, 240).lit(0.0), Rgb(0, 0, 0));
     }
 
     #[test]

@@ -1,12 +1,19 @@
 //! What can be asserted of a picture: places, colours at places, and that odd runs draw at all.
 
-use super::{Frame, Scene, run_png};
+use super::{Extent, Frame, GOOD_SIDE, Ground, Scene, run_png};
+use crate::metrics::{Footing, GroundTruth};
 use crate::report::tum::Stamped;
 use crate::report::{GridMap, MapCell};
+use crate::robot::{Limits, RADIUS_M};
 use crate::trial::snapshot::{Window, WindowCell};
+use crate::world::World;
 
 fn decode(png: &[u8]) -> tiny_skia::Pixmap {
     tiny_skia::Pixmap::decode_png(png).expect("a PNG")
+}
+
+fn around(map: &GridMap) -> Frame {
+    Frame::around(Extent::of(map), GOOD_SIDE)
 }
 
 /// A room of 100 × 80 cells with a wall and a door, the robot's path through it and a window around its end.
@@ -64,12 +71,14 @@ fn colours_are_where_the_map_says() {
         path: &path,
         window: Some(&window),
         residue: &[(-2.0, -3.0)],
+        ground: None,
+        room_for: None,
     };
     let png = run_png(&scene);
     if let Ok(folder) = std::env::var("FIELDLINE_PICTURES") {
         std::fs::write(std::path::Path::new(&folder).join("room.png"), &png).unwrap();
     }
-    let (page, frame) = (decode(&png), Frame::around(&map));
+    let (page, frame) = (decode(&png), around(&map));
     let colour = |x_m: f64, y_m: f64| {
         let (x, y) = frame.metres(x_m, y_m);
         let pixel = page.pixel(x as u32, y as u32).unwrap();
@@ -101,19 +110,98 @@ fn a_run_that_saw_nothing_still_has_a_picture() {
         path: &[],
         window: None,
         residue: &[],
+        ground: None,
+        room_for: None,
     };
     assert!(decode(&run_png(&scene)).width() > 400);
 }
 
 #[test]
+fn the_true_ground_lies_beside_the_map_in_the_same_frame() {
+    let world = World::builtin("causeway").expect("listed");
+    let footing = Footing::new(&world, world.starts()[0], RADIUS_M, &Limits::WORKING);
+    let truth = GroundTruth::new(&world, &footing, &Limits::WORKING);
+    let ground = Ground::new(&world, &truth, 0.0);
+    // The robot has seen a corner of the world only.
+    let mut map = GridMap::unknown(20, 20, 40, 40);
+    map.set(30, 30, MapCell::NegativeObstacle);
+    let scene = Scene {
+        title: "causeway",
+        subtitle: "",
+        map: &map,
+        path: &[],
+        window: None,
+        residue: &[],
+        ground: Some(ground),
+        room_for: None,
+    };
+    let (page, frame) = (decode(&run_png(&scene)), Frame::of(&scene));
+    let beside = frame.beside();
+    let colour = |frame: &Frame, x_m: f64, y_m: f64| {
+        let (x, y) = frame.metres(x_m, y_m);
+        let pixel = page.pixel(x as u32, y as u32).unwrap();
+        (pixel.red(), pixel.green(), pixel.blue())
+    };
+    assert_eq!(frame.columns, 260 + 6);
+    assert!(beside.left + beside.width() < page.width() as i32);
+    let (negative, unknown) = ((0x8a, 0x5a, 0x3b), (0xe8, 0xeb, 0xef));
+    assert_eq!(colour(&frame, 3.05, 3.05), negative, "the robot's map");
+    assert_eq!(colour(&frame, 13.05, 3.05), unknown, "not on its map");
+    assert_eq!(colour(&beside, 13.05, 3.05), negative, "no floor");
+    assert_eq!(colour(&beside, 0.05, 3.05), (0x2b, 0x33, 0x3d), "fence");
+    assert_eq!(colour(&beside, -0.15, 3.05), unknown, "outside");
+    // Ground that is driven on is sand here, and greyed where it lies out of reach.
+    let light = |(r, g, b): (u8, u8, u8)| (r > 0xd8 && g > 0xc8, r > b);
+    assert_eq!(light(colour(&beside, 4.05, 7.05)), (true, true));
+    assert_eq!(light(colour(&beside, 13.05, 11.05)), (false, false));
+}
+
+#[test]
+fn a_page_has_room_for_the_map_to_come() {
+    let (early, late) = (
+        GridMap::unknown(0, 0, 30, 20),
+        GridMap::unknown(-40, -10, 90, 120),
+    );
+    let size = |map, room_for| {
+        let page = decode(&run_png(&Scene {
+            title: "series",
+            subtitle: "",
+            map,
+            path: &[],
+            window: None,
+            residue: &[],
+            ground: None,
+            room_for,
+        }));
+        (page.width(), page.height())
+    };
+    assert_ne!(size(&early, None), size(&late, None));
+    assert_eq!(size(&early, Some(&late)), size(&late, None));
+}
+
+#[test]
+fn a_map_beyond_the_world_is_drawn_too() {
+    let extent = |x, y, width, height| Extent {
+        x,
+        y,
+        width,
+        height,
+    };
+    let both = extent(-5, 2, 10, 4).with(extent(0, 0, 8, 5));
+    assert_eq!(both, extent(-5, 0, 13, 6));
+    assert_eq!(extent(9, 9, 0, 0).with(both), both);
+    assert_eq!(both.with(extent(9, 9, 0, 4)), both);
+}
+
+#[test]
 fn large_maps_keep_whole_pixels() {
-    let side = |cells: usize| Frame::around(&GridMap::unknown(0, 0, cells, cells / 2)).cell_px;
+    let side = |cells: usize| around(&GridMap::unknown(0, 0, cells, cells / 2)).cell_px;
     assert_eq!([20, 100, 300, 640, 1_300].map(side), [14, 6, 4, 2, 2]);
 }
 
 #[test]
 fn pixels_and_spots_agree() {
-    let frame = Frame::around(&GridMap::unknown(-7, 3, 30, 20));
+    let frame = around(&GridMap::unknown(-7, 3, 30, 20));
     let rim = 3 * frame.cell_px;
     let (left, top) = frame.pixel(-7, 22);
     assert_eq!((left, top), (frame.left + rim, frame.top + rim));

@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 use super::{Report, commands, ros_map, tum};
 use crate::trial::Record;
 
+/// The folder of the series of pictures.
+const SNAPSHOTS: &str = "snapshots";
+
 /// Why a file of the run could not be written.
 #[derive(Debug)]
 pub struct WriteError {
@@ -38,6 +41,7 @@ pub fn prepare(folder: &Path) -> Result<(), WriteError> {
         path: folder.to_owned(),
         source,
     })?;
+    remove_snapshots(folder)?;
     // An empty report is what an interrupted run leaves, instead of the previous run's.
     put(folder, "report.json", b"")
 }
@@ -72,6 +76,41 @@ pub fn write(
     put(folder, "run.png", picture)
 }
 
+/// Write the series of pictures as `snapshots/001.png` and on; without one there is no such folder.
+///
+/// # Errors
+/// As [`WriteError`], at the first file that cannot be written.
+pub fn write_snapshots(
+    folder: &Path,
+    pictures: impl Iterator<Item = Vec<u8>>,
+) -> Result<(), WriteError> {
+    let folder = folder.join(SNAPSHOTS);
+    for (number, picture) in (1..).zip(pictures) {
+        fs::create_dir_all(&folder).map_err(|source| WriteError {
+            path: folder.clone(),
+            source,
+        })?;
+        put(&folder, &format!("{number:03}.png"), &picture)?;
+    }
+    Ok(())
+}
+
+/// The series of an earlier run must not be taken for part of this one; what else lies there stays.
+fn remove_snapshots(folder: &Path) -> Result<(), WriteError> {
+    let folder = folder.join(SNAPSHOTS);
+    for number in 1.. {
+        let path = folder.join(format!("{number:03}.png"));
+        match fs::remove_file(&path) {
+            Ok(()) => {}
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => break,
+            Err(source) => return Err(WriteError { path, source }),
+        }
+    }
+    // Only an empty folder goes.
+    let _ = fs::remove_dir(&folder);
+    Ok(())
+}
+
 fn put(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
     let path = folder.join(name);
     fs::write(&path, bytes).map_err(|source| WriteError { path, source })
@@ -79,7 +118,7 @@ fn put(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
 
 #[cfg(test)]
 mod tests {
-    use super::{prepare, write};
+    use super::{prepare, write, write_snapshots};
     use crate::report::tests::sample;
     use crate::trial::Record;
 
@@ -107,6 +146,31 @@ mod tests {
             ]
         );
         assert_eq!(std::fs::read(folder.join("run.png")).unwrap(), b"picture");
+    }
+
+    #[test]
+    fn a_series_replaces_the_earlier_one_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        let series = folder.join("snapshots");
+        let names = || {
+            let entries = std::fs::read_dir(&series).unwrap();
+            let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+            names.collect::<std::collections::BTreeSet<_>>()
+        };
+        prepare(folder).unwrap();
+        write_snapshots(folder, core::iter::empty()).unwrap();
+        assert!(!series.exists());
+        write_snapshots(folder, (0..12).map(|k| vec![k])).unwrap();
+        assert_eq!(names().len(), 12);
+        assert_eq!(std::fs::read(series.join("012.png")).unwrap(), [11]);
+        std::fs::write(series.join("mine.png"), b"").unwrap();
+        prepare(folder).unwrap();
+        write_snapshots(folder, (0..1).map(|k| vec![k])).unwrap();
+        assert_eq!(names(), ["001.png", "mine.png"].map(String::from).into());
+        std::fs::remove_file(series.join("mine.png")).unwrap();
+        prepare(folder).unwrap();
+        assert!(!series.exists());
     }
 
     #[test]

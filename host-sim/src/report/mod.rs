@@ -8,6 +8,7 @@ pub mod commands;
 pub mod folder;
 pub mod grid_map;
 pub mod ros_map;
+pub mod terrain;
 mod text;
 pub mod tum;
 
@@ -15,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 pub use crate::link::LinkStats;
 pub use grid_map::{GridMap, MapCell};
+pub use terrain::Terrain;
 
 /// Version of the schema: it grows by one when a field changes its meaning or goes.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -38,12 +40,18 @@ pub struct Report {
     pub start: usize,
     /// The faults put on the link, as given to `--fault`.
     pub fault: Option<String>,
+    /// How the sensors erred.
+    pub noise: Noise,
+    /// What may surprise about the world file.
+    pub notes: Vec<String>,
     /// How it ended.
     pub outcome: Outcome,
     /// Simulated seconds.
     pub sim_time_s: f64,
     /// Metres driven, by the true pose.
     pub path_length_m: f64,
+    /// Metres up and down: the sum of the changes of the true height from step to step.
+    pub climb_m: f64,
     /// Observations answered.
     pub steps: u64,
     /// What became known, and when.
@@ -53,6 +61,8 @@ pub struct Report {
     pub loops: Loops,
     /// What the true robot suffered.
     pub safety: Safety,
+    /// The ground, and how it was driven over; `null` in a flat world.
+    pub terrain: Option<Terrain>,
     /// Estimated pose against the true one.
     pub localization: Localization,
     /// What planning cost.
@@ -89,6 +99,15 @@ pub struct ResidualFrontier {
     pub cells: u32,
     /// `unreachable`, `unobservable`, `out-of-bounds` or `no-progress`.
     pub reason: String,
+}
+
+/// Standard deviations of what the sensors say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Noise {
+    /// Of a laser's range.
+    pub laser_m: f64,
+    /// Of roll and pitch.
+    pub imu_deg: f64,
 }
 
 /// What became known of what a disc of the robot's radius could have seen from where it can reach.

@@ -54,6 +54,17 @@ impl Report {
             } = self.loops;
             lines.push(format!("  loops     {loops_closed} of {loops} closed"));
         }
+        if let Some(terrain) = &self.terrain {
+            lines.push(format!(
+                "  ground    {:.1} m up and down; steepest {:.1} deg along, {:.1} deg across; {:.1} s beyond {:.0} and {:.0} deg",
+                self.climb_m,
+                terrain.max_climb_deg,
+                terrain.max_side_deg,
+                terrain.over_limits_s,
+                terrain.working.climb_deg,
+                terrain.working.side_deg,
+            ));
+        }
         if let Some(error_m) = self.localization.max_error_m.filter(|m| *m > 1e-3) {
             let mean_m = self.localization.mean_error_m.unwrap_or(0.0);
             lines.push(format!(
@@ -73,7 +84,7 @@ impl Report {
     fn ending(&self) -> String {
         match self.outcome.status.as_str() {
             "finished" => self.outcome.reason.clone(),
-            "fault" => format!("fault ({})", self.outcome.reason),
+            "fault" | "lost" => format!("{} ({})", self.outcome.status, self.outcome.reason),
             status => status.into(),
         }
     }
@@ -125,6 +136,25 @@ mod tests {
              \x20 loops     1 of 2 closed\n\
              \x20 left      4 cells at (3.0, -1.2): unreachable"
         );
+    }
+
+    #[test]
+    fn uneven_ground_has_a_line_of_its_own() {
+        let mut report = sample();
+        report.climb_m = 12.34;
+        report.terrain = Some(crate::report::Terrain {
+            max_climb_deg: 18.26,
+            max_side_deg: 7.0,
+            over_limits_s: 0.4,
+            working: (&crate::robot::Limits::WORKING).into(),
+            ..Default::default()
+        });
+        report.outcome.status = "lost".into();
+        report.outcome.reason = "tipped".into();
+        let text = report.to_text();
+        assert!(text.contains("lost (tipped), "), "{text}");
+        let line = "  ground    12.3 m up and down; steepest 18.3 deg along, 7.0 deg across; 0.4 s beyond 20 and 15 deg";
+        assert!(text.lines().any(|l| l == line), "{text}");
     }
 
     #[test]

@@ -93,13 +93,21 @@ impl Drive {
         self.velocity
     }
 
-    /// Runs the wheels towards the target for `seconds` and returns the new velocity.
-    pub fn advance(&mut self, seconds: f64) -> Velocity {
+    /// What it goes for.
+    #[must_use]
+    pub fn target(&self) -> Velocity {
+        self.target
+    }
+
+    /// Runs the wheels towards the target for `seconds` and returns the new velocity. Only `share` of the full speed can be
+    /// had, 0 to 1: less than 1 uphill.
+    pub fn advance(&mut self, seconds: f64, share: f64) -> Velocity {
         let limits = &self.limits;
+        let most_mps = limits.linear_mps * share;
         self.velocity = Velocity {
             linear_mps: approach(
                 self.velocity.linear_mps,
-                self.target.linear_mps,
+                self.target.linear_mps.clamp(-most_mps, most_mps),
                 limits.acceleration_mps2 * seconds,
                 limits.braking_mps2 * seconds,
             ),
@@ -138,7 +146,7 @@ mod tests {
             angular_radps,
         });
         for _ in 0..(seconds / 0.01).round() as u32 {
-            drive.advance(0.01);
+            drive.advance(0.01, 1.0);
         }
         drive.velocity()
     }
@@ -160,6 +168,19 @@ mod tests {
         run(&mut drive, 0.3, 0.0, 2.0);
         // 0.5 s of braking to rest, then 0.5 s at 0.3 m/s².
         assert!((run(&mut drive, -0.7, 0.0, 1.0).linear_mps + 0.15).abs() < 1e-9);
+    }
+
+    #[test]
+    fn uphill_it_slows_down_by_braking_and_then_keeps_the_share() {
+        let mut drive = Drive::new(DriveLimits::default());
+        run(&mut drive, 0.7, 0.0, 4.0);
+        drive.advance(0.1, 0.5);
+        assert!((drive.velocity().linear_mps - 0.64).abs() < 1e-9);
+        for _ in 0..100 {
+            drive.advance(0.1, 0.5);
+        }
+        assert_eq!(drive.velocity().linear_mps, 0.35);
+        assert_eq!(drive.target().linear_mps, 0.7);
     }
 
     #[test]

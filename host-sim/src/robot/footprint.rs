@@ -2,8 +2,12 @@
 //!
 //! Two convex shapes that do not overlap are nearest at a corner of one of them, so the gap between the rectangle and a
 //! cell is the least over the eight corners. They overlap unless one of their four edge directions separates them.
-//! The distance field only spares the work where nothing can be near. Metres.
+//! The distance field only spares the work where nothing can be near.
+//!
+//! A robot that leans covers other ground than one that stands upright: the shadow of its box, with the bottom corners drawn in
+//! and the top corners pushed out. Walls are taken as higher than the robot. Metres.
 
+use super::pose::Pose;
 use crate::world::{GridCell, World};
 
 /// Clearance is not measured beyond this, metres.
@@ -16,9 +20,11 @@ pub struct Footprint {
     pub half_length_m: f64,
     /// Half its width, metres.
     pub half_width_m: f64,
+    /// How high the body stands on that rectangle, metres.
+    pub height_m: f64,
 }
 
-/// The rectangle at a pose: centre, cosine and sine of the heading.
+/// The rectangle at a pose: its centre, cosine and sine of the heading.
 #[derive(Clone, Copy)]
 struct Placed {
     half: [f64; 2],
@@ -28,10 +34,11 @@ struct Placed {
 }
 
 impl Footprint {
-    /// The Pioneer 3-AT: 0.508 m long, 0.497 m wide.
+    /// The Pioneer 3-AT: 0.508 m long, 0.497 m wide, its deck 0.277 m high.
     pub const PIONEER_3AT: Self = Self {
         half_length_m: 0.254,
         half_width_m: 0.2485,
+        height_m: 0.277,
     };
 
     /// Distance from the centre to a corner, metres.
@@ -42,22 +49,23 @@ impl Footprint {
 
     /// Does the footprint overlap a solid cell?
     #[must_use]
-    pub fn overlaps(&self, world: &World, x_m: f64, y_m: f64, yaw_rad: f64) -> bool {
-        let cell = world.occupancy().cell_at(x_m, y_m);
-        if world.distance().from_anywhere_m(cell) > self.circumradius_m() {
+    pub fn overlaps(&self, world: &World, pose: &Pose) -> bool {
+        let reach_m = self.reach_m(pose);
+        let cell = world.occupancy().cell_at(pose.x_m, pose.y_m);
+        if world.distance().from_anywhere_m(cell) > reach_m {
             return false;
         }
-        let placed = self.place(x_m, y_m, yaw_rad);
-        solid_cells(world, x_m, y_m, self.circumradius_m()).any(|square| placed.overlaps(square))
+        let placed = self.place(pose);
+        solid_cells(world, pose, reach_m).any(|square| placed.overlaps(square))
     }
 
     /// Metres between the footprint's outline and the nearest solid cell: 0 where they overlap, and at most
     /// [`FARTHEST_M`].
     #[must_use]
-    pub fn clearance_m(&self, world: &World, x_m: f64, y_m: f64, yaw_rad: f64) -> f64 {
-        let placed = self.place(x_m, y_m, yaw_rad);
+    pub fn clearance_m(&self, world: &World, pose: &Pose) -> f64 {
+        let placed = self.place(pose);
         let mut nearest_m = FARTHEST_M;
-        for square in solid_cells(world, x_m, y_m, FARTHEST_M + self.circumradius_m()) {
+        for square in solid_cells(world, pose, FARTHEST_M + self.reach_m(pose)) {
             if placed.overlaps(square) {
                 return 0.0;
             }
@@ -68,17 +76,47 @@ impl Footprint {
 
     /// A lower bound of [`Self::clearance_m`] that costs one look-up.
     #[must_use]
-    pub fn clearance_bound_m(&self, world: &World, x_m: f64, y_m: f64) -> f64 {
-        let cell = world.occupancy().cell_at(x_m, y_m);
-        world.distance().from_anywhere_m(cell) - self.circumradius_m()
+    pub fn clearance_bound_m(&self, world: &World, pose: &Pose) -> f64 {
+        let cell = world.occupancy().cell_at(pose.x_m, pose.y_m);
+        world.distance().from_anywhere_m(cell) - self.reach_m(pose)
     }
 
-    fn place(&self, x_m: f64, y_m: f64, yaw_rad: f64) -> Placed {
+    /// Distance from the pose to the farthest corner of the shadow, or more, metres.
+    fn reach_m(&self, pose: &Pose) -> f64 {
+        if pose.pitch_rad == 0.0 && pose.roll_rad == 0.0 {
+            return self.circumradius_m();
+        }
+        let [[x0, x1], [y0, y1]] = self.shadow(pose);
+        let (a, b) = (x1.max(-x0), y1.max(-y0));
+        (a * a + b * b).sqrt()
+    }
+
+    /// From where to where the shadow of the leaning box reaches, along the heading and across it, metres.
+    ///
+    /// A corner (±a, ±b, 0 or h) of the box lies, with `Ry(pitch) Rx(roll)`, at
+    /// `x = ±a cos p ± b sin p sin r + h sin p cos r` and `y = ±b cos r − h sin r`.
+    fn shadow(&self, pose: &Pose) -> [[f64; 2]; 2] {
+        let (cos_p, sin_p) = (libm::cos(pose.pitch_rad), libm::sin(pose.pitch_rad));
+        let (cos_r, sin_r) = (libm::cos(pose.roll_rad), libm::sin(pose.roll_rad));
+        let along = self.half_length_m * cos_p + self.half_width_m * (sin_p * sin_r).abs();
+        let across = self.half_width_m * cos_r;
+        let nose = self.height_m * sin_p * cos_r;
+        let lean = -self.height_m * sin_r;
+        [
+            [nose.min(0.0) - along, nose.max(0.0) + along],
+            [lean.min(0.0) - across, lean.max(0.0) + across],
+        ]
+    }
+
+    fn place(&self, pose: &Pose) -> Placed {
+        let [[x0, x1], [y0, y1]] = self.shadow(pose);
+        let (cos, sin) = (libm::cos(pose.yaw_rad), libm::sin(pose.yaw_rad));
+        let (x, y) = (0.5 * (x0 + x1), 0.5 * (y0 + y1));
         Placed {
-            half: [self.half_length_m, self.half_width_m],
-            centre: [x_m, y_m],
-            cos: libm::cos(yaw_rad),
-            sin: libm::sin(yaw_rad),
+            half: [0.5 * (x1 - x0), 0.5 * (y1 - y0)],
+            centre: [pose.x_m + x * cos - y * sin, pose.y_m + x * sin + y * cos],
+            cos,
+            sin,
         }
     }
 }
@@ -151,10 +189,10 @@ fn point_to_box([x, y]: [f64; 2], [x0, y0, x1, y1]: [f64; 4]) -> f64 {
 }
 
 /// The solid cells, as [x0, y0, x1, y1], that come within `reach_m` of a point along both axes.
-fn solid_cells(world: &World, x_m: f64, y_m: f64, reach_m: f64) -> impl Iterator<Item = [f64; 4]> {
+fn solid_cells(world: &World, pose: &Pose, reach_m: f64) -> impl Iterator<Item = [f64; 4]> {
     let grid = world.occupancy();
-    let low = grid.cell_at(x_m - reach_m, y_m - reach_m);
-    let high = grid.cell_at(x_m + reach_m, y_m + reach_m);
+    let low = grid.cell_at(pose.x_m - reach_m, pose.y_m - reach_m);
+    let high = grid.cell_at(pose.x_m + reach_m, pose.y_m + reach_m);
     (low.j..=high.j)
         .flat_map(move |j| (low.i..=high.i).map(move |i| GridCell { i, j }))
         .filter(|cell| grid.is_solid(*cell))
@@ -186,11 +224,20 @@ mod tests {
         World::flat("random", grid, Vec::new())
     }
 
+    fn upright(x_m: f64, y_m: f64, yaw_rad: f64) -> Pose {
+        Pose {
+            x_m,
+            y_m,
+            yaw_rad,
+            ..Pose::default()
+        }
+    }
+
     /// Least distance between points spread over both outlines and insides, 0.02 m apart.
-    fn sampled_m(world: &World, pose: [f64; 3]) -> f64 {
-        let placed = ROBOT.place(pose[0], pose[1], pose[2]);
+    fn sampled_m(world: &World, pose: &Pose) -> f64 {
+        let placed = ROBOT.place(pose);
         let mut nearest = FARTHEST_M;
-        for square in solid_cells(world, pose[0], pose[1], FARTHEST_M + 0.4) {
+        for square in solid_cells(world, pose, FARTHEST_M + 0.4) {
             for a in -13..=13 {
                 for b in -13..=13 {
                     let (x, y) = (
@@ -198,8 +245,8 @@ mod tests {
                         f64::from(b) / 13.0 * placed.half[1],
                     );
                     let point = [
-                        pose[0] + x * placed.cos - y * placed.sin,
-                        pose[1] + x * placed.sin + y * placed.cos,
+                        pose.x_m + x * placed.cos - y * placed.sin,
+                        pose.y_m + x * placed.sin + y * placed.cos,
                     ];
                     nearest = nearest.min(point_to_box(point, square));
                 }
@@ -218,17 +265,14 @@ mod tests {
                 let mut uniform = |low: f64, high: f64| {
                     low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX)
                 };
-                let pose = [uniform(-1.0, 2.6), uniform(0.5, 3.5), uniform(-4.0, 4.0)];
-                let exact = ROBOT.clearance_m(&world, pose[0], pose[1], pose[2]);
-                let sampled = sampled_m(&world, pose);
+                let pose = upright(uniform(-1.0, 2.6), uniform(0.5, 3.5), uniform(-4.0, 4.0));
+                let exact = ROBOT.clearance_m(&world, &pose);
+                let sampled = sampled_m(&world, &pose);
                 // Samples are at most 14 mm from any point of the rectangle.
                 assert!(exact <= sampled + 1e-12, "{pose:?}: {exact} > {sampled}");
                 assert!(sampled <= exact + 0.0138, "{pose:?}: {exact}, {sampled}");
-                assert_eq!(
-                    ROBOT.overlaps(&world, pose[0], pose[1], pose[2]),
-                    exact == 0.0
-                );
-                assert!(ROBOT.clearance_bound_m(&world, pose[0], pose[1]) <= exact.max(0.0));
+                assert_eq!(ROBOT.overlaps(&world, &pose), exact == 0.0);
+                assert!(ROBOT.clearance_bound_m(&world, &pose) <= exact.max(0.0));
                 touching += u32::from(exact == 0.0);
                 near += u32::from(exact > 0.0 && exact < 0.2);
                 far += u32::from(exact >= 0.2);
@@ -250,9 +294,50 @@ mod tests {
             }
         }
         let world = World::flat("door", grid, Vec::new());
-        let clearance = ROBOT.clearance_m(&world, 1.5, 1.0, 0.0);
+        let clearance = ROBOT.clearance_m(&world, &upright(1.5, 1.0, 0.0));
         assert!((clearance - (0.3 - 0.2485)).abs() < 1e-9, "{clearance}");
-        assert!(ROBOT.overlaps(&world, 1.5, 1.0, 0.6));
-        assert!(!ROBOT.overlaps(&world, 1.5, 1.0, 0.1));
+        assert!(ROBOT.overlaps(&world, &upright(1.5, 1.0, 0.6)));
+        assert!(!ROBOT.overlaps(&world, &upright(1.5, 1.0, 0.1)));
+        // Leaning to its right by 20° its deck sticks out by 0.277 sin 20° and its side draws in.
+        let leaning = Pose {
+            roll_rad: 20.0_f64.to_radians(),
+            ..upright(1.5, 1.0, 0.0)
+        };
+        let out = 0.2485 * 20.0_f64.to_radians().cos() + 0.277 * 20.0_f64.to_radians().sin();
+        assert!(out > 0.3 && ROBOT.overlaps(&world, &leaning));
+        let aside = Pose {
+            y_m: 1.04,
+            ..leaning
+        };
+        let clearance = ROBOT.clearance_m(&world, &aside);
+        assert!((clearance - (0.34 - out)).abs() < 1e-9, "{clearance}");
+    }
+
+    /// Every corner of the box, turned by the whole attitude, lies in the shadow, and some corner touches each of its sides.
+    #[test]
+    fn the_shadow_is_the_box_seen_from_above() {
+        let mut rng = ChaCha8Rng::seed_from_u64(32);
+        for _ in 0..200 {
+            let mut angle = || (f64::from(rng.next_u32()) / f64::from(u32::MAX) - 0.5) * 1.2;
+            let pose = Pose {
+                pitch_rad: angle(),
+                roll_rad: angle(),
+                ..Pose::default()
+            };
+            let [forward, left, up] = pose.axes();
+            let mut reached = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+            for k in 0..8 {
+                let sign = |bit: u32| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
+                let (a, b) = (sign(0) * ROBOT.half_length_m, sign(1) * ROBOT.half_width_m);
+                let h = 0.5 * (1.0 + sign(2)) * ROBOT.height_m;
+                for (axis, [low, high]) in reached.iter_mut().enumerate() {
+                    let place = a * forward[axis] + b * left[axis] + h * up[axis];
+                    (*low, *high) = (low.min(place), high.max(place));
+                }
+            }
+            for (ours, exact) in ROBOT.shadow(&pose).iter().zip(&reached) {
+                assert!((ours[0] - exact[0]).abs() < 1e-12 && (ours[1] - exact[1]).abs() < 1e-12);
+            }
+        }
     }
 }

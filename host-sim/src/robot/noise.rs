@@ -25,6 +25,8 @@ pub enum Source {
     OdometryWalk = 6,
     /// Roll and pitch of the inertial unit.
     Inertial = 7,
+    /// The odometry's random walk in height.
+    OdometryClimb = 8,
 }
 
 /// One stream.

@@ -9,9 +9,14 @@
 //! ```
 //!
 //! Departs from [Thrun05, table 5.6], whose variances grow with the squares: those depend on how often one samples,
-//! while these add up to the same over the same path however it is cut. Roll and pitch come from an inertial unit with white noise.
+//! while these add up to the same over the same path however it is cut.
 //!
-//! The frame starts at the robot's start pose in the world, so that truth and world coincide. Metres, radians.
+//! Wheels count what they turn, not what they slip. The way is tilted by the pitch, which an inertial unit averages over a
+//! period: `z′ −= distance′ sin(pitch)`, seen from above `distance′ cos(pitch)`; and z takes a random walk of its own. What the unit
+//! says of roll and pitch at one instant has white noise.
+//!
+//! The frame starts at the robot's start pose in the world, so that truth and world coincide. Metres, radians. On the level the
+//! heights are nothing but that walk.
 //!
 //! [Thrun05]: S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics", 2005.
 
@@ -29,6 +34,8 @@ pub struct OdometryNoise {
     pub distance_by_distance: f64,
     /// α₄: variance of the distance per turn, m²/rad. Default: 1.4e-4 (3 cm a full turn).
     pub distance_by_turn: f64,
+    /// α₅: variance of the height per distance, m²/m. Default: 1e-4 (3 cm over 10 m).
+    pub height_by_distance: f64,
     /// Standard deviation of the scale error of distances. Default: 0.01.
     pub distance_scale: f64,
     /// Standard deviation of the scale error of turns. Default: 0.02.
@@ -44,6 +51,7 @@ impl Default for OdometryNoise {
             turn_by_distance: 1.2e-4,
             distance_by_distance: 2.5e-4,
             distance_by_turn: 1.4e-4,
+            height_by_distance: 1e-4,
             distance_scale: 0.01,
             turn_scale: 0.02,
             attitude_rad: 0.5_f64.to_radians(),
@@ -57,6 +65,8 @@ pub enum OdometryModel {
     /// The exact pose.
     #[default]
     Truth,
+    /// The exact position and heading; roll and pitch with white noise of this standard deviation, radians.
+    Tilting(f64),
     /// Wheel encoders and an inertial unit.
     Noisy(OdometryNoise),
 }
@@ -69,6 +79,7 @@ pub struct Odometry {
     velocity: Velocity,
     scale: [f64; 2],
     walk: Noise,
+    climb: Noise,
     inertial: Noise,
 }
 
@@ -78,7 +89,7 @@ impl Odometry {
     pub fn new(model: OdometryModel, start: Pose, seed: u64) -> Self {
         let mut scale = Noise::new(seed, Source::OdometryScale);
         let scale = match model {
-            OdometryModel::Truth => [0.0; 2],
+            OdometryModel::Truth | OdometryModel::Tilting(_) => [0.0; 2],
             OdometryModel::Noisy(noise) => [
                 noise.distance_scale * scale.normal(),
                 noise.turn_scale * scale.normal(),
@@ -90,6 +101,7 @@ impl Odometry {
             velocity: Velocity::default(),
             scale,
             walk: Noise::new(seed, Source::OdometryWalk),
+            climb: Noise::new(seed, Source::OdometryClimb),
             inertial: Noise::new(seed, Source::Inertial),
         }
     }
@@ -109,10 +121,21 @@ impl Odometry {
     /// Takes in the motion of one period: the true pose now, the way the wheels went and turned, the true velocity.
     pub fn advance(&mut self, truth: &Pose, forward_m: f64, turn_rad: f64, velocity: Velocity) {
         self.velocity = velocity;
-        let OdometryModel::Noisy(noise) = self.model else {
-            self.pose = *truth;
-            return;
-        };
+        match self.model {
+            OdometryModel::Truth => self.pose = *truth,
+            OdometryModel::Tilting(sigma_rad) => {
+                self.pose = *truth;
+                self.feel(truth, sigma_rad);
+            }
+            OdometryModel::Noisy(noise) => {
+                self.reckon(&noise, truth, forward_m, turn_rad);
+                self.feel(truth, noise.attitude_rad);
+            }
+        }
+    }
+
+    /// Dead reckoning.
+    fn reckon(&mut self, noise: &OdometryNoise, truth: &Pose, forward_m: f64, turn_rad: f64) {
         let (distance, turn) = (forward_m.abs(), turn_rad.abs());
         let turn_variance = noise.turn_by_turn * turn + noise.turn_by_distance * distance;
         let distance_variance =
@@ -120,12 +143,19 @@ impl Odometry {
         let turn_error = self.scale[1] * turn_rad + turn_variance.sqrt() * self.walk.normal();
         let distance_error =
             self.scale[0] * forward_m + distance_variance.sqrt() * self.walk.normal();
+        let height_error = (noise.height_by_distance * distance).sqrt() * self.climb.normal();
+        let way_m = forward_m + distance_error;
+        let height_m = self.pose.z_m - way_m * libm::sin(truth.pitch_rad) + height_error;
         self.pose = self
             .pose
-            .moved(forward_m + distance_error, turn_rad + turn_error);
-        self.pose.z_m = truth.z_m;
-        self.pose.roll_rad = truth.roll_rad + noise.attitude_rad * self.inertial.normal();
-        self.pose.pitch_rad = truth.pitch_rad + noise.attitude_rad * self.inertial.normal();
+            .moved(way_m * libm::cos(truth.pitch_rad), turn_rad + turn_error);
+        self.pose.z_m = height_m;
+    }
+
+    /// What the inertial unit says of the attitude.
+    fn feel(&mut self, truth: &Pose, sigma_rad: f64) {
+        self.pose.roll_rad = truth.roll_rad + sigma_rad * self.inertial.normal();
+        self.pose.pitch_rad = truth.pitch_rad + sigma_rad * self.inertial.normal();
     }
 }
 
@@ -179,6 +209,74 @@ mod tests {
         // One full turn on the spot: 3°.
         let heading = deviation(&errors(walk, 50, 0.0, core::f64::consts::TAU / 50.0), 1);
         assert!((heading.to_degrees() - 3.01).abs() < 0.45, "{heading}");
+    }
+
+    #[test]
+    fn a_slope_is_reckoned_as_way_and_height() {
+        let exact = OdometryNoise {
+            turn_by_turn: 0.0,
+            turn_by_distance: 0.0,
+            distance_by_distance: 0.0,
+            distance_by_turn: 0.0,
+            height_by_distance: 0.0,
+            distance_scale: 0.0,
+            turn_scale: 0.0,
+            attitude_rad: 0.0,
+        };
+        let nose_up = Pose {
+            pitch_rad: -0.2,
+            ..Pose::default()
+        };
+        let mut odometry = Odometry::new(OdometryModel::Noisy(exact), nose_up, 1);
+        for _ in 0..10 {
+            odometry.advance(&nose_up, 0.1, 0.0, Velocity::default());
+        }
+        assert!((odometry.pose().x_m - 0.2_f64.cos()).abs() < 1e-12);
+        assert!((odometry.pose().z_m - 0.2_f64.sin()).abs() < 1e-12);
+        assert_eq!(odometry.pose().pitch_rad, -0.2);
+    }
+
+    #[test]
+    fn a_level_way_of_ten_metres_drifts_by_three_centimetres_in_height() {
+        let heights: Vec<[f64; 2]> = (0..400)
+            .map(|seed| {
+                let noise = OdometryNoise::default();
+                let level = Pose::default();
+                let mut odometry = Odometry::new(OdometryModel::Noisy(noise), level, seed);
+                for _ in 0..100 {
+                    odometry.advance(&level, 0.1, 0.0, Velocity::default());
+                }
+                [odometry.pose().z_m, 0.0]
+            })
+            .collect();
+        let drift = deviation(&heights, 0);
+        assert!((drift - 0.0316).abs() < 0.005, "{drift}");
+    }
+
+    #[test]
+    fn tilting_is_the_truth_but_for_the_attitude() {
+        let sigma = 0.02;
+        let mut odometry = Odometry::new(OdometryModel::Tilting(sigma), Pose::default(), 3);
+        let truth = Pose {
+            roll_rad: 0.1,
+            pitch_rad: -0.2,
+            ..Pose::default().moved(1.3, 0.4)
+        };
+        let errors: Vec<[f64; 2]> = (0..2000)
+            .map(|_| {
+                odometry.advance(&truth, 0.0, 0.0, Velocity::default());
+                let believed = *odometry.pose();
+                let level = Pose {
+                    roll_rad: 0.1,
+                    pitch_rad: -0.2,
+                    ..believed
+                };
+                assert_eq!(level, truth);
+                [believed.roll_rad - 0.1, believed.pitch_rad + 0.2]
+            })
+            .collect();
+        assert!((deviation(&errors, 0) - sigma).abs() < 0.0013);
+        assert!((deviation(&errors, 1) - sigma).abs() < 0.0013);
     }
 
     #[test]

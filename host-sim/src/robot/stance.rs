@@ -5,7 +5,8 @@
 //! ```
 //!
 //! with the means of the two wheels at each end and side. It is the plane of least squares through the four contacts: a chassis on
-//! four stiff wheels touches with three of them at the most. Over a hole there is no stance. Metres, radians.
+//! four stiff wheels touches with three of them at the most. A wheel touches at the point under its axle; that it is round,
+//! and rides over an edge a little earlier, is left out. Over a hole there is no stance. Metres, radians.
 
 use super::pose::Pose;
 use crate::world::World;
@@ -14,6 +15,28 @@ use crate::world::World;
 const WHEELBASE_M: f64 = 0.268;
 /// Between the wheels of an axle, metres.
 const TRACK_M: f64 = 0.394;
+/// Where the wheels touch, as shares of half the wheel base (ahead) and of half the track (left).
+const WHEELS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
+
+/// Where the four wheels touch the ground: front left, front right, rear left, rear right.
+#[must_use]
+pub(crate) fn wheels(pose: &Pose) -> [[f64; 2]; 4] {
+    let (cos, sin) = (libm::cos(pose.yaw_rad), libm::sin(pose.yaw_rad));
+    WHEELS.map(|[ahead, left]| {
+        let (x, y) = (0.5 * WHEELBASE_M * ahead, 0.5 * TRACK_M * left);
+        [pose.x_m + x * cos - y * sin, pose.y_m + x * sin + y * cos]
+    })
+}
+
+/// The ground under the four wheels, metres; `None` if one of them has none.
+#[must_use]
+pub(crate) fn ground_m(world: &World, wheels: &[[f64; 2]; 4]) -> Option<[f64; 4]> {
+    let mut heights_m = [0.0; 4];
+    for (height_m, [x_m, y_m]) in heights_m.iter_mut().zip(wheels) {
+        *height_m = world.ground_m(*x_m, *y_m)?;
+    }
+    Some(heights_m)
+}
 
 /// The same planar pose, standing on the ground; `None` if a wheel has none under it.
 #[must_use]
@@ -26,50 +49,33 @@ pub fn stand(world: &World, pose: &Pose) -> Option<Pose> {
             ..*pose
         });
     }
-    let (cos, sin) = (libm::cos(pose.yaw_rad), libm::sin(pose.yaw_rad));
-    let under = |ahead: f64, left: f64| {
-        let (x, y) = (0.5 * WHEELBASE_M * ahead, 0.5 * TRACK_M * left);
-        world.ground_m(pose.x_m + x * cos - y * sin, pose.y_m + x * sin + y * cos)
-    };
-    let front_left = under(1.0, 1.0)?;
-    let front_right = under(1.0, -1.0)?;
-    let rear_left = under(-1.0, 1.0)?;
-    let rear_right = under(-1.0, -1.0)?;
+    Some(resting(pose, ground_m(world, &wheels(pose))?))
+}
+
+/// The same planar pose, resting on ground of these heights under its wheels.
+#[must_use]
+pub(crate) fn resting(pose: &Pose, heights_m: [f64; 4]) -> Pose {
+    let [front_left, front_right, rear_left, rear_right] = heights_m;
     let fall = 0.5 * (rear_left + rear_right - front_left - front_right);
     let lean = 0.5 * (front_left + rear_left - front_right - rear_right);
-    Some(Pose {
+    Pose {
         z_m: 0.25 * (front_left + front_right + rear_left + rear_right),
         pitch_rad: libm::atan(fall / WHEELBASE_M),
         roll_rad: libm::atan(lean / TRACK_M),
         ..*pose
-    })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::{Class, Elevation, HeightScale, Image, Occupancy};
+    use crate::world::{Class, Elevation, Occupancy};
 
     /// Ground that rises by 0.2 m a metre along x, 8 × 4 m, with a hole from x = 6.
     fn slope() -> World {
-        let samples = (0..40 * 80_u32).map(|k| match k % 80 {
-            i if i >= 60 => 0,
-            i => 1 + i,
+        let ground = Elevation::from_fn([80, 40], 0.1, [0.0, 0.0], |x, _| {
+            if x > 6.0 { f64::NAN } else { 0.2 * (x - 0.05) }
         });
-        let image = Image {
-            width: 80,
-            height: 40,
-            samples: samples.collect(),
-            full: 255,
-            channels: 1,
-            transparent: Vec::new(),
-        };
-        let scale = HeightScale {
-            z_min_m: 0.0,
-            z_max_m: 254.0 * 0.02,
-            no_data: Some(0),
-        };
-        let ground = Elevation::from_image(&image, scale, 0.1, [0.0, 0.0]);
         let floor = Occupancy::filled(80, 40, 0.1, [0.0, 0.0], Class::Free);
         World::uneven("slope", floor, ground, Vec::new())
     }

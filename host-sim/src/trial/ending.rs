@@ -4,6 +4,7 @@ use fieldline_protocol::message::{Fault, Finish};
 
 use super::wording;
 use crate::link::LinkError;
+use crate::sim::Loss;
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,6 +15,8 @@ pub enum Ending {
     Fault(Fault),
     /// The link failed; the robot stopped by its own watchdog.
     Link(LinkError),
+    /// The robot fell or tipped over.
+    Lost(Loss),
     /// The simulated time ran out.
     TimeLimit,
     /// The robot neither moved nor turned for too long while it said that it explored.
@@ -23,12 +26,13 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// `finished`, `fault`, `time-limit`, `frozen` or `interrupted`.
+    /// `finished`, `fault`, `lost`, `time-limit`, `frozen` or `interrupted`.
     #[must_use]
     pub fn status(&self) -> &'static str {
         match self {
             Self::Finished(_) => "finished",
             Self::Fault(_) | Self::Link(_) => "fault",
+            Self::Lost(_) => "lost",
             Self::TimeLimit => "time-limit",
             Self::Frozen => "frozen",
             Self::Interrupted => "interrupted",
@@ -47,6 +51,8 @@ impl Ending {
             Self::Link(LinkError::Incompatible(_)) => "device-incompatible",
             Self::Link(LinkError::Refused(_)) => "request-refused",
             Self::Link(LinkError::Io(_)) => "link-io",
+            Self::Lost(Loss::Fell) => "fell",
+            Self::Lost(Loss::Tipped) => "tipped",
             Self::TimeLimit => "simulated-time",
             Self::Frozen => "no-motion",
             Self::Interrupted => "user",
@@ -64,6 +70,12 @@ impl Ending {
             Self::Finished(Finish::Stopped) => "the device was told to stop".into(),
             Self::Fault(why) => fault_advice(*why).into(),
             Self::Link(why) => why.to_string(),
+            Self::Lost(Loss::Fell) => {
+                "a wheel lost the ground; look at run.png, and at the failing limits in report.json".into()
+            }
+            Self::Lost(Loss::Tipped) => {
+                "the ground was too steep to stand on; look at run.png, and at the failing limits in report.json".into()
+            }
             Self::TimeLimit => "the simulated time ran out; allow more with --time-limit".into(),
             Self::Frozen => "the robot neither moved nor turned for a minute while exploring; look at run.png".into(),
             Self::Interrupted => "stopped by the user".into(),
@@ -90,6 +102,7 @@ fn fault_advice(fault: Fault) -> &'static str {
 mod tests {
     use super::Ending;
     use crate::link::LinkError;
+    use crate::sim::Loss;
     use fieldline_protocol::message::{Fault, Finish};
 
     #[test]
@@ -107,6 +120,8 @@ mod tests {
             words(Ending::Link(LinkError::Silent)),
             ("fault", "link-silent")
         );
+        assert_eq!(words(Ending::Lost(Loss::Fell)), ("lost", "fell"));
+        assert_eq!(words(Ending::Lost(Loss::Tipped)), ("lost", "tipped"));
         assert_eq!(words(Ending::TimeLimit), ("time-limit", "simulated-time"));
         assert_eq!(words(Ending::Frozen), ("frozen", "no-motion"));
     }

@@ -12,12 +12,12 @@ use fieldline_protocol::message::{Observation, Status, Strategy, Twist};
 use super::mirror::Mirror;
 use super::{Body, Cast, Record, Setup, Survey, Watch, record, run, shape};
 use crate::link::{Link, LinkError};
-use crate::metrics::{CellSet, Coverage, Loops};
+use crate::metrics::{CellSet, Coverage, Footing, GroundTruth, Loops};
 use crate::report::tum::Stamped;
 use crate::report::{self, Report, SCHEMA_VERSION};
-use crate::robot::{OdometryModel, OdometryNoise, RADIUS_M, laser};
-use crate::sim::{SimConfig, Simulator};
-use crate::world::{World, WorldError};
+use crate::robot::{LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M, laser};
+use crate::sim::{Loss, SimConfig, Simulator};
+use crate::world::{Start, World, WorldError};
 
 /// What a run is asked to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +34,14 @@ pub struct Mission {
     pub start: usize,
     /// Whether odometry errs.
     pub noisy_odometry: bool,
+    /// Standard deviation of roll and pitch, radians; if `None` none with true odometry, that of [`OdometryNoise`] with noisy.
+    pub imu_rad: Option<f64>,
+    /// Standard deviation of ranges, metres; that of [`LaserNoise`] if `None`.
+    pub laser_m: Option<f64>,
+    /// The ground that counts as reachable and traversable.
+    pub working: Limits,
+    /// The ground that the robot does not survive.
+    pub failing: Limits,
     /// Simulated time limit, milliseconds.
     pub time_limit_ms: u32,
     /// The map's box in tiles; chosen for the world if `None`.
@@ -42,6 +50,8 @@ pub struct Mission {
     pub period_ms: u32,
     /// Compare every heading with that of the converged window.
     pub check_field: bool,
+    /// How many moments of the run to keep for pictures.
+    pub snapshots: usize,
 }
 
 impl Default for Mission {
@@ -53,10 +63,15 @@ impl Default for Mission {
             seed: 0,
             start: 0,
             noisy_odometry: false,
+            imu_rad: None,
+            laser_m: None,
+            working: Limits::WORKING,
+            failing: Limits::FAILING,
             time_limit_ms: 3_600_000,
             box_tiles: None,
             period_ms: SimConfig::default().period_ms,
             check_field: false,
+            snapshots: 0,
         }
     }
 }
@@ -155,9 +170,12 @@ pub fn explore(
         ),
         time_limit_ms: mission.time_limit_ms,
         check_field: mission.check_field,
+        snapshots: mission.snapshots,
     };
-    let mut account = Account::new(&setup, world, mission.start);
-    let record = run(
+    let start = world.starts().get(mission.start).copied();
+    let start = start.unwrap_or_default();
+    let mut account = Account::new(&setup, world, start, &mission.working);
+    let mut record = run(
         &setup,
         &mut Cast {
             link,
@@ -166,20 +184,34 @@ pub fn explore(
             watch,
         },
     );
+    record.ground = account.ground.take();
     let report = assemble(mission, &simulator, &account, &record);
     Ok((report, record))
 }
 
 fn sim_config(mission: &Mission) -> SimConfig {
+    let lasers = LaserNoise::default();
     SimConfig {
         seed: mission.seed,
         start: mission.start,
         period_ms: mission.period_ms,
-        odometry: if mission.noisy_odometry {
-            OdometryModel::Noisy(OdometryNoise::default())
-        } else {
-            OdometryModel::Truth
+        odometry: match (mission.noisy_odometry, mission.imu_rad) {
+            (true, imu_rad) => {
+                let usual = OdometryNoise::default();
+                OdometryModel::Noisy(OdometryNoise {
+                    attitude_rad: imu_rad.unwrap_or(usual.attitude_rad),
+                    ..usual
+                })
+            }
+            (false, Some(imu_rad)) => OdometryModel::Tilting(imu_rad),
+            (false, None) => OdometryModel::Truth,
         },
+        laser_noise: LaserNoise {
+            sigma_m: mission.laser_m.unwrap_or(lasers.sigma_m),
+            ..lasers
+        },
+        working: mission.working,
+        failing: mission.failing,
         ..SimConfig::default()
     }
 }
@@ -189,15 +221,22 @@ fn sim_config(mission: &Mission) -> SimConfig {
 struct Account {
     mirror: Mirror,
     coverage: Coverage,
+    /// What the ground is to the robot where it is uneven.
+    ground: Option<GroundTruth>,
 }
 
 impl Account {
-    fn new(setup: &Setup, world: &World, start: usize) -> Self {
-        let start = world.starts().get(start).copied().unwrap_or_default();
+    fn new(setup: &Setup, world: &World, start: Start, working: &Limits) -> Self {
         let range_m = f64::from(laser::level().range_limit_mm) / 1000.0;
+        let uneven = world.elevation();
+        let footing = uneven.map(|_| Footing::new(world, start, RADIUS_M, working));
         Self {
             mirror: Mirror::new(&setup.start),
-            coverage: Coverage::new(world, start, RADIUS_M, range_m),
+            coverage: match &footing {
+                Some(footing) => Coverage::on(footing),
+                None => Coverage::new(world, start, RADIUS_M, range_m),
+            },
+            ground: footing.map(|footing| GroundTruth::new(world, &footing, working)),
         }
     }
 }
@@ -226,7 +265,11 @@ impl Body for Simulator<'_> {
     }
 
     fn truth(&self) -> Stamped {
-        record::stamped(self.time_ms(), &self.pose().to_wire())
+        record::stamped(self.time_ms(), &self.above_start(self.pose()).to_wire())
+    }
+
+    fn loss(&self) -> Option<Loss> {
+        Simulator::loss(self)
     }
 }
 
@@ -250,13 +293,17 @@ fn assemble(
         },
         start: mission.start,
         fault: mission.fault.clone(),
+        noise: noise(simulator.config()),
+        notes: simulator.world().notes().to_vec(),
         outcome: record.outcome(),
         sim_time_s: f64::from(progress.time_ms) / 1000.0,
         path_length_m: simulator.path_length_m(),
+        climb_m: record.climb_m,
         steps: record.steps.len() as u64,
         coverage: coverage(account, simulator),
         loops: loops(simulator, record),
         safety: safety(simulator),
+        terrain: terrain(simulator, record),
         localization: record.localization(),
         planner: record.planner(),
         field: record.field(),
@@ -303,6 +350,38 @@ fn safety(simulator: &Simulator<'_>) -> report::Safety {
         tips: safety.tips,
         min_clearance_m: Some(safety.min_clearance_m).filter(|m| m.is_finite()),
     }
+}
+
+fn noise(config: &SimConfig) -> report::Noise {
+    let imu_rad = match config.odometry {
+        OdometryModel::Truth => 0.0,
+        OdometryModel::Tilting(sigma_rad) => sigma_rad,
+        OdometryModel::Noisy(noise) => noise.attitude_rad,
+    };
+    report::Noise {
+        laser_m: config.laser_noise.sigma_m,
+        // To a millionth, so that 1° reads as 1.
+        imu_deg: (imu_rad.to_degrees() * 1e6).round() / 1e6,
+    }
+}
+
+fn terrain(simulator: &Simulator<'_>, record: &Record) -> Option<report::Terrain> {
+    let (ground, config) = (record.ground.as_ref()?, simulator.config());
+    // A map in a frame that drifts cannot be compared cell by cell.
+    let still = !matches!(config.odometry, OdometryModel::Noisy(_));
+    let comparable = still && !record.tiles.is_empty();
+    let classes = comparable.then(|| {
+        let table = ground.compare(|cell| record.map.get(cell.x, cell.y));
+        report::terrain::Classes::from(&table)
+    });
+    let terrain = report::Terrain {
+        start_z_m: simulator.start_z_m(),
+        working: (&config.working).into(),
+        failing: (&config.failing).into(),
+        classes,
+        ..report::Terrain::default()
+    };
+    Some(terrain.with_ride(&simulator.ride()))
 }
 
 /// Areas are whole cells of 0.01 m²; the product's last bits are noise.

@@ -10,6 +10,7 @@ pub mod mirror;
 pub mod mission;
 pub mod oracle;
 pub mod record;
+pub mod series;
 pub mod shape;
 pub mod snapshot;
 pub mod wording;
@@ -20,7 +21,10 @@ use fieldline_protocol::message::{Command, Control, Observation, Start, Status, 
 
 use crate::link::{Link, LinkError};
 use crate::report::tum::Stamped;
+use crate::sim::Loss;
 use freeze::FreezeDetector;
+use series::Series;
+use snapshot::Snapshot;
 
 pub use ending::Ending;
 pub use record::{Record, Step};
@@ -39,6 +43,10 @@ pub trait Body {
     fn drive(&mut self, velocity: Option<Twist>);
     /// Where the robot truly is, in the frame of the observations' poses.
     fn truth(&self) -> Stamped;
+    /// Why the robot cannot go on any more, if so.
+    fn loss(&self) -> Option<Loss> {
+        None
+    }
 }
 
 /// Keeps account of what became known.
@@ -84,6 +92,8 @@ pub struct Setup {
     pub time_limit_ms: u32,
     /// Compare every step's heading with that of the converged window.
     pub check_field: bool,
+    /// How often map and window are read during the run, for pictures.
+    pub snapshots: usize,
 }
 
 /// Who takes part in a run.
@@ -102,17 +112,24 @@ pub struct Cast<'a> {
 /// Run until something ends it. The record holds whatever was learnt, however it ended.
 pub fn run(setup: &Setup, cast: &mut Cast<'_>) -> Record {
     let mut record = Record::default();
+    let mut series = Series::new(setup.snapshots);
     record.ending = match cast.link.control(&Control::Start(setup.start.clone())) {
         Ok(Status::Fault(fault)) => Ending::Fault(fault),
-        Ok(_) => explore(setup, cast, &mut record),
+        Ok(_) => explore(setup, cast, &mut record, &mut series),
         Err(error) => Ending::Link(error),
     };
+    record.snapshots = series.pick();
     bring_to_rest(cast, &record);
     read_out(cast, &mut record);
     record
 }
 
-fn explore(setup: &Setup, cast: &mut Cast<'_>, record: &mut Record) -> Ending {
+fn explore(
+    setup: &Setup,
+    cast: &mut Cast<'_>,
+    record: &mut Record,
+    series: &mut Series<Snapshot>,
+) -> Ending {
     let mut freeze = FreezeDetector::default();
     loop {
         let (observation, truth) = (cast.body.observe(), cast.body.truth());
@@ -129,10 +146,19 @@ fn explore(setup: &Setup, cast: &mut Cast<'_>, record: &mut Record) -> Ending {
         {
             return Ending::Link(error);
         }
+        if series.is_due(observation.time_ms) {
+            match snapshot::take(cast.link, record) {
+                Ok(snapshot) => series.take(snapshot),
+                Err(error) => return Ending::Link(error),
+            }
+        }
         if let Some(ending) = ended(setup, cast.watch, &mut freeze, record, &command) {
             return ending;
         }
         cast.body.drive(Some(command.velocity));
+        if let Some(loss) = cast.body.loss() {
+            return Ending::Lost(loss);
+        }
     }
 }
 
@@ -173,12 +199,10 @@ fn bring_to_rest(cast: &mut Cast<'_>, record: &Record) {
 
 /// Map, last window, residual frontiers and counters, as far as the link still answers.
 fn read_out(cast: &mut Cast<'_>, record: &mut Record) {
-    if !matches!(record.ending, Ending::Link(_)) {
-        let start = record.steps.first().map(|step| step.estimate);
-        let start = start.unwrap_or_default();
-        if let Err(error) = snapshot::read(cast.link, start.x_m, start.y_m, record) {
-            record.read_out_error = Some(error);
-        }
+    if !matches!(record.ending, Ending::Link(_))
+        && let Err(error) = snapshot::read(cast.link, record)
+    {
+        record.read_out_error = Some(error);
     }
     record.link_stats = cast.link.stats();
 }

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use fieldline_protocol::message::{Command, Cost, Frontier, Observation, Pose, Status, Tile};
 
-use super::snapshot::Window;
+use super::snapshot::{Snapshot, Window};
 use super::{Ending, Progress, wording};
 use crate::link::digest::Digest;
 use crate::link::{LinkError, LinkStats};
+use crate::metrics::GroundTruth;
 use crate::report::tum::Stamped;
 use crate::report::{self, GridMap, Percentiles};
 
@@ -35,6 +36,8 @@ pub struct Record {
     pub coverage: f64,
     /// Metres driven, by the true pose.
     pub path_m: f64,
+    /// Sum of all changes of the true height from step to step, metres.
+    pub climb_m: f64,
     /// Of the commands so far.
     pub digest: Digest,
     /// The device's map.
@@ -45,6 +48,10 @@ pub struct Record {
     pub window: Option<Window>,
     /// Frontiers that were left.
     pub frontiers: Vec<Frontier>,
+    /// Map and window on the way, where that was asked for.
+    pub snapshots: Vec<Snapshot>,
+    /// What the true ground is to the robot, in an uneven world.
+    pub ground: Option<GroundTruth>,
     /// Angles between a step's heading and that of the converged window, where that was asked for.
     pub heading_errors_deg: Vec<f64>,
     /// Both ends' counters.
@@ -60,11 +67,14 @@ impl Default for Record {
             steps: Vec::new(),
             coverage: 0.0,
             path_m: 0.0,
+            climb_m: 0.0,
             digest: Digest::default(),
             map: GridMap::default(),
             tiles: BTreeMap::new(),
             window: None,
             frontiers: Vec::new(),
+            snapshots: Vec::new(),
+            ground: None,
             heading_errors_deg: Vec::new(),
             link_stats: LinkStats::default(),
             read_out_error: None,
@@ -108,6 +118,7 @@ impl Record {
                 step.truth.y_m - last.truth.y_m,
             );
             self.path_m += dx.hypot(dy);
+            self.climb_m += (step.truth.z_m - last.truth.z_m).abs();
         }
         self.digest.add(&step.command);
         self.coverage = coverage;

@@ -1,4 +1,4 @@
-//! Reads map, field and residual frontiers over the link, once, at the end of a run.
+//! Reads map, field and residual frontiers over the link, at the end of a run and, where that was asked for, on its way.
 //!
 //! The map is found by spreading from the start's tile: beams leave the robot, so that the touched tiles are connected
 //! through their eight neighbours. Cost: one request for each touched tile and for each tile around them.
@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fieldline_protocol::message::{FIELD_SIDE, FieldRow, Tile};
 
-use super::Record;
+use super::{Progress, Record};
 use crate::link::{Link, LinkError};
 use crate::report::GridMap;
 use crate::report::grid_map::{CELL_M, TILE_SIDE};
@@ -39,16 +39,51 @@ pub struct Window {
     pub cells: Vec<WindowCell>,
 }
 
-/// Fill the record's map, window and frontiers; the map is sought from the point (`x_m`, `y_m`).
+/// A moment of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapshot {
+    /// How far the run was.
+    pub progress: Progress,
+    /// Steps up to then.
+    pub steps: usize,
+    /// The device's map.
+    pub map: GridMap,
+    /// The last window's field.
+    pub window: Option<Window>,
+}
+
+/// Fill the record's map, window and frontiers; the map is sought from where the run began.
 ///
 /// # Errors
 /// As [`LinkError`]; what was read before stays in the record.
-pub fn read(link: &mut dyn Link, x_m: f64, y_m: f64, record: &mut Record) -> Result<(), LinkError> {
+pub fn read(link: &mut dyn Link, record: &mut Record) -> Result<(), LinkError> {
     record.frontiers = link.frontiers()?;
     record.window = window(link)?;
-    record.tiles = tiles(link, x_m, y_m)?;
+    record.tiles = tiles(link, began_m(record))?;
     record.map = GridMap::from_tiles(&record.tiles);
     Ok(())
+}
+
+/// What is known now, after the record's last step.
+///
+/// # Errors
+/// As [`LinkError`].
+pub fn take(link: &mut dyn Link, record: &Record) -> Result<Snapshot, LinkError> {
+    let window = window(link)?;
+    let tiles = tiles(link, began_m(record))?;
+    Ok(Snapshot {
+        progress: record.progress(),
+        steps: record.steps.len(),
+        map: GridMap::from_tiles(&tiles),
+        window,
+    })
+}
+
+/// Where the robot believed to be at first, metres.
+fn began_m(record: &Record) -> [f64; 2] {
+    let start = record.steps.first().map(|step| step.estimate);
+    let start = start.unwrap_or_default();
+    [start.x_m, start.y_m]
 }
 
 /// The last window's field; `None` before the first.
@@ -85,7 +120,10 @@ fn cell_of(row: &FieldRow, column: usize) -> WindowCell {
     }
 }
 
-fn tiles(link: &mut dyn Link, x_m: f64, y_m: f64) -> Result<BTreeMap<(i16, i16), Tile>, LinkError> {
+fn tiles(
+    link: &mut dyn Link,
+    [x_m, y_m]: [f64; 2],
+) -> Result<BTreeMap<(i16, i16), Tile>, LinkError> {
     let side_m = CELL_M * f64::from(TILE_SIDE);
     let first = ((x_m / side_m).floor() as i16, (y_m / side_m).floor() as i16);
     let (mut found, mut asked) = (BTreeMap::new(), BTreeSet::from([first]));

@@ -9,6 +9,7 @@ use fixed::types::{I4F12, I16F16};
 use super::{Body, Cast, Ending, Flow, Progress, Record, Setup, Survey, Watch, run};
 use crate::link::{Link, LinkError, LinkStats};
 use crate::report::tum::Stamped;
+use crate::sim::Loss;
 
 /// A point that drives along x.
 #[derive(Default)]
@@ -16,6 +17,8 @@ struct Point {
     time_ms: u32,
     x_m: f64,
     driven: Vec<Option<Twist>>,
+    /// Beyond this it falls, if anywhere.
+    rim_m: Option<f64>,
 }
 
 impl Body for Point {
@@ -39,8 +42,14 @@ impl Body for Point {
         Stamped {
             time_ms: self.time_ms,
             x_m: self.x_m,
+            z_m: self.x_m * if self.x_m < 0.2 { 0.5 } else { -1.0 },
             ..Stamped::default()
         }
+    }
+    fn loss(&self) -> Option<Loss> {
+        self.rim_m
+            .filter(|rim_m| self.x_m > *rim_m)
+            .map(|_| Loss::Fell)
     }
 }
 
@@ -140,6 +149,7 @@ fn trial(link: &mut Script, body: &mut Point, interrupt_ms: u32) -> Record {
         start: Start::default(),
         time_limit_ms: 120_000,
         check_field: false,
+        snapshots: 2,
     };
     let mut cast = Cast {
         link,
@@ -154,6 +164,22 @@ fn ends(answers: Vec<Result<Command, LinkError>>) -> (Record, Script, Point) {
     let (mut link, mut body) = (Script::new(answers), Point::default());
     let record = trial(&mut link, &mut body, u32::MAX);
     (record, link, body)
+}
+
+#[test]
+fn moments_are_kept_evenly_on_the_way() {
+    let mut link = Script::new(vec![command(Status::Exploring, 0.5)]);
+    let record = trial(&mut link, &mut Point::default(), 9_000);
+    assert_eq!(record.ending, Ending::Interrupted);
+    let moments = record.snapshots.iter();
+    let moments: Vec<_> = moments.map(|m| (m.progress.time_ms, m.steps)).collect();
+    // Taken at 0, 2, 4, 6 and 8 s, and thinned to every 4 s.
+    assert_eq!(moments, [(4_000, 41), (8_000, 81)]);
+    let last = &record.snapshots[1];
+    assert_eq!(
+        (last.progress.coverage, last.map.known()),
+        (0.081, 3 * 1024)
+    );
 }
 
 #[test]
@@ -194,6 +220,33 @@ fn a_fault_ends_the_run() {
     let (record, ..) = ends(vec![command(Status::Fault(Fault::MapFull), 0.0)]);
     assert_eq!(record.ending, Ending::Fault(Fault::MapFull));
     assert_eq!(record.steps.len(), 1);
+}
+
+#[test]
+fn a_robot_that_fell_ends_the_run_at_once() {
+    let mut link = Script::new(vec![command(Status::Exploring, 0.5)]);
+    let mut body = Point {
+        rim_m: Some(0.22),
+        ..Point::default()
+    };
+    let record = trial(&mut link, &mut body, u32::MAX);
+    assert_eq!(record.ending, Ending::Lost(Loss::Fell));
+    // Five periods of 5 cm go beyond the rim; the fifth is the last that was commanded.
+    assert_eq!((record.steps.len(), body.driven.len()), (5, 5 + 30));
+    assert_eq!(link.controls.last(), Some(&Control::Stop));
+}
+
+#[test]
+fn climb_is_the_sum_of_all_ups_and_downs() {
+    let (record, ..) = ends(vec![
+        command(Status::Exploring, 0.5),
+        command(Status::Exploring, 0.5),
+        command(Status::Exploring, 0.5),
+        command(Status::Exploring, 0.5),
+        command(Status::Finished(Finish::Explored), 0.0),
+    ]);
+    // Heights 0, 0.025, 0.05, 0.075, −0.2.
+    assert!((record.climb_m - 0.35).abs() < 1e-3, "{}", record.climb_m);
 }
 
 #[test]

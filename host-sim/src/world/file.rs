@@ -10,7 +10,7 @@
 //! | `free_thresh` | below this occupancy is free; in between is unknown | 0.196 |
 //! | `mode` | `trinary`; `scale` is read the same way | `trinary` |
 //! | `wall_height` | metres above the ground | 1.5 |
-//! | `elevation` | `{image, z_min, z_max, no_data, resolution, origin}` | flat |
+//! | `elevation` | `{image, z_min, z_max, no_data, bits, resolution, origin}`, see [`super::heights`] | flat |
 //! | `robots` | list of `[x, y, yaw]` | the origin of the frame if a robot fits there, else the widest place |
 //!
 //! Any other key is an error: a key misspelt would otherwise be a setting ignored.
@@ -18,12 +18,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::elevation::{Elevation, HeightScale};
+use super::elevation::Elevation;
+use super::heights::Heights;
 use super::image::Image;
-use super::occupancy::{Class, GridCell, Occupancy, Thresholds};
+use super::occupancy::{Occupancy, Thresholds};
 use super::yaml::{self, BadKey, Node, Table};
 use super::{Start, WALL_HEIGHT_M, World, WorldError};
-use crate::robot::Footprint;
 
 /// Keys of a world file.
 const KEYS: [&str; 10] = [
@@ -38,8 +38,6 @@ const KEYS: [&str; 10] = [
     "elevation",
     "robots",
 ];
-/// Keys of its `elevation`.
-const ELEVATION_KEYS: [&str; 6] = ["image", "z_min", "z_max", "no_data", "resolution", "origin"];
 
 /// Greatest side of a world, metres.
 const LARGEST_M: f64 = 1_000.0;
@@ -70,22 +68,18 @@ impl Loader<'_> {
     fn build(&self, document: &Node) -> Result<World, WorldError> {
         let keys = Table::new("", document, &KEYS).map_err(|bad| self.value(bad))?;
         let plan = Plan::read(&keys).map_err(|bad| self.value(bad))?;
-        let elevation = match &plan.heights {
-            Some(heights) => Some(self.elevation(heights)?),
+        let walls = match plan.image {
+            Some(name) => Some(self.walls(name, &plan)?),
             None => None,
         };
-        let occupancy = match (plan.image, &elevation) {
-            (Some(image), _) => {
-                let image = self.image(image)?;
-                Occupancy::from_image(&image, plan.thresholds, plan.resolution_m, plan.origin_m)
-            }
-            (None, Some(ground)) => Occupancy::filled(
-                ground.width(),
-                ground.height(),
-                ground.resolution_m(),
-                ground.origin_m(),
-                Class::Free,
-            ),
+        let mut notes = Vec::new();
+        let elevation = match &plan.heights {
+            Some(heights) => Some(self.elevation(heights, walls.as_ref(), &mut notes)?),
+            None => None,
+        };
+        let occupancy = match (walls, &elevation) {
+            (Some(walls), _) => walls,
+            (None, Some(ground)) => ground.floor(),
             (None, None) => {
                 let reason = "missing; give an image, an elevation, or both";
                 return Err(self.value(keys.bad("image", reason)));
@@ -94,9 +88,10 @@ impl Loader<'_> {
         self.check_extent(&occupancy, &keys)?;
         let name = self.path.file_stem().unwrap_or_default().to_string_lossy();
         let mut world = World::new(&name, occupancy, elevation, plan.wall_height_m, Vec::new());
+        world.notes = notes;
         world.starts = match plan.starts {
             Some(starts) => starts,
-            None => vec![default_start(&world)],
+            None => vec![world.default_start()],
         };
         for (index, start) in world.starts.iter().enumerate() {
             world.check_start(&self.file, index, *start)?;
@@ -127,18 +122,29 @@ impl Loader<'_> {
         Ok(())
     }
 
-    fn elevation(&self, heights: &Heights<'_>) -> Result<Elevation, WorldError> {
-        let image = self.image(heights.image)?;
-        if image.channels != 1 {
-            let reason = "heights must be grey, and this image has colours; convert it";
-            return Err(self.image_error(heights.image, reason));
-        }
-        Ok(Elevation::from_image(
+    fn walls(&self, name: &str, plan: &Plan<'_>) -> Result<Occupancy, WorldError> {
+        let image = self.image(name)?;
+        let (resolution_m, origin_m) = (plan.resolution_m, plan.origin_m);
+        Ok(Occupancy::from_image(
             &image,
-            heights.scale,
-            heights.resolution_m,
-            heights.origin_m,
+            plan.thresholds,
+            resolution_m,
+            origin_m,
         ))
+    }
+
+    fn elevation(
+        &self,
+        heights: &Heights<'_>,
+        walls: Option<&Occupancy>,
+        notes: &mut Vec<String>,
+    ) -> Result<Elevation, WorldError> {
+        let image = self.image(heights.image)?;
+        let ground = heights
+            .build(&image, walls)
+            .map_err(|reason| self.image_error(heights.image, &reason))?;
+        notes.extend(heights.notes(&image, &ground, walls));
+        Ok(ground)
     }
 
     fn image(&self, name: &str) -> Result<Image, WorldError> {
@@ -178,14 +184,6 @@ struct Plan<'a> {
     starts: Option<Vec<Start>>,
 }
 
-/// What the file says of the ground.
-struct Heights<'a> {
-    image: &'a str,
-    scale: HeightScale,
-    resolution_m: f64,
-    origin_m: [f64; 2],
-}
-
 impl<'a> Plan<'a> {
     fn read(keys: &Table<'a>) -> Result<Self, BadKey> {
         let resolution_m = keys.required("resolution", length(keys, "resolution")?, "0.05")?;
@@ -211,39 +209,8 @@ impl<'a> Plan<'a> {
     }
 }
 
-impl<'a> Heights<'a> {
-    fn read(node: &'a Node, resolution_m: f64, origin_m: [f64; 2]) -> Result<Self, BadKey> {
-        let keys = Table::new("elevation", node, &ELEVATION_KEYS)?;
-        let z_min_m = keys.required("z_min", keys.number("z_min")?, "-2.0")?;
-        let z_max_m = keys.required("z_max", keys.number("z_max")?, "3.0")?;
-        if !(z_min_m.is_finite() && z_max_m.is_finite() && z_min_m < z_max_m) {
-            let reason = format!("{z_max_m} is not above z_min ({z_min_m})");
-            return Err(keys.bad("z_max", &reason));
-        }
-        let no_data = match keys.number("no_data")? {
-            None => None,
-            Some(value) if (0.0..=65_535.0).contains(&value) && value.fract() == 0.0 => {
-                Some(value as u32)
-            }
-            Some(value) => {
-                let reason = format!("{value} is not a grey value from 0 to 65535");
-                return Err(keys.bad("no_data", &reason));
-            }
-        };
-        Ok(Self {
-            image: keys.required("image", keys.text("image")?, "heights.png")?,
-            scale: HeightScale {
-                z_min_m,
-                z_max_m,
-                no_data,
-            },
-            resolution_m: length(&keys, "resolution")?.unwrap_or(resolution_m),
-            origin_m: origin(&keys)?.unwrap_or(origin_m),
-        })
-    }
-}
-
-fn length(keys: &Table<'_>, key: &str) -> Result<Option<f64>, BadKey> {
+/// A length above 0, if the key is there.
+pub(super) fn length(keys: &Table<'_>, key: &str) -> Result<Option<f64>, BadKey> {
     match keys.number(key)? {
         Some(metres) if !(metres.is_finite() && metres > 0.0) => {
             Err(keys.bad(key, &format!("{metres} is not a length above 0 m")))
@@ -252,7 +219,8 @@ fn length(keys: &Table<'_>, key: &str) -> Result<Option<f64>, BadKey> {
     }
 }
 
-fn origin(keys: &Table<'_>) -> Result<Option<[f64; 2]>, BadKey> {
+/// The origin under `origin`, if the key is there: x and y, without a turn.
+pub(super) fn origin(keys: &Table<'_>) -> Result<Option<[f64; 2]>, BadKey> {
     let Some(node) = keys.node("origin") else {
         return Ok(None);
     };
@@ -308,69 +276,6 @@ fn starts(keys: &Table<'_>) -> Result<Option<Vec<Start>>, BadKey> {
         });
     }
     Ok(Some(starts))
-}
-
-/// The origin of the frame if the robot fits there, else the cell with most room around it.
-fn default_start(world: &World) -> Start {
-    let origin = Start::default();
-    if world.check_start("", 0, origin).is_ok() {
-        origin
-    } else {
-        world.widest_place()
-    }
-}
-
-impl World {
-    /// Does the robot fit at a start?
-    pub(crate) fn check_start(
-        &self,
-        file: &str,
-        index: usize,
-        start: Start,
-    ) -> Result<(), WorldError> {
-        let (x, y) = (start.x_m, start.y_m);
-        let inside = self.occupancy.index(self.occupancy.cell_at(x, y));
-        let place = match inside.map(|index| self.occupancy.classes()[index]) {
-            None => "lies outside of the map",
-            Some(Class::Wall) => "lies in a wall",
-            Some(Class::Unknown) => "lies in unknown space",
-            Some(Class::Free) if self.clearance_m(&Footprint::PIONEER_3AT, start) > 0.0 => {
-                return Ok(());
-            }
-            Some(Class::Free) => "is too close to a wall, the robot overlaps it",
-        };
-        let best = self.widest_place();
-        let remedy = if self.is_solid(best.x_m, best.y_m) {
-            "nothing is free anywhere, check negate and the thresholds".to_owned()
-        } else {
-            format!("most room is at ({:.2}, {:.2})", best.x_m, best.y_m)
-        };
-        Err(WorldError::Start {
-            file: file.to_owned(),
-            index,
-            reason: format!("({x:.2}, {y:.2}) {place}; {remedy}"),
-        })
-    }
-
-    /// The cell with most room around it, facing along x.
-    fn widest_place(&self) -> Start {
-        let mut best = (0.0, GridCell { i: 0, j: 0 });
-        for j in 0..self.occupancy.height() as i64 {
-            for i in 0..self.occupancy.width() as i64 {
-                let cell = GridCell { i, j };
-                let room_m = self.distance.from_centre_m(cell);
-                if room_m > best.0 {
-                    best = (room_m, cell);
-                }
-            }
-        }
-        let [x_m, y_m] = self.occupancy.centre(best.1);
-        Start {
-            x_m,
-            y_m,
-            yaw_rad: 0.0,
-        }
-    }
 }
 
 #[cfg(test)]

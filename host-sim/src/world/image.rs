@@ -43,6 +43,8 @@ pub enum ImageError {
         /// Pixels there are.
         found: usize,
     },
+    /// The header claims samples of 16 bits, and there are as many bytes as pixels.
+    OneByteSamples,
     /// The file ends before its pixels, or before its trailer.
     EndsEarly,
     /// More pixels than the header promises.
@@ -71,6 +73,10 @@ impl fmt::Display for ImageError {
             Self::Truncated { expected, found } => write!(
                 f,
                 "truncated, {found} of {expected} pixels; copy the whole file"
+            ),
+            Self::OneByteSamples => write!(
+                f,
+                "its header claims samples of 16 bits (a greatest value above 255), but it holds one byte a pixel; set the greatest value to 255, or save it with 16 bits"
             ),
             Self::EndsEarly => write!(f, "truncated; copy the whole file"),
             Self::Surplus { expected } => write!(

@@ -12,11 +12,14 @@ mod distance;
 mod elevation;
 mod error;
 mod file;
+mod ground_ray;
+mod heights;
 mod image;
 mod occupancy;
 mod pgm;
 mod png_file;
 mod ray;
+mod starts;
 mod walk;
 mod yaml;
 
@@ -31,7 +34,7 @@ pub use occupancy::{Class, GridCell, Occupancy, Thresholds};
 pub use ray::{Hit, Ray, Surface};
 pub(crate) use walk::Walk;
 
-use crate::robot::Footprint;
+use crate::robot::{Footprint, Pose, stand, wrap};
 
 /// Height of walls where a world file says nothing, metres.
 pub const WALL_HEIGHT_M: f64 = 1.5;
@@ -47,6 +50,19 @@ pub struct Start {
     pub yaw_rad: f64,
 }
 
+impl Start {
+    /// The planar pose; height and attitude are 0.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        Pose {
+            x_m: self.x_m,
+            y_m: self.y_m,
+            yaw_rad: wrap(self.yaw_rad),
+            ..Pose::default()
+        }
+    }
+}
+
 /// A world.
 #[derive(Clone, Debug)]
 pub struct World {
@@ -57,6 +73,7 @@ pub struct World {
     elevation: Option<Elevation>,
     wall_height_m: f64,
     starts: Vec<Start>,
+    notes: Vec<String>,
 }
 
 impl World {
@@ -135,6 +152,7 @@ impl World {
             elevation,
             wall_height_m,
             starts,
+            notes: Vec::new(),
         }
     }
 
@@ -148,6 +166,12 @@ impl World {
     #[must_use]
     pub fn starts(&self) -> &[Start] {
         &self.starts
+    }
+
+    /// What may surprise about a world file, each in one line; empty where all is as usual.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     /// What stands where.
@@ -200,8 +224,8 @@ impl World {
     #[must_use]
     pub fn cast(&self, ray: &Ray, limit_m: f64) -> Option<Hit> {
         let ground = match &self.elevation {
-            None => ray::plane(ray).filter(|hit| hit.range_m <= limit_m),
-            Some(elevation) => ray::ground(elevation, ray, limit_m),
+            None => ground_ray::plane(ray).filter(|hit| hit.range_m <= limit_m),
+            Some(elevation) => ground_ray::ground(elevation, ray, limit_m),
         };
         let limit_m = ground.map_or(limit_m, |hit| hit.range_m);
         self.walls
@@ -222,6 +246,7 @@ impl World {
     /// at most [`crate::robot::FARTHEST_M`].
     #[must_use]
     pub fn clearance_m(&self, footprint: &Footprint, start: Start) -> f64 {
-        footprint.clearance_m(self, start.x_m, start.y_m, start.yaw_rad)
+        let planar = start.pose();
+        footprint.clearance_m(self, &stand(self, &planar).unwrap_or(planar))
     }
 }

@@ -110,6 +110,10 @@ impl Reader<'_> {
         self.at += 1;
         let size = if wide { 2 } else { 1 };
         let data = self.bytes.get(self.at..).unwrap_or_default();
+        let trailing = data.iter().rev().take_while(|b| b.is_ascii_whitespace());
+        if wide && (pixels..=pixels + trailing.count()).contains(&data.len()) {
+            return Err(ImageError::OneByteSamples);
+        }
         let Some(data) = data.get(..pixels * size) else {
             return Err(ImageError::Truncated {
                 expected: pixels,
@@ -160,6 +164,16 @@ mod tests {
         );
         // The first sample may look like white space or a comment.
         assert_eq!(samples(b"P5 2 1 255 \n#"), Ok(vec![10, 35]));
+    }
+
+    #[test]
+    fn one_byte_samples_under_a_header_of_two_are_told() {
+        for bytes in [
+            &b"P5 3 1 65535\n\x01\x02\x03"[..],
+            b"P5 3 1 1000\n\x01\x02\x03\n",
+        ] {
+            assert_eq!(samples(bytes), Err(ImageError::OneByteSamples));
+        }
     }
 
     #[test]

@@ -51,6 +51,9 @@ const TURN_FIRST_RAD: f32 = 0.9;
 /// An error smaller than this is none, radians.
 const ALIGNED_RAD: f32 = 0.12;
 
+/// Turn rate of a robot that looks around, radians a second.
+const LOOK_AROUND_RADPS: f32 = 0.6;
+
 /// Instalment of a search: what a step may look at.
 const SEARCH_BUDGET: Budget = Budget {
     poses: 250,
@@ -66,6 +69,8 @@ const REVERSE_RAD: f32 = 0.35;
 pub struct Drive {
     plan: Plan,
     search: Option<Search>,
+    /// To which side it looks around.
+    looks_right: bool,
 }
 
 impl Drive {
@@ -75,6 +80,7 @@ impl Drive {
         Self {
             plan: Plan::new(),
             search: None,
+            looks_right: false,
         }
     }
 
@@ -115,6 +121,25 @@ impl Drive {
             self.search = Some(Search::start(ATTEMPTS[0], first, scratch));
         }
         self.go_on_searching(ground, scratch);
+        Twist::default()
+    }
+
+    /// Turn on the spot to see what is around, as far as there is room, to one side and then to the other.
+    pub fn look_around(&mut self, config: &Config, surround: &Surround, now: Twist) -> Twist {
+        for _ in 0..2 {
+            let turn = Twist {
+                linear_mps: 0.0,
+                angular_radps: if self.looks_right {
+                    -LOOK_AROUND_RADPS
+                } else {
+                    LOOK_AROUND_RADPS
+                },
+            };
+            if surround.admits(turn, now, config, CREEP_MARGIN_M) {
+                return turn;
+            }
+            self.looks_right = !self.looks_right;
+        }
         Twist::default()
     }
 

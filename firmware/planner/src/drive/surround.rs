@@ -3,6 +3,8 @@
 //! The robot is its rectangle. A motion is clear if the rectangle, at places at most `CHECK_EVERY_M` apart for any part of it,
 //! keeps a margin from every near point; a point that is nearer than the margin already may hardly come nearer.
 //!
+//! What stands behind the robot and was only seen from afar is no near point; there the map's obstacle cells count.
+//!
 //! Units: metres, seconds, radians; robot frame, x forward.
 
 use heapless::Vec;
@@ -20,6 +22,12 @@ pub const HALF_WIDTH_M: f32 = 0.2485;
 const HALF_DIAGONAL_M: f32 = 0.355;
 /// A place of the robot is checked every so many metres that any part of it moved.
 const CHECK_EVERY_M: f32 = 0.05;
+/// Cells of the map that count at the most.
+const MOST_CELLS: usize = 64;
+/// A cell of the map with a near point this near to its middle is known better by that, metres: in the cell, or at its side.
+const KNOWN_M: f32 = 0.08;
+/// Cells farther ahead than this are in view of the level laser, metres.
+const IN_VIEW_M: f32 = 0.1;
 /// Time step of the look ahead, seconds.
 const TICK_S: f32 = 0.1;
 /// Steps of it at the most: one period and the braking from full speed.
@@ -63,13 +71,36 @@ struct Threat {
 /// What stands around the robot, in its frame.
 #[derive(Debug)]
 pub struct Surround {
-    threats: Vec<Threat, MOST_POINTS>,
+    threats: Vec<Threat, { MOST_POINTS + MOST_CELLS }>,
 }
 
 /// Distance of a point from the robot's rectangle, by the larger overhang; negative inside.
 fn overhang(x_m: f32, y_m: f32) -> f32 {
     let (along, across) = (x_m.abs() - HALF_LENGTH_M, y_m.abs() - HALF_WIDTH_M);
     if along > across { along } else { across }
+}
+
+/// The robot's frame.
+struct Frame {
+    origin: Point,
+    sin: f32,
+    cos: f32,
+}
+
+impl Frame {
+    fn of(pose: &Pose) -> Self {
+        let (sin, cos) = math::sin_cos(pose.yaw_rad);
+        let origin = pose.point();
+        Self { origin, sin, cos }
+    }
+
+    fn within(&self, point: Point) -> Point {
+        let (dx, dy) = (point.x_m - self.origin.x_m, point.y_m - self.origin.y_m);
+        Point {
+            x_m: dx * self.cos + dy * self.sin,
+            y_m: dy * self.cos - dx * self.sin,
+        }
+    }
 }
 
 fn towards(from: f32, to: f32, most: f32) -> f32 {
@@ -95,18 +126,32 @@ impl Surround {
 
     /// See the points from `pose`.
     pub fn see(&mut self, pose: &Pose, points: &[Point]) {
-        let (sin, cos) = math::sin_cos(pose.yaw_rad);
+        let frame = Frame::of(pose);
         self.threats.clear();
-        for point in points {
-            let (dx, dy) = (point.x_m - pose.x_m, point.y_m - pose.y_m);
-            let at = Point {
-                x_m: dx * cos + dy * sin,
-                y_m: dy * cos - dx * sin,
-            };
+        for &point in points {
+            let at = frame.within(point);
             let clearance_m = overhang(at.x_m, at.y_m);
             // A point well inside the robot is a false echo or a passing hand; it cannot be avoided any more.
             if clearance_m > -0.02 {
                 // There are no more points than threats.
+                let _ = self.threats.push(Threat { at, clearance_m });
+            }
+        }
+    }
+
+    /// Remember the obstacle cells (their middles) that are out of view and without a near point.
+    pub fn remember(&mut self, pose: &Pose, cells: impl Iterator<Item = Point>) {
+        let frame = Frame::of(pose);
+        let seen = self.threats.len();
+        for at in cells.map(|cell| frame.within(cell)) {
+            let clearance_m = overhang(at.x_m, at.y_m);
+            let near = |threat: &Threat| {
+                let (dx, dy) = (threat.at.x_m - at.x_m, threat.at.y_m - at.y_m);
+                dx * dx + dy * dy < KNOWN_M * KNOWN_M
+            };
+            let points = self.threats.get(..seen).unwrap_or_default();
+            if at.x_m < IN_VIEW_M && clearance_m > 0.0 && !points.iter().any(near) {
+                // What does not fit is not the only thing behind the robot.
                 let _ = self.threats.push(Threat { at, clearance_m });
             }
         }
@@ -241,5 +286,34 @@ mod tests {
             place = place.after(math::PI / 180.0, math::PI / 180.0);
         }
         assert!((place.x_m - 1.0).abs() < 1e-3 && (place.y_m - 1.0).abs() < 1e-3);
+    }
+
+    /// A wall right behind, 0.1 m from the hull: met only in its left half, in the map whole.
+    #[test]
+    fn what_the_map_knows_behind_the_robot_stops_it_where_no_point_does() {
+        let back = -HALF_LENGTH_M - 0.1;
+        let wall = |y: i32| Point {
+            x_m: back,
+            y_m: 0.1 * y as f32,
+        };
+        let half: std::vec::Vec<Point> = (1..4).map(wall).collect();
+        let mut surround = Surround::new(&Pose::default(), &half);
+        surround.remember(&Pose::default(), (-3..4).map(wall));
+        assert_eq!(surround.points(), 3 + 4, "cells with a point are left out");
+        assert!(surround.is_arc_clear(Place::default(), -0.08, 0.0, 0.0));
+        assert!(!surround.is_arc_clear(Place::default(), -0.15, 0.0, 0.0));
+        let mut right = Surround::empty();
+        right.remember(&Pose::default(), (-3..0).map(wall));
+        assert!(!right.is_arc_clear(Place::default(), -0.15, 0.0, 0.0));
+    }
+
+    /// Ahead the laser sees for itself, and a cell that the robot stands on is none.
+    #[test]
+    fn cells_in_view_or_under_the_robot_are_not_remembered() {
+        let mut surround = Surround::empty();
+        let at = |x_m, y_m| Point { x_m, y_m };
+        let cells = [at(0.4, 0.0), at(0.15, 0.3), at(0.0, 0.2), at(-0.2, 0.0)];
+        surround.remember(&Pose::default(), cells.into_iter());
+        assert_eq!(surround.points(), 0);
     }
 }

@@ -5,12 +5,14 @@
 //! fro. A goal that is reached and stays unexplored, or that comes no nearer, is dropped, with its reason; a way that cannot be
 //! driven is barred ([`Patience`]); so no run hangs on a cell that cannot be seen. When nothing else is left, everything gets a
 //! second chance, as for a robot that fits more narrowly: at 10 cm a cell, a gap that it just fits through may look closed.
+//! Then what cannot be driven to is looked at from a [`Lookout`].
 //!
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
 
 use heapless::Vec;
 
 use super::Road;
+use super::lookout::Lookout;
 use super::nearest::Centres;
 use super::patience::{Patience, Verdict};
 use crate::bits::{Adjacency, flood};
@@ -18,7 +20,8 @@ use crate::clearance::Disc;
 use crate::field::SIDE;
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::{Plane, Site};
-use crate::map::Tiles;
+use crate::map::{Class, Tiles};
+use crate::math;
 use crate::skeleton::{Residues, WaveSpace, Wavefront};
 use crate::status::{Frontier as Leftover, Residue};
 use crate::topology::{Frame, Topology};
@@ -30,7 +33,7 @@ pub const MOST_DROPPED: usize = 32;
 const DROP_RADIUS_M: f32 = 0.5;
 /// Leftover cells this near are one group, metres.
 const GROUP_RADIUS_M: f32 = 2.0;
-/// Ways barred at the most; the oldest gives way.
+/// Ways barred at the most; what would need one more is no goal any more.
 const MOST_BARS: usize = 8;
 /// Around a bar the skeleton is cut, metres: the width of a door.
 const BAR_RADIUS_M: f32 = 0.4;
@@ -38,6 +41,8 @@ const BAR_RADIUS_M: f32 = 0.4;
 const BAR_AHEAD_M: f32 = 0.5;
 /// Head start of the present goal, coarse steps: what turning about costs.
 const HEAD_START: u32 = 10;
+/// Lookouts of a run at the most.
+const MOST_LOOKOUTS: u8 = 100;
 /// Rounds in a row that must find nothing before the exploration is over: noise may close a way for a moment.
 const EMPTY_ROUNDS: u8 = 5;
 
@@ -50,6 +55,13 @@ pub struct Frontier {
     patience: Patience,
     empty_rounds: u8,
     second_chance: bool,
+    /// It got wedged at both chances, and only looks any more.
+    only_looks: bool,
+    /// It had not moved before that since the second chance began.
+    immobile: bool,
+    /// Where the robot goes to see what it cannot drive to, and how many there were.
+    lookout: Option<Lookout>,
+    lookouts: u8,
 }
 
 /// What is known of the space, for a round of planning.
@@ -81,7 +93,7 @@ pub enum Outlook {
     Road,
     /// None was found; the next round decides.
     Unsure,
-    /// No frontier can be reached.
+    /// No frontier can be reached, and the last lookout is done with.
     Nothing,
     /// The robot cannot move, whatever the goal.
     Stuck,
@@ -103,6 +115,10 @@ impl Frontier {
             patience: Patience::new(),
             empty_rounds: 0,
             second_chance: false,
+            only_looks: false,
+            immobile: false,
+            lookout: None,
+            lookouts: 0,
         }
     }
 
@@ -147,24 +163,90 @@ impl Frontier {
     ) -> Outlook {
         let road = self.find_road(known, robot, &mut lent);
         self.patience.note_motion(robot, time_ms);
-        let Some(road) = road else {
+        if let Some(road) = road {
+            (self.lookout, self.empty_rounds) = (None, 0);
+            self.adopt(road);
+        } else if let Some((lookout, road)) = self.road_to_lookout(known, robot, &mut lent) {
+            let along_centre = road.steps();
+            self.adopt(road.leading_to(lookout.stand));
+            return self.go_and_look(lookout, along_centre, robot, time_ms);
+        } else {
             return self.do_without();
-        };
-        self.adopt(road);
+        }
         match self.patience.judge(self.road.steps(), time_ms) {
             Verdict::GoOn => {}
             Verdict::Drop(reason) => self.drop_goal(reason),
             Verdict::BarLeak => self.bar(leak(&self.road, known, robot, lent.view)),
             Verdict::BarAhead => self.bar(ahead(&self.road, robot)),
         }
-        match (
-            self.patience.is_stuck(),
-            self.second_chance && self.patience.moved(),
-        ) {
+        let enough = self.patience.is_stuck() || self.dropped.is_full();
+        match (enough, self.second_chance) {
             (false, _) => Outlook::Road,
-            // What is left is behind gaps that turned out too narrow.
-            (true, true) => Outlook::Nothing,
-            (true, false) => Outlook::Stuck,
+            (true, false) => self.begin_second_chance(),
+            (true, true) => self.only_look(),
+        }
+    }
+
+    /// What is left is behind gaps in which the robot cannot go on. Somewhere else there may be something to see.
+    fn only_look(&mut self) -> Outlook {
+        self.only_looks = true;
+        self.immobile = !self.patience.moved();
+        self.patience.begin_next_try();
+        self.forget_road();
+        Outlook::Nothing
+    }
+
+    /// Whether the robot could not move at any of its chances.
+    #[must_use]
+    pub const fn is_stuck(&self) -> bool {
+        self.immobile
+    }
+
+    /// Whether it is worth while to search for another lookout.
+    #[must_use]
+    pub fn may_look(&self) -> bool {
+        self.lookouts < MOST_LOOKOUTS && !self.dropped.is_full()
+    }
+
+    /// Whether a gap was looked through, or given up.
+    #[must_use]
+    pub fn is_gone(&self, gap: Cell) -> bool {
+        self.dropped
+            .iter()
+            .any(|dropped| near(dropped.cell, gap, DROP_RADIUS_M))
+    }
+
+    /// See what is behind a gap.
+    pub fn look_from(&mut self, lookout: Lookout) {
+        self.lookout = Some(lookout);
+        self.lookouts = self.lookouts.saturating_add(1);
+        self.patience.begin_anew();
+    }
+
+    /// On the way to a lookout, so many steps along centre cells and then straight, or at it.
+    fn go_and_look(
+        &mut self,
+        lookout: Lookout,
+        along_centre: u32,
+        robot: Point,
+        time_ms: u32,
+    ) -> Outlook {
+        let stand = lookout.stand.corner();
+        let (dx, dy) = (stand.x_m - robot.x_m, stand.y_m - robot.y_m);
+        let straight = math::sqrt(dx * dx + dy * dy) / (2.0 * CELL_M);
+        let steps = along_centre.max(straight as u32);
+        let reason = match self.patience.judge(steps, time_ms) {
+            Verdict::GoOn => return Outlook::Road,
+            Verdict::Drop(reason) => reason,
+            Verdict::BarLeak | Verdict::BarAhead => Residue::Unreachable,
+        };
+        self.give_up(lookout.gap, reason);
+        self.lookout = None;
+        match (self.patience.is_stuck(), self.only_looks) {
+            (false, _) => Outlook::Unsure,
+            (true, false) => self.only_look(),
+            (true, true) if self.patience.moved() => self.only_look(),
+            (true, true) => Outlook::Stuck,
         }
     }
 
@@ -179,16 +261,17 @@ impl Frontier {
         view: &mut View,
     ) -> Outlook {
         self.patience.note_motion(robot, time_ms);
+        self.empty_rounds = 0;
         self.adopt(road);
         match self.patience.judge(self.road.steps(), time_ms) {
             Verdict::GoOn | Verdict::Drop(_) => {}
             Verdict::BarLeak => self.bar(leak(&self.road, known, robot, view)),
             Verdict::BarAhead => self.bar(ahead(&self.road, robot)),
         }
-        if self.patience.is_stuck() {
-            Outlook::Stuck
-        } else {
-            Outlook::Road
+        match (self.patience.is_stuck(), self.second_chance) {
+            (false, _) => Outlook::Road,
+            (true, false) => self.begin_second_chance(),
+            (true, true) => self.only_look(),
         }
     }
 
@@ -237,6 +320,9 @@ impl Frontier {
         robot: Point,
         lent: &mut Lent<'_>,
     ) -> Option<Road> {
+        if self.only_looks {
+            return None;
+        }
         let frame = known.topology.frame();
         let way = known.topology.skeleton()?;
         let goals = known.topology.frontier()?;
@@ -246,7 +332,9 @@ impl Frontier {
             residues,
             ring: &mut *lent.ring,
         };
-        self.spread(&mut space, goals, frame);
+        if !self.spread(&mut space, goals, frame) {
+            return None;
+        }
         let centres = Centres {
             tiles: known.tiles,
             disc: known.disc,
@@ -256,6 +344,10 @@ impl Frontier {
         let is_reached = |site| space.residues.get(site).is_some();
         let robot = robot.cell();
         let Some(entry) = centres.nearest(robot, lent.view, is_reached) else {
+            // With a centre cell near by that no wave reached, there is no way.
+            if centres.nearest(robot, lent.view, |_| true).is_some() {
+                return None;
+            }
             let (entry, line) = centres.nearest_by_air(robot, is_reached)?;
             return Some(walk_down(&space, frame, known.tiles, line, entry));
         };
@@ -263,8 +355,28 @@ impl Frontier {
         Some(walk_down(&space, frame, known.tiles, at_once, entry))
     }
 
-    /// Wave from every frontier cell that was not dropped; those beside the present goal first.
-    fn spread(&self, space: &mut WaveSpace<'_>, goals: Plane<'_>, frame: Frame) {
+    /// The way to the lookout, as long as there is something to see from it.
+    fn road_to_lookout<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        known: &Known<'_, TILES, SLOTS>,
+        robot: Point,
+        lent: &mut Lent<'_>,
+    ) -> Option<(Lookout, Road)> {
+        let lookout = self.lookout.take()?;
+        if known.tiles.class(lookout.beyond) != Class::Unknown {
+            return None;
+        }
+        let road = road_to(lookout.stand, known, robot, lent);
+        if road.is_none() {
+            self.give_up(lookout.gap, Residue::Unreachable);
+        }
+        self.lookout = road.is_some().then_some(lookout);
+        Some((lookout, road?))
+    }
+
+    /// Wave from every frontier cell that was not dropped; those beside the present goal first. Whether there are any.
+    fn spread(&self, space: &mut WaveSpace<'_>, goals: Plane<'_>, frame: Frame) -> bool {
+        let mut any = false;
         let mut wave = Wavefront::new();
         wave.start(space);
         let present =
@@ -278,7 +390,7 @@ impl Frontier {
                         .any(|dropped| near(dropped.cell, cell, DROP_RADIUS_M))
                 };
                 if present(cell) == favoured && !dropped() {
-                    wave.seed(space, site);
+                    any |= wave.seed(space, site);
                 }
             }
             if favoured {
@@ -287,6 +399,7 @@ impl Frontier {
         }
         // Without a budget it always comes to its end.
         let _ = wave.advance(space, None, u32::MAX);
+        any
     }
 
     /// The window has no way from the robot to its local goal, though the skeleton, coarser, had one.
@@ -295,7 +408,6 @@ impl Frontier {
     }
 
     fn adopt(&mut self, road: Road) {
-        self.empty_rounds = 0;
         let same =
             !self.road.is_empty() && near(road.goal(), self.road.goal(), 2.0 * DROP_RADIUS_M);
         if !same {
@@ -308,19 +420,24 @@ impl Frontier {
     fn do_without(&mut self) -> Outlook {
         self.forget_road();
         if !self.second_chance {
-            self.second_chance = true;
-            self.patience.begin_second_chance();
-            self.bars.clear();
-            self.dropped
-                .retain(|dropped| dropped.reason != Residue::NoProgress);
-            return Outlook::Unsure;
+            return self.begin_second_chance();
         }
         self.empty_rounds = self.empty_rounds.saturating_add(1);
-        if self.empty_rounds >= EMPTY_ROUNDS {
+        if self.only_looks || self.empty_rounds >= EMPTY_ROUNDS {
             Outlook::Nothing
         } else {
             Outlook::Unsure
         }
+    }
+
+    fn begin_second_chance(&mut self) -> Outlook {
+        self.second_chance = true;
+        self.patience.begin_next_try();
+        self.bars.clear();
+        self.dropped
+            .retain(|dropped| dropped.reason != Residue::NoProgress);
+        self.forget_road();
+        Outlook::Unsure
     }
 
     fn forget_road(&mut self) {
@@ -330,21 +447,24 @@ impl Frontier {
 
     fn bar(&mut self, cell: Option<Cell>) {
         let cell = cell.unwrap_or(self.road.goal());
-        if self.bars.is_full() {
-            self.bars.remove(0);
+        match self.bars.push(cell) {
+            Ok(()) => self.forget_road(),
+            Err(_) => self.drop_goal(Residue::NoProgress),
         }
-        // There is room now.
-        let _ = self.bars.push(cell);
-        self.forget_road();
     }
 
     fn drop_goal(&mut self, reason: Residue) {
+        self.give_up(self.road.goal(), reason);
+    }
+
+    /// Take nothing near this cell as a goal any more.
+    fn give_up(&mut self, cell: Cell, reason: Residue) {
         if self.dropped.is_full() {
             self.dropped.remove(0);
         }
         // There is room now.
         let _ = self.dropped.push(Leftover {
-            cell: self.road.goal(),
+            cell,
             cells: 1,
             reason,
         });
@@ -388,6 +508,39 @@ fn ahead(road: &Road, robot: Point) -> Option<Cell> {
         .iter()
         .copied()
         .find(|&cell| !near(cell, robot, BAR_AHEAD_M))
+}
+
+/// The road to the centre cell nearest to a place.
+fn road_to<const TILES: usize, const SLOTS: usize>(
+    place: Cell,
+    known: &Known<'_, TILES, SLOTS>,
+    robot: Point,
+    lent: &mut Lent<'_>,
+) -> Option<Road> {
+    let frame = known.topology.frame();
+    let way = known.topology.skeleton()?;
+    let residues = Residues::new(frame.shape, &mut *lent.residues).ok()?;
+    let mut space = WaveSpace {
+        way,
+        residues,
+        ring: &mut *lent.ring,
+    };
+    let centres = Centres {
+        tiles: known.tiles,
+        disc: known.disc,
+        frame,
+        way,
+    };
+    let nearest = centres.nearest(place, lent.view, |_| true)?;
+    let mut wave = Wavefront::new();
+    wave.start(&mut space);
+    wave.seed(&mut space, nearest);
+    // Without a budget it always comes to its end.
+    let _ = wave.advance(&mut space, None, u32::MAX);
+    let is_reached = |site| space.residues.get(site).is_some();
+    let entry = centres.nearest(robot.cell(), lent.view, is_reached)?;
+    let way = core::iter::once(entry).chain(space.residues.descent(entry));
+    Some(Road::along(way.map(|site| frame.cell(site))))
 }
 
 /// The road from the cells before the entry to the frontier, and one cell into the unexplored beyond it.

@@ -4,6 +4,7 @@
 //! memory that they share ([`More`]).
 
 pub mod frontier;
+pub mod lookout;
 mod nearest;
 pub mod ouroboros;
 mod patience;

@@ -86,12 +86,12 @@ impl Patience {
         self.fewest = None;
     }
 
-    /// Everything is tried a second time.
-    pub(super) fn begin_second_chance(&mut self) {
+    /// Something else is tried from here.
+    pub(super) fn begin_next_try(&mut self) {
         (self.stood_bars, self.moved) = (0, false);
     }
 
-    /// Whether the robot moved since the second chance began.
+    /// Whether the robot moved since the last such beginning.
     pub(super) const fn moved(&self) -> bool {
         self.moved
     }

@@ -63,6 +63,28 @@ impl Road {
         road
     }
 
+    /// The road that leads straight on to a place, which becomes the goal; the window finds the way round what stands between.
+    #[must_use]
+    pub fn leading_to(mut self, place: Cell) -> Self {
+        let from = self.goal;
+        let goal = Cell {
+            x: place.x & !1,
+            y: place.y & !1,
+        };
+        let (dx, dy) = (goal.x - from.x, goal.y - from.y);
+        let steps = dx.abs().max(dy.abs()) / 2;
+        for step in 1..=steps {
+            // What does not fit is counted only.
+            let _ = self.cells.push(Cell {
+                x: (from.x + dx * step / steps) & !1,
+                y: (from.y + dy * step / steps) & !1,
+            });
+            self.steps += 1;
+        }
+        self.goal = goal;
+        self
+    }
+
     /// Let the road end one cell farther, without changing its goal.
     pub fn extend(&mut self, cell: Option<Cell>) {
         if let Some(cell) = cell {

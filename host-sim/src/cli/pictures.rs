@@ -1,0 +1,76 @@
+//! The pictures of a run: one of its end, and a series on its way.
+
+use host_sim::picture::{Ground, Scene, run_png};
+use host_sim::report::Report;
+use host_sim::report::tum::Stamped;
+use host_sim::trial::Record;
+use host_sim::trial::snapshot::Snapshot;
+use host_sim::world::World;
+
+/// A run whose pictures are wanted.
+pub(super) struct Album<'a> {
+    report: &'a Report,
+    record: &'a Record,
+    ground: Option<Ground<'a>>,
+    path: Vec<Stamped>,
+}
+
+impl<'a> Album<'a> {
+    /// Of a run in a world.
+    pub(super) fn new(world: &'a World, report: &'a Report, record: &'a Record) -> Self {
+        let start_z_m = report.terrain.map_or(0.0, |terrain| terrain.start_z_m);
+        let truth = record.ground.as_ref();
+        let ground = truth.map(|truth| Ground::new(world, truth, start_z_m));
+        Self {
+            report,
+            record,
+            ground,
+            path: record.steps.iter().map(|step| step.truth).collect(),
+        }
+    }
+
+    /// `run.png`.
+    pub(super) fn end(&self) -> Vec<u8> {
+        let left = self.report.outcome.residual_frontiers.iter();
+        let residue: Vec<_> = left.map(|f| (f.x_m, f.y_m)).collect();
+        run_png(&Scene {
+            title: &self.report.headline(),
+            subtitle: &self.report.in_short(),
+            map: &self.record.map,
+            path: &self.path,
+            window: self.record.window.as_ref(),
+            residue: &residue,
+            ground: self.ground,
+            room_for: None,
+        })
+    }
+
+    /// The series, in order.
+    pub(super) fn on_the_way(&self) -> impl Iterator<Item = Vec<u8>> {
+        let snapshots = self.record.snapshots.iter();
+        snapshots.map(|snapshot| self.moment(snapshot))
+    }
+
+    fn moment(&self, snapshot: &Snapshot) -> Vec<u8> {
+        let progress = &snapshot.progress;
+        let seconds = progress.time_ms / 1000;
+        let subtitle = format!(
+            "{:.1} % of {:.0} m² known after {}:{:02} min and {:.1} m",
+            progress.coverage * 100.0,
+            self.report.coverage.reachable_m2,
+            seconds / 60,
+            seconds % 60,
+            progress.path_m
+        );
+        run_png(&Scene {
+            title: &self.report.headline(),
+            subtitle: &subtitle,
+            map: &snapshot.map,
+            path: &self.path[..snapshot.steps.min(self.path.len())],
+            window: snapshot.window.as_ref(),
+            residue: &[],
+            ground: self.ground,
+            room_for: Some(&self.record.map),
+        })
+    }
+}

@@ -1,0 +1,172 @@
+//! What ground a robot may use, and what ground it does not survive.
+//!
+//! Four numbers say it: the slope along the heading, the slope across it, the highest edge that a wheel climbs, and the
+//! deepest edge that it goes down. There are two such sets. Within the *working* limits the robot is at home: they decide
+//! what counts as reachable and as traversable. Beyond the *failing* limits it is stopped by an edge, falls down one, or tips
+//! over. Between the two it drives on, and the time that it spends there is reported.
+//!
+//! Working: a climb of 20° (the data sheet of the 3-AT says a grade of 35 %, 19.3°), 15° to the side, edges of 0.07 m.
+//! Failing: the data sheet's step of 0.10 m; 30° and 25°, which leaves a wheel base of 0.268 m and a track of 0.394 m
+//! some of their static margin (34° and 45° with the centre of mass 0.2 m up) for what is not simulated, bumps and braking;
+//! and a drop of 0.15 m, over which the wheel base stands at 29°.
+//!
+//! Angles in radians, lengths in metres; in the text form degrees and metres: `climb=20,side=15,step=0.07,drop=0.07`.
+
+use core::fmt;
+use core::str::FromStr;
+
+/// Bounds of the ground under a robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Greatest slope along the heading, up or down, radians.
+    pub climb_rad: f64,
+    /// Greatest slope across the heading, radians.
+    pub side_rad: f64,
+    /// Highest edge that a wheel goes up, metres.
+    pub step_m: f64,
+    /// Deepest edge that a wheel goes down, metres.
+    pub drop_m: f64,
+}
+
+impl Limits {
+    /// What the robot may use: 20°, 15°, 0.07 m, 0.07 m.
+    pub const WORKING: Self = Self {
+        climb_rad: 20.0 * DEGREE,
+        side_rad: 15.0 * DEGREE,
+        step_m: 0.07,
+        drop_m: 0.07,
+    };
+
+    /// What it does not survive: 30°, 25°, 0.10 m, 0.15 m.
+    pub const FAILING: Self = Self {
+        climb_rad: 30.0 * DEGREE,
+        side_rad: 25.0 * DEGREE,
+        step_m: 0.10,
+        drop_m: 0.15,
+    };
+
+    /// Is an attitude within the slopes?
+    #[must_use]
+    pub fn holds_attitude(&self, pitch_rad: f64, roll_rad: f64) -> bool {
+        // The angles of a slope exactly at the limit are off by a rounding error.
+        pitch_rad.abs() <= self.climb_rad + SLACK && roll_rad.abs() <= self.side_rad + SLACK
+    }
+
+    /// Is every bound of `self` at most that of `other`?
+    #[must_use]
+    pub fn is_within(&self, other: &Self) -> bool {
+        let pairs = self.numbers().into_iter().zip(other.numbers());
+        pairs.into_iter().all(|(own, others)| own <= others)
+    }
+
+    fn numbers(&self) -> [f64; 4] {
+        [self.climb_rad, self.side_rad, self.step_m, self.drop_m]
+    }
+}
+
+const DEGREE: f64 = core::f64::consts::PI / 180.0;
+/// Rounding errors of heights and angles that break no limit; metres or radians.
+pub(super) const SLACK: f64 = 1e-6;
+
+/// Why a text gives no limits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LimitsError(String);
+
+impl fmt::Display for LimitsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let form = "write for instance climb=20,side=15,step=0.07,drop=0.07";
+        write!(f, "{}; {form} (degrees and metres, any of them)", self.0)
+    }
+}
+
+impl core::error::Error for LimitsError {}
+
+impl Limits {
+    /// These limits with those changed that a text names.
+    ///
+    /// # Errors
+    /// [`LimitsError`] for an unknown name, a text that is no number, an angle beyond 60° or a length beyond 1 m.
+    pub fn changed(mut self, text: &str) -> Result<Self, LimitsError> {
+        for part in text.split(',').map(str::trim) {
+            let Some((name, number)) = part.split_once('=') else {
+                return Err(LimitsError(format!("'{part}' is not name=number")));
+            };
+            let value = f64::from_str(number.trim()).unwrap_or(f64::NAN);
+            let (slot, most, unit) = match name.trim() {
+                "climb" => (&mut self.climb_rad, 60.0, DEGREE),
+                "side" => (&mut self.side_rad, 60.0, DEGREE),
+                "step" => (&mut self.step_m, 1.0, 1.0),
+                "drop" => (&mut self.drop_m, 1.0, 1.0),
+                other => return Err(LimitsError(format!("there is no limit called '{other}'"))),
+            };
+            if !(value > 0.0 && value <= most) {
+                let reason = format!("{name} must be above 0 and at most {most}, not '{number}'");
+                return Err(LimitsError(reason));
+            }
+            *slot = value * unit;
+        }
+        Ok(self)
+    }
+}
+
+impl fmt::Display for Limits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // A hundredth of a degree is enough; the sum with 0 makes −0 a 0.
+        let degrees = |rad: f64| (rad / DEGREE * 100.0).round() / 100.0 + 0.0;
+        write!(
+            f,
+            "climb={},side={},step={},drop={}",
+            degrees(self.climb_rad),
+            degrees(self.side_rad),
+            self.step_m,
+            self.drop_m
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_changes_what_it_names() {
+        let changed = Limits::WORKING.changed("climb=25, drop=0.05");
+        let expected = Limits {
+            climb_rad: 25.0 * DEGREE,
+            drop_m: 0.05,
+            ..Limits::WORKING
+        };
+        assert_eq!(changed, Ok(expected));
+        assert_eq!(expected.to_string(), "climb=25,side=15,step=0.07,drop=0.05");
+        assert_eq!(Limits::WORKING.changed(&expected.to_string()), Ok(expected));
+    }
+
+    #[test]
+    fn nonsense_is_named() {
+        for (text, word) in [
+            ("", "''"),
+            ("climb", "'climb'"),
+            ("climb=nan", "'nan'"),
+            ("climb=61", "at most 60"),
+            ("step=-0.1", "'-0.1'"),
+            ("step=2", "at most 1"),
+            ("tilt=3", "'tilt'"),
+        ] {
+            let error = Limits::WORKING.changed(text).expect_err(text).to_string();
+            assert!(
+                error.contains(word) && error.contains("climb=20"),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_works_does_not_fail() {
+        assert!(Limits::WORKING.is_within(&Limits::FAILING));
+        assert!(!Limits::FAILING.is_within(&Limits::WORKING));
+        let [climb, side] = [Limits::WORKING.climb_rad, Limits::WORKING.side_rad];
+        assert!(Limits::WORKING.holds_attitude(-climb, side));
+        assert!(!Limits::WORKING.holds_attitude(climb + 1e-3, 0.0));
+        assert!(!Limits::WORKING.holds_attitude(0.0, -side - 1e-3));
+    }
+}
