@@ -26,13 +26,14 @@ pub(super) struct Centres<'a, const TILES: usize, const SLOTS: usize> {
 }
 
 impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
-    /// The centre cell nearest to `from` of those that `accepts` likes; a robot at `from` is let out.
+    /// The centre cell nearest to `from` of those that `accepts` likes, and the coarse steps there; a robot at `from` is let
+    /// out.
     pub(super) fn nearest(
         &self,
         from: Cell,
         view: &mut View,
         accepts: impl Fn(Site) -> bool,
-    ) -> Option<Site> {
+    ) -> Option<(Site, u32)> {
         SCALES.iter().find_map(|&scale| {
             view.look_around(self.tiles, self.disc, from, scale);
             view.free_robot(from);
@@ -40,7 +41,8 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
             let mut seeds: Rows = [0; SIDE];
             View::put(&mut seeds, view.place(from)?);
             let met = flood(&view.passable, &mut seeds, &targets, Adjacency::Four)?;
-            self.site_in(view, met.site, &accepts)
+            let steps = u32::from(met.steps) * scale as u32 / 2;
+            Some((self.site_in(view, met.site, &accepts)?, steps))
         })
     }
 

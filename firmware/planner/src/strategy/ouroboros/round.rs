@@ -72,7 +72,8 @@ impl<const TILES: usize, const SLOTS: usize> Round<'_, TILES, SLOTS> {
             frame: ground.frame,
             way: ground.way,
         };
-        centres.nearest(from, lent.view, |_| true)
+        let (site, _) = centres.nearest(from, lent.view, |_| true)?;
+        Some(site)
     }
 
     /// `propagatePotential`: a wave from `goal` over the centre cells, without the blocked ones, everywhere or until it comes to
