@@ -117,6 +117,8 @@ pub enum Strategy {
     /// Nearest unexplored centre cell.
     #[default]
     Frontier,
+    /// The same, closing loops on the way.
+    Ouroboros,
 }
 
 /// The session's parameters.

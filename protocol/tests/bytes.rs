@@ -83,6 +83,13 @@ fn request_hello() {
 }
 
 #[test]
+fn strategies_have_their_numbers() {
+    for (strategy, number) in [(Strategy::Frontier, 0), (Strategy::Ouroboros, 1)] {
+        assert_eq!(postcard::to_allocvec(&strategy).unwrap(), [number]);
+    }
+}
+
+#[test]
 fn request_control_start() {
     let laser = Laser {
         x: short(0.5),

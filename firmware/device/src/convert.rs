@@ -91,6 +91,10 @@ pub fn config(start: &wire::Start) -> Config {
     let default = Config::pioneer_3at(start.lasers.iter().map(laser).collect());
     let robot_radius_m = f32::from(start.robot_radius_mm) / 1000.0;
     Config {
+        strategy: match start.strategy {
+            wire::Strategy::Frontier => config::Strategy::Frontier,
+            wire::Strategy::Ouroboros => config::Strategy::Ouroboros,
+        },
         box_tiles: start.box_tiles,
         robot_radius_m,
         // A robot of another size is narrower by the same part.

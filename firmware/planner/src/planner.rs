@@ -31,8 +31,9 @@ use crate::remainder::no_room;
 use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::{Known, Lent, Outlook};
 use crate::strategy::lookout::{Found, Grounds};
-use crate::strategy::{self, Road, lookout};
-use crate::topology::{Space, Topology};
+use crate::strategy::ouroboros::{Ouroboros, Round};
+use crate::strategy::{Road, Strategist, lookout};
+use crate::topology::Topology;
 use crate::view::{self, Rows, SCALES, View};
 
 /// Range code: nothing came back, so free up to the range limit.
@@ -78,7 +79,7 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     map: Map<TILES, SLOTS>,
     near: NearField,
     topology: Topology<SLOTS>,
-    strategy: strategy::Frontier,
+    strategy: Strategist<SLOTS>,
     /// What can only be seen is searched for, when nothing is left to drive to.
     lookouts: lookout::Search,
     drive: Drive,
@@ -127,7 +128,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             map: Map::new(),
             near: NearField::new(),
             topology: Topology::new(),
-            strategy: strategy::Frontier::new(),
+            strategy: Strategist::new(),
             lookouts: lookout::Search::new(),
             drive: Drive::new(),
             status: Status::Exploring,
@@ -141,8 +142,9 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     pub fn reset(&mut self, config: &Config) {
         self.map.reset(config.box_tiles.0, config.box_tiles.1);
         self.near.clear();
-        self.topology.reset(Space::default());
-        self.strategy.reset();
+        self.topology
+            .reset(Strategist::<SLOTS>::space(config.strategy));
+        self.strategy.reset(config);
         self.lookouts = lookout::Search::new();
         self.drive = Drive::new();
         self.status = Status::Exploring;
@@ -165,7 +167,13 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// The way to the present goal.
     #[must_use]
     pub const fn road(&self) -> &Road {
-        self.strategy.road()
+        self.strategy.frontier.road()
+    }
+
+    /// What is known of loops, where the session's strategy closes them.
+    #[must_use]
+    pub const fn ouroboros(&self) -> Option<&Ouroboros<SLOTS>> {
+        self.strategy.ouroboros()
     }
 
     /// The cells of a tile (two bits each: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle), or `None` where
@@ -199,7 +207,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// Frontiers left over, and why.
     #[must_use]
     pub fn frontiers(&self) -> &[Frontier] {
-        self.strategy.dropped()
+        self.strategy.frontier.dropped()
     }
 }
 
@@ -312,7 +320,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
             ..Output::default()
         };
     }
-    let disc = Disc::new(if state.strategy.is_second_chance() {
+    let disc = Disc::new(if state.strategy.frontier.is_second_chance() {
         config.tight_radius_m
     } else {
         config.robot_radius_m
@@ -320,8 +328,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     // A new skeleton is planned on in the step after it was finished, so that no step does both.
     let planned = state.fresh;
     if planned {
-        state.fresh = false;
-        replan(state, workspace, &disc, &input);
+        state.fresh = !replan(config, state, workspace, &disc, &input);
         laps.lap(Stage::Plan);
     } else {
         state.fresh = state
@@ -372,6 +379,7 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         }
     }
     state.map.observe(config, input);
+    state.strategy.note_pose(&input.pose);
     for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
         if is_level(laser) {
             state.near.update(&input.pose, laser, ranges_mm);
@@ -394,13 +402,14 @@ pub fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
     })
 }
 
-/// A new skeleton: find the way to the nearest frontier, or find that there is none.
+/// A new skeleton: find the way to go, or find that there is none. Whether that is done, or the next step must go on with it.
 fn replan<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     disc: &Disc,
     input: &Input<'_>,
-) {
+) -> bool {
     let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
     let (residues, ring) = words.split_at_mut(SLOTS * 16);
     let (residues, _) = residues.as_chunks_mut::<2>();
@@ -409,23 +418,28 @@ fn replan<const TILES: usize, const SLOTS: usize>(
         ring,
         view: &mut workspace.view,
     };
-    let robot = input.pose.point();
-    state.strategy.cut(&mut state.topology);
-    let known = Known {
-        topology: &state.topology,
+    let round = Round {
+        topology: &mut state.topology,
         tiles: state.map.tiles(),
         disc,
+        pose: input.pose,
+        time_ms: input.time_ms,
+        limits: &config.loops,
     };
-    let outlook = state.strategy.replan(&known, robot, input.time_ms, lent);
+    let Some(outlook) = state.strategy.advance(round, lent) else {
+        return false;
+    };
+    let robot = input.pose.point().cell();
     match outlook {
-        Outlook::Nothing if state.strategy.may_look() => {
+        Outlook::Nothing if state.strategy.frontier.may_look() => {
             let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
             state.lookouts.begin(state.map.tiles().extent(), scratch);
         }
-        Outlook::Nothing => finish(state, workspace, disc, robot.cell()),
+        Outlook::Nothing => finish(state, workspace, disc, robot),
         Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
         Outlook::Road | Outlook::Unsure => {}
     }
+    true
 }
 
 /// Nothing is left to drive to: search on for what can be seen, and go there or be done.
@@ -442,12 +456,12 @@ fn look_for_lookouts<const TILES: usize, const SLOTS: usize>(
         discs: [&wide, &narrow],
         robot,
     };
-    let is_gone = |gap| state.strategy.is_gone(gap);
+    let is_gone = |gap| state.strategy.frontier.is_gone(gap);
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
     match state.lookouts.advance(&grounds, is_gone, scratch) {
         Found::Pending => {}
         Found::Lookout(lookout) => {
-            state.strategy.look_from(lookout);
+            state.strategy.frontier.look_from(lookout);
             // The skeleton was not touched meanwhile.
             state.fresh = true;
         }
@@ -477,7 +491,7 @@ fn list_ways_out<const TILES: usize, const SLOTS: usize>(
 ) -> Option<NoRoom> {
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
     no_room(&state.map, disc, robot, scratch, |cell| {
-        state.strategy.list_way_out(cell);
+        state.strategy.frontier.list_way_out(cell);
     })
 }
 
@@ -491,7 +505,7 @@ fn list_leftovers<const TILES: usize, const SLOTS: usize>(
         tiles: state.map.tiles(),
         disc,
     };
-    state.strategy.list_leftovers(&known);
+    state.strategy.frontier.list_leftovers(&known);
 }
 
 /// Why there is no frontier left within reach.
@@ -507,7 +521,7 @@ fn conclude<const TILES: usize, const SLOTS: usize>(
     match wanting {
         Some(NoRoom::Pool) => Status::Fault(Fault::MapFull),
         Some(NoRoom::Box) => Status::Fault(Fault::OutOfBox),
-        None if state.strategy.is_stuck() => Status::Fault(Fault::Stuck),
+        None if state.strategy.frontier.is_stuck() => Status::Fault(Fault::Stuck),
         None if room_cells(view, robot) < BOX_CELLS => Status::Finished(Finish::BoxedIn),
         None => Status::Finished(Finish::Explored),
     }
@@ -566,7 +580,7 @@ fn steer<const TILES: usize, const SLOTS: usize>(
         // In the goal's own cell there is no slope: look around until it is explored.
         state.drive.look_around(config, &surround, input.velocity)
     } else {
-        state.strategy.note_flat();
+        state.strategy.frontier.note_flat();
         Twist::default()
     };
     Output {
@@ -629,12 +643,15 @@ fn local_goal<const TILES: usize, const SLOTS: usize>(
     input: &Input<'_>,
     view: &mut View,
 ) -> Option<Rows> {
-    let (robot, road) = (input.pose.point(), state.strategy.road());
+    let (robot, road) = (input.pose.point(), state.strategy.frontier.road());
     if road.is_empty() {
         return None;
     }
     SCALES.iter().find_map(|&scale| {
         view.look_around(state.map.tiles(), disc, robot.cell(), scale);
+        if let Some(shield) = state.strategy.shield() {
+            shield.cells().for_each(|cell| view.block(cell));
+        }
         view.free_robot(robot.cell());
         road.local_goals(robot)
             .find_map(|cell| goal_cells(view, cell))

@@ -40,7 +40,7 @@ pub(super) struct ExploreArgs {
     /// World files (YAML for ROS map servers) or names of built-in worlds; WORLD@N starts at its start N
     #[arg(value_name = "WORLD[@N]", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
-    /// What plans: frontier on the device, or a baseline on the host
+    /// What plans: frontier or ouroboros on the device, or a baseline on the host
     #[arg(long, default_value = baselines::FRONTIER, value_parser = baselines::parse)]
     pub(super) strategy: String,
     /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback; direct for baselines]

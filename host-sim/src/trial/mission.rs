@@ -12,7 +12,7 @@ use fieldline_protocol::message::{Observation, Status, Strategy, Twist};
 use super::mirror::Mirror;
 use super::{Body, Cast, Record, Setup, Survey, Watch, record, run, shape};
 use crate::link::{Link, LinkError};
-use crate::metrics::{Coverage, Footing, GroundTruth};
+use crate::metrics::{CellSet, Coverage, Footing, GroundTruth, Loops};
 use crate::report::tum::Stamped;
 use crate::report::{self, Report, SCHEMA_VERSION};
 use crate::robot::{LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M, laser};
@@ -122,6 +122,21 @@ impl From<LinkError> for MissionError {
     }
 }
 
+/// The strategies on the device, by name.
+pub const STRATEGIES: [(&str, Strategy); 2] = [
+    ("frontier", Strategy::Frontier),
+    ("ouroboros", Strategy::Ouroboros),
+];
+
+/// The strategy on the device of this name; a baseline has none.
+#[must_use]
+pub fn on_device(name: &str) -> Option<Strategy> {
+    let mut known = STRATEGIES.iter();
+    known
+        .find(|(known, _)| *known == name)
+        .map(|(_, strategy)| *strategy)
+}
+
 /// Whether the robot can stand where the mission starts, before anything else is spent on it.
 ///
 /// # Errors
@@ -149,7 +164,10 @@ pub fn explore(
         return Err(MissionError::Box { across, up, slots });
     }
     let setup = Setup {
-        start: simulator.start_message(Strategy::Frontier, (across, up)),
+        start: simulator.start_message(
+            on_device(&mission.strategy).unwrap_or_default(),
+            (across, up),
+        ),
         time_limit_ms: mission.time_limit_ms,
         check_field: mission.check_field,
         snapshots: mission.snapshots,
@@ -283,6 +301,7 @@ fn assemble(
         climb_m: record.climb_m,
         steps: record.steps.len() as u64,
         coverage: coverage(account, simulator),
+        loops: loops(simulator, record),
         safety: safety(simulator),
         terrain: terrain(simulator, record),
         localization: record.localization(),
@@ -307,6 +326,19 @@ fn coverage(account: &Account, simulator: &Simulator<'_>) -> report::Coverage {
         t90_s: coverage.t90_s(),
         t99_s: coverage.t99_s(),
         overlap: Some(simulator.overlap()),
+    }
+}
+
+fn loops(simulator: &Simulator<'_>, record: &Record) -> report::Loops {
+    let world = simulator.world();
+    let start = world.starts().get(simulator.config().start).copied();
+    let reach = CellSet::reach(world, start.unwrap_or_default(), RADIUS_M);
+    let truth = record.steps.iter().map(|step| step.truth);
+    let path: Vec<[f64; 2]> = truth.map(|truth| [truth.x_m, truth.y_m]).collect();
+    let loops = Loops::judge(world, &reach, &path);
+    report::Loops {
+        loops_closed: loops.closed,
+        loops: loops.of,
     }
 }
 

@@ -266,6 +266,32 @@ impl Frontier {
         }
     }
 
+    /// Follow a road to another goal in this round, one that does not become fewer steps away all the time. A way that
+    /// cannot be driven is barred as on the road to a frontier; the goal is the caller's.
+    pub(super) fn follow<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        road: Road,
+        known: &Known<'_, TILES, SLOTS>,
+        robot: Point,
+        time_ms: u32,
+        view: &mut View,
+    ) -> Outlook {
+        self.patience.note_motion(robot, time_ms);
+        self.empty_rounds = 0;
+        self.road = road;
+        let (goal, steps) = (self.road.goal(), self.road.steps());
+        match self.patience.judge(goal, steps, time_ms) {
+            Verdict::GoOn | Verdict::Drop(_) => {}
+            Verdict::BarLeak => self.bar(leak(&self.road, known, robot, view)),
+            Verdict::BarAhead => self.bar(ahead(&self.road, robot)),
+        }
+        match (self.patience.is_stuck(), self.second_chance) {
+            (false, _) => Outlook::Road,
+            (true, false) => self.begin_second_chance(),
+            (true, true) => self.only_look(),
+        }
+    }
+
     /// List the frontier cells that were never within reach, in groups, behind the goals that were dropped.
     pub fn list_leftovers<const TILES: usize, const SLOTS: usize>(
         &mut self,
@@ -333,8 +359,17 @@ impl Frontier {
             way,
         };
         let is_reached = |site| space.residues.get(site).is_some();
-        let (entry, steps) = centres.nearest(robot.cell(), lent.view, is_reached)?;
-        Some(walk_down(&space, frame, known.tiles, entry).after(steps))
+        let robot = robot.cell();
+        let Some((entry, steps)) = centres.nearest(robot, lent.view, is_reached) else {
+            // With a centre cell near by that no wave reached, there is no way.
+            if centres.nearest(robot, lent.view, |_| true).is_some() {
+                return None;
+            }
+            let (entry, line) = centres.nearest_by_air(robot, is_reached)?;
+            return Some(walk_down(&space, frame, known.tiles, line, entry));
+        };
+        let at_once = core::iter::empty();
+        Some(walk_down(&space, frame, known.tiles, at_once, entry).after(steps))
     }
 
     /// The way to the lookout, as long as there is something to see from it.
@@ -534,11 +569,12 @@ fn road_to<const TILES: usize, const SLOTS: usize>(
     Some(Road::along(way.map(|site| frame.cell(site))).after(steps))
 }
 
-/// The road from the entry to the frontier, and one cell into the unexplored beyond it.
+/// The road from the cells before the entry to the frontier, and one cell into the unexplored beyond it.
 fn walk_down<const TILES: usize, const SLOTS: usize>(
     space: &WaveSpace<'_>,
     frame: Frame,
     tiles: &Tiles<TILES, SLOTS>,
+    before: impl Iterator<Item = Cell>,
     entry: Site,
 ) -> Road {
     let way = core::iter::once(entry).chain(space.residues.descent(entry));
@@ -547,7 +583,7 @@ fn walk_down<const TILES: usize, const SLOTS: usize>(
         last = site;
         frame.cell(site)
     });
-    let mut road = Road::along(cells);
+    let mut road = Road::along(before.chain(cells));
     road.extend(unexplored_beside(frame.cell(last), tiles));
     road
 }

@@ -1,7 +1,9 @@
 //! The centre cell nearest to a place, by steps through passable cells [Ouroboros, Algorithm 1, lines 4 and 6:
 //! `moveToVoronoi`].
 //!
-//! Not the nearest as the crow flies, which may lie behind a wall. The search grows its window until it finds one.
+//! Not the nearest as the crow flies, which may lie behind a wall. The search grows its window until it finds one. Where the largest
+//! window (24 m) has none, as in the middle of a hall whose skeleton is all on one side, the way there is a straight line:
+//! walls that end or stand alone would have brought centre cells nearer.
 //!
 //! Units: map cells; sites of the topology's frame.
 
@@ -42,6 +44,32 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
             let steps = u32::from(met.steps) * scale as u32 / 2;
             Some((self.site_in(view, met.site, &accepts)?, steps))
         })
+    }
+
+    /// The centre cell that `accepts` likes nearest to `from` as the crow flies, with the coarse cells on the line there, its own not
+    /// among them.
+    pub(super) fn nearest_by_air<A: Fn(Site) -> bool>(
+        &self,
+        from: Cell,
+        accepts: A,
+    ) -> Option<(Site, impl Iterator<Item = Cell> + use<A, TILES, SLOTS>)> {
+        let apart = |to: Cell| (to.x - from.x, to.y - from.y);
+        let distance2 = |site: &Site| {
+            let (dx, dy) = apart(self.frame.cell(*site));
+            dx * dx + dy * dy
+        };
+        let site = self
+            .way
+            .sites()
+            .filter(|&site| accepts(site))
+            .min_by_key(distance2)?;
+        let (dx, dy) = apart(self.frame.cell(site));
+        let steps = dx.abs().max(dy.abs()) / 2;
+        let line = (0..steps).map(move |k| Cell {
+            x: (from.x + dx * k / steps) & !1,
+            y: (from.y + dy * k / steps) & !1,
+        });
+        Some((site, line))
     }
 
     /// The passable window cells that hold a centre cell.
