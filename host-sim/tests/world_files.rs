@@ -391,7 +391,7 @@ fn an_unknown_world_lists_the_built_in_ones() {
         error,
         "ofice: cannot read this world (No such file or directory (os error 2)); give a world file or a built-in world: \
          office, cave, loop, cluttered, hall, empty-hall, narrow-doors, unreachable-room, boxed-in, slope, holes, building, \
-         cliff, spiral, kerbs, waves, pass, causeway"
+         cliff, spiral, kerbs, waves, pass, causeway, ouroboros-a, ouroboros-b, ouroboros-c, ouroboros-d, tdbvp-adjacent, tdbvp-nested, tdbvp-floor"
     );
 }
 

@@ -117,7 +117,9 @@ pub enum Strategy {
     /// Nearest unexplored centre cell.
     #[default]
     Frontier,
-    /// The same on uneven ground: heights are measured, holes and edges kept off, level ground preferred.
+    /// The same, closing loops on the way.
+    Ouroboros,
+    /// Frontiers on uneven ground: heights are measured, holes and edges kept off, level ground preferred.
     Terrain(Terrain),
 }
 

@@ -104,7 +104,7 @@ fn request_control_start_on_uneven_ground() {
         })),
         &[
             1, 0, // Control, Start
-            1, 2, // Terrain, global
+            2, 2, // Terrain, global
             0x80, 0x10, // obstacle 0.25 m = 1024/4096
             0x80, 0x60, // near 1.5 m = 6144/4096
             0xff, 0x1f, // hole -0.5 m = -2048/4096, zigzag 4095
@@ -119,6 +119,13 @@ fn request_control_start_on_uneven_ground() {
             0, 0, 0, 0, 0, 0, // radius, speeds, accelerations, period
         ],
     );
+}
+
+#[test]
+fn strategies_have_their_numbers() {
+    for (strategy, number) in [(Strategy::Frontier, 0), (Strategy::Ouroboros, 1)] {
+        assert_eq!(postcard::to_allocvec(&strategy).unwrap(), [number]);
+    }
 }
 
 #[test]

@@ -11,13 +11,13 @@ use host_sim::baseline::{Bvp, GreedyFrontier, Session};
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::report::Report;
-use host_sim::trial::mission::{Mission, explore};
+use host_sim::trial::mission::{Mission, explore, on_device};
 use host_sim::trial::{Flow, Progress, Watch};
 use host_sim::world::World;
 
 use crate::table::{Table, number};
 
-/// The strategy of the device.
+/// The usual strategy of the device.
 pub const FRONTIER: &str = "frontier";
 /// Those that only the host has the memory for.
 pub const BASELINES: [&str; 2] = ["bvp", "greedy-frontier"];
@@ -31,6 +31,8 @@ pub struct Run<'a> {
     pub strategy: &'a str,
     /// Decides the noise.
     pub seed: u64,
+    /// Which of the world's starts.
+    pub start: usize,
 }
 
 /// Nobody looks on.
@@ -62,6 +64,7 @@ impl Run<'_> {
             strategy: self.strategy.into(),
             link: name.into(),
             seed: self.seed,
+            start: self.start,
             ..Mission::default()
         };
         match explore(&mission, self.world, link, &mut Unseen) {
@@ -77,7 +80,7 @@ impl Run<'_> {
 /// If nothing does.
 fn planner(strategy: &str) -> Box<dyn Link> {
     match strategy {
-        FRONTIER => Box::new(Direct::new()),
+        known if on_device(known).is_some() => Box::new(Direct::new()),
         "bvp" => Box::new(Session::new(Bvp::new())),
         "greedy-frontier" => Box::new(Session::new(GreedyFrontier::default())),
         other => panic!("no strategy is called {other}"),
@@ -98,6 +101,7 @@ pub fn each(worlds: &[World], seeds: Range<u64>, baseline_seeds: Range<u64>) -> 
                 world,
                 strategy,
                 seed,
+                start: 0,
             }));
         }
     }
@@ -169,7 +173,8 @@ pub fn table(reports: &[Report]) -> Table {
 }
 
 /// The mean of a quantity that every run has.
-fn mean(reports: &[&Report], of: impl Fn(&Report) -> Option<f64>) -> Option<f64> {
+#[must_use]
+pub fn mean(reports: &[&Report], of: impl Fn(&Report) -> Option<f64>) -> Option<f64> {
     let values: Option<Vec<f64>> = reports.iter().map(|report| of(report)).collect();
     let values = values.filter(|values| !values.is_empty())?;
     Some(values.iter().sum::<f64>() / values.len() as f64)
@@ -256,6 +261,7 @@ mod tests {
             world: &world,
             strategy: "frontier",
             seed: 0,
+            start: 0,
         };
         let blank = run.go();
         let report = |&(strategy, t99_s): &(&str, Option<f64>)| {

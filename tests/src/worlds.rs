@@ -23,6 +23,17 @@ pub const UNEVEN: [&str; 9] = [
     "slope", "holes", "building", "cliff", "spiral", "kerbs", "waves", "pass", "causeway",
 ];
 
+/// Built-in worlds drawn to the sizes of the published ones, with loops and without, 15 starts each.
+pub const PUBLISHED: [&str; 7] = [
+    "ouroboros-a",
+    "ouroboros-b",
+    "ouroboros-c",
+    "ouroboros-d",
+    "tdbvp-adjacent",
+    "tdbvp-nested",
+    "tdbvp-floor",
+];
+
 /// A built-in world.
 ///
 /// # Panics
@@ -71,7 +82,7 @@ fn data_folder() -> PathBuf {
 
 #[cfg(test)]
 mod tests {
-    use super::{EXPLORABLE, SPECIAL, UNEVEN};
+    use super::{EXPLORABLE, PUBLISHED, SPECIAL, UNEVEN};
 
     #[test]
     fn every_built_in_world_is_of_one_kind() {
@@ -79,6 +90,7 @@ mod tests {
             .iter()
             .chain(&SPECIAL)
             .chain(&UNEVEN)
+            .chain(&PUBLISHED)
             .copied()
             .collect();
         let mut there: Vec<_> = host_sim::world::builtins()

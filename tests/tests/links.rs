@@ -32,6 +32,7 @@ fn by(name: &str, world: &World, link: &mut dyn Link) -> Report {
         world,
         strategy: FRONTIER,
         seed: 0,
+        start: 0,
     };
     run.go_by(name, link)
 }

@@ -75,6 +75,7 @@ fn the_same_seed_gives_the_same_run_and_another_one_another() {
             world,
             strategy,
             seed,
+            start: 0,
         };
         run.go().digest
     };

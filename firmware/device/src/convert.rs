@@ -117,12 +117,16 @@ pub fn config(start: &wire::Start) -> Config {
     let max_linear_mps = float(start.max_linear);
     let robot_radius_m = f32::from(start.robot_radius_mm) / 1000.0;
     Config {
+        strategy: match start.strategy {
+            wire::Strategy::Frontier | wire::Strategy::Terrain(_) => config::Strategy::Frontier,
+            wire::Strategy::Ouroboros => config::Strategy::Ouroboros,
+        },
         box_tiles: start.box_tiles,
         robot_radius_m,
         // A robot of another size is narrower by the same part.
         tight_radius_m: robot_radius_m * (default.tight_radius_m / default.robot_radius_m),
         max_linear_mps: match start.strategy {
-            wire::Strategy::Frontier => max_linear_mps,
+            wire::Strategy::Frontier | wire::Strategy::Ouroboros => max_linear_mps,
             // From one sweep over the ground to the next at most a cell.
             wire::Strategy::Terrain(_) => max_linear_mps.min(CELL_M / period_s),
         },
@@ -131,7 +135,7 @@ pub fn config(start: &wire::Start) -> Config {
         angular_accel_radps2: float(start.angular_accel),
         period_s,
         terrain: match &start.strategy {
-            wire::Strategy::Frontier => None,
+            wire::Strategy::Frontier | wire::Strategy::Ouroboros => None,
             wire::Strategy::Terrain(parameters) => Some(terrain(parameters)),
         },
         ..default

@@ -56,7 +56,7 @@ pub fn check_start<const TILES: usize, const SLOTS: usize>(start: &Start) -> Res
         check_laser(laser, number == 0)?;
     }
     match &start.strategy {
-        Strategy::Frontier => Ok(()),
+        Strategy::Frontier | Strategy::Ouroboros => Ok(()),
         Strategy::Terrain(terrain) => check_terrain(terrain, start.lasers.len()),
     }
 }

@@ -3,6 +3,7 @@
 use heapless::Vec;
 
 use crate::field::SolverConfig;
+use crate::strategy::ouroboros::detour::Limits;
 use crate::terrain::Terrain;
 
 /// Where a laser sits and how it sweeps.
@@ -26,9 +27,23 @@ pub struct Laser {
     pub range_limit_mm: u16,
 }
 
+/// What plans.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Strategy {
+    /// Go to the nearest unexplored centre cell; see [`crate::strategy::frontier`].
+    #[default]
+    Frontier,
+    /// Close loops on the way; see [`crate::strategy::ouroboros`].
+    Ouroboros,
+}
+
 /// Everything that stays the same during a session.
 #[derive(Clone, Debug)]
 pub struct Config {
+    /// What plans. Default: the frontier.
+    pub strategy: Strategy,
+    /// Which loops are worth closing, where the strategy closes loops.
+    pub loops: Limits,
     /// The laser scanners; the first one is level.
     pub lasers: Vec<Laser, 2>,
     /// The map's box in tiles of 3.2 m, across and up.
@@ -60,6 +75,8 @@ impl Config {
     #[must_use]
     pub fn pioneer_3at(lasers: Vec<Laser, 2>) -> Self {
         Self {
+            strategy: Strategy::Frontier,
+            loops: Limits::default(),
             lasers,
             box_tiles: (20, 20),
             robot_radius_m: 0.30,

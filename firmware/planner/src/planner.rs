@@ -34,9 +34,10 @@ use crate::remainder::no_room;
 use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::{Known, Lent, Outlook};
 use crate::strategy::lookout::{Found, Grounds};
-use crate::strategy::{self, Road, lookout};
+use crate::strategy::ouroboros::{Ouroboros, Round};
+use crate::strategy::{Road, Strategist, lookout};
 use crate::terrain::{Preferences, Terrain};
-use crate::topology::{Space, Topology};
+use crate::topology::Topology;
 use crate::view::{self, Rows, SCALES, View};
 
 /// Range code: nothing came back, so free up to the range limit.
@@ -82,7 +83,7 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     map: Map<TILES, SLOTS>,
     near: NearField,
     topology: Topology<SLOTS>,
-    strategy: strategy::Frontier,
+    strategy: Strategist<SLOTS>,
     /// What ground is preferred, where it is uneven.
     preferences: Preferences,
     /// What can only be seen is searched for, when nothing is left to drive to.
@@ -133,7 +134,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             map: Map::new(),
             near: NearField::new(),
             topology: Topology::new(),
-            strategy: strategy::Frontier::new(),
+            strategy: Strategist::new(),
             preferences: Preferences::new(),
             lookouts: lookout::Search::new(),
             drive: Drive::new(),
@@ -149,8 +150,9 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.map.begin(config);
         self.preferences = Preferences::new();
         self.near.clear();
-        self.topology.reset(Space::default());
-        self.strategy.reset();
+        self.topology
+            .reset(Strategist::<SLOTS>::space(config.strategy));
+        self.strategy.reset(config);
         self.lookouts = lookout::Search::new();
         self.drive = Drive::new();
         self.status = Status::Exploring;
@@ -173,7 +175,13 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// The way to the present goal.
     #[must_use]
     pub const fn road(&self) -> &Road {
-        self.strategy.road()
+        self.strategy.frontier.road()
+    }
+
+    /// What is known of loops, where the session's strategy closes them.
+    #[must_use]
+    pub const fn ouroboros(&self) -> Option<&Ouroboros<SLOTS>> {
+        self.strategy.ouroboros()
     }
 
     /// The cells of a tile (two bits each: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle), or `None` where
@@ -207,7 +215,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// Frontiers left over, and why.
     #[must_use]
     pub fn frontiers(&self) -> &[Frontier] {
-        self.strategy.dropped()
+        self.strategy.frontier.dropped()
     }
 }
 
@@ -320,7 +328,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
             ..Output::default()
         };
     }
-    let disc = Disc::new(if state.strategy.is_second_chance() {
+    let disc = Disc::new(if state.strategy.frontier.is_second_chance() {
         config.tight_radius_m
     } else {
         config.robot_radius_m
@@ -328,9 +336,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     // A new skeleton is planned on in the step after it was finished, so that no step does both.
     let planned = state.fresh;
     if planned {
-        state.fresh = false;
-        let uneven = config.terrain.as_ref();
-        replan(state, workspace, &disc, (&input, uneven));
+        state.fresh = !replan(config, state, workspace, &disc, &input);
         laps.lap(Stage::Plan);
     } else {
         state.fresh = state
@@ -393,6 +399,7 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         }
     }
     state.map.observe(config, input);
+    state.strategy.note_pose(&input.pose);
     if config.terrain.is_some() {
         // Level beams end on slopes: what is near is what the map says.
         return;
@@ -419,13 +426,14 @@ pub fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
     })
 }
 
-/// A new skeleton: find the way to the nearest frontier, or find that there is none.
+/// A new skeleton: find the way to go, or find that there is none. Whether that is done, or the next step must go on with it.
 fn replan<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     disc: &Disc,
-    (input, uneven): (&Input<'_>, Option<&Terrain>),
-) {
+    input: &Input<'_>,
+) -> bool {
     let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
     let (residues, ring) = words.split_at_mut(SLOTS * 16);
     let (residues, _) = residues.as_chunks_mut::<2>();
@@ -434,29 +442,34 @@ fn replan<const TILES: usize, const SLOTS: usize>(
         ring,
         view: &mut workspace.view,
     };
-    let robot = input.pose.point();
-    state.strategy.cut(&mut state.topology);
-    let known = Known {
-        topology: &state.topology,
+    let round = Round {
+        topology: &mut state.topology,
         tiles: state.map.tiles(),
         disc,
+        pose: input.pose,
+        time_ms: input.time_ms,
+        limits: &config.loops,
     };
-    let outlook = state.strategy.replan(&known, robot, input.time_ms, lent);
-    while let Some(terrain) = uneven
-        && let Some(cell) = state.strategy.take_unobserved()
+    let Some(outlook) = state.strategy.advance(round, lent) else {
+        return false;
+    };
+    while let Some(terrain) = &config.terrain
+        && let Some(cell) = state.strategy.frontier.take_unobserved()
     {
         state.map.give_up_ground(terrain, cell);
     }
+    let robot = input.pose.point().cell();
     match outlook {
         // On uneven ground what is seen through a gap is not measured by it.
-        Outlook::Nothing if state.strategy.may_look() && uneven.is_none() => {
+        Outlook::Nothing if state.strategy.frontier.may_look() && config.terrain.is_none() => {
             let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
             state.lookouts.begin(state.map.tiles().extent(), scratch);
         }
-        Outlook::Nothing => finish(state, workspace, disc, robot.cell()),
+        Outlook::Nothing => finish(state, workspace, disc, robot),
         Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
         Outlook::Road | Outlook::Unsure => {}
     }
+    true
 }
 
 /// Nothing is left to drive to: search on for what can be seen, and go there or be done.
@@ -473,12 +486,12 @@ fn look_for_lookouts<const TILES: usize, const SLOTS: usize>(
         discs: [&wide, &narrow],
         robot,
     };
-    let is_gone = |gap| state.strategy.is_gone(gap);
+    let is_gone = |gap| state.strategy.frontier.is_gone(gap);
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
     match state.lookouts.advance(&grounds, is_gone, scratch) {
         Found::Pending => {}
         Found::Lookout(lookout) => {
-            state.strategy.look_from(lookout);
+            state.strategy.frontier.look_from(lookout);
             // The skeleton was not touched meanwhile.
             state.fresh = true;
         }
@@ -508,7 +521,7 @@ fn list_ways_out<const TILES: usize, const SLOTS: usize>(
 ) -> Option<NoRoom> {
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
     no_room(&state.map, disc, robot, scratch, |cell| {
-        state.strategy.list_way_out(cell);
+        state.strategy.frontier.list_way_out(cell);
     })
 }
 
@@ -522,7 +535,7 @@ fn list_leftovers<const TILES: usize, const SLOTS: usize>(
         tiles: state.map.tiles(),
         disc,
     };
-    state.strategy.list_leftovers(&known);
+    state.strategy.frontier.list_leftovers(&known);
 }
 
 /// Why there is no frontier left within reach.
@@ -538,7 +551,7 @@ fn conclude<const TILES: usize, const SLOTS: usize>(
     match wanting {
         Some(NoRoom::Pool) => Status::Fault(Fault::MapFull),
         Some(NoRoom::Box) => Status::Fault(Fault::OutOfBox),
-        None if state.strategy.is_stuck() => Status::Fault(Fault::Stuck),
+        None if state.strategy.frontier.is_stuck() => Status::Fault(Fault::Stuck),
         None if room_cells(view, robot) < BOX_CELLS => Status::Finished(Finish::BoxedIn),
         None => Status::Finished(Finish::Explored),
     }
@@ -602,7 +615,7 @@ fn steer<const TILES: usize, const SLOTS: usize>(
         // In the goal's own cell there is no slope: look around until it is explored.
         state.drive.look_around(config, &surround, input.velocity)
     } else {
-        state.strategy.note_flat();
+        state.strategy.frontier.note_flat();
         Twist::default()
     };
     Output {
@@ -665,12 +678,15 @@ fn local_goal<const TILES: usize, const SLOTS: usize>(
     input: &Input<'_>,
     view: &mut View,
 ) -> Option<Rows> {
-    let (robot, road) = (input.pose.point(), state.strategy.road());
+    let (robot, road) = (input.pose.point(), state.strategy.frontier.road());
     if road.is_empty() {
         return None;
     }
     SCALES.iter().find_map(|&scale| {
         view.look_around(state.map.tiles(), disc, robot.cell(), scale);
+        if let Some(shield) = state.strategy.shield() {
+            shield.cells().for_each(|cell| view.block(cell));
+        }
         view.free_robot(robot.cell());
         road.local_goals(robot)
             .find_map(|cell| goal_cells(view, cell))

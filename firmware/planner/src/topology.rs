@@ -185,6 +185,11 @@ impl<const SLOTS: usize> Topology<SLOTS> {
         Plane::new(self.frame.shape, self.skeleton.as_flattened()).ok()
     }
 
+    /// The published skeleton, to block a way for a while; see [`crate::skeleton::Barrier`].
+    pub fn skeleton_mut(&mut self) -> Option<PlaneMut<'_>> {
+        PlaneMut::new(self.frame.shape, self.skeleton.as_flattened_mut()).ok()
+    }
+
     /// Take the cells within `radius_m` of a map cell out of the published skeleton.
     pub fn cut(&mut self, around: Cell, radius_m: f32) {
         let reach = math::floor(radius_m / (2.0 * CELL_M)) + 1;

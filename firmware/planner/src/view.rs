@@ -159,6 +159,21 @@ impl View {
         any
     }
 
+    /// Take a coarse cell, whose least map cell is `least`, out of what is passable.
+    pub fn block(&mut self, least: Cell) {
+        for k in 0..4 {
+            let part = Cell {
+                x: least.x + (k & 1),
+                y: least.y + (k >> 1),
+            };
+            if let Some((x, y)) = self.place(part)
+                && let Some(row) = self.passable.get_mut(y)
+            {
+                *row &= !(1 << x);
+            }
+        }
+    }
+
     /// Let the robot out where its own cell is not passable (it stands nearer to something than its radius, or the map is
     /// wrong by a cell): within four cells of it, whatever does not touch an obstacle counts as passable; failing
     /// that, whatever is no obstacle.

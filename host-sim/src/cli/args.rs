@@ -42,7 +42,7 @@ pub(super) struct ExploreArgs {
     /// World files (YAML for ROS map servers) or names of built-in worlds; WORLD@N starts at its start N
     #[arg(value_name = "WORLD[@N]", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
-    /// What plans: frontier on the device, terrain there on uneven ground, or a baseline on the host
+    /// What plans: frontier or ouroboros on the device, terrain there on uneven ground, or a baseline on the host
     #[arg(long, default_value = baselines::FRONTIER, value_parser = baselines::parse)]
     pub(super) strategy: String,
     /// Which preferences shape the field of --strategy terrain
@@ -237,7 +237,7 @@ fn failing(text: &str) -> Result<Limits, LimitsError> {
 
 /// Table I, changed.
 fn terrain(text: &str) -> Result<Terrain, TerrainError> {
-    uneven::changed(uneven::table_i(), text)
+    uneven::changed(uneven::TABLE_I, text)
 }
 
 /// Degrees.

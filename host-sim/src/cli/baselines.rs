@@ -1,4 +1,4 @@
-//! What can plan: the device's strategy by any link, and baselines that only the host has the memory for.
+//! What can plan: the device's strategies by any link, and baselines that only the host has the memory for.
 //!
 //! A baseline is a [`Link`] of its own, without bytes: it answers observations with commands and shows a map.
 
@@ -7,8 +7,9 @@ use anyhow::{Result, bail};
 use host_sim::baseline::{Bvp, GreedyFrontier, Session};
 use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
+use host_sim::trial::mission::{STRATEGIES, on_device};
 
-/// The strategy on the device.
+/// The strategy on the device if nothing is said.
 pub(super) const FRONTIER: &str = "frontier";
 /// The same on uneven ground.
 pub(super) const TERRAIN: &str = "terrain";
@@ -26,8 +27,9 @@ const BASELINES: &[(&str, Make)] = &[
 
 /// A known strategy's name, or what the known ones are.
 pub(super) fn parse(name: &str) -> Result<String, String> {
-    let known: Vec<&str> = [FRONTIER, TERRAIN]
-        .into_iter()
+    let known: Vec<&str> = STRATEGIES
+        .iter()
+        .map(|(name, _)| *name)
         .chain(BASELINES.iter().map(|(name, _)| *name))
         .collect();
     if known.contains(&name) {
@@ -43,8 +45,8 @@ pub(super) fn parse(name: &str) -> Result<String, String> {
 /// Where a strategy runs if nothing is said, and the refusal of where it cannot.
 pub(super) fn place(strategy: &str, link: Option<&LinkSpec>) -> Result<LinkSpec> {
     match (strategy, link) {
-        (FRONTIER | TERRAIN, None) => Ok(LinkSpec::Loopback),
-        (FRONTIER | TERRAIN, Some(link)) => Ok(link.clone()),
+        (name, None) if on_device(name).is_some() => Ok(LinkSpec::Loopback),
+        (name, Some(link)) if on_device(name).is_some() => Ok(link.clone()),
         (_, None | Some(LinkSpec::Direct)) => Ok(LinkSpec::Direct),
         (_, Some(link)) => bail!(
             "--strategy {strategy} runs on the host only, not by --link {link}; leave --link out or say direct"
@@ -52,10 +54,10 @@ pub(super) fn place(strategy: &str, link: Option<&LinkSpec>) -> Result<LinkSpec>
     }
 }
 
-/// The refusal of what only the device's strategy has: windows to compare, bytes to break.
+/// The refusal of what only the device's strategies have: windows to compare, bytes to break.
 pub(super) fn check(strategy: &str, check_field: bool, faults: bool) -> Result<()> {
     match strategy {
-        FRONTIER | TERRAIN => Ok(()),
+        name if on_device(name).is_some() => Ok(()),
         _ if check_field => {
             bail!("--strategy {strategy} solves no window; leave --check-field out")
         }
@@ -82,7 +84,7 @@ mod tests {
     fn unknown_strategies_are_named_with_the_known() {
         let error = parse("magic").unwrap_err();
         assert!(
-            error.contains("'magic'") && error.contains("frontier"),
+            error.contains("'magic'") && error.contains("frontier") && error.contains("ouroboros"),
             "{error}"
         );
     }
@@ -90,6 +92,7 @@ mod tests {
     #[test]
     fn the_device_runs_anywhere_and_a_baseline_on_the_host() {
         assert_eq!(place(FRONTIER, None).unwrap(), LinkSpec::Loopback);
+        assert_eq!(place("ouroboros", None).unwrap(), LinkSpec::Loopback);
         assert_eq!(
             place(FRONTIER, Some(&LinkSpec::Qemu)).unwrap(),
             LinkSpec::Qemu

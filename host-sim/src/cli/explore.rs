@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
 
-use fieldline_protocol::message::Strategy;
+use fieldline_protocol::message::Terrain;
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
@@ -146,22 +146,22 @@ fn explore(
     Ok(report.explored())
 }
 
-/// What the device is told to do.
-fn planning(args: &ExploreArgs) -> Result<Strategy> {
+/// The parameters of uneven ground, if any are asked for.
+fn terrain(args: &ExploreArgs) -> Result<Option<Terrain>> {
+    if args.preference.is_none() && args.terrain.is_none() {
+        return Ok(None);
+    }
     if args.strategy != baselines::TERRAIN {
-        if args.preference.is_some() || args.terrain.is_some() {
-            bail!(
-                "--preference and --terrain are for --strategy terrain, not for {}; leave them out",
-                args.strategy
-            );
-        }
-        return Ok(Strategy::Frontier);
+        bail!(
+            "--preference and --terrain are for --strategy terrain, not for {}; leave them out",
+            args.strategy
+        );
     }
-    let mut terrain = args.terrain.unwrap_or_else(uneven::table_i);
-    if let Some(which) = args.preference {
-        terrain.preference = which.into();
-    }
-    Ok(Strategy::Terrain(terrain))
+    let terrain = args.terrain.unwrap_or(uneven::TABLE_I);
+    Ok(Some(Terrain {
+        preference: args.preference.map_or(terrain.preference, Into::into),
+        ..terrain
+    }))
 }
 
 fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
@@ -174,7 +174,7 @@ fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     }
     Ok(Mission {
         strategy: args.strategy.clone(),
-        planning: planning(args)?,
+        terrain: terrain(args)?,
         link: link.to_string(),
         fault: args.fault.as_ref().map(|fault| fault.words.clone()),
         seed: args.seed,

@@ -56,6 +56,9 @@ pub struct Report {
     pub steps: u64,
     /// What became known, and when.
     pub coverage: Coverage,
+    /// Loops that were closed, and how many there are.
+    #[serde(flatten)]
+    pub loops: Loops,
     /// What the true robot suffered.
     pub safety: Safety,
     /// The ground, and how it was driven over; `null` in a flat world.
@@ -122,6 +125,15 @@ pub struct Coverage {
     pub t99_s: Option<f64>,
     /// Share of the path driven over ground that had been driven over before.
     pub overlap: Option<f64>,
+}
+
+/// Ways round islands of the world, judged on the true path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Loops {
+    /// Islands that the robot went all the way round.
+    pub loops_closed: u32,
+    /// Islands with a way round of at least 10 m.
+    pub loops: u32,
 }
 
 /// What the true footprint met in the true world.

@@ -47,6 +47,13 @@ impl Report {
             ),
             format!("  planner   {}", self.cost()),
         ];
+        if self.loops.loops > 0 {
+            let super::Loops {
+                loops_closed,
+                loops,
+            } = self.loops;
+            lines.push(format!("  loops     {loops_closed} of {loops} closed"));
+        }
         if let Some(terrain) = &self.terrain {
             lines.push(format!(
                 "  ground    {:.1} m up and down; steepest {:.1} deg along, {:.1} deg across; {:.1} s beyond {:.0} and {:.0} deg",
@@ -126,6 +133,7 @@ mod tests {
              \x20 coverage  90 % after 3:21, 99 % after 5:00; driven again 31 %\n\
              \x20 safety    0 collisions, 0 falls, 0 tips; least clearance 0.080 m\n\
              \x20 planner   3125 steps, 0.41 ms each by loopback (p99 1.20)\n\
+             \x20 loops     1 of 2 closed\n\
              \x20 left      4 cells at (3.0, -1.2): unreachable"
         );
     }

@@ -7,12 +7,13 @@
 use core::fmt;
 
 use fieldline_planner::geometry::Cell;
-use fieldline_protocol::message::{Observation, Status, Strategy, Twist};
+use fieldline_protocol::message::{Observation, Status, Strategy, Terrain, Twist};
 
 use super::mirror::Mirror;
+use super::uneven::TABLE_I;
 use super::{Body, Cast, Record, Setup, Survey, Watch, record, run, shape};
 use crate::link::{Link, LinkError};
-use crate::metrics::{Coverage, Footing, GroundTruth};
+use crate::metrics::{CellSet, Coverage, Footing, GroundTruth, Loops};
 use crate::report::tum::Stamped;
 use crate::report::{self, Report, SCHEMA_VERSION};
 use crate::robot::{LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M, laser};
@@ -24,8 +25,8 @@ use crate::world::{Start, World, WorldError};
 pub struct Mission {
     /// Name of the strategy, for the report.
     pub strategy: String,
-    /// What the device is told to do.
-    pub planning: Strategy,
+    /// Parameters of uneven ground for the strategy of that name; [`super::uneven::TABLE_I`] if `None`.
+    pub terrain: Option<Terrain>,
     /// Name of the link, for the report.
     pub link: String,
     /// The faults put on the link, for the report.
@@ -60,7 +61,7 @@ impl Default for Mission {
     fn default() -> Self {
         Self {
             strategy: "frontier".into(),
-            planning: Strategy::Frontier,
+            terrain: None,
             link: "direct".into(),
             fault: None,
             seed: 0,
@@ -125,6 +126,32 @@ impl From<LinkError> for MissionError {
     }
 }
 
+/// The strategies on the device, by name.
+pub const STRATEGIES: [(&str, Strategy); 3] = [
+    ("frontier", Strategy::Frontier),
+    ("ouroboros", Strategy::Ouroboros),
+    ("terrain", Strategy::Terrain(TABLE_I)),
+];
+
+/// The strategy on the device of this name; a baseline has none.
+#[must_use]
+pub fn on_device(name: &str) -> Option<Strategy> {
+    let mut known = STRATEGIES.iter();
+    known
+        .find(|(known, _)| *known == name)
+        .map(|(_, strategy)| *strategy)
+}
+
+impl Mission {
+    /// What the device is told to do.
+    fn told(&self) -> Strategy {
+        match (on_device(&self.strategy).unwrap_or_default(), self.terrain) {
+            (Strategy::Terrain(_), Some(terrain)) => Strategy::Terrain(terrain),
+            (strategy, _) => strategy,
+        }
+    }
+}
+
 /// Whether the robot can stand where the mission starts, before anything else is spent on it.
 ///
 /// # Errors
@@ -152,7 +179,7 @@ pub fn explore(
         return Err(MissionError::Box { across, up, slots });
     }
     let setup = Setup {
-        start: simulator.start_message(mission.planning, (across, up)),
+        start: simulator.start_message(mission.told(), (across, up)),
         time_limit_ms: mission.time_limit_ms,
         check_field: mission.check_field,
         snapshots: mission.snapshots,
@@ -286,6 +313,7 @@ fn assemble(
         climb_m: record.climb_m,
         steps: record.steps.len() as u64,
         coverage: coverage(account, simulator),
+        loops: loops(simulator, record),
         safety: safety(simulator),
         terrain: terrain(simulator, record),
         localization: record.localization(),
@@ -310,6 +338,19 @@ fn coverage(account: &Account, simulator: &Simulator<'_>) -> report::Coverage {
         t90_s: coverage.t90_s(),
         t99_s: coverage.t99_s(),
         overlap: Some(simulator.overlap()),
+    }
+}
+
+fn loops(simulator: &Simulator<'_>, record: &Record) -> report::Loops {
+    let world = simulator.world();
+    let start = world.starts().get(simulator.config().start).copied();
+    let reach = CellSet::reach(world, start.unwrap_or_default(), RADIUS_M);
+    let truth = record.steps.iter().map(|step| step.truth);
+    let path: Vec<[f64; 2]> = truth.map(|truth| [truth.x_m, truth.y_m]).collect();
+    let loops = Loops::judge(world, &reach, &path);
+    report::Loops {
+        loops_closed: loops.closed,
+        loops: loops.of,
     }
 }
 

@@ -10,21 +10,18 @@ use fieldline_protocol::message::{Preference, Terrain};
 use fixed::types::{I4F12, I16F16};
 
 /// What the paper's robot was given, and the 3-AT's limits.
-#[must_use]
-pub fn table_i() -> Terrain {
-    Terrain {
-        preference: Preference::Both,
-        obstacle: I4F12::lit("0.30"),
-        near: I4F12::lit("1.5"),
-        hole: I4F12::lit("-0.60"),
-        least: I4F12::lit("-0.5"),
-        most: I4F12::lit("0.5"),
-        height_scale: I4F12::lit("2"),
-        global_scale: I16F16::lit("0.005"),
-        climb: I4F12::lit("0.349"),
-        step: I4F12::lit("0.07"),
-    }
-}
+pub const TABLE_I: Terrain = Terrain {
+    preference: Preference::Both,
+    obstacle: I4F12::lit("0.30"),
+    near: I4F12::lit("1.5"),
+    hole: I4F12::lit("-0.60"),
+    least: I4F12::lit("-0.5"),
+    most: I4F12::lit("0.5"),
+    height_scale: I4F12::lit("2"),
+    global_scale: I16F16::lit("0.005"),
+    climb: I4F12::lit("0.349"),
+    step: I4F12::lit("0.07"),
+};
 
 /// Why a text gives no parameters.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -92,16 +89,16 @@ pub fn changed(mut terrain: Terrain, text: &str) -> Result<Terrain, TerrainError
 
 #[cfg(test)]
 mod tests {
-    use super::{changed, table_i};
+    use super::{TABLE_I, changed};
     use fixed::types::{I4F12, I16F16};
 
     #[test]
     fn text_changes_what_it_names() {
-        let terrain = changed(table_i(), "h_hole=-0.75, lambda_g=0.25,eps_gmax=2").unwrap();
+        let terrain = changed(TABLE_I, "h_hole=-0.75, lambda_g=0.25,eps_gmax=2").unwrap();
         assert_eq!(terrain.hole, I4F12::lit("-0.75"));
         assert_eq!(terrain.global_scale, I16F16::lit("0.25"));
         assert_eq!(terrain.most, I4F12::lit("2"));
-        assert_eq!(terrain.least, table_i().least);
+        assert_eq!(terrain.least, TABLE_I.least);
     }
 
     #[test]
@@ -112,7 +109,7 @@ mod tests {
             "eps_hmin=0.5",
             "eps_gmax=nan",
         ] {
-            let error = changed(table_i(), text).unwrap_err().to_string();
+            let error = changed(TABLE_I, text).unwrap_err().to_string();
             assert!(error.contains("diverges") && error.contains("2"), "{error}");
         }
     }
@@ -126,7 +123,7 @@ mod tests {
             ("h_hole=0.6", "below the ground"),
             ("gravity=9", "'gravity'"),
         ] {
-            let error = changed(table_i(), text).unwrap_err().to_string();
+            let error = changed(TABLE_I, text).unwrap_err().to_string();
             assert!(
                 error.contains(word) && error.contains("eps_gmax=0.5"),
                 "{error}"

@@ -127,27 +127,30 @@ fn laser() -> impl Strategy<Value = Laser> {
 }
 
 fn start() -> impl Strategy<Value = Start> {
+    let strategy = prop_oneof![Just(Plan::Frontier), Just(Plan::Ouroboros)];
     (
-        any::<(u8, u8)>(),
+        (strategy, any::<(u8, u8)>()),
         list(laser()),
         any::<u16>(),
         any::<u16>(),
         [short(), short(), short(), short()],
     )
-        .prop_map(|(box_tiles, lasers, robot_radius_mm, period_ms, limits)| {
-            let [max_linear, max_angular, linear_accel, angular_accel] = limits;
-            Start {
-                strategy: Plan::Frontier,
-                box_tiles,
-                lasers,
-                robot_radius_mm,
-                max_linear,
-                max_angular,
-                linear_accel,
-                angular_accel,
-                period_ms,
-            }
-        })
+        .prop_map(
+            |((strategy, box_tiles), lasers, robot_radius_mm, period_ms, limits)| {
+                let [max_linear, max_angular, linear_accel, angular_accel] = limits;
+                Start {
+                    strategy,
+                    box_tiles,
+                    lasers,
+                    robot_radius_mm,
+                    max_linear,
+                    max_angular,
+                    linear_accel,
+                    angular_accel,
+                    period_ms,
+                }
+            },
+        )
 }
 
 fn control() -> impl Strategy<Value = Control> {

@@ -20,12 +20,13 @@
 //! ACM 32(3), 1989.
 
 mod barrier;
+pub mod branches;
 mod residues;
 mod rule;
 mod thinning;
 mod wavefront;
 
-pub use barrier::Barrier;
+pub use barrier::{Barrier, BarrierFull};
 pub use residues::{Descent, Residues};
 pub use thinning::{Thinning, marks_for};
 pub use wavefront::{WaveSpace, Wavefront};

@@ -1,7 +1,9 @@
 //! The centre cell nearest to a place, by steps through passable cells [Ouroboros, Algorithm 1, lines 4 and 6:
 //! `moveToVoronoi`].
 //!
-//! Not the nearest as the crow flies, which may lie behind a wall. The search grows its window until it finds one.
+//! Not the nearest as the crow flies, which may lie behind a wall. The search grows its window until it finds one. Where the largest
+//! window (24 m) has none, as in the middle of a hall whose skeleton is all on one side, the way there is a straight line:
+//! walls that end or stand alone would have brought centre cells nearer.
 //!
 //! Units: map cells; sites of the topology's frame.
 
@@ -14,6 +16,9 @@ use crate::map::Tiles;
 use crate::topology::Frame;
 use crate::view::{Rows, SCALES, View};
 
+/// Longest straight way to a centre cell, cells: no map is wider than 128 m but one that is a corridor.
+const MOST_BY_AIR: i32 = 1_280;
+
 /// Where centre cells are looked for.
 #[derive(Debug)]
 pub(super) struct Centres<'a, const TILES: usize, const SLOTS: usize> {
@@ -24,13 +29,14 @@ pub(super) struct Centres<'a, const TILES: usize, const SLOTS: usize> {
 }
 
 impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
-    /// The centre cell nearest to `from` of those that `accepts` likes; a robot at `from` is let out.
+    /// The centre cell nearest to `from` of those that `accepts` likes, and the coarse steps there; a robot at `from` is let
+    /// out.
     pub(super) fn nearest(
         &self,
         from: Cell,
         view: &mut View,
         accepts: impl Fn(Site) -> bool,
-    ) -> Option<Site> {
+    ) -> Option<(Site, u32)> {
         SCALES.iter().find_map(|&scale| {
             view.look_around(self.tiles, self.disc, from, scale);
             view.free_robot(from);
@@ -38,8 +44,36 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
             let mut seeds: Rows = [0; SIDE];
             View::put(&mut seeds, view.place(from)?);
             let met = flood(&view.passable, &mut seeds, &targets, Adjacency::Four)?;
-            self.site_in(view, met.site, &accepts)
+            let steps = u32::from(met.steps) * scale as u32 / 2;
+            Some((self.site_in(view, met.site, &accepts)?, steps))
         })
+    }
+
+    /// The centre cell that `accepts` likes nearest to `from` as the crow flies, with the coarse cells on the line there, its own not
+    /// among them.
+    pub(super) fn nearest_by_air<A: Fn(Site) -> bool>(
+        &self,
+        from: Cell,
+        accepts: A,
+    ) -> Option<(Site, impl Iterator<Item = Cell> + use<A, TILES, SLOTS>)> {
+        // A pose may be anywhere; what is farther off than a map is large is no way.
+        let apart = |site: Site| {
+            let to = self.frame.cell(site);
+            let (dx, dy) = (to.x.checked_sub(from.x)?, to.y.checked_sub(from.y)?);
+            (dx.checked_abs()? < MOST_BY_AIR && dy.checked_abs()? < MOST_BY_AIR).then_some((dx, dy))
+        };
+        let (site, (dx, dy)) = self
+            .way
+            .sites()
+            .filter(|&site| accepts(site))
+            .filter_map(|site| Some((site, apart(site)?)))
+            .min_by_key(|(_, (dx, dy))| dx * dx + dy * dy)?;
+        let steps = dx.abs().max(dy.abs()) / 2;
+        let line = (0..steps).map(move |k| Cell {
+            x: (from.x + dx * k / steps) & !1,
+            y: (from.y + dy * k / steps) & !1,
+        });
+        Some((site, line))
     }
 
     /// The passable window cells that hold a centre cell.

@@ -4,9 +4,14 @@
 //! where the window is closed although the coarser skeleton is not, and where the robot stands and cannot go on: its goals stay
 //! goals and may be reached otherwise, and those behind it need not be tried one by one.
 //!
+//! What was tried lately is remembered for several goals, so that a robot drawn to and fro between two of them loses its patience
+//! with both.
+//!
 //! Units: coarse steps of 20 cm, milliseconds.
 
-use crate::geometry::Point;
+use heapless::Vec;
+
+use crate::geometry::{CELL_M, Cell, Point};
 use crate::status::Residue;
 
 /// Time without progress after which a goal is dropped, milliseconds.
@@ -24,6 +29,30 @@ const STUCK_BARS: u8 = 4;
 /// Rounds in a row without a field at the robot after which the way is barred.
 const FLAT_ROUNDS: u8 = 4;
 
+/// Goals remembered.
+const MOST_WAYS: usize = 8;
+/// Goals this near are the same, metres.
+const SAME_GOAL_M: f32 = 1.0;
+/// Time that a round may add to a goal's, milliseconds.
+const MOST_ROUND_MS: u32 = 2_000;
+
+/// The way to a goal, as it went so far.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    goal: Cell,
+    /// Fewest steps so far, and how long it was the goal since, milliseconds.
+    fewest: u32,
+    idle_ms: u32,
+}
+
+impl Way {
+    fn leads_to(&self, goal: Cell) -> bool {
+        let (dx, dy) = (self.goal.x - goal.x, self.goal.y - goal.y);
+        let most = SAME_GOAL_M / CELL_M;
+        ((dx * dx + dy * dy) as f32) < most * most
+    }
+}
+
 /// What is to be done about the present goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
@@ -37,12 +66,13 @@ pub(super) enum Verdict {
     BarAhead,
 }
 
-/// What is remembered of the way to the present goal.
+/// What is remembered of the ways to the goals.
 #[derive(Debug, Default)]
 pub(super) struct Patience {
-    /// Fewest steps so far, if any, and when.
-    fewest: Option<u32>,
-    since_ms: u32,
+    /// Of late, the oldest first.
+    ways: Vec<Way, MOST_WAYS>,
+    /// When a way was last judged.
+    judged_ms: u32,
     /// Where the robot last moved from, when, and how many ways were barred since.
     stood: Point,
     stood_ms: u32,
@@ -57,8 +87,8 @@ pub(super) struct Patience {
 impl Patience {
     pub(super) const fn new() -> Self {
         Self {
-            fewest: None,
-            since_ms: 0,
+            ways: Vec::new(),
+            judged_ms: 0,
             stood: Point { x_m: 0.0, y_m: 0.0 },
             stood_ms: 0,
             stood_bars: 0,
@@ -81,14 +111,15 @@ impl Patience {
         }
     }
 
-    /// Another goal, or none: nothing is known of the way there.
-    pub(super) fn begin_anew(&mut self) {
-        self.fewest = None;
+    /// Nothing is known of the way to this goal any more.
+    pub(super) fn forget(&mut self, goal: Cell) {
+        self.ways.retain(|way| !way.leads_to(goal));
     }
 
     /// Something else is tried from here.
     pub(super) fn begin_next_try(&mut self) {
         (self.stood_bars, self.moved) = (0, false);
+        self.ways.clear();
     }
 
     /// Whether the robot moved since the last such beginning.
@@ -102,11 +133,8 @@ impl Patience {
     }
 
     /// Judge the way to the present goal, which is `steps` away.
-    pub(super) fn judge(&mut self, steps: u32, time_ms: u32) -> Verdict {
-        if self.fewest.is_none_or(|fewest| steps < fewest) {
-            self.fewest = Some(steps);
-            self.since_ms = time_ms;
-        }
+    pub(super) fn judge(&mut self, goal: Cell, steps: u32, time_ms: u32) -> Verdict {
+        let idle_ms = self.note_way(goal, steps, time_ms);
         self.flat_rounds = if self.flat { self.flat_rounds + 1 } else { 0 };
         self.flat = false;
         if self.flat_rounds >= FLAT_ROUNDS {
@@ -125,7 +153,6 @@ impl Patience {
                 Verdict::BarAhead
             };
         }
-        let idle_ms = time_ms.wrapping_sub(self.since_ms);
         let moves = stood_ms <= PATIENCE_MS / 2;
         if reached && idle_ms > LOOK_MS {
             Verdict::Drop(Residue::Unobservable)
@@ -133,6 +160,99 @@ impl Patience {
             Verdict::Drop(Residue::NoProgress)
         } else {
             Verdict::GoOn
+        }
+    }
+
+    /// How long the present goal has come no nearer.
+    fn note_way(&mut self, goal: Cell, steps: u32, time_ms: u32) -> u32 {
+        let round_ms = time_ms.wrapping_sub(self.judged_ms).min(MOST_ROUND_MS);
+        self.judged_ms = time_ms;
+        if let Some(way) = self.ways.iter_mut().find(|way| way.leads_to(goal)) {
+            way.idle_ms += round_ms;
+            if steps < way.fewest {
+                (way.fewest, way.idle_ms) = (steps, 0);
+            }
+            return way.idle_ms;
+        }
+        if self.ways.is_full() {
+            self.ways.remove(0);
+        }
+        // There is room now.
+        let _ = self.ways.push(Way {
+            goal,
+            fewest: steps,
+            idle_ms: 0,
+        });
+        0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NEAR: Cell = Cell { x: 10, y: 0 };
+    const FAR: Cell = Cell { x: 90, y: 0 };
+
+    /// A robot that moves 0.5 m in a round of half a second, and what is judged in each until it is not "go on".
+    fn verdict(mut round: impl FnMut(u32) -> (Cell, u32)) -> (u32, Verdict) {
+        let mut patience = Patience::new();
+        for k in 0..1_000 {
+            let at = Point {
+                x_m: 0.5 * k as f32,
+                y_m: 0.0,
+            };
+            patience.note_motion(at, 500 * k);
+            let (goal, steps) = round(k);
+            let verdict = patience.judge(goal, steps, 500 * k);
+            if verdict != Verdict::GoOn {
+                return (500 * k, verdict);
+            }
+        }
+        (u32::MAX, Verdict::GoOn)
+    }
+
+    #[test]
+    fn a_goal_that_comes_nearer_is_followed_for_ever() {
+        let (_, last) = verdict(|k| (FAR, 2_000 - k));
+        assert_eq!(last, Verdict::GoOn);
+    }
+
+    #[test]
+    fn a_goal_that_comes_no_nearer_is_dropped() {
+        let (when_ms, last) = verdict(|_| (FAR, 40));
+        assert_eq!(last, Verdict::Drop(Residue::NoProgress));
+        assert_eq!(when_ms, PATIENCE_MS + 500);
+    }
+
+    #[test]
+    fn a_goal_that_is_reached_is_looked_at_and_dropped() {
+        let (when_ms, last) = verdict(|_| (NEAR, 2));
+        assert_eq!(last, Verdict::Drop(Residue::Unobservable));
+        assert_eq!(when_ms, LOOK_MS + 500);
+    }
+
+    /// Neither comes nearer than it was the first time.
+    #[test]
+    fn a_robot_drawn_to_and_fro_loses_its_patience_with_both() {
+        let (when_ms, last) = verdict(|k| match k / 4 % 2 {
+            0 => (NEAR, 30 - k % 4),
+            _ => (FAR, 30 - k % 4),
+        });
+        assert_eq!(last, Verdict::Drop(Residue::NoProgress));
+        assert!(when_ms < 3 * PATIENCE_MS, "{when_ms} ms");
+    }
+
+    #[test]
+    fn a_goal_whose_way_was_barred_is_begun_anew() {
+        let mut patience = Patience::new();
+        for k in 0..20 {
+            patience.judge(FAR, 40, 500 * k);
+        }
+        patience.forget(FAR);
+        for k in 20..40 {
+            patience.stood_ms = 500 * k;
+            assert_eq!(patience.judge(FAR, 60, 500 * k), Verdict::GoOn);
         }
     }
 }

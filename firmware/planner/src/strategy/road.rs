@@ -85,6 +85,13 @@ impl Road {
         self
     }
 
+    /// The road that begins so many steps away from the robot.
+    #[must_use]
+    pub const fn after(mut self, steps: u32) -> Self {
+        self.steps += steps;
+        self
+    }
+
     /// Let the road end one cell farther, without changing its goal.
     pub fn extend(&mut self, cell: Option<Cell>) {
         if let Some(cell) = cell {

@@ -1,10 +1,10 @@
 //! The list of the built-in worlds: names, descriptions, starts (x m, y m, yaw rad).
 
 use super::Plan::{Flat, Uneven};
-use super::{Builtin, cases, cave, cluttered, hall, office, ring, uneven};
+use super::{Builtin, cases, cave, cluttered, hall, loops, office, places, poses, ring, uneven};
 
 /// Every built-in world.
-pub(super) const BUILTINS: [Builtin; 18] = [
+pub(super) const BUILTINS: [Builtin; 25] = [
     Builtin {
         name: "office",
         description: "nine furnished rooms with doors of 0.8 to 0.9 m along a corridor, 24 x 14 m",
@@ -156,5 +156,47 @@ pub(super) const BUILTINS: [Builtin; 18] = [
         description: "a bridge of ground, 2.4 m wide, between a drop of 3 m and one without a floor, 26 x 14 m",
         plan: Uneven(uneven::causeway::draw),
         starts: &[[4.5, 5.5, 0.0], [23.0, 8.0, 3.1]],
+    },
+    Builtin {
+        name: "ouroboros-a",
+        description: "four adjacent loops of corridors, 44, 46, 58 and 78 m",
+        plan: Flat(loops::a),
+        starts: &poses::A,
+    },
+    Builtin {
+        name: "ouroboros-b",
+        description: "three adjacent loops of corridors in a row, 72 m each",
+        plan: Flat(loops::b),
+        starts: &poses::B,
+    },
+    Builtin {
+        name: "ouroboros-c",
+        description: "rooms along corridors that close no loop, 23 x 25 m",
+        plan: Flat(places::c),
+        starts: &poses::C,
+    },
+    Builtin {
+        name: "ouroboros-d",
+        description: "a square of 20 x 20 m with small round obstacles, as of trees",
+        plan: Flat(places::d),
+        starts: &poses::D,
+    },
+    Builtin {
+        name: "tdbvp-adjacent",
+        description: "three loops of corridors, each beside both others, 72 m each",
+        plan: Flat(loops::adjacent),
+        starts: &poses::ADJACENT,
+    },
+    Builtin {
+        name: "tdbvp-nested",
+        description: "a loop of corridors of 88 m, and one of 48 m within its block",
+        plan: Flat(loops::nested),
+        starts: &poses::NESTED,
+    },
+    Builtin {
+        name: "tdbvp-floor",
+        description: "a floor of 72 x 13 m with loops of 90 m and 60 m and halls at both ends",
+        plan: Flat(loops::floor_72),
+        starts: &poses::FLOOR,
     },
 ];

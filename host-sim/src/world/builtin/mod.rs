@@ -1,4 +1,5 @@
-//! The worlds that come with the simulator, drawn here: five places to explore, four cases to get wrong, and uneven ground.
+//! The worlds that come with the simulator, drawn here: five places to explore, four cases to get wrong, uneven ground, and
+//! loops and places of published sizes.
 //!
 //! All have cells of 5 cm, walls at least 0.2 m thick, and their lower left corner at the origin. A drawing is a
 //! function of nothing: it is the same everywhere and always.
@@ -8,7 +9,10 @@ mod cave;
 mod cluttered;
 mod hall;
 mod list;
+mod loops;
 mod office;
+mod places;
+mod poses;
 mod ring;
 mod uneven;
 

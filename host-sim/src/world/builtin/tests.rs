@@ -51,6 +51,16 @@ fn drawings_stay_as_they_are() {
         ("boxed-in", (14_016, 405_072_896)),
     ];
     assert_eq!(prints[..9], expected);
+    let published = [
+        ("ouroboros-a", (149_600, 804_963_840)),
+        ("ouroboros-b", (140_800, 3_408_814_080)),
+        ("ouroboros-c", (214_172, 3_718_203_840)),
+        ("ouroboros-d", (156_762, 2_793_279_844)),
+        ("tdbvp-adjacent", (140_800, 1_353_605_120)),
+        ("tdbvp-nested", (111_200, 3_258_082_816)),
+        ("tdbvp-floor", (180_328, 1_935_914_624)),
+    ];
+    assert_eq!(prints[prints.len() - 7..], published);
 }
 
 #[test]

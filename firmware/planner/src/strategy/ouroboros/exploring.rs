@@ -1,0 +1,413 @@
+//! Whole explorations of small worlds: every loop is closed, and nothing holds the robot.
+//!
+//! A crude robot: it sees every coarse cell within 1.6 m that no obstacle hides, and in each round goes some cells along the
+//! road, by the shortest way that does not lead through the shield. Worlds are pictures as in [`super::scenes`]; digits are obstacles that
+//! name what a loop goes round.
+
+mod worlds;
+
+use std::collections::{BTreeMap, VecDeque};
+use std::string::String;
+use std::vec::Vec;
+
+use self::worlds::{ADJACENT, NESTED, ROOMS, THREE_LOOPS, TREES};
+use super::detour::Limits;
+use super::ground::quarters;
+use super::scenes::{Memory, POINT_M, SLOTS, TILES, at, pose_in};
+use super::{Ouroboros, Round, Tally};
+use crate::clearance::Disc;
+use crate::geometry::{Cell, Pose};
+use crate::map::{Class, Tiles};
+use crate::strategy::Frontier;
+use crate::strategy::frontier::Outlook;
+use crate::topology::{Space, Topology};
+
+/// Cells that the robot sees: as much of these loops as 12 m are of one of 70 m.
+const SIGHT: i32 = 8;
+/// Cells that it goes in a round.
+const STRIDE: usize = 3;
+/// Rounds after which something holds the robot.
+const MOST_ROUNDS: usize = 3000;
+
+struct Exploration {
+    world: Vec<Vec<char>>,
+    tiles: Tiles<TILES, SLOTS>,
+    topology: Topology<SLOTS>,
+    strategy: Ouroboros<SLOTS>,
+    frontier: Frontier,
+    limits: Limits,
+    memory: Memory,
+    robot: (i32, i32),
+    pose: Pose,
+    /// Angle come round each digit's middle: now, least and greatest.
+    turned: BTreeMap<char, [f64; 3]>,
+    path: Vec<(i32, i32)>,
+}
+
+impl Exploration {
+    fn new(world: &str, limits: Limits) -> Self {
+        let world: Vec<Vec<char>> = world
+            .split_whitespace()
+            .map(|r| r.chars().collect())
+            .collect();
+        let mut tiles = Tiles::new();
+        tiles.reset(8, 6);
+        let mut topology = Topology::new();
+        topology.reset(Space::AnchoredNotObstacle);
+        let mut strategy = Ouroboros::new();
+        strategy.reset(tiles.box_tiles());
+        let mut robot = (0, 0);
+        let mut turned = BTreeMap::new();
+        for (y, row) in world.iter().enumerate() {
+            for (x, &c) in row.iter().enumerate() {
+                if c == '>' {
+                    robot = (x as i32, y as i32);
+                } else if c.is_ascii_digit() {
+                    turned.insert(c, [0.0; 3]);
+                }
+            }
+        }
+        let pose = pose_in(at(robot.0 as usize, robot.1 as usize), 0.0);
+        Self {
+            world,
+            tiles,
+            topology,
+            strategy,
+            frontier: Frontier::new(),
+            limits,
+            memory: Memory::new(),
+            robot,
+            pose,
+            turned,
+            path: std::vec![robot],
+        }
+    }
+
+    fn is_obstacle(&self, (x, y): (i32, i32)) -> bool {
+        let row = usize::try_from(y).ok().and_then(|y| self.world.get(y));
+        let cell = row.and_then(|row| row.get(usize::try_from(x).ok()?));
+        cell.is_none_or(|&c| c == '#' || c.is_ascii_digit())
+    }
+
+    /// Everything within sight into the map.
+    fn see(&mut self) {
+        let (x, y) = self.robot;
+        for to in (y - SIGHT..=y + SIGHT).flat_map(|j| (x - SIGHT..=x + SIGHT).map(move |i| (i, j)))
+        {
+            let (dx, dy) = (to.0 - x, to.1 - y);
+            if dx * dx + dy * dy > SIGHT * SIGHT || to.0 < 0 || to.1 < 0 {
+                continue;
+            }
+            let steps = dx.abs().max(dy.abs()).max(1);
+            let on = |k: i32| {
+                let along = |from: i32, d: i32| {
+                    (f64::from(from) + f64::from(d * k) / f64::from(steps)).round() as i32
+                };
+                (along(x, dx), along(y, dy))
+            };
+            if (0..steps).any(|k| self.is_obstacle(on(k))) || to.1 as usize >= self.world.len() {
+                continue;
+            }
+            let class = if self.is_obstacle(to) {
+                Class::Obstacle
+            } else {
+                Class::Free
+            };
+            for part in quarters(at(to.0 as usize, to.1 as usize)) {
+                self.tiles.set(part, class).unwrap();
+            }
+        }
+    }
+
+    /// A whole round on a new skeleton.
+    fn plan(&mut self, time_ms: u32) -> Outlook {
+        let disc = Disc::new(POINT_M);
+        self.strategy.note_pose(&self.pose);
+        while !self.topology.advance(&self.tiles, &disc, u32::MAX) {}
+        self.frontier.cut(&mut self.topology);
+        let before = self.topology.skeleton().unwrap().words().to_vec();
+        for calls in 1.. {
+            assert!(calls <= 4, "a round that does not end");
+            let round = Round {
+                topology: &mut self.topology,
+                tiles: &self.tiles,
+                disc: &disc,
+                pose: self.pose,
+                time_ms,
+                limits: &self.limits,
+            };
+            let outlook = self
+                .strategy
+                .advance(&mut self.frontier, round, self.memory.lend());
+            assert_eq!(
+                self.topology.skeleton().unwrap().words(),
+                before,
+                "it stays cut"
+            );
+            if let Some(outlook) = outlook {
+                return outlook;
+            }
+        }
+        unreachable!()
+    }
+
+    fn is_shield(&self, (x, y): (i32, i32)) -> bool {
+        self.strategy
+            .shield()
+            .is_some_and(|shield| shield.holds(at(x as usize, y as usize)))
+    }
+
+    /// Some cells on towards the part of the road that is a little ahead.
+    fn go(&mut self) {
+        let cells = self.frontier.road().cells();
+        let here = at(self.robot.0 as usize, self.robot.1 as usize);
+        let far = |cell: &Cell| (cell.x - here.x).abs().max((cell.y - here.y).abs());
+        let Some(nearest) = (0..cells.len().min(20)).min_by_key(|&k| far(&cells[k])) else {
+            return;
+        };
+        let goal = cells[(nearest + STRIDE).min(cells.len() - 1)];
+        let goal = (goal.x / 2, goal.y / 2);
+        for step in self.way_to(goal).into_iter().take(STRIDE) {
+            self.step_to(step);
+        }
+    }
+
+    fn step_to(&mut self, to: (i32, i32)) {
+        assert!(!self.is_obstacle(to), "the road leads into an obstacle");
+        let (dx, dy) = (to.0 - self.robot.0, to.1 - self.robot.1);
+        let middles = self.middles();
+        for (name, turned) in &mut self.turned {
+            let (x, y) = middles[name];
+            let bearing = |(i, j): (i32, i32)| (f64::from(j) - y).atan2(f64::from(i) - x);
+            let turn = bearing(to) - bearing(self.robot);
+            let turn = turn - (turn / core::f64::consts::TAU).round() * core::f64::consts::TAU;
+            turned[0] += turn;
+            turned[1] = turned[1].min(turned[0]);
+            turned[2] = turned[2].max(turned[0]);
+        }
+        self.robot = to;
+        let yaw_rad = (dy as f32).atan2(dx as f32);
+        self.pose = pose_in(at(to.0 as usize, to.1 as usize), yaw_rad);
+        self.strategy.note_pose(&self.pose);
+        self.path.push(to);
+        self.see();
+    }
+
+    fn middles(&self) -> BTreeMap<char, (f64, f64)> {
+        let mut sums: BTreeMap<char, (f64, f64, f64)> = BTreeMap::new();
+        for (y, row) in self.world.iter().enumerate() {
+            for (x, c) in row.iter().enumerate().filter(|(_, c)| c.is_ascii_digit()) {
+                let sum = sums.entry(*c).or_default();
+                *sum = (sum.0 + x as f64, sum.1 + y as f64, sum.2 + 1.0);
+            }
+        }
+        sums.into_iter()
+            .map(|(c, (x, y, n))| (c, (x / n, y / n)))
+            .collect()
+    }
+
+    /// The shortest way over free cells that are no shield, without the first cell.
+    fn way_to(&self, goal: (i32, i32)) -> Vec<(i32, i32)> {
+        let mut from = BTreeMap::from([(self.robot, self.robot)]);
+        let mut queue = VecDeque::from([self.robot]);
+        while let Some(here) = queue.pop_front() {
+            if here == goal {
+                let mut way = std::vec![];
+                let mut back = here;
+                while back != self.robot {
+                    way.push(back);
+                    back = from[&back];
+                }
+                way.reverse();
+                return way;
+            }
+            for (dx, dy) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
+                let near = (here.0 + dx, here.1 + dy);
+                if !self.is_obstacle(near) && !self.is_shield(near) && !from.contains_key(&near) {
+                    from.insert(near, here);
+                    queue.push_back(near);
+                }
+            }
+        }
+        Vec::new()
+    }
+
+    /// Go on to the end; the rounds it took.
+    fn run(&mut self) -> usize {
+        self.see();
+        for round in 0..MOST_ROUNDS {
+            match self.plan(round as u32 * 800) {
+                Outlook::Nothing => return round,
+                Outlook::Stuck => panic!("stuck\n{}", self.drawn()),
+                Outlook::Road | Outlook::Unsure => self.go(),
+            }
+        }
+        panic!(
+            "still exploring after {MOST_ROUNDS} rounds\n{}",
+            self.drawn()
+        );
+    }
+
+    /// The islands that the robot has been round.
+    fn rounded(&self) -> String {
+        let round = |[_, least, most]: [f64; 3]| most - least > 0.97 * core::f64::consts::TAU;
+        self.turned
+            .iter()
+            .filter(|(_, turned)| round(**turned))
+            .map(|(c, _)| *c)
+            .collect()
+    }
+
+    fn unknown(&self) -> usize {
+        let rows = self.world.iter().enumerate();
+        let cells = rows.flat_map(|(y, row)| (0..row.len()).map(move |x| (x, y)));
+        cells
+            .filter(|&(x, y)| !self.is_obstacle((x as i32, y as i32)))
+            .filter(|&(x, y)| self.tiles.class(at(x, y)) == Class::Unknown)
+            .count()
+    }
+
+    fn drawn(&self) -> String {
+        let mut text = String::new();
+        for (y, row) in self.world.iter().enumerate() {
+            for (x, &c) in row.iter().enumerate() {
+                let here = (x as i32, y as i32);
+                let marked = self.strategy.marks().is_marked(at(x, y));
+                text.push(if here == self.robot {
+                    '@'
+                } else if self.strategy.tractor() == Some(at(x, y)) {
+                    'T'
+                } else if c != '.' && c != '>' {
+                    c
+                } else if self.is_shield(here) {
+                    '='
+                } else if self.path.contains(&here) {
+                    '*'
+                } else if self.tiles.class(at(x, y)) == Class::Unknown {
+                    '?'
+                } else if marked {
+                    ','
+                } else {
+                    '.'
+                });
+            }
+            text.push('\n');
+        }
+        text
+    }
+}
+
+/// Every island is gone round, and nothing is left unknown.
+#[track_caller]
+fn assert_closes_all(world: &str) {
+    let mut exploration = Exploration::new(world, Limits::default());
+    exploration.run();
+    let islands: String = exploration.turned.keys().collect();
+    assert_eq!(exploration.rounded(), islands, "\n{}", exploration.drawn());
+    assert_eq!(exploration.unknown(), 0, "\n{}", exploration.drawn());
+    assert!(exploration.strategy.tally().closed > 0);
+}
+
+#[test]
+fn loops_in_a_row_of_halls_are_closed() {
+    assert_closes_all(THREE_LOOPS);
+}
+
+#[test]
+fn adjacent_loops_do_not_trap_the_robot() {
+    assert_closes_all(ADJACENT);
+}
+
+#[test]
+fn nested_loops_are_closed() {
+    assert_closes_all(NESTED);
+}
+
+#[test]
+fn rooms_without_a_loop_do_not_hold_the_robot() {
+    let mut exploration = Exploration::new(ROOMS, Limits::default());
+    exploration.run();
+    assert_eq!(exploration.unknown(), 0, "\n{}", exploration.drawn());
+    let most = 2 * exploration
+        .world
+        .iter()
+        .flatten()
+        .filter(|c| **c == '.')
+        .count();
+    assert!(
+        exploration.path.len() < most,
+        "{} cells",
+        exploration.path.len()
+    );
+}
+
+#[test]
+fn small_obstacles_make_no_loop_and_everything_is_seen() {
+    let mut exploration = Exploration::new(TREES, Limits::default());
+    exploration.run();
+    assert_eq!(exploration.unknown(), 0, "\n{}", exploration.drawn());
+}
+
+#[test]
+fn a_tractor_point_that_falls_on_an_obstacle_is_gone_and_its_loop_with_it() {
+    let mut exploration = Exploration::new(ADJACENT, Limits::default());
+    exploration.see();
+    let mut time_ms = 0;
+    while exploration.strategy.shield().is_none() {
+        time_ms += 800;
+        assert_ne!(
+            exploration.plan(time_ms),
+            Outlook::Nothing,
+            "no loop was begun"
+        );
+        exploration.go();
+    }
+    let tractor = exploration.strategy.tractor().unwrap();
+    // The map is replaced: where the tractor point is, there is a thing of 0.6 m.
+    for part in (-2..4).flat_map(|dy| (-2..4).map(move |dx| (dx, dy))) {
+        let cell = Cell {
+            x: tractor.x + part.0,
+            y: tractor.y + part.1,
+        };
+        exploration.tiles.set(cell, Class::Obstacle).unwrap();
+    }
+    let _ = exploration.plan(time_ms + 800);
+    assert_eq!(exploration.strategy.tractor(), None);
+    assert_eq!(exploration.strategy.shield(), None);
+    assert_eq!(exploration.strategy.tally().closed, 0, "it was not reached");
+    assert!(
+        !exploration.strategy.marks().is_marked(tractor),
+        "nor is anything marked"
+    );
+    assert!(
+        !exploration.frontier.road().is_empty(),
+        "the robot goes on exploring"
+    );
+}
+
+#[test]
+fn a_loop_that_is_not_worth_the_way_is_not_begun() {
+    let limits = Limits {
+        least_m: 500.0,
+        ..Limits::default()
+    };
+    let mut exploration = Exploration::new(ADJACENT, limits);
+    exploration.run();
+    assert_eq!(exploration.strategy.tally(), Tally::default());
+    assert_eq!(exploration.unknown(), 0);
+}
+
+#[test]
+fn a_loop_that_takes_too_long_is_given_up() {
+    // The way round a block is 20 m and more; half of that is too far here.
+    let limits = Limits {
+        detour: 0.2,
+        slack_m: 2.0,
+        ..Limits::default()
+    };
+    let mut exploration = Exploration::new(ADJACENT, limits);
+    exploration.run();
+    let tally = exploration.strategy.tally();
+    assert!(tally.given_up > 0, "{tally:?}");
+    assert_eq!(exploration.unknown(), 0, "it went on all the same");
+}

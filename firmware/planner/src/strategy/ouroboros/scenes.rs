@@ -1,0 +1,265 @@
+//! Scenes: each rule of a loop as a picture.
+//!
+//! A character is a coarse cell, row 0 (the least y) on top: `#` obstacle, `.` free, `?` never measured, `T` the tractor
+//! point, and the robot with its heading `>`, `<`, `v` (towards greater y) or `^`. In what comes back, `b` and `f` are the loop road's back and
+//! front, `=` the shield, `+` other centre cells. The robot is a point, so it fits wherever there is no obstacle.
+
+mod roads;
+mod walls;
+
+use core::f32::consts::{FRAC_PI_2, PI};
+use std::string::String;
+use std::vec::Vec;
+
+use super::Round;
+use super::detour::Limits;
+use super::ground::Ground;
+use super::loop_road::{LoopRoad, build_shield};
+use super::shield::{Flaw, Shield};
+use crate::clearance::Disc;
+use crate::geometry::{Cell, Pose};
+use crate::grid::Site;
+use crate::map::{Class, Tiles};
+use crate::skeleton::Residues;
+use crate::skeleton::branches::surroundings;
+use crate::strategy::frontier::Lent;
+use crate::topology::{Space, Topology};
+use crate::view::View;
+
+pub(super) const TILES: usize = 30;
+pub(super) const SLOTS: usize = 48;
+/// Radius of a robot that is a point.
+pub(super) const POINT_M: f32 = 0.05;
+
+/// The map, skeleton and robot of a picture.
+pub(super) struct Scene {
+    picture: Vec<Vec<char>>,
+    pub(super) tiles: Tiles<TILES, SLOTS>,
+    pub(super) topology: Topology<SLOTS>,
+    pub(super) disc: Disc,
+    pub(super) pose: Pose,
+    limits: Limits,
+}
+
+/// The coarse cell at a column and row of the picture.
+pub(super) fn at(x: usize, y: usize) -> Cell {
+    Cell {
+        x: 2 * x as i32,
+        y: 2 * y as i32,
+    }
+}
+
+/// A pose in the middle of a coarse cell.
+pub(super) fn pose_in(cell: Cell, yaw_rad: f32) -> Pose {
+    let middle = Cell {
+        x: cell.x + 1,
+        y: cell.y + 1,
+    }
+    .corner();
+    Pose {
+        x_m: middle.x_m,
+        y_m: middle.y_m,
+        yaw_rad,
+        ..Pose::default()
+    }
+}
+
+/// The cell so many cells behind a robot.
+fn behind(pose: &Pose, cells: i32) -> Cell {
+    let (sin, cos) = crate::math::sin_cos(pose.yaw_rad);
+    let back = |at: i32, along: f32| at - (along * cells as f32) as i32;
+    let here = pose.point().cell();
+    Cell {
+        x: back(here.x, cos),
+        y: back(here.y, sin),
+    }
+}
+
+/// Memory of a wave.
+pub(super) struct Memory {
+    residues: Vec<[u32; 2]>,
+    ring: Vec<u32>,
+    view: View,
+}
+
+impl Memory {
+    pub(super) fn new() -> Self {
+        Self {
+            residues: std::vec![[0; 2]; SLOTS * 8],
+            ring: std::vec![0; 256],
+            view: View::new(),
+        }
+    }
+
+    pub(super) fn lend(&mut self) -> Lent<'_> {
+        Lent {
+            residues: &mut self.residues,
+            ring: &mut self.ring,
+            view: &mut self.view,
+        }
+    }
+}
+
+impl Scene {
+    pub(super) fn parse(picture: &str) -> Self {
+        let picture: Vec<Vec<char>> = picture
+            .split_whitespace()
+            .map(|row| row.chars().collect())
+            .collect();
+        let mut tiles = Tiles::new();
+        tiles.reset(8, 6);
+        let mut pose = Pose::default();
+        for (y, row) in picture.iter().enumerate() {
+            for (x, &character) in row.iter().enumerate() {
+                let yaw_rad = match character {
+                    '>' => 0.0,
+                    'v' => FRAC_PI_2,
+                    '<' => PI,
+                    '^' => -FRAC_PI_2,
+                    _ => f32::NAN,
+                };
+                if !yaw_rad.is_nan() {
+                    pose = pose_in(at(x, y), yaw_rad);
+                }
+                let class = match character {
+                    '#' => Class::Obstacle,
+                    '?' => continue,
+                    _ => Class::Free,
+                };
+                for part in super::ground::quarters(at(x, y)) {
+                    tiles.set(part, class).unwrap();
+                }
+            }
+        }
+        let disc = Disc::new(POINT_M);
+        let mut topology = Topology::new();
+        topology.reset(Space::AnchoredNotObstacle);
+        while !topology.advance(&tiles, &disc, u32::MAX) {}
+        Self {
+            picture,
+            tiles,
+            topology,
+            disc,
+            pose,
+            limits: Limits::default(),
+        }
+    }
+
+    fn find(&self, character: char) -> Option<Cell> {
+        let rows = self.picture.iter().enumerate();
+        rows.flat_map(|(y, row)| row.iter().enumerate().map(move |(x, c)| (x, y, *c)))
+            .find(|(.., c)| *c == character)
+            .map(|(x, y, _)| at(x, y))
+    }
+
+    pub(super) fn round(&mut self) -> Round<'_, TILES, SLOTS> {
+        Round {
+            topology: &mut self.topology,
+            tiles: &self.tiles,
+            disc: &self.disc,
+            pose: self.pose,
+            time_ms: 0,
+            limits: &self.limits,
+        }
+    }
+
+    pub(super) fn ground(&self) -> Ground<'_, TILES, SLOTS> {
+        Ground {
+            tiles: &self.tiles,
+            disc: &self.disc,
+            frame: self.topology.frame(),
+            way: self.topology.skeleton().unwrap(),
+        }
+    }
+
+    /// The loop road to the tractor point, the cells of its back and front, and the shield across it.
+    fn look(&mut self) -> Option<Found> {
+        let mut memory = Memory::new();
+        let robot = self.spread(self.find('T').unwrap(), &mut memory);
+        let (ground, pose) = (self.ground(), self.pose);
+        let residues = Residues::new(ground.frame.shape, &mut memory.residues).unwrap();
+        let road = LoopRoad::find(&ground, &residues, (robot, behind(&pose, 10)))?;
+        let walk = |head: Site| -> Vec<Cell> {
+            let sites = core::iter::once(head).chain(residues.descent(head));
+            sites.map(|site| ground.frame.cell(site)).collect()
+        };
+        assert_eq!(walk(road.back).len() + 1, road.back_steps as usize);
+        assert_eq!(walk(road.front).len() + 1, road.front_steps as usize);
+        let until_meet = |cells: Vec<Cell>| -> Vec<Cell> {
+            let tail = cells.len() - road.tail_steps as usize;
+            assert_eq!(cells[tail - 1], ground.frame.cell(road.meet));
+            cells[..tail].to_vec()
+        };
+        Some(Found {
+            back: until_meet(walk(road.back)),
+            front: until_meet(walk(road.front)),
+            shield: build_shield(&ground, road.back(&residues), pose.point().cell()),
+        })
+    }
+
+    /// A wave from the centre cell nearest to a place, with the robot's surroundings as a blocker; the robot's cell.
+    fn spread(&mut self, from: Cell, memory: &mut Memory) -> Site {
+        let here = self.pose.point().cell();
+        let mut round = self.round();
+        let robot = round.nearest(here, &mut memory.lend()).unwrap();
+        let goal = round.nearest(from, &mut memory.lend()).unwrap();
+        let lent = &mut memory.lend();
+        round
+            .propagate(goal, surroundings(robot), None, lent)
+            .unwrap();
+        robot
+    }
+
+    /// What keeps a shield from standing at each cell of the road's back, from the robot on, up to the valid one.
+    fn flaws(&mut self) -> Vec<Option<Flaw>> {
+        let back = self.look().unwrap().back;
+        let (ground, here) = (self.ground(), self.pose.point().cell());
+        let judge = |span: &[Cell]| Shield::build(&ground, span[2], [span[4], span[0]], here).err();
+        let mut flaws: Vec<_> = back.windows(5).map(judge).collect();
+        let valid = flaws.iter().position(Option::is_none);
+        flaws.truncate(valid.map_or(flaws.len(), |valid| valid + 1));
+        flaws.dedup();
+        flaws
+    }
+
+    /// The picture of what [`Self::look`] finds.
+    fn drawn(&mut self) -> String {
+        let found = self.look();
+        self.picture_of(found.as_ref())
+    }
+
+    fn picture_of(&self, found: Option<&Found>) -> String {
+        let ground = self.ground();
+        let mark = |cell: Cell, seen: char| {
+            let on = |cells: &[Cell]| cells.contains(&cell);
+            if !matches!(seen, '.' | '?') {
+                return seen;
+            }
+            match found {
+                Some(found) if found.shield.is_some_and(|shield| shield.holds(cell)) => '=',
+                Some(found) if on(&found.back) => 'b',
+                Some(found) if on(&found.front) => 'f',
+                _ if ground.is_centre(cell) => '+',
+                _ => seen,
+            }
+        };
+        let rows = self.picture.iter().enumerate().map(|(y, row)| {
+            let cells = row.iter().enumerate();
+            cells.map(|(x, &seen)| mark(at(x, y), seen)).collect()
+        });
+        rows.collect::<Vec<String>>().join("\n")
+    }
+}
+
+/// What a look finds.
+struct Found {
+    back: Vec<Cell>,
+    front: Vec<Cell>,
+    shield: Option<Shield>,
+}
+
+#[track_caller]
+fn assert_picture(drawn: &str, expected: &str) {
+    let expected: Vec<&str> = expected.split_whitespace().collect();
+    assert!(drawn == expected.join("\n"), "\n{drawn}\n");
+}
