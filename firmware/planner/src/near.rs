@@ -180,25 +180,24 @@ pub fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
 }
 
 /// The middles of the cells around the robot that it must not touch on uneven ground, as far as they border on free cells:
-/// obstacles of either sign, and, marked, ground never measured.
+/// obstacles of either sign, and ground never measured.
 pub fn rim_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
-) -> impl Iterator<Item = (Point, bool)> + '_ {
+) -> impl Iterator<Item = Point> + '_ {
     let reach = math::floor(REACH_BEHIND_M / CELL_M);
     let Cell { x, y } = robot.cell();
     let across = (1 << (2 * reach + 1)) - 1;
     (y - reach..=y + reach).flat_map(move |y| {
         let free = |dy: i32| tiles.row(x - reach - 1, y + dy).free();
         let here = free(0);
-        let unknown = tiles.row(x - reach, y).unknown();
         let beside = (here | here >> 2 | free(-1) >> 1 | free(1) >> 1) & !(here >> 1);
         ones(beside as u32 & across).map(move |k| {
             let cell = Cell {
                 x: x - reach + k as i32,
                 y,
             };
-            (cell.centre(), unknown >> k & 1 == 1)
+            cell.centre()
         })
     })
 }

@@ -22,8 +22,6 @@ pub const HALF_WIDTH_M: f32 = 0.2485;
 const HALF_DIAGONAL_M: f32 = 0.355;
 /// A place of the robot is checked every so many metres that any part of it moved.
 const CHECK_EVERY_M: f32 = 0.05;
-/// How far the bumpers stick out ahead of where the wheels touch the ground, less a margin, metres.
-const BUMPER_M: f32 = 0.05;
 /// Cells of the map that count at the most.
 const MOST_CELLS: usize = 64;
 /// A cell of the map with a near point this near to its middle is known better by that, metres: in the cell, or at its side.
@@ -160,22 +158,16 @@ impl Surround {
     }
 
     /// Keep off cells (their middles) on all sides, by half a cell more than their middles say: any part of one may be what is not to be
-    /// touched. Over unknown ground, which is marked, the bumpers may reach, but not the wheels.
-    pub fn keep_off(&mut self, pose: &Pose, cells: impl Iterator<Item = (Point, bool)>) {
+    /// touched.
+    pub fn keep_off(&mut self, pose: &Pose, cells: impl Iterator<Item = Point>) {
         let frame = Frame::of(pose);
         self.threats.clear();
-        for (cell, unknown) in cells {
+        for cell in cells {
             let at = frame.within(cell);
             let away = math::sqrt(at.x_m * at.x_m + at.y_m * at.y_m);
             let part = ((away - 0.5 * CELL_M) / away.max(1e-3)).max(0.0);
-            // Ahead and behind the bumpers reach farther than the wheels, at the sides they do not.
-            let beyond_m = if unknown {
-                BUMPER_M.copysign(at.x_m)
-            } else {
-                0.0
-            };
             let at = Point {
-                x_m: at.x_m * part + beyond_m,
+                x_m: at.x_m * part,
                 y_m: at.y_m * part,
             };
             let clearance_m = overhang(at.x_m, at.y_m);

@@ -40,6 +40,8 @@ const TWO: [(i32, i32); 8] = [
 const BRIDGES: [(i32, i32); 6] = [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 1)];
 /// How far to either side ground is looked for over a brow, cells.
 const BROW: i32 = 10;
+/// In how many of four directions it must be found: over the corner of a hole it is in one.
+const WAYS: i32 = 3;
 /// Ground that leads over a brow is no steeper than this part of the climb: a rim casts a shadow as steep as the tilted beams.
 const GENTLE: f32 = 0.75;
 /// Measured cells among the eight around that it takes to free an obstacle of the map.
@@ -152,8 +154,8 @@ fn is_well_known(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
     known > WELL_KNOWN
 }
 
-/// Whether the nearest measured cells on both sides of a cell that was never measured lead over it gently, in all directions in which there
-/// are two, and nothing between them is known to be gone.
+/// Whether the nearest measured cells on both sides of a cell that was never measured lead over it gently, in three of the four directions
+/// at least and in all in which there are two, and nothing between them is known to be gone.
 #[must_use]
 pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell) -> bool {
     let reach = |dx: i32, dy: i32| {
@@ -177,7 +179,7 @@ pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell) -> bool 
             gentle += i32::from(rise.is_some_and(|rise_m| rise_m <= most_m));
         }
     }
-    ways > 0 && ways == gentle
+    ways >= WAYS && ways == gentle
 }
 
 /// Whether measured cells on both sides, at most four apart, lead over a cell.

@@ -4,6 +4,8 @@ use std::boxed::Box;
 use std::vec::Vec;
 
 use super::Terrain;
+use super::classify;
+use super::elevation::{Elevation, WINDOW_CELLS};
 use super::ray::{Attitude, Mount};
 use crate::config::{Config, Laser};
 use crate::geometry::{Cell, Point, Pose, Twist};
@@ -181,6 +183,27 @@ fn a_wall_is_an_obstacle_and_the_ground_before_it_free() {
         seen.starts_with(".........") && seen[9..11].contains('#'),
         "{seen}"
     );
+}
+
+/// What is given up at the corner of a hole is gone, though ground lies on two sides of it; in a gap of level ground it is free.
+#[test]
+fn a_corner_is_not_led_over_and_a_gap_is() {
+    for (corner, expected) in [(true, false), (false, true)] {
+        let mut heights = std::vec![0; 2 * WINDOW_CELLS];
+        let mut marks = std::vec![0; WINDOW_CELLS];
+        let mut origin = Cell::default();
+        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+        window.follow(Cell::default());
+        let all = (-30..30).flat_map(|y| (-30..30).map(move |x| Cell { x, y }));
+        let gone = |cell: &Cell| (0..if corner { 25 } else { 6 }).contains(&cell.x);
+        let gone = |cell: &Cell| gone(cell) && (!corner || cell.y >= 0);
+        for cell in all.filter(|cell| !gone(cell)) {
+            window.measure(cell, 0.0);
+        }
+        let asked = Cell { x: 2, y: 2 };
+        let leads = classify::leads_over(&window.read(), &Terrain::TABLE_I, asked);
+        assert_eq!(leads, expected, "corner: {corner}");
+    }
 }
 
 #[test]
