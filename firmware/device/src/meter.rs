@@ -1,6 +1,6 @@
 //! What a step costs, measured by the board, stage by stage.
 //!
-//! A [`Stopwatch`] stands between the board's counter and the planner's laps. It starts when a request is complete, so that taking
+//! A `Stopwatch` stands between the board's counter and the planner's laps. It starts when a request is complete, so that taking
 //! the request apart counts too; what it takes to put the reply together is known only once the reply is on its way, and
 //! counts in the next step. Receiving bytes one by one does not count: it goes on while the line is busy.
 //!

@@ -20,7 +20,7 @@ const SIDE: usize = 16;
 /// Coarse cells around the robot's own from which the flood starts: it may stand nearer to something than its radius.
 const START_REACH: i32 = 2;
 
-/// Words of memory that a [`Flood`] needs for a box of so many tile places: two planes, and two tiles side by side share a word.
+/// Words of memory that a `Flood` needs for a box of so many tile places: two planes, and two tiles side by side share a word.
 #[must_use]
 pub const fn scratch_words(slots: usize) -> usize {
     SIDE * slots

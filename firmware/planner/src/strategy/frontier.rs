@@ -3,7 +3,7 @@
 //!
 //! The goal that the robot is on its way to has a head start in the wave, so that two equally near goals do not pull it to and
 //! fro, and small frontiers start later than large ones. A goal that is reached and stays unexplored, or that comes no nearer, is dropped, with its reason; a way that cannot be
-//! driven is barred ([`Patience`]); so no run hangs on a cell that cannot be seen. When nothing else is left, everything gets a
+//! driven is barred (`Patience`); so no run hangs on a cell that cannot be seen. When nothing else is left, everything gets a
 //! second chance, as for a robot that fits more narrowly: at 10 cm a cell, a gap that it just fits through may look closed.
 //! Then what cannot be driven to is looked at from a [`Lookout`].
 //!

@@ -1,7 +1,7 @@
 //! The strategies: what is a boundary of the window at what potential, and what counts as finished.
 //!
 //! Every strategy ends up going to frontiers, so [`Frontier`] is always there; what one of them has beyond it, it keeps in
-//! memory that they share ([`More`]).
+//! memory that they share (`More`).
 
 pub mod frontier;
 pub mod lookout;

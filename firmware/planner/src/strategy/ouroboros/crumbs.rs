@@ -63,7 +63,7 @@ impl Crumbs {
         })
     }
 
-    /// Where the robot came from: the last crumb that it has left behind by [`CAME_CELLS`]; its heading says nothing of it when it
+    /// Where the robot came from: the last crumb that it has left behind by `CAME_CELLS`; its heading says nothing of it when it
     /// turns on the spot.
     #[must_use]
     pub fn came_from(&self, robot: Cell) -> Option<Cell> {

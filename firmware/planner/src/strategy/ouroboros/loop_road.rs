@@ -8,7 +8,7 @@
 //! - While a loop is being closed ([`way_back`]), the back leads to the previous shield: without that, a robot among adjacent loops
 //!   might go from one to the next and close none.
 //!
-//! Departs from [Ouroboros]:
+//! Departs from the paper [Ouroboros, III]:
 //!
 //! - What blocks is the robot's cell with its eight neighbours, since a skeleton that is two cells thick or a staircase leads past a
 //!   single cell, and the heads are the cells just outside.
@@ -154,7 +154,7 @@ pub fn way_back<'a>(
 
 /// The first valid shield along the road's back, from the robot on [Ouroboros, III-C, fourth step].
 ///
-/// `None` when the cells come to their end, or [`MOST_TRIED`] of them were looked at, without one.
+/// `None` when the cells come to their end, or `MOST_TRIED` of them were looked at, without one.
 #[must_use]
 pub fn build_shield<const TILES: usize, const SLOTS: usize>(
     ground: &Ground<'_, TILES, SLOTS>,

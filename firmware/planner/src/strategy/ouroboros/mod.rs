@@ -17,7 +17,7 @@
 //!
 //! What is kept from round to round lies in the map's cells, not in the skeleton's: tractor point, shield, marks and path outlast any
 //! number of skeletons. Departs from [Ouroboros, line 18]: a loop road that is not found is missed for
-//! [`LOST_ROUNDS`] rounds before the loop is lost, since a skeleton may grow a spur under the robot for a moment; and loops that
+//! `LOST_ROUNDS` rounds before the loop is lost, since a skeleton may grow a spur under the robot for a moment; and loops that
 //! are lost again and again are given up, or the robot might begin and lose the same one for ever.
 //!
 //! Units: map cells, metres, milliseconds.
