@@ -220,8 +220,8 @@ impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
             .is_none_or(|q| q(place) > PROGRESS * q(Place::default()))
     }
 
-    /// Whether the field can be followed from here: forwards, or against the alignment backwards.
-    fn leads_on(&self, place: Place, length_m: f32, attempt: Attempt) -> bool {
+    /// Whether the field asks for `length_m` straight on from here: forwards, or against the alignment backwards.
+    fn asks_on(&self, place: Place, length_m: f32, attempt: Attempt) -> bool {
         let aligned = self.misalignment(place).is_some_and(|error| {
             let error = if length_m < 0.0 {
                 math::wrap(error + math::PI)
@@ -232,9 +232,16 @@ impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
         });
         aligned
             && (attempt.leads == Leads::Elsewhere || self.is_progress(place.after(length_m, 0.0)))
-            && self
-                .surround
-                .is_arc_clear(place, length_m, 0.0, attempt.margin_m)
+    }
+
+    /// Whether that can be followed. Looking costs as many points as there are, for each place on the way.
+    fn leads_on(&self, place: Place, length_m: f32, attempt: Attempt, points: &mut u32) -> bool {
+        if !self.asks_on(place, length_m, attempt) {
+            return false;
+        }
+        *points += Surround::places_on(length_m) * self.surround.points();
+        self.surround
+            .is_arc_clear(place, length_m, 0.0, attempt.margin_m)
     }
 }
 
@@ -287,10 +294,10 @@ impl Search {
             if node.is_end {
                 return Found::Plan(self.trace(nodes, index, BACKWARD));
             }
-            if ground.leads_on(node.place, GO_ON_M, self.attempt) {
+            if ground.leads_on(node.place, GO_ON_M, self.attempt, &mut points) {
                 return Found::Plan(self.trace(nodes, index, FORWARD));
             }
-            if ground.leads_on(node.place, -GO_ON_M, self.attempt) {
+            if ground.leads_on(node.place, -GO_ON_M, self.attempt, &mut points) {
                 let cost = node.cost + REVERSE_COST;
                 self.open.push(
                     nodes,

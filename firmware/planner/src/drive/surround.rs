@@ -205,11 +205,17 @@ impl Surround {
         })
     }
 
+    /// Places at which the robot is checked on so long a way of any part of it.
+    #[must_use]
+    pub fn places_on(moved_m: f32) -> u32 {
+        math::floor(moved_m.abs() / CHECK_EVERY_M) as u32 + 1
+    }
+
     /// Whether an arc of `length_m` that turns by `turn_rad` is clear, from a place on.
     #[must_use]
     pub fn is_arc_clear(&self, from: Place, length_m: f32, turn_rad: f32, margin_m: f32) -> bool {
         let moved = length_m.abs() + turn_rad.abs() * HALF_DIAGONAL_M;
-        let parts = math::floor(moved / CHECK_EVERY_M) + 1;
+        let parts = Self::places_on(moved);
         let (length, turn) = (length_m / parts as f32, turn_rad / parts as f32);
         let mut place = from;
         (0..parts).all(|_| {
