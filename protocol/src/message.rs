@@ -119,6 +119,11 @@ pub enum Strategy {
     Frontier,
     /// The same, closing loops on the way.
     Ouroboros,
+    /// Rails by the time of their visit, and a patrol on them.
+    Tdbvp {
+        /// How long to patrol when all is explored, seconds. The status stays [`Status::Exploring`] meanwhile.
+        patrol_s: u16,
+    },
 }
 
 /// The session's parameters.

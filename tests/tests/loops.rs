@@ -14,7 +14,8 @@ use host_sim::report::Report;
 use host_sim::world::World;
 
 const OUROBOROS: &str = "ouroboros";
-const STRATEGIES: [&str; 2] = [OUROBOROS, FRONTIER];
+const TDBVP: &str = "tdbvp";
+const STRATEGIES: [&str; 3] = [OUROBOROS, TDBVP, FRONTIER];
 
 /// Share that must be known at the end, of every world and of the one with scattered obstacles.
 const LEAST_COVERAGE: f64 = 0.995;

@@ -94,6 +94,7 @@ pub fn config(start: &wire::Start) -> Config {
         strategy: match start.strategy {
             wire::Strategy::Frontier => config::Strategy::Frontier,
             wire::Strategy::Ouroboros => config::Strategy::Ouroboros,
+            wire::Strategy::Tdbvp { patrol_s } => config::Strategy::Tdbvp { patrol_s },
         },
         box_tiles: start.box_tiles,
         robot_radius_m,

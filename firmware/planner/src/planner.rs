@@ -32,6 +32,7 @@ use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::{Known, Lent, Outlook};
 use crate::strategy::lookout::{Found, Grounds};
 use crate::strategy::ouroboros::{Ouroboros, Round};
+use crate::strategy::tdbvp::{Surroundings, Tdbvp};
 use crate::strategy::{Road, Strategist, lookout};
 use crate::topology::Topology;
 use crate::view::{self, Rows, SCALES, View};
@@ -174,6 +175,12 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     #[must_use]
     pub const fn ouroboros(&self) -> Option<&Ouroboros<SLOTS>> {
         self.strategy.ouroboros()
+    }
+
+    /// What is known of rails, where the session's strategy follows them.
+    #[must_use]
+    pub const fn tdbvp(&self) -> Option<&Tdbvp<SLOTS>> {
+        self.strategy.tdbvp()
     }
 
     /// The cells of a tile (two bits each: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle), or `None` where
@@ -342,11 +349,13 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
             ..Output::default()
         };
     }
-    let Some(goal) = local_goal(state, &disc, &input, &mut workspace.view) else {
-        laps.lap(Stage::Window);
-        return Output::default();
-    };
-    charge(workspace, &goal);
+    if charge_rails(state, workspace, &disc, &input).is_none() {
+        let Some(goal) = local_goal(state, &disc, &input, &mut workspace.view) else {
+            laps.lap(Stage::Window);
+            return Output::default();
+        };
+        charge(workspace, &goal);
+    }
     laps.lap(Stage::Window);
     // A step that planned a road has spent the time of two cycles on it.
     let most = config.solver.max_cycles;
@@ -379,7 +388,11 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         }
     }
     state.map.observe(config, input);
-    state.strategy.note_pose(&input.pose);
+    let level = config.lasers.iter().zip(input.scans);
+    let level = level
+        .into_iter()
+        .find(|(laser, ranges_mm)| is_level(laser) && !ranges_mm.is_empty());
+    state.strategy.note(&input.pose, input.time_ms, level);
     for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
         if is_level(laser) {
             state.near.update(&input.pose, laser, ranges_mm);
@@ -431,7 +444,9 @@ fn replan<const TILES: usize, const SLOTS: usize>(
     };
     let robot = input.pose.point().cell();
     match outlook {
-        Outlook::Nothing if state.strategy.frontier.may_look() => {
+        Outlook::Nothing
+            if state.strategy.frontier.may_look() && !state.strategy.is_patrolling() =>
+        {
             let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
             state.lookouts.begin(state.map.tiles().extent(), scratch);
         }
@@ -476,9 +491,18 @@ fn finish<const TILES: usize, const SLOTS: usize>(
     disc: &Disc,
     robot: Cell,
 ) {
+    const DONE: Status = Status::Finished(Finish::Explored);
+    if state.strategy.is_patrolling() {
+        // What was left over was listed before the patrol.
+        state.status = DONE;
+        return;
+    }
     let wanting = list_ways_out(state, workspace, disc, robot);
     list_leftovers(state, disc);
-    state.status = conclude(state, &mut workspace.view, disc, robot, wanting);
+    let status = conclude(state, &mut workspace.view, disc, robot, wanting);
+    if status != DONE || !state.strategy.begin_patrol() {
+        state.status = status;
+    }
 }
 
 /// List what the robot can get to and cannot go on from for want of room in the map; which room that is. What lies beyond
@@ -664,8 +688,38 @@ fn goal_cells(view: &View, cell: Cell) -> Option<Rows> {
     view.mark(&mut rows, cell).then_some(rows)
 }
 
+/// Charge the window with what the strategy has for it beside local goals, if that leads anywhere.
+fn charge_rails<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    disc: &Disc,
+    input: &Input<'_>,
+) -> Option<()> {
+    state.strategy.tdbvp()?;
+    let robot = input.pose.point().cell();
+    let view = &mut workspace.view;
+    view.look_around(state.map.tiles(), disc, robot, 1);
+    view.free_robot(robot);
+    slide(workspace);
+    let around = Surroundings {
+        topology: &state.topology,
+        tiles: state.map.tiles(),
+        pose: input.pose,
+    };
+    let window = (&mut workspace.window, &workspace.view);
+    state.strategy.charge(&around, window)
+}
+
 /// Set the window's boundary, keeping the field of the last window where they overlap.
 fn charge(workspace: &mut Workspace, goal: &Rows) {
+    slide(workspace);
+    workspace
+        .window
+        .set_boundary(&workspace.view.passable, goal);
+}
+
+/// Move the window to where the view is, with the field where they overlap.
+fn slide(workspace: &mut Workspace) {
     let Workspace {
         window,
         window_at: at,
@@ -679,12 +733,9 @@ fn charge(workspace: &mut Workspace, goal: &Rows) {
                 steps(view.origin.x, origin.x),
                 steps(view.origin.y, origin.y),
             );
-            window.set_boundary(&view.passable, goal);
         }
-        _ => {
-            window.set_boundary(&view.passable, goal);
-            window.clear();
-        }
+        // Nothing of a field at another scale is worth keeping.
+        _ => window.shift(SIDE as i32, 0),
     }
     *at = Some((view.origin, view.scale));
 }

@@ -44,6 +44,8 @@ pub struct Mission {
     pub failing: Limits,
     /// Simulated time limit, milliseconds.
     pub time_limit_ms: u32,
+    /// How long to patrol once all is explored, seconds; for strategy tdbvp.
+    pub patrol_s: u16,
     /// The map's box in tiles; chosen for the world if `None`.
     pub box_tiles: Option<(u8, u8)>,
     /// Time from one observation to the next, milliseconds.
@@ -68,6 +70,7 @@ impl Default for Mission {
             working: Limits::WORKING,
             failing: Limits::FAILING,
             time_limit_ms: 3_600_000,
+            patrol_s: 0,
             box_tiles: None,
             period_ms: SimConfig::default().period_ms,
             check_field: false,
@@ -123,9 +126,10 @@ impl From<LinkError> for MissionError {
 }
 
 /// The strategies on the device, by name.
-pub const STRATEGIES: [(&str, Strategy); 2] = [
+pub const STRATEGIES: [(&str, Strategy); 3] = [
     ("frontier", Strategy::Frontier),
     ("ouroboros", Strategy::Ouroboros),
+    ("tdbvp", Strategy::Tdbvp { patrol_s: 0 }),
 ];
 
 /// The strategy on the device of this name; a baseline has none.
@@ -135,6 +139,16 @@ pub fn on_device(name: &str) -> Option<Strategy> {
     known
         .find(|(known, _)| *known == name)
         .map(|(_, strategy)| *strategy)
+}
+
+/// What plans on the device.
+fn strategy(mission: &Mission) -> Strategy {
+    match on_device(&mission.strategy).unwrap_or_default() {
+        Strategy::Tdbvp { .. } => Strategy::Tdbvp {
+            patrol_s: mission.patrol_s,
+        },
+        other => other,
+    }
 }
 
 /// Whether the robot can stand where the mission starts, before anything else is spent on it.
@@ -164,10 +178,7 @@ pub fn explore(
         return Err(MissionError::Box { across, up, slots });
     }
     let setup = Setup {
-        start: simulator.start_message(
-            on_device(&mission.strategy).unwrap_or_default(),
-            (across, up),
-        ),
+        start: simulator.start_message(strategy(mission), (across, up)),
         time_limit_ms: mission.time_limit_ms,
         check_field: mission.check_field,
         snapshots: mission.snapshots,

@@ -116,6 +116,8 @@ pub struct Window {
     pub(super) goal: [u64; SIDE],
     /// Free cells that no goal can be reached from.
     unreached: u16,
+    /// Some goals have less than a goal's whole charge.
+    pub(super) charged: bool,
     /// Some cell has a value worth keeping. A new window is all zeros, so that a static one costs no flash.
     pub(super) warm: bool,
     /// Rows that may hold cells far too low for the multigrid (see `seed`).
@@ -135,18 +137,20 @@ impl Window {
             reached: [0; SIDE],
             goal: [0; SIDE],
             unreached: 0,
+            charged: false,
             warm: false,
             unraised: 0,
             origin: Origin::Even,
         }
     }
 
-    /// Forget the field, so that the next solve starts cold; boundary and preferences stay.
+    /// Forget the field, so that the next solve starts cold; boundary and preferences stay, and goals have their whole charge.
     pub fn clear(&mut self) {
         self.warm = false;
         self.unraised = ROW;
         self.q.fill(0.0);
         self.origin = Origin::Even;
+        self.charged = false;
         self.charge_goals();
     }
 
@@ -173,7 +177,21 @@ impl Window {
             }
         }
         self.unreached = unreached as u16;
+        self.charged = false;
         self.charge_goals();
+    }
+
+    /// Give the goal (x, y) a share of a goal's charge, from 0 to 1, until the next boundary; what is no goal stays as it is.
+    ///
+    /// With it p has other boundary values than 0 and 1 [TDBVP, IV].
+    pub fn charge(&mut self, x: usize, y: usize, share: f32) {
+        if !self.is_goal(x, y) {
+            return;
+        }
+        if let Some(q) = self.q.get_mut(index(x, y)) {
+            *q = GOAL * share.clamp(0.0, 1.0);
+            self.charged = true;
+        }
     }
 
     /// Move the window by (dx, dy) cells over the field: cell (x, y) takes what was at (x + dx, y + dy), values,
