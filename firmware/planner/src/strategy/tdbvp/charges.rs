@@ -4,12 +4,14 @@
 //! q = 1 − p, a goal's charge being that of p = −0.5:     not visited 1,   unexplored 2/3,   visited (1 − p) · 2/3
 //! ```
 //!
-//! Every centre cell in the window is charged [TDBVP, IV]. Departs from the paper within [`VISIT_M`] of the robot, where centre cells
-//! are free: those are what the robot is visiting; charged as the newest they would wall it in.
+//! Every centre cell in the window is charged [TDBVP, IV]. Departs from the paper: centre cells within [`VISIT_M`] of the robot
+//! and of its last metres are free: those are what the robot is visiting. Charged as the newest, p = 1, they would be a wall along the middle
+//! of its way.
 //!
 //! Units: window cells; shares of a goal's charge.
 
 use super::Rails;
+use super::fresh::{Fresh, VISIT_M};
 use super::sides::{DISC_M, EPSILON, Side};
 use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point, Pose};
@@ -19,8 +21,6 @@ use crate::math;
 use crate::topology::Frame;
 use crate::view::{Rows, View};
 
-/// Centre cells this near are being visited, metres.
-pub(super) const VISIT_M: f32 = 0.5;
 /// The unexplored around a goal that was given up is no goal, cells.
 const GIVEN_UP_CELLS: i32 = 7;
 
@@ -61,7 +61,7 @@ impl CentreCells<'_> {
 pub(super) fn charge_rails<const SLOTS: usize>(
     window: &mut Window,
     view: &View,
-    rails: &Rails<SLOTS>,
+    (rails, fresh): (&Rails<SLOTS>, &Fresh),
     centres: &CentreCells<'_>,
     robot: Point,
     unexplored: &Rows,
@@ -70,7 +70,7 @@ pub(super) fn charge_rails<const SLOTS: usize>(
     let half = SIDE as i32 / 2 + 1;
     let each = |visit: &mut dyn FnMut((usize, usize), f32)| {
         centres.around(robot.cell(), half, |cell| {
-            if distance_m(cell, robot) > VISIT_M {
+            if distance_m(cell, robot) > VISIT_M && !fresh.holds(cell) {
                 let share = share(rails.potential(cell));
                 for_each_part(view, cell, |place| visit(place, share));
             }

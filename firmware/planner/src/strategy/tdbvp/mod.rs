@@ -18,10 +18,12 @@
 //! Units: map cells, metres, milliseconds.
 
 mod charges;
+mod fresh;
 pub mod rails;
 pub mod sides;
 
-use self::charges::{CentreCells, VISIT_M, charge_rails, prefer, unexplored};
+use self::charges::{CentreCells, charge_rails, prefer, unexplored};
+use self::fresh::{Fresh, VISIT_M};
 pub use self::rails::Rails;
 use self::sides::Sides;
 use super::frontier::{Lent, Outlook};
@@ -48,6 +50,7 @@ const LINGER_VISIT_M: f32 = 2.0;
 #[derive(Debug)]
 pub struct Tdbvp<const SLOTS: usize> {
     rails: Rails<SLOTS>,
+    fresh: Fresh,
     sides: Sides,
     /// A road is followed, not the rails.
     on_road: bool,
@@ -80,6 +83,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     pub const fn new() -> Self {
         Self {
             rails: Rails::new(),
+            fresh: Fresh::new(),
             sides: Sides::new(),
             on_road: false,
             new_ms: 0,
@@ -95,7 +99,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     /// Forget everything; the map's box is so many tiles across and up, and the patrol so long.
     pub fn reset(&mut self, box_tiles: (i32, i32), patrol_s: u16) {
         self.rails.reset(box_tiles);
-        self.sides = Sides::new();
+        (self.fresh, self.sides) = (Fresh::new(), Sides::new());
         (self.on_road, self.lingers) = (false, false);
         (self.new_ms, self.now_ms) = (0, 0);
         (self.left, self.left_ms) = (Point { x_m: 0.0, y_m: 0.0 }, 0);
@@ -137,6 +141,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
             self.sides.note(laser, ranges_mm);
         }
         let here = pose.point();
+        self.fresh.come(here.cell(), &mut self.rails);
         let (dx, dy) = (here.x_m - self.left.x_m, here.y_m - self.left.y_m);
         if dx * dx + dy * dy > LINGER_M * LINGER_M {
             (self.left, self.left_ms) = (here, time_ms);
@@ -170,7 +175,8 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
             let given_up = frontier.dropped().iter().map(|goal| goal.cell);
             unexplored(view, around.tiles, given_up)
         };
-        charge_rails(window, view, &self.rails, &centres, robot, &goals);
+        let dates = (&self.rails, &self.fresh);
+        charge_rails(window, view, dates, &centres, robot, &goals);
         prefer(window, view, &around.pose, self.sides.preferred());
         view.place(robot.cell())
             .is_some_and(|(x, y)| window.is_reached(x, y))
@@ -179,14 +185,15 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     /// Today the robot visits the centre cells beside it.
     fn visit(&mut self, centres: &CentreCells<'_>, robot: Point) {
         let radius_m = if self.lingers { LINGER_VISIT_M } else { VISIT_M };
-        let rails = &mut self.rails;
+        let (rails, fresh) = (&mut self.rails, &mut self.fresh);
         let mut is_new = false;
         centres.around(robot.cell(), (radius_m / CELL_M) as i32 + 2, |cell| {
             if charges::distance_m(cell, robot) <= radius_m {
-                is_new |= rails.visit(cell);
+                is_new |= fresh.visit(cell, rails);
             }
         });
         if self.lingers {
+            self.fresh.settle(&mut self.rails);
             self.new_ms = self.now_ms.wrapping_sub(PATIENCE_MS);
             self.lingers = false;
         } else if is_new {

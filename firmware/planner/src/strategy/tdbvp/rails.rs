@@ -18,6 +18,8 @@ use crate::geometry::Cell;
 
 /// Map cells along a place that has a date, as a power of two.
 const SHIFT: i32 = 4;
+/// Map cells along a place that has a date.
+pub const PLACE_CELLS: i32 = 1 << SHIFT;
 /// A day's steps at first.
 const DAY_STEPS: u16 = 4;
 /// Potential of a centre cell that was not visited yet.
@@ -87,6 +89,12 @@ impl<const SLOTS: usize> Rails<SLOTS> {
         let (slot, part) = self.place(cell);
         let date = *self.dates.get(slot)?.get(part)?;
         (date != 0).then_some(date)
+    }
+
+    /// Whether it was ever visited.
+    #[must_use]
+    pub fn is_visited(&self, cell: Cell) -> bool {
+        self.date(cell).is_some()
     }
 
     /// Potential of a centre cell [TDBVP, eq. 3]; where all are equally old, 1.
