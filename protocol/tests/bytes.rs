@@ -87,6 +87,8 @@ fn strategies_have_their_numbers() {
     for (strategy, number) in [(Strategy::Frontier, 0), (Strategy::Ouroboros, 1)] {
         assert_eq!(postcard::to_allocvec(&strategy).unwrap(), [number]);
     }
+    let strategy = Strategy::Tdbvp { patrol_s: 1800 };
+    assert_eq!(postcard::to_allocvec(&strategy).unwrap(), [2, 0x88, 14]);
 }
 
 #[test]

@@ -28,6 +28,7 @@ struct Errand {
 pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     let link = baselines::place(&args.strategy, args.link.as_ref())?;
     baselines::check(&args.strategy, args.check_field, args.fault.is_some())?;
+    baselines::check_patrol(&args.strategy, args.patrol_for)?;
     let errands = errands(args, &mission(args, &link)?)?;
     let interrupt = Interrupt::listen()?;
     let mut all_explored = true;
@@ -164,6 +165,7 @@ fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         working,
         failing,
         time_limit_ms: args.time_limit,
+        patrol_s: args.patrol_for,
         box_tiles: args.map_shape,
         check_field: args.check_field,
         snapshots: args.snapshots,

@@ -7,12 +7,12 @@
 use core::fmt;
 
 use fieldline_planner::geometry::Cell;
-use fieldline_protocol::message::{Observation, Status, Strategy, Twist};
+use fieldline_protocol::message::{Finish, Observation, Status, Strategy, Twist};
 
 use super::mirror::Mirror;
-use super::{Body, Cast, Record, Setup, Survey, Watch, record, run, shape};
+use super::{Body, Cast, Ending, Record, Setup, Survey, Watch, record, run, shape};
 use crate::link::{Link, LinkError};
-use crate::metrics::{CellSet, Coverage, Footing, GroundTruth, Loops};
+use crate::metrics::{CellSet, Coverage, Footing, GroundTruth, Loops, Patrol};
 use crate::report::tum::Stamped;
 use crate::report::{self, Report, SCHEMA_VERSION};
 use crate::robot::{LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M, laser};
@@ -313,6 +313,7 @@ fn assemble(
         steps: record.steps.len() as u64,
         coverage: coverage(account, simulator),
         loops: loops(simulator, record),
+        patrol: patrol(mission, record),
         safety: safety(simulator),
         terrain: terrain(simulator, record),
         localization: record.localization(),
@@ -351,6 +352,25 @@ fn loops(simulator: &Simulator<'_>, record: &Record) -> report::Loops {
         loops_closed: loops.closed,
         loops: loops.of,
     }
+}
+
+/// Ages of the rails since all was explored; `None` where the run ended otherwise than by the end of its patrol.
+fn patrol(mission: &Mission, record: &Record) -> Option<report::Patrol> {
+    let explored = record.ending == Ending::Finished(Finish::Explored);
+    if mission.patrol_s == 0 || !explored {
+        return None;
+    }
+    let path = record.steps.iter().map(|step| {
+        let truth = step.truth;
+        [f64::from(truth.time_ms) / 1000.0, truth.x_m, truth.y_m]
+    });
+    let path: Vec<[f64; 3]> = path.collect();
+    let rails: Vec<[f64; 2]> = record.map.rails().collect();
+    let ages = Patrol::judge(&rails, &path, f64::from(mission.patrol_s))?;
+    Some(report::Patrol {
+        oldest_rail_s: ages.oldest_rail_s,
+        mean_age_s: ages.mean_age_s,
+    })
 }
 
 fn safety(simulator: &Simulator<'_>) -> report::Safety {

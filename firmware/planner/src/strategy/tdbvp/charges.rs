@@ -14,7 +14,7 @@ use super::Rails;
 use super::fresh::{Fresh, VISIT_M};
 use super::sides::{DISC_M, EPSILON, Side};
 use crate::field::{Preference, SIDE, Window};
-use crate::geometry::{CELL_M, Cell, Point, Pose};
+use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::{Plane, Site};
 use crate::map::Tiles;
 use crate::math;
@@ -131,14 +131,17 @@ pub(super) fn unexplored<const TILES: usize, const SLOTS: usize>(
     goal
 }
 
-/// Prefer a side of the half disc before the robot; none takes all preferences back.
-pub(super) fn prefer(window: &mut Window, view: &View, robot: &Pose, side: Option<Side>) {
-    let Some(side) = side else {
-        window.set_preferences(|_, _| Preference::NONE);
-        return;
-    };
+/// Prefer a side of the half disc that lies `ahead` of the robot.
+///
+/// Ahead is where the robot has been going, not where it looks: if the preferred side turned with a robot that turns on the spot, it would turn
+/// for ever.
+pub(super) fn prefer(
+    window: &mut Window,
+    view: &View,
+    robot: Point,
+    (side, [cos, sin]): (Side, [f32; 2]),
+) {
     let [attracts, repels] = [EPSILON, -EPSILON].map(Preference::nearest);
-    let (sin, cos) = math::sin_cos(robot.yaw_rad);
     window.set_preferences(|x, y| {
         let at = view.cell(x, y).corner();
         let (dx, dy) = (at.x_m - robot.x_m, at.y_m - robot.y_m);

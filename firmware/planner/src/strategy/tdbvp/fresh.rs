@@ -21,7 +21,7 @@ const MOST_PENDING: usize = 12;
 
 /// The last metres and the places they lead through.
 #[derive(Debug)]
-pub struct Fresh {
+pub(super) struct Fresh {
     crumbs: Crumbs,
     /// The least cells of places, the first one entered first.
     pending: Vec<[i16; 2], MOST_PENDING>,
@@ -39,8 +39,7 @@ fn is_near(a: Cell, b: Cell, radius_m: f32) -> bool {
 
 impl Fresh {
     /// Nothing yet.
-    #[must_use]
-    pub const fn new() -> Self {
+    pub(super) const fn new() -> Self {
         Self {
             crumbs: Crumbs::new(),
             pending: Vec::new(),
@@ -78,6 +77,12 @@ impl Fresh {
             rails.visit(cell);
         }
         is_new
+    }
+
+    /// The way that the robot has been going lately, map cells; its heading says nothing of it when it turns on the spot.
+    pub(super) fn ahead(&self, robot: Cell) -> Option<[f32; 2]> {
+        let came = self.crumbs.came_from(robot)?;
+        Some([robot.x - came.x, robot.y - came.y].map(|along| along as f32))
     }
 
     /// Whether a centre cell was visited in the last metres and its date is not written yet.

@@ -31,7 +31,7 @@ use super::nearest::Centres;
 use super::ouroboros::Round;
 use super::{Frontier, Road};
 use crate::config::Laser;
-use crate::field::{SIDE, Window};
+use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Point, Pose};
 use crate::map::Tiles;
 use crate::skeleton::{Residues, WaveSpace, Wavefront};
@@ -165,7 +165,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         let frame = around.topology.frame();
         let centres = CentreCells { frame, way };
         self.visit(&centres, robot);
-        prefer(window, view, &around.pose, None);
+        window.set_preferences(|_, _| Preference::NONE);
         if self.on_road {
             return false;
         }
@@ -177,7 +177,10 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         };
         let dates = (&self.rails, &self.fresh);
         charge_rails(window, view, dates, &centres, robot, &goals);
-        prefer(window, view, &around.pose, self.sides.preferred());
+        let ahead = self.fresh.ahead(robot.cell());
+        if let Some(front) = self.sides.preferred().zip(ahead) {
+            prefer(window, view, robot, front);
+        }
         view.place(robot.cell())
             .is_some_and(|(x, y)| window.is_reached(x, y))
     }
@@ -216,7 +219,15 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
             return match self.road_to_oldest(&mut round, &mut lent) {
                 Some(road) => {
                     let robot = round.pose.point();
-                    frontier.follow(road, &round.known(), robot, round.time_ms, lent.view)
+                    let (known, time_ms) = (round.known(), round.time_ms);
+                    match frontier.follow(road, &known, robot, time_ms, lent.view) {
+                        Outlook::Road => Outlook::Road,
+                        // There is always another rail.
+                        _ => {
+                            frontier.go_on();
+                            Outlook::Unsure
+                        }
+                    }
                 }
                 None => Outlook::Unsure,
             };
@@ -225,7 +236,8 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         let is_late = round.time_ms.wrapping_sub(self.new_ms) >= PATIENCE_MS;
         let (outlook, is_free) =
             frontier.glance(&round.known(), robot, round.time_ms, lent, is_late);
-        self.on_road = !is_free;
+        // What remains for the second chance is where the robot just fits through.
+        self.on_road = !is_free || frontier.is_second_chance();
         outlook
     }
 
