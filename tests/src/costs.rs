@@ -13,14 +13,31 @@ pub const MOST_INSTRUCTIONS: f64 = 6e6;
 /// How far the figures may drift from the golden ones: another compiler arranges the code otherwise.
 pub const DRIFT: f64 = 0.05;
 
-/// One line a run.
+/// One line a run: instructions of a step, and the most that each of its stages took in any step, which need not be the same.
 #[must_use]
 pub fn table(reports: &[Report]) -> Table {
-    let mut table = Table::new(1, &["world", "steps", "p50", "p99", "most", "stack bytes"]);
+    let columns = [
+        "world",
+        "steps",
+        "p50",
+        "p99",
+        "most",
+        "session",
+        "sense",
+        "topology",
+        "plan",
+        "window",
+        "solve",
+        "drive",
+        "stack bytes",
+    ];
+    let mut table = Table::new(1, &columns);
     for report in reports {
         let of = report.planner.instructions.unwrap_or_default();
         let mut row = vec![report.world.clone(), report.steps.to_string()];
         row.extend([of.p50, of.p99, of.max].map(|count| format!("{count:.0}")));
+        let stages = report.planner.stages.unwrap_or_default();
+        row.extend(stages.by_name().map(|(_, of)| format!("{:.0}", of.max)));
         row.push(report.planner.stack_bytes.unwrap_or(0).to_string());
         table.row(row);
     }

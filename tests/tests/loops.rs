@@ -93,8 +93,17 @@ fn means(reports: &[Report]) -> Table {
     let mut table = Table::new(
         2,
         &[
-            "world", "strategy", "runs", "time s", "path m", "loops", "known %", "least %", "hits",
-            "time/frontier", "paper: time/BVP",
+            "world",
+            "strategy",
+            "runs",
+            "time s",
+            "path m",
+            "loops",
+            "known %",
+            "least %",
+            "hits",
+            "time/frontier",
+            "paper: time/BVP",
         ],
     );
     for group in reports.chunk_by(|a, b| (&a.world, &a.strategy) == (&b.world, &b.strategy)) {
@@ -137,8 +146,8 @@ fn table(reports: &[Report]) -> Table {
     let mut table = Table::new(
         2,
         &[
-            "world", "strategy", "start", "time s", "path m", "loops", "known %", "hits", "clear m",
-            "digest",
+            "world", "strategy", "start", "time s", "path m", "loops", "known %", "hits",
+            "clear m", "digest",
         ],
     );
     for report in reports {
