@@ -59,7 +59,10 @@ mod tests {
         assert!((patrol.oldest_rail_s - 18.0).abs() < 0.2, "{patrol:?}");
         assert!((2.0..9.0).contains(&patrol.mean_age_s), "{patrol:?}");
         let far = Patrol::judge(&[[5.0, 9.0]], &path(200), 100.0).unwrap();
-        assert!((far.oldest_rail_s - 200.0).abs() < 0.2, "never visited: {far:?}");
+        assert!(
+            (far.oldest_rail_s - 200.0).abs() < 0.2,
+            "never visited: {far:?}"
+        );
         assert_eq!(Patrol::judge(&[], &path(9), 5.0), None);
         assert_eq!(Patrol::judge(&rails, &[], 5.0), None);
     }

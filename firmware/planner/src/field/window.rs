@@ -425,4 +425,47 @@ mod tests {
         window.clear();
         assert_eq!(core::array::from_fn(|x| window.q(x, 3)), [0.0, 0.0, GOAL]);
     }
+
+    /// A hall between a goal of the whole charge and one of a part: both methods find the same field, between the two.
+    #[test]
+    fn goals_keep_the_share_that_they_are_charged_with() {
+        use crate::field::{Method, SCRATCH_FLOATS, SolverConfig, solve};
+
+        let solved = |method| {
+            let (mut free, mut goal) = ([0; SIDE], [0; SIDE]);
+            for row in &mut free[2..40] {
+                *row = 0x0fff_fffc;
+            }
+            goal[20] = 1 << 3 | 1 << 24;
+            let mut window = Window::new();
+            window.set_boundary(&free, &goal);
+            window.charge(24, 20, 0.25);
+            window.charge(10, 10, 0.5);
+            let config = SolverConfig {
+                max_cycles: 500,
+                tolerance: 1e-4,
+                method,
+            };
+            solve(&mut window, &mut [0.0; SCRATCH_FLOATS], &config);
+            window
+        };
+        let [fast, slow] = [Method::Multigrid, Method::GaussSeidel].map(solved);
+        for (x, y) in (2..28).flat_map(|x| (2..40).map(move |y| (x, y))) {
+            let (a, b) = (fast.q(x, y), slow.q(x, y));
+            assert!((a - b).abs() <= 0.01 * b, "({x}, {y}): {a} {b}");
+            assert!(a > 0.0 && (a < GOAL || (x, y) == (3, 20)));
+        }
+        assert_eq!([fast.q(3, 20), fast.q(24, 20)], [GOAL, 0.25 * GOAL]);
+        assert!(
+            fast.q(23, 20) < 0.25 * GOAL,
+            "the walls are nearer than the other goal"
+        );
+        assert!(!fast.is_goal(10, 10), "what is no goal is not charged");
+
+        // The next boundary has whole goals again.
+        let (free, goal) = ([0; SIDE], fast.goal);
+        let mut next = fast;
+        next.set_boundary(&free, &goal);
+        assert_eq!(next.q(24, 20), GOAL);
+    }
 }

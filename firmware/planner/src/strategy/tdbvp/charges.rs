@@ -79,7 +79,11 @@ pub(super) fn charge_rails<const SLOTS: usize>(
     each(&mut |(x, y), share| {
         let rows = if share > 0.0 { &mut goal } else { &mut free };
         if let Some(row) = rows.get_mut(y) {
-            *row = if share > 0.0 { *row | 1 << x } else { *row & !(1 << x) };
+            *row = if share > 0.0 {
+                *row | 1 << x
+            } else {
+                *row & !(1 << x)
+            };
         }
     });
     window.set_boundary(&free, &goal);
@@ -121,7 +125,8 @@ pub(super) fn unexplored<const TILES: usize, const SLOTS: usize>(
         let columns = (0..SIDE as i32)
             .filter(|x| (x - column).abs() <= GIVEN_UP_CELLS)
             .fold(0, |columns, x| columns | 1u64 << x);
-        for row in cell.y - view.origin.y - GIVEN_UP_CELLS..=cell.y - view.origin.y + GIVEN_UP_CELLS {
+        for row in cell.y - view.origin.y - GIVEN_UP_CELLS..=cell.y - view.origin.y + GIVEN_UP_CELLS
+        {
             let row = usize::try_from(row).ok().and_then(|row| goal.get_mut(row));
             if let Some(row) = row {
                 *row &= !columns;
@@ -163,7 +168,10 @@ fn for_each_part(view: &View, least: Cell, mut visit: impl FnMut((usize, usize))
             x: least.x + (k & 1),
             y: least.y + (k >> 1),
         };
-        if let Some(place) = view.place(part).filter(|&place| View::has(&view.passable, place)) {
+        if let Some(place) = view
+            .place(part)
+            .filter(|&place| View::has(&view.passable, place))
+        {
             visit(place);
         }
     }
@@ -172,6 +180,9 @@ fn for_each_part(view: &View, least: Cell, mut visit: impl FnMut((usize, usize))
 /// From the middle of a coarse cell, metres.
 pub(super) fn distance_m(cell: Cell, robot: Point) -> f32 {
     let middle = cell.corner();
-    let (dx, dy) = (middle.x_m + CELL_M - robot.x_m, middle.y_m + CELL_M - robot.y_m);
+    let (dx, dy) = (
+        middle.x_m + CELL_M - robot.x_m,
+        middle.y_m + CELL_M - robot.y_m,
+    );
     math::sqrt(dx * dx + dy * dy)
 }

@@ -67,7 +67,11 @@ impl Fresh {
     }
 
     /// The robot visits a centre cell; whether its place was never visited before.
-    pub(super) fn visit<const SLOTS: usize>(&mut self, cell: Cell, rails: &mut Rails<SLOTS>) -> bool {
+    pub(super) fn visit<const SLOTS: usize>(
+        &mut self,
+        cell: Cell,
+        rails: &mut Rails<SLOTS>,
+    ) -> bool {
         let place = place(cell);
         if self.pending.contains(&place) {
             return false;

@@ -22,6 +22,9 @@ mod fresh;
 pub mod rails;
 pub mod sides;
 
+#[cfg(test)]
+mod scenes;
+
 use self::charges::{CentreCells, charge_rails, prefer, unexplored};
 use self::fresh::{Fresh, VISIT_M};
 pub use self::rails::Rails;
@@ -187,7 +190,11 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
 
     /// Today the robot visits the centre cells beside it.
     fn visit(&mut self, centres: &CentreCells<'_>, robot: Point) {
-        let radius_m = if self.lingers { LINGER_VISIT_M } else { VISIT_M };
+        let radius_m = if self.lingers {
+            LINGER_VISIT_M
+        } else {
+            VISIT_M
+        };
         let (rails, fresh) = (&mut self.rails, &mut self.fresh);
         let mut is_new = false;
         centres.around(robot.cell(), (radius_m / CELL_M) as i32 + 2, |cell| {

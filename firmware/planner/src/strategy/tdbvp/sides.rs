@@ -95,7 +95,11 @@ impl Sides {
             let Some(mean_m) = mean_range(laser, ranges_mm, side) else {
                 continue;
             };
-            if self.flanks.get_mut(k).is_some_and(|flank| flank.note(mean_m)) {
+            if self
+                .flanks
+                .get_mut(k)
+                .is_some_and(|flank| flank.note(mean_m))
+            {
                 self.vote(side);
             }
         }
@@ -111,7 +115,11 @@ impl Default for Sides {
 /// Mean of the ranges to a side, none counted farther than [`FARTHEST_M`].
 fn mean_range(laser: &Laser, ranges_mm: &[u16], side: Side) -> Option<f32> {
     let is_beside = |bearing: f32| {
-        let left = if side == Side::Left { bearing } else { -bearing };
+        let left = if side == Side::Left {
+            bearing
+        } else {
+            -bearing
+        };
         (SECTOR_RAD.0..=SECTOR_RAD.1).contains(&left)
     };
     let (mut sum_m, mut beams) = (0.0, 0.0);
