@@ -16,6 +16,9 @@ use crate::map::Tiles;
 use crate::topology::Frame;
 use crate::view::{Rows, SCALES, View};
 
+/// Longest straight way to a centre cell, cells: no map is wider than 128 m but one that is a corridor.
+const MOST_BY_AIR: i32 = 1_280;
+
 /// Where centre cells are looked for.
 #[derive(Debug)]
 pub(super) struct Centres<'a, const TILES: usize, const SLOTS: usize> {
@@ -53,17 +56,18 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         from: Cell,
         accepts: A,
     ) -> Option<(Site, impl Iterator<Item = Cell> + use<A, TILES, SLOTS>)> {
-        let apart = |to: Cell| (to.x - from.x, to.y - from.y);
-        let distance2 = |site: &Site| {
-            let (dx, dy) = apart(self.frame.cell(*site));
-            dx * dx + dy * dy
+        // A pose may be anywhere; what is farther off than a map is large is no way.
+        let apart = |site: Site| {
+            let to = self.frame.cell(site);
+            let (dx, dy) = (to.x.checked_sub(from.x)?, to.y.checked_sub(from.y)?);
+            (dx.checked_abs()? < MOST_BY_AIR && dy.checked_abs()? < MOST_BY_AIR).then_some((dx, dy))
         };
-        let site = self
+        let (site, (dx, dy)) = self
             .way
             .sites()
             .filter(|&site| accepts(site))
-            .min_by_key(distance2)?;
-        let (dx, dy) = apart(self.frame.cell(site));
+            .filter_map(|site| Some((site, apart(site)?)))
+            .min_by_key(|(_, (dx, dy))| dx * dx + dy * dy)?;
         let steps = dx.abs().max(dy.abs()) / 2;
         let line = (0..steps).map(move |k| Cell {
             x: (from.x + dx * k / steps) & !1,
