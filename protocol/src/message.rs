@@ -119,8 +119,11 @@ pub enum Strategy {
     Frontier,
     /// The same, closing loops on the way.
     Ouroboros,
-    /// Frontiers on uneven ground: heights are measured, holes and edges kept off, level ground preferred.
-    Terrain(Terrain),
+    /// Rails by the time of their visit, and a patrol on them.
+    Tdbvp {
+        /// How long to patrol when all is explored, seconds. The status stays [`Status::Exploring`] meanwhile.
+        patrol_s: u16,
+    },
 }
 
 /// Which preferences shape the field on uneven ground.
@@ -184,6 +187,9 @@ pub struct Start {
     pub angular_accel: I4F12,
     /// Time from one observation to the next, milliseconds; a command is driven for so long.
     pub period_ms: u16,
+    /// How to go about uneven ground: heights are measured, holes and edges kept off, level ground preferred. Nothing on flat
+    /// ground, where the lasers see only what stands.
+    pub terrain: Option<Terrain>,
 }
 
 /// What the host wants of the session.

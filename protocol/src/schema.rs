@@ -62,6 +62,6 @@ mod tests {
     /// A changed hash is a changed wire: bless it here, and raise [`VERSION`] if a meaning changed without it.
     #[test]
     fn the_schema_is_the_one_we_know() {
-        assert_eq!((VERSION, SCHEMA), (1, 0x92df_6133));
+        assert_eq!((VERSION, SCHEMA), (1, 0xc381_76ee));
     }
 }

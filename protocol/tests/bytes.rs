@@ -99,12 +99,16 @@ fn request_control_start_on_uneven_ground() {
     };
     request_is(
         Request::Control(Control::Start(Start {
-            strategy: Strategy::Terrain(terrain),
+            terrain: Some(terrain),
             ..Start::default()
         })),
         &[
             1, 0, // Control, Start
-            2, 2, // Terrain, global
+            0, // frontier
+            0, 0, // box
+            0, // no lasers
+            0, 0, 0, 0, 0, 0, // radius, speeds, accelerations, period
+            1, 2, // uneven ground: some, global
             0x80, 0x10, // obstacle 0.25 m = 1024/4096
             0x80, 0x60, // near 1.5 m = 6144/4096
             0xff, 0x1f, // hole -0.5 m = -2048/4096, zigzag 4095
@@ -114,9 +118,6 @@ fn request_control_start_on_uneven_ground() {
             0x80, 0x80, 0x02, // global scale 1/4 = 16384/65536
             0x80, 0x20, // climb 0.5 rad = 2048/4096
             0x80, 0x04, // step 1/16 m = 256/4096
-            0, 0, // box
-            0, // no lasers
-            0, 0, 0, 0, 0, 0, // radius, speeds, accelerations, period
         ],
     );
 }
@@ -126,6 +127,8 @@ fn strategies_have_their_numbers() {
     for (strategy, number) in [(Strategy::Frontier, 0), (Strategy::Ouroboros, 1)] {
         assert_eq!(postcard::to_allocvec(&strategy).unwrap(), [number]);
     }
+    let strategy = Strategy::Tdbvp { patrol_s: 1800 };
+    assert_eq!(postcard::to_allocvec(&strategy).unwrap(), [2, 0x88, 14]);
 }
 
 #[test]
@@ -151,6 +154,7 @@ fn request_control_start() {
             linear_accel: short(0.25),
             angular_accel: short(1.75),
             period_ms: 200,
+            terrain: None,
         })),
         &[
             1, 0, // Control, Start
@@ -170,6 +174,7 @@ fn request_control_start() {
             0x80, 0x10, // 0.25 m/s² = 1024/4096
             0x80, 0x70, // 1.75 rad/s² = 7168/4096
             0xc8, 0x01, // 200 ms
+            0,    // flat ground
         ],
     );
 }

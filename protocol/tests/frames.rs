@@ -11,8 +11,8 @@ use fieldline_protocol::frame::{
 };
 use fieldline_protocol::message::{
     BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Counters, Crash, FIELD_CELL_BYTES, FIELD_SIDE,
-    FieldRow, Frontier, Identity, Laser, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM, Reply, Request,
-    Residue, Start, Strategy as Plan, TILE_BYTES, TILE_SKELETON_BYTES, Tile,
+    FieldRow, Frontier, Identity, Laser, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM, Preference, Reply,
+    Request, Residue, Start, Strategy as Plan, TILE_BYTES, TILE_SKELETON_BYTES, Terrain, Tile,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use proptest::prelude::*;
@@ -88,7 +88,7 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         range_limit_mm: u16::MAX,
     };
     let start = Request::Control(Control::Start(Start {
-        strategy: Plan::Frontier,
+        strategy: Plan::Tdbvp { patrol_s: u16::MAX },
         box_tiles: (255, 255),
         lasers: [laser; MAX_SCANS].into_iter().collect(),
         robot_radius_mm: u16::MAX,
@@ -97,6 +97,18 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         linear_accel: far,
         angular_accel: far,
         period_ms: u16::MAX,
+        terrain: Some(Terrain {
+            preference: Preference::Both,
+            obstacle: far,
+            near: far,
+            hole: far,
+            least: far,
+            most: far,
+            height_scale: far,
+            global_scale: fixed::types::I16F16::MIN,
+            climb: far,
+            step: far,
+        }),
     }));
     let file = "f".repeat(CRASH_FILE_BYTES).as_str().try_into().unwrap();
     let crash = Crash {

@@ -14,7 +14,7 @@ use host_sim::report::Report;
 use host_sim::world::World;
 
 const OUROBOROS: &str = "ouroboros";
-const STRATEGIES: [&str; 2] = [OUROBOROS, FRONTIER];
+const TDBVP: &str = "tdbvp";
 
 /// Share that must be known at the end, of every world and of the one with scattered obstacles.
 const LEAST_COVERAGE: f64 = 0.995;
@@ -28,13 +28,19 @@ const PAPERS: [(&str, &str, f64); 4] = [
     ("ouroboros-d", OUROBOROS, 3691.3 / 5823.9),
 ];
 
-/// Loops of these runs that stay open, and why.
-const LEFT_OPEN: [(&str, usize, u32); 0] = [];
+/// Loops of these runs that stay open: world, start, how many. The robot was past their last way in when nothing was left to
+/// explore; a tractor point is made where the robot comes by, and it comes by no more.
+const LEFT_OPEN: [(&str, usize, u32); 2] = [("ouroboros-a", 9, 1), ("ouroboros-a", 10, 1)];
 
-fn each(worlds: &[World], starts: usize) -> Vec<Run<'_>> {
+/// Seconds of patrol, and the greatest age of a rail in it. The shortest tour of the nested loops' centre lines, 88 m and 48 m and the
+/// way between them twice, is about 145 m: 290 s at 0.5 m/s. So no rail waits for longer than about two and a half tours.
+const PATROL_S: u16 = 1800;
+const OLDEST_S: f64 = 720.0;
+
+fn each<'a>(worlds: &'a [World], starts: usize, strategies: &[&'static str]) -> Vec<Run<'a>> {
     let mut runs = Vec::new();
     for world in worlds {
-        for strategy in STRATEGIES {
+        for &strategy in strategies {
             let starts = 0..starts.min(world.starts().len());
             runs.extend(starts.map(|start| Run {
                 world,
@@ -166,9 +172,9 @@ fn table(reports: &[Report]) -> Table {
     table
 }
 
-fn check(name: &str, names: &[&str], starts: usize) {
+fn check(name: &str, names: &[&str], starts: usize, strategies: &[&'static str]) {
     let worlds: Vec<World> = names.iter().map(|name| worlds::builtin(name)).collect();
-    let reports = runs::sweep(&each(&worlds, starts));
+    let reports = runs::sweep(&each(&worlds, starts, strategies));
     let text = format!("{}\n{}", means(&reports), table(&reports));
     golden::compare(name, &text);
     assert_closed(&reports);
@@ -180,7 +186,27 @@ fn loops_are_closed_on_the_way() {
         "loops.txt",
         &["ouroboros-a", "ouroboros-d", "tdbvp-nested"],
         1,
+        &[OUROBOROS, TDBVP, FRONTIER],
     );
+}
+
+#[test]
+fn a_patrol_comes_to_every_rail_again_and_again() {
+    use host_sim::link::direct::Direct;
+    use host_sim::trial::mission::{Mission, explore};
+
+    let mission = Mission {
+        strategy: TDBVP.into(),
+        patrol_s: PATROL_S,
+        ..Mission::default()
+    };
+    let world = worlds::builtin("tdbvp-nested");
+    let (report, _) = explore(&mission, &world, &mut Direct::new(), &mut runs::Unseen)
+        .expect("the start is free");
+    assert_eq!(faults(&report), Vec::<String>::new());
+    let ages = report.patrol.expect("a patrol that came to its end");
+    assert!(ages.oldest_rail_s < OLDEST_S, "{ages:?}");
+    assert!(ages.mean_age_s < OLDEST_S / 2.0, "{ages:?}");
 }
 
 #[test]
@@ -188,5 +214,10 @@ fn loops_of_every_start_are_closed_on_the_way() {
     if !full() {
         return println!("skipped: FIELDLINE_FULL=1 or tests/run --full asks for it");
     }
-    check("loops-full.txt", &worlds::PUBLISHED, usize::MAX);
+    check(
+        "loops-full.txt",
+        &worlds::PUBLISHED,
+        usize::MAX,
+        &[OUROBOROS, FRONTIER],
+    );
 }

@@ -104,6 +104,7 @@ impl Madman {
             linear_accel: I4F12::MAX,
             angular_accel: I4F12::MAX,
             period_ms: self.random.between(100, 400) as u16,
+            terrain: None,
         };
         for (speed, accel) in [
             (start.max_linear, &mut start.linear_accel),

@@ -118,26 +118,25 @@ pub fn config(start: &wire::Start) -> Config {
     let robot_radius_m = f32::from(start.robot_radius_mm) / 1000.0;
     Config {
         strategy: match start.strategy {
-            wire::Strategy::Frontier | wire::Strategy::Terrain(_) => config::Strategy::Frontier,
+            wire::Strategy::Frontier => config::Strategy::Frontier,
             wire::Strategy::Ouroboros => config::Strategy::Ouroboros,
+            wire::Strategy::Tdbvp { patrol_s } => config::Strategy::Tdbvp { patrol_s },
         },
         box_tiles: start.box_tiles,
         robot_radius_m,
         // A robot of another size is narrower by the same part.
         tight_radius_m: robot_radius_m * (default.tight_radius_m / default.robot_radius_m),
-        max_linear_mps: match start.strategy {
-            wire::Strategy::Frontier | wire::Strategy::Ouroboros => max_linear_mps,
+        max_linear_mps: if start.terrain.is_some() {
             // From one sweep over the ground to the next at most a cell.
-            wire::Strategy::Terrain(_) => max_linear_mps.min(CELL_M / period_s),
+            max_linear_mps.min(CELL_M / period_s)
+        } else {
+            max_linear_mps
         },
         max_angular_radps: float(start.max_angular),
         linear_accel_mps2: float(start.linear_accel),
         angular_accel_radps2: float(start.angular_accel),
         period_s,
-        terrain: match &start.strategy {
-            wire::Strategy::Frontier | wire::Strategy::Ouroboros => None,
-            wire::Strategy::Terrain(parameters) => Some(terrain(parameters)),
-        },
+        terrain: start.terrain.as_ref().map(terrain),
         ..default
     }
 }

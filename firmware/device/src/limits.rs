@@ -2,7 +2,7 @@
 
 use fieldline_planner::map::Tiles;
 use fieldline_protocol::message::{
-    Laser, MAX_BEAMS, NO_RETURN_MM, Observation, Parameter, Refusal, Start, Strategy, Terrain,
+    Laser, MAX_BEAMS, NO_RETURN_MM, Observation, Parameter, Refusal, Start, Terrain,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -55,9 +55,9 @@ pub fn check_start<const TILES: usize, const SLOTS: usize>(start: &Start) -> Res
     for (number, laser) in start.lasers.iter().enumerate() {
         check_laser(laser, number == 0)?;
     }
-    match &start.strategy {
-        Strategy::Frontier | Strategy::Ouroboros => Ok(()),
-        Strategy::Terrain(terrain) => check_terrain(terrain, start.lasers.len()),
+    match &start.terrain {
+        Some(terrain) => check_terrain(terrain, start.lasers.len()),
+        None => Ok(()),
     }
 }
 
@@ -142,7 +142,7 @@ pub fn matches(observation: &Observation, beams: impl ExactSizeIterator<Item = u
 #[cfg(test)]
 mod tests {
     use fieldline_protocol::message::{
-        Laser, Observation, Parameter, Refusal, Scan, Start, Strategy, Terrain,
+        Laser, Observation, Parameter, Refusal, Scan, Start, Terrain,
     };
     use fixed::types::{I4F12, I16F16};
 
@@ -304,9 +304,8 @@ mod tests {
         let check = |change: &dyn Fn(&mut Terrain)| {
             let mut terrain = good;
             change(&mut terrain);
-            let strategy = Strategy::Terrain(terrain);
             check_start::<4, 400>(&Start {
-                strategy,
+                terrain: Some(terrain),
                 ..start()
             })
         };
@@ -325,7 +324,7 @@ mod tests {
             assert_eq!(check(change), Err(Refusal::BadParameter(parameter)));
         }
         let one_laser = Start {
-            strategy: Strategy::Terrain(good),
+            terrain: Some(good),
             lasers: start().lasers.into_iter().take(1).collect(),
             ..start()
         };

@@ -35,6 +35,11 @@ pub enum Strategy {
     Frontier,
     /// Close loops on the way; see [`crate::strategy::ouroboros`].
     Ouroboros,
+    /// Follow rails by the time of their visit, and patrol on them; see [`crate::strategy::tdbvp`].
+    Tdbvp {
+        /// How long to patrol when all is explored, seconds.
+        patrol_s: u16,
+    },
 }
 
 /// Everything that stays the same during a session.

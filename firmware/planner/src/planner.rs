@@ -35,6 +35,7 @@ use crate::status::{Fault, Finish, Frontier, Status};
 use crate::strategy::frontier::{Known, Lent, Outlook};
 use crate::strategy::lookout::{Found, Grounds};
 use crate::strategy::ouroboros::{Ouroboros, Round};
+use crate::strategy::tdbvp::{Surroundings, Tdbvp};
 use crate::strategy::{Road, Strategist, lookout};
 use crate::terrain::{Preferences, Terrain};
 use crate::topology::Topology;
@@ -182,6 +183,12 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     #[must_use]
     pub const fn ouroboros(&self) -> Option<&Ouroboros<SLOTS>> {
         self.strategy.ouroboros()
+    }
+
+    /// What is known of rails, where the session's strategy follows them.
+    #[must_use]
+    pub const fn tdbvp(&self) -> Option<&Tdbvp<SLOTS>> {
+        self.strategy.tdbvp()
     }
 
     /// The cells of a tile (two bits each: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle), or `None` where
@@ -350,19 +357,15 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
             ..Output::default()
         };
     }
-    let Some(goal) = local_goal(state, &disc, &input, &mut workspace.view) else {
-        laps.lap(Stage::Window);
-        return Output::default();
-    };
-    charge(workspace, &goal);
+    if charge_rails(state, workspace, &disc, &input).is_none() {
+        let Some(goal) = local_goal(state, &disc, &input, &mut workspace.view) else {
+            laps.lap(Stage::Window);
+            return Output::default();
+        };
+        charge(workspace, &goal);
+    }
     if let Some(terrain) = &config.terrain {
-        prefer(
-            terrain,
-            state,
-            &mut workspace.window,
-            &workspace.view,
-            &input,
-        );
+        prefer(terrain, state, workspace, &input);
     }
     laps.lap(Stage::Window);
     // A step that planned a road has spent the time of two cycles on it.
@@ -399,7 +402,11 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         }
     }
     state.map.observe(config, input);
-    state.strategy.note_pose(&input.pose);
+    let level = config.lasers.iter().zip(input.scans);
+    let level = level
+        .into_iter()
+        .find(|(laser, ranges_mm)| is_level(laser) && !ranges_mm.is_empty());
+    state.strategy.note(&input.pose, input.time_ms, level);
     if config.terrain.is_some() {
         // Level beams end on slopes: what is near is what the map says.
         return;
@@ -461,7 +468,11 @@ fn replan<const TILES: usize, const SLOTS: usize>(
     let robot = input.pose.point().cell();
     match outlook {
         // On uneven ground what is seen through a gap is not measured by it.
-        Outlook::Nothing if state.strategy.frontier.may_look() && config.terrain.is_none() => {
+        Outlook::Nothing
+            if state.strategy.frontier.may_look()
+                && config.terrain.is_none()
+                && !state.strategy.is_patrolling() =>
+        {
             let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
             state.lookouts.begin(state.map.tiles().extent(), scratch);
         }
@@ -506,9 +517,18 @@ fn finish<const TILES: usize, const SLOTS: usize>(
     disc: &Disc,
     robot: Cell,
 ) {
+    const DONE: Status = Status::Finished(Finish::Explored);
+    if state.strategy.is_patrolling() {
+        // What was left over was listed before the patrol.
+        state.status = DONE;
+        return;
+    }
     let wanting = list_ways_out(state, workspace, disc, robot);
     list_leftovers(state, disc);
-    state.status = conclude(state, &mut workspace.view, disc, robot, wanting);
+    let status = conclude(state, &mut workspace.view, disc, robot, wanting);
+    if status != DONE || !state.strategy.begin_patrol() {
+        state.status = status;
+    }
 }
 
 /// List what the robot can get to and cannot go on from for want of room in the map; which room that is. What lies beyond
@@ -699,21 +719,23 @@ fn goal_cells(view: &View, cell: Cell) -> Option<Rows> {
     view.mark(&mut rows, cell).then_some(rows)
 }
 
-/// Give every cell of the window its preference [Maffei-Terrain, eqs. 3 to 5].
+/// Give every cell of the window its preference [Maffei-Terrain, eqs. 3 to 5], beside what the strategy prefers.
 fn prefer<const TILES: usize, const SLOTS: usize>(
     terrain: &Terrain,
     state: &State<TILES, SLOTS>,
-    window: &mut Window,
-    view: &View,
+    workspace: &mut Workspace,
     input: &Input<'_>,
 ) {
     let heights = state.map.heights();
     let global = state.preferences.global(terrain);
-    window.set_preferences(|x, y| {
+    let has_sides = state.strategy.tdbvp().is_some();
+    let Workspace { window, view, .. } = workspace;
+    window.change_preferences(|x, y, old| {
         let height_m = heights.height_m(view.cell(x, y));
         let difference_m = height_m.map(|height_m| height_m - input.pose.z_m);
         let epsilon = state.preferences.of_cell(terrain, global, difference_m);
-        Preference::nearest(epsilon)
+        let side = if has_sides { old.get().to_num() } else { 0.0 };
+        Preference::nearest(epsilon + side)
     });
 }
 
@@ -729,8 +751,38 @@ fn note_flatness<const TILES: usize, const SLOTS: usize>(
     }
 }
 
+/// Charge the window with what the strategy has for it beside local goals, if that leads anywhere.
+fn charge_rails<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    disc: &Disc,
+    input: &Input<'_>,
+) -> Option<()> {
+    state.strategy.tdbvp()?;
+    let robot = input.pose.point().cell();
+    let view = &mut workspace.view;
+    view.look_around(state.map.tiles(), disc, robot, 1);
+    view.free_robot(robot);
+    slide(workspace);
+    let around = Surroundings {
+        topology: &state.topology,
+        tiles: state.map.tiles(),
+        pose: input.pose,
+    };
+    let window = (&mut workspace.window, &workspace.view);
+    state.strategy.charge(&around, window)
+}
+
 /// Set the window's boundary, keeping the field of the last window where they overlap.
 fn charge(workspace: &mut Workspace, goal: &Rows) {
+    slide(workspace);
+    workspace
+        .window
+        .set_boundary(&workspace.view.passable, goal);
+}
+
+/// Move the window to where the view is, with the field where they overlap.
+fn slide(workspace: &mut Workspace) {
     let Workspace {
         window,
         window_at: at,
@@ -744,12 +796,9 @@ fn charge(workspace: &mut Workspace, goal: &Rows) {
                 steps(view.origin.x, origin.x),
                 steps(view.origin.y, origin.y),
             );
-            window.set_boundary(&view.passable, goal);
         }
-        _ => {
-            window.set_boundary(&view.passable, goal);
-            window.clear();
-        }
+        // Nothing of a field at another scale is worth keeping.
+        _ => window.shift(SIDE as i32, 0),
     }
     *at = Some((view.origin, view.scale));
 }

@@ -42,13 +42,13 @@ pub(super) struct ExploreArgs {
     /// World files (YAML for ROS map servers) or names of built-in worlds; WORLD@N starts at its start N
     #[arg(value_name = "WORLD[@N]", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
-    /// What plans: frontier or ouroboros on the device, terrain there on uneven ground, or a baseline on the host
+    /// What plans: frontier, ouroboros or tdbvp on the device, terrain there on uneven ground, or a baseline on the host
     #[arg(long, default_value = baselines::FRONTIER, value_parser = baselines::parse)]
     pub(super) strategy: String,
-    /// Which preferences shape the field of --strategy terrain
+    /// Heed uneven ground, with these preferences in the field [default: both with --strategy terrain, flat ground else]
     #[arg(long, value_enum, value_name = "WHICH")]
     pub(super) preference: Option<PreferenceArg>,
-    /// Parameters of --strategy terrain, any of [default: h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005,climb=20,step=0.07]
+    /// Heed uneven ground, with these parameters, any of [default: h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005,climb=20,step=0.07]
     #[arg(long, value_name = "PARAMETERS", value_parser = terrain)]
     pub(super) terrain: Option<Terrain>,
     /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback; direct for baselines]
@@ -78,6 +78,9 @@ pub(super) struct ExploreArgs {
     /// Simulated seconds after which a run ends
     #[arg(long, value_name = "S", default_value = "3600", value_parser = time_limit, allow_negative_numbers = true)]
     pub(super) time_limit: u32,
+    /// Patrol so many simulated seconds once all is explored; for tdbvp
+    #[arg(long, value_name = "S", default_value = "0", value_parser = whole::<u16>, allow_negative_numbers = true)]
+    pub(super) patrol_for: u16,
     /// Folder of the run; of several runs, the folder of their folders [default: out/WORLD-STRATEGY-SEED]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
@@ -117,6 +120,7 @@ impl Default for ExploreArgs {
             limits: None,
             failing: None,
             time_limit: 3_600_000,
+            patrol_for: 0,
             out: None,
             realtime: false,
             fault: None,

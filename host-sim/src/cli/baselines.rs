@@ -3,6 +3,7 @@
 //! A baseline is a [`Link`] of its own, without bytes: it answers observations with commands and shows a map.
 
 use anyhow::{Result, bail};
+use fieldline_protocol::message::Strategy;
 
 use host_sim::baseline::{Bvp, GreedyFrontier, Session};
 use host_sim::link::Link;
@@ -11,8 +12,6 @@ use host_sim::trial::mission::{STRATEGIES, on_device};
 
 /// The strategy on the device if nothing is said.
 pub(super) const FRONTIER: &str = "frontier";
-/// The same on uneven ground.
-pub(super) const TERRAIN: &str = "terrain";
 
 /// Makes a baseline.
 type Make = fn() -> Box<dyn Link>;
@@ -57,11 +56,25 @@ pub(super) fn place(strategy: &str, link: Option<&LinkSpec>) -> Result<LinkSpec>
 /// The refusal of what only the device's strategies have: windows to compare, bytes to break.
 pub(super) fn check(strategy: &str, check_field: bool, faults: bool) -> Result<()> {
     match strategy {
+        "tdbvp" if check_field => {
+            bail!("--strategy tdbvp charges rails, which --check-field does not know; leave it out")
+        }
         name if on_device(name).is_some() => Ok(()),
         _ if check_field => {
             bail!("--strategy {strategy} solves no window; leave --check-field out")
         }
         _ if faults => bail!("--strategy {strategy} has no bytes to break; leave --fault out"),
+        _ => Ok(()),
+    }
+}
+
+/// The refusal of a patrol by what has no rails to patrol on.
+pub(super) fn check_patrol(strategy: &str, patrol_s: u16) -> Result<()> {
+    match on_device(strategy) {
+        Some(Strategy::Tdbvp { .. }) => Ok(()),
+        _ if patrol_s > 0 => {
+            bail!("--strategy {strategy} does not patrol; leave --patrol-for out or say tdbvp")
+        }
         _ => Ok(()),
     }
 }

@@ -30,6 +30,7 @@ struct Errand {
 pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     let link = baselines::place(&args.strategy, args.link.as_ref())?;
     baselines::check(&args.strategy, args.check_field, args.fault.is_some())?;
+    baselines::check_patrol(&args.strategy, args.patrol_for)?;
     let errands = errands(args, &mission(args, &link)?)?;
     let interrupt = Interrupt::listen()?;
     let mut all_explored = true;
@@ -146,14 +147,14 @@ fn explore(
     Ok(report.explored())
 }
 
-/// The parameters of uneven ground, if any are asked for.
+/// The parameters of uneven ground, if any are asked for: with them every strategy on the device heeds it.
 fn terrain(args: &ExploreArgs) -> Result<Option<Terrain>> {
     if args.preference.is_none() && args.terrain.is_none() {
         return Ok(None);
     }
-    if args.strategy != baselines::TERRAIN {
+    if mission::on_device(&args.strategy).is_none() {
         bail!(
-            "--preference and --terrain are for --strategy terrain, not for {}; leave them out",
+            "--preference and --terrain are for what runs on the device, not for --strategy {}; leave them out",
             args.strategy
         );
     }
@@ -185,6 +186,7 @@ fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         working,
         failing,
         time_limit_ms: args.time_limit,
+        patrol_s: args.patrol_for,
         box_tiles: args.map_shape,
         check_field: args.check_field,
         snapshots: args.snapshots,

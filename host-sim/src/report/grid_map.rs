@@ -101,6 +101,18 @@ impl GridMap {
         }
     }
 
+    /// The middles of the skeleton's cells of 20 cm that are free, metres.
+    pub fn rails(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        let even = |least: i32, length: usize| {
+            let end = least + i32::try_from(length).unwrap_or(i32::MAX - least);
+            (least.div_euclid(2)..=end.div_euclid(2)).map(|at| 2 * at)
+        };
+        even(self.origin_y, self.height)
+            .flat_map(move |y| even(self.origin_x, self.width).map(move |x| (x, y)))
+            .filter(|&(x, y)| self.on_skeleton(x, y) && self.get(x, y) == MapCell::Free)
+            .map(|(x, y)| [x, y].map(|at| f64::from(at + 1) * CELL_M))
+    }
+
     /// Cells that are not unknown.
     #[must_use]
     pub fn known(&self) -> usize {

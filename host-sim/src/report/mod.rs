@@ -59,6 +59,8 @@ pub struct Report {
     /// Loops that were closed, and how many there are.
     #[serde(flatten)]
     pub loops: Loops,
+    /// What became of the rails on patrol; `null` without one.
+    pub patrol: Option<Patrol>,
     /// What the true robot suffered.
     pub safety: Safety,
     /// The ground, and how it was driven over; `null` in a flat world.
@@ -134,6 +136,15 @@ pub struct Loops {
     pub loops_closed: u32,
     /// Islands with a way round of at least 10 m.
     pub loops: u32,
+}
+
+/// Ages of the rails on a patrol, judged on the true path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Patrol {
+    /// Greatest time that any rail was not visited for, seconds.
+    pub oldest_rail_s: f64,
+    /// Mean of all rails and steps, seconds.
+    pub mean_age_s: f64,
 }
 
 /// What the true footprint met in the true world.

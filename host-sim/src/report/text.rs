@@ -54,6 +54,12 @@ impl Report {
             } = self.loops;
             lines.push(format!("  loops     {loops_closed} of {loops} closed"));
         }
+        if let Some(patrol) = &self.patrol {
+            lines.push(format!(
+                "  patrol    oldest rail {:.0} s, mean age {:.0} s",
+                patrol.oldest_rail_s, patrol.mean_age_s
+            ));
+        }
         if let Some(terrain) = &self.terrain {
             lines.push(format!(
                 "  ground    {:.1} m up and down; steepest {:.1} deg along, {:.1} deg across; {:.1} s beyond {:.0} and {:.0} deg",

@@ -7,13 +7,15 @@
 use core::fmt;
 
 use fieldline_planner::geometry::Cell;
-use fieldline_protocol::message::{Observation, Status, Strategy, Terrain, Twist};
+use fieldline_protocol::message::{
+    self as wire, Finish, Observation, Status, Strategy, Terrain, Twist,
+};
 
 use super::mirror::Mirror;
 use super::uneven::TABLE_I;
-use super::{Body, Cast, Record, Setup, Survey, Watch, record, run, shape};
+use super::{Body, Cast, Ending, Record, Setup, Survey, Watch, record, run, shape};
 use crate::link::{Link, LinkError};
-use crate::metrics::{CellSet, Coverage, Footing, GroundTruth, Loops};
+use crate::metrics::{CellSet, Coverage, Footing, GroundTruth, Loops, Patrol};
 use crate::report::tum::Stamped;
 use crate::report::{self, Report, SCHEMA_VERSION};
 use crate::robot::{LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M, laser};
@@ -25,7 +27,7 @@ use crate::world::{Start, World, WorldError};
 pub struct Mission {
     /// Name of the strategy, for the report.
     pub strategy: String,
-    /// Parameters of uneven ground for the strategy of that name; [`super::uneven::TABLE_I`] if `None`.
+    /// Parameters of uneven ground; if `None`, [`super::uneven::TABLE_I`] for [`TERRAIN`], and for others the ground counts as flat.
     pub terrain: Option<Terrain>,
     /// Name of the link, for the report.
     pub link: String,
@@ -47,6 +49,8 @@ pub struct Mission {
     pub failing: Limits,
     /// Simulated time limit, milliseconds.
     pub time_limit_ms: u32,
+    /// How long to patrol once all is explored, seconds; for strategy tdbvp.
+    pub patrol_s: u16,
     /// The map's box in tiles; chosen for the world if `None`.
     pub box_tiles: Option<(u8, u8)>,
     /// Time from one observation to the next, milliseconds.
@@ -72,6 +76,7 @@ impl Default for Mission {
             working: Limits::WORKING,
             failing: Limits::FAILING,
             time_limit_ms: 3_600_000,
+            patrol_s: 0,
             box_tiles: None,
             period_ms: SimConfig::default().period_ms,
             check_field: false,
@@ -126,11 +131,15 @@ impl From<LinkError> for MissionError {
     }
 }
 
+/// Frontiers on uneven ground: its name.
+pub const TERRAIN: &str = "terrain";
+
 /// The strategies on the device, by name.
-pub const STRATEGIES: [(&str, Strategy); 3] = [
+pub const STRATEGIES: [(&str, Strategy); 4] = [
     ("frontier", Strategy::Frontier),
     ("ouroboros", Strategy::Ouroboros),
-    ("terrain", Strategy::Terrain(TABLE_I)),
+    ("tdbvp", Strategy::Tdbvp { patrol_s: 0 }),
+    (TERRAIN, Strategy::Frontier),
 ];
 
 /// The strategy on the device of this name; a baseline has none.
@@ -143,12 +152,20 @@ pub fn on_device(name: &str) -> Option<Strategy> {
 }
 
 impl Mission {
-    /// What the device is told to do.
-    fn told(&self) -> Strategy {
-        match (on_device(&self.strategy).unwrap_or_default(), self.terrain) {
-            (Strategy::Terrain(_), Some(terrain)) => Strategy::Terrain(terrain),
-            (strategy, _) => strategy,
+    /// What plans on the device.
+    fn strategy(&self) -> Strategy {
+        match on_device(&self.strategy).unwrap_or_default() {
+            Strategy::Tdbvp { .. } => Strategy::Tdbvp {
+                patrol_s: self.patrol_s,
+            },
+            other => other,
         }
+    }
+
+    /// How the device goes about uneven ground, if it is told to.
+    fn terrain(&self) -> Option<Terrain> {
+        let usual = (self.strategy == TERRAIN).then_some(TABLE_I);
+        self.terrain.or(usual)
     }
 }
 
@@ -179,7 +196,10 @@ pub fn explore(
         return Err(MissionError::Box { across, up, slots });
     }
     let setup = Setup {
-        start: simulator.start_message(mission.told(), (across, up)),
+        start: wire::Start {
+            terrain: mission.terrain(),
+            ..simulator.start_message(mission.strategy(), (across, up))
+        },
         time_limit_ms: mission.time_limit_ms,
         check_field: mission.check_field,
         snapshots: mission.snapshots,
@@ -314,6 +334,7 @@ fn assemble(
         steps: record.steps.len() as u64,
         coverage: coverage(account, simulator),
         loops: loops(simulator, record),
+        patrol: patrol(mission, record),
         safety: safety(simulator),
         terrain: terrain(simulator, record),
         localization: record.localization(),
@@ -352,6 +373,25 @@ fn loops(simulator: &Simulator<'_>, record: &Record) -> report::Loops {
         loops_closed: loops.closed,
         loops: loops.of,
     }
+}
+
+/// Ages of the rails since all was explored; `None` where the run ended otherwise than by the end of its patrol.
+fn patrol(mission: &Mission, record: &Record) -> Option<report::Patrol> {
+    let explored = record.ending == Ending::Finished(Finish::Explored);
+    if mission.patrol_s == 0 || !explored {
+        return None;
+    }
+    let path = record.steps.iter().map(|step| {
+        let truth = step.truth;
+        [f64::from(truth.time_ms) / 1000.0, truth.x_m, truth.y_m]
+    });
+    let path: Vec<[f64; 3]> = path.collect();
+    let rails: Vec<[f64; 2]> = record.map.rails().collect();
+    let ages = Patrol::judge(&rails, &path, f64::from(mission.patrol_s))?;
+    Some(report::Patrol {
+        oldest_rail_s: ages.oldest_rail_s,
+        mean_age_s: ages.mean_age_s,
+    })
 }
 
 fn safety(simulator: &Simulator<'_>) -> report::Safety {

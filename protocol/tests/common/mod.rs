@@ -6,8 +6,8 @@ use fieldline_protocol::frame::{
 };
 use fieldline_protocol::message::{
     Cause, Command, Control, Cost, Counters, Crash, Fault, FieldRow, Finish, Frontier, Identity,
-    Laser, MAX_BEAMS, Observation, Parameter, Pose, Refusal, Reply, Request, Residue, Scan, Stages,
-    Start, Status, Strategy as Plan, Tile, Twist,
+    Laser, MAX_BEAMS, Observation, Parameter, Pose, Preference, Refusal, Reply, Request, Residue,
+    Scan, Stages, Start, Status, Strategy as Plan, Terrain, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 use proptest::prelude::*;
@@ -126,17 +126,49 @@ fn laser() -> impl Strategy<Value = Laser> {
         )
 }
 
+fn terrain() -> impl Strategy<Value = Terrain> {
+    let preference = prop_oneof![
+        Just(Preference::Off),
+        Just(Preference::Height),
+        Just(Preference::Global),
+        Just(Preference::Both),
+    ];
+    let heights = [short(), short(), short(), short()];
+    let preferences = [short(), short(), short(), short()];
+    (preference, heights, preferences, long()).prop_map(
+        |(preference, [obstacle, near, hole, step], preferences, global_scale)| {
+            let [least, most, height_scale, climb] = preferences;
+            Terrain {
+                preference,
+                obstacle,
+                near,
+                hole,
+                least,
+                most,
+                height_scale,
+                global_scale,
+                climb,
+                step,
+            }
+        },
+    )
+}
+
 fn start() -> impl Strategy<Value = Start> {
-    let strategy = prop_oneof![Just(Plan::Frontier), Just(Plan::Ouroboros)];
+    let strategy = prop_oneof![
+        Just(Plan::Frontier),
+        Just(Plan::Ouroboros),
+        any::<u16>().prop_map(|patrol_s| Plan::Tdbvp { patrol_s }),
+    ];
     (
-        (strategy, any::<(u8, u8)>()),
+        (strategy, any::<(u8, u8)>(), prop::option::of(terrain())),
         list(laser()),
         any::<u16>(),
         any::<u16>(),
         [short(), short(), short(), short()],
     )
         .prop_map(
-            |((strategy, box_tiles), lasers, robot_radius_mm, period_ms, limits)| {
+            |((strategy, box_tiles, terrain), lasers, robot_radius_mm, period_ms, limits)| {
                 let [max_linear, max_angular, linear_accel, angular_accel] = limits;
                 Start {
                     strategy,
@@ -148,6 +180,7 @@ fn start() -> impl Strategy<Value = Start> {
                     linear_accel,
                     angular_accel,
                     period_ms,
+                    terrain,
                 }
             },
         )

@@ -36,6 +36,7 @@ pub(crate) fn start() -> Start {
         linear_accel: I4F12::lit("0.3"),
         angular_accel: I4F12::lit("1.745"),
         period_ms: 200,
+        terrain: None,
     }
 }
 

@@ -67,7 +67,11 @@ pub(super) fn cycle(window: &mut Window, scratch: &mut [f32; SCRATCH_FLOATS]) ->
         assemble::<false>(window, pyramid.equations());
     }
     pyramid.solve();
-    let error = correct(window, pyramid.factors());
+    let error = if window.charged {
+        correct::<true>(window, pyramid.factors())
+    } else {
+        correct::<false>(window, pyramid.factors())
+    };
     gauss_seidel::sweep(window);
     window.origin = window.origin.other();
     error
@@ -262,11 +266,17 @@ fn add_inflow(sum: &mut Equation, side: usize, inflow: f32, inside: bool, goal: 
     }
 }
 
-/// Multiply the field by the over-corrected factors. Answers max |x − 1|.
-fn correct(window: &mut Window, factors: &[f32]) -> f32 {
+/// Multiply the field by the over-corrected factors. Answers max |x − 1|. If `CHARGED`, goals are left alone.
+fn correct<const CHARGED: bool>(window: &mut Window, factors: &[f32]) -> f32 {
     let mut error = 0.0;
+    let offset = window.origin.offset();
     for (y, factors) in factors.chunks_exact(FINEST).enumerate() {
         let start = window.origin.start(y);
+        let [mut below, mut over] = [0, 1].map(|row| {
+            let row = (2 * y + row).checked_sub(offset);
+            let reached = row.and_then(|row| window.reached.get(row));
+            reached.map_or(0, |bits| bits << offset)
+        });
         let (lower, upper) = window.q[start..][..2 * STRIDE].split_at_mut(STRIDE);
         let columns = lower
             .as_chunks_mut()
@@ -279,7 +289,12 @@ fn correct(window: &mut Window, factors: &[f32]) -> f32 {
                 error = change;
             }
             let factor = pyramid::overcorrect(x);
-            for q in [a, b, c, d] {
+            let parts = [below & 1, below >> 1 & 1, over & 1, over >> 1 & 1];
+            (below, over) = (below >> 2, over >> 2);
+            for (q, reached) in [a, b, c, d].into_iter().zip(parts) {
+                if CHARGED && reached == 0 {
+                    continue;
+                }
                 *q *= factor;
                 if factor > 1.0 && *q > GOAL {
                     *q = GOAL;
@@ -287,7 +302,9 @@ fn correct(window: &mut Window, factors: &[f32]) -> f32 {
             }
         }
     }
-    // Obstacles stayed zero; goals may have been scaled down.
-    window.charge_goals();
+    if !CHARGED {
+        // Obstacles stayed zero; goals may have been scaled down.
+        window.charge_goals();
+    }
     error
 }

@@ -116,6 +116,8 @@ pub struct Window {
     pub(super) goal: [u64; SIDE],
     /// Free cells that no goal can be reached from.
     unreached: u16,
+    /// Some goals have less than a goal's whole charge.
+    pub(super) charged: bool,
     /// Some cell has a value worth keeping. A new window is all zeros, so that a static one costs no flash.
     pub(super) warm: bool,
     /// Rows that may hold cells far too low for the multigrid (see `seed`).
@@ -135,18 +137,20 @@ impl Window {
             reached: [0; SIDE],
             goal: [0; SIDE],
             unreached: 0,
+            charged: false,
             warm: false,
             unraised: 0,
             origin: Origin::Even,
         }
     }
 
-    /// Forget the field, so that the next solve starts cold; boundary and preferences stay.
+    /// Forget the field, so that the next solve starts cold; boundary and preferences stay, and goals have their whole charge.
     pub fn clear(&mut self) {
         self.warm = false;
         self.unraised = ROW;
         self.q.fill(0.0);
         self.origin = Origin::Even;
+        self.charged = false;
         self.charge_goals();
     }
 
@@ -173,7 +177,21 @@ impl Window {
             }
         }
         self.unreached = unreached as u16;
+        self.charged = false;
         self.charge_goals();
+    }
+
+    /// Give the goal (x, y) a share of a goal's charge, from 0 to 1, until the next boundary; what is no goal stays as it is.
+    ///
+    /// With it p has other boundary values than 0 and 1 [TDBVP, IV].
+    pub fn charge(&mut self, x: usize, y: usize, share: f32) {
+        if !self.is_goal(x, y) {
+            return;
+        }
+        if let Some(q) = self.q.get_mut(index(x, y)) {
+            *q = GOAL * share.clamp(0.0, 1.0);
+            self.charged = true;
+        }
     }
 
     /// Move the window by (dx, dy) cells over the field: cell (x, y) takes what was at (x + dx, y + dy), values,
@@ -237,11 +255,19 @@ impl Window {
 
     /// Give every cell (x, y) the preference `of(x, y)`.
     pub fn set_preferences(&mut self, mut of: impl FnMut(usize, usize) -> Preference) {
+        self.change_preferences(|x, y, _| of(x, y));
+    }
+
+    /// Give every cell (x, y) the preference `of(x, y, old)`.
+    pub fn change_preferences(
+        &mut self,
+        mut of: impl FnMut(usize, usize, Preference) -> Preference,
+    ) {
         self.preferred = false;
         let rows = self.preference.chunks_exact_mut(STRIDE).skip(1);
         for (y, row) in rows.take(SIDE).enumerate() {
             for (x, cell) in row.iter_mut().skip(1).take(SIDE).enumerate() {
-                *cell = of(x, y);
+                *cell = of(x, y, *cell);
                 self.preferred |= *cell != Preference::NONE;
             }
         }
@@ -406,5 +432,48 @@ mod tests {
 
         window.clear();
         assert_eq!(core::array::from_fn(|x| window.q(x, 3)), [0.0, 0.0, GOAL]);
+    }
+
+    /// A hall between a goal of the whole charge and one of a part: both methods find the same field, between the two.
+    #[test]
+    fn goals_keep_the_share_that_they_are_charged_with() {
+        use crate::field::{Method, SCRATCH_FLOATS, SolverConfig, solve};
+
+        let solved = |method| {
+            let (mut free, mut goal) = ([0; SIDE], [0; SIDE]);
+            for row in &mut free[2..40] {
+                *row = 0x0fff_fffc;
+            }
+            goal[20] = 1 << 3 | 1 << 24;
+            let mut window = Window::new();
+            window.set_boundary(&free, &goal);
+            window.charge(24, 20, 0.25);
+            window.charge(10, 10, 0.5);
+            let config = SolverConfig {
+                max_cycles: 500,
+                tolerance: 1e-4,
+                method,
+            };
+            solve(&mut window, &mut [0.0; SCRATCH_FLOATS], &config);
+            window
+        };
+        let [fast, slow] = [Method::Multigrid, Method::GaussSeidel].map(solved);
+        for (x, y) in (2..28).flat_map(|x| (2..40).map(move |y| (x, y))) {
+            let (a, b) = (fast.q(x, y), slow.q(x, y));
+            assert!((a - b).abs() <= 0.01 * b, "({x}, {y}): {a} {b}");
+            assert!(a > 0.0 && (a < GOAL || (x, y) == (3, 20)));
+        }
+        assert_eq!([fast.q(3, 20), fast.q(24, 20)], [GOAL, 0.25 * GOAL]);
+        assert!(
+            fast.q(23, 20) < 0.25 * GOAL,
+            "the walls are nearer than the other goal"
+        );
+        assert!(!fast.is_goal(10, 10), "what is no goal is not charged");
+
+        // The next boundary has whole goals again.
+        let (free, goal) = ([0; SIDE], fast.goal);
+        let mut next = fast;
+        next.set_boundary(&free, &goal);
+        assert_eq!(next.q(24, 20), GOAL);
     }
 }

@@ -41,6 +41,8 @@ const BAR_RADIUS_M: f32 = 0.4;
 const BAR_AHEAD_M: f32 = 0.5;
 /// Head start of the present goal, coarse steps: what turning about costs.
 const HEAD_START: u32 = 10;
+/// A robot that goes its own way has come to a goal that is so many steps away.
+const GLANCE_STEPS: u32 = 4;
 /// Lookouts of a run at the most.
 const MOST_LOOKOUTS: u8 = 100;
 /// A frontier cell with fewer around it, within 2 cells and with itself, is a small one's: a corner, the foot of a wall.
@@ -183,6 +185,52 @@ impl Frontier {
         mut lent: Lent<'_>,
     ) -> Outlook {
         let road = self.find_road(known, robot, &mut lent);
+        self.take(road, known, robot, time_ms, lent)
+    }
+
+    /// As [`Self::replan`], for a robot that goes its own way as long as something is left: nothing is dropped for want of progress,
+    /// but what it has come to. Whether it may go its own way; not if it `is_late`.
+    pub(super) fn glance<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        known: &Known<'_, TILES, SLOTS>,
+        robot: Point,
+        time_ms: u32,
+        mut lent: Lent<'_>,
+        is_late: bool,
+    ) -> (Outlook, bool) {
+        let road = self.find_road(known, robot, &mut lent);
+        let is_far = |road: &Road| road.steps() > GLANCE_STEPS;
+        match road {
+            Some(road) if !is_late && is_far(&road) => {
+                self.patience.note_motion(robot, time_ms);
+                (self.lookout, self.empty_rounds) = (None, 0);
+                self.road = road;
+                (Outlook::Road, true)
+            }
+            road => {
+                let is_free = !is_late && road.is_some();
+                (self.take(road, known, robot, time_ms, lent), is_free)
+            }
+        }
+    }
+
+    /// The exploration is over and the robot goes on: what it drives to needs no second chance.
+    pub(super) fn go_on(&mut self) {
+        self.second_chance = false;
+        self.only_looks = false;
+        self.patience.begin_next_try();
+        self.road.clear();
+    }
+
+    /// Take the road, or do without.
+    fn take<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        road: Option<Road>,
+        known: &Known<'_, TILES, SLOTS>,
+        robot: Point,
+        time_ms: u32,
+        mut lent: Lent<'_>,
+    ) -> Outlook {
         self.patience.note_motion(robot, time_ms);
         if let Some(road) = road {
             (self.lookout, self.empty_rounds) = (None, 0);

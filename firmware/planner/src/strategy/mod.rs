@@ -9,17 +9,22 @@ mod nearest;
 pub mod ouroboros;
 mod patience;
 pub mod road;
+pub mod tdbvp;
 
 pub use frontier::Frontier;
 pub use ouroboros::Ouroboros;
 pub use road::Road;
+pub use tdbvp::Tdbvp;
 
-use crate::config::{Config, Strategy};
+use crate::config::{Config, Laser, Strategy};
+use crate::field::Window;
 use crate::geometry::Pose;
 use crate::topology::Space;
+use crate::view::View;
 use frontier::{Lent, Outlook};
 use ouroboros::Round;
 use ouroboros::shield::Shield;
+use tdbvp::Surroundings;
 
 /// What plans in a session. `SLOTS` as the map's.
 #[derive(Debug)]
@@ -41,6 +46,7 @@ pub struct Strategist<const SLOTS: usize> {
 enum More<const SLOTS: usize> {
     Nothing,
     Ouroboros(Ouroboros<SLOTS>),
+    Tdbvp(Tdbvp<SLOTS>),
 }
 
 impl<const SLOTS: usize> Strategist<SLOTS> {
@@ -59,10 +65,14 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         self.more = match config.strategy {
             Strategy::Frontier => More::Nothing,
             Strategy::Ouroboros => More::Ouroboros(Ouroboros::new()),
+            Strategy::Tdbvp { .. } => More::Tdbvp(Tdbvp::new()),
         };
-        if let More::Ouroboros(ouroboros) = &mut self.more {
-            let (width, height) = config.box_tiles;
-            ouroboros.reset((i32::from(width), i32::from(height)));
+        let (width, height) = config.box_tiles;
+        let box_tiles = (i32::from(width), i32::from(height));
+        match (&mut self.more, config.strategy) {
+            (More::Ouroboros(ouroboros), _) => ouroboros.reset(box_tiles),
+            (More::Tdbvp(tdbvp), Strategy::Tdbvp { patrol_s }) => tdbvp.reset(box_tiles, patrol_s),
+            _ => {}
         }
     }
 
@@ -70,7 +80,7 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     #[must_use]
     pub const fn space(strategy: Strategy) -> Space {
         match strategy {
-            Strategy::Frontier => Space::KnownFree,
+            Strategy::Frontier | Strategy::Tdbvp { .. } => Space::KnownFree,
             Strategy::Ouroboros => Space::AnchoredNotObstacle,
         }
     }
@@ -79,8 +89,8 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     #[must_use]
     pub const fn ouroboros(&self) -> Option<&Ouroboros<SLOTS>> {
         match &self.more {
-            More::Nothing => None,
             More::Ouroboros(ouroboros) => Some(ouroboros),
+            More::Nothing | More::Tdbvp(_) => None,
         }
     }
 
@@ -88,16 +98,59 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     #[must_use]
     pub const fn shield(&self) -> Option<&Shield> {
         match &self.more {
-            More::Nothing => None,
             More::Ouroboros(ouroboros) => ouroboros.shield(),
+            More::Nothing | More::Tdbvp(_) => None,
         }
     }
 
-    /// The robot is here; to be called in every step.
-    pub fn note_pose(&mut self, pose: &Pose) {
-        if let More::Ouroboros(ouroboros) = &mut self.more {
-            ouroboros.note_pose(pose);
+    /// What is known of rails, where the strategy follows them.
+    #[must_use]
+    pub const fn tdbvp(&self) -> Option<&Tdbvp<SLOTS>> {
+        match &self.more {
+            More::Tdbvp(tdbvp) => Some(tdbvp),
+            More::Nothing | More::Ouroboros(_) => None,
         }
+    }
+
+    /// The robot is here; to be called in every step, with the scan of the level laser.
+    pub fn note(&mut self, pose: &Pose, time_ms: u32, scan: Option<(&Laser, &[u16])>) {
+        match &mut self.more {
+            More::Nothing => {}
+            More::Ouroboros(ouroboros) => ouroboros.note_pose(pose),
+            More::Tdbvp(tdbvp) => tdbvp.note(pose, time_ms, scan),
+        }
+    }
+
+    /// Charge the window otherwise than with a road's local goal; `None` where the strategy has no such charge, or it leads nowhere.
+    pub fn charge<const TILES: usize>(
+        &mut self,
+        around: &Surroundings<'_, TILES, SLOTS>,
+        (window, view): (&mut Window, &View),
+    ) -> Option<()> {
+        match &mut self.more {
+            More::Nothing | More::Ouroboros(_) => None,
+            More::Tdbvp(tdbvp) => tdbvp
+                .charge(&self.frontier, around, (window, view))
+                .then_some(()),
+        }
+    }
+
+    /// The exploration is over; whether the robot goes on all the same.
+    pub fn begin_patrol(&mut self) -> bool {
+        let More::Tdbvp(tdbvp) = &mut self.more else {
+            return false;
+        };
+        let begins = tdbvp.begin_patrol();
+        if begins {
+            self.frontier.go_on();
+        }
+        begins
+    }
+
+    /// Whether the robot went on after the exploration.
+    #[must_use]
+    pub fn is_patrolling(&self) -> bool {
+        self.tdbvp().is_some_and(Tdbvp::is_patrolling)
     }
 
     /// Go on with a round on the published skeleton; `None` when it needs another call on the same one.
@@ -113,6 +166,7 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
                 Some(self.frontier.replan(&round.known(), robot, time_ms, lent))
             }
             More::Ouroboros(ouroboros) => ouroboros.advance(&mut self.frontier, round, lent),
+            More::Tdbvp(tdbvp) => Some(tdbvp.advance(&mut self.frontier, round, lent)),
         }
     }
 }

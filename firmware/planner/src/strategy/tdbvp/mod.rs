@@ -1,0 +1,292 @@
+//! Strategy *tdbvp*: time-driven rails [TDBVP, IV and V].
+//!
+//! The robot follows −∇p in a window in which every centre cell is charged: with the time since it was visited, or
+//! as the best there is where it was not. So it prefers the unexplored to the visited and the long forgotten to the
+//! fresh, turns to the side where it saw openings, and never comes to rest: explored, it patrols, for
+//! as long as the session asks for.
+//!
+//! Where a rail vanishes from the window, or none in it attracts, the robot follows a *road* instead: to the nearest
+//! unexplored along the skeleton, on patrol to the oldest rail; to the skeleton itself where it is off it, by
+//! [`super::nearest`] [TDBVP, VII: the nearest rail, else the unexplored, else the skeleton].
+//!
+//! Departs from the paper:
+//! - Unexplored cells are goals only until [`Frontier`] has given them up, and a robot that lingers follows a road for a while; there the paper
+//!   has no rule, and stands before what it cannot see.
+//! - A robot to which nothing new came for [`PATIENCE_MS`] while something is left follows a road. The paper relies on its rails to
+//!   lead there in the end.
+//!
+//! Units: map cells, metres, milliseconds.
+
+mod charges;
+mod fresh;
+pub mod rails;
+pub mod sides;
+
+#[cfg(test)]
+mod scenes;
+
+use self::charges::{CentreCells, charge_rails, prefer, unexplored};
+use self::fresh::{Fresh, VISIT_M};
+pub use self::rails::Rails;
+use self::sides::Sides;
+use super::frontier::{Lent, Outlook};
+use super::nearest::Centres;
+use super::ouroboros::Round;
+use super::{Frontier, Road};
+use crate::config::Laser;
+use crate::field::{Preference, SIDE, Window};
+use crate::geometry::{CELL_M, Point, Pose};
+use crate::map::Tiles;
+use crate::skeleton::{Residues, WaveSpace, Wavefront};
+use crate::topology::Topology;
+use crate::view::View;
+
+/// Time without a first visit after which a robot that has something left to explore follows a road to it, milliseconds.
+const PATIENCE_MS: u32 = 60_000;
+/// A robot that is within so many metres for so many milliseconds lingers.
+const LINGER_M: f32 = 1.0;
+const LINGER_MS: u32 = 15_000;
+/// Where it lingered, centre cells this near count as visited, metres: what draws it cannot be got to.
+const LINGER_VISIT_M: f32 = 2.0;
+
+/// What the strategy remembers; `SLOTS` as the map's.
+#[derive(Debug)]
+pub struct Tdbvp<const SLOTS: usize> {
+    rails: Rails<SLOTS>,
+    fresh: Fresh,
+    sides: Sides,
+    /// A road is followed, not the rails.
+    on_road: bool,
+    /// When a place was visited for the first time, and what time it is.
+    new_ms: u32,
+    now_ms: u32,
+    /// Where the robot was when it last left a place, and when.
+    left: Point,
+    left_ms: u32,
+    lingers: bool,
+    /// How long to patrol, and since when it does.
+    patrol_ms: u32,
+    since_ms: Option<u32>,
+}
+
+/// What the window is made of, for a charge.
+#[derive(Debug)]
+pub struct Surroundings<'a, const TILES: usize, const SLOTS: usize> {
+    /// The published skeleton.
+    pub topology: &'a Topology<SLOTS>,
+    /// The map.
+    pub tiles: &'a Tiles<TILES, SLOTS>,
+    /// Where the robot is.
+    pub pose: Pose,
+}
+
+impl<const SLOTS: usize> Tdbvp<SLOTS> {
+    /// At the start.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            rails: Rails::new(),
+            fresh: Fresh::new(),
+            sides: Sides::new(),
+            on_road: false,
+            new_ms: 0,
+            now_ms: 0,
+            left: Point { x_m: 0.0, y_m: 0.0 },
+            left_ms: 0,
+            lingers: false,
+            patrol_ms: 0,
+            since_ms: None,
+        }
+    }
+
+    /// Forget everything; the map's box is so many tiles across and up, and the patrol so long.
+    pub fn reset(&mut self, box_tiles: (i32, i32), patrol_s: u16) {
+        self.rails.reset(box_tiles);
+        (self.fresh, self.sides) = (Fresh::new(), Sides::new());
+        (self.on_road, self.lingers) = (false, false);
+        (self.new_ms, self.now_ms) = (0, 0);
+        (self.left, self.left_ms) = (Point { x_m: 0.0, y_m: 0.0 }, 0);
+        (self.patrol_ms, self.since_ms) = (u32::from(patrol_s) * 1000, None);
+    }
+
+    /// When centre cells were visited.
+    #[must_use]
+    pub const fn rails(&self) -> &Rails<SLOTS> {
+        &self.rails
+    }
+
+    /// Which side is preferred.
+    #[must_use]
+    pub const fn sides(&self) -> &Sides {
+        &self.sides
+    }
+
+    /// Whether the exploration is over and the patrol is on.
+    #[must_use]
+    pub const fn is_patrolling(&self) -> bool {
+        self.since_ms.is_some()
+    }
+
+    /// The exploration is over; whether a patrol begins.
+    pub fn begin_patrol(&mut self) -> bool {
+        let begins = self.patrol_ms > 0 && self.since_ms.is_none();
+        if begins {
+            self.since_ms = Some(self.now_ms);
+        }
+        begins
+    }
+
+    /// The robot is here; to be called in every step, with the scan of the level laser.
+    pub fn note(&mut self, pose: &Pose, time_ms: u32, scan: Option<(&Laser, &[u16])>) {
+        self.now_ms = time_ms;
+        self.rails.pass();
+        if let Some((laser, ranges_mm)) = scan {
+            self.sides.note(laser, ranges_mm);
+        }
+        let here = pose.point();
+        self.fresh.come(here.cell(), &mut self.rails);
+        let (dx, dy) = (here.x_m - self.left.x_m, here.y_m - self.left.y_m);
+        if dx * dx + dy * dy > LINGER_M * LINGER_M {
+            (self.left, self.left_ms) = (here, time_ms);
+        } else if time_ms.wrapping_sub(self.left_ms) > LINGER_MS {
+            self.left_ms = time_ms;
+            self.lingers = true;
+        }
+    }
+
+    /// Charge the window with the rails; whether that leads the robot anywhere, or a road must.
+    pub fn charge<const TILES: usize>(
+        &mut self,
+        frontier: &Frontier,
+        around: &Surroundings<'_, TILES, SLOTS>,
+        (window, view): (&mut Window, &View),
+    ) -> bool {
+        let robot = around.pose.point();
+        let Some(way) = around.topology.skeleton() else {
+            return false;
+        };
+        let frame = around.topology.frame();
+        let centres = CentreCells { frame, way };
+        self.visit(&centres, robot);
+        window.set_preferences(|_, _| Preference::NONE);
+        if self.on_road {
+            return false;
+        }
+        let goals = if self.is_patrolling() {
+            [0; SIDE]
+        } else {
+            let given_up = frontier.dropped().iter().map(|goal| goal.cell);
+            unexplored(view, around.tiles, given_up)
+        };
+        let dates = (&self.rails, &self.fresh);
+        charge_rails(window, view, dates, &centres, robot, &goals);
+        let ahead = self.fresh.ahead(robot.cell());
+        if let Some(front) = self.sides.preferred().zip(ahead) {
+            prefer(window, view, robot, front);
+        }
+        view.place(robot.cell())
+            .is_some_and(|(x, y)| window.is_reached(x, y))
+    }
+
+    /// Today the robot visits the centre cells beside it.
+    fn visit(&mut self, centres: &CentreCells<'_>, robot: Point) {
+        let radius_m = if self.lingers {
+            LINGER_VISIT_M
+        } else {
+            VISIT_M
+        };
+        let (rails, fresh) = (&mut self.rails, &mut self.fresh);
+        let mut is_new = false;
+        centres.around(robot.cell(), (radius_m / CELL_M) as i32 + 2, |cell| {
+            if charges::distance_m(cell, robot) <= radius_m {
+                is_new |= fresh.visit(cell, rails);
+            }
+        });
+        if self.lingers {
+            self.fresh.settle(&mut self.rails);
+            self.new_ms = self.now_ms.wrapping_sub(PATIENCE_MS);
+            self.lingers = false;
+        } else if is_new {
+            self.new_ms = self.now_ms;
+        }
+    }
+
+    /// A round on a new skeleton: whether anything is left, and the road to it, in case the rails lead nowhere.
+    pub fn advance<const TILES: usize>(
+        &mut self,
+        frontier: &mut Frontier,
+        mut round: Round<'_, TILES, SLOTS>,
+        mut lent: Lent<'_>,
+    ) -> Outlook {
+        if let Some(since_ms) = self.since_ms {
+            self.on_road = false;
+            if round.time_ms.wrapping_sub(since_ms) >= self.patrol_ms {
+                return Outlook::Nothing;
+            }
+            return match self.road_to_oldest(&mut round, &mut lent) {
+                Some(road) => {
+                    let robot = round.pose.point();
+                    let (known, time_ms) = (round.known(), round.time_ms);
+                    match frontier.follow(road, &known, robot, time_ms, lent.view) {
+                        Outlook::Road => Outlook::Road,
+                        // There is always another rail.
+                        _ => {
+                            frontier.go_on();
+                            Outlook::Unsure
+                        }
+                    }
+                }
+                None => Outlook::Unsure,
+            };
+        }
+        let robot = round.pose.point();
+        let is_late = round.time_ms.wrapping_sub(self.new_ms) >= PATIENCE_MS;
+        let (outlook, is_free) =
+            frontier.glance(&round.known(), robot, round.time_ms, lent, is_late);
+        // What remains for the second chance is where the robot just fits through.
+        self.on_road = !is_free || frontier.is_second_chance();
+        outlook
+    }
+
+    /// The way along the skeleton to the centre cells that were visited the longest time ago.
+    fn road_to_oldest<const TILES: usize>(
+        &self,
+        round: &mut Round<'_, TILES, SLOTS>,
+        lent: &mut Lent<'_>,
+    ) -> Option<Road> {
+        let frame = round.topology.frame();
+        let way = round.topology.skeleton()?;
+        let rank = |site| self.rails.rank(frame.cell(site));
+        let oldest = way.sites().map(rank).min()?;
+        let residues = Residues::new(frame.shape, &mut *lent.residues).ok()?;
+        let mut space = WaveSpace {
+            way,
+            residues,
+            ring: &mut *lent.ring,
+        };
+        let mut wave = Wavefront::new();
+        wave.start(&mut space);
+        for site in way.sites().filter(|&site| rank(site) == oldest) {
+            wave.seed(&mut space, site);
+        }
+        // Without a budget it always comes to its end.
+        let _ = wave.advance(&mut space, None, u32::MAX);
+        let centres = Centres {
+            tiles: round.tiles,
+            disc: round.disc,
+            frame,
+            way,
+        };
+        let is_reached = |site| space.residues.get(site).is_some();
+        let robot = round.pose.point().cell();
+        let (entry, steps) = centres.nearest(robot, lent.view, is_reached)?;
+        let way = core::iter::once(entry).chain(space.residues.descent(entry));
+        Some(Road::along(way.map(|site| frame.cell(site))).after(steps))
+    }
+}
+
+impl<const SLOTS: usize> Default for Tdbvp<SLOTS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

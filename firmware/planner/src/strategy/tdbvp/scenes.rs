@@ -1,0 +1,168 @@
+//! Windows charged with rails, as pictures: where the robot goes from there.
+//!
+//! `#` obstacle, `.` free, coarse cells of 20 cm; the first row of a picture is the least y. `>` is the robot, facing along x.
+
+use super::charges::{CentreCells, charge_rails, prefer};
+use super::fresh::Fresh;
+use super::rails::Rails;
+use super::sides::Side;
+use crate::clearance::Disc;
+use crate::field::{SCRATCH_FLOATS, SIDE, SolverConfig, Window, descent, solve};
+use crate::geometry::Cell;
+use crate::map::{Class, Tiles};
+use crate::topology::{Space, Topology};
+use crate::view::{View, position};
+
+/// A corridor from the left that ends at one across.
+const FORK: &str = "
+    ################
+    ###########...##
+    ###########...##
+    ###########...##
+    ###########...##
+    ###########...##
+    #..............#
+    #...........>..#
+    #..............#
+    ###########...##
+    ###########...##
+    ###########...##
+    ###########...##
+    ###########...##
+    ################
+";
+
+struct Scene {
+    tiles: Tiles<16, 64>,
+    topology: Topology<64>,
+    rails: Rails<64>,
+    fresh: Fresh,
+    robot: Cell,
+}
+
+impl Scene {
+    /// The robot came along the row that it is in.
+    fn new(picture: &str) -> Self {
+        let mut scene = Self {
+            tiles: Tiles::new(),
+            topology: Topology::new(),
+            rails: Rails::new(),
+            fresh: Fresh::new(),
+            robot: Cell::default(),
+        };
+        scene.tiles.reset(8, 8);
+        for (y, row) in picture.split_whitespace().enumerate() {
+            for (x, c) in row.chars().enumerate() {
+                let least = Cell {
+                    x: 2 * x as i32,
+                    y: 2 * y as i32,
+                };
+                let class = if c == '#' {
+                    Class::Obstacle
+                } else {
+                    Class::Free
+                };
+                for k in 0..4 {
+                    let part = Cell {
+                        x: least.x + (k & 1),
+                        y: least.y + (k >> 1),
+                    };
+                    scene.tiles.set(part, class).unwrap();
+                }
+                if c == '>' {
+                    scene.robot = least;
+                }
+            }
+        }
+        scene.topology.reset(Space::KnownFree);
+        let disc = Disc::new(0.1);
+        while !scene.topology.advance(&scene.tiles, &disc, u32::MAX) {}
+        scene.rails.reset((8, 8));
+        for x in 3..=scene.robot.x {
+            let y = scene.robot.y;
+            scene.fresh.come(Cell { x, y }, &mut scene.rails);
+            scene.fresh.visit(Cell { x, y }, &mut scene.rails);
+            scene.rails.pass();
+        }
+        scene
+    }
+
+    /// Where the field leads from the robot: x and y of its heading.
+    fn heading(&self, side: Option<Side>) -> (f32, f32) {
+        let mut view = View::new();
+        view.look_around(&self.tiles, &Disc::new(0.1), self.robot, 1);
+        let centres = CentreCells {
+            frame: self.topology.frame(),
+            way: self.topology.skeleton().unwrap(),
+        };
+        let (mut window, least) = (Window::new(), self.robot);
+        // The middle of the robot's coarse cell.
+        let robot = Cell {
+            x: least.x + 1,
+            y: least.y + 1,
+        }
+        .corner();
+        let dates = (&self.rails, &self.fresh);
+        charge_rails(&mut window, &view, dates, &centres, robot, &[0; SIDE]);
+        if let Some(side) = side {
+            let ahead = self
+                .fresh
+                .ahead(self.robot)
+                .expect("it came from somewhere");
+            prefer(&mut window, &view, robot, (side, ahead));
+        }
+        let config = SolverConfig {
+            max_cycles: 100,
+            ..SolverConfig::default()
+        };
+        solve(&mut window, &mut [0.0; SCRATCH_FLOATS], &config);
+        let (x, y) = position((view.origin, view.scale), robot);
+        let heading = descent::heading_at(&window, x, y).expect("the field is not flat");
+        (heading.cos(), heading.sin())
+    }
+
+    /// The robot was in the arm above or below its corridor, not before the last visits there.
+    fn visit_arm(&mut self, up: bool) {
+        for k in 0..7 {
+            let y = if up { 18 + k } else { 2 + k };
+            self.rails.visit(Cell { x: 24, y });
+        }
+    }
+}
+
+#[test]
+fn the_preferred_side_decides_at_a_fork_of_two_ways_as_good() {
+    let scene = Scene::new(FORK);
+    let (_, left) = scene.heading(Some(Side::Left));
+    let (_, right) = scene.heading(Some(Side::Right));
+    assert!(left > 0.2, "left is up: {left}");
+    assert!(right < -0.2, "right is down: {right}");
+}
+
+#[test]
+fn the_way_that_was_not_visited_is_taken_whatever_side_is_preferred() {
+    for up in [true, false] {
+        let mut scene = Scene::new(FORK);
+        scene.visit_arm(up);
+        for side in [None, Some(Side::Left), Some(Side::Right)] {
+            let (_, left) = scene.heading(side);
+            assert!(
+                (left < 0.0) == up && left.abs() > 0.2,
+                "{up} {side:?}: {left}"
+            );
+        }
+    }
+}
+
+#[test]
+fn where_all_was_visited_the_older_way_is_taken() {
+    for up in [true, false] {
+        let mut scene = Scene::new(FORK);
+        scene.visit_arm(!up);
+        (0..400).for_each(|_| scene.rails.pass());
+        scene.visit_arm(up);
+        (0..40).for_each(|_| scene.rails.pass());
+        let (_, left) = scene.heading(None);
+        assert!((left < 0.0) == up && left.abs() > 0.2, "{up}: {left}");
+    }
+}

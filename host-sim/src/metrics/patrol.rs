@@ -1,0 +1,69 @@
+//! A patrol: how long ago the rails were last visited, judged on the true path.
+//!
+//! A rail is a centre cell of the map at the end, visited whenever the robot's centre is within 1 m of it. Its *age* is the
+//! time since its last visit, in the exploration or on patrol; since the start, if there was none. Ages are taken in every step of the patrol.
+
+/// A rail this near to the robot is visited, metres.
+const VISIT_M: f64 = 1.0;
+
+/// Ages of the rails on a patrol.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patrol {
+    /// Of any rail in any step, seconds.
+    pub oldest_rail_s: f64,
+    /// Of all rails in all steps, seconds.
+    pub mean_age_s: f64,
+}
+
+impl Patrol {
+    /// The patrol of the last `patrol_s` seconds of a path of time, x and y; `None` without steps in it or without rails.
+    #[must_use]
+    pub fn judge(rails: &[[f64; 2]], path: &[[f64; 3]], patrol_s: f64) -> Option<Self> {
+        let begins_s = path.last()?[0] - patrol_s;
+        let mut visited_s = vec![0.0; rails.len()];
+        let (mut oldest, mut sum, mut ages) = (0.0_f64, 0.0, 0.0);
+        for &[time_s, x, y] in path {
+            for (rail, visited_s) in rails.iter().zip(&mut visited_s) {
+                if (rail[0] - x).hypot(rail[1] - y) <= VISIT_M {
+                    *visited_s = time_s;
+                }
+                if time_s > begins_s {
+                    let age = time_s - *visited_s;
+                    (oldest, sum, ages) = (oldest.max(age), sum + age, ages + 1.0);
+                }
+            }
+        }
+        (ages > 0.0).then(|| Self {
+            oldest_rail_s: oldest,
+            mean_age_s: sum / ages,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Patrol;
+
+    /// To and fro on 10 m at 1 m/s for so many seconds.
+    fn path(seconds: u32) -> Vec<[f64; 3]> {
+        let at = |t: f64| 10.0 - (t % 20.0 - 10.0).abs();
+        let times = (0..=10 * seconds).map(|k| f64::from(k) / 10.0);
+        times.map(|t| [t, at(t), 0.0]).collect()
+    }
+
+    #[test]
+    fn a_robot_that_goes_to_and_fro_comes_to_the_ends_once_a_round() {
+        let rails: Vec<[f64; 2]> = (0..=10).map(|x| [f64::from(x), 0.0]).collect();
+        let patrol = Patrol::judge(&rails, &path(200), 100.0).unwrap();
+        // Gone from 1 m before the end, and back again: 20 s less twice 1 m.
+        assert!((patrol.oldest_rail_s - 18.0).abs() < 0.2, "{patrol:?}");
+        assert!((2.0..9.0).contains(&patrol.mean_age_s), "{patrol:?}");
+        let far = Patrol::judge(&[[5.0, 9.0]], &path(200), 100.0).unwrap();
+        assert!(
+            (far.oldest_rail_s - 200.0).abs() < 0.2,
+            "never visited: {far:?}"
+        );
+        assert_eq!(Patrol::judge(&[], &path(9), 5.0), None);
+        assert_eq!(Patrol::judge(&rails, &[], 5.0), None);
+    }
+}
