@@ -16,7 +16,8 @@ use serde::{Deserialize, Serialize};
 use crate::check::{self, CHECK_BYTES, Kind, Running};
 use crate::cobs::{self, Stuffer};
 use crate::message::{
-    FIELD_SIDE, MAX_BEAMS, MAX_SCANS, Reply, Request, TILE_BYTES, TILE_SKELETON_BYTES,
+    FIELD_SIDE, MAX_BEAMS, MAX_SCANS, ROAD_PAGE, Reply, Request, TILE_BYTES, TILE_DATES,
+    TILE_SKELETON_BYTES,
 };
 use crate::schema::{SCHEMA, VERSION};
 
@@ -29,8 +30,11 @@ pub const MAX_LOG_BYTES: usize = 240;
 /// and time at the ends of their types.
 const MAX_REQUEST_BODY: usize = 1 + 5 + 6 * 5 + 2 * 3 + 1 + MAX_SCANS * (2 + MAX_BEAMS * 3);
 /// Body of the largest reply: a map tile. A field row takes 4 bytes a cell, less in sum.
-const MAX_REPLY_BODY: usize = 2 + 2 * 3 + (2 + TILE_BYTES) + (1 + TILE_SKELETON_BYTES);
+const MAX_REPLY_BODY: usize =
+    2 + 2 * 3 + (2 + TILE_BYTES) + (1 + TILE_SKELETON_BYTES) + 3 + TILE_DATES;
 const _: () = assert!(MAX_REPLY_BODY > 12 + 4 * FIELD_SIDE && MAX_REPLY_BODY > MAX_LOG_BYTES);
+// A page of the road: tractor point, shield, length, and cells of two varints.
+const _: () = assert!(MAX_REPLY_BODY > 1 + 7 + 13 + 2 + 6 * ROAD_PAGE);
 
 /// Bytes of the longest frame that a host sends, delimiter included.
 pub const MAX_REQUEST_FRAME: usize = MAX_REQUEST_BODY + overhead(MAX_REQUEST_BODY);

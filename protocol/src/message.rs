@@ -11,6 +11,7 @@
 //! | [`Request::Tile`] | host | [`Reply::Tile`] or [`Reply::Refused`] |
 //! | [`Request::FieldRow`] | host | [`Reply::FieldRow`] or [`Reply::Refused`] |
 //! | [`Request::Frontiers`] | host | [`Reply::Frontiers`] or [`Reply::Refused`] |
+//! | [`Request::Road`] | host | [`Reply::Road`] or [`Reply::Refused`] |
 //!
 //! The device says two things unasked: [`Reply::Hello`] after it booted, and [`Reply::Crash`] before it reboots.
 //!
@@ -35,6 +36,10 @@ pub const MAX_FRONTIERS: usize = 16;
 pub const TILE_BYTES: usize = 256;
 /// Bytes of a tile's skeleton: 16 × 16 coarse cells of one bit, row by row from the least y.
 pub const TILE_SKELETON_BYTES: usize = 32;
+/// Places of a tile that have a date of their own: 2 × 2 of 1.6 m, row by row from the least y.
+pub const TILE_DATES: usize = 4;
+/// Cells of the road that a reply lists at the most.
+pub const ROAD_PAGE: usize = 32;
 /// Cells in a row of the field's window.
 pub const FIELD_SIDE: usize = 61;
 /// Bytes of a row's cell kinds: 61 cells of two bits.
@@ -245,6 +250,11 @@ pub enum Request {
     },
     /// Read the residual frontiers.
     Frontiers,
+    /// Read where the planner is going: the road from one of its cells on.
+    Road {
+        /// Cells of the road to leave out.
+        from: u8,
+    },
 }
 
 /// What the planner is doing.
@@ -340,6 +350,17 @@ pub struct Cost {
     pub budget_exhausted: bool,
 }
 
+/// What became of loops since the session began; nothing where the strategy closes none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Loops {
+    /// One is being closed: there is a shield behind the robot.
+    pub closing: bool,
+    /// Loops closed: the tractor point was reached by the way ahead.
+    pub closed: u16,
+    /// Loops given up, because there is none or it is too long.
+    pub given_up: u16,
+}
+
 /// The answer to an observation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Command {
@@ -349,6 +370,8 @@ pub struct Command {
     pub status: Status,
     /// Robot heading that the field asks for, radians; meaningful while exploring.
     pub heading: I16F16,
+    /// What became of loops.
+    pub loops: Loops,
     /// Counters of the link.
     pub counters: Counters,
     /// Cost of the step.
@@ -466,6 +489,10 @@ pub struct Tile {
     pub cells: Vec<u8, TILE_BYTES>,
     /// One bit a coarse cell: on the skeleton.
     pub skeleton: Vec<u8, TILE_SKELETON_BYTES>,
+    /// One bit for 8 × 8 cells, row by row from the least y, least x in the lowest bit: a loop was closed near here.
+    pub marks: u16,
+    /// When a place of 16 × 16 cells was last visited, where the strategy keeps account: the later the greater, 0 never.
+    pub dates: [u8; TILE_DATES],
 }
 
 /// One row of the last window's field.
@@ -483,6 +510,19 @@ pub struct FieldRow {
     pub q: Vec<f32, FIELD_SIDE>,
     /// Two bits a cell, least x in the low bits: 0 free, 1 obstacle, 2 goal.
     pub cells: Vec<u8, FIELD_CELL_BYTES>,
+}
+
+/// Where the planner is going. Cells are map cells, the least ones of the planner's own of 20 cm.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Road {
+    /// The tractor point: behind the robot, to be reached by the way ahead.
+    pub tractor: Option<(i16, i16)>,
+    /// The two ends of the shield, a wall across the way back while a loop is being closed.
+    pub shield: Option<[(i16, i16); 2]>,
+    /// Cells that the planner keeps of the road, the robot's end first.
+    pub length: u8,
+    /// Of them, those asked for.
+    pub cells: Vec<(i16, i16), ROAD_PAGE>,
 }
 
 /// Why a frontier was left.
@@ -541,4 +581,6 @@ pub enum Reply {
     Refused(Refusal),
     /// The program crashed; it stands still and reboots.
     Crash(Crash),
+    /// Where the planner is going.
+    Road(Road),
 }

@@ -11,8 +11,8 @@ use fieldline_protocol::check::Kind;
 use fieldline_protocol::frame::encode_log;
 use fieldline_protocol::message::{
     Cause, Command, Control, Cost, Counters, Crash, Fault, FieldRow, Finish, Frontier, INVALID_MM,
-    Identity, Laser, NO_RETURN_MM, Observation, Parameter, Pose, Preference, Refusal, Reply,
-    Request, Residue, Scan, Stages, Start, Status, Strategy, TILE_BYTES, TILE_SKELETON_BYTES,
+    Identity, Laser, Loops, NO_RETURN_MM, Observation, Parameter, Pose, Preference, Refusal, Reply,
+    Request, Residue, Road, Scan, Stages, Start, Status, Strategy, TILE_BYTES, TILE_SKELETON_BYTES,
     Terrain, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
@@ -233,6 +233,7 @@ fn request_pictures() {
     request_is(Request::Tile { x: -1, y: 64 }, &[3, 1, 0x80, 0x01]);
     request_is(Request::FieldRow { row: 60 }, &[4, 60]);
     request_is(Request::Frontiers, &[5]);
+    request_is(Request::Road { from: 32 }, &[6, 32]);
 }
 
 #[test]
@@ -320,6 +321,11 @@ fn reply_command() {
             },
             status: Status::Exploring,
             heading: long(-0.5),
+            loops: Loops {
+                closing: true,
+                closed: 300,
+                given_up: 2,
+            },
             counters: Counters {
                 received: 200,
                 crc_errors: 1,
@@ -348,6 +354,7 @@ fn reply_command() {
             0x80, 0x10, 0xff, 0x3f, // velocity
             1,    // exploring
             0xff, 0xff, 0x03, // heading −0.5 rad = −32768/65536
+            1, 0xac, 0x02, 2, // loops
             0xc8, 0x01, 1, 2, 3, 4, // counters
             0xc0, 0x84, 0x3d, 1, 2, 3, 4, 5, 0x80, 0x01, 7, // instructions, by stages
             0x80, 0x20, 3, 1, // the rest of the cost
@@ -366,8 +373,18 @@ fn reply_tile() {
             y: -2,
             cells: cells.into_iter().collect(),
             skeleton: skeleton.into_iter().collect(),
+            marks: 0x8001,
+            dates: [0, 1, 254, 255],
         })),
-        &[&[4, 1, 4, 3, 0x80, 0x02][..], &cells, &[32], &skeleton].concat(),
+        &[
+            &[4, 1, 4, 3, 0x80, 0x02][..],
+            &cells,
+            &[32],
+            &skeleton,
+            &[0x81, 0x80, 0x02],
+            &[0, 1, 254, 255],
+        ]
+        .concat(),
     );
 }
 
@@ -412,6 +429,24 @@ fn reply_frontiers() {
             .collect(),
         ),
         &[6, 4, 0, 1, 9, 0, 2, 1, 9, 1, 4, 1, 9, 2, 6, 1, 9, 3],
+    );
+}
+
+#[test]
+fn reply_road() {
+    reply_is(Reply::Road(Road::default()), &[9, 0, 0, 0, 0]);
+    reply_is(
+        Reply::Road(Road {
+            tractor: Some((-2, 64)),
+            shield: Some([(0, 2), (4, 6)]),
+            length: 96,
+            cells: [(8, 0), (10, -2)].into_iter().collect(),
+        }),
+        &[
+            9, 1, 3, 0x80, 0x01, // tractor point
+            1, 0, 4, 8, 12, // shield
+            96, 2, 16, 0, 20, 3, // two cells of 96
+        ],
     );
 }
 

@@ -11,8 +11,9 @@ use fieldline_protocol::frame::{
 };
 use fieldline_protocol::message::{
     BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Counters, Crash, FIELD_CELL_BYTES, FIELD_SIDE,
-    FieldRow, Frontier, Identity, Laser, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM, Preference, Reply,
-    Request, Residue, Start, Strategy as Plan, TILE_BYTES, TILE_SKELETON_BYTES, Terrain, Tile,
+    FieldRow, Frontier, Identity, Laser, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM, Preference,
+    ROAD_PAGE, Reply, Request, Residue, Road, Start, Strategy as Plan, TILE_BYTES, TILE_DATES,
+    TILE_SKELETON_BYTES, Terrain, Tile,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use proptest::prelude::*;
@@ -73,6 +74,8 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         y: i16::MIN,
         cells: [0xff; TILE_BYTES].into_iter().collect(),
         skeleton: [0xff; TILE_SKELETON_BYTES].into_iter().collect(),
+        marks: u16::MAX,
+        dates: [u8::MAX; TILE_DATES],
     }));
     assert_eq!(reply_frame(u16::MAX, &tile).len(), MAX_REPLY_FRAME);
 
@@ -144,6 +147,12 @@ fn the_largest_messages_fit_and_fill_their_frames() {
             q: [f32::MAX; FIELD_SIDE].into_iter().collect(),
             cells: [u8::MAX; FIELD_CELL_BYTES].into_iter().collect(),
         })),
+        Reply::Road(Road {
+            tractor: Some((i16::MIN, i16::MIN)),
+            shield: Some([(i16::MIN, i16::MIN); 2]),
+            length: u8::MAX,
+            cells: [(i16::MIN, i16::MIN); ROAD_PAGE].into_iter().collect(),
+        }),
         Reply::Frontiers(
             [Frontier {
                 x: i16::MIN,
@@ -170,8 +179,8 @@ fn a_frame_costs_at_most_ten_bytes() {
     let cost = request_frame(0xffff, &full).len() - body;
     assert_eq!((body, cost), (771, 10));
     assert_eq!(overhead(body), 10);
-    assert_eq!(MAX_REPLY_FRAME - overhead(299), 299);
-    assert!(overhead(299) <= 10);
+    assert_eq!(MAX_REPLY_FRAME - overhead(306), 306);
+    assert!(overhead(306) <= 10);
     let small = request_frame(0xffff, &Request::Frontiers);
     assert_eq!(small.len() - 1, 7);
 }

@@ -6,7 +6,10 @@
 //! | [`random`] | seeded numbers |
 //! | [`table`] | columns of text |
 //! | [`runs`] | whole explorations, several at a time, and their row in a table |
+//! | [`loops`] | tables of explorations that close loops, with the papers' ratios |
 //! | [`worlds`] | the built-in worlds by kind; worlds drawn by others, where there are any |
+//! | [`plot`] | lines over a pair of axes, as an SVG |
+//! | [`starts`] | starts drawn at random, for worlds that have but one |
 //! | [`costs`] | instructions of a step on the emulated chip |
 //! | [`emulator`] | the image and QEMU, or the word why not |
 //! | [`elf`] | what an image takes of flash and memory |
@@ -19,8 +22,11 @@ pub mod costs;
 pub mod elf;
 pub mod emulator;
 pub mod golden;
+pub mod loops;
+pub mod plot;
 pub mod random;
 pub mod runs;
+pub mod starts;
 pub mod table;
 pub mod worlds;
 

@@ -35,6 +35,7 @@ pub mod convert;
 pub mod limits;
 mod log;
 pub mod meter;
+mod overlay;
 pub mod pilot;
 pub mod port;
 pub mod ring;

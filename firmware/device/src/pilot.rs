@@ -16,13 +16,14 @@ use fieldline_planner::planner::{self, CellKind, Output};
 use fieldline_planner::{Config, Laps, State, Workspace, step};
 use fieldline_protocol::message::{
     Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, Frontier, MAX_FRONTIERS,
-    MAX_SCANS, Observation, Refusal, Start, Status, Tile, Twist,
+    MAX_SCANS, Observation, Refusal, Road, Start, Status, Tile, Twist,
 };
 use heapless::Vec;
 
 use crate::convert;
 use crate::limits;
 use crate::log::{info, warning};
+use crate::overlay;
 
 // What is collected into the wire's bounded lists must fit them.
 const _: () = assert!(SIDE == FIELD_SIDE && MAX_SCANS == 2);
@@ -166,7 +167,10 @@ impl Pilot {
         if self.planned != Status::Exploring {
             info!("exploration ended");
         }
-        Ok(command(&output, self.planned))
+        Ok(Command {
+            loops: overlay::loops(memory.state),
+            ..command(&output, self.planned)
+        })
     }
 
     /// One map tile; `None` where nothing was ever seen.
@@ -183,6 +187,8 @@ impl Pilot {
             y,
             cells: cells.iter().copied().collect(),
             skeleton: rows.iter().flat_map(|row| row.to_le_bytes()).collect(),
+            marks: overlay::marks(memory.state, (x, y)),
+            dates: overlay::dates(memory.state, (x, y)),
         })
     }
 
@@ -196,6 +202,15 @@ impl Pilot {
             .workspace
             .field_row(row)
             .map(|found| field_row(row, &found))
+    }
+
+    /// Where the planner is going: tractor point, shield, and the road without its first `from` cells.
+    #[must_use]
+    pub fn road<const TILES: usize, const SLOTS: usize>(
+        memory: &Memory<'_, TILES, SLOTS>,
+        from: u8,
+    ) -> Road {
+        overlay::road(memory.state, from)
     }
 
     /// The residual frontiers, the first [`MAX_FRONTIERS`] of them.

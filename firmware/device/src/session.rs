@@ -347,6 +347,7 @@ impl Session {
             Request::Tile { x, y } => Reply::Tile(Pilot::tile(memory, *x, *y)),
             Request::FieldRow { row } => Reply::FieldRow(Pilot::field_row(memory, *row)),
             Request::Frontiers => Reply::Frontiers(Pilot::frontiers(memory)),
+            Request::Road { from } => Reply::Road(Pilot::road(memory, *from)),
             // Answered before it came here.
             Request::Hello { .. } | Request::Observation(_) => Reply::Refused(Refusal::OutOfOrder),
         };

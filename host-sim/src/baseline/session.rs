@@ -26,7 +26,7 @@ use fieldline_planner::planner::{Input, starts_blocked};
 use fieldline_planner::status;
 use fieldline_protocol::message::{
     Command, Control, Cost, Fault, FieldRow, Finish, Frontier, Identity, MAX_FRONTIERS,
-    Observation, Refusal, Start, Status, TILE_SKELETON_BYTES, Tile,
+    Observation, Refusal, Start, Status, TILE_DATES, TILE_SKELETON_BYTES, Tile,
 };
 
 use super::chart::Chart;
@@ -343,6 +343,8 @@ impl<P: Plan> Link for Session<P> {
             y,
             cells: cells.into_iter().collect(),
             skeleton: [0; TILE_SKELETON_BYTES].into_iter().collect(),
+            marks: 0,
+            dates: [0; TILE_DATES],
         }))
     }
 

@@ -40,9 +40,19 @@ impl<'a> Album<'a> {
             path: &self.path,
             window: self.record.window.as_ref(),
             residue: &residue,
+            route: Some(&self.record.route),
+            given_up: &self.given_up(u32::MAX),
             ground: self.ground,
             room_for: None,
         })
+    }
+
+    /// Where loops were given up by then.
+    fn given_up(&self, time_ms: u32) -> Vec<(f64, f64)> {
+        let said = self.report.closures.iter().flat_map(|said| &said.given_up);
+        said.filter(|at| at.time_s * 1000.0 <= f64::from(time_ms))
+            .map(|at| (at.x_m, at.y_m))
+            .collect()
     }
 
     /// The series, in order.
@@ -69,6 +79,8 @@ impl<'a> Album<'a> {
             path: &self.path[..snapshot.steps.min(self.path.len())],
             window: snapshot.window.as_ref(),
             residue: &[],
+            route: Some(&snapshot.route),
+            given_up: &self.given_up(progress.time_ms),
             ground: self.ground,
             room_for: Some(&self.record.map),
         })

@@ -93,14 +93,29 @@ fn message(progress: &Progress) -> String {
         progress.coverage * 100.0,
         f64::from(progress.time_ms) / 1000.0,
         progress.path_m,
-        wording::status(progress.status)
+        doing(progress)
     )
+}
+
+/// The status, and loops where there is anything to say of them.
+fn doing(progress: &Progress) -> String {
+    let mut words = wording::status(progress.status);
+    let loops = progress.loops;
+    if loops.closing {
+        words += ", closing a loop";
+    }
+    for (count, what) in [(loops.closed, "closed"), (loops.given_up, "given up")] {
+        if count > 0 {
+            words += &format!(", {count} {what}");
+        }
+    }
+    words
 }
 
 #[cfg(test)]
 mod tests {
     use super::message;
-    use fieldline_protocol::message::Status;
+    use fieldline_protocol::message::{Loops, Status};
     use host_sim::trial::Progress;
 
     #[test]
@@ -110,10 +125,18 @@ mod tests {
             coverage: 0.4567,
             path_m: 31.26,
             status: Status::Exploring,
+            loops: Loops::default(),
         };
         assert_eq!(
             message(&progress),
             " 45.7 % known    83.4 s    31.3 m  exploring"
         );
+        let loops = Loops {
+            closing: true,
+            closed: 0,
+            given_up: 2,
+        };
+        let progress = Progress { loops, ..progress };
+        assert!(message(&progress).ends_with("m  exploring, closing a loop, 2 given up"));
     }
 }

@@ -4,7 +4,7 @@ use fieldline_device::session::{self, Boot};
 use fieldline_device::{Memory, Pilot, SLOTS, State, TILES};
 use fieldline_planner::Workspace;
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Frontier, Identity, Observation, Refusal, Status, Tile,
+    Command, Control, FieldRow, Frontier, Identity, Observation, Refusal, Road, Status, Tile,
 };
 
 use super::{Link, LinkError, LinkStats};
@@ -76,6 +76,10 @@ impl Link for Direct {
 
     fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
         Ok(self.with(|_, memory| Pilot::frontiers(memory).iter().copied().collect()))
+    }
+
+    fn road(&mut self, from: u8) -> Result<Road, LinkError> {
+        Ok(self.with(|_, memory| Pilot::road(memory, from)))
     }
 
     /// Every call counts as a frame sent and one received.

@@ -13,7 +13,7 @@ use fieldline_protocol::frame::{
 };
 use fieldline_protocol::message::{
     Command, Control, Counters, FieldRow, Frontier, Identity, Observation, Refusal, Reply, Request,
-    Status, Tile,
+    Road, Status, Tile,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 
@@ -289,6 +289,13 @@ impl<L: Line> Link for Endpoint<L> {
         match self.call(&Request::Frontiers)? {
             Reply::Frontiers(frontiers) => Ok(frontiers.iter().copied().collect()),
             _ => Err(unexpected("a request for frontiers")),
+        }
+    }
+
+    fn road(&mut self, from: u8) -> Result<Road, LinkError> {
+        match self.call(&Request::Road { from })? {
+            Reply::Road(road) => Ok(road),
+            _ => Err(unexpected("a request for the road")),
         }
     }
 

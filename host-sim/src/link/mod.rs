@@ -13,7 +13,7 @@
 use core::fmt;
 
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Frontier, Identity, Observation, Status, Tile,
+    Command, Control, FieldRow, Frontier, Identity, Observation, Road, Status, Tile,
 };
 use serde::{Deserialize, Serialize};
 
@@ -114,6 +114,13 @@ pub trait Link {
     /// # Errors
     /// As [`LinkError`].
     fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError>;
+    /// Where the planner is going, without the first `from` cells of the road; nothing where it does not say.
+    ///
+    /// # Errors
+    /// As [`LinkError`].
+    fn road(&mut self, _from: u8) -> Result<Road, LinkError> {
+        Ok(Road::default())
+    }
     /// Counters.
     fn stats(&self) -> LinkStats;
     /// Log bytes (defmt) of the device since the last call; empty where there is no log.

@@ -16,7 +16,7 @@ const ARROW_STEP: usize = 3;
 /// Colours that the path is cut into.
 const PATH_SHADES: usize = 192;
 
-/// Cells, and a grid of 5 m under the free ones.
+/// Cells, a tint where a loop was closed, and a grid of 5 m under the free ones.
 pub(super) fn map(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
     for row in 0..frame.rows {
         for column in 0..frame.columns {
@@ -25,6 +25,7 @@ pub(super) fn map(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
             let colour = match map.get(x, y) {
                 MapCell::Unknown => palette::UNKNOWN,
                 MapCell::Free if on_grid => palette::GRID,
+                MapCell::Free if map.is_marked(x, y) => palette::MARK,
                 MapCell::Free => palette::FREE,
                 MapCell::Obstacle => palette::OBSTACLE,
                 MapCell::NegativeObstacle => palette::NEGATIVE,
@@ -134,24 +135,40 @@ fn direction(window: &Window, x: usize, y: usize) -> Option<(f32, f32)> {
 
 /// The skeleton of the free space: a line between neighbouring centre cells of 20 cm.
 pub(super) fn skeleton(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
-    let on =
-        |x: i32, y: i32| map.on_skeleton(2 * x, 2 * y) && map.get(2 * x, 2 * y) == MapCell::Free;
-    let centre = |x: i32, y: i32| frame.spot(f64::from(2 * x + 1), f64::from(2 * y + 1));
     let colour = palette::SKELETON.alpha(1.0);
     let width = (frame.cell_px as f32 * 0.3).max(1.3);
+    for ends in links(frame, map) {
+        let line = ends.map(|(x, y)| skeleton_middle(frame, x, y));
+        canvas.line(&line, width, colour);
+    }
+}
+
+/// Neighbouring centre cells, in units of 20 cm.
+pub(super) fn links<'a>(
+    frame: &Frame,
+    map: &'a GridMap,
+) -> impl Iterator<Item = [(i32, i32); 2]> + use<'a> {
+    let on =
+        |x: i32, y: i32| map.on_skeleton(2 * x, 2 * y) && map.get(2 * x, 2 * y) == MapCell::Free;
     let (x0, y0) = (frame.origin_x.div_euclid(2), frame.origin_y.div_euclid(2));
-    for y in y0..=y0 + frame.rows / 2 {
-        for x in (x0..=x0 + frame.columns / 2).filter(|&x| on(x, y)) {
-            let here = centre(x, y);
-            for (dx, dy) in [(1, 0), (0, 1), (1, 1), (-1, 1)] {
+    let (x1, y1) = (x0 + frame.columns / 2, y0 + frame.rows / 2);
+    let cells = (y0..=y1).flat_map(move |y| (x0..=x1).map(move |x| (x, y)));
+    cells
+        .filter(move |&(x, y)| on(x, y))
+        .flat_map(move |(x, y)| {
+            let to = [(1, 0), (0, 1), (1, 1), (-1, 1)].into_iter();
+            to.filter(move |&(dx, dy)| {
                 // A diagonal is a link only where no corner goes round it.
                 let round = dx * dy != 0 && (on(x + dx, y) || on(x, y + dy));
-                if on(x + dx, y + dy) && !round {
-                    canvas.line(&[here, centre(x + dx, y + dy)], width, colour);
-                }
-            }
-        }
-    }
+                on(x + dx, y + dy) && !round
+            })
+            .map(move |(dx, dy)| [(x, y), (x + dx, y + dy)])
+        })
+}
+
+/// The middle of a centre cell.
+pub(super) fn skeleton_middle(frame: &Frame, x: i32, y: i32) -> Spot {
+    frame.spot(f64::from(2 * x + 1), f64::from(2 * y + 1))
 }
 
 /// The path, coloured by time, on a white casing.

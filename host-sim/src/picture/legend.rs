@@ -3,10 +3,11 @@
 use super::canvas::Canvas;
 use super::ground::greyed;
 use super::palette::{self, Rgb};
-use super::{Frame, Ground, HEADER, MARGIN, Scene, layers};
+use super::{Frame, Ground, HEADER, MARGIN, Scene, layers, loops};
 
-/// Pixels from one line of the legend to the next.
-const LINE: f32 = 29.0;
+/// Pixels from one line to the next.
+const LINE: f32 = super::LINE as f32;
+
 /// Height of the time scale, pixels.
 const TIME_BAR: f32 = 118.0;
 /// Height of the scale of heights, pixels.
@@ -98,6 +99,11 @@ pub(super) fn panel(canvas: &mut Canvas, left: i32, scene: &Scene<'_>) {
     if !scene.residue.is_empty() {
         layers::diamond(canvas, (mid, y));
         label(canvas, left, y, "frontier left");
+        y += LINE;
+    }
+    for (mark, words) in loops::keys(scene) {
+        mark(canvas, (mid, y));
+        label(canvas, left, y, words);
         y += LINE;
     }
     time_bar(canvas, left, y + 4.0, scene);

@@ -1,5 +1,5 @@
-//! `run.png`: the map, the skeleton, the last window's field and the path coloured by time, with a legend; in an uneven world the
-//! true ground beside it, in the same frame.
+//! `run.png`: the map, the skeleton, the last window's field and the path coloured by time, with a legend; what is known of loops
+//! and rails; in an uneven world the true ground beside it, in the same frame.
 //!
 //! A map cell is a square of whole pixels, two to six but for the smallest maps, so that the map stays crisp; everything else is antialiased. North
 //! is up.
@@ -8,11 +8,13 @@ mod canvas;
 mod ground;
 mod layers;
 mod legend;
+mod loops;
 mod palette;
 mod text;
 
 use crate::report::GridMap;
 use crate::report::tum::Stamped;
+use crate::trial::route::Route;
 use crate::trial::snapshot::Window;
 use canvas::{Canvas, Spot};
 
@@ -28,6 +30,8 @@ const FOOTER: i32 = 46;
 const PANEL: i32 = 236;
 /// The legend's least height, pixels; and with the ground's keys.
 const PANEL_HEIGHT: [i32; 2] = [470, 770];
+/// Pixels from one line of the legend to the next.
+const LINE: i32 = 29;
 /// Pixels between two maps side by side.
 const GAP: i32 = 24;
 /// The least width of the map's part, so that the title fits.
@@ -54,6 +58,10 @@ pub struct Scene<'a> {
     pub window: Option<&'a Window>,
     /// Frontiers that were left, metres.
     pub residue: &'a [(f64, f64)],
+    /// Where the planner was going.
+    pub route: Option<&'a Route>,
+    /// Where loops were given up, metres.
+    pub given_up: &'a [(f64, f64)],
     /// The true ground, in an uneven world.
     pub ground: Option<Ground<'a>>,
     /// A map that the page must have room for too, so that the pictures of a series are of one size.
@@ -205,7 +213,8 @@ pub fn run_png(scene: &Scene<'_>) -> Vec<u8> {
     let right = beside.map_or(frame, |(frame, _)| frame);
     let maps = (right.left + right.width()).max(MARGIN + LEAST_WIDTH);
     let width = maps + PANEL + MARGIN;
-    let keys = PANEL_HEIGHT[usize::from(beside.is_some())];
+    let more = loops::keys(scene).len() as i32 * LINE;
+    let keys = PANEL_HEIGHT[usize::from(beside.is_some())] + more;
     let height = HEADER + (frame.height() + FOOTER).max(keys) + MARGIN;
     let page = Canvas::new(width.unsigned_abs(), height.unsigned_abs(), palette::PAGE);
     let Some(mut canvas) = page else {
@@ -230,12 +239,17 @@ fn robots_map(canvas: &mut Canvas, frame: &Frame, scene: &Scene<'_>) {
     if let Some(window) = scene.window {
         layers::field(canvas, frame, window, scene.map);
     }
+    loops::rails(canvas, frame, scene.map);
     layers::skeleton(canvas, frame, scene.map);
     if let Some(window) = scene.window {
         layers::arrows(canvas, frame, window);
     }
     layers::path(canvas, frame, scene.path);
     layers::residue(canvas, frame, scene.residue);
+    if let Some(route) = scene.route {
+        loops::route(canvas, frame, route);
+    }
+    loops::given_up(canvas, frame, scene.given_up);
     layers::ends(canvas, frame, scene.path);
 }
 

@@ -33,6 +33,11 @@ pub(super) const START: Rgb = Rgb(0x1a, 0x93, 0x6f);
 /// Frontiers that were left.
 pub(super) const RESIDUE: Rgb = Rgb(0xe0, 0x8e, 0x0b);
 
+/// What belongs to a loop that is being closed: tractor point, shield; and one given up.
+pub(super) const LOOP: Rgb = Rgb(0xc0, 0x1f, 0x2e);
+/// Free cells near a closed loop.
+pub(super) const MARK: Rgb = Rgb(0xe6, 0xf3, 0xe4);
+
 /// An opaque colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Rgb(pub(super) u8, pub(super) u8, pub(super) u8);
@@ -83,6 +88,16 @@ pub(super) fn field(share: f32) -> Rgb {
     along(&STOPS, share)
 }
 
+/// Rails from the newest visit to the oldest: a dark green that grows lighter all the way.
+pub(super) fn age(share: f32) -> Rgb {
+    const STOPS: [Rgb; 3] = [
+        Rgb(0x0b, 0x55, 0x3c),
+        Rgb(0x4f, 0xa3, 0x6b),
+        Rgb(0xbf, 0xe5, 0xbb),
+    ];
+    along(&STOPS, share)
+}
+
 /// Ground from the lowest to the highest: a dull teal over green to sand, growing lighter all the way.
 pub(super) fn height(share: f32) -> Rgb {
     const STOPS: [Rgb; 4] = [
@@ -102,10 +117,10 @@ fn along(stops: &[Rgb], share: f32) -> Rgb {
 
 #[cfg(test)]
 mod tests {
-    use super::{Rgb, height, time};
+    use super::{Rgb, age, height, time};
 
     #[test]
-    fn scales_of_time_and_height_grow_lighter_all_the_way() {
+    fn scales_of_time_height_and_age_grow_lighter_all_the_way() {
         let light = |Rgb(r, g, b): Rgb| {
             0.2126 * f32::from(r) + 0.7152 * f32::from(g) + 0.0722 * f32::from(b)
         };
@@ -114,7 +129,7 @@ mod tests {
             assert!(scale.windows(2).all(|pair| pair[0] <= pair[1] + 0.8));
             scale[100] - scale[0]
         };
-        assert!(spread(time) > 120.0 && spread(height) > 80.0);
+        assert!(spread(time) > 120.0 && spread(height) > 80.0 && spread(age) > 120.0);
     }
 
     #[test]

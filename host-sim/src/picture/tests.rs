@@ -5,6 +5,7 @@ use crate::metrics::{Footing, GroundTruth};
 use crate::report::tum::Stamped;
 use crate::report::{GridMap, MapCell};
 use crate::robot::{Limits, RADIUS_M};
+use crate::trial::route::Route;
 use crate::trial::snapshot::{Window, WindowCell};
 use crate::world::World;
 
@@ -71,6 +72,8 @@ fn colours_are_where_the_map_says() {
         path: &path,
         window: Some(&window),
         residue: &[(-2.0, -3.0)],
+        route: None,
+        given_up: &[],
         ground: None,
         room_for: None,
     };
@@ -110,6 +113,8 @@ fn a_run_that_saw_nothing_still_has_a_picture() {
         path: &[],
         window: None,
         residue: &[],
+        route: None,
+        given_up: &[],
         ground: None,
         room_for: None,
     };
@@ -132,6 +137,8 @@ fn the_true_ground_lies_beside_the_map_in_the_same_frame() {
         path: &[],
         window: None,
         residue: &[],
+        route: None,
+        given_up: &[],
         ground: Some(ground),
         room_for: None,
     };
@@ -170,6 +177,8 @@ fn a_page_has_room_for_the_map_to_come() {
             path: &[],
             window: None,
             residue: &[],
+            route: None,
+            given_up: &[],
             ground: None,
             room_for,
         }));
@@ -212,4 +221,46 @@ fn pixels_and_spots_agree() {
     let bottom = frame.top + frame.height() - rim;
     assert_eq!((x.round() as i32, y.round() as i32), (right, bottom));
     assert!(frame.holds((x, y)) && !frame.holds((x, 0.0)));
+}
+
+#[test]
+fn loops_and_rails_are_drawn_where_they_are() {
+    let (mut map, path, _) = room();
+    // Tile (-1, 0): its lower left mark, and dates of its two lower places.
+    map.overlay((-1, 0), 1, [3, 9, 0, 0]);
+    let route = Route {
+        tractor: Some((-40, -20)),
+        shield: Some([(20, -30), (20, -20)]),
+        road: vec![(30, -10), (30, 0)],
+    };
+    let scene = Scene {
+        title: "room",
+        subtitle: "",
+        map: &map,
+        path: &path[..1],
+        window: None,
+        residue: &[],
+        route: Some(&route),
+        given_up: &[(-2.0, -3.0)],
+        ground: None,
+        room_for: None,
+    };
+    let (page, frame) = (decode(&run_png(&scene)), around(&map));
+    let colour = |x_m: f64, y_m: f64| {
+        let (x, y) = frame.metres(x_m, y_m);
+        let pixel = page.pixel(x as u32, y as u32).unwrap();
+        (pixel.red(), pixel.green(), pixel.blue())
+    };
+    let red = (0xc0, 0x1f, 0x2e);
+    assert_eq!(colour(-3.9, -1.9), red, "the tractor point");
+    assert_eq!(colour(2.1, -2.4), red, "the shield");
+    assert_eq!(colour(-2.0, -3.0), red, "a loop given up");
+    assert_eq!(colour(3.1, -0.5), (0x1f, 0x6f, 0xb2), "the road");
+    assert_eq!(colour(-3.15, 0.05), (0xe6, 0xf3, 0xe4), "a mark");
+    assert_eq!(colour(-2.25, 0.05), (0xff, 0xff, 0xff), "beside it");
+    // Beside the skeleton's own line, which lies on the band; the younger rail is the darker one.
+    let band = |x_m: f64| colour(x_m, 1.56);
+    assert_eq!(band(-2.5), (0xbf, 0xe5, 0xbb), "the oldest rail");
+    assert_eq!(band(-0.7), (0x0b, 0x55, 0x3c), "the newest rail");
+    assert_eq!(band(1.0), (0xff, 0xff, 0xff), "never visited");
 }

@@ -1,10 +1,11 @@
 //! The robot's map as a rectangle of cells, put together from its tiles.
 //!
-//! Cells of 10 cm, row by row from the least y; `origin` is the map coordinate of the first cell, in the odometry frame.
+//! Cells of 10 cm, row by row from the least y; `origin` is the map coordinate of the first cell, in the odometry frame. What a
+//! strategy knows of places lies over it: where loops were closed, and when places were visited.
 
 use std::collections::BTreeMap;
 
-use fieldline_protocol::message::Tile;
+use fieldline_protocol::message::{TILE_DATES, Tile};
 
 /// Cells on a tile's side.
 pub const TILE_SIDE: i32 = 32;
@@ -38,6 +39,8 @@ pub struct GridMap {
     pub height: usize,
     cells: Vec<MapCell>,
     skeleton: Vec<bool>,
+    /// Marks and dates of tiles that have any, as they were sent.
+    overlay: BTreeMap<(i16, i16), (u16, [u8; TILE_DATES])>,
 }
 
 impl GridMap {
@@ -51,6 +54,7 @@ impl GridMap {
             height,
             cells: vec![MapCell::Unknown; width * height],
             skeleton: vec![false; width * height],
+            overlay: BTreeMap::new(),
         }
     }
 
@@ -85,6 +89,53 @@ impl GridMap {
         self.index(x, y)
             .and_then(|i| self.skeleton.get(i).copied())
             .unwrap_or(false)
+    }
+
+    /// Whether a loop was closed near the cell at map coordinates.
+    #[must_use]
+    pub fn is_marked(&self, x: i32, y: i32) -> bool {
+        let mark = part(x, y, 8);
+        self.overlaid(x, y)
+            .is_some_and(|(marks, _)| marks >> mark & 1 == 1)
+    }
+
+    /// The date on which the place of a cell was last visited, the later the greater; `None` if never.
+    #[must_use]
+    pub fn date(&self, x: i32, y: i32) -> Option<u8> {
+        let (_, dates) = self.overlaid(x, y)?;
+        dates.get(part(x, y, 16)).copied().filter(|date| *date > 0)
+    }
+
+    /// The oldest and the newest date; `None` where no account is kept of visits.
+    #[must_use]
+    pub fn dates(&self) -> Option<(u8, u8)> {
+        let dates = self.overlay.values().flat_map(|(_, dates)| *dates);
+        let visited = dates.filter(|date| *date > 0);
+        visited.fold(None, |span: Option<(u8, u8)>, date| {
+            let (oldest, newest) = span.unwrap_or((date, date));
+            Some((oldest.min(date), newest.max(date)))
+        })
+    }
+
+    /// Whether a loop was closed anywhere.
+    #[must_use]
+    pub fn has_marks(&self) -> bool {
+        self.overlay.values().any(|(marks, _)| *marks != 0)
+    }
+
+    /// Lay marks and dates over a tile.
+    pub fn overlay(&mut self, tile: (i16, i16), marks: u16, dates: [u8; TILE_DATES]) {
+        if marks != 0 || dates != [0; TILE_DATES] {
+            self.overlay.insert(tile, (marks, dates));
+        }
+    }
+
+    fn overlaid(&self, x: i32, y: i32) -> Option<(u16, [u8; TILE_DATES])> {
+        let tile = [x, y].map(|at| i16::try_from(at.div_euclid(TILE_SIDE)));
+        let [Ok(x), Ok(y)] = tile else {
+            return None;
+        };
+        self.overlay.get(&(x, y)).copied()
     }
 
     /// Set a cell; outside is ignored.
@@ -127,6 +178,7 @@ impl GridMap {
     }
 
     fn lay(&mut self, tile: &Tile) {
+        self.overlay((tile.x, tile.y), tile.marks, tile.dates);
         let (left, bottom) = (i32::from(tile.x) * TILE_SIDE, i32::from(tile.y) * TILE_SIDE);
         for row in 0..TILE_SIDE {
             for column in 0..TILE_SIDE {
@@ -158,6 +210,7 @@ impl GridMap {
                 out.set_skeleton(x, y);
             }
         }
+        out.overlay.clone_from(&self.overlay);
         out
     }
 
@@ -178,6 +231,12 @@ fn cell_of(tile: &Tile, column: i32, row: i32) -> MapCell {
         2 => MapCell::Obstacle,
         _ => MapCell::NegativeObstacle,
     }
+}
+
+/// Which square of `side` cells of its tile a cell is in, row by row.
+fn part(x: i32, y: i32, side: i32) -> usize {
+    let [column, row] = [x, y].map(|at| at.rem_euclid(TILE_SIDE) / side);
+    (row * (TILE_SIDE / side) + column) as usize
 }
 
 /// One bit a coarse cell of 2 × 2 cells, row by row, least x in the low bits.
@@ -206,6 +265,8 @@ mod tests {
             y,
             cells: heapless::Vec::from_slice(&cells).unwrap(),
             skeleton: heapless::Vec::from_slice(&skeleton).unwrap(),
+            marks: 0,
+            dates: [0; 4],
         };
         ((x, y), tile)
     }
@@ -229,6 +290,30 @@ mod tests {
         let skeleton: Vec<_> = (0..5).map(|x| map.on_skeleton(x, 6)).collect();
         assert_eq!(skeleton, [false, false, true, true, false]);
         assert!(map.on_skeleton(2, 7) && !map.on_skeleton(2, 5));
+    }
+
+    #[test]
+    fn marks_and_dates_lie_where_their_tile_does() {
+        let (_, mut known) = tile(-1, 2, &[(0, 0, 1)]);
+        (known.marks, known.dates) = (1 << 6, [0, 3, 9, 0]);
+        let map = GridMap::from_tiles(&[((-1, 2), known)].into());
+        // Mark 6 is the third of the second row: 8 × 8 cells from (16, 8) on.
+        let marked = [
+            (-16, 72),
+            (-9, 79),
+            (-17, 72),
+            (-16, 71),
+            (-8, 72),
+            (-16, 80),
+        ];
+        let is_marked = marked.map(|(x, y)| map.is_marked(x, y));
+        assert_eq!(is_marked, [true, true, false, false, false, false]);
+        let places = [(-32, 64), (-16, 64), (-1, 79), (-32, 80), (-1, 95), (0, 64)];
+        let dates = places.map(|(x, y)| map.date(x, y));
+        assert_eq!(dates, [None, Some(3), Some(3), Some(9), None, None]);
+        assert_eq!(map.dates(), Some((3, 9)));
+        assert!(map.has_marks() && !GridMap::default().has_marks());
+        assert_eq!(GridMap::default().dates(), None);
     }
 
     #[test]

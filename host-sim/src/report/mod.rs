@@ -4,6 +4,7 @@
 //! Invariant: every number in the file is finite, and `null` stands for "not measured" or "never reached".
 //! Units are in the names: `_m` metres, `_m2` square metres, `_s` seconds, `_us` microseconds, `_deg` degrees.
 
+pub mod closures;
 pub mod commands;
 pub mod folder;
 pub mod grid_map;
@@ -15,6 +16,7 @@ pub mod tum;
 use serde::{Deserialize, Serialize};
 
 pub use crate::link::LinkStats;
+pub use closures::{Closures, GivenUp};
 pub use grid_map::{GridMap, MapCell};
 pub use terrain::Terrain;
 
@@ -59,6 +61,8 @@ pub struct Report {
     /// Loops that were closed, and how many there are.
     #[serde(flatten)]
     pub loops: Loops,
+    /// What the device said of loops; `null` where the strategy closes none.
+    pub closures: Option<Closures>,
     /// What became of the rails on patrol; `null` without one.
     pub patrol: Option<Patrol>,
     /// What the true robot suffered.

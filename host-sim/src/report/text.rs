@@ -1,6 +1,6 @@
 //! A report in a few lines for a person.
 
-use super::Report;
+use super::{Closures, GivenUp, Report};
 
 impl Report {
     /// World, strategy and seed.
@@ -54,6 +54,7 @@ impl Report {
             } = self.loops;
             lines.push(format!("  loops     {loops_closed} of {loops} closed"));
         }
+        lines.extend(self.closures.as_ref().map(closures));
         if let Some(patrol) = &self.patrol {
             lines.push(format!(
                 "  patrol    oldest rail {:.0} s, mean age {:.0} s",
@@ -119,6 +120,25 @@ impl Report {
     }
 }
 
+/// What the device said of loops.
+fn closures(said: &Closures) -> String {
+    let mut line = format!(
+        "  closing   {} closed by the robot's word, {} given up as not there; {:.0} s, {:.0} s of them in vain",
+        said.closed,
+        said.given_up.len(),
+        said.closing_s,
+        said.in_vain_s
+    );
+    for at in &said.given_up {
+        let GivenUp { time_s, x_m, y_m } = at;
+        line += &format!(
+            "\n  given up  a loop after {}, at ({x_m:.1}, {y_m:.1})",
+            minutes(*time_s)
+        );
+    }
+    line
+}
+
 /// `5:07`.
 fn minutes(seconds: f64) -> String {
     let whole = seconds.max(0.0).round() as u64;
@@ -128,6 +148,7 @@ fn minutes(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use crate::report::tests::sample;
+    use crate::report::{Closures, GivenUp};
 
     #[test]
     fn the_summary_says_what_matters() {
@@ -161,6 +182,28 @@ mod tests {
         assert!(text.contains("lost (tipped), "), "{text}");
         let line = "  ground    12.3 m up and down; steepest 18.3 deg along, 7.0 deg across; 0.4 s beyond 20 and 15 deg";
         assert!(text.lines().any(|l| l == line), "{text}");
+    }
+
+    #[test]
+    fn a_loop_that_was_given_up_is_said() {
+        let mut report = sample();
+        let place = GivenUp {
+            time_s: 125.4,
+            x_m: 3.0,
+            y_m: -1.24,
+        };
+        report.closures = Some(Closures {
+            closed: 2,
+            given_up: vec![place],
+            closing_s: 210.4,
+            in_vain_s: 30.0,
+        });
+        let text = report.to_text();
+        let lines = "
+  closing   2 closed by the robot's word, 1 given up as not there; 210 s, 30 s of them in vain
+  given up  a loop after 2:05, at (3.0, -1.2)
+";
+        assert!(text.contains(lines), "{text}");
     }
 
     #[test]

@@ -112,6 +112,8 @@ mod tests {
                     y,
                     cells,
                     skeleton,
+                    marks: 0,
+                    dates: [0; 4],
                 };
                 tiles.insert((x, y), tile);
             }

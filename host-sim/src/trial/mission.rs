@@ -334,6 +334,7 @@ fn assemble(
         steps: record.steps.len() as u64,
         coverage: coverage(account, simulator),
         loops: loops(simulator, record),
+        closures: (mission.strategy() == Strategy::Ouroboros).then(|| record.closures()),
         patrol: patrol(mission, record),
         safety: safety(simulator),
         terrain: terrain(simulator, record),

@@ -10,6 +10,7 @@ pub mod mirror;
 pub mod mission;
 pub mod oracle;
 pub mod record;
+pub mod route;
 pub mod series;
 pub mod shape;
 pub mod snapshot;
@@ -18,7 +19,7 @@ pub mod wording;
 
 use std::time::Instant;
 
-use fieldline_protocol::message::{Command, Control, Observation, Start, Status, Twist};
+use fieldline_protocol::message::{Command, Control, Loops, Observation, Start, Status, Twist};
 
 use crate::link::{Link, LinkError};
 use crate::report::tum::Stamped;
@@ -82,6 +83,8 @@ pub struct Progress {
     pub path_m: f64,
     /// What the planner is doing.
     pub status: Status,
+    /// What became of loops.
+    pub loops: Loops,
 }
 
 /// What stays the same during a run.

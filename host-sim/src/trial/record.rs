@@ -2,13 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use fieldline_protocol::message::{Command, Cost, Frontier, Observation, Pose, Status, Tile};
+use fieldline_protocol::message::{
+    Command, Cost, Frontier, Loops, Observation, Pose, Status, Tile,
+};
 
+use super::route::Route;
 use super::snapshot::{Snapshot, Window};
 use super::{Ending, Progress, wording};
 use crate::link::digest::Digest;
 use crate::link::{LinkError, LinkStats};
 use crate::metrics::GroundTruth;
+use crate::report::closures::{Closures, Word};
 use crate::report::tum::Stamped;
 use crate::report::{self, GridMap, Percentiles};
 
@@ -46,6 +50,8 @@ pub struct Record {
     pub tiles: BTreeMap<(i16, i16), Tile>,
     /// The last window's field.
     pub window: Option<Window>,
+    /// Where the planner was going.
+    pub route: Route,
     /// Frontiers that were left.
     pub frontiers: Vec<Frontier>,
     /// Map and window on the way, where that was asked for.
@@ -72,6 +78,7 @@ impl Default for Record {
             map: GridMap::default(),
             tiles: BTreeMap::new(),
             window: None,
+            route: Route::default(),
             frontiers: Vec::new(),
             snapshots: Vec::new(),
             ground: None,
@@ -134,6 +141,7 @@ impl Record {
             coverage: self.coverage,
             path_m: self.path_m,
             status: last.map_or(Status::Idle, |step| step.command.status),
+            loops: last.map_or_else(Loops::default, |step| step.command.loops),
         }
     }
 
@@ -151,6 +159,21 @@ impl Record {
             reason: self.ending.reason().into(),
             residual_frontiers: self.frontiers.iter().map(residual).collect(),
         }
+    }
+
+    /// The report's part on what the device said of loops.
+    #[must_use]
+    pub fn closures(&self) -> Closures {
+        Closures::of(self.steps.iter().map(|step| {
+            let (estimate, loops) = (step.estimate, step.command.loops);
+            Word {
+                time_s: f64::from(estimate.time_ms) / 1000.0,
+                at_m: [estimate.x_m, estimate.y_m],
+                closing: loops.closing,
+                closed: loops.closed,
+                given_up: loops.given_up,
+            }
+        }))
     }
 
     /// The report's part on odometry.

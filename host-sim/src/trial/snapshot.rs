@@ -1,4 +1,4 @@
-//! Reads map, field and residual frontiers over the link, at the end of a run and, where that was asked for, on its way.
+//! Reads map, field, route and residual frontiers over the link, at the end of a run and, where that was asked for, on its way.
 //!
 //! The map is found by spreading from the start's tile: beams leave the robot, so that the touched tiles are connected
 //! through their eight neighbours. Cost: one request for each touched tile and for each tile around them.
@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fieldline_protocol::message::{FIELD_SIDE, FieldRow, Tile};
 
+use super::route::{self, Route};
 use super::{Progress, Record};
 use crate::link::{Link, LinkError};
 use crate::report::GridMap;
@@ -50,6 +51,8 @@ pub struct Snapshot {
     pub map: GridMap,
     /// The last window's field.
     pub window: Option<Window>,
+    /// Where the planner is going.
+    pub route: Route,
 }
 
 /// Fill the record's map, window and frontiers; the map is sought from where the run began.
@@ -59,6 +62,7 @@ pub struct Snapshot {
 pub fn read(link: &mut dyn Link, record: &mut Record) -> Result<(), LinkError> {
     record.frontiers = link.frontiers()?;
     record.window = window(link)?;
+    record.route = route::read(link)?;
     record.tiles = tiles(link, began_m(record))?;
     record.map = GridMap::from_tiles(&record.tiles);
     Ok(())
@@ -69,13 +73,14 @@ pub fn read(link: &mut dyn Link, record: &mut Record) -> Result<(), LinkError> {
 /// # Errors
 /// As [`LinkError`].
 pub fn take(link: &mut dyn Link, record: &Record) -> Result<Snapshot, LinkError> {
-    let window = window(link)?;
+    let (window, route) = (window(link)?, route::read(link)?);
     let tiles = tiles(link, began_m(record))?;
     Ok(Snapshot {
         progress: record.progress(),
         steps: record.steps.len(),
         map: GridMap::from_tiles(&tiles),
         window,
+        route,
     })
 }
 

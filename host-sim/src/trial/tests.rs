@@ -91,6 +91,8 @@ impl Link for Script {
             y,
             cells: heapless::Vec::from_slice(&[0b0101_0101; 256]).unwrap(),
             skeleton: heapless::Vec::new(),
+            marks: 1,
+            dates: [0, 7, 0, 9],
         }))
     }
     fn field_row(&mut self, _: u8) -> Result<Option<FieldRow>, LinkError> {

@@ -6,8 +6,8 @@ use fieldline_protocol::frame::{
 };
 use fieldline_protocol::message::{
     Cause, Command, Control, Cost, Counters, Crash, Fault, FieldRow, Finish, Frontier, Identity,
-    Laser, MAX_BEAMS, Observation, Parameter, Pose, Preference, Refusal, Reply, Request, Residue,
-    Scan, Stages, Start, Status, Strategy as Plan, Terrain, Tile, Twist,
+    Laser, Loops, MAX_BEAMS, Observation, Parameter, Pose, Preference, Refusal, Reply, Request,
+    Residue, Road, Scan, Stages, Start, Status, Strategy as Plan, Terrain, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 use proptest::prelude::*;
@@ -232,6 +232,7 @@ pub(crate) fn request() -> impl Strategy<Value = Request> {
         any::<(i16, i16)>().prop_map(|(x, y)| Request::Tile { x, y }),
         any::<u8>().prop_map(|row| Request::FieldRow { row }),
         Just(Request::Frontiers),
+        any::<u8>().prop_map(|from| Request::Road { from }),
     ]
 }
 
@@ -324,20 +325,29 @@ fn stages() -> impl Strategy<Value = Stages> {
     )
 }
 
+fn loops() -> impl Strategy<Value = Loops> {
+    any::<(bool, u16, u16)>().prop_map(|(closing, closed, given_up)| Loops {
+        closing,
+        closed,
+        given_up,
+    })
+}
+
 fn command() -> impl Strategy<Value = Command> {
     (
         twist(),
         status(),
-        long(),
+        (long(), loops()),
         counters(),
         stages(),
         any::<(u32, u32, u16, bool)>(),
     )
         .prop_map(
-            |(velocity, status, heading, counters, stages, cost)| Command {
+            |(velocity, status, (heading, loops), counters, stages, cost)| Command {
                 velocity,
                 status,
                 heading,
+                loops,
                 counters,
                 cost: Cost {
                     instructions: cost.0,
@@ -351,12 +361,15 @@ fn command() -> impl Strategy<Value = Command> {
 }
 
 fn tile() -> impl Strategy<Value = Tile> {
-    (any::<(i16, i16)>(), list(any::<u8>()), list(any::<u8>())).prop_map(
-        |((x, y), cells, skeleton)| Tile {
+    let known = any::<(i16, i16, u16, [u8; 4])>();
+    (known, list(any::<u8>()), list(any::<u8>())).prop_map(
+        |((x, y, marks, dates), cells, skeleton)| Tile {
             x,
             y,
             cells,
             skeleton,
+            marks,
+            dates,
         },
     )
 }
@@ -390,6 +403,17 @@ fn frontier() -> impl Strategy<Value = Frontier> {
     })
 }
 
+fn road() -> impl Strategy<Value = Road> {
+    type Place = (i16, i16);
+    let ends = any::<(Option<Place>, Option<[Place; 2]>, u8)>();
+    (ends, list(any::<Place>())).prop_map(|((tractor, shield, length), cells)| Road {
+        tractor,
+        shield,
+        length,
+        cells,
+    })
+}
+
 fn refusal() -> impl Strategy<Value = Refusal> {
     prop::sample::select(vec![
         Refusal::NotGreeted,
@@ -420,5 +444,6 @@ pub(crate) fn reply() -> impl Strategy<Value = Reply> {
         list(frontier()).prop_map(Reply::Frontiers),
         refusal().prop_map(Reply::Refused),
         crash().prop_map(Reply::Crash),
+        road().prop_map(Reply::Road),
     ]
 }

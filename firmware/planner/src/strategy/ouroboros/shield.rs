@@ -180,6 +180,13 @@ impl Shield {
         core::iter::once(self.at).chain(side(0)).chain(side(1))
     }
 
+    /// The last cell to the left and the last one to the right.
+    #[must_use]
+    pub fn ends(&self) -> [Cell; 2] {
+        let last = |side: usize| self.ray(side).take(self.length(side)).last();
+        [0, 1].map(|side| last(side).unwrap_or(self.at))
+    }
+
     /// Whether a cell is on it.
     #[must_use]
     pub fn holds(&self, cell: Cell) -> bool {
@@ -211,5 +218,30 @@ impl Iterator for Ray {
             self.at.y += 2 * self.along.1.signum();
         }
         Some(self.at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Shield;
+    use crate::geometry::Cell;
+
+    #[test]
+    fn the_ends_are_the_last_cells_of_each_side() {
+        let shield = Shield {
+            at: Cell { x: 10, y: -4 },
+            along: (0, 1),
+            reach: [3, 0],
+        };
+        assert_eq!(shield.ends(), [Cell { x: 10, y: 2 }, Cell { x: 10, y: -4 }]);
+        let slant = Shield {
+            along: (1, 1),
+            reach: [2, 4],
+            ..shield
+        };
+        for end in slant.ends() {
+            assert!(slant.holds(end), "{end:?}");
+        }
+        assert_eq!(slant.ends()[1], Cell { x: 6, y: -8 });
     }
 }
