@@ -1,0 +1,252 @@
+//! What a step costs against what is known: flat for the planner, growing for a BVP exploration over the full grid [Ouroboros, Fig. 6].
+//!
+//! The planner's steps are counted in instructions on the emulated chip, all that it does to choose where to go: skeleton,
+//! plan, window, field. The full grid does not fit the chip. Its work is counted on the host in cells times cycles, and a cell is charged
+//! with as many instructions a cycle as the window's takes on the chip, which has the same kind of solver:
+//!
+//! ```text
+//! k       = median of solve / (cycles · 61²)      over the planner's steps
+//! cost    = k · cells · cycles                    of a step over the full grid, its field alone
+//! ```
+//!
+//! `tests/run --full` compares with `golden/iteration.txt`; `BLESS=1` rewrites that and the plot, `docs/iteration.svg`.
+
+use std::path::Path;
+
+use fieldline_protocol::message::{
+    Command, Control, FieldRow, Frontier, Identity, Observation, Status, Tile,
+};
+use fieldline_tests::loops::OUROBOROS;
+use fieldline_tests::plot::{Series, svg};
+use fieldline_tests::table::Table;
+use fieldline_tests::{emulator, full, golden, worlds};
+use host_sim::baseline::{Bvp, Session};
+use host_sim::link::endpoint::{Endpoint, Patience};
+use host_sim::link::{Link, LinkError, LinkStats, qemu};
+use host_sim::trial::mission::{Mission, explore};
+use host_sim::trial::{Flow, Progress, Step, Watch};
+use host_sim::world::World;
+
+/// The paper's environments.
+const WORLDS: [&str; 4] = ["ouroboros-a", "ouroboros-b", "ouroboros-c", "ouroboros-d"];
+/// Known area that counts as one, square metres.
+const BIN_M2: f64 = 40.0;
+/// Cells of the planner's window.
+const WINDOW_CELLS: f64 = 61.0 * 61.0;
+/// How far figures may drift: another compiler arranges the code otherwise.
+const DRIFT: f64 = 0.05;
+
+/// What is known after each step, as a share.
+struct Gauge(Vec<f64>);
+
+impl Watch for Gauge {
+    fn step(&mut self, progress: &Progress) -> Flow {
+        self.0.push(progress.coverage);
+        Flow::Continue
+    }
+}
+
+/// The full grid, and cells times cycles of each of its steps.
+struct Metered {
+    session: Session<Bvp>,
+    work: Vec<f64>,
+}
+
+impl Link for Metered {
+    fn hello(&mut self) -> Result<Identity, LinkError> {
+        self.session.hello()
+    }
+    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
+        self.session.control(control)
+    }
+    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
+        let before = self.session.plan.work();
+        let command = self.session.observe(observation);
+        let after = self.session.plan.work();
+        let cells = (after.cells - before.cells) as f64;
+        self.work
+            .push(cells * (after.cycles - before.cycles) as f64);
+        command
+    }
+    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
+        self.session.tile(x, y)
+    }
+    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
+        self.session.field_row(row)
+    }
+    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
+        self.session.frontiers()
+    }
+    fn stats(&self) -> LinkStats {
+        self.session.stats()
+    }
+}
+
+/// Known area and cost of a step.
+type Point = (f64, f64);
+
+/// Steps with the area known after each.
+fn explored(world: &World, strategy: &str, link: &mut dyn Link) -> Vec<(f64, Step)> {
+    let mission = Mission {
+        strategy: strategy.into(),
+        ..Mission::default()
+    };
+    let mut gauge = Gauge(Vec::new());
+    let run = explore(&mission, world, link, &mut gauge).expect("the start is free");
+    let (report, record) = run;
+    assert!(report.explored(), "{}: {:?}", world.name(), report.outcome);
+    let known = gauge
+        .0
+        .iter()
+        .map(|share| share * report.coverage.reachable_m2);
+    known.zip(record.steps).collect()
+}
+
+/// Instructions of what decides where to go, millions.
+fn planning(step: &Step) -> f64 {
+    let stages = step.command.cost.stages;
+    f64::from(stages.topology + stages.plan + stages.window + stages.solve) / 1e6
+}
+
+/// Instructions of a cell in a cycle.
+fn per_cell(steps: &[(f64, Step)]) -> f64 {
+    let costs = steps.iter().map(|(_, step)| step.command.cost);
+    let solved = costs.filter(|cost| cost.cycles > 0);
+    let mut shares: Vec<f64> = solved
+        .map(|cost| f64::from(cost.stages.solve) / f64::from(cost.cycles) / WINDOW_CELLS)
+        .collect();
+    shares.sort_by(f64::total_cmp);
+    shares[shares.len() / 2]
+}
+
+/// Mean and most of each bin; a bin with few steps is left out.
+fn bins(points: &[Point]) -> Vec<[f64; 4]> {
+    let bin = |known_m2: f64| (known_m2 / BIN_M2) as usize;
+    let last = points.iter().map(|point| bin(point.0)).max().unwrap_or(0);
+    let costs = |k: usize| {
+        let inside = points.iter().filter(move |point| bin(point.0) == k);
+        inside.map(|point| point.1)
+    };
+    (0..=last)
+        .filter(|&k| costs(k).count() >= 20)
+        .map(|k| {
+            let count = costs(k).count() as f64;
+            let mean = costs(k).sum::<f64>() / count;
+            let most = costs(k).fold(0.0, f64::max);
+            [(k as f64 + 0.5) * BIN_M2, count, mean, most]
+        })
+        .collect()
+}
+
+#[test]
+fn a_step_costs_the_same_however_much_is_known() {
+    if !full() {
+        return println!("skipped: FIELDLINE_FULL=1 or tests/run --full asks for it");
+    }
+    let Some(image) = emulator::image() else {
+        return;
+    };
+    let (mut ours, mut steps, mut grid): (Vec<Point>, _, Vec<Point>) = Default::default();
+    let mut works: Vec<Point> = Vec::new();
+    for world in WORLDS.map(worlds::builtin) {
+        let line = qemu::open_line(&image).expect("it started a moment ago");
+        let mut link = Endpoint::new(line, Patience::LOCKSTEP, 1);
+        let run = explored(&world, OUROBOROS, &mut link);
+        ours.extend(
+            run.iter()
+                .map(|(known_m2, step)| (*known_m2, planning(step))),
+        );
+        Vec::extend(&mut steps, run);
+        let mut metered = Metered {
+            session: Session::new(Bvp::new()),
+            work: Vec::new(),
+        };
+        let run = explored(&world, "bvp", &mut metered);
+        works.extend(run.iter().map(|(known_m2, _)| *known_m2).zip(metered.work));
+    }
+    let k = per_cell(&steps);
+    grid.extend(
+        works
+            .iter()
+            .map(|(known_m2, work)| (*known_m2, k * work / 1e6)),
+    );
+    let (ours, grid) = (bins(&ours), bins(&grid));
+    golden::compare_about("iteration.txt", &text(k, &ours, &grid), DRIFT);
+    if golden::blessing() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/iteration.svg");
+        std::fs::write(path, plot(&ours, &grid)).expect("docs can be written");
+    }
+    assert_flat(&ours);
+    assert_growing(&grid);
+}
+
+/// The mean of no part of the exploration is half as much again as that of another.
+fn assert_flat(bins: &[[f64; 4]]) {
+    let means = || bins.iter().map(|bin| bin[2]);
+    let (least, most) = (
+        means().fold(f64::MAX, f64::min),
+        means().fold(0.0, f64::max),
+    );
+    assert!(most < 1.5 * least, "from {least} to {most} M");
+}
+
+/// The last third costs more than twice what the first does.
+fn assert_growing(bins: &[[f64; 4]]) {
+    let third = bins.len().div_ceil(3);
+    let mean = |bins: &[[f64; 4]]| bins.iter().map(|bin| bin[2]).sum::<f64>() / bins.len() as f64;
+    let (first, last) = (mean(&bins[..third]), mean(&bins[bins.len() - third..]));
+    assert!(last > 2.0 * first, "from {first} to {last} M");
+}
+
+fn text(k: f64, ours: &[[f64; 4]], grid: &[[f64; 4]]) -> String {
+    let columns = ["known m2", "steps", "mean M", "most M"];
+    let table = |bins: &[[f64; 4]]| {
+        let mut table = Table::new(0, &columns);
+        for [known_m2, count, mean, most] in bins {
+            table.row(vec![
+                format!("{known_m2:.0}"),
+                format!("{count:.0}"),
+                format!("{mean:.3}"),
+                format!("{most:.3}"),
+            ]);
+        }
+        table
+    };
+    format!(
+        "Millions of instructions of a step. ouroboros, on the chip: skeleton, plan, window, field.\n\n{}\n\
+         bvp, full grid: field alone, at {k:.1} instructions a cell and cycle.\n\n{}",
+        table(ours),
+        table(grid)
+    )
+}
+
+fn plot(ours: &[[f64; 4]], grid: &[[f64; 4]]) -> String {
+    let line = |bins: &[[f64; 4]], of: usize| bins.iter().map(|bin| [bin[0], bin[of]]).collect();
+    let series = |name, colour, dashed, points| Series {
+        name,
+        colour,
+        dashed,
+        points,
+    };
+    let (blue, red) = ("#1f6fb2", "#c01f2e");
+    svg(
+        "What a step costs against what is known, worlds ouroboros-a to -d",
+        ["known area, m²", "million instructions"],
+        &[
+            series(
+                "bvp over the full grid, field alone: mean",
+                red,
+                false,
+                line(grid, 2),
+            ),
+            series("the most of any step", red, true, line(grid, 3)),
+            series(
+                "ouroboros on the chip, all of planning: mean",
+                blue,
+                false,
+                line(ours, 2),
+            ),
+            series("the most of any step", blue, true, line(ours, 3)),
+        ],
+    )
+}
