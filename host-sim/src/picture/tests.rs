@@ -256,8 +256,8 @@ fn loops_and_rails_are_drawn_where_they_are() {
     assert_eq!(colour(2.1, -2.4), red, "the shield");
     assert_eq!(colour(-2.0, -3.0), red, "a loop given up");
     assert_eq!(colour(3.1, -0.5), (0x1f, 0x6f, 0xb2), "the road");
-    assert_eq!(colour(-3.15, 0.05), (0xe6, 0xf3, 0xe4), "a mark");
-    assert_eq!(colour(-2.25, 0.05), (0xff, 0xff, 0xff), "beside it");
+    assert_eq!(colour(-3.15, 0.15), (0xe6, 0xf3, 0xe4), "a mark");
+    assert_eq!(colour(-2.25, 0.15), (0xff, 0xff, 0xff), "beside it");
     // Beside the skeleton's own line, which lies on the band; the younger rail is the darker one.
     let band = |x_m: f64| colour(x_m, 1.56);
     assert_eq!(band(-2.5), (0xbf, 0xe5, 0xbb), "the oldest rail");
