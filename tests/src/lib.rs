@@ -6,6 +6,8 @@
 //! | [`random`] | seeded numbers |
 //! | [`table`] | columns of text |
 //! | [`runs`] | whole explorations, several at a time, and their row in a table |
+//! | [`uneven`] | whole explorations of uneven ground, and their row in a table |
+//! | [`wilcoxon`] | the signed-rank test of paired runs |
 //! | [`worlds`] | the built-in worlds by kind; worlds drawn by others, where there are any |
 //! | [`costs`] | instructions of a step on the emulated chip |
 //! | [`emulator`] | the image and QEMU, or the word why not |
@@ -22,6 +24,8 @@ pub mod golden;
 pub mod random;
 pub mod runs;
 pub mod table;
+pub mod uneven;
+pub mod wilcoxon;
 pub mod worlds;
 
 /// Whether what takes long was asked for (`FIELDLINE_FULL=1`, as `tests/run --full` says).
