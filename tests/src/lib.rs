@@ -6,6 +6,7 @@
 //! | [`random`] | seeded numbers |
 //! | [`table`] | columns of text |
 //! | [`runs`] | whole explorations, several at a time, and their row in a table |
+//! | [`history`] | what the map said of every cell, and when |
 //! | [`uneven`] | whole explorations of uneven ground, and their row in a table |
 //! | [`wilcoxon`] | the signed-rank test of paired runs |
 //! | [`worlds`] | the built-in worlds by kind; worlds drawn by others, where there are any |
@@ -21,6 +22,7 @@ pub mod costs;
 pub mod elf;
 pub mod emulator;
 pub mod golden;
+pub mod history;
 pub mod random;
 pub mod runs;
 pub mod table;

@@ -72,12 +72,12 @@ mod tests {
     use super::signed_rank;
     use crate::random::Random;
 
-    /// Hamilton's depression scale of nine patients before and after a tranquillizer [Hollander & Wolfe 1973, table 3.1]: published
+    /// Hamilton's depression scale of nine patients before and after a tranquillizer, hundredths [Hollander & Wolfe 1973, table 3.1]: published
     /// W+ = 40 and one-sided p = 0.0195.
     #[test]
     fn a_published_example_is_reproduced() {
-        let before = [1.83, 0.50, 1.62, 2.48, 1.68, 1.88, 1.55, 3.06, 1.30];
-        let after = [0.878, 0.647, 0.598, 2.05, 1.06, 1.29, 1.06, 3.14, 1.29];
+        let before = [183.0, 50.0, 162.0, 248.0, 168.0, 188.0, 155.0, 306.0, 130.0];
+        let after = [87.8, 64.7, 59.8, 205.0, 106.0, 129.0, 106.0, 314.0, 129.0];
         let differences: Vec<f64> = before.iter().zip(after).map(|(a, b)| a - b).collect();
         let test = signed_rank(&differences);
         assert_eq!((test.pairs, test.positive), (9, 40.0));

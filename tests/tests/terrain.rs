@@ -14,11 +14,14 @@
 use core::fmt::Write as _;
 
 use fieldline_protocol::message::Preference;
-use fieldline_tests::runs::in_parallel;
+use fieldline_tests::history::{History, Watched};
+use fieldline_tests::runs::{explored, in_parallel};
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::uneven::{self, Told, Tour, word};
 use fieldline_tests::wilcoxon::signed_rank;
 use fieldline_tests::{full, golden, worlds};
+use host_sim::link::direct::Direct;
+use host_sim::report::MapCell;
 use host_sim::world::World;
 
 /// Share of what can be reached that must be known at the end.
@@ -235,6 +238,12 @@ fn maps_under_worse_and_worse_noise() {
     golden::compare("truth-noise.txt", &format!("{}\n", text.trim_end()));
 }
 
+/// Of the cells that the map ever held, those that ever were an obstacle or negative.
+fn barriers(history: &History) -> f64 {
+    let all = [MapCell::Free, MapCell::Obstacle, MapCell::NegativeObstacle];
+    history.ever(&all[1..]) as f64 / history.ever(&all).max(1) as f64
+}
+
 #[test]
 fn uneven_worlds_drawn_by_others() {
     if !full() {
@@ -248,9 +257,32 @@ fn uneven_worlds_drawn_by_others() {
         .iter()
         .flat_map(|world| seeds.clone().map(|seed| Tour::of(world, 0, seed)))
         .collect();
-    let runs = explore(&tours);
+    let watched = in_parallel(&tours, |tour| {
+        let mut link = Watched::new(Direct::new());
+        let (report, record) = explored(&tour.mission(), tour.world, &mut link);
+        (tour.told(report, &record), barriers(&link.history))
+    });
+    let mut ever = Table::new(
+        1,
+        &[
+            "world",
+            "seed",
+            "cells ever a barrier %",
+            "beyond the limits s",
+        ],
+    );
+    for (told, share) in &watched {
+        let report = &told.report;
+        ever.row(vec![
+            report.world.clone(),
+            report.seed.to_string(),
+            format!("{:.3}", 100.0 * share),
+            format!("{:.1}", report.terrain.unwrap_or_default().over_limits_s),
+        ]);
+    }
+    let runs: Vec<Told> = watched.into_iter().map(|(told, _)| told).collect();
     let text = format!(
-        "Means.\n\n{}\nEvery run.\n\n{}\n{}",
+        "Means.\n\n{}\nEvery run.\n\n{}\n{ever}\n{}",
         uneven::means(&runs),
         uneven::table(&runs),
         truths(&runs)

@@ -71,7 +71,7 @@ pub struct Table {
     /// Negative obstacles of the map within a cell of ground that falls, or over ground out of reach; the rims of true ones
     /// that the map keeps off.
     pub negative: Score,
-    /// Unknown cells of the map that are not traversable; cells out of reach, or inside of barriers, that it leaves unknown.
+    /// Unknown cells of the map that are not traversable; cells out of reach that it leaves unknown, though it may have seen them from afar.
     pub unknown: Score,
     /// Share of the found negative rims that the map calls negative, not obstacle.
     pub negative_by_name: Option<f64>,
@@ -203,10 +203,7 @@ impl GroundTruth {
                     sums.named[0] += u32::from(named);
                 }
             }
-            Traversable => {}
-            _ if !beside(&[Traversable]) => {
-                sums.unknown.found(known[index] == MapCell::Unknown);
-            }
+            Unjudged => sums.unknown.found(known[index] == MapCell::Unknown),
             _ => {}
         }
     }
@@ -436,10 +433,17 @@ mod tests {
             _ => MapCell::Unknown,
         });
         assert_eq!(table.unknown.precision, Some(1.0));
-        // Column 39 is beside covered ground: its rim is to be found, not left.
-        assert_eq!(table.unknown.recall, Some(20.0 / 40.0));
+        let count = |class, columns: core::ops::Range<i32>| {
+            let cells = columns.flat_map(|x| (0..30).map(move |y| Cell { x, y }));
+            cells.filter(|cell| truths.class(*cell) == class).count() as f64
+        };
+        // A disc does not cover the corners of the strip: they are out of reach, too, and free on this map.
+        let left = count(Truly::Unjudged, 39..60) / count(Truly::Unjudged, 0..80);
+        assert_eq!(table.unknown.recall, Some(left));
+        assert!((0.45..0.5).contains(&left));
         let blank = truths.compare(|_| MapCell::Unknown);
-        assert_eq!(blank.unknown.precision, Some(41.0 / 80.0));
+        let right = 1.0 - count(Truly::Traversable, 0..80) / 2400.0;
+        assert!((blank.unknown.precision.unwrap() - right).abs() < 1e-12);
         assert_eq!(blank.traversable, Score::default());
     }
 
@@ -453,7 +457,8 @@ mod tests {
         assert_eq!(both.unknown.precision, blank.unknown.precision);
         // All of what lies beyond is left unknown on one map and on none of the other.
         assert_eq!(both.unknown.recall, Some(0.5));
-        assert_eq!(both.cells[0], [39 * 30, 39 * 30, 0, 0]);
+        let covered = free.cells[Truly::Traversable as usize][1];
+        assert_eq!(both.cells[0], [covered, covered, 0, 0]);
     }
 
     #[test]

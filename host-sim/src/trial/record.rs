@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use fieldline_protocol::message::{Command, Cost, Frontier, Observation, Pose, Status, Tile};
 
+use super::relief::Relief;
 use super::snapshot::{Snapshot, Window};
 use super::{Ending, Progress, wording};
 use crate::link::digest::Digest;
@@ -46,6 +47,8 @@ pub struct Record {
     pub tiles: BTreeMap<(i16, i16), Tile>,
     /// The last window's field.
     pub window: Option<Window>,
+    /// Heights and preferences in it, where the planner heeds them.
+    pub relief: Option<Relief>,
     /// Frontiers that were left.
     pub frontiers: Vec<Frontier>,
     /// Map and window on the way, where that was asked for.
@@ -72,6 +75,7 @@ impl Default for Record {
             map: GridMap::default(),
             tiles: BTreeMap::new(),
             window: None,
+            relief: None,
             frontiers: Vec::new(),
             snapshots: Vec::new(),
             ground: None,

@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fieldline_protocol::message::{FIELD_SIDE, FieldRow, Tile};
 
+use super::relief::Relief;
 use super::{Progress, Record};
 use crate::link::{Link, LinkError};
 use crate::report::GridMap;
@@ -50,6 +51,8 @@ pub struct Snapshot {
     pub map: GridMap,
     /// The last window's field.
     pub window: Option<Window>,
+    /// Heights and preferences in it, where the planner heeds them.
+    pub relief: Option<Relief>,
 }
 
 /// Fill the record's map, window and frontiers; the map is sought from where the run began.
@@ -76,6 +79,7 @@ pub fn take(link: &mut dyn Link, record: &Record) -> Result<Snapshot, LinkError>
         steps: record.steps.len(),
         map: GridMap::from_tiles(&tiles),
         window,
+        relief: None,
     })
 }
 
