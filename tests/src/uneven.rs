@@ -245,6 +245,30 @@ pub fn means(runs: &[Told]) -> Table {
     table
 }
 
+/// One line a run in Markdown, for the read-me.
+#[must_use]
+pub fn markdown(runs: &[Told]) -> String {
+    let mut lines = String::from(
+        "| world | time s | path m | climb m | known % | hits, falls, tips | least clearance m |\n| --- | --- | --- | --- | --- | --- | --- |\n",
+    );
+    for Told { report, .. } in runs {
+        let safety = &report.safety;
+        lines.push_str(&format!(
+            "| {} | {:.0} | {:.0} | {:.1} | {:.2} | {}, {}, {} | {} |\n",
+            report.world,
+            report.sim_time_s,
+            report.path_length_m,
+            report.climb_m,
+            100.0 * report.coverage.fraction,
+            safety.collisions,
+            safety.falls,
+            safety.tips,
+            number(safety.min_clearance_m, 2)
+        ));
+    }
+    lines
+}
+
 /// How the maps of some runs compare with the true ground, class by class: one line for each world and one for all.
 #[must_use]
 pub fn truths(runs: &[Told]) -> Table {

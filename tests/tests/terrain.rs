@@ -9,7 +9,7 @@
 //! | `truth-noise.txt` | the maps under worse and worse noise | `--full` |
 //! | `terrain-data.txt` | uneven worlds drawn by others, where there are any | `--full` |
 //!
-//! A changed row is a changed behaviour.
+//! The read-me shows a part of `terrain.txt`. A changed row is a changed behaviour.
 
 use core::fmt::Write as _;
 
@@ -90,6 +90,7 @@ fn uneven_worlds_are_explored_and_nothing_is_touched() {
     assert_explored(&runs);
     runs.remove(1);
     golden::compare("truth.txt", &truths(&runs));
+    golden::compare_with_readme("uneven", &uneven::markdown(&runs));
     assert_classified(&runs);
 }
 
@@ -207,7 +208,8 @@ fn preferences_on_the_big_slope() {
         uneven::table(&runs)
     );
     golden::compare("terrain-slope.txt", &text);
-    assert_explored(&runs);
+    // How often a run without preferences comes to its end is a result, in the table.
+    assert_explored(with);
 }
 
 #[test]

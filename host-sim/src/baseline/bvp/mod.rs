@@ -27,7 +27,7 @@ pub mod patience;
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::math;
 use fieldline_planner::status::Frontier;
-use fieldline_planner::terrain::Preferences;
+use fieldline_planner::terrain::{Mode, Preferences};
 use fieldline_protocol::message::{FIELD_SIDE, FieldRow};
 
 use super::session::{Outlook, Plan, Scene, Uneven};
@@ -91,6 +91,9 @@ impl Bvp {
     /// Give every cell its preference, as flat as the field was in the step before.
     fn prefer(&mut self, scene: &Scene<'_>, ground: &Uneven<'_>) {
         let (terrain, heights) = (ground.terrain, ground.heights);
+        if terrain.mode == Mode::Off {
+            return;
+        }
         let global = self.preferences.global(terrain);
         let preferences = self.preferences;
         self.field.prefer(|cell| {
@@ -223,13 +226,13 @@ impl Plan for Bvp {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bvp, MOST_CYCLES};
+    use super::{Bvp, MOST_CYCLES, Mode};
     use crate::baseline::chart::sketch::chart;
     use crate::baseline::heights::HeightGrid;
     use crate::baseline::session::{Outlook, Plan, Scene, Uneven};
     use fieldline_planner::geometry::{Cell, Point, Pose};
+    use fieldline_planner::terrain::Terrain;
     use fieldline_planner::terrain::elevation::{Elevation, WINDOW_CELLS};
-    use fieldline_planner::terrain::{Mode, Terrain};
     use fieldline_protocol::message::FIELD_SIDE;
 
     fn pose(at: Point) -> Pose {
