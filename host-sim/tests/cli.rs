@@ -551,6 +551,10 @@ fn bad_arguments_are_refused_in_one_line() {
         &["'drop'", "given twice"],
     );
     explore(
+        &["--strategy", "greedy-frontier", "--preference", "off"],
+        &["greedy-frontier", "leave --preference and --terrain out"],
+    );
+    explore(
         &["--strategy", "bvp", "--fault", "drop=0.1"],
         &["bvp", "leave --fault out"],
     );

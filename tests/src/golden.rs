@@ -54,6 +54,39 @@ pub fn compare(name: &str, text: &str) {
     );
 }
 
+/// Compare with what the read-me at the root says between the marks `<!-- NAME -->` and `<!-- /NAME -->`, or rewrite that where it is asked for.
+///
+/// # Panics
+/// If they differ, or the marks are not there.
+pub fn compare_with_readme(name: &str, text: &str) {
+    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "..", "README.md"]
+        .iter()
+        .collect();
+    let readme = fs::read_to_string(&path).unwrap_or_default();
+    let Some([before, between, after]) = parts(&readme, name) else {
+        panic!("README.md has no part <!-- {name} -->");
+    };
+    if between == text {
+        return;
+    }
+    assert!(
+        blessing(),
+        "README.md differs at <!-- {name} --> (- read-me, + now); BLESS=1 rewrites it:\n{}",
+        differences(between, text)
+    );
+    if let Err(error) = fs::write(&path, format!("{before}{text}{after}")) {
+        panic!("cannot write {}: {error}", path.display());
+    }
+}
+
+/// What lies before, between and after the marks of a name; the marks belong to the outer parts.
+fn parts<'a>(text: &'a str, name: &str) -> Option<[&'a str; 3]> {
+    let (open, close) = (format!("<!-- {name} -->\n"), format!("<!-- /{name} -->"));
+    let begin = text.find(&open)? + open.len();
+    let end = begin + text.get(begin..)?.find(&close)?;
+    Some([text.get(..begin)?, text.get(begin..end)?, text.get(end..)?])
+}
+
 /// Compare with golden file `name`, where numbers may differ by `share` of the golden one; or rewrite it where that is asked
 /// for.
 ///
@@ -105,7 +138,7 @@ fn differences(golden: &str, text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{differences, is_about};
+    use super::{differences, is_about, parts};
 
     #[test]
     fn numbers_may_drift_and_words_may_not() {
@@ -115,6 +148,16 @@ mod tests {
         assert!(!is_about("loop 100", "loop 100 1", 0.05));
         assert!(!is_about("loop 0", "loop 1", 0.05));
         assert!(!is_about("loop -", "loop 1", 0.05));
+    }
+
+    #[test]
+    fn a_part_lies_between_its_marks() {
+        let text = "a\n<!-- x -->\nb\nc\n<!-- /x -->\nd\n";
+        let [before, between, after] = parts(text, "x").expect("both marks");
+        assert_eq!((before, between), ("a\n<!-- x -->\n", "b\nc\n"));
+        assert_eq!(after, "<!-- /x -->\nd\n");
+        assert_eq!(parts(text, "y"), None);
+        assert_eq!(parts("<!-- /x --><!-- x -->\n", "x"), None);
     }
 
     #[test]

@@ -7,6 +7,9 @@
 //! | [`table`] | columns of text |
 //! | [`runs`] | whole explorations, several at a time, and their row in a table |
 //! | [`loops`] | tables of explorations that close loops, with the papers' ratios |
+//! | [`history`] | what the map said of every cell, and when |
+//! | [`uneven`] | whole explorations of uneven ground, and their row in a table |
+//! | [`wilcoxon`] | the signed-rank test of paired runs |
 //! | [`worlds`] | the built-in worlds by kind; worlds drawn by others, where there are any |
 //! | [`plot`] | lines over a pair of axes, as an SVG |
 //! | [`starts`] | starts drawn at random, for worlds that have but one |
@@ -24,10 +27,13 @@ pub mod emulator;
 pub mod golden;
 pub mod loops;
 pub mod plot;
+pub mod history;
 pub mod random;
 pub mod runs;
 pub mod starts;
 pub mod table;
+pub mod uneven;
+pub mod wilcoxon;
 pub mod worlds;
 
 /// Whether what takes long was asked for (`FIELDLINE_FULL=1`, as `tests/run --full` says).

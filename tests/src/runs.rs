@@ -12,7 +12,7 @@ use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::report::Report;
 use host_sim::trial::mission::{Mission, explore, on_device};
-use host_sim::trial::{Flow, Progress, Watch};
+use host_sim::trial::{Flow, Progress, Record, Watch};
 use host_sim::world::World;
 
 use crate::table::{Table, number};
@@ -67,10 +67,18 @@ impl Run<'_> {
             start: self.start,
             ..Mission::default()
         };
-        match explore(&mission, self.world, link, &mut Unseen) {
-            Ok((report, _)) => report,
-            Err(error) => panic!("{} by {name}: {error}", self.world.name()),
-        }
+        explored(&mission, self.world, link).0
+    }
+}
+
+/// Explores over a link, with nobody looking on.
+///
+/// # Panics
+/// If it cannot begin.
+pub fn explored(mission: &Mission, world: &World, link: &mut dyn Link) -> (Report, Record) {
+    match explore(mission, world, link, &mut Unseen) {
+        Ok(run) => run,
+        Err(error) => panic!("{} by {}: {error}", world.name(), mission.link),
     }
 }
 
@@ -114,16 +122,25 @@ pub fn each(worlds: &[World], seeds: Range<u64>, baseline_seeds: Range<u64>) -> 
 /// If one cannot begin.
 #[must_use]
 pub fn sweep(runs: &[Run<'_>]) -> Vec<Report> {
+    in_parallel(runs, Run::go)
+}
+
+/// What `work` makes of every item, one on each core at a time; in the order of the items.
+///
+/// # Panics
+/// If `work` does.
+#[must_use]
+pub fn in_parallel<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let done = Mutex::new(Vec::new());
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| {
         for _ in 0..workers {
             scope.spawn(|| {
-                while let Some((k, run)) = take(&next, runs) {
-                    let report = run.go();
+                while let Some((k, item)) = take(&next, items) {
+                    let result = work(item);
                     if let Ok(mut done) = done.lock() {
-                        done.push((k, report));
+                        done.push((k, result));
                     }
                 }
             });
@@ -131,13 +148,13 @@ pub fn sweep(runs: &[Run<'_>]) -> Vec<Report> {
     });
     let mut done = done.into_inner().unwrap_or_default();
     done.sort_by_key(|(k, _)| *k);
-    assert_eq!(done.len(), runs.len(), "a run was lost");
-    done.into_iter().map(|(_, report)| report).collect()
+    assert_eq!(done.len(), items.len(), "a run was lost");
+    done.into_iter().map(|(_, result)| result).collect()
 }
 
-fn take<'a, 'w>(next: &AtomicUsize, runs: &'a [Run<'w>]) -> Option<(usize, &'a Run<'w>)> {
+fn take<'a, T>(next: &AtomicUsize, items: &'a [T]) -> Option<(usize, &'a T)> {
     let k = next.fetch_add(1, Ordering::Relaxed);
-    runs.get(k).map(|run| (k, run))
+    items.get(k).map(|item| (k, item))
 }
 
 /// One line a run.

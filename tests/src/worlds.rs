@@ -53,6 +53,21 @@ pub fn builtin(name: &str) -> World {
 /// If one of them cannot be loaded.
 #[must_use]
 pub fn drawn_by_others() -> Option<Vec<World>> {
+    let worlds = all_drawn_by_others()?.into_iter();
+    Some(worlds.filter(|world| world.elevation().is_none()).collect())
+}
+
+/// Those with uneven ground; else as [`drawn_by_others`].
+///
+/// # Panics
+/// As [`drawn_by_others`].
+#[must_use]
+pub fn uneven_drawn_by_others() -> Option<Vec<World>> {
+    let worlds = all_drawn_by_others()?.into_iter();
+    Some(worlds.filter(|world| world.elevation().is_some()).collect())
+}
+
+fn all_drawn_by_others() -> Option<Vec<World>> {
     let folder = data_folder().join("worlds");
     let Ok(entries) = folder.read_dir() else {
         println!(
@@ -70,7 +85,7 @@ pub fn drawn_by_others() -> Option<Vec<World>> {
         Ok(world) => world,
         Err(error) => panic!("{error}"),
     });
-    Some(worlds.filter(|world| world.elevation().is_none()).collect())
+    Some(worlds.collect())
 }
 
 fn data_folder() -> PathBuf {

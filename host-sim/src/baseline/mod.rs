@@ -5,6 +5,7 @@
 pub mod bvp;
 pub mod chart;
 pub mod greedy;
+pub mod heights;
 pub mod session;
 
 pub use bvp::Bvp;

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! observation → Map, NearField → Chart → Plan (the strategy) → heading → Drive → command
+//!                └→ HeightGrid ───────────┘   on uneven ground, where the map's rims take the near field's place
 //! ```
 //!
 //! Map (with the capacity of the default image, so that a run ends for want of memory where the device's would), near
@@ -21,15 +22,17 @@ use fieldline_planner::geometry::{Cell, Point, Pose, Twist};
 use fieldline_planner::map::Map;
 use fieldline_planner::map::integrate::is_level;
 use fieldline_planner::math;
-use fieldline_planner::near::NearField;
+use fieldline_planner::near::{self, NearField};
 use fieldline_planner::planner::{Input, starts_blocked};
-use fieldline_planner::status;
+use fieldline_planner::status::{self, Residue};
+use fieldline_planner::terrain::Terrain;
 use fieldline_protocol::message::{
     Command, Control, Cost, Fault, FieldRow, Finish, Frontier, Identity, MAX_FRONTIERS,
     Observation, Refusal, Start, Status, TILE_DATES, TILE_SKELETON_BYTES, Tile,
 };
 
 use super::chart::Chart;
+use super::heights::HeightGrid;
 use crate::link::{Link, LinkError, LinkStats};
 
 /// Turn rate of a robot that looks around at its goal, radians a second: the planner's.
@@ -50,6 +53,17 @@ pub struct Scene<'a> {
     pub pose: Pose,
     /// The host's clock, milliseconds.
     pub time_ms: u32,
+    /// The ground, if it is to be heeded.
+    pub ground: Option<Uneven<'a>>,
+}
+
+/// Uneven ground.
+#[derive(Clone, Copy, Debug)]
+pub struct Uneven<'a> {
+    /// Its parameters.
+    pub terrain: &'a Terrain,
+    /// How high it lies.
+    pub heights: &'a HeightGrid,
 }
 
 /// What a strategy says of a scene.
@@ -109,6 +123,9 @@ pub struct Session<P> {
     empty_since_ms: Option<u32>,
     map: Box<Map<TILES, SLOTS>>,
     near: NearField,
+    heights: HeightGrid,
+    /// Goals whose ground was given up with them.
+    given_up: usize,
     drive: Drive,
     chart: Chart,
     scratch: Vec<u32>,
@@ -128,6 +145,8 @@ impl<P: Plan> Session<P> {
             empty_since_ms: None,
             map: Box::new(Map::new()),
             near: NearField::new(),
+            heights: HeightGrid::default(),
+            given_up: 0,
             drive: Drive::new(),
             chart: Chart::new(),
             scratch: vec![0; manoeuvre::SCRATCH_WORDS],
@@ -145,8 +164,10 @@ impl<P: Plan> Session<P> {
     fn start(&mut self, start: &Start) -> Result<(), Refusal> {
         limits::check_start::<TILES, SLOTS>(start)?;
         let config = convert::config(start);
-        self.map.reset(config.box_tiles.0, config.box_tiles.1);
+        self.map.begin(&config);
         self.near.clear();
+        self.heights = HeightGrid::default();
+        self.given_up = 0;
         self.drive = Drive::new();
         self.chart = Chart::new();
         self.plan.reset();
@@ -166,7 +187,7 @@ impl<P: Plan> Session<P> {
         if !self.drive.is_searching() {
             let disc = Disc::new(config.robot_radius_m);
             self.chart.draw(self.map.tiles(), &disc, input.pose.point());
-            self.look(input);
+            self.look(config, input);
         }
         if self.status == Status::Exploring && self.empty_since_ms.is_none() {
             self.follow(config, input)
@@ -176,8 +197,9 @@ impl<P: Plan> Session<P> {
     }
 
     /// Let the strategy look at the scene.
-    fn look(&mut self, input: &Input<'_>) {
-        let scene = scene(&self.chart, input);
+    fn look(&mut self, config: &Config, input: &Input<'_>) {
+        let ground = ground(config, &self.heights);
+        let scene = scene(&self.chart, ground, input);
         match self.plan.plan(&scene) {
             Outlook::Way => self.empty_since_ms = None,
             Outlook::Stuck => self.status = Status::Fault(Fault::Stuck),
@@ -188,6 +210,19 @@ impl<P: Plan> Session<P> {
                 }
             }
         }
+        if let Some(terrain) = &config.terrain {
+            self.give_up_ground(terrain);
+        }
+    }
+
+    /// Ground that stays out of view where a goal was given up is settled, as the planner settles it.
+    fn give_up_ground(&mut self, terrain: &Terrain) {
+        let dropped = self.plan.dropped();
+        let new = dropped.iter().skip(self.given_up);
+        for frontier in new.filter(|frontier| frontier.reason == Residue::Unobservable) {
+            self.map.give_up_ground(terrain, frontier.cell);
+        }
+        self.given_up = dropped.len();
     }
 
     /// Scans and odometry into the map and the near field.
@@ -199,6 +234,10 @@ impl<P: Plan> Session<P> {
             }
         }
         self.map.observe(config, input);
+        if config.terrain.is_some() {
+            self.heights.keep(&self.map.heights());
+            return;
+        }
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             if is_level(laser) {
                 self.near.update(&input.pose, laser, ranges_mm);
@@ -219,12 +258,22 @@ impl<P: Plan> Session<P> {
         }
     }
 
+    /// What is near: by the level beams, or on uneven ground, where they end on slopes, by the map.
+    fn surround(&self, config: &Config, pose: &Pose) -> Surround {
+        if config.terrain.is_none() {
+            return Surround::new(pose, self.near.points());
+        }
+        let mut surround = Surround::empty();
+        surround.keep_off(pose, near::rim_cells(self.map.tiles(), pose.point()));
+        surround
+    }
+
     /// Drive where the plan says.
     fn follow(&mut self, config: &Config, input: &Input<'_>) -> Command {
         let pose = input.pose;
-        let scene = scene(&self.chart, input);
+        let scene = scene(&self.chart, ground(config, &self.heights), input);
         let plan = &self.plan;
-        let surround = Surround::new(&pose, self.near.points());
+        let surround = self.surround(config, &pose);
         let heading = plan.heading_at(&scene, pose.point());
         let velocity = if heading.is_some() {
             let heading_there = |place: Place| {
@@ -256,12 +305,19 @@ impl<P: Plan> Session<P> {
     }
 }
 
-fn scene<'a>(chart: &'a Chart, input: &Input<'_>) -> Scene<'a> {
+fn scene<'a>(chart: &'a Chart, ground: Option<Uneven<'a>>, input: &Input<'_>) -> Scene<'a> {
     Scene {
         chart,
         pose: input.pose,
         time_ms: input.time_ms,
+        ground,
     }
+}
+
+/// The ground, where the session heeds it.
+fn ground<'a>(config: &'a Config, heights: &'a HeightGrid) -> Option<Uneven<'a>> {
+    let terrain = config.terrain.as_ref()?;
+    Some(Uneven { terrain, heights })
 }
 
 /// A turn on the spot where that touches nothing.

@@ -13,12 +13,15 @@ use host_sim::trial::mission::{STRATEGIES, on_device};
 /// The strategy on the device if nothing is said.
 pub(super) const FRONTIER: &str = "frontier";
 
+/// The boundary-value problem over the full grid.
+const BVP: &str = "bvp";
+
 /// Makes a baseline.
 type Make = fn() -> Box<dyn Link>;
 
 /// The baselines by name.
 const BASELINES: &[(&str, Make)] = &[
-    ("bvp", || Box::new(Session::new(Bvp::new()))),
+    (BVP, || Box::new(Session::new(Bvp::new()))),
     ("greedy-frontier", || {
         Box::new(Session::new(GreedyFrontier::default()))
     }),
@@ -51,6 +54,11 @@ pub(super) fn place(strategy: &str, link: Option<&LinkSpec>) -> Result<LinkSpec>
             "--strategy {strategy} runs on the host only, not by --link {link}; leave --link out or say direct"
         ),
     }
+}
+
+/// Whether a strategy can be told to heed uneven ground.
+pub(super) fn heeds_ground(strategy: &str) -> bool {
+    strategy == BVP || on_device(strategy).is_some()
 }
 
 /// The refusal of what only the device's strategies have: windows to compare, bytes to break.

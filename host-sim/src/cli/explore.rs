@@ -147,14 +147,14 @@ fn explore(
     Ok(report.explored())
 }
 
-/// The parameters of uneven ground, if any are asked for: with them every strategy on the device heeds it.
+/// The parameters of uneven ground, if any are asked for: with them every strategy on the device heeds it, and baseline bvp.
 fn terrain(args: &ExploreArgs) -> Result<Option<Terrain>> {
     if args.preference.is_none() && args.terrain.is_none() {
         return Ok(None);
     }
-    if mission::on_device(&args.strategy).is_none() {
+    if !baselines::heeds_ground(&args.strategy) {
         bail!(
-            "--preference and --terrain are for what runs on the device, not for --strategy {}; leave them out",
+            "--strategy {} takes all ground for flat; leave --preference and --terrain out",
             args.strategy
         );
     }

@@ -12,6 +12,8 @@
 //! is asked first whether it keeps the robot off, and only then by which word. Rims are a cell wide and beams spread: a
 //! cell is right if the true class lies within one cell of it, and found if the map has it within one cell.
 
+use core::ops::Add;
+
 use fieldline_planner::geometry::Cell;
 
 use super::coverage::{MAP_CELL_M, Truth, centre_m, truth};
@@ -55,11 +57,13 @@ pub struct Score {
     pub recall: Option<f64>,
 }
 
-/// How a map compares.
+/// How a map compares; tables of several maps add up to one of all their cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Table {
     /// Cells by true class (rows, in the order of [`Truly`]) and class of the map (columns: unknown, free, obstacle, negative).
     pub cells: [[u32; 4]; 5],
+    /// What the shares below are made of.
+    sums: Sums,
     /// Free cells of the map that are no barrier; traversable cells that are free on the map, of those that it knows.
     pub traversable: Score,
     /// Obstacles of the map within a cell of a barrier; the visible rims of true obstacles that the map keeps off.
@@ -67,8 +71,42 @@ pub struct Table {
     /// Negative obstacles of the map within a cell of ground that falls, or over ground out of reach; the rims of true ones
     /// that the map keeps off.
     pub negative: Score,
+    /// Unknown cells of the map that are not traversable; cells out of reach that it leaves unknown, though it may have seen them from afar.
+    pub unknown: Score,
     /// Share of the found negative rims that the map calls negative, not obstacle.
     pub negative_by_name: Option<f64>,
+}
+
+impl Table {
+    /// The shares of these counts.
+    fn with_shares(cells: [[u32; 4]; 5], sums: Sums) -> Self {
+        Self {
+            cells,
+            traversable: sums.free.score(),
+            obstacle: sums.obstacle.score(),
+            negative: sums.negative.score(),
+            unknown: sums.unknown.score(),
+            negative_by_name: share(sums.named),
+            sums,
+        }
+    }
+}
+
+impl Add for Table {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let row = |k: usize| sum(self.cells[k], other.cells[k]);
+        let (a, b) = (&self.sums, &other.sums);
+        let sums = Sums {
+            free: a.free + b.free,
+            obstacle: a.obstacle + b.obstacle,
+            negative: a.negative + b.negative,
+            unknown: a.unknown + b.unknown,
+            named: sum(a.named, b.named),
+        };
+        Self::with_shares(core::array::from_fn(row), sums)
+    }
 }
 
 impl GroundTruth {
@@ -117,17 +155,12 @@ impl GroundTruth {
         let known: Vec<MapCell> = (0..self.frame.len())
             .map(|index| map(self.frame.cell(index)))
             .collect();
-        let mut table = Table::default();
-        let mut sums = Sums::default();
+        let (mut cells, mut sums) = ([[0; 4]; 5], Sums::default());
         for (index, (truly, held)) in self.classes.iter().zip(&known).enumerate() {
-            table.cells[*truly as usize][column(*held)] += 1;
+            cells[*truly as usize][column(*held)] += 1;
             self.judge(&known, index, &mut sums);
         }
-        table.traversable = sums.free.score();
-        table.obstacle = sums.obstacle.score();
-        table.negative = sums.negative.score();
-        table.negative_by_name = share(sums.named);
-        table
+        Table::with_shares(cells, sums)
     }
 
     /// Counts one cell, as the map holds it and as it truly is.
@@ -136,7 +169,7 @@ impl GroundTruth {
         let cell = self.frame.cell(index);
         let beside = |wanted: &[Truly]| self.near(cell, |k| wanted.contains(&self.classes[k]));
         match known[index] {
-            MapCell::Unknown => {}
+            MapCell::Unknown => sums.unknown.held(self.classes[index] != Traversable),
             MapCell::Free => sums
                 .free
                 .held(!matches!(self.classes[index], Obstacle | Negative | Either)),
@@ -170,6 +203,7 @@ impl GroundTruth {
                     sums.named[0] += u32::from(named);
                 }
             }
+            Unjudged => sums.unknown.found(known[index] == MapCell::Unknown),
             _ => {}
         }
     }
@@ -189,7 +223,7 @@ impl GroundTruth {
 }
 
 /// Counts of what was right, and of all.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Count {
     held: [u32; 2],
     found: [u32; 2],
@@ -214,12 +248,28 @@ impl Count {
     }
 }
 
-#[derive(Clone, Copy, Debug, Default)]
+impl Add for Count {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            held: sum(self.held, other.held),
+            found: sum(self.found, other.found),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Sums {
     free: Count,
     obstacle: Count,
     negative: Count,
+    unknown: Count,
     named: [u32; 2],
+}
+
+fn sum<const N: usize>(a: [u32; N], b: [u32; N]) -> [u32; N] {
+    core::array::from_fn(|k| a[k] + b[k])
 }
 
 fn share([part, whole]: [u32; 2]) -> Option<f64> {
@@ -356,6 +406,7 @@ mod tests {
         };
         assert_eq!((perfect.traversable, perfect.obstacle), (one, one));
         assert_eq!(perfect.negative, Score::default());
+        assert_eq!(perfect.unknown, one);
         assert_eq!(perfect.cells[Truly::Obstacle as usize], [0, 0, 60, 0]);
         // All free: the face of the cliff is called free, and is not found.
         let blind = truths.compare(|_| MapCell::Free);
@@ -371,6 +422,43 @@ mod tests {
             });
             assert_eq!(table.obstacle.precision, Some(precision), "{x}");
         }
+    }
+
+    #[test]
+    fn unknown_is_right_where_the_robot_cannot_be() {
+        // Covered up to column 38, the face at 39 and 40, and beyond it ground out of reach.
+        let truths = truths(1.0, &[], cliff);
+        let table = truths.compare(|cell| match cell.x {
+            0..39 | 60.. => MapCell::Free,
+            _ => MapCell::Unknown,
+        });
+        assert_eq!(table.unknown.precision, Some(1.0));
+        let count = |class, columns: core::ops::Range<i32>| {
+            let cells = columns.flat_map(|x| (0..30).map(move |y| Cell { x, y }));
+            cells.filter(|cell| truths.class(*cell) == class).count() as f64
+        };
+        // A disc does not cover the corners of the strip: they are out of reach, too, and free on this map.
+        let left = count(Truly::Unjudged, 39..60) / count(Truly::Unjudged, 0..80);
+        assert_eq!(table.unknown.recall, Some(left));
+        assert!((0.45..0.5).contains(&left));
+        let blank = truths.compare(|_| MapCell::Unknown);
+        let right = 1.0 - count(Truly::Traversable, 0..80) / 2400.0;
+        assert!((blank.unknown.precision.unwrap() - right).abs() < 1e-12);
+        assert_eq!(blank.traversable, Score::default());
+    }
+
+    #[test]
+    fn tables_of_two_maps_are_one_of_all_their_cells() {
+        let truths = truths(1.0, &[], cliff);
+        let of = |held| truths.compare(move |_| held);
+        let (free, blank) = (of(MapCell::Free), of(MapCell::Unknown));
+        let both = free + blank;
+        assert_eq!(both.traversable, free.traversable);
+        assert_eq!(both.unknown.precision, blank.unknown.precision);
+        // All of what lies beyond is left unknown on one map and on none of the other.
+        assert_eq!(both.unknown.recall, Some(0.5));
+        let covered = free.cells[Truly::Traversable as usize][1];
+        assert_eq!(both.cells[0], [covered, covered, 0, 0]);
     }
 
     #[test]

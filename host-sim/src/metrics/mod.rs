@@ -1,6 +1,7 @@
 //! What a run is judged by, on the true world.
 
 mod coverage;
+mod crossings;
 mod footing;
 mod frame;
 mod ground_truth;
@@ -13,6 +14,7 @@ mod ride;
 mod safety;
 
 pub use coverage::{Coverage, DIRECTIONS, MAP_CELL_M, Truth, map_cells, truth};
+pub use crossings::crossings;
 pub use footing::{Footing, HEADINGS, is_gentle};
 pub use frame::Frame;
 pub use ground_truth::{GroundTruth, Score, Table, Truly};

@@ -123,7 +123,7 @@ pub(super) fn arrow(
 }
 
 /// The unit vector of ∇q in a free cell.
-fn direction(window: &Window, x: usize, y: usize) -> Option<(f32, f32)> {
+pub(super) fn direction(window: &Window, x: usize, y: usize) -> Option<(f32, f32)> {
     let at = |x: usize, y: usize| f64::from(window.q[y * FIELD_SIDE + x]);
     if window.cells[y * FIELD_SIDE + x] != WindowCell::Free {
         return None;

@@ -1,5 +1,6 @@
 //! `run.png`: the map, the skeleton, the last window's field and the path coloured by time, with a legend; what is known of loops
-//! and rails; in an uneven world the true ground beside it, in the same frame.
+//! and rails; in an uneven world the true ground beside it, in the same frame, and under both what the planner made of the last
+//! window.
 //!
 //! A map cell is a square of whole pixels, two to six but for the smallest maps, so that the map stays crisp; everything else is antialiased. North
 //! is up.
@@ -10,13 +11,16 @@ mod layers;
 mod legend;
 mod loops;
 mod palette;
+mod panels;
 mod text;
 
 use crate::report::GridMap;
 use crate::report::tum::Stamped;
+use crate::trial::relief::Relief;
 use crate::trial::route::Route;
 use crate::trial::snapshot::Window;
 use canvas::{Canvas, Spot};
+use panels::Strip;
 
 pub use ground::Ground;
 
@@ -56,6 +60,8 @@ pub struct Scene<'a> {
     pub path: &'a [Stamped],
     /// The last window.
     pub window: Option<&'a Window>,
+    /// Heights and preferences in it.
+    pub relief: Option<&'a Relief>,
     /// Frontiers that were left, metres.
     pub residue: &'a [(f64, f64)],
     /// Where the planner was going.
@@ -211,11 +217,15 @@ pub fn run_png(scene: &Scene<'_>) -> Vec<u8> {
     let frame = Frame::of(scene);
     let beside = scene.ground.map(|ground| (frame.beside(), ground));
     let right = beside.map_or(frame, |(frame, _)| frame);
+    let under = HEADER + frame.height() + FOOTER;
+    let strip = beside.map(|_| Strip::under(MARGIN, under, right.left + right.width() - MARGIN));
     let maps = (right.left + right.width()).max(MARGIN + LEAST_WIDTH);
+    let maps = strip.map_or(maps, |strip| maps.max(MARGIN + strip.width()));
     let width = maps + PANEL + MARGIN;
     let more = loops::keys(scene).len() as i32 * LINE;
     let keys = PANEL_HEIGHT[usize::from(beside.is_some())] + more;
-    let height = HEADER + (frame.height() + FOOTER).max(keys) + MARGIN;
+    let drawn = strip.map_or(under, |strip| under + strip.height() + FOOTER);
+    let height = drawn.max(HEADER + keys) + MARGIN;
     let page = Canvas::new(width.unsigned_abs(), height.unsigned_abs(), palette::PAGE);
     let Some(mut canvas) = page else {
         return Vec::new();
@@ -226,6 +236,9 @@ pub fn run_png(scene: &Scene<'_>) -> Vec<u8> {
         layers::path(&mut canvas, frame, scene.path);
         layers::ends(&mut canvas, frame, scene.path);
         legend::caption(&mut canvas, frame, "true ground");
+    }
+    if let Some(strip) = &strip {
+        panels::draw(&mut canvas, strip, scene);
     }
     legend::title(&mut canvas, scene);
     legend::scale_bar(&mut canvas, &frame);

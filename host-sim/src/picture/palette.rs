@@ -109,6 +109,30 @@ pub(super) fn height(share: f32) -> Rgb {
     along(&STOPS, share)
 }
 
+/// A preference from the strongest that repels to the strongest that attracts: orange over white to violet.
+pub(super) fn preference(share: f32) -> Rgb {
+    const STOPS: [Rgb; 5] = [
+        Rgb(0xb3, 0x58, 0x06),
+        Rgb(0xf1, 0xa3, 0x40),
+        Rgb(0xf7, 0xf7, 0xf7),
+        Rgb(0x99, 0x8e, 0xc3),
+        Rgb(0x54, 0x27, 0x88),
+    ];
+    along(&STOPS, share)
+}
+
+/// The field where it stands alone, far to near: dark blue to a pale yellow.
+pub(super) fn potential(share: f32) -> Rgb {
+    const STOPS: [Rgb; 5] = [
+        Rgb(0x18, 0x2b, 0x4d),
+        Rgb(0x1f, 0x5f, 0x8b),
+        Rgb(0x3d, 0x9c, 0xa3),
+        Rgb(0x9b, 0xd0, 0xa5),
+        Rgb(0xfb, 0xf6, 0xcf),
+    ];
+    along(&STOPS, share)
+}
+
 fn along(stops: &[Rgb], share: f32) -> Rgb {
     let place = share.clamp(0.0, 1.0) * (stops.len() - 1) as f32;
     let i = (place as usize).min(stops.len() - 2);

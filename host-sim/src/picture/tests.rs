@@ -1,11 +1,13 @@
 //! What can be asserted of a picture: places, colours at places, and that odd runs draw at all.
 
-use super::{Extent, Frame, GOOD_SIDE, Ground, Scene, run_png};
+use super::panels::Strip;
+use super::{Extent, FOOTER, Frame, GAP, GOOD_SIDE, Ground, MARGIN, Scene, run_png};
 use crate::metrics::{Footing, GroundTruth};
 use crate::report::tum::Stamped;
 use crate::report::{GridMap, MapCell};
 use crate::robot::{Limits, RADIUS_M};
 use crate::trial::route::Route;
+use crate::trial::relief::Relief;
 use crate::trial::snapshot::{Window, WindowCell};
 use crate::world::World;
 
@@ -71,6 +73,7 @@ fn colours_are_where_the_map_says() {
         map: &map,
         path: &path,
         window: Some(&window),
+        relief: None,
         residue: &[(-2.0, -3.0)],
         route: None,
         given_up: &[],
@@ -112,6 +115,7 @@ fn a_run_that_saw_nothing_still_has_a_picture() {
         map: &GridMap::default(),
         path: &[],
         window: None,
+        relief: None,
         residue: &[],
         route: None,
         given_up: &[],
@@ -136,6 +140,7 @@ fn the_true_ground_lies_beside_the_map_in_the_same_frame() {
         map: &map,
         path: &[],
         window: None,
+        relief: None,
         residue: &[],
         route: None,
         given_up: &[],
@@ -164,6 +169,61 @@ fn the_true_ground_lies_beside_the_map_in_the_same_frame() {
 }
 
 #[test]
+fn the_last_window_is_shown_four_times_under_the_maps() {
+    let world = World::builtin("causeway").expect("listed");
+    let footing = Footing::new(&world, world.starts()[0], RADIUS_M, &Limits::WORKING);
+    let truth = GroundTruth::new(&world, &footing, &Limits::WORKING);
+    let (map, path, window) = room();
+    // The western half lies 1 m higher, and what is farthest north is not measured; the east repels.
+    let cells = 0..61 * 61;
+    let relief = Relief {
+        heights_m: cells
+            .clone()
+            .map(|i| (i < 50 * 61).then_some(if i % 61 < 30 { 1.0 } else { 0.0 }))
+            .collect(),
+        preferences: cells
+            .map(|i| if i % 61 < 30 { 0.0 } else { -0.5 })
+            .collect(),
+    };
+    let scene = Scene {
+        title: "room",
+        subtitle: "",
+        map: &map,
+        path: &path,
+        window: Some(&window),
+        relief: Some(&relief),
+        residue: &[],
+        ground: Some(Ground::new(&world, &truth, 0.0)),
+        room_for: None,
+    };
+    let (page, frame) = (decode(&run_png(&scene)), Frame::of(&scene));
+    let right = frame.beside();
+    let top = frame.top + frame.height() + FOOTER;
+    let strip = Strip::under(MARGIN, top, right.left + right.width() - MARGIN);
+    assert!(top + strip.height() < page.height() as i32);
+    let side = strip.height() / 61;
+    let colour = |panel: i32, x: i32, y: i32| {
+        let left = MARGIN + panel * (61 * side + GAP);
+        let (x, y) = (left + x * side + 1, top + (60 - y) * side + 1);
+        let pixel = page.pixel(x as u32, y as u32).unwrap();
+        (pixel.red(), pixel.green(), pixel.blue())
+    };
+    let unknown = (0xe8, 0xeb, 0xef);
+    assert_eq!(colour(0, 20, 20), (0xf6, 0xe6, 0xc8), "high");
+    assert_eq!(colour(0, 40, 20), (0x5f, 0x93, 0x9c), "low");
+    assert_eq!(colour(0, 20, 55), unknown, "not measured");
+    // The wall is column 5 of the window, the goal at (40, 30) is column 45 of row 58.
+    assert_eq!(colour(1, 5, 20), (0x2b, 0x33, 0x3d), "wall");
+    assert_eq!(colour(1, 20, 20), (0xff, 0xff, 0xff), "free");
+    assert_eq!(colour(1, 45, 58), (0x1f, 0x6f, 0xb2), "goal");
+    assert_eq!(colour(2, 20, 20), (0xf7, 0xf7, 0xf7), "neither");
+    assert_eq!(colour(2, 40, 20), (0xb3, 0x58, 0x06), "repels");
+    assert_eq!(colour(2, 5, 20), unknown, "no field in a wall");
+    let light = |(r, g, b): (u8, u8, u8)| u32::from(r) + u32::from(g) + u32::from(b);
+    assert!(light(colour(3, 44, 56)) > light(colour(3, 10, 3)), "nearer");
+}
+
+#[test]
 fn a_page_has_room_for_the_map_to_come() {
     let (early, late) = (
         GridMap::unknown(0, 0, 30, 20),
@@ -176,6 +236,7 @@ fn a_page_has_room_for_the_map_to_come() {
             map,
             path: &[],
             window: None,
+            relief: None,
             residue: &[],
             route: None,
             given_up: &[],

@@ -47,6 +47,8 @@ pub struct Classes {
     pub obstacle: ClassScore,
     /// Negative obstacles.
     pub negative: ClassScore,
+    /// Cells that the map leaves unknown.
+    pub unknown: ClassScore,
     /// Share of the found negative rims that the map calls negative.
     pub negative_by_name: Option<f64>,
     /// Cells by true class (rows: traversable, obstacle, negative, either, unjudged) and class of the map (columns: unknown,
@@ -86,6 +88,7 @@ impl From<&Table> for Classes {
             traversable: table.traversable.into(),
             obstacle: table.obstacle.into(),
             negative: table.negative.into(),
+            unknown: table.unknown.into(),
             negative_by_name: table.negative_by_name,
             cells: table.cells,
         }

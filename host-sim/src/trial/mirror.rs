@@ -7,16 +7,20 @@ use std::collections::BTreeMap;
 
 use fieldline_device::{SLOTS, TILES, convert};
 use fieldline_planner::config::Config;
-use fieldline_planner::geometry::Cell;
+use fieldline_planner::geometry::{Cell, Pose};
 use fieldline_planner::map::{Class, Map};
 use fieldline_planner::planner::Input;
 use fieldline_protocol::message::{Observation, Start, Status, Tile};
+
+use super::relief::Relief;
+use super::snapshot::Window;
 
 /// The map that a device must have.
 #[derive(Debug)]
 pub struct Mirror {
     config: Config,
     map: Box<Map<TILES, SLOTS>>,
+    pose: Pose,
 }
 
 impl Mirror {
@@ -26,7 +30,8 @@ impl Mirror {
         let config = convert::config(start);
         let mut map = Box::new(Map::new());
         map.begin(&config);
-        Self { config, map }
+        let pose = Pose::default();
+        Self { config, map, pose }
     }
 
     /// Enter an observation to which the device answered with `status`; one that holds still does not plan.
@@ -48,6 +53,7 @@ impl Mirror {
             velocity: convert::twist(&observation.velocity),
             scans: [scan(0), scan(1)],
         };
+        self.pose = input.pose;
         self.map.observe(&self.config, &input);
     }
 
@@ -55,6 +61,13 @@ impl Mirror {
     #[must_use]
     pub fn is_known(&self, cell: Cell) -> bool {
         self.map.class(cell) != Class::Unknown
+    }
+
+    /// Heights and preferences in a window; `None` where the planner takes all ground for flat.
+    #[must_use]
+    pub fn relief(&self, window: &Window) -> Option<Relief> {
+        let terrain = self.config.terrain.as_ref()?;
+        Some(Relief::of(&self.map.heights(), terrain, &self.pose, window))
     }
 
     /// Whether these tiles are this map: all of it, and nothing else. On uneven ground the planner also gives up ground that it never

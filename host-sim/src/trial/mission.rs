@@ -12,6 +12,8 @@ use fieldline_protocol::message::{
 };
 
 use super::mirror::Mirror;
+use super::relief::Relief;
+use super::snapshot::Window;
 use super::uneven::TABLE_I;
 use super::{Body, Cast, Ending, Record, Setup, Survey, Watch, record, run, shape};
 use crate::link::{Link, LinkError};
@@ -280,6 +282,10 @@ impl Survey for Account {
         let mirror = &self.mirror;
         self.coverage
             .update(time_s, |cell: Cell| mirror.is_known(cell))
+    }
+
+    fn relief(&self, window: &Window) -> Option<Relief> {
+        self.mirror.relief(window)
     }
 }
 

@@ -11,6 +11,7 @@ pub mod mission;
 pub mod oracle;
 pub mod record;
 pub mod route;
+pub mod relief;
 pub mod series;
 pub mod shape;
 pub mod snapshot;
@@ -25,8 +26,9 @@ use crate::link::{Link, LinkError};
 use crate::report::tum::Stamped;
 use crate::sim::Loss;
 use freeze::FreezeDetector;
+use relief::Relief;
 use series::Series;
-use snapshot::Snapshot;
+use snapshot::{Snapshot, Window};
 
 pub use ending::Ending;
 pub use record::{Record, Step};
@@ -55,6 +57,11 @@ pub trait Body {
 pub trait Survey {
     /// Take an observation and what the planner answered; the fraction of the reachable world that is known now.
     fn note(&mut self, observation: &Observation, status: Status) -> f64;
+
+    /// What the ground is now in a window that the planner solved, where it heeds that.
+    fn relief(&self, _window: &Window) -> Option<Relief> {
+        None
+    }
 }
 
 /// Looks on, and may end the run: a progress line, a pacer, the interrupt key.
@@ -152,7 +159,10 @@ fn explore(
         }
         if series.is_due(observation.time_ms) {
             match snapshot::take(cast.link, record) {
-                Ok(snapshot) => series.take(snapshot),
+                Ok(mut snapshot) => {
+                    snapshot.relief = relief(cast, snapshot.window.as_ref());
+                    series.take(snapshot);
+                }
                 Err(error) => return Ending::Link(error),
             }
         }
@@ -208,7 +218,12 @@ fn read_out(cast: &mut Cast<'_>, record: &mut Record) {
     {
         record.read_out_error = Some(error);
     }
+    record.relief = relief(cast, record.window.as_ref());
     record.link_stats = cast.link.stats();
+}
+
+fn relief(cast: &Cast<'_>, window: Option<&Window>) -> Option<Relief> {
+    window.and_then(|window| cast.survey.relief(window))
 }
 
 fn check_field(

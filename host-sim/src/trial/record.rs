@@ -7,6 +7,7 @@ use fieldline_protocol::message::{
 };
 
 use super::route::Route;
+use super::relief::Relief;
 use super::snapshot::{Snapshot, Window};
 use super::{Ending, Progress, wording};
 use crate::link::digest::Digest;
@@ -52,6 +53,8 @@ pub struct Record {
     pub window: Option<Window>,
     /// Where the planner was going.
     pub route: Route,
+    /// Heights and preferences in it, where the planner heeds them.
+    pub relief: Option<Relief>,
     /// Frontiers that were left.
     pub frontiers: Vec<Frontier>,
     /// Map and window on the way, where that was asked for.
@@ -79,6 +82,7 @@ impl Default for Record {
             tiles: BTreeMap::new(),
             window: None,
             route: Route::default(),
+            relief: None,
             frontiers: Vec::new(),
             snapshots: Vec::new(),
             ground: None,

@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use fieldline_protocol::message::{FIELD_SIDE, FieldRow, Tile};
 
 use super::route::{self, Route};
+use super::relief::Relief;
 use super::{Progress, Record};
 use crate::link::{Link, LinkError};
 use crate::report::GridMap;
@@ -53,6 +54,8 @@ pub struct Snapshot {
     pub window: Option<Window>,
     /// Where the planner is going.
     pub route: Route,
+    /// Heights and preferences in it, where the planner heeds them.
+    pub relief: Option<Relief>,
 }
 
 /// Fill the record's map, window and frontiers; the map is sought from where the run began.
@@ -81,6 +84,7 @@ pub fn take(link: &mut dyn Link, record: &Record) -> Result<Snapshot, LinkError>
         map: GridMap::from_tiles(&tiles),
         window,
         route,
+        relief: None,
     })
 }
 

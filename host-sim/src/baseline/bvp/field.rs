@@ -5,10 +5,13 @@
 //! Departs from [Prestes et al.], who relax p itself: in p a cell whose 1 − p is below the rounding of 1 is flat, and in a
 //! real building that is most of them. The baseline is better for it, never worse.
 //!
+//! With preferences ([`Field::prefer`]) the equation is that of [Maffei-Terrain, eq. 2], |ε| ≤ 2.
+//!
 //! Only free cells that the robot can come to are unknowns of the system, and those need no value for the others.
 //!
 //! Units: cells of the chart; headings in radians, counter-clockwise from x.
 
+use fieldline_planner::field::preference::KERNEL_CELLS;
 use fieldline_planner::geometry::{CELL_M, Cell, Point};
 use fieldline_planner::math;
 
@@ -54,7 +57,7 @@ impl Field {
             return;
         }
         let updates = self.solver.updates;
-        let mut solver = Multigrid::new(&nodes(frame, &kinds, &homes), places(frame, &homes), GOAL);
+        let mut solver = Multigrid::new(nodes(frame, &kinds, &homes), places(frame, &homes), GOAL);
         for (node, &home) in homes.iter().enumerate() {
             if let Some(before) = self.value(frame.cell(home as usize)) {
                 solver.set(node, before);
@@ -68,6 +71,34 @@ impl Field {
             goals,
             solver,
         };
+    }
+
+    /// Give every free cell a preference.
+    pub(super) fn prefer(&mut self, of: impl Fn(Cell) -> f32) {
+        let cells = self
+            .homes
+            .iter()
+            .map(|&home| self.frame.cell(home as usize));
+        self.solver.prefer(cells.map(of).collect());
+    }
+
+    /// Mean of |p − p(robot)| over the free cells of the kernel around the robot that have a way to a goal
+    /// ([`fieldline_planner::field::preference`]); `None` where the robot has none.
+    pub(super) fn p_diff(&self, robot: Cell) -> Option<f64> {
+        let here = self.value(robot)?;
+        let half = KERNEL_CELLS as i32 / 2;
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (dx, dy) in (-half..half).flat_map(|dy| (-half..half).map(move |dx| (dx, dy))) {
+            let near = Cell {
+                x: robot.x + dx,
+                y: robot.y + dy,
+            };
+            if let Some(q) = self.value(near).filter(|_| (dx, dy) != (0, 0)) {
+                sum += (q - here).abs() / GOAL;
+                count += 1.0;
+            }
+        }
+        Some(if count > 0.0 { sum / count } else { 0.0 })
     }
 
     /// Whether any unexplored cell can be come to.
@@ -226,7 +257,7 @@ fn nodes(frame: Frame, kinds: &[Kind], homes: &[u32]) -> Vec<Node> {
                 Kind::Free(node) => Some(node),
                 _ => None,
             }),
-            goals: near.iter().filter(|kind| **kind == Kind::Goal).count() as u8,
+            goals: (0..4).fold(0, |bits, k| bits | u8::from(near[k] == Kind::Goal) << k),
         }
     };
     homes.iter().map(node).collect()
@@ -306,6 +337,72 @@ mod tests {
         assert!(residual(&field) < 1e-3, "{:e}", residual(&field));
         let (field, _) = solved(&ROOMS, 60);
         assert!(residual(&field) < 1e-12, "{:e}", residual(&field));
+    }
+
+    /// As [`residual`], of the equation with these preferences.
+    fn residual_with(field: &Field, epsilon: impl Fn(Cell) -> f32) -> f64 {
+        let one = |cell: Cell| {
+            let q = |dx: i32, dy: i32| {
+                let near = Cell {
+                    x: cell.x + dx,
+                    y: cell.y + dy,
+                };
+                field.q(near)
+            };
+            let ([east, west], [north, south]) = ([q(1, 0), q(-1, 0)], [q(0, 1), q(0, -1)]);
+            let tilt = (east - west).abs() + (north - south).abs();
+            let sum = east + west + north + south + 0.5 * f64::from(epsilon(cell)) * tilt;
+            (sum / 4.0 / field.q(cell) - 1.0).abs()
+        };
+        cells(field).into_iter().map(one).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn with_preferences_it_converges_to_their_equation() {
+        let (chart, robot) = chart(&ROOMS);
+        let level = |_: Cell| 0.5;
+        let mixed = |cell: Cell| ((cell.x * 7 + cell.y * 13) % 11 - 5) as f32 / 10.0;
+        let banded = |cell: Cell| if cell.x % 8 < 4 { -0.5 } else { 0.1 };
+        let firm = |cell: Cell| if cell.x % 8 < 4 { -1.0 } else { 1.0 };
+        let strong = |cell: Cell| if cell.x % 8 < 4 { -1.5 } else { 1.5 };
+        let check = |epsilon: &dyn Fn(Cell) -> f32, cycles: u32, most: f64| {
+            let mut field = Field::default();
+            field.charge(&chart, robot.cell(), |_| true);
+            field.prefer(epsilon);
+            (0..cycles).for_each(|_| field.cycle());
+            let residual = residual_with(&field, epsilon);
+            assert!(residual < most, "{residual:e}");
+            for cell in cells(&field) {
+                assert!(field.q(cell) > 0.0 && field.q(cell) < GOAL);
+                assert!(field.descend(cell).is_some(), "no local minimum");
+            }
+        };
+        check(&|_| 0.0, 60, 1e-12);
+        check(&level, 60, 1e-9);
+        check(&mixed, 60, 1e-9);
+        check(&banded, 60, 1e-9);
+        check(&firm, 60, 1e-9);
+        check(&strong, 200, 1e-3);
+        check(&mixed, 12, 1e-2);
+    }
+
+    /// A corridor one cell wide: the walls' sides are equal, so along it q is that of a line with its flows tilted.
+    #[test]
+    fn p_diff_is_the_mean_over_the_kernel() {
+        let wall = "#".repeat(42);
+        let corridor = format!("#{}R{}?", ".".repeat(19), ".".repeat(20));
+        let (field, robot) = solved(&[&wall, &corridor, &wall], 60);
+        let home = robot.cell();
+        let q = |dx: i32| {
+            field.q(Cell {
+                x: home.x + dx,
+                y: home.y,
+            }) / GOAL
+        };
+        let sum: f64 = (-10..10).map(|dx| (q(dx) - q(0)).abs()).sum();
+        let p_diff = field.p_diff(home).expect("a way");
+        assert!((p_diff / (sum / 19.0) - 1.0).abs() < 1e-12);
+        assert_eq!(field.p_diff(Cell { x: 0, y: 0 }), None);
     }
 
     #[test]

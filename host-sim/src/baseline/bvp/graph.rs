@@ -16,6 +16,12 @@
 //!
 //! are sums of positive numbers only, so that they keep their digits whatever the range of x. A group is a connected part of
 //! a block of 2 × 2 places: it never joins the two sides of a wall.
+//!
+//! Preferences [Maffei-Terrain, eq. 2] tilt the flows of the finest level: of two opposite neighbours the greater x flows in by
+//! 1 + ε/2 and the smaller by 1 − ε/2, as x is at the time. What is lost, `w_j = 4 − Σ_k f_kj`, may then be a little below 0, so that a factor
+//! is kept from more than doubling what its group's neighbours and goals ask for.
+
+use core::cmp::Ordering;
 
 /// No node, no edge.
 const NONE: u32 = u32::MAX;
@@ -37,6 +43,8 @@ pub(super) struct Level {
     outflow: Vec<f64>,
     /// x.
     pub(super) value: Vec<f64>,
+    /// Flows are tilted by preferences.
+    tilted: bool,
     /// The coarser node of each node, and the coarser edge of each edge (none within a group).
     group: Vec<u32>,
     group_edge: Vec<u32>,
@@ -47,8 +55,14 @@ pub(super) struct Level {
 pub(super) struct Node {
     /// The free neighbours, by number.
     pub(super) beside: [Option<u32>; 4],
-    /// Neighbours that are goals.
+    /// Neighbours that are goals, bit k for that of `beside[k]`.
     pub(super) goals: u8,
+}
+
+impl Node {
+    fn is_goal(&self, k: usize) -> bool {
+        self.goals >> k & 1 == 1
+    }
 }
 
 impl Level {
@@ -62,12 +76,44 @@ impl Level {
             level.starts.push(level.from.len() as u32);
             let free = node.beside.into_iter().flatten().count();
             level.loss.push((4 - free) as f64);
-            level.source.push(f64::from(node.goals) * goal);
+            level.source.push(f64::from(node.goals.count_ones()) * goal);
         }
         level.flow = vec![1.0; level.from.len()];
         level.outflow = vec![4.0; nodes.len()];
         level.value = vec![goal; nodes.len()];
         level
+    }
+
+    /// Tilt the finest level's flows by the nodes' preferences, as x is now; neighbours are in the order east, north, west, south.
+    pub(super) fn tilt(&mut self, nodes: &[Node], preferences: &[f32], goal: f64) {
+        self.tilted = true;
+        self.loss.fill(4.0);
+        for (i, (node, epsilon)) in nodes.iter().zip(preferences).enumerate() {
+            let value = |k: usize| match node.beside[k] {
+                Some(near) => self.value[near as usize],
+                None if node.is_goal(k) => goal,
+                None => 0.0,
+            };
+            let half = 0.5 * f64::from(*epsilon);
+            let by = |a: usize, b: usize| match value(a).total_cmp(&value(b)) {
+                Ordering::Greater => half,
+                Ordering::Less => -half,
+                Ordering::Equal => 0.0,
+            };
+            let (along, up) = (by(0, 2), by(1, 3));
+            let weights = [1.0 + along, 1.0 + up, 1.0 - along, 1.0 - up];
+            let (mut edge, mut source) = (self.starts[i] as usize, 0.0);
+            for (k, weight) in weights.into_iter().enumerate() {
+                if let Some(near) = node.beside[k] {
+                    self.flow[edge] = weight;
+                    self.loss[near as usize] -= weight;
+                    edge += 1;
+                } else if node.is_goal(k) {
+                    source += weight * goal;
+                }
+            }
+            self.source[i] = source;
+        }
     }
 
     fn with_capacity(nodes: usize) -> Self {
@@ -197,6 +243,23 @@ impl Level {
         coarse.outflow.copy_from_slice(&coarse.loss);
         for (&from, flow) in coarse.from.iter().zip(&coarse.flow) {
             coarse.outflow[from as usize] += flow;
+        }
+        coarse.tilted = self.tilted;
+        if self.tilted {
+            coarse.keep_from_doubling();
+        }
+    }
+
+    /// No factor above 2 for neighbours' factors of 1.
+    fn keep_from_doubling(&mut self) {
+        for node in 0..self.len() {
+            let edges = self.edges(node);
+            let inflow = self.flow[edges].iter().sum::<f64>() + self.source[node];
+            let wanting = 0.5 * inflow - self.outflow[node];
+            if wanting > 0.0 {
+                self.outflow[node] += wanting;
+                self.loss[node] += wanting;
+            }
         }
     }
 

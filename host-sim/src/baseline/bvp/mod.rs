@@ -13,6 +13,9 @@
 //! frontiers. So the paper's known failure, flattening, cannot end a run here. The other one, indecision between far goals, is
 //! in the method and stays.
 //!
+//! On uneven ground ([`Uneven`]) it has the planner's preferences [Maffei-Terrain, eqs. 3 to 5], over the whole grid: every height that was
+//! ever measured counts, where the chip knows those of a window around the robot.
+//!
 //! # What it would cost on the chip
 //! See [`Work`]: the grid grows with the building, which is why this baseline lives on the host.
 
@@ -24,9 +27,10 @@ pub mod patience;
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::math;
 use fieldline_planner::status::Frontier;
+use fieldline_planner::terrain::{Mode, Preferences};
 use fieldline_protocol::message::{FIELD_SIDE, FieldRow};
 
-use super::session::{Outlook, Plan, Scene};
+use super::session::{Outlook, Plan, Scene, Uneven};
 use field::{Field, GOAL, Kind};
 use patience::Patience;
 
@@ -57,6 +61,7 @@ pub struct Work {
 pub struct Bvp {
     field: Field,
     robot: Cell,
+    preferences: Preferences,
     patience: Patience,
     cycles: u16,
     exhausted: bool,
@@ -81,6 +86,21 @@ impl Bvp {
         let patience = &self.patience;
         let is_goal = |cell| !patience.is_dropped(cell);
         self.field.charge(scene.chart, self.robot, is_goal);
+    }
+
+    /// Give every cell its preference, as flat as the field was in the step before.
+    fn prefer(&mut self, scene: &Scene<'_>, ground: &Uneven<'_>) {
+        let (terrain, heights) = (ground.terrain, ground.heights);
+        if terrain.mode == Mode::Off {
+            return;
+        }
+        let global = self.preferences.global(terrain);
+        let preferences = self.preferences;
+        self.field.prefer(|cell| {
+            let height_m = heights.height_m(cell);
+            let difference_m = height_m.map(|height_m| height_m - scene.pose.z_m);
+            preferences.of_cell(terrain, global, difference_m)
+        });
     }
 
     /// Cycles until the heading has settled, or no slope is left to find.
@@ -132,7 +152,13 @@ impl Plan for Bvp {
         if !self.field.has_goals() {
             return Outlook::Nothing;
         }
+        if let Some(ground) = &scene.ground {
+            self.prefer(scene, ground);
+        }
         self.relax(at);
+        if let Some(p_diff) = self.field.p_diff(self.robot) {
+            self.preferences.note(p_diff as f32);
+        }
         self.account(scene.chart.frame().len());
         if let Some(goal) = self.field.descend(self.robot) {
             self.patience.note(at, goal, scene.time_ms);
@@ -200,10 +226,13 @@ impl Plan for Bvp {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bvp, MOST_CYCLES};
+    use super::{Bvp, MOST_CYCLES, Mode};
     use crate::baseline::chart::sketch::chart;
-    use crate::baseline::session::{Outlook, Plan, Scene};
+    use crate::baseline::heights::HeightGrid;
+    use crate::baseline::session::{Outlook, Plan, Scene, Uneven};
     use fieldline_planner::geometry::{Cell, Point, Pose};
+    use fieldline_planner::terrain::Terrain;
+    use fieldline_planner::terrain::elevation::{Elevation, WINDOW_CELLS};
     use fieldline_protocol::message::FIELD_SIDE;
 
     fn pose(at: Point) -> Pose {
@@ -230,6 +259,7 @@ mod tests {
                 chart: &chart,
                 pose: pose(at),
                 time_ms: step * 10,
+                ground: None,
             };
             assert_eq!(bvp.plan(&scene), Outlook::Way);
             let (sin, cos) = bvp.heading_at(&scene, at)?.sin_cos();
@@ -260,6 +290,7 @@ mod tests {
             chart: &closed,
             pose: pose(robot),
             time_ms: 0,
+            ground: None,
         };
         assert_eq!(Bvp::new().plan(&scene), Outlook::Nothing);
         let mut opened = rows;
@@ -289,6 +320,62 @@ mod tests {
         assert!(goal(larger_right) > 15, "equally far, the right is larger");
     }
 
+    /// Two ways round a block to one goal, the shorter over ground that lies lower: with preferences the robot goes the longer way.
+    #[test]
+    fn preferences_bend_the_way_to_level_ground() {
+        let rows = [
+            "#################", //
+            "#...............#",
+            "#...............#",
+            "#...............#",
+            "#...#########...#",
+            "#...#########...#",
+            "#...#########...#",
+            "#R..#########..?#",
+            "#...#########...#",
+            "#...............#",
+            "#...............#",
+            "#...............#",
+            "#################",
+        ];
+        let (chart, robot) = chart(&rows);
+        let (mut bytes, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
+        let mut origin = Cell { x: -20, y: -20 };
+        let mut elevation = Elevation::new(&mut bytes, &mut marks, &mut origin);
+        for (x, y) in (0..17).flat_map(|x| (0..13).map(move |y| (x, y))) {
+            let height_m = if y < 4 { -0.6 } else { 0.0 };
+            elevation.tread(Cell { x, y }, height_m);
+        }
+        let mut heights = HeightGrid::default();
+        heights.keep(&elevation.read());
+        let turn = |mode| {
+            let terrain = Terrain {
+                mode,
+                least_preference: -1.0,
+                ..Terrain::TABLE_I
+            };
+            let ground = Uneven {
+                terrain: &terrain,
+                heights: &heights,
+            };
+            let scene = Scene {
+                chart: &chart,
+                pose: pose(robot),
+                time_ms: 0,
+                ground: Some(ground),
+            };
+            let mut bvp = Bvp::new();
+            for _ in 0..10 {
+                assert_eq!(bvp.plan(&scene), Outlook::Way);
+            }
+            bvp.heading_at(&scene, robot).expect("a way")
+        };
+        assert!(turn(Mode::Off) < 0.0, "the shorter way is to the south");
+        assert!(turn(Mode::Global) < 0.0, "which attracts all ground alike");
+        assert!(turn(Mode::Both) > 0.0, "the level one to the north");
+        assert!(turn(Mode::Height) > 0.0);
+    }
+
     #[test]
     fn the_window_shown_is_the_grid_around_the_robot() {
         let (chart, robot) = chart(&["#####", "#R.?#", "#####"]);
@@ -298,6 +385,7 @@ mod tests {
             chart: &chart,
             pose: pose(robot),
             time_ms: 0,
+            ground: None,
         };
         assert_eq!(bvp.plan(&scene), Outlook::Way);
         assert!(bvp.cycles() <= MOST_CYCLES && !bvp.is_exhausted());

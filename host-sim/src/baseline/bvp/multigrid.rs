@@ -1,18 +1,28 @@
 //! The solver of the full-grid field: cycles over ever coarser graphs, warm from the step before.
 //!
 //! One cycle works down from the finest level: it sums the equations of every group, solves for the groups' factors by the
-//! same means (twice on the coarse levels, a W cycle), scales, and sweeps once. The coarsest level is solved directly.
-//! Work is counted in *cell updates*: one for a node swept, one for a node summed or scaled.
+//! same means (twice on the coarse levels, a W cycle), scales, and sweeps once. The coarsest level is solved directly. With preferences the flows
+//! of the finest level are tilted anew before each cycle; under preferences beyond ±1 a cycle is 16 sweeps and nothing else.
+//! Work is counted in *cell updates*: one for a node swept, one for a node summed or scaled, and one for a node whose flows are tilted.
 
 use super::graph::{FEW, Level, Node};
 
 /// Sweeps after the factors of a level, so that steps at the groups' edges are smoothed.
 const SWEEPS: usize = 1;
+/// Beyond this preference coarse levels do not help any more: factors overshoot while the flows turn round.
+const FIRM: f32 = 1.0;
+/// Sweeps that take the place of a cycle then.
+const STRONG_SWEEPS: usize = 16;
 
 /// The levels, the finest first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Multigrid {
     levels: Vec<Level>,
+    nodes: Vec<Node>,
+    goal: f64,
+    /// ε of every node, where there are preferences.
+    preferences: Vec<f32>,
+    is_strong: bool,
     backwards: bool,
     /// Cell updates so far.
     pub(super) updates: u64,
@@ -20,8 +30,8 @@ pub(super) struct Multigrid {
 
 impl Multigrid {
     /// For these nodes at these places; every value is that of a goal.
-    pub(super) fn new(nodes: &[Node], places: Vec<(u32, u32)>, goal: f64) -> Self {
-        let mut levels = vec![Level::finest(nodes, goal)];
+    pub(super) fn new(nodes: Vec<Node>, places: Vec<(u32, u32)>, goal: f64) -> Self {
+        let mut levels = vec![Level::finest(&nodes, goal)];
         let mut places = places;
         // The reached cells are connected, so they end as one group when all places have become one.
         while let Some(last) = levels.last_mut()
@@ -34,6 +44,8 @@ impl Multigrid {
         }
         Self {
             levels,
+            nodes,
+            goal,
             ..Self::default()
         }
     }
@@ -50,10 +62,27 @@ impl Multigrid {
         }
     }
 
+    /// From now on with these preferences, ε of every node.
+    pub(super) fn prefer(&mut self, preferences: Vec<f32>) {
+        self.is_strong = preferences.iter().any(|epsilon| epsilon.abs() > FIRM);
+        self.preferences = preferences;
+    }
+
     /// One cycle.
     pub(super) fn cycle(&mut self) {
         self.backwards = !self.backwards;
         let mut updates = 0;
+        if !self.preferences.is_empty()
+            && let Some(finest) = self.levels.first_mut()
+        {
+            finest.tilt(&self.nodes, &self.preferences, self.goal);
+            updates += finest.len() as u64;
+            if self.is_strong {
+                (0..STRONG_SWEEPS).for_each(|k| finest.sweep(k % 2 == 0));
+                self.updates += updates + (STRONG_SWEEPS * finest.len()) as u64;
+                return;
+            }
+        }
         descend(&mut self.levels, 1, self.backwards, &mut updates);
         self.updates += updates;
     }

@@ -1,0 +1,185 @@
+//! What the device's map said of every cell, and when: a link that reads the tiles around the robot after every step.
+//!
+//! Classes change only where the window of heights lies, 3.2 m around the robot at the most, which the nine tiles around it hold. Reading
+//! changes no command. Milliseconds; map cells of 10 cm.
+
+use std::collections::BTreeMap;
+
+use fieldline_protocol::message::{
+    Command, Control, FieldRow, Frontier, Identity, Observation, Status, Tile,
+};
+use host_sim::link::{Link, LinkError, LinkStats};
+use host_sim::report::MapCell;
+use host_sim::report::grid_map::{CELL_M, TILE_SIDE};
+
+/// When a cell became what.
+pub type Change = (u32, MapCell);
+
+/// Every change of every cell.
+#[derive(Clone, Debug, Default)]
+pub struct History {
+    changes: BTreeMap<[i32; 2], Vec<Change>>,
+}
+
+/// A link, watched.
+#[derive(Debug)]
+pub struct Watched<L> {
+    link: L,
+    tiles: BTreeMap<(i16, i16), Vec<u8>>,
+    /// What was seen.
+    pub history: History,
+}
+
+impl History {
+    /// What the map said of a cell at a time.
+    #[must_use]
+    pub fn at(&self, cell: [i32; 2], time_ms: u32) -> MapCell {
+        let changes = self.of(cell).iter();
+        let last = changes.rev().find(|(when_ms, _)| *when_ms <= time_ms);
+        last.map_or(MapCell::Unknown, |(_, class)| *class)
+    }
+
+    /// All changes of a cell, in order.
+    #[must_use]
+    pub fn of(&self, cell: [i32; 2]) -> &[Change] {
+        self.changes.get(&cell).map_or(&[], Vec::as_slice)
+    }
+
+    /// Cells that ever were of one of these classes.
+    #[must_use]
+    pub fn ever(&self, classes: &[MapCell]) -> usize {
+        let had = |changes: &&Vec<Change>| changes.iter().any(|(_, was)| classes.contains(was));
+        self.changes.values().filter(had).count()
+    }
+
+    /// Take in what changed from one packed tile to the next; both are two bits a cell, row by row.
+    fn note(&mut self, time_ms: u32, tile: &Tile, before: &[u8]) {
+        let side = TILE_SIDE as usize;
+        for (k, now) in tile.cells.iter().enumerate() {
+            let changed = now ^ before.get(k).copied().unwrap_or(0);
+            for lane in (0..4).filter(|lane| changed >> (2 * lane) & 3 != 0) {
+                let (column, row) = ((4 * k + lane) % side, (4 * k + lane) / side);
+                let x = i32::from(tile.x) * TILE_SIDE + column as i32;
+                let y = i32::from(tile.y) * TILE_SIDE + row as i32;
+                let change = (time_ms, class(now >> (2 * lane)));
+                self.changes.entry([x, y]).or_default().push(change);
+            }
+        }
+    }
+}
+
+fn class(code: u8) -> MapCell {
+    match code & 3 {
+        0 => MapCell::Unknown,
+        1 => MapCell::Free,
+        2 => MapCell::Obstacle,
+        _ => MapCell::NegativeObstacle,
+    }
+}
+
+impl<L: Link> Watched<L> {
+    /// Before a run.
+    #[must_use]
+    pub fn new(link: L) -> Self {
+        Self {
+            link,
+            tiles: BTreeMap::new(),
+            history: History::default(),
+        }
+    }
+
+    fn look(&mut self, observation: &Observation) -> Result<(), LinkError> {
+        let side_m = CELL_M * f64::from(TILE_SIDE);
+        let tile = |m: f64| (m / side_m).floor() as i16;
+        let (x, y) = (
+            tile(observation.pose.x.to_num()),
+            tile(observation.pose.y.to_num()),
+        );
+        for (dx, dy) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))) {
+            let place = (x + dx, y + dy);
+            if let Some(tile) = self.link.tile(place.0, place.1)? {
+                let before = self.tiles.entry(place).or_default();
+                self.history.note(observation.time_ms, &tile, before);
+                *before = tile.cells.to_vec();
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<L: Link> Link for Watched<L> {
+    fn hello(&mut self) -> Result<Identity, LinkError> {
+        self.link.hello()
+    }
+
+    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
+        self.link.control(control)
+    }
+
+    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
+        let command = self.link.observe(observation)?;
+        self.look(observation)?;
+        Ok(command)
+    }
+
+    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
+        self.link.tile(x, y)
+    }
+
+    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
+        self.link.field_row(row)
+    }
+
+    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
+        self.link.frontiers()
+    }
+
+    fn stats(&self) -> LinkStats {
+        self.link.stats()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{History, MapCell, Tile};
+
+    fn tile(x: i16, first: u8) -> Tile {
+        let mut cells = [0; 256];
+        cells[9] = first;
+        Tile {
+            x,
+            y: 0,
+            cells: cells.into_iter().collect(),
+            skeleton: [0; 32].into_iter().collect(),
+        }
+    }
+
+    #[test]
+    fn a_cell_is_what_it_last_became() {
+        let mut history = History::default();
+        // Byte 9 holds columns 4 to 7 of row 1.
+        history.note(100, &tile(-1, 0b01_00_10_11), &[]);
+        history.note(
+            300,
+            &tile(-1, 0b01_00_10_01),
+            &tile(-1, 0b01_00_10_11).cells,
+        );
+        let cell = [4 - 32, 1];
+        let changes = [(100, MapCell::NegativeObstacle), (300, MapCell::Free)];
+        assert_eq!(history.of(cell), changes);
+        let at = |time_ms| history.at(cell, time_ms);
+        assert_eq!(
+            [at(99), at(100), at(299), at(300)],
+            [
+                MapCell::Unknown,
+                MapCell::NegativeObstacle,
+                MapCell::NegativeObstacle,
+                MapCell::Free
+            ]
+        );
+        assert_eq!(history.of([5 - 32, 1]), [(100, MapCell::Obstacle)]);
+        assert_eq!(history.of([6 - 32, 1]), []);
+        assert_eq!(history.ever(&[MapCell::NegativeObstacle]), 1);
+        assert_eq!(history.ever(&[MapCell::Free, MapCell::Obstacle]), 3);
+    }
+}
