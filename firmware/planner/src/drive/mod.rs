@@ -59,6 +59,11 @@ const SEARCH_BUDGET: Budget = Budget {
     poses: 250,
     points: 60_000,
 };
+/// The first instalment: in its step a field was solved as well.
+const FIRST_BUDGET: Budget = Budget {
+    poses: SEARCH_BUDGET.poses / 3,
+    points: SEARCH_BUDGET.points / 3,
+};
 /// Speed backwards where there is no room to turn, metres a second.
 const REVERSE_MPS: f32 = 0.15;
 /// An error this near to half a turn can be driven backwards, radians.
@@ -100,6 +105,7 @@ impl Drive {
         scratch: &mut [u32],
     ) -> Twist {
         let surround = ground.surround;
+        let mut budget = SEARCH_BUDGET;
         if self.search.is_none() {
             let planned = self.plan.next(config.period_s);
             if let Some(twist) = planned.filter(|&t| surround.admits(t, now, config, PLAN_KEPT_M)) {
@@ -119,8 +125,9 @@ impl Drive {
                 surround.admits(twist, now, config, PLAN_KEPT_M)
             });
             self.search = Some(Search::start(ATTEMPTS[0], first, scratch));
+            budget = FIRST_BUDGET;
         }
-        self.go_on_searching(ground, scratch);
+        self.go_on_searching(ground, budget, scratch);
         Twist::default()
     }
 
@@ -146,12 +153,13 @@ impl Drive {
     fn go_on_searching<H: Fn(Place) -> Option<f32>>(
         &mut self,
         ground: &Ground<'_, H>,
+        budget: Budget,
         scratch: &mut [u32],
     ) {
         let Some(search) = &mut self.search else {
             return;
         };
-        match search.advance(ground, SEARCH_BUDGET, scratch) {
+        match search.advance(ground, budget, scratch) {
             Found::Pending => {}
             Found::Plan(plan) => {
                 self.plan = plan;

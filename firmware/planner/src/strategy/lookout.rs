@@ -31,16 +31,20 @@ const LEAST_BEYOND: i32 = 5;
 /// Cells that a ray goes on and back at the most: a laser of 8 m sees farther, but little of what is behind.
 const MOST_ON: i32 = 30;
 const MOST_BACK: i32 = 60;
-/// Rows of a map tile that are searched at once, and columns of a block of them.
-const BAND: i32 = 8;
+/// Cells along the side of a block, which is searched at once; a tile has `ALONG` of them along its side.
+const BLOCK: i32 = 8;
+const ALONG: u16 = 32 / BLOCK as u16;
 /// Edge cells that a block must have: gaps narrower than this are left.
 const LEAST_EDGE: u32 = 3;
 /// Gaps of a block from which rays are sent.
 const TRIES: u32 = 4;
-/// Tiles loaded in an instalment, sweeps of the flood, and cells that rays go through.
+/// Tiles loaded in an instalment, sweeps of the flood, and cells that rays go through; those of the last block come on top,
+/// `TRIES · RAYS · (MOST_ON + MOST_BACK)` at the most, 23,000.
 const TILES_A_STEP: u16 = 40;
 const SWEEPS_A_STEP: u32 = 3;
 const CELLS_A_STEP: i32 = 20_000;
+/// What the edges of a block cost, in cells that rays go through: measured on the chip.
+const EDGES_CELLS: i32 = 60;
 
 /// A place to look from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -82,7 +86,7 @@ enum Phase {
     /// Tile number n is loaded next.
     Load(u16),
     Flood,
-    /// Band number n is searched next.
+    /// Block number n is searched next.
     Scan(u16),
 }
 
@@ -181,7 +185,7 @@ impl Search {
                     self.phase = Phase::Scan(0);
                 }
             }
-            Phase::Scan(band) => self.scan(grounds, &flood, &is_gone, band),
+            Phase::Scan(block) => self.scan(grounds, &flood, &is_gone, block),
         }
         match (self.phase, self.found) {
             (Phase::Idle, true) => Found::Lookout(self.best),
@@ -228,29 +232,28 @@ impl Search {
         is_gone: &impl Fn(Cell) -> bool,
         first: u16,
     ) {
-        let bands = (32 / BAND) as u16;
         let mut left = CELLS_A_STEP;
         let mut number = first;
         while left > 0 {
-            let Some((x, y)) = self.tile(number / bands) else {
+            let Some((x, y)) = self.tile(number / (ALONG * ALONG)) else {
                 self.phase = Phase::Idle;
                 return;
             };
-            left -= BAND;
+            left -= 1;
             if grounds.tiles.is_touched(x, y) {
                 let corner = Cell {
-                    x: x * 32,
-                    y: y * 32 + i32::from(number % bands) * BAND,
+                    x: x * 32 + i32::from(number % ALONG) * BLOCK,
+                    y: y * 32 + i32::from(number / ALONG % ALONG) * BLOCK,
                 };
-                left -= self.scan_band(grounds, flood, is_gone, corner);
+                left -= EDGES_CELLS + self.scan_block(grounds, flood, is_gone, corner);
             }
             number += 1;
         }
         self.phase = Phase::Scan(number);
     }
 
-    /// Look for gaps in the blocks of a band, its least cell given; how many cells rays went through.
-    fn scan_band<const TILES: usize, const SLOTS: usize>(
+    /// Look for gaps in a block, its least cell given; how many cells rays went through.
+    fn scan_block<const TILES: usize, const SLOTS: usize>(
         &mut self,
         grounds: &Grounds<'_, TILES, SLOTS>,
         flood: &Flood<'_>,
@@ -258,19 +261,16 @@ impl Search {
         corner: Cell,
     ) -> i32 {
         let edges = edges(grounds.tiles, corner);
+        let count: u32 = edges.iter().map(|row| row.count_ones()).sum();
+        if count < LEAST_EDGE {
+            return 0;
+        }
         let mut walked = 0;
-        for block in 0..32 / BAND {
-            let mask = ((1 << BAND) - 1) << (block * BAND);
-            let count: u32 = edges.iter().map(|row| (row & mask).count_ones()).sum();
-            if count < LEAST_EDGE {
-                continue;
-            }
-            let apart = count.div_ceil(TRIES) as usize;
-            let gaps = cells(&edges, mask, corner).step_by(apart);
-            for gap in gaps.filter(|&gap| !is_gone(gap)) {
-                if let Some(lookout) = look_back(grounds.tiles, flood, gap, &mut walked) {
-                    self.offer(grounds.robot, lookout);
-                }
+        let apart = count.div_ceil(TRIES) as usize;
+        let gaps = cells(&edges, corner).step_by(apart);
+        for gap in gaps.filter(|&gap| !is_gone(gap)) {
+            if let Some(lookout) = look_back(grounds.tiles, flood, gap, &mut walked) {
+                self.offer(grounds.robot, lookout);
             }
         }
         walked
@@ -290,26 +290,30 @@ impl Default for Search {
     }
 }
 
-/// Of a band 32 cells wide, the free cells with an unexplored one at a side.
+/// Of a block, the free cells with an unexplored one at a side.
 fn edges<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     corner: Cell,
-) -> [u32; BAND as usize] {
-    // The band is in the middle of the words.
-    let row = |y: i32| tiles.row(corner.x - 16, corner.y + y);
-    core::array::from_fn(|y| {
-        let y = y as i32;
-        let here = row(y);
-        let unknown = here.unknown();
-        let beside = unknown << 1 | unknown >> 1 | row(y - 1).unknown() | row(y + 1).unknown();
-        ((here.free() & beside) >> 16) as u32
-    })
+) -> [u32; BLOCK as usize] {
+    // From the row below the block to the one above it; the block begins at bit 16 of the words.
+    let mut reader = tiles.reader(corner.x - 16);
+    let rows: [_; BLOCK as usize + 2] =
+        core::array::from_fn(|y| reader.row(corner.y + y as i32 - 1));
+    let mut edges = [0; BLOCK as usize];
+    for (edge, rows) in edges.iter_mut().zip(rows.windows(3)) {
+        if let [below, here, above] = rows {
+            let unknown = here.unknown();
+            let beside = unknown << 1 | unknown >> 1 | below.unknown() | above.unknown();
+            *edge = ((here.free() & beside) >> 16) as u32 & ((1 << BLOCK) - 1);
+        }
+    }
+    edges
 }
 
-/// The cells of a band's rows that are in the mask.
-fn cells(rows: &[u32], mask: u32, corner: Cell) -> impl Iterator<Item = Cell> + '_ {
-    rows.iter().enumerate().flat_map(move |(y, row)| {
-        crate::bits::ones(row & mask).map(move |x| Cell {
+/// The cells of a block's rows.
+fn cells(rows: &[u32], corner: Cell) -> impl Iterator<Item = Cell> + '_ {
+    rows.iter().enumerate().flat_map(move |(y, &row)| {
+        crate::bits::ones(row).map(move |x| Cell {
             x: corner.x + x as i32,
             y: corner.y + y as i32,
         })
