@@ -37,7 +37,7 @@ use crate::strategy::lookout::{Found, Grounds};
 use crate::strategy::ouroboros::{Ouroboros, Round};
 use crate::strategy::tdbvp::{Surroundings, Tdbvp};
 use crate::strategy::{Road, Strategist, lookout};
-use crate::terrain::{Preferences, Terrain};
+use crate::terrain::{Levels, Preferences, Storeys, Terrain};
 use crate::topology::Topology;
 use crate::view::{self, Rows, SCALES, View};
 
@@ -49,6 +49,9 @@ pub const INVALID_MM: u16 = 0;
 const BOX_CELLS: u32 = 100;
 /// The robot that starts inside something sees it nearer than this everywhere, metres.
 const BLOCKED_M: f32 = 0.12;
+/// Where ground that stops the robot lies on uneven ground, if it was never measured: between its front and where the tilted beams meet
+/// level ground, metres.
+const FRONT_M: f32 = 0.8;
 
 /// What a step is given.
 #[derive(Clone, Copy, Debug)]
@@ -82,7 +85,7 @@ pub struct Output {
 #[derive(Debug)]
 pub struct State<const TILES: usize, const SLOTS: usize> {
     map: Map<TILES, SLOTS>,
-    near: NearField,
+    around: Around<TILES>,
     topology: Topology<SLOTS>,
     strategy: Strategist<SLOTS>,
     /// What ground is preferred, where it is uneven.
@@ -96,6 +99,21 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     fresh: bool,
     /// Where the robot began.
     start: Cell,
+}
+
+/// What is kept of the space beside the map. Flat ground has no heights, and on uneven ground level beams end on slopes: what is near is
+/// what the map says.
+///
+/// With its tag of its own, so that the value without anything is all zeros and costs no flash as a static one.
+#[derive(Debug)]
+#[repr(u8)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "no heap to box into; both are about as large with the pool of an image"
+)]
+enum Around<const TILES: usize> {
+    Near(NearField),
+    Storeys(Storeys<TILES>),
 }
 
 /// Words of scratch.
@@ -133,7 +151,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let () = Self::CHECK;
         Self {
             map: Map::new(),
-            near: NearField::new(),
+            around: Around::Near(NearField::new()),
             topology: Topology::new(),
             strategy: Strategist::new(),
             preferences: Preferences::new(),
@@ -150,7 +168,10 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     pub fn reset(&mut self, config: &Config) {
         self.map.begin(config);
         self.preferences = Preferences::new();
-        self.near.clear();
+        self.around = match config.terrain {
+            None => Around::Near(NearField::new()),
+            Some(_) => Around::Storeys(Storeys::new()),
+        };
         self.topology
             .reset(Strategist::<SLOTS>::space(config.strategy));
         self.strategy.reset(config);
@@ -407,13 +428,17 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         .into_iter()
         .find(|(laser, ranges_mm)| is_level(laser) && !ranges_mm.is_empty());
     state.strategy.note(&input.pose, input.time_ms, level);
-    if config.terrain.is_some() {
-        // Level beams end on slopes: what is near is what the map says.
-        return;
-    }
-    for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
-        if is_level(laser) {
-            state.near.update(&input.pose, laser, ranges_mm);
+    match &mut state.around {
+        Around::Near(near) => {
+            for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
+                if is_level(laser) {
+                    near.update(&input.pose, laser, ranges_mm);
+                }
+            }
+        }
+        Around::Storeys(storeys) => {
+            state.preferences.stand(&input.pose);
+            storeys.note(&state.map.heights(), state.map.tiles());
         }
     }
 }
@@ -456,14 +481,13 @@ fn replan<const TILES: usize, const SLOTS: usize>(
         pose: input.pose,
         time_ms: input.time_ms,
         limits: &config.loops,
+        levels: levels(&state.around, config, &state.preferences),
     };
     let Some(outlook) = state.strategy.advance(round, lent) else {
         return false;
     };
-    while let Some(terrain) = &config.terrain
-        && let Some(cell) = state.strategy.frontier.take_unobserved()
-    {
-        state.map.give_up_ground(terrain, cell);
+    if let Some(terrain) = &config.terrain {
+        give_up_ground(terrain, state, &input.pose);
     }
     let robot = input.pose.point().cell();
     match outlook {
@@ -481,6 +505,43 @@ fn replan<const TILES: usize, const SLOTS: usize>(
         Outlook::Road | Outlook::Unsure => {}
     }
     true
+}
+
+/// Decide what to make of ground that was never measured though the robot stood by it.
+fn give_up_ground<const TILES: usize, const SLOTS: usize>(
+    terrain: &Terrain,
+    state: &mut State<TILES, SLOTS>,
+    pose: &Pose,
+) {
+    while let Some(cell) = state.strategy.frontier.take_unobserved() {
+        state.map.give_up_ground(terrain, cell);
+    }
+    if state.strategy.frontier.take_stop() {
+        let front = Place {
+            x_m: FRONT_M,
+            ..Place::default()
+        };
+        if state.map.trust_ground(terrain, ahead(pose, front).cell()) {
+            state.strategy.frontier.lift_bar();
+        }
+    }
+}
+
+/// Which goals are preferred for their height.
+fn levels<'a, const TILES: usize>(
+    around: &'a Around<TILES>,
+    config: &'a Config,
+    preferences: &Preferences,
+) -> Option<Levels<'a, TILES>> {
+    let terrain = config.terrain.as_ref()?;
+    match around {
+        Around::Storeys(storeys) if terrain.mode.has_heights() => Some(Levels {
+            storeys,
+            terrain,
+            storey_m: preferences.storey_m(),
+        }),
+        _ => None,
+    }
 }
 
 /// Nothing is left to drive to: search on for what can be seen, and go there or be done.
@@ -554,6 +615,7 @@ fn list_leftovers<const TILES: usize, const SLOTS: usize>(
         topology: &state.topology,
         tiles: state.map.tiles(),
         disc,
+        levels: None,
     };
     state.strategy.frontier.list_leftovers(&known);
 }
@@ -607,13 +669,16 @@ fn steer<const TILES: usize, const SLOTS: usize>(
     let heading_at = |place: Place| heading_at(window, (origin, scale), &input.pose, place);
     let here = heading_at(Place::default());
     let mut surround = Surround::empty();
-    if config.terrain.is_some() {
-        let rims = near::rim_cells(state.map.tiles(), input.pose.point());
-        surround.keep_off(&input.pose, rims);
-    } else {
-        surround.see(&input.pose, state.near.points());
-        let cells = near::obstacle_cells(state.map.tiles(), input.pose.point());
-        surround.remember(&input.pose, cells);
+    match &state.around {
+        Around::Near(near) => {
+            surround.see(&input.pose, near.points());
+            let cells = near::obstacle_cells(state.map.tiles(), input.pose.point());
+            surround.remember(&input.pose, cells);
+        }
+        Around::Storeys(_) => {
+            let rims = near::rim_cells(state.map.tiles(), input.pose.point());
+            surround.keep_off(&input.pose, rims);
+        }
     }
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {

@@ -81,10 +81,15 @@ impl Preference {
     /// The preference nearest to `epsilon`; none for NaN.
     #[must_use]
     pub fn nearest(epsilon: f32) -> Self {
+        // Added to a number this large the last place of a float is one: it is rounded to nearest, ties to even.
+        const LARGE: f32 = 12_582_912.0;
+        const SCALE: f32 = (1 << I3F13::FRAC_NBITS) as f32;
         if epsilon.is_nan() {
             return Self::NONE;
         }
-        Self(I3F13::saturating_from_num(epsilon)).clamp(Self::MIN, Self::MAX)
+        let rounded = epsilon.clamp(-2.0, 2.0) * SCALE + LARGE;
+        let bits = rounded.to_bits().wrapping_sub(LARGE.to_bits());
+        Self(I3F13::from_bits(bits as i16))
     }
 
     /// ε.

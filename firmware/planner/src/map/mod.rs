@@ -16,6 +16,7 @@ pub use tiles::{Class, Tiles};
 use crate::config::Config;
 use crate::geometry::Cell;
 use crate::planner::Input;
+use crate::terrain::Tilt;
 
 /// A robot that moved more cells than this between two observations was carried.
 const LONGEST_STRIDE: i32 = 10;
@@ -32,6 +33,9 @@ pub struct Map<const TILES: usize, const SLOTS: usize> {
     /// The least cell of the elevation window, once there is one.
     window: Cell,
     surveyed: bool,
+    /// Which of the rows far off were classified.
+    odd: bool,
+    tilt: Tilt,
     out_of_box: bool,
     pool_full: bool,
 }
@@ -46,6 +50,8 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             last_visit: None,
             window: Cell { x: 0, y: 0 },
             surveyed: false,
+            odd: false,
+            tilt: Tilt::new(),
             out_of_box: false,
             pool_full: false,
         }
@@ -65,6 +71,8 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         self.evidence.reset(Cell::default());
         self.last_visit = None;
         self.surveyed = false;
+        self.odd = false;
+        self.tilt = Tilt::new();
         self.out_of_box = false;
         self.pool_full = false;
     }

@@ -271,11 +271,16 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     fn rows(&self, tile_x: i32, tile_y: i32) -> Option<&TileRows> {
+        self.pool.get(self.page(tile_x, tile_y)?)
+    }
+
+    /// A stored tile's place in the pool.
+    pub(crate) fn page(&self, tile_x: i32, tile_y: i32) -> Option<usize> {
         if !self.in_extent(tile_x, tile_y) {
             return None;
         }
         let entry = *self.directory.get(self.slot(tile_x, tile_y))?;
-        self.pool.get(usize::from(entry.checked_sub(1)?))
+        usize::from(entry).checked_sub(1)
     }
 
     /// The extent with a tile outside it.

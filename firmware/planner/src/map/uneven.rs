@@ -18,6 +18,8 @@ use crate::terrain::{Elevation, Heights, Terrain};
 /// Tiles that hold the marks.
 const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::TileRows>();
 
+/// Rows this near to the robot are classified in every step, others in every second one: farther off than it drives until it has stopped.
+const AT_ONCE: i32 = 12;
 /// Cells around a goal that are given up with it.
 const GIVEN_UP: i32 = 3;
 
@@ -35,37 +37,60 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 
     /// Scans and pose into the window, and the window into the map.
     pub(super) fn survey(&mut self, config: &Config, terrain: &Terrain, input: &Input<'_>) {
+        let input = &Input {
+            pose: self.tilt.note(&input.pose),
+            ..*input
+        };
         let mut elevation = Elevation::new(
             self.evidence.bytes_mut(),
             self.tiles.lent_bytes_mut(),
             &mut self.window,
         );
-        Survey::new(&mut elevation, terrain, input).run(config, input, !self.surveyed);
+        Survey::new(&mut elevation, terrain, input)
+            .within(self.tilt.reach_m())
+            .run(config, input, !self.surveyed);
         self.surveyed = true;
         let steps = Steps::new(terrain);
+        self.odd = !self.odd;
+        let middle = self.window.y + WINDOW_SIDE / 2;
         for y in self.window.y..self.window.y + WINDOW_SIDE {
-            self.classify(&steps, y);
+            // Twice the work would be too much for a step, and what is far can wait for one.
+            if (y - middle).abs() <= AT_ONCE || (y & 1 == 1) == self.odd {
+                self.classify(&steps, y);
+            }
         }
     }
 
     /// The robot stood by a cell, and neither it nor what is around it was measured. Behind a brow ground stays out of view: where what is
     /// measured on both sides leads over it gently it is taken for free, and else for gone.
     pub fn give_up_ground(&mut self, terrain: &Terrain, goal: Cell) {
-        for y in goal.y - GIVEN_UP..=goal.y + GIVEN_UP + 1 {
-            for x in goal.x - GIVEN_UP..=goal.x + GIVEN_UP + 1 {
+        self.lead_over(terrain, goal, Some(Class::Negative));
+    }
+
+    /// The robot cannot go on for ground around a cell that was never measured: what leads over it gently is taken for free. Whether
+    /// there was any.
+    pub fn trust_ground(&mut self, terrain: &Terrain, ahead: Cell) -> bool {
+        self.lead_over(terrain, ahead, None)
+    }
+
+    /// Take ground around a cell that was never measured for free where it is led over, and else for `gone`; whether any is free now.
+    fn lead_over(&mut self, terrain: &Terrain, middle: Cell, gone: Option<Class>) -> bool {
+        let mut any = false;
+        for y in middle.y - GIVEN_UP..=middle.y + GIVEN_UP + 1 {
+            for x in middle.x - GIVEN_UP..=middle.x + GIVEN_UP + 1 {
                 let cell = Cell { x, y };
-                if self.tiles.class(cell) == Class::Unknown {
-                    let leads_over = classify::leads_over(&self.heights(), terrain, cell);
-                    let class = if leads_over {
-                        Class::Free
-                    } else {
-                        Class::Negative
-                    };
+                if self.tiles.class(cell) != Class::Unknown {
+                    continue;
+                }
+                let leads_over = classify::leads_over(&self.heights(), terrain, cell);
+                let class = if leads_over { Some(Class::Free) } else { gone };
+                if let Some(class) = class {
                     // Where there is no room nothing is known in any case.
-                    let _ = self.tiles.set(cell, class);
+                    any |= self.tiles.set(cell, class).is_ok() && leads_over;
                 }
             }
         }
+        any
     }
 
     fn classify(&mut self, steps: &Steps, y: i32) {

@@ -24,6 +24,8 @@ use crate::map::{Class, Tiles};
 use crate::math;
 use crate::skeleton::{Residues, WaveSpace, Wavefront};
 use crate::status::{Frontier as Leftover, Residue};
+use crate::terrain::Levels;
+use crate::terrain::storeys::{LATER_STEPS, MOST_LEVEL};
 use crate::topology::{Frame, Topology};
 use crate::view::{Rows, View};
 
@@ -59,6 +61,12 @@ const SMALL_COMPANY: u32 = 4;
 /// | hall | 67 | 64 | 64 |
 /// | narrow-doors | 83 | 78 | 78 |
 const SMALL_LATER: u32 = 12;
+/// How much later frontier cells start by their rank: beside the present goal, large, small.
+const RANKS_LATER: [u32; 3] = [0, HEAD_START, HEAD_START + SMALL_LATER];
+const _CHECKS: () = assert!(
+    LATER_STEPS > HEAD_START + SMALL_LATER,
+    "the ranks of a level start before the next level"
+);
 /// Rounds in a row that must find nothing before the exploration is over: noise may close a way for a moment.
 const EMPTY_ROUNDS: u8 = 5;
 
@@ -78,6 +86,8 @@ pub struct Frontier {
     /// Where the robot goes to see what it cannot drive to, and how many there were.
     lookout: Option<Lookout>,
     lookouts: u8,
+    /// It could not go on where it stood, and barred what lies ahead.
+    stopped: bool,
 }
 
 /// What is known of the space, for a round of planning.
@@ -89,6 +99,8 @@ pub struct Known<'a, const TILES: usize, const SLOTS: usize> {
     pub tiles: &'a Tiles<TILES, SLOTS>,
     /// The robot's disc.
     pub disc: &'a Disc,
+    /// Which goals are preferred for their height, where any are.
+    pub levels: Option<Levels<'a, TILES>>,
 }
 
 /// Scratch of a round of planning.
@@ -135,6 +147,7 @@ impl Frontier {
             immobile: false,
             lookout: None,
             lookouts: 0,
+            stopped: false,
         }
     }
 
@@ -160,6 +173,16 @@ impl Frontier {
         let unobserved = |left: &Leftover| left.reason == Residue::Unobservable;
         let place = self.dropped.iter().position(unobserved)?;
         Some(self.dropped.remove(place).cell)
+    }
+
+    /// Whether the robot could not go on where it stands, since this was last asked.
+    pub const fn take_stop(&mut self) -> bool {
+        core::mem::replace(&mut self.stopped, false)
+    }
+
+    /// What the last bar was put up for is gone.
+    pub fn lift_bar(&mut self) {
+        self.bars.pop();
     }
 
     /// Whether everything is tried a second time, more narrowly.
@@ -249,7 +272,10 @@ impl Frontier {
             Verdict::GoOn => {}
             Verdict::Drop(reason) => self.drop_goal(reason),
             Verdict::BarLeak => self.bar(leak(&self.road, known, robot, lent.view)),
-            Verdict::BarAhead => self.bar(ahead(&self.road, robot)),
+            Verdict::BarAhead => {
+                self.stopped = true;
+                self.bar(ahead(&self.road, robot));
+            }
         }
         let enough = self.patience.is_stuck() || self.dropped.is_full();
         match (enough, self.second_chance) {
@@ -338,7 +364,10 @@ impl Frontier {
         match self.patience.judge(goal, steps, time_ms) {
             Verdict::GoOn | Verdict::Drop(_) => {}
             Verdict::BarLeak => self.bar(leak(&self.road, known, robot, view)),
-            Verdict::BarAhead => self.bar(ahead(&self.road, robot)),
+            Verdict::BarAhead => {
+                self.stopped = true;
+                self.bar(ahead(&self.road, robot));
+            }
         }
         match (self.patience.is_stuck(), self.second_chance) {
             (false, _) => Outlook::Road,
@@ -404,7 +433,7 @@ impl Frontier {
             residues,
             ring: &mut *lent.ring,
         };
-        if !self.spread(&mut space, goals, frame) {
+        if !self.spread(&mut space, goals, known) {
             return None;
         }
         let centres = Centres {
@@ -446,34 +475,62 @@ impl Frontier {
         Some((lookout, road?))
     }
 
-    /// Wave from every frontier cell that was not dropped; those beside the present goal first. Whether there are any.
-    fn spread(&self, space: &mut WaveSpace<'_>, goals: Plane<'_>, frame: Frame) -> bool {
+    /// Wave from every frontier cell that was not dropped; those beside the present goal first, and those on another storey last. Whether
+    /// there are any.
+    fn spread<const TILES: usize, const SLOTS: usize>(
+        &self,
+        space: &mut WaveSpace<'_>,
+        goals: Plane<'_>,
+        known: &Known<'_, TILES, SLOTS>,
+    ) -> bool {
         let mut any = false;
         let mut wave = Wavefront::new();
         wave.start(space);
-        let present =
-            |cell| !self.road.is_empty() && near(self.road.goal(), cell, 2.0 * DROP_RADIUS_M);
-        for (rank, head_start) in [HEAD_START, SMALL_LATER, 0].into_iter().enumerate() {
-            for site in goals.sites() {
-                let cell = frame.cell(site);
-                let dropped = || {
-                    self.dropped
-                        .iter()
-                        .any(|dropped| near(dropped.cell, cell, DROP_RADIUS_M))
-                };
-                let its_rank = match present(cell) {
-                    true => 0,
-                    false => 1 + usize::from(company(goals, site) < SMALL_COMPANY),
-                };
-                if its_rank == rank && !dropped() {
-                    any |= wave.seed(space, site);
+        let level = |cell| match &known.levels {
+            Some(levels) => levels.of(known.tiles, cell),
+            None => 0,
+        };
+        let frame = known.topology.frame();
+        let present = goals
+            .sites()
+            .fold(0_u32, |levels, site| levels | 1 << level(frame.cell(site)));
+        let mut now = 0;
+        for turn in (0..=MOST_LEVEL).filter(|turn| present >> turn & 1 == 1) {
+            // Ranks that were met; the first is gone through in any case.
+            let mut ranks = 1;
+            for (rank, later) in RANKS_LATER.into_iter().enumerate() {
+                if ranks >> rank & 1 == 0 {
+                    continue;
+                }
+                let start = turn * LATER_STEPS + later;
+                wave.advance_levels(space, start - now);
+                now = start;
+                for site in goals.sites() {
+                    let cell = frame.cell(site);
+                    if level(cell) == turn
+                        && let Some(its_rank) = self.rank(goals, site, cell)
+                    {
+                        ranks |= 1 << its_rank;
+                        any |= its_rank == rank && wave.seed(space, site);
+                    }
                 }
             }
-            wave.advance_levels(space, head_start);
         }
         // Without a budget it always comes to its end.
         let _ = wave.advance(space, None, u32::MAX);
         any
+    }
+
+    /// In which order frontier cells of one storey start; `None` for one that was dropped.
+    fn rank(&self, goals: Plane<'_>, site: Site, cell: Cell) -> Option<usize> {
+        let present = !self.road.is_empty() && near(self.road.goal(), cell, 2.0 * DROP_RADIUS_M);
+        if self.is_gone(cell) {
+            None
+        } else if present {
+            Some(0)
+        } else {
+            Some(1 + usize::from(company(goals, site) < SMALL_COMPANY))
+        }
     }
 
     /// The window has no way from the robot to its local goal, though the skeleton, coarser, had one.

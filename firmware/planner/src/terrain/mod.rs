@@ -14,6 +14,8 @@
 //! | [`survey`] | beams into heights, and into marks where something stands or the ground is gone |
 //! | [`classify`] | heights and marks into the map's classes |
 //! | [`preference`] | eqs. 3 to 5 and their hysteresis |
+//! | [`tilt`] | what is believed of the attitude |
+//! | [`storeys`] | how high the ground lies everywhere, and which goals are preferred for it |
 //!
 //! Everything is judged against the ground that the robot stands on and against ground measured beside it, never against the height of the
 //! start. Units: metres; slopes are tangents; heights count from the start.
@@ -24,13 +26,17 @@ pub mod classify;
 pub mod elevation;
 pub mod preference;
 pub mod ray;
+pub mod storeys;
 pub mod survey;
+pub mod tilt;
 
 #[cfg(test)]
 mod tests;
 
 pub use elevation::{Elevation, Heights};
 pub use preference::{Mode, Preferences};
+pub use storeys::{Levels, Storeys};
+pub use tilt::Tilt;
 
 /// Parameters of uneven ground [Maffei-Terrain, Table I], and the robot's limits on it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,12 +10,16 @@
 //! left out until `p_diff` is above 1e-4 again. Where it is 0, `ε_global` is at its limit. Before the first field it is 0.
 
 use super::Terrain;
+use crate::geometry::Pose;
 use crate::math;
 
 /// `p_diff` below which heights no longer count.
 pub const TOO_FLAT: f32 = 1e-10;
 /// `p_diff` above which they count again.
 pub const STEEP_AGAIN: f32 = 1e-4;
+
+/// A robot that leans less than this stands level, radians.
+const LEVEL_RAD: f32 = 0.1;
 
 /// Which preferences are used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,11 +35,20 @@ pub enum Mode {
     Both,
 }
 
+impl Mode {
+    /// Whether heights count.
+    #[must_use]
+    pub const fn has_heights(self) -> bool {
+        matches!(self, Self::Height | Self::Both)
+    }
+}
+
 /// What the preferences remember from field to field.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Preferences {
     p_diff: Option<f32>,
     ignores_heights: bool,
+    storey_m: f32,
 }
 
 /// Of a cell whose height differs by so much from the robot's [eq. 3].
@@ -61,7 +74,21 @@ impl Preferences {
         Self {
             p_diff: None,
             ignores_heights: false,
+            storey_m: 0.0,
         }
+    }
+
+    /// The robot stands here: on its storey, if it stands about level.
+    pub fn stand(&mut self, pose: &Pose) {
+        if pose.roll_rad.abs() < LEVEL_RAD && pose.pitch_rad.abs() < LEVEL_RAD {
+            self.storey_m = pose.z_m;
+        }
+    }
+
+    /// Height of the ground that the robot last stood on level, metres.
+    #[must_use]
+    pub const fn storey_m(&self) -> f32 {
+        self.storey_m
     }
 
     /// A field was solved, with this `p_diff` around the robot.
@@ -98,7 +125,7 @@ impl Preferences {
     /// ε of a cell, given `ε_global` and how much its height differs from the robot's, if that is known [eq. 5].
     #[must_use]
     pub fn of_cell(&self, terrain: &Terrain, global: f32, difference_m: Option<f32>) -> f32 {
-        let heights = matches!(terrain.mode, Mode::Height | Mode::Both) && !self.ignores_heights;
+        let heights = terrain.mode.has_heights() && !self.ignores_heights;
         let height = match difference_m {
             Some(difference_m) if heights => of_height(terrain, difference_m),
             _ => 0.0,

@@ -73,6 +73,8 @@ pub struct Survey<'a, 'm> {
     attitude: Attitude,
     robot: Point,
     robot_z_m: f32,
+    /// Heights are measured within this distance, metres.
+    reach_m: f32,
 }
 
 impl<'a, 'm> Survey<'a, 'm> {
@@ -86,7 +88,15 @@ impl<'a, 'm> Survey<'a, 'm> {
             attitude: Attitude::of(&input.pose),
             robot: input.pose.point(),
             robot_z_m: input.pose.z_m,
+            reach_m: f32::INFINITY,
         }
+    }
+
+    /// The survey that measures no height farther off than this, metres.
+    #[must_use]
+    pub const fn within(mut self, reach_m: f32) -> Self {
+        self.reach_m = reach_m;
+        self
     }
 
     /// Take everything in. `first` is the first survey of a session.
@@ -167,7 +177,7 @@ impl<'a, 'm> Survey<'a, 'm> {
             }
         }
         let linked = gap_m <= LINKED_M || (!level && rise_m.abs() <= self.terrain.climb * gap_m);
-        if linked {
+        if linked && ray.length_m < self.reach_m {
             self.elevation.measure(cell, z_m);
         }
     }

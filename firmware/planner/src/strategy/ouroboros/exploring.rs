@@ -135,6 +135,7 @@ impl Exploration {
                 pose: self.pose,
                 time_ms,
                 limits: &self.limits,
+                levels: None,
             };
             let outlook = self
                 .strategy

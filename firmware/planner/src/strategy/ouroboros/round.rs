@@ -12,6 +12,7 @@ use crate::map::Tiles;
 use crate::skeleton::{Barrier, Residues, WaveSpace, Wavefront};
 use crate::strategy::frontier::{Known, Lent};
 use crate::strategy::nearest::Centres;
+use crate::terrain::Levels;
 use crate::topology::Topology;
 
 /// Metres along a step of the skeleton.
@@ -34,6 +35,8 @@ pub struct Round<'a, const TILES: usize, const SLOTS: usize> {
     pub time_ms: u32,
     /// Bounds of a loop.
     pub limits: &'a Limits,
+    /// Which goals are preferred for their height, where any are.
+    pub levels: Option<Levels<'a, TILES>>,
 }
 
 impl<const TILES: usize, const SLOTS: usize> Round<'_, TILES, SLOTS> {
@@ -42,6 +45,7 @@ impl<const TILES: usize, const SLOTS: usize> Round<'_, TILES, SLOTS> {
             topology: self.topology,
             tiles: self.tiles,
             disc: self.disc,
+            levels: self.levels,
         }
     }
 

@@ -160,6 +160,7 @@ impl Scene {
             pose: self.pose,
             time_ms: 0,
             limits: &self.limits,
+            levels: None,
         }
     }
 
