@@ -6,8 +6,8 @@ use crate::metrics::{Footing, GroundTruth};
 use crate::report::tum::Stamped;
 use crate::report::{GridMap, MapCell};
 use crate::robot::{Limits, RADIUS_M};
-use crate::trial::route::Route;
 use crate::trial::relief::Relief;
+use crate::trial::route::Route;
 use crate::trial::snapshot::{Window, WindowCell};
 use crate::world::World;
 
@@ -193,6 +193,8 @@ fn the_last_window_is_shown_four_times_under_the_maps() {
         window: Some(&window),
         relief: Some(&relief),
         residue: &[],
+        route: None,
+        given_up: &[],
         ground: Some(Ground::new(&world, &truth, 0.0)),
         room_for: None,
     };
@@ -300,6 +302,7 @@ fn loops_and_rails_are_drawn_where_they_are() {
         map: &map,
         path: &path[..1],
         window: None,
+        relief: None,
         residue: &[],
         route: Some(&route),
         given_up: &[(-2.0, -3.0)],

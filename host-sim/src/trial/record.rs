@@ -6,8 +6,8 @@ use fieldline_protocol::message::{
     Command, Cost, Frontier, Loops, Observation, Pose, Status, Tile,
 };
 
-use super::route::Route;
 use super::relief::Relief;
+use super::route::Route;
 use super::snapshot::{Snapshot, Window};
 use super::{Ending, Progress, wording};
 use crate::link::digest::Digest;

@@ -7,8 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fieldline_protocol::message::{FIELD_SIDE, FieldRow, Tile};
 
-use super::route::{self, Route};
 use super::relief::Relief;
+use super::route::{self, Route};
 use super::{Progress, Record};
 use crate::link::{Link, LinkError};
 use crate::report::GridMap;
