@@ -719,3 +719,6 @@ fn unexplored_beside<const TILES: usize, const SLOTS: usize>(
         .max_by_key(|&beside| unknown(beside))
         .filter(|&beside| unknown(beside) > 0)
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,101 @@
+//! Which of two frontiers is gone to: a corridor with one at each end.
+
+use std::boxed::Box;
+use std::vec;
+
+use super::{Frontier, Known, Lent, Outlook};
+use crate::clearance::Disc;
+use crate::geometry::{Cell, Point};
+use crate::map::{Class, Tiles};
+use crate::terrain::elevation::{Elevation, WINDOW_CELLS};
+use crate::terrain::{Levels, Storeys, Terrain};
+use crate::topology::{Space, Topology};
+use crate::view::View;
+
+/// Half the width of the corridor, cells.
+const HALF: i32 = 8;
+/// Where it ends: nearer in the west.
+const ENDS: [i32; 2] = [-40, 60];
+
+fn corridor() -> Box<Tiles<24, 64>> {
+    let mut tiles = Box::<Tiles<24, 64>>::default();
+    tiles.reset(8, 8);
+    let [west, east] = ENDS;
+    for x in west..east {
+        for y in -HALF..=HALF {
+            let class = if y.abs() == HALF {
+                Class::Obstacle
+            } else {
+                Class::Free
+            };
+            tiles.set(Cell { x, y }, class).expect("room");
+        }
+    }
+    tiles
+}
+
+/// Level ground, but for a slope that leads down from `x` = −10 to the west.
+fn storeys(tiles: &Tiles<24, 64>) -> Box<Storeys<24>> {
+    let (mut heights, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
+    let mut origin = Cell::default();
+    let mut storeys = Box::<Storeys<24>>::default();
+    for middle in (-40..=60).step_by(20) {
+        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+        window.follow(Cell { x: middle, y: 0 });
+        for x in middle - 32..middle + 32 {
+            for y in -HALF..=HALF {
+                let below = (-10 - x).max(0);
+                window.measure(Cell { x, y }, -0.03 * below as f32);
+            }
+        }
+        storeys.note(&window.read(), tiles);
+    }
+    storeys
+}
+
+/// The x of the goal that a robot at x = 0 takes, where its storey is so high; without heights for `None`.
+fn goal(storey_m: Option<f32>) -> i32 {
+    let tiles = corridor();
+    let storeys = storeys(&tiles);
+    let disc = Disc::new(0.3);
+    let mut topology = Box::new(Topology::<64>::new());
+    topology.reset(Space::KnownFree);
+    while !topology.advance(&tiles, &disc, u32::MAX) {}
+    let known = Known {
+        topology: &topology,
+        tiles: &tiles,
+        disc: &disc,
+        levels: storey_m.map(|storey_m| Levels {
+            storeys: &storeys,
+            terrain: &Terrain::TABLE_I,
+            storey_m,
+        }),
+    };
+    let (mut residues, mut ring) = (vec![[0; 2]; 64 * 8], vec![0; 1024]);
+    let mut view = View::new();
+    let lent = Lent {
+        residues: &mut residues,
+        ring: &mut ring,
+        view: &mut view,
+    };
+    let mut frontier = Frontier::new();
+    let robot = Point {
+        x_m: 0.05,
+        y_m: 0.05,
+    };
+    assert_eq!(frontier.replan(&known, robot, 0, lent), Outlook::Road);
+    frontier.road().goal().x
+}
+
+#[test]
+fn the_nearer_goal_waits_if_it_lies_on_another_storey() {
+    let [west, east] = ENDS;
+    let near = |x: i32, end: i32| (x - end).abs() <= 3;
+    assert!(near(goal(None), west), "nearest first");
+    assert!(
+        near(goal(Some(0.0)), east),
+        "0.9 m lower counts for 40 m of way"
+    );
+    assert!(near(goal(Some(-0.9)), west), "it is the robot's storey");
+    assert!(near(goal(Some(-0.45)), west), "as far off as the other one");
+}
