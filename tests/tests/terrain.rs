@@ -290,5 +290,10 @@ fn uneven_worlds_drawn_by_others() {
         truths(&runs)
     );
     golden::compare("terrain-data.txt", &text);
-    assert_explored(&runs);
+    // How much of them is known within the time limit is a result, in the table.
+    for Told { report, .. } in &runs {
+        let safety = &report.safety;
+        let harm = safety.collisions + safety.falls + safety.tips;
+        assert_eq!(harm, 0, "{} seed {}", report.world, report.seed);
+    }
 }
