@@ -12,7 +12,8 @@
 /// Bounds of a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// A shorter loop is not worth closing: it corrects nothing. Default: 10.
+    /// A shorter loop is not worth closing: it corrects nothing. Default: 20, a round of 6.4 m across, which lasers that see twice as
+    /// far have in view all the way. At 10 a robot among trees goes round most of them, and takes twice the time.
     pub least_m: f32,
     /// A longer loop is not worth closing when nothing else is left to explore. Default: 120.
     pub most_m: f32,
@@ -27,7 +28,7 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         Self {
-            least_m: 10.0,
+            least_m: 20.0,
             most_m: 120.0,
             most_per_frontier: 10.0,
             detour: 2.0,
@@ -89,7 +90,7 @@ mod tests {
     #[test]
     fn long_loops_are_worth_closing_while_much_is_left() {
         let limits = Limits::default();
-        assert!(!limits.is_worth(9.0, 100.0), "too short");
+        assert!(!limits.is_worth(19.0, 100.0), "too short");
         assert!(limits.is_worth(90.0, 0.0));
         assert!(!limits.is_worth(150.0, 2.0));
         assert!(limits.is_worth(150.0, 4.0));

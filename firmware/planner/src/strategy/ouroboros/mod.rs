@@ -9,7 +9,7 @@
 //! line 19:     the shield                                            (shield)
 //! line 21:     propagate from it, the shield as a blocker
 //! line 24:     else propagate from the unexplored                    (frontier)
-//! line 26:     none is left: the exploration is complete
+//! line 26:     none is left: the exploration is complete, unless a loop is open (errand)
 //! ```
 //!
 //! A round takes up to three calls of [`Ouroboros::advance`], each with one wave at most, all on the same published
@@ -24,6 +24,7 @@
 
 pub mod crumbs;
 pub mod detour;
+mod errand;
 pub mod ground;
 pub mod loop_road;
 pub mod marks;
@@ -38,6 +39,7 @@ mod scenes;
 
 use self::crumbs::Crumbs;
 use self::detour::Detour;
+use self::errand::Errand;
 use self::loop_road::{LoopRoad, build_shield, way_back};
 use self::marks::Marks;
 pub use self::round::Round;
@@ -67,6 +69,8 @@ enum Stage {
     Close(Site),
     /// Line 24.
     Explore,
+    /// Line 26: whether there is an errand left.
+    Search,
 }
 
 /// What the strategy remembers; `SLOTS` as the map's.
@@ -79,6 +83,8 @@ pub struct Ouroboros<const SLOTS: usize> {
     marks: Marks<SLOTS>,
     crumbs: Crumbs,
     detour: Detour,
+    /// Nothing is left to explore, and a loop may be open here.
+    errand: Option<Errand>,
     /// Length expected of the loop, and of the way back from where it was begun, metres.
     loop_m: f32,
     back_m: f32,
@@ -108,6 +114,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             marks: Marks::new(),
             crumbs: Crumbs::new(),
             detour: Detour::new(),
+            errand: None,
             loop_m: 0.0,
             back_m: 0.0,
             lost_rounds: 0,
@@ -126,6 +133,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         self.marks.reset(box_tiles);
         (self.tractor, self.shield) = (None, None);
         (self.crumbs, self.detour) = (Crumbs::new(), Detour::new());
+        self.errand = None;
         (self.loop_m, self.back_m) = (0.0, 0.0);
         (self.lost_rounds, self.lost_loops) = (0, 0);
         (self.stage, self.robot) = (Stage::Look, None);
@@ -167,10 +175,12 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         let robot = pose.point().cell();
         self.crumbs.note(robot);
         let last = self.robot.replace(robot);
+        let stride_m = last.map_or(0.0, |last| distance_m(last, robot));
         if self.shield.is_some() {
             self.marks.note(robot);
-            let stride_m = last.map_or(0.0, |last| distance_m(last, robot));
             self.detour.note(stride_m, self.loop_m);
+        } else if let Some(errand) = &mut self.errand {
+            errand.detour.note(stride_m, 0.0);
         }
     }
 
@@ -187,12 +197,62 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         match core::mem::replace(&mut self.stage, Stage::Look) {
             Stage::Look => self.look(&mut round, &mut lent),
             Stage::Close(robot) => self.close(frontier, &mut round, &mut lent, robot),
+            Stage::Explore if self.errand.is_some() => {
+                self.go_on_errand(frontier, &mut round, &mut lent)
+            }
             // Lines 24 and 26.
             Stage::Explore => {
                 let robot = round.pose.point();
-                Some(frontier.replan(&round.known(), robot, round.time_ms, lent))
+                let outlook = frontier.replan(&round.known(), robot, round.time_ms, lent);
+                if outlook == Outlook::Nothing {
+                    self.stage = Stage::Search;
+                    return None;
+                }
+                Some(outlook)
             }
+            Stage::Search => self.search(&mut round, &mut lent),
         }
+    }
+
+    /// Line 26: nothing is left to explore. Look for a loop that is open, at one branch a call.
+    fn search<const TILES: usize>(
+        &mut self,
+        round: &mut Round<'_, TILES, SLOTS>,
+        lent: &mut Lent<'_>,
+    ) -> Option<Outlook> {
+        self.stage = match errand::find(round, &mut self.marks, lent) {
+            errand::Found::None => return Some(Outlook::Nothing),
+            errand::Found::NotHere => Stage::Search,
+            errand::Found::Place(goal) => {
+                self.errand = Some(Errand::to(goal));
+                Stage::Explore
+            }
+        };
+        None
+    }
+
+    /// The way to an open loop; in it a tractor point is made as anywhere.
+    fn go_on_errand<const TILES: usize>(
+        &mut self,
+        frontier: &mut Frontier,
+        round: &mut Round<'_, TILES, SLOTS>,
+        lent: &mut Lent<'_>,
+    ) -> Option<Outlook> {
+        let goal = self.errand?.goal;
+        let road = road_to(goal, round, lent).filter(|road| {
+            let errand = self.errand.as_mut();
+            let is_over = errand.is_none_or(|errand| errand.is_over(road.steps(), round.limits));
+            road.steps() > errand::DONE_STEPS && !is_over
+        });
+        if let Some(road) = road {
+            let (known, robot) = (round.known(), round.pose.point());
+            return Some(frontier.follow(road, &known, robot, round.time_ms, lent.view));
+        }
+        // No loop was begun on the way here.
+        errand::settle(round, &mut self.marks, goal);
+        self.errand = None;
+        self.stage = Stage::Search;
+        None
     }
 
     /// Lines 3 to 19: tractor point, loop road and shield.
@@ -311,6 +371,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// No other tractor point is to be made here.
     fn settle(&mut self) {
         self.marks.keep();
+        self.errand = None;
         self.lost_loops = 0;
         self.disable_tractor();
     }
@@ -398,6 +459,22 @@ fn renew<const TILES: usize, const SLOTS: usize>(
     let back = way_back(ground.way, &residues, robot)?;
     let next = build_shield(&ground, back, round.pose.point().cell());
     next.or_else(|| previous.stretch(&ground).is_ok().then_some(previous))
+}
+
+/// The way along the skeleton from the robot to a centre cell, or to the one nearest to where it was.
+fn road_to<const TILES: usize, const SLOTS: usize>(
+    place: Cell,
+    round: &mut Round<'_, TILES, SLOTS>,
+    lent: &mut Lent<'_>,
+) -> Option<Road> {
+    let robot = round.nearest(round.pose.point().cell(), lent)?;
+    let goal = round.nearest(place, lent)?;
+    round.propagate(goal, core::iter::empty(), Some(robot), lent)?;
+    let frame = round.topology.frame();
+    let residues = Residues::new(frame.shape, lent.residues).ok()?;
+    residues.get(robot)?;
+    let way = core::iter::once(robot).chain(residues.descent(robot));
+    Some(Road::along(way.map(|site| frame.cell(site))))
 }
 
 fn distance_m(a: Cell, b: Cell) -> f32 {

@@ -18,6 +18,7 @@ use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::{Plane, Site};
 use crate::map::Tiles;
 use crate::math;
+use crate::skeleton::branches::{Kind, kind};
 use crate::topology::Frame;
 use crate::view::{Rows, View};
 
@@ -134,6 +135,17 @@ pub(super) fn unexplored<const TILES: usize, const SLOTS: usize>(
         }
     }
     goal
+}
+
+/// Whether the way parts within the disc around the robot.
+pub(super) fn parts(centres: &CentreCells<'_>, robot: Point) -> bool {
+    let mut parts = false;
+    centres.around(robot.cell(), (DISC_M / CELL_M) as i32, |cell| {
+        let is_near = distance_m(cell, robot) <= DISC_M;
+        let site = centres.frame.site(cell).filter(|_| is_near);
+        parts |= site.and_then(|site| kind(centres.way, site)) == Some(Kind::Junction);
+    });
+    parts
 }
 
 /// Prefer a side of the half disc that lies `ahead` of the robot.

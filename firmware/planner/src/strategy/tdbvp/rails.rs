@@ -115,6 +115,13 @@ impl<const SLOTS: usize> Rails<SLOTS> {
         self.date(cell).unwrap_or(0)
     }
 
+    /// Steps since the visit of a rank; of what was never visited, since the days began.
+    #[must_use]
+    pub fn age_steps(&self, rank: u8) -> u32 {
+        let days = u32::from(self.today.saturating_sub(rank));
+        days * u32::from(self.day_steps) + u32::from(self.steps)
+    }
+
     /// The earliest date that there is; today's if nothing was visited.
     fn find_oldest(&mut self) {
         let dates = self.dates.as_flattened().iter().copied();
@@ -191,6 +198,19 @@ mod tests {
         // Two days from one to the next; the last was two days ago.
         assert_eq!([0, 1, 2, 3, 4].map(of), [0.0, 0.2, 0.4, 0.6, 0.8]);
         assert_eq!(of(5), UNVISITED);
+    }
+
+    #[test]
+    fn ages_are_counted_in_steps_whatever_the_days_are() {
+        let mut rails = rails();
+        rails.visit(place(0));
+        for steps in 1..=4_000 {
+            rails.pass();
+            let age = rails.age_steps(rails.rank(place(0)));
+            let day = u32::from(rails.day_steps);
+            assert!(age.abs_diff(steps) <= day, "{age} after {steps} steps");
+        }
+        assert!(rails.day_steps > super::DAY_STEPS, "the past was pressed");
     }
 
     #[test]
