@@ -76,13 +76,15 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Take ground around a cell that was never measured for free where it is led over, and else for `gone`; whether any is free now.
     fn lead_over(&mut self, terrain: &Terrain, middle: Cell, gone: Option<Class>) -> bool {
         let mut any = false;
+        // With an attitude that is not sure a rim beside it may have gone unnoticed: trusted, ground at two holes let the robot fall.
+        let is_sure = self.tilt.is_calm();
         for y in middle.y - GIVEN_UP..=middle.y + GIVEN_UP + 1 {
             for x in middle.x - GIVEN_UP..=middle.x + GIVEN_UP + 1 {
                 let cell = Cell { x, y };
                 if self.tiles.class(cell) != Class::Unknown {
                     continue;
                 }
-                let leads_over = classify::leads_over(&self.heights(), terrain, cell);
+                let leads_over = is_sure && classify::leads_over(&self.heights(), terrain, cell);
                 let class = if leads_over { Some(Class::Free) } else { gone };
                 if let Some(class) = class {
                     // Where there is no room nothing is known in any case.

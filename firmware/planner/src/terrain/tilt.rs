@@ -72,14 +72,19 @@ impl Tilt {
         if gain < 1.0 { self.lean(pose) } else { *pose }
     }
 
+    /// Whether the attitude is as good as without noise.
+    #[must_use]
+    pub fn is_calm(&self) -> bool {
+        self.sigma() < CALM
+    }
+
     /// How far from the robot a height may be measured, metres.
     #[must_use]
     pub fn reach_m(&self) -> f32 {
-        let sigma = self.sigma();
-        if sigma < CALM {
+        if self.is_calm() {
             f32::INFINITY
         } else {
-            ERROR_M / (SMOOTHED * sigma)
+            ERROR_M / (SMOOTHED * self.sigma())
         }
     }
 
