@@ -48,13 +48,16 @@ pub fn table(reports: &[Report]) -> Table {
 ///
 /// # Panics
 /// If not so.
-fn assert_within(reports: &[Report], most: f64) {
+fn assert_within_budget(reports: &[Report]) {
     for report in reports {
         let world = &report.world;
         let Some(of) = report.planner.instructions else {
             panic!("{world}: nothing was counted");
         };
-        assert!(of.p50 > 0.0 && of.max <= most, "{world}: {of:?}");
+        assert!(
+            of.p50 > 0.0 && of.max <= MOST_INSTRUCTIONS,
+            "{world}: {of:?}"
+        );
         assert!(
             report.planner.stack_bytes.is_some(),
             "{world}: no stack was measured"
@@ -67,14 +70,6 @@ fn assert_within(reports: &[Report], most: f64) {
 /// # Panics
 /// If either does not hold.
 pub fn check(name: &str, reports: &[Report]) {
-    check_within(name, reports, MOST_INSTRUCTIONS);
-}
-
-/// Compare with golden file `name`, and with another budget.
-///
-/// # Panics
-/// If either does not hold.
-pub fn check_within(name: &str, reports: &[Report], most: f64) {
     golden::compare_about(name, &table(reports).to_string(), DRIFT);
-    assert_within(reports, most);
+    assert_within_budget(reports);
 }

@@ -1,9 +1,8 @@
-//! Uneven ground on the emulated chip: whole runs give the same command stream as by call, bit for bit, and `golden/terrain-costs.txt` keeps the
-//! instructions of their steps.
+//! Uneven ground on the emulated chip: whole runs give the same command stream as by call, bit for bit.
 
 use fieldline_tests::runs::explored;
 use fieldline_tests::uneven::Tour;
-use fieldline_tests::{costs, emulator, worlds};
+use fieldline_tests::{emulator, worlds};
 use host_sim::link::direct::Direct;
 use host_sim::link::endpoint::{Endpoint, Patience};
 use host_sim::link::qemu;
@@ -12,33 +11,25 @@ use host_sim::trial::mission::Mission;
 
 /// The two that are explored in the fewest steps: a drop without a floor, and a ridge.
 const WORLDS: [&str; 2] = ["causeway", "pass"];
-/// Instructions that a step on uneven ground may take: about 60 ms at 168 MHz.
-const MOST_INSTRUCTIONS: f64 = 7e6;
-
 #[test]
 fn the_emulated_chip_explores_uneven_ground_as_the_host_does() {
     let Some(image) = emulator::image() else {
         return;
     };
-    let reports: Vec<Report> = WORLDS
-        .iter()
-        .map(|name| {
-            let world = worlds::builtin(name);
-            let mission = Tour::of(&world, 0, 0).mission();
-            let (clean, _) = explored(&mission, &world, &mut Direct::new());
-            let line = qemu::open_line(&image).expect("it started a moment ago");
-            let mission = Mission {
-                link: "qemu".into(),
-                ..mission
-            };
-            let mut chip = Endpoint::new(line, Patience::LOCKSTEP, 1);
-            let (report, _) = explored(&mission, &world, &mut chip);
-            let facts = |r: &Report| (r.digest.clone(), r.steps, r.outcome.clone());
-            assert_eq!(facts(&report), facts(&clean), "{name}");
-            assert!(report.explored(), "{name}: {:?}", report.outcome);
-            assert_eq!(report.debug.map_matches_mirror, Some(true));
-            report
-        })
-        .collect();
-    costs::check_within("terrain-costs.txt", &reports, MOST_INSTRUCTIONS);
+    for name in WORLDS {
+        let world = worlds::builtin(name);
+        let mission = Tour::of(&world, 0, 0).mission();
+        let (clean, _) = explored(&mission, &world, &mut Direct::new());
+        let line = qemu::open_line(&image).expect("it started a moment ago");
+        let mission = Mission {
+            link: "qemu".into(),
+            ..mission
+        };
+        let mut chip = Endpoint::new(line, Patience::LOCKSTEP, 1);
+        let (report, _) = explored(&mission, &world, &mut chip);
+        let facts = |r: &Report| (r.digest.clone(), r.steps, r.outcome.clone());
+        assert_eq!(facts(&report), facts(&clean), "{name}");
+        assert!(report.explored(), "{name}: {:?}", report.outcome);
+        assert_eq!(report.debug.map_matches_mirror, Some(true));
+    }
 }
