@@ -28,6 +28,14 @@ const SIGHT: i32 = 8;
 const STRIDE: usize = 3;
 /// Rounds after which something holds the robot.
 const MOST_ROUNDS: usize = 3000;
+/// Bounds for worlds that are as small as the robot's sight is.
+const SMALL: Limits = Limits {
+    least_m: 10.0,
+    most_m: 120.0,
+    most_per_frontier: 10.0,
+    detour: 2.0,
+    slack_m: 20.0,
+};
 
 struct Exploration {
     world: Vec<Vec<char>>,
@@ -301,7 +309,7 @@ impl Exploration {
 /// Every island is gone round, and nothing is left unknown.
 #[track_caller]
 fn assert_closes_all(world: &str) {
-    let mut exploration = Exploration::new(world, Limits::default());
+    let mut exploration = Exploration::new(world, SMALL);
     exploration.run();
     let islands: String = exploration.turned.keys().collect();
     assert_eq!(exploration.rounded(), islands, "\n{}", exploration.drawn());
@@ -404,7 +412,7 @@ fn a_loop_that_takes_too_long_is_given_up() {
     let limits = Limits {
         detour: 0.2,
         slack_m: 2.0,
-        ..Limits::default()
+        ..SMALL
     };
     let mut exploration = Exploration::new(ADJACENT, limits);
     exploration.run();

@@ -21,9 +21,17 @@ const FORK: &str = "
     ###########...##
     ###########...##
     ###########...##
+    ###########...##
+    ###########...##
+    ###########...##
+    ###########...##
     #..............#
     #...........>..#
     #..............#
+    ###########...##
+    ###########...##
+    ###########...##
+    ###########...##
     ###########...##
     ###########...##
     ###########...##
@@ -123,8 +131,8 @@ impl Scene {
 
     /// The robot was in the arm above or below its corridor, not before the last visits there.
     fn visit_arm(&mut self, up: bool) {
-        for k in 0..7 {
-            let y = if up { 18 + k } else { 2 + k };
+        for k in 0..19 {
+            let y = if up { 26 + k } else { 2 + k };
             self.rails.visit(Cell { x: 24, y });
         }
     }
