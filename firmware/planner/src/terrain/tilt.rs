@@ -10,7 +10,7 @@
 //!
 //! An error of the attitude tilts a whole sweep: of 1° it lifts the ground 3 m to the side by 5 cm, and two sweeps that meet there make an
 //! edge that is none. A mean over many sweeps would cure that, but a robot that drives on has one or two over a cell. So the attitude is
-//! smoothed, and no height is measured farther off than errors of it stay small; the robot looks again from nearer. Below [`CALM`] the
+//! smoothed, and no height is measured farther off than errors of it stay small; the robot looks again from nearer. Below `CALM` the
 //! attitude is taken as it comes: an inertial unit without noise changes nothing. Not in [Maffei-Terrain], which measures attitude without
 //! error. Units: tangents, metres, radians.
 

@@ -7,12 +7,12 @@
 //!
 //! Where a rail vanishes from the window, or none in it attracts, the robot follows a *road* instead: to the nearest
 //! unexplored along the skeleton, on patrol to the oldest rail; to the skeleton itself where it is off it, by
-//! [`super::nearest`] [TDBVP, VII: the nearest rail, else the unexplored, else the skeleton].
+//! `nearest` [TDBVP, VII: the nearest rail, else the unexplored, else the skeleton].
 //!
 //! Departs from the paper:
 //! - Unexplored cells are goals only until [`Frontier`] has given them up, and a robot that lingers follows a road for a while; there the paper
 //!   has no rule, and stands before what it cannot see.
-//! - A robot to which nothing new came for [`PATIENCE_MS`] while something is left follows a road. The paper relies on its rails to
+//! - A robot to which nothing new came for `PATIENCE_MS` while something is left follows a road. The paper relies on its rails to
 //!   lead there in the end.
 //! - On patrol a robot goes by road to a rail that is overdue: the rails lead to the oldest in the window, and what lies beyond may wait for
 //!   ever. So the age of the oldest is bounded, by a tour of everything and the way there.
