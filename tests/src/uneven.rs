@@ -116,32 +116,6 @@ fn truth_of(record: &Record) -> Truth {
     })
 }
 
-/// What must hold of an exploration of uneven ground, of which so much must be known at the end; what does not.
-#[must_use]
-pub fn faults(report: &Report, least_coverage: f64) -> Vec<String> {
-    let (outcome, safety) = (&report.outcome, &report.safety);
-    let mut faults = Vec::new();
-    if !report.explored() {
-        faults.push(format!("{} ({})", outcome.status, outcome.reason));
-    }
-    if report.coverage.fraction < least_coverage {
-        faults.push(format!("coverage {:.4}", report.coverage.fraction));
-    }
-    for (count, what) in [
-        (safety.collisions, "collisions"),
-        (safety.falls, "falls"),
-        (safety.tips, "tips"),
-    ] {
-        if count > 0 {
-            faults.push(format!("{count} {what}"));
-        }
-    }
-    if report.debug.map_matches_mirror != Some(true) {
-        faults.push("the device's map is not what it was shown".into());
-    }
-    faults
-}
-
 /// One line a run.
 #[must_use]
 pub fn table(runs: &[Told]) -> Table {

@@ -42,21 +42,12 @@ fn each<'a>(worlds: &'a [World], starts: usize, strategies: &[&'static str]) -> 
 }
 
 fn faults(report: &Report) -> Vec<String> {
-    let (outcome, safety, loops) = (&report.outcome, &report.safety, &report.loops);
-    let mut faults = Vec::new();
-    if !report.explored() {
-        faults.push(format!("{} ({})", outcome.status, outcome.reason));
-    }
     let least = match report.world.as_str() {
         "ouroboros-d" => LEAST_AMONG_TREES,
         _ => LEAST_COVERAGE,
     };
-    if report.coverage.fraction < least {
-        faults.push(format!("coverage {:.4}", report.coverage.fraction));
-    }
-    if safety.collisions > 0 {
-        faults.push(format!("{} collisions", safety.collisions));
-    }
+    let mut faults = runs::faults(report, least);
+    let loops = &report.loops;
     if report.strategy == OUROBOROS && loops.loops_closed < loops.loops {
         faults.push(format!(
             "{} of {} loops closed",

@@ -9,7 +9,6 @@ use fieldline_tests::loops::{self, OUROBOROS, TDBVP};
 use fieldline_tests::runs::{self, FRONTIER, Run};
 use fieldline_tests::table::Table;
 use fieldline_tests::{full, golden, starts, worlds};
-use host_sim::report::Report;
 use host_sim::world::World;
 
 /// Share of what can be seen that must be known at the end.
@@ -17,21 +16,6 @@ const LEAST_COVERAGE: f64 = 0.98;
 /// Starts in each world, and what they are drawn from.
 const STARTS: usize = 5;
 const SEED: u64 = 4;
-
-fn faults(report: &Report) -> Vec<String> {
-    let (outcome, safety) = (&report.outcome, &report.safety);
-    let mut faults = Vec::new();
-    if !report.explored() {
-        faults.push(format!("{} ({})", outcome.status, outcome.reason));
-    }
-    if report.coverage.fraction < LEAST_COVERAGE {
-        faults.push(format!("coverage {:.4}", report.coverage.fraction));
-    }
-    if safety.collisions > 0 {
-        faults.push(format!("{} collisions", safety.collisions));
-    }
-    faults
-}
 
 /// Where the robot was put down: what a world file's `robots` would say.
 fn places(worlds: &[World]) -> Table {
@@ -83,7 +67,7 @@ fn worlds_drawn_by_others_are_explored_from_any_start() {
     golden::compare("loops-data.txt", &text);
     let mut wrong = String::new();
     for report in reports.iter().filter(|r| r.strategy != FRONTIER) {
-        for fault in faults(report) {
+        for fault in runs::faults(report, LEAST_COVERAGE) {
             let (world, strategy, start) = (&report.world, &report.strategy, report.start);
             let _ = writeln!(wrong, "{world} {strategy} start {start}: {fault}");
         }

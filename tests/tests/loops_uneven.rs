@@ -6,7 +6,7 @@
 use core::fmt::Write as _;
 
 use fieldline_tests::loops::{self, OUROBOROS, TDBVP};
-use fieldline_tests::runs::Unseen;
+use fieldline_tests::runs::{self, Unseen};
 use fieldline_tests::{full, golden, worlds};
 use host_sim::link::direct::Direct;
 use host_sim::report::Report;
@@ -28,27 +28,6 @@ fn run(world: &str, strategy: &str, start: usize) -> Report {
     run.expect("the start is free").0
 }
 
-fn faults(report: &Report) -> Vec<String> {
-    let (outcome, safety) = (&report.outcome, &report.safety);
-    let mut faults = Vec::new();
-    if !report.explored() {
-        faults.push(format!("{} ({})", outcome.status, outcome.reason));
-    }
-    if report.coverage.fraction < LEAST_COVERAGE {
-        faults.push(format!("coverage {:.4}", report.coverage.fraction));
-    }
-    for (count, what) in [
-        (safety.collisions, "collisions"),
-        (safety.falls, "falls"),
-        (safety.tips, "tips"),
-    ] {
-        if count > 0 {
-            faults.push(format!("{count} {what}"));
-        }
-    }
-    faults
-}
-
 fn check(name: &str, names: &[&str], starts: usize) {
     let mut reports = Vec::new();
     for &world in names {
@@ -61,7 +40,7 @@ fn check(name: &str, names: &[&str], starts: usize) {
     golden::compare(name, &text);
     let mut wrong = String::new();
     for report in &reports {
-        for fault in faults(report) {
+        for fault in runs::faults(report, LEAST_COVERAGE) {
             let (world, strategy, start) = (&report.world, &report.strategy, report.start);
             let _ = writeln!(wrong, "{world} {strategy} start {start}: {fault}");
         }

@@ -19,35 +19,10 @@ const SEEDS: Range<u64> = 0..5;
 /// Seeds that were not.
 const HELD_OUT: Range<u64> = 100..105;
 
-/// What must hold of an exploration by the device's strategy.
-fn faults(report: &Report) -> Vec<String> {
-    let (outcome, safety) = (&report.outcome, &report.safety);
-    let mut faults = Vec::new();
-    if !report.explored() {
-        faults.push(format!("{} ({})", outcome.status, outcome.reason));
-    }
-    if report.coverage.fraction < LEAST_COVERAGE {
-        faults.push(format!("coverage {:.4}", report.coverage.fraction));
-    }
-    for (count, what) in [
-        (safety.collisions, "collisions"),
-        (safety.falls, "falls"),
-        (safety.tips, "tips"),
-    ] {
-        if count > 0 {
-            faults.push(format!("{count} {what}"));
-        }
-    }
-    if report.debug.map_matches_mirror != Some(true) {
-        faults.push("the device's map is not what it was shown".into());
-    }
-    faults
-}
-
 fn assert_explored(reports: &[Report]) {
     let mut list = String::new();
     for report in reports.iter().filter(|report| report.strategy == FRONTIER) {
-        for fault in faults(report) {
+        for fault in runs::faults(report, LEAST_COVERAGE) {
             let _ = writeln!(list, "{} seed {}: {fault}", report.world, report.seed);
         }
     }
@@ -130,7 +105,11 @@ fn a_hall_larger_than_the_lasers_see_is_explored() {
         let (report, _) =
             host_sim::trial::mission::explore(&mission, &world, &mut link, &mut runs::Unseen)
                 .expect("the start is free");
-        assert_eq!(faults(&report), Vec::<String>::new(), "start {start}");
+        assert_eq!(
+            runs::faults(&report, LEAST_COVERAGE),
+            Vec::<String>::new(),
+            "start {start}"
+        );
     }
 }
 

@@ -15,7 +15,7 @@ use core::fmt::Write as _;
 
 use fieldline_protocol::message::Preference;
 use fieldline_tests::history::{History, Watched};
-use fieldline_tests::runs::{explored, in_parallel};
+use fieldline_tests::runs::{self, explored, in_parallel};
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::uneven::{self, Told, Tour, word};
 use fieldline_tests::wilcoxon::signed_rank;
@@ -42,7 +42,7 @@ fn explore(tours: &[Tour<'_>]) -> Vec<Told> {
 fn assert_explored(runs: &[Told]) {
     let mut list = String::new();
     for Told { report, .. } in runs {
-        for fault in uneven::faults(report, LEAST_COVERAGE) {
+        for fault in runs::faults(report, LEAST_COVERAGE) {
             let (world, start, seed) = (&report.world, report.start, report.seed);
             let _ = writeln!(list, "{world} start {start} seed {seed}: {fault}");
         }

@@ -13,9 +13,9 @@
 
 use fieldline_planner::geometry::Cell;
 use fieldline_tests::history::{History, Watched};
-use fieldline_tests::runs::{explored, in_parallel};
+use fieldline_tests::runs::{explored, faults, in_parallel};
 use fieldline_tests::table::{Table, number};
-use fieldline_tests::uneven::{Tour, faults};
+use fieldline_tests::uneven::Tour;
 use fieldline_tests::{full, golden, worlds};
 use host_sim::link::direct::Direct;
 use host_sim::metrics::{GroundTruth, Truly};

@@ -7,13 +7,15 @@
 
 use fieldline_planner::State;
 use fieldline_planner::geometry::Cell;
+use fieldline_planner::map::tiles::TILE_SIDE;
 use fieldline_planner::strategy::Ouroboros;
+use fieldline_planner::strategy::tdbvp::rails::PLACE_CELLS;
 use fieldline_protocol::message::{Loops, ROAD_PAGE, Road, TILE_DATES};
 
 /// Map cells along a tile, along a mark, and along a place with a date.
-const TILE: i32 = 32;
+const TILE: i32 = TILE_SIDE;
 const MARK: i32 = 8;
-const PLACE: i32 = 16;
+const PLACE: i32 = PLACE_CELLS;
 
 // A mark is a bit of a `u16`, and a place a byte of the tile's dates.
 const _: () = assert!((TILE / MARK) * (TILE / MARK) == 16);

@@ -160,22 +160,13 @@ pub fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
 ) -> impl Iterator<Item = Point> + '_ {
-    let reach = math::floor(REACH_BEHIND_M / CELL_M);
-    let Cell { x, y } = robot.cell();
-    let across = (1 << (2 * reach + 1)) - 1;
-    (y - reach..=y + reach).flat_map(move |y| {
-        let row = tiles.row(x - reach, y).obstacle() as u32 & across;
-        ones(row).map(move |k| {
-            let corner = Cell {
-                x: x - reach + k as i32,
-                y,
-            }
-            .corner();
-            Point {
-                x_m: corner.x_m + 0.5 * CELL_M,
-                y_m: corner.y_m + 0.5 * CELL_M,
-            }
-        })
+    let obstacles = |x, y| tiles.row(x, y).obstacle();
+    cells_around(robot, obstacles).map(|cell| {
+        let corner = cell.corner();
+        Point {
+            x_m: corner.x_m + 0.5 * CELL_M,
+            y_m: corner.y_m + 0.5 * CELL_M,
+        }
     })
 }
 
@@ -185,20 +176,22 @@ pub fn rim_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
 ) -> impl Iterator<Item = Point> + '_ {
+    let rims = |x, y| {
+        let free = |dy: i32| tiles.row(x - 1, y + dy).free();
+        let here = free(0);
+        (here | here >> 2 | free(-1) >> 1 | free(1) >> 1) & !(here >> 1)
+    };
+    cells_around(robot, rims).map(Cell::centre)
+}
+
+/// The cells within reach behind the robot, and as far to all sides, that `of` has: bit k of `of(x, y)` is cell (x + k, y).
+fn cells_around(robot: Point, of: impl Fn(i32, i32) -> u64) -> impl Iterator<Item = Cell> {
     let reach = math::floor(REACH_BEHIND_M / CELL_M);
     let Cell { x, y } = robot.cell();
-    let across = (1 << (2 * reach + 1)) - 1;
+    let (x, across) = (x - reach, (1 << (2 * reach + 1)) - 1);
     (y - reach..=y + reach).flat_map(move |y| {
-        let free = |dy: i32| tiles.row(x - reach - 1, y + dy).free();
-        let here = free(0);
-        let beside = (here | here >> 2 | free(-1) >> 1 | free(1) >> 1) & !(here >> 1);
-        ones(beside as u32 & across).map(move |k| {
-            let cell = Cell {
-                x: x - reach + k as i32,
-                y,
-            };
-            cell.centre()
-        })
+        let row = of(x, y) as u32 & across;
+        ones(row).map(move |k| Cell { x: x + k as i32, y })
     })
 }
 

@@ -16,7 +16,7 @@
 
 use crate::bits::{Adjacency, flood};
 use crate::clearance::Disc;
-use crate::config::Config;
+use crate::config::{Config, Laser};
 use crate::drive::{self, Drive, Ground, Place, Surround};
 use crate::field::preference::p_diff;
 use crate::field::{
@@ -423,17 +423,12 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         }
     }
     state.map.observe(config, input);
-    let level = config.lasers.iter().zip(input.scans);
-    let level = level
-        .into_iter()
-        .find(|(laser, ranges_mm)| is_level(laser) && !ranges_mm.is_empty());
+    let level = level_scans(config, input).find(|(_, ranges_mm)| !ranges_mm.is_empty());
     state.strategy.note(&input.pose, input.time_ms, level);
     match &mut state.around {
         Around::Near(near) => {
-            for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
-                if is_level(laser) {
-                    near.update(&input.pose, laser, ranges_mm);
-                }
+            for (laser, ranges_mm) in level_scans(config, input) {
+                near.update(&input.pose, laser, ranges_mm);
             }
         }
         Around::Storeys(storeys) => {
@@ -443,14 +438,19 @@ fn sense<const TILES: usize, const SLOTS: usize>(
     }
 }
 
+/// The level lasers, each with its scan.
+fn level_scans<'a>(
+    config: &'a Config,
+    input: &Input<'a>,
+) -> impl Iterator<Item = (&'a Laser, &'a [u16])> {
+    let scans = config.lasers.iter().zip(input.scans);
+    scans.filter(|(laser, _)| is_level(laser))
+}
+
 /// Whether the level laser sees something closer than the robot's own hull in nearly every beam.
 #[must_use]
 pub fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
-    let level = config
-        .lasers
-        .iter()
-        .zip(input.scans)
-        .find(|(laser, _)| is_level(laser));
+    let level = level_scans(config, input).next();
     level.is_some_and(|(_, ranges_mm)| {
         let blocked = |&&range: &&u16| f32::from(range) * 1e-3 < BLOCKED_M;
         !ranges_mm.is_empty()

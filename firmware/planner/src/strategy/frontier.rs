@@ -272,10 +272,7 @@ impl Frontier {
             Verdict::GoOn => {}
             Verdict::Drop(reason) => self.drop_goal(reason),
             Verdict::BarLeak => self.bar(leak(&self.road, known, robot, lent.view)),
-            Verdict::BarAhead => {
-                self.stopped = true;
-                self.bar(ahead(&self.road, robot));
-            }
+            Verdict::BarAhead => self.bar_ahead(robot),
         }
         let enough = self.patience.is_stuck() || self.dropped.is_full();
         match (enough, self.second_chance) {
@@ -364,10 +361,7 @@ impl Frontier {
         match self.patience.judge(goal, steps, time_ms) {
             Verdict::GoOn | Verdict::Drop(_) => {}
             Verdict::BarLeak => self.bar(leak(&self.road, known, robot, view)),
-            Verdict::BarAhead => {
-                self.stopped = true;
-                self.bar(ahead(&self.road, robot));
-            }
+            Verdict::BarAhead => self.bar_ahead(robot),
         }
         match (self.patience.is_stuck(), self.second_chance) {
             (false, _) => Outlook::Road,
@@ -531,6 +525,12 @@ impl Frontier {
         } else {
             Some(1 + usize::from(company(goals, site) < SMALL_COMPANY))
         }
+    }
+
+    /// The robot cannot go on where it stands: what lies ahead is barred.
+    fn bar_ahead(&mut self, robot: Point) {
+        self.stopped = true;
+        self.bar(ahead(&self.road, robot));
     }
 
     /// The window has no way from the robot to its local goal, though the skeleton, coarser, had one.
