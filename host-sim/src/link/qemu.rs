@@ -1,6 +1,7 @@
 //! The third rung: the image in an emulated STM32F405, over a socket; or on a pty, as if it were a board on a serial port.
 //!
-//! QEMU connects to a socket that is bound before it starts, so that not even the boot's hello is lost. `-icount
+//! QEMU connects to a socket that is bound before it starts, so that not even the boot's hello is lost. Until the image has set up
+//! its UART, QEMU drops what comes for it; so the line is open once the image has spoken. `-icount
 //! shift=0,sleep=off` makes an instruction one tick of the virtual clock, which counts a step's instructions exactly.
 
 use core::time::Duration;
@@ -21,6 +22,8 @@ use super::stream::{POLL, Stream, fresh_nonce};
 const PROGRAM: &str = "qemu-system-arm";
 /// A loaded machine takes its time to start a process.
 const START_LIMIT: Duration = Duration::from_secs(30);
+/// The image speaks within milliseconds of the emulator's first instruction.
+const BOOT_LIMIT: Duration = Duration::from_secs(10);
 
 /// A running emulator; it ends with this value.
 #[derive(Debug)]
@@ -112,6 +115,22 @@ impl Emulator {
 pub struct QemuLine {
     stream: Stream<UnixStream>,
     emulator: Emulator,
+    /// What the image said as it booted, until it is asked for.
+    at_boot: Vec<u8>,
+}
+
+#[cfg(unix)]
+impl QemuLine {
+    /// Waits for the image's first word. One that never speaks is for whoever greets it to name.
+    fn hear_boot(&mut self) -> Result<(), LinkError> {
+        let began = Instant::now();
+        let mut heard = Vec::new();
+        while heard.is_empty() && began.elapsed() < BOOT_LIMIT {
+            self.receive(&mut heard, POLL)?;
+        }
+        self.at_boot = heard;
+        Ok(())
+    }
 }
 
 #[cfg(unix)]
@@ -122,6 +141,10 @@ impl Line for QemuLine {
     }
 
     fn receive(&mut self, into: &mut Vec<u8>, wait: Duration) -> Result<(), LinkError> {
+        if !self.at_boot.is_empty() {
+            into.append(&mut self.at_boot);
+            return Ok(());
+        }
         let received = self.stream.receive(into, wait);
         received.map_err(|error| self.emulator.explain(error))
     }
@@ -154,10 +177,13 @@ pub fn open_line(image: &Path) -> Result<QemuLine, LinkError> {
         .set_nonblocking(false)
         .and_then(|()| stream.set_read_timeout(Some(POLL)))
         .map_err(|error| io("setting up socket", &error))?;
-    Ok(QemuLine {
+    let mut line = QemuLine {
         stream: Stream::new(stream, "the emulator"),
         emulator,
-    })
+        at_boot: Vec::new(),
+    };
+    line.hear_boot()?;
+    Ok(line)
 }
 
 #[cfg(unix)]
