@@ -4,6 +4,7 @@
 //! point, and the robot with its heading `>`, `<`, `v` (towards greater y) or `^`. In what comes back, `b` and `f` are the loop road's back and
 //! front, `=` the shield, `+` other centre cells. The robot is a point, so it fits wherever there is no obstacle.
 
+mod errands;
 mod roads;
 mod walls;
 
