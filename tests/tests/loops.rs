@@ -16,15 +16,6 @@ use host_sim::world::World;
 const LEAST_COVERAGE: f64 = 0.995;
 const LEAST_AMONG_TREES: f64 = 0.988;
 
-/// Seconds of patrol. The shortest tour of the nested loops' centre lines, as a postman would go: both loops once, 88 m and 48 m, and the
-/// way of 4 m between their lines twice, at half a metre a second.
-const PATROL_S: u16 = 1800;
-const TOUR_S: f64 = (88.0 + 48.0 + 2.0 * 4.0) / 0.5;
-/// No rail waits for longer than so many tours: one until it is overdue, and the way there.
-const MOST_TOURS: f64 = 1.5;
-/// Steps in a row without a command: a field that is flat at the robot gives none, nor does the instalment of a search.
-const MOST_STILL: usize = 5;
-
 fn each<'a>(worlds: &'a [World], starts: usize, strategies: &[&'static str]) -> Vec<Run<'a>> {
     let mut runs = Vec::new();
     for world in worlds {
@@ -85,43 +76,6 @@ fn loops_are_closed_on_the_way() {
         1,
         &[OUROBOROS, TDBVP, FRONTIER, BVP],
     );
-}
-
-/// A patrol of the nested loops from one start.
-fn patrol(start: usize) {
-    use host_sim::link::direct::Direct;
-    use host_sim::trial::mission::{Mission, explore};
-
-    let mission = Mission {
-        strategy: TDBVP.into(),
-        patrol_s: PATROL_S,
-        start,
-        ..Mission::default()
-    };
-    let world = worlds::builtin("tdbvp-nested");
-    let (report, record) = explore(&mission, &world, &mut Direct::new(), &mut runs::Unseen)
-        .expect("the start is free");
-    assert_eq!(faults(&report), Vec::<String>::new());
-    let ages = report.patrol.expect("a patrol that came to its end");
-    println!("start {start}: {ages:?}, a tour takes {TOUR_S} s");
-    assert!(
-        ages.oldest_rail_s < MOST_TOURS * TOUR_S,
-        "{start}: {ages:?}"
-    );
-    assert!(ages.mean_age_s < TOUR_S, "{start}: {ages:?}");
-    let still = |step: &host_sim::trial::Step| step.command.velocity == Default::default();
-    let on_patrol = record.steps.len() - usize::from(PATROL_S) * 5;
-    let groups = record.steps[on_patrol..].chunk_by(|a, b| still(a) == still(b));
-    let longest = groups.filter(|steps| still(&steps[0])).map(<[_]>::len);
-    assert!(
-        longest.max().unwrap_or(0) <= MOST_STILL,
-        "{start}: it stood"
-    );
-}
-
-#[test]
-fn a_patrol_comes_to_every_rail_again_and_again() {
-    (0..2).for_each(patrol);
 }
 
 #[test]

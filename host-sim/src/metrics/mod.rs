@@ -8,7 +8,7 @@ mod ground_truth;
 mod localization;
 mod loops;
 mod overlap;
-mod patrol;
+pub mod patrol;
 mod reach;
 mod ride;
 mod safety;

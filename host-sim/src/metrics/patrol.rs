@@ -2,9 +2,19 @@
 //!
 //! A rail is a centre cell of the map at the end, visited whenever the robot's centre is within 1 m of it. Its *age* is the
 //! time since its last visit, in the exploration or on patrol; since the start, if there was none. Ages are taken in every step of the patrol.
+//!
+//! Spurs no longer than [`SPUR_M`] are left out: one that ends in a corner or at a dent of a wall comes and goes with the noise of the map,
+//! and may be there at the end for the first time.
+
+use std::collections::BTreeSet;
 
 /// A rail this near to the robot is visited, metres.
 const VISIT_M: f64 = 1.0;
+
+/// From the middle of a corridor of 2 m into the corner where it turns, and a little, metres.
+const SPUR_M: f64 = 1.5;
+/// Side of a centre cell, metres.
+const CENTRE_CELL_M: f64 = 0.2;
 
 /// Ages of the rails on a patrol.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,9 +50,78 @@ impl Patrol {
     }
 }
 
+/// The rails without their spurs: what leads from an end to where the way parts, if that is within [`SPUR_M`].
+#[must_use]
+pub fn without_spurs(rails: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let cells: BTreeSet<[i32; 2]> = rails.iter().map(cell_of).collect();
+    let beside = |[x, y]: [i32; 2]| -> Vec<[i32; 2]> {
+        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [x + dx, y + dy]));
+        around
+            .filter(|&near| near != [x, y] && cells.contains(&near))
+            .collect()
+    };
+    let mut spurs = BTreeSet::new();
+    for &end in cells.iter().filter(|&&cell| beside(cell).len() == 1) {
+        let mut branch = vec![end];
+        let way = |branch: &[[i32; 2]]| {
+            let ways = beside(*branch.last()?);
+            ways.into_iter().find(|near| !branch.contains(near))
+        };
+        while let Some(next) = way(&branch).filter(|&next| is_near(end, next)) {
+            if beside(next).len() > 2 {
+                spurs.extend(branch);
+                break;
+            }
+            branch.push(next);
+        }
+    }
+    let is_rail = |rail: &&[f64; 2]| !spurs.contains(&cell_of(rail));
+    rails.iter().filter(is_rail).copied().collect()
+}
+
+fn cell_of(rail: &[f64; 2]) -> [i32; 2] {
+    rail.map(|at| (at / CENTRE_CELL_M).floor() as i32)
+}
+
+/// Whether a cell, and those beside it, lie no farther from an end than a spur is long.
+fn is_near(end: [i32; 2], cell: [i32; 2]) -> bool {
+    let [dx, dy] = [0, 1].map(|k| f64::from(end[k] - cell[k]) * CENTRE_CELL_M);
+    dx.hypot(dy) + CENTRE_CELL_M <= SPUR_M
+}
+
 #[cfg(test)]
 mod tests {
-    use super::Patrol;
+    use super::{CENTRE_CELL_M, Patrol, without_spurs};
+
+    /// The centre cells of a picture that are marked so.
+    fn marked(picture: &str, marks: &str) -> Vec<[f64; 2]> {
+        let rows = picture.split_whitespace().enumerate();
+        let cells = rows.flat_map(|(y, row)| {
+            let cells = row.char_indices().filter(|(_, c)| marks.contains(*c));
+            cells.map(move |(x, _)| [x, y].map(|at| (at as f64 + 0.5) * CENTRE_CELL_M))
+        });
+        cells.collect()
+    }
+
+    #[test]
+    fn spurs_are_left_out_and_dead_ends_are_not() {
+        let picture = "
+            .........s......................
+            ..........s......s..............
+            ...........#.....#..............
+            ################################
+            ...........#.........#..........
+            ...........#.........s..........
+            ...........#.........s..........
+            ...........#.........s..........
+            ...........#....................
+            ...........#....................
+            ...........#....................
+            ...........#.............##.....";
+        let left = without_spurs(&marked(picture, "#s"));
+        assert_eq!(left, marked(picture, "#"));
+        assert_eq!(marked(picture, "s").len(), 6);
+    }
 
     /// To and fro on 10 m at 1 m/s for so many seconds.
     fn path(seconds: u32) -> Vec<[f64; 3]> {

@@ -17,7 +17,8 @@ use super::snapshot::Window;
 use super::uneven::TABLE_I;
 use super::{Body, Cast, Ending, Record, Setup, Survey, Watch, record, run, shape};
 use crate::link::{Link, LinkError};
-use crate::metrics::{CellSet, Coverage, Footing, GroundTruth, Loops, Patrol};
+use crate::metrics::patrol::{Patrol, without_spurs};
+use crate::metrics::{CellSet, Coverage, Footing, GroundTruth, Loops};
 use crate::report::tum::Stamped;
 use crate::report::{self, Report, SCHEMA_VERSION};
 use crate::robot::{LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M, laser};
@@ -394,6 +395,7 @@ fn patrol(mission: &Mission, record: &Record) -> Option<report::Patrol> {
     });
     let path: Vec<[f64; 3]> = path.collect();
     let rails: Vec<[f64; 2]> = record.map.rails().collect();
+    let rails = without_spurs(&rails);
     let ages = Patrol::judge(&rails, &path, f64::from(mission.patrol_s))?;
     Some(report::Patrol {
         oldest_rail_s: ages.oldest_rail_s,

@@ -4,14 +4,14 @@
 //! q = 1 − p, a goal's charge being that of p = −0.5:     not visited 1,   unexplored 2/3,   visited (1 − p) · 2/3
 //! ```
 //!
-//! Every centre cell in the window is charged [TDBVP, IV]. Departs from the paper: centre cells within [`VISIT_M`] of the robot
-//! and of its last metres are free: those are what the robot is visiting. Charged as the newest, p = 1, they would be a wall along the middle
+//! Every centre cell in the window is charged [TDBVP, IV]. Departs from the paper: centre cells near the robot
+//! and those in its last metres are free: those are what the robot is visiting. Charged as the newest, p = 1, they would be a wall along the middle
 //! of its way.
 //!
 //! Units: window cells; shares of a goal's charge.
 
 use super::Rails;
-use super::fresh::{Fresh, VISIT_M};
+use super::fresh::Fresh;
 use super::sides::{DISC_M, EPSILON, Side};
 use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point};
@@ -58,20 +58,20 @@ impl CentreCells<'_> {
     }
 }
 
-/// Charge the window with the rails around the robot, and with the unexplored if it is a goal. The view has the window's cells.
+/// Charge the window with the rails around the robot, those nearer than `room_m` left out, and with the unexplored if it is a goal. The view has the window's cells.
 pub(super) fn charge_rails<const SLOTS: usize>(
     window: &mut Window,
     view: &View,
     (rails, fresh): (&Rails<SLOTS>, &Fresh),
     centres: &CentreCells<'_>,
-    robot: Point,
+    (robot, room_m): (Point, f32),
     unexplored: &Rows,
 ) {
     let (mut free, mut goal) = (view.passable, *unexplored);
     let half = SIDE as i32 / 2 + 1;
     let each = |visit: &mut dyn FnMut((usize, usize), f32)| {
         centres.around(robot.cell(), half, |cell| {
-            if distance_m(cell, robot) > VISIT_M && !fresh.holds(cell) {
+            if distance_m(cell, robot) > room_m && !fresh.holds(cell) {
                 let share = share(rails.potential(cell));
                 for_each_part(view, cell, |place| visit(place, share));
             }

@@ -84,6 +84,14 @@ impl<const SLOTS: usize> Rails<SLOTS> {
         date.is_some_and(|date| core::mem::replace(date, today) == 0)
     }
 
+    /// A centre cell's place counts as never visited.
+    pub fn forget(&mut self, cell: Cell) {
+        let (slot, part) = self.place(cell);
+        if let Some(date) = self.dates.get_mut(slot).and_then(|tile| tile.get_mut(part)) {
+            *date = 0;
+        }
+    }
+
     /// The date of the last visit.
     fn date(&self, cell: Cell) -> Option<u8> {
         let (slot, part) = self.place(cell);

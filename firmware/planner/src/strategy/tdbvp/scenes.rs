@@ -2,6 +2,7 @@
 //!
 //! `#` obstacle, `.` free, coarse cells of 20 cm; the first row of a picture is the least y. `>` is the robot, facing along x.
 
+use super::ROOM_M;
 use super::charges::{CentreCells, charge_rails, prefer};
 use super::fresh::Fresh;
 use super::rails::Rails;
@@ -88,7 +89,7 @@ impl Scene {
         scene.rails.reset((8, 8));
         for x in 3..=scene.robot.x {
             let y = scene.robot.y;
-            scene.fresh.come(Cell { x, y }, &mut scene.rails);
+            scene.fresh.come(Cell { x, y });
             scene.fresh.visit(Cell { x, y }, &mut scene.rails);
             scene.rails.pass();
         }
@@ -111,7 +112,14 @@ impl Scene {
         }
         .corner();
         let dates = (&self.rails, &self.fresh);
-        charge_rails(&mut window, &view, dates, &centres, robot, &[0; SIDE]);
+        charge_rails(
+            &mut window,
+            &view,
+            dates,
+            &centres,
+            (robot, ROOM_M),
+            &[0; SIDE],
+        );
         if let Some(side) = side {
             let ahead = self
                 .fresh
