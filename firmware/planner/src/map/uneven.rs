@@ -5,7 +5,7 @@
 //! map's.
 
 use super::tiles::NoRoom;
-use super::{Class, Map};
+use super::{Class, Lodger, Map};
 use crate::bits::ones64;
 use crate::config::Config;
 use crate::geometry::Cell;
@@ -16,7 +16,7 @@ use crate::terrain::survey::Survey;
 use crate::terrain::{Elevation, Heights, Terrain};
 
 /// Tiles that hold the marks.
-const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::TileRows>();
+const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::Cells>();
 
 /// Rows this near to the robot are classified in every step, others in every second one: farther off than it drives until it has stopped.
 const AT_ONCE: i32 = 12;
@@ -59,6 +59,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                 self.classify(&steps, y);
             }
         }
+    }
+
+    /// Make room in the pool if it runs short ([`super::folding`]), after every survey.
+    pub fn fold(&mut self, lodger: &mut impl Lodger) {
+        self.tiles.fold(self.window, WINDOW_SIDE, lodger);
     }
 
     /// The robot stood by a cell, and neither it nor what is around it was measured. Behind a brow ground stays out of view: where what is
