@@ -9,9 +9,11 @@ use super::{Class, Lodger, Map};
 use crate::bits::ones64;
 use crate::config::Config;
 use crate::geometry::Cell;
+use crate::map::integrate::is_level;
 use crate::planner::Input;
 use crate::terrain::classify::{self, Steps};
 use crate::terrain::elevation::{WINDOW_CELLS, WINDOW_SIDE};
+use crate::terrain::rooms::{Look, Part};
 use crate::terrain::survey::Survey;
 use crate::terrain::{Elevation, Heights, Terrain};
 
@@ -50,6 +52,9 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             .within(self.tilt.reach_m())
             .run(config, input, !self.surveyed);
         self.surveyed = true;
+        if self.tilt.is_calm() {
+            self.look_into_rooms(config, terrain, input);
+        }
         let steps = Steps::new(terrain);
         self.odd = !self.odd;
         let middle = self.window.y + WINDOW_SIDE / 2;
@@ -57,6 +62,30 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             // Twice the work would be too much for a step, and what is far can wait for one.
             if (y - middle).abs() <= AT_ONCE || (y & 1 == 1) == self.odd {
                 self.classify(&steps, y);
+            }
+        }
+    }
+
+    /// What is seen through doorways, where nothing is known yet.
+    fn look_into_rooms(&mut self, config: &Config, terrain: &Terrain, input: &Input<'_>) {
+        for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
+            let look = Look::new(&input.pose, terrain, laser, ranges_mm);
+            let Some(look) = look.filter(|_| is_level(laser)) else {
+                continue;
+            };
+            let mut from = 0;
+            while let Some(beams) = look.doorway(&self.heights(), from) {
+                from = beams.end;
+                look.tell(beams, |cell, part| {
+                    let class = match part {
+                        Part::Floor => Class::Free,
+                        Part::Wall => Class::Obstacle,
+                    };
+                    if self.tiles.class(cell) == Class::Unknown {
+                        // Where there is no room nothing is known in any case.
+                        let _ = self.tiles.set(cell, class);
+                    }
+                });
             }
         }
     }
