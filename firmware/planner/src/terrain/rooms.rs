@@ -42,7 +42,7 @@ const LEVEL: f32 = 0.05;
 const BEHIND_M: f32 = 0.03;
 /// Ends of beams side by side belong to one wall if they are nearer to each other than this, metres.
 const ONE_WALL_M: f32 = 0.7;
-/// From one sample to the next, metres.
+/// From one beam between them to the next, at their ends, metres.
 const STRIDE_M: f32 = 0.5 * CELL_M;
 
 /// What a room's cell is.
@@ -131,7 +131,7 @@ impl<'a> Look<'a> {
         let [from, to] = [&a, &b].map(|ray| ray.at(ray.length_m));
         let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
         let width_m = math::sqrt(dx * dx + dy * dy);
-        let stands = |ray: &Ray| heights.is_standing(ray.at(ray.length_m + BEHIND_M).cell());
+        let stands = |ray: &Ray| heights.is_standing(wall(ray));
         if !(GAP_M..=DOORWAY_M).contains(&width_m) || !stands(&a) || !stands(&b) {
             return false;
         }
@@ -150,21 +150,27 @@ impl<'a> Look<'a> {
         all && deepest_m > DEPTH_M
     }
 
-    /// Tell of what these beams see, and of the space between them: they are farther apart than cells are wide, most of all where a wall
-    /// runs along them. A cell may be told of more than once, and as both.
-    pub fn tell(&self, beams: Range<usize>, mut found: impl FnMut(Cell, Part)) {
-        let mut before: Option<Ray> = None;
-        for number in beams {
-            let Some(ray) = self.ray(number) else {
-                continue;
-            };
-            if let Some(before) = before {
-                tell_between(&before, &ray, &mut found);
-            }
-            tell_ray(&ray, &mut found);
-            before = Some(ray);
-        }
+    /// The cell that a beam ends in.
+    #[must_use]
+    pub fn end(&self, number: usize) -> Option<Cell> {
+        self.ray(number).map(|ray| wall(&ray))
     }
+
+    /// Tell of what a beam sees, and of the space between it and the one before: they are farther apart than cells are wide, most of all
+    /// where a wall runs along them. A cell may be told of more than once, and as both.
+    pub fn tell(&self, number: usize, mut found: impl FnMut(Cell, Part)) {
+        let Some(ray) = self.ray(number) else {
+            return;
+        };
+        if let Some(before) = number.checked_sub(1).and_then(|before| self.ray(before)) {
+            tell_between(&before, &ray, &mut found);
+        }
+        tell_ray(&ray, &mut found);
+    }
+}
+
+fn wall(ray: &Ray) -> Cell {
+    ray.at(ray.length_m + BEHIND_M).cell()
 }
 
 /// Beams between two side by side, if these end on one wall: to points on the line between their ends.
@@ -196,14 +202,14 @@ fn tell_between(one: &Ray, other: &Ray, found: &mut impl FnMut(Cell, Part)) {
 }
 
 fn tell_ray(ray: &Ray, found: &mut impl FnMut(Cell, Part)) {
-    let wall = ray.at(ray.length_m + BEHIND_M).cell();
+    let wall = wall(ray);
     let mut s_m = 0.0;
     while s_m < ray.length_m {
         let cell = ray.at(s_m).cell();
         if cell != wall {
             found(cell, Part::Floor);
         }
-        s_m += STRIDE_M;
+        s_m += CELL_M;
     }
     found(wall, Part::Wall);
 }
@@ -295,12 +301,14 @@ mod tests {
             let mut from = 0;
             while let Some(beams) = look.doorway(&window.read(), from) {
                 from = beams.end;
-                look.tell(beams, |Cell { x, y }, part| {
-                    let told = cells.entry((x, y)).or_insert(part);
-                    if part == Part::Wall {
-                        *told = part;
-                    }
-                });
+                for number in beams {
+                    look.tell(number, |Cell { x, y }, part| {
+                        let told = cells.entry((x, y)).or_insert(part);
+                        if part == Part::Wall {
+                            *told = part;
+                        }
+                    });
+                }
             }
         }
         cells
