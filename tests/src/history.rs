@@ -46,10 +46,10 @@ impl History {
     }
 
     /// Cells that ever were of one of these classes.
-    #[must_use]
-    pub fn ever(&self, classes: &[MapCell]) -> usize {
-        let had = |changes: &&Vec<Change>| changes.iter().any(|(_, was)| classes.contains(was));
-        self.changes.values().filter(had).count()
+    pub fn ever<'a>(&'a self, classes: &'a [MapCell]) -> impl Iterator<Item = [i32; 2]> + 'a {
+        let had = |changes: &Vec<Change>| changes.iter().any(|(_, class)| classes.contains(class));
+        let cells = self.changes.iter().filter(move |(_, changes)| had(changes));
+        cells.map(|(cell, _)| *cell)
     }
 
     /// Take in what changed from one packed tile to the next; both are two bits a cell, row by row.
@@ -181,7 +181,8 @@ mod tests {
         );
         assert_eq!(history.of([5 - 32, 1]), [(100, MapCell::Obstacle)]);
         assert_eq!(history.of([6 - 32, 1]), []);
-        assert_eq!(history.ever(&[MapCell::NegativeObstacle]), 1);
-        assert_eq!(history.ever(&[MapCell::Free, MapCell::Obstacle]), 3);
+        let ever = |classes: &[MapCell]| history.ever(classes).collect::<Vec<_>>();
+        assert_eq!(ever(&[MapCell::NegativeObstacle]), [cell]);
+        assert_eq!(ever(&[MapCell::Free, MapCell::Obstacle]).len(), 3);
     }
 }

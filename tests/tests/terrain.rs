@@ -240,10 +240,23 @@ fn maps_under_worse_and_worse_noise() {
     golden::compare("truth-noise.txt", &format!("{}\n", text.trim_end()));
 }
 
-/// Of the cells that the map ever held, those that ever were an obstacle or negative.
-fn barriers(history: &History) -> f64 {
+/// Of the cells with ground that the map ever held, those that ever were an obstacle or negative, in percent: all, and those with nothing
+/// but ground around them. The world ends in a wall, which beams and heights put into the cells beside it as well.
+fn barriers(history: &History, world: &World) -> [f64; 2] {
+    let is_ground = |x: i32, y: i32| {
+        let [x_m, y_m] = [x, y].map(|k| (f64::from(k) + 0.5) * 0.1);
+        !world.is_solid(x_m, y_m) && world.ground_m(x_m, y_m).is_some()
+    };
+    let around = || (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
+    let is_clear = |[x, y]: [i32; 2]| around().all(|(dx, dy)| is_ground(x + dx, y + dy));
     let all = [MapCell::Free, MapCell::Obstacle, MapCell::NegativeObstacle];
-    history.ever(&all[1..]) as f64 / history.ever(&all).max(1) as f64
+    let count = |classes: &[MapCell], holds: &dyn Fn([i32; 2]) -> bool| {
+        history.ever(classes).filter(|&cell| holds(cell)).count() as f64
+    };
+    let share = |holds: &dyn Fn([i32; 2]) -> bool| {
+        100.0 * count(&all[1..], holds) / count(&all, holds).max(1.0)
+    };
+    [share(&|[x, y]| is_ground(x, y)), share(&is_clear)]
 }
 
 #[test]
@@ -262,7 +275,8 @@ fn uneven_worlds_drawn_by_others() {
     let watched = in_parallel(&tours, |tour| {
         let mut link = Watched::new(Direct::new());
         let (report, record) = explored(&tour.mission(), tour.world, &mut link);
-        (tour.told(report, &record), barriers(&link.history))
+        let shares = barriers(&link.history, tour.world);
+        (tour.told(report, &record), shares)
     });
     let mut ever = Table::new(
         1,
@@ -270,15 +284,17 @@ fn uneven_worlds_drawn_by_others() {
             "world",
             "seed",
             "cells ever a barrier %",
+            "clear of walls and holes %",
             "beyond the limits s",
         ],
     );
-    for (told, share) in &watched {
+    for (told, [all, clear]) in &watched {
         let report = &told.report;
         ever.row(vec![
             report.world.clone(),
             report.seed.to_string(),
-            format!("{:.3}", 100.0 * share),
+            format!("{all:.3}"),
+            format!("{clear:.3}"),
             format!("{:.1}", report.terrain.unwrap_or_default().over_limits_s),
         ]);
     }

@@ -434,6 +434,7 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         Around::Storeys(storeys) => {
             state.preferences.stand(&input.pose);
             storeys.note(&state.map.heights(), state.map.tiles());
+            state.map.fold(storeys);
         }
     }
 }

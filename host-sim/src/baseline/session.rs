@@ -236,6 +236,7 @@ impl<P: Plan> Session<P> {
         self.map.observe(config, input);
         if config.terrain.is_some() {
             self.heights.keep(&self.map.heights());
+            self.map.fold(&mut ());
             return;
         }
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {

@@ -55,6 +55,9 @@ impl Mirror {
         };
         self.pose = input.pose;
         self.map.observe(&self.config, &input);
+        if self.config.terrain.is_some() {
+            self.map.fold(&mut ());
+        }
     }
 
     /// Whether a cell has been measured.

@@ -4,6 +4,7 @@
 //! [`integrate`] turns beams into both.
 
 pub mod evidence;
+pub mod folding;
 pub mod integrate;
 pub mod rows;
 pub mod tiles;
@@ -11,6 +12,7 @@ mod uneven;
 mod walk;
 
 pub use evidence::Evidence;
+pub use folding::Lodger;
 pub use tiles::{Class, Tiles};
 
 use crate::config::Config;

@@ -4,7 +4,8 @@
 //!
 //! Units: map cells.
 
-use super::tiles::{TILE_ROWS, TileRows, Tiles, Trail};
+use super::folding::ZEROS;
+use super::tiles::{Plane, TILE_ROWS, Tiles, Trail};
 
 /// Columns to the left of a [`Line`]'s own that its halo begins.
 pub const HALO: i32 = 16;
@@ -71,21 +72,23 @@ impl Line {
 /// A tile that a reader goes through.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Column<'a> {
-    pub(super) rows: &'a TileRows,
+    pub(super) low: &'a Plane,
+    pub(super) high: &'a Plane,
     pub(super) trail: &'a Trail,
 }
 
 impl Column<'_> {
     /// A tile that nothing is known of.
     const EMPTY: Self = Self {
-        rows: &[[0; 2]; TILE_ROWS],
+        low: &ZEROS,
+        high: &ZEROS,
         trail: &[0; TILE_ROWS / 2],
     };
 
     /// Low and high bits of a row.
     #[inline(always)]
     fn classes(&self, row: usize) -> [u32; 2] {
-        self.rows.get(row % TILE_ROWS).copied().unwrap_or_default()
+        [self.low, self.high].map(|plane| plane.get(row % TILE_ROWS).copied().unwrap_or_default())
     }
 
     /// Blocks of the trail in a row.

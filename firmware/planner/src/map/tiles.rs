@@ -1,8 +1,8 @@
 //! The global map: two bits a cell in a pool of 32 × 32-cell tiles, given out on first touch.
 //!
 //! A tile at tile coordinates (i, j) lives in slot (i mod w, j mod h) of a w × h box (toroidal addressing), so the map
-//! may start anywhere: only the *extent* of what is known has to fit the box. Each tile row is two words: `low` and
-//! `high` bits of the class code, bit k = column k. Rows are read 64 cells at a time by everything that plans.
+//! may start anywhere: only the *extent* of what is known has to fit the box. Each tile is two planes of a word a row: `low` and
+//! `high` bits of the class code, bit k = column k; a tile that says little takes less room ([`super::folding`]). Rows are read 64 cells at a time by everything that plans.
 //!
 //! Beside them a *trail*, one bit for 2 × 2 cells: where the robot's centre has been. Noise may close a passage behind the robot
 //! that is as narrow as it is; the trail keeps it open, because where the robot has been it can be.
@@ -10,6 +10,7 @@
 //! Invariant: `extent` covers every tile in use and is at most w by h tiles, so no two tiles share a slot.
 //! Units: cells of [`crate::geometry::CELL_M`].
 
+use super::folding::{Entry, ONES, Spare, ZEROS};
 use super::rows::{Column, Row, RowReader};
 use crate::geometry::Cell;
 
@@ -96,13 +97,16 @@ const fn max(a: i32, b: i32) -> i32 {
     if a > b { a } else { b }
 }
 
-pub(super) type TileRows = [[u32; 2]; TILE_ROWS];
+/// A bit of every cell of a tile, row by row.
+pub(super) type Plane = [u32; TILE_ROWS];
+/// Low plane, high plane.
+pub(super) type Cells = [Plane; 2];
 pub(super) type Trail = [u16; TILE_ROWS / 2];
 
 /// A tile that a beam goes through. Rows count from 0 to 31, columns are bits.
 #[derive(Debug)]
 pub(super) struct Page<'a> {
-    rows: &'a mut TileRows,
+    cells: &'a mut Cells,
     edits: &'a mut u32,
 }
 
@@ -110,32 +114,39 @@ impl Page<'_> {
     /// Whether a cell is known to be traversable.
     #[inline(always)]
     pub(super) fn is_free(&self, row: usize, bit: u32) -> bool {
-        self.rows
-            .get(row % TILE_ROWS)
-            .is_some_and(|[low, high]| low & !high & bit != 0)
+        let [low, high] = self.words(row);
+        low & !high & bit != 0
     }
 
     /// What is known of a cell.
     pub(super) fn class(&self, row: usize, bit: u32) -> Class {
-        self.rows
-            .get(row % TILE_ROWS)
-            .map_or(Class::Unknown, |[low, high]| {
-                Class::from_bits(low & bit, high & bit)
-            })
+        let [low, high] = self.words(row);
+        Class::from_bits(low & bit, high & bit)
+    }
+
+    /// Low and high bits of a row.
+    #[inline(always)]
+    fn words(&self, row: usize) -> [u32; 2] {
+        let [low, high] = &*self.cells;
+        [low, high].map(|plane| plane.get(row % TILE_ROWS).copied().unwrap_or_default())
     }
 
     /// Store what is known of a cell.
     #[inline(always)]
     pub(super) fn set(&mut self, row: usize, bit: u32, class: Class) {
-        if let Some(words) = self.rows.get_mut(row % TILE_ROWS) {
-            *self.edits = self.edits.wrapping_add(u32::from(write(words, bit, class)));
+        let [low, high] = &mut *self.cells;
+        let row = row % TILE_ROWS;
+        if let (Some(low), Some(high)) = (low.get_mut(row), high.get_mut(row)) {
+            *self.edits = self
+                .edits
+                .wrapping_add(u32::from(write([low, high], bit, class)));
         }
     }
 }
 
 /// Write a cell's class into the words of its row; whether it changed.
 #[inline(always)]
-const fn write([low, high]: &mut [u32; 2], bit: u32, class: Class) -> bool {
+const fn write([low, high]: [&mut u32; 2], bit: u32, class: Class) -> bool {
     let code = class as u32;
     let old = (*low, *high);
     *low = *low & !bit | bit & (code & 1).wrapping_neg();
@@ -146,12 +157,12 @@ const fn write([low, high]: &mut [u32; 2], bit: u32, class: Class) -> bool {
 /// The tile pool and its directory. `TILES` tiles in the pool, `SLOTS` places in the box.
 #[derive(Debug)]
 pub struct Tiles<const TILES: usize, const SLOTS: usize> {
-    pool: [TileRows; TILES],
-    /// Pool index + 1 of the tile in a slot, 0 where there is none.
-    directory: [u16; SLOTS],
+    pub(super) pool: [Cells; TILES],
+    /// An [`Entry`] for the tile in a slot.
+    pub(super) directory: [u16; SLOTS],
     /// Where the robot has been in the tile of a slot: a row of 2 × 2-cell blocks each.
     trail: [Trail; SLOTS],
-    used: u16,
+    pub(super) spare: Spare,
     /// Tiles at the pool's end that are lent to something else.
     lent: u16,
     width: i32,
@@ -166,10 +177,10 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            pool: [[[0; 2]; TILE_SIDE as usize]; TILES],
+            pool: [[ZEROS; 2]; TILES],
             directory: [0; SLOTS],
             trail: [[0; TILE_SIDE as usize / 2]; SLOTS],
-            used: 0,
+            spare: Spare::NONE,
             lent: 0,
             width: 0,
             height: 0,
@@ -192,7 +203,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     pub fn reset(&mut self, width: u8, height: u8) {
         self.directory.fill(0);
         self.trail.as_flattened_mut().fill(0);
-        self.used = 0;
+        self.spare = Spare::NONE;
         self.lent = 0;
         let fits = Self::fits(width, height);
         self.width = if fits { i32::from(width) } else { 0 };
@@ -202,7 +213,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Tiles of the pool that the map may use.
-    const fn capacity(&self) -> usize {
+    pub(super) const fn capacity(&self) -> usize {
         TILES - self.lent as usize
     }
 
@@ -242,13 +253,13 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Whether anything was ever stored in this tile.
     #[must_use]
     pub fn is_touched(&self, tile_x: i32, tile_y: i32) -> bool {
-        self.rows(tile_x, tile_y).is_some()
+        self.entry(tile_x, tile_y) != Entry::Nothing
     }
 
-    /// Tiles in use.
+    /// Pages of the pool in use.
     #[must_use]
     pub const fn used(&self) -> usize {
-        self.used as usize
+        self.spare.used()
     }
 
     /// A number that changes whenever any cell does.
@@ -257,7 +268,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.edits
     }
 
-    fn slot(&self, tile_x: i32, tile_y: i32) -> usize {
+    pub(super) fn slot(&self, tile_x: i32, tile_y: i32) -> usize {
         (tile_y.rem_euclid(self.height) * self.width + tile_x.rem_euclid(self.width)) as usize
     }
 
@@ -270,17 +281,29 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         })
     }
 
-    fn rows(&self, tile_x: i32, tile_y: i32) -> Option<&TileRows> {
-        self.pool.get(self.page(tile_x, tile_y)?)
+    /// What the directory says of a tile.
+    pub(crate) fn entry(&self, tile_x: i32, tile_y: i32) -> Entry {
+        if !self.in_extent(tile_x, tile_y) {
+            return Entry::Nothing;
+        }
+        let word = self.directory.get(self.slot(tile_x, tile_y));
+        Entry::of(word.copied().unwrap_or(0))
     }
 
-    /// A stored tile's place in the pool.
-    pub(crate) fn page(&self, tile_x: i32, tile_y: i32) -> Option<usize> {
-        if !self.in_extent(tile_x, tile_y) {
-            return None;
+    pub(super) fn enter(&mut self, slot: usize, entry: Entry) {
+        if let Some(word) = self.directory.get_mut(slot) {
+            *word = entry.word();
         }
-        let entry = *self.directory.get(self.slot(tile_x, tile_y))?;
-        usize::from(entry).checked_sub(1)
+    }
+
+    /// Low and high plane of what the directory says, if it says anything.
+    fn planes(&self, entry: Entry) -> Option<[&Plane; 2]> {
+        match entry {
+            Entry::Nothing => None,
+            Entry::Page(page) => self.pool.get(page).map(|[low, high]| [low, high]),
+            Entry::Half(half) => Some([self.pool.get(half / 2)?.get(half % 2)?, &ZEROS]),
+            Entry::AllFree(_) => Some([&ONES, &ZEROS]),
+        }
     }
 
     /// The extent with a tile outside it.
@@ -294,7 +317,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         };
         if grown.width() > self.width || grown.height() > self.height {
             Err(NoRoom::Box)
-        } else if usize::from(self.used) >= self.capacity() {
+        } else if !self.has_page() {
             Err(NoRoom::Pool)
         } else {
             Ok(grown)
@@ -310,39 +333,39 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             Ok(())
         } else if !self.in_extent(tile_x, tile_y) {
             self.grown(tile_x, tile_y).map(|_| ())
-        } else if usize::from(self.used) >= self.capacity() {
+        } else if !self.has_page() {
             Err(NoRoom::Pool)
         } else {
             Ok(())
         }
     }
 
-    /// Pool index of the tile, taking a fresh one on first touch.
+    /// Pool index of the tile, taking a fresh one on first touch; a folded tile has none.
     fn touch(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
         if !self.in_extent(tile_x, tile_y) {
             self.extent = Some(self.grown(tile_x, tile_y)?);
         }
-        let (slot, capacity) = (self.slot(tile_x, tile_y), self.capacity());
-        let entry = self.directory.get_mut(slot).ok_or(NoRoom::Box)?;
-        if *entry == 0 {
-            let mut room = self.pool.iter_mut().take(capacity);
-            let fresh = room.nth(usize::from(self.used)).ok_or(NoRoom::Pool)?;
-            *fresh = [[0; 2]; TILE_SIDE as usize];
-            self.used += 1;
-            *entry = self.used;
+        let slot = self.slot(tile_x, tile_y);
+        match Entry::of(*self.directory.get(slot).ok_or(NoRoom::Box)?) {
+            Entry::Page(page) => Ok(page),
+            Entry::Nothing if self.has_page() => {
+                let page = self.take_page()?;
+                *self.pool.get_mut(page).ok_or(NoRoom::Pool)? = [ZEROS; 2];
+                self.enter(slot, Entry::Page(page));
+                Ok(page)
+            }
+            _ => Err(NoRoom::Pool),
         }
-        Ok(usize::from(*entry) - 1)
     }
 
     /// What is known of a cell.
     #[must_use]
     pub fn class(&self, cell: Cell) -> Class {
-        let Some(rows) = self.rows(cell.x >> 5, cell.y >> 5) else {
+        let Some(planes) = self.planes(self.entry(cell.x >> 5, cell.y >> 5)) else {
             return Class::Unknown;
         };
-        let Some([low, high]) = rows.get((cell.y & 31) as usize) else {
-            return Class::Unknown;
-        };
+        let row = (cell.y & 31) as usize;
+        let [low, high] = planes.map(|plane| plane.get(row).copied().unwrap_or_default());
         let bit = cell.x & 31;
         Class::from_bits(low >> bit & 1, high >> bit & 1)
     }
@@ -352,7 +375,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// # Errors
     /// [`NoRoom`] where the box or the pool cannot hold it; the map is then unchanged.
     pub fn set(&mut self, cell: Cell, class: Class) -> Result<(), NoRoom> {
-        let mut page = self.open((cell.x >> 5, cell.y >> 5))?;
+        let tile = (cell.x >> 5, cell.y >> 5);
+        if class == Class::Free && matches!(self.entry(tile.0, tile.1), Entry::AllFree(_)) {
+            return Ok(());
+        }
+        let mut page = self.open(tile)?;
         page.set((cell.y & 31) as usize, 1 << (cell.x & 31), class);
         Ok(())
     }
@@ -390,9 +417,10 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             return None;
         }
         let slot = self.slot(tile_x, tile_y);
-        let index = self.directory.get(slot)?.checked_sub(1)?;
+        let [low, high] = self.planes(Entry::of(*self.directory.get(slot)?))?;
         Some(Column {
-            rows: self.pool.get(usize::from(index))?,
+            low,
+            high,
             trail: self.trail.get(slot)?,
         })
     }
@@ -404,7 +432,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     pub(super) fn open(&mut self, (tile_x, tile_y): (i32, i32)) -> Result<Page<'_>, NoRoom> {
         let index = self.touch(tile_x, tile_y)?;
         Ok(Page {
-            rows: self.pool.get_mut(index).ok_or(NoRoom::Pool)?,
+            cells: self.pool.get_mut(index).ok_or(NoRoom::Pool)?,
             edits: &mut self.edits,
         })
     }
@@ -413,13 +441,13 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// was ever seen.
     #[must_use]
     pub fn packed(&self, tile_x: i32, tile_y: i32) -> Option<[u8; 256]> {
-        let rows = self.rows(tile_x, tile_y)?;
+        let [low, high] = self.planes(self.entry(tile_x, tile_y))?;
         let mut bytes = [0; 256];
-        for (row, out) in rows.iter().zip(bytes.chunks_exact_mut(8)) {
+        for ((low, high), out) in low.iter().zip(high).zip(bytes.chunks_exact_mut(8)) {
             for (k, byte) in out.iter_mut().enumerate() {
                 for c in 0..4 {
                     let column = 4 * k + c;
-                    let code = (row[0] >> column & 1) | (row[1] >> column & 1) << 1;
+                    let code = (low >> column & 1) | (high >> column & 1) << 1;
                     *byte |= (code as u8) << (2 * c);
                 }
             }

@@ -5,21 +5,27 @@
 //! map's.
 
 use super::tiles::NoRoom;
-use super::{Class, Map};
+use super::{Class, Lodger, Map, Tiles};
 use crate::bits::ones64;
 use crate::config::Config;
 use crate::geometry::Cell;
+use crate::map::integrate::is_level;
 use crate::planner::Input;
 use crate::terrain::classify::{self, Steps};
 use crate::terrain::elevation::{WINDOW_CELLS, WINDOW_SIDE};
+use crate::terrain::rooms::{Look, Part};
 use crate::terrain::survey::Survey;
 use crate::terrain::{Elevation, Heights, Terrain};
 
 /// Tiles that hold the marks.
-const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::TileRows>();
+const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::Cells>();
 
 /// Rows this near to the robot are classified in every step, others in every second one: farther off than it drives until it has stopped.
 const AT_ONCE: i32 = 12;
+/// Of the beams into a room whose walls are known, every so many-th is looked at in a step.
+const TURNS: usize = 5;
+/// About a step, milliseconds.
+const STEP_MS: u32 = 200;
 /// Cells around a goal that are given up with it.
 const GIVEN_UP: i32 = 3;
 
@@ -50,6 +56,9 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             .within(self.tilt.reach_m())
             .run(config, input, !self.surveyed);
         self.surveyed = true;
+        if self.tilt.is_calm() {
+            self.look_into_rooms(config, terrain, input);
+        }
         let steps = Steps::new(terrain);
         self.odd = !self.odd;
         let middle = self.window.y + WINDOW_SIDE / 2;
@@ -59,6 +68,48 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                 self.classify(&steps, y);
             }
         }
+    }
+
+    /// What is seen through doorways, where nothing is known yet.
+    fn look_into_rooms(&mut self, config: &Config, terrain: &Terrain, input: &Input<'_>) {
+        let turn = (input.time_ms / STEP_MS) as usize % TURNS;
+        for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
+            let look = Look::new(&input.pose, terrain, laser, ranges_mm);
+            let Some(look) = look.filter(|_| is_level(laser)) else {
+                continue;
+            };
+            let mut from = 0;
+            while let Some(beams) = look.doorway(&self.heights(), from) {
+                from = beams.end;
+                // Where a wall is known already, what lies before it mostly is: then a few beams a step will do.
+                let is_due = |tiles: &Tiles<TILES, SLOTS>, number: usize| {
+                    let is_new = |end: Cell| tiles.class(end) == Class::Unknown;
+                    number % TURNS == turn || look.end(number).is_some_and(is_new)
+                };
+                for number in beams {
+                    if is_due(&self.tiles, number) {
+                        look.tell(number, |cell, part| self.suppose(cell, part));
+                    }
+                }
+            }
+        }
+    }
+
+    /// What is seen through a doorway counts where nothing else is known.
+    fn suppose(&mut self, cell: Cell, part: Part) {
+        if self.tiles.class(cell) == Class::Unknown {
+            let class = match part {
+                Part::Floor => Class::Free,
+                Part::Wall => Class::Obstacle,
+            };
+            // Where there is no room nothing is known in any case.
+            let _ = self.tiles.set(cell, class);
+        }
+    }
+
+    /// Make room in the pool if it runs short ([`super::folding`]), after every survey.
+    pub fn fold(&mut self, lodger: &mut impl Lodger) {
+        self.tiles.fold(self.window, WINDOW_SIDE, lodger);
     }
 
     /// The robot stood by a cell, and neither it nor what is around it was measured. Behind a brow ground stays out of view: where what is

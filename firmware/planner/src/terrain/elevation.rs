@@ -5,7 +5,8 @@
 //! ```
 //!
 //! A height is an [`I7F9`]: ±64 m around the start in steps of 2 mm. Beside it lies a byte of marks: how often the cell was
-//! measured, how sure it is that something stands in it, and whether the ground seems to be gone.
+//! measured, how sure it is that something stands in it, and whether the ground seems to be gone. Of a cell never measured the height says
+//! whether that is suspected.
 //!
 //! The window owns no memory. A session on flat ground has no use for it, and one on uneven ground none for the counts of
 //! [`crate::map::Evidence`], so the heights lie in the latter's 8 KB and the marks in the last tiles of the map's pool.
@@ -124,7 +125,18 @@ impl<'a> Heights<'a> {
     pub fn is_sunken(&self, cell: Cell) -> bool {
         slot(self.origin, cell).is_some_and(|slot| self.mark(slot) & SUNKEN != 0)
     }
+
+    /// Whether the ground of a cell never measured is suspected to be gone, and not yet believed to be.
+    #[must_use]
+    pub fn is_suspect(&self, cell: Cell) -> bool {
+        slot(self.origin, cell).is_some_and(|slot| {
+            self.mark(slot) & (COUNT | SUNKEN) == 0 && self.heights.get(slot) == Some(&SUSPECT)
+        })
+    }
 }
+
+/// What the height of a cell never measured says if its ground is suspected to be gone; nothing else is ever stored there.
+const SUSPECT: [u8; 2] = [1, 0];
 
 /// A stored height in metres.
 #[inline(always)]
@@ -168,6 +180,7 @@ impl<'a> Elevation<'a> {
         let (dx, dy) = (next.x - old.x, next.y - old.y);
         if dx.abs() >= WINDOW_SIDE || dy.abs() >= WINDOW_SIDE {
             self.marks.fill(0);
+            self.heights.fill([0; 2]);
             return;
         }
         let entering = |from: i32, to: i32| {
@@ -194,8 +207,11 @@ impl<'a> Elevation<'a> {
     }
 
     fn clear(&mut self, cell: Cell) {
-        if let Some(mark) = self.mark_mut(cell) {
-            *mark = 0;
+        let Some(slot) = slot(*self.origin, cell) else {
+            return;
+        };
+        if let (Some(mark), Some(stored)) = (self.marks.get_mut(slot), self.heights.get_mut(slot)) {
+            (*mark, *stored) = (0, [0; 2]);
         }
     }
 
@@ -247,6 +263,16 @@ impl<'a> Elevation<'a> {
             && *mark & COUNT == 0
         {
             *mark |= SUNKEN;
+        }
+    }
+
+    /// The ground of a cell that was never measured may be gone.
+    pub fn suspect(&mut self, cell: Cell) {
+        if let Some(slot) = slot(*self.origin, cell)
+            && self.marks.get(slot).is_some_and(|mark| mark & COUNT == 0)
+            && let Some(stored) = self.heights.get_mut(slot)
+        {
+            *stored = SUSPECT;
         }
     }
 
@@ -352,6 +378,26 @@ mod tests {
         }
         bench.window().follow(Cell { x: 500, y: -9 });
         assert!((-31..31).all(|k| bench.read().count(Cell { x: k, y: k }) == 0));
+    }
+
+    #[test]
+    fn a_suspicion_ends_with_a_height_and_with_the_window() {
+        let mut bench = around_zero();
+        bench.window().suspect(CELL);
+        assert!(bench.read().is_suspect(CELL) && !bench.read().is_sunken(CELL));
+        assert_eq!(bench.read().height_m(CELL), None);
+        bench.window().measure(CELL, 0.25);
+        bench.window().suspect(CELL);
+        assert!(!bench.read().is_suspect(CELL));
+        assert_eq!(bench.read().height_m(CELL), Some(0.25));
+        let other = Cell { x: -30, y: 2 };
+        bench.window().suspect(other);
+        bench.window().follow(Cell { x: 9, y: 0 });
+        bench.window().follow(Cell { x: 0, y: 0 });
+        assert!(!bench.read().is_suspect(other));
+        bench.window().suspect(other);
+        bench.window().sink(other);
+        assert!(!bench.read().is_suspect(other), "it is sure now");
     }
 
     #[test]

@@ -12,6 +12,7 @@
 //! | [`elevation`] | the mean height of every cell in a window of 64 × 64 cells around the robot |
 //! | [`ray`] | beams in three dimensions, from the tilted robot |
 //! | [`survey`] | beams into heights, and into marks where something stands or the ground is gone |
+//! | [`rooms`] | what level beams say through a doorway |
 //! | [`classify`] | heights and marks into the map's classes |
 //! | [`preference`] | eqs. 3 to 5 and their hysteresis |
 //! | [`tilt`] | what is believed of the attitude |
@@ -26,6 +27,7 @@ pub mod classify;
 pub mod elevation;
 pub mod preference;
 pub mod ray;
+pub mod rooms;
 pub mod storeys;
 pub mod survey;
 pub mod tilt;

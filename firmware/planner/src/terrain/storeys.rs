@@ -11,13 +11,14 @@
 //! from the robot's own height: halfway down a slope both of its ends are equally far off, and a storey would be left half explored.
 //!
 //! Heights of the elevation window are kept as it moves on, one for 8 × 8 cells of every tile of the map. On flat ground there are none,
-//! and their memory is the near field's. Units: decimetres above the start, saturated at ±12.7 m.
+//! and their memory is the near field's. A tile that is folded ([`crate::map::folding`]) keeps one height. Units: decimetres above the start, saturated at ±12.7 m.
 
 use super::Terrain;
 use super::elevation::{Heights, WINDOW_SIDE};
 use crate::geometry::Cell;
-use crate::map::Tiles;
+use crate::map::folding::Entry;
 use crate::map::tiles::TILE_SIDE;
+use crate::map::{Lodger, Tiles};
 use crate::math;
 
 /// Cells along a block's side.
@@ -85,20 +86,62 @@ impl<const TILES: usize> Storeys<TILES> {
         tiles: &Tiles<TILES, SLOTS>,
         cell: Cell,
     ) -> Option<&mut i8> {
-        let page = tiles.page(cell.x.div_euclid(TILE_SIDE), cell.y.div_euclid(TILE_SIDE))?;
-        self.blocks.get_mut(page)?.get_mut(place(cell))
+        match tiles.entry(cell.x.div_euclid(TILE_SIDE), cell.y.div_euclid(TILE_SIDE)) {
+            Entry::Page(page) => self.blocks.get_mut(page)?.get_mut(place(cell)),
+            _ => None,
+        }
     }
 
-    /// The height of the ground around a cell, metres; `None` where none was measured.
+    fn half_mut(&mut self, half: usize) -> Option<&mut i8> {
+        self.blocks.get_mut(half / 2)?.get_mut(half % 2)
+    }
+
+    /// The height of the ground around a cell, metres; `None` where none was measured. Of a folded tile it is the tile's.
     #[must_use]
     pub fn height_m<const SLOTS: usize>(
         &self,
         tiles: &Tiles<TILES, SLOTS>,
         cell: Cell,
     ) -> Option<f32> {
-        let page = tiles.page(cell.x.div_euclid(TILE_SIDE), cell.y.div_euclid(TILE_SIDE))?;
-        let stored = *self.blocks.get(page)?.get(place(cell))?;
+        let stored = match tiles.entry(cell.x.div_euclid(TILE_SIDE), cell.y.div_euclid(TILE_SIDE)) {
+            Entry::Nothing => return None,
+            Entry::Page(page) => *self.blocks.get(page)?.get(place(cell))?,
+            Entry::Half(half) => *self.blocks.get(half / 2)?.get(half % 2)?,
+            Entry::AllFree(kept) => kept,
+        };
         (stored != NONE).then(|| f32::from(stored) / PER_METRE)
+    }
+}
+
+/// A folded tile keeps the mean of its heights, in one of the first two places by its half of a page.
+impl<const TILES: usize> Lodger for Storeys<TILES> {
+    fn leave_page(&mut self, page: usize) -> i8 {
+        let Some(blocks) = self.blocks.get_mut(page) else {
+            return NONE;
+        };
+        let known = blocks.iter().filter(|&&block| block != NONE);
+        let (sum, count) = known.fold((0, 0), |(sum, count), &block| {
+            (sum + i32::from(block), count + 1)
+        });
+        blocks.fill(NONE);
+        if count > 0 { (sum / count) as i8 } else { NONE }
+    }
+
+    fn enter_page(&mut self, page: usize, kept: i8) {
+        if let Some(blocks) = self.blocks.get_mut(page) {
+            blocks.fill(kept);
+        }
+    }
+
+    fn enter_half(&mut self, half: usize, kept: i8) {
+        if let Some(stored) = self.half_mut(half) {
+            *stored = kept;
+        }
+    }
+
+    fn leave_half(&mut self, half: usize) -> i8 {
+        self.half_mut(half)
+            .map_or(NONE, |stored| core::mem::replace(stored, NONE))
     }
 }
 

@@ -9,6 +9,7 @@
 //! | steeper than the climb, ĥ not known yet, nearer than `d_obs` | obstacle (b) |
 //! | below what the ground at K leads to expect, and the beam just passes over K | a rim at K: what lies between is gone |
 //! | that, and `dh < h_hole` | gone, P itself as well |
+//! | `dh < h_hole`, but the beam comes down no more steeply than a slope may | a rim at K is suspected: gone if it is not measured by the time that the robot is near |
 //! | else, with K near enough | ground |
 //!
 //! Departs from [Maffei-Terrain, III-B] in three ways. (1) Obstacle (a) must also be steep, because level beams meet every slope that
@@ -20,6 +21,7 @@
 //! Around the start lies a disc that no laser ever sees; there the robot's own plane is taken for measured. Units: metres.
 
 use super::Terrain;
+use super::classify::leads_over;
 use super::elevation::{Elevation, WINDOW_SIDE};
 use super::ray::{Attitude, Mount, Ray};
 use crate::config::{Config, Laser};
@@ -52,8 +54,16 @@ const BASE_M: f32 = 0.3;
 const BEND: f32 = 0.15;
 /// A beam is steep enough to tell a rim from a slope if it comes down by this part of the climb.
 const STEEP: f32 = 0.85;
+/// A beam that comes down by at least this part of the climb, and not steeply enough to tell, leaves a suspicion.
+const DOUBTFUL: f32 = 0.3;
+/// And if it passes no higher over K than this, metres: K was measured long before, and from elsewhere.
+const DOUBTFUL_M: f32 = 0.3;
+/// Suspected ground nearer to the robot than this is gone, metres: the steep beams met level ground farther off, and would have met a slope.
+const SETTLED_M: f32 = 0.9;
 /// Behind a rim so much is marked, metres; what lies farther behind may be seen from elsewhere.
 const RIM_M: f32 = 0.6;
+/// What a beam meets begins where the beam ends and lies behind: so much farther on it is marked, metres, three deviations of a range.
+const BEHIND_M: f32 = 0.03;
 /// The share of the kernel that must be measured for its mean to count.
 const ENOUGH: u16 = 8;
 
@@ -113,6 +123,7 @@ impl<'a, 'm> Survey<'a, 'm> {
                 }
             }
         }
+        self.settle_suspicions();
     }
 
     /// The robot's own plane is ground within a radius.
@@ -161,11 +172,13 @@ impl<'a, 'm> Survey<'a, 'm> {
         if rise_m > self.terrain.climb * gap_m + SLACK_M {
             let stands = self.stands(ray, cell, z_m);
             if stands && sure {
-                self.elevation.stand(cell);
+                self.elevation.stand(ray.at(ray.length_m + BEHIND_M).cell());
             }
             if stands || level {
                 return;
             }
+        } else if self.may_be_rim(ray, &footing, gap_m, rise_m) {
+            self.suspect(ray, footing.s_m, ray.length_m);
         } else if self.is_rim(ray, &footing, gap_m, rise_m) {
             self.sink(
                 ray,
@@ -195,7 +208,7 @@ impl<'a, 'm> Survey<'a, 'm> {
         }
         let expected_m = above_m / closing;
         let footing = self.look_back(ray, expected_m + RIM_M);
-        if self.is_grazing(ray, &footing) {
+        if self.is_grazing(ray, &footing, GRAZING_M) {
             self.sink(ray, footing.s_m, footing.s_m + RIM_M);
         }
     }
@@ -261,14 +274,22 @@ impl<'a, 'm> Survey<'a, 'm> {
         // What rises steeply up to K is a thing that stands, and casts a shadow.
         slope < self.terrain.climb
             && rise_m < slope * gap_m - LEAST_DROP_M - BEND * gap_m
-            && self.is_grazing(ray, footing)
+            && self.is_grazing(ray, footing, GRAZING_M)
     }
 
-    /// Whether a beam just passes over K, which is sure.
-    fn is_grazing(&self, ray: &Ray, footing: &Footing) -> bool {
+    /// Whether the ground may fall away at K, and the beam comes down too gently to tell.
+    fn may_be_rim(&self, ray: &Ray, footing: &Footing, gap_m: f32, rise_m: f32) -> bool {
+        rise_m < self.terrain.hole_m
+            && !self.is_steep(ray)
+            && -rise_m > DOUBTFUL * self.terrain.climb * gap_m
+            && self.is_grazing(ray, footing, DOUBTFUL_M)
+    }
+
+    /// Whether a beam passes no higher than this over K, which is sure.
+    fn is_grazing(&self, ray: &Ray, footing: &Footing, most_m: f32) -> bool {
         let cell = ray.at(footing.s_m).cell();
         self.elevation.read().count(cell) > 1
-            && ray.height_m(footing.s_m) - footing.height_m < GRAZING_M
+            && ray.height_m(footing.s_m) - footing.height_m < most_m
     }
 
     /// Whether ground that a beam does not see behind K must be too steep to drive on: a beam that comes down more gently passes over
@@ -286,6 +307,30 @@ impl<'a, 'm> Survey<'a, 'm> {
             None => self.attitude.rise(ray.along.0, ray.along.1).min(0.9 * most),
         };
         slope.max(-most)
+    }
+
+    /// What was never measured behind K may be gone.
+    fn suspect(&mut self, ray: &Ray, from_m: f32, end_m: f32) {
+        let to_m = (from_m + RIM_M).min(end_m - SAMPLE_M).min(window_m(ray));
+        let mut s_m = from_m + SAMPLE_M;
+        while s_m <= to_m {
+            self.elevation.suspect(ray.at(s_m).cell());
+            s_m += SAMPLE_M;
+        }
+    }
+
+    /// Suspected ground that the robot has come near to was not measured on the way: it is gone, if nothing leads over it.
+    fn settle_suspicions(&mut self) {
+        let (middle, reach) = (self.robot.cell(), math::floor(SETTLED_M / CELL_M));
+        for y in middle.y - reach..=middle.y + reach {
+            for x in middle.x - reach..=middle.x + reach {
+                let cell = Cell { x, y };
+                let heights = self.elevation.read();
+                if heights.is_suspect(cell) && !leads_over(&heights, self.terrain, cell) {
+                    self.elevation.sink(cell);
+                }
+            }
+        }
     }
 
     /// What was never measured between two lengths of a beam is gone.
