@@ -14,6 +14,7 @@
 //! | [`survey`] | beams into heights, and into marks where something stands or the ground is gone |
 //! | [`classify`] | heights and marks into the map's classes |
 //! | [`preference`] | eqs. 3 to 5 and their hysteresis |
+//! | [`sidling`] | how far the robot leans aside on a slope, and which headings keep that within its limit |
 //! | [`tilt`] | what is believed of the attitude |
 //! | [`storeys`] | how high the ground lies everywhere, and which goals are preferred for it |
 //!
@@ -26,6 +27,7 @@ pub mod classify;
 pub mod elevation;
 pub mod preference;
 pub mod ray;
+pub mod sidling;
 pub mod storeys;
 pub mod survey;
 pub mod tilt;
@@ -60,6 +62,9 @@ pub struct Terrain {
     pub global_scale: f32,
     /// Steepest slope that may be driven on, a tangent. Default: 0.364 (20°, the 3-AT's grade).
     pub climb: f32,
+    /// Steepest slope that may be driven across, a tangent; as large as `climb`, there is no such limit. Default: as `climb`; the 3-AT's is
+    /// 0.268 (15°).
+    pub roll: f32,
     /// Highest edge that may be driven over, metres. Default: 0.07.
     pub step_m: f32,
 }
@@ -76,6 +81,7 @@ impl Terrain {
         height_scale: 2.0,
         global_scale: 0.005,
         climb: 0.364,
+        roll: 0.364,
         step_m: 0.07,
     };
 }
