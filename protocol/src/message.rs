@@ -166,6 +166,8 @@ pub struct Terrain {
     pub global_scale: I16F16,
     /// Steepest slope that may be driven on, radians.
     pub climb: I4F12,
+    /// Steepest slope that may be driven across, radians; as large as `climb`, there is no such limit.
+    pub roll: I4F12,
     /// Highest edge that may be driven over, metres.
     pub step: I4F12,
 }

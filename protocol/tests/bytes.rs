@@ -95,6 +95,7 @@ fn request_control_start_on_uneven_ground() {
         height_scale: short(2.0),
         global_scale: long(0.25),
         climb: short(0.5),
+        roll: short(0.25),
         step: short(0.0625),
     };
     request_is(
@@ -117,6 +118,7 @@ fn request_control_start_on_uneven_ground() {
             0x80, 0x80, 0x01, // height scale 2
             0x80, 0x80, 0x02, // global scale 1/4 = 16384/65536
             0x80, 0x20, // climb 0.5 rad = 2048/4096
+            0x80, 0x10, // roll 0.25 rad = 1024/4096
             0x80, 0x04, // step 1/16 m = 256/4096
         ],
     );

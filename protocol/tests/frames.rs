@@ -110,6 +110,7 @@ fn the_largest_messages_fit_and_fill_their_frames() {
             height_scale: far,
             global_scale: fixed::types::I16F16::MIN,
             climb: far,
+            roll: far,
             step: far,
         }),
     }));

@@ -9,7 +9,7 @@ use host_sim::metrics::{Table as Truth, crossings};
 use host_sim::report::Report;
 use host_sim::trial::Record;
 use host_sim::trial::mission::{Mission, TERRAIN};
-use host_sim::trial::uneven::TABLE_I;
+use host_sim::trial::uneven::{TABLE_I, radians};
 use host_sim::world::World;
 
 use crate::runs::explored;
@@ -31,6 +31,8 @@ pub struct Tour<'a> {
     pub preference: Preference,
     /// Standard deviations of ranges, metres, and of roll and pitch, degrees; the usual ones if `None`.
     pub noise: Option<[f64; 2]>,
+    /// Steepest slope that may be driven across, degrees; the usual one if `None`.
+    pub roll_deg: Option<f64>,
 }
 
 /// What became of it.
@@ -56,6 +58,7 @@ impl<'a> Tour<'a> {
             seed,
             preference: Preference::Both,
             noise: None,
+            roll_deg: None,
         }
     }
 
@@ -66,6 +69,7 @@ impl<'a> Tour<'a> {
             strategy: TERRAIN.into(),
             terrain: Some(Terrain {
                 preference: self.preference,
+                roll: self.roll_deg.map_or(TABLE_I.roll, radians),
                 ..TABLE_I
             }),
             seed: self.seed,

@@ -88,7 +88,11 @@ fn laser(laser: &wire::Laser) -> config::Laser {
 }
 
 fn terrain(terrain: &wire::Terrain) -> Terrain {
-    let (sin, cos) = math::sin_cos(float(terrain.climb));
+    // At most 45°: the session's limits see to it.
+    let tangent = |angle: fixed::types::I4F12| {
+        let (sin, cos) = math::sin_cos(float(angle));
+        sin / cos
+    };
     Terrain {
         mode: match terrain.preference {
             wire::Preference::Off => Mode::Off,
@@ -103,8 +107,8 @@ fn terrain(terrain: &wire::Terrain) -> Terrain {
         most_preference: float(terrain.most),
         height_scale: float(terrain.height_scale),
         global_scale: float(terrain.global_scale),
-        // At most 45°: the session's limits see to it.
-        climb: sin / cos,
+        climb: tangent(terrain.climb),
+        roll: tangent(terrain.roll),
         step_m: float(terrain.step),
     }
 }

@@ -78,6 +78,8 @@ fn check_terrain(terrain: &Terrain, lasers: usize) -> Result<(), Refusal> {
                 && terrain.step > zero
                 && terrain.climb > zero
                 && terrain.climb <= STEEPEST
+                && terrain.roll > zero
+                && terrain.roll <= STEEPEST
                 && lasers == 2,
             Parameter::Terrain,
         ),
@@ -298,6 +300,7 @@ mod tests {
             least: I4F12::lit("-2"),
             most: I4F12::lit("2"),
             climb: I4F12::lit("0.35"),
+            roll: I4F12::lit("0.26"),
             step: I4F12::lit("0.07"),
             ..Terrain::default()
         };
@@ -311,13 +314,15 @@ mod tests {
         };
         assert_eq!(check(&|_| {}), Ok(()));
         type Change = &'static dyn Fn(&mut Terrain);
-        let bad: [(Change, Parameter); 7] = [
+        let bad: [(Change, Parameter); 9] = [
             (&|t| t.most = I4F12::lit("2.001"), Parameter::Preference),
             (&|t| t.most = -I4F12::DELTA, Parameter::Preference),
             (&|t| t.least = I4F12::lit("-2.001"), Parameter::Preference),
             (&|t| t.least = I4F12::DELTA, Parameter::Preference),
             (&|t| t.hole = I4F12::ZERO, Parameter::Terrain),
             (&|t| t.climb = I4F12::ONE, Parameter::Terrain),
+            (&|t| t.roll = I4F12::ONE, Parameter::Terrain),
+            (&|t| t.roll = I4F12::ZERO, Parameter::Terrain),
             (&|t| t.height_scale = -I4F12::DELTA, Parameter::Terrain),
         ];
         for (change, parameter) in bad {

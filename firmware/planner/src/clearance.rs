@@ -45,6 +45,19 @@ impl Disc {
         }
         Self { half_widths, reach }
     }
+
+    /// How far up and down it reaches, cells.
+    #[must_use]
+    pub const fn reach(&self) -> i32 {
+        self.reach
+    }
+
+    /// Half its width so many cells up or down; `None` beyond it.
+    #[must_use]
+    pub fn half_width(&self, dy: i32) -> Option<i32> {
+        let row = usize::try_from(dy.abs()).ok()?;
+        self.half_widths.get(row)?.map(i32::from)
+    }
 }
 
 impl Ring {

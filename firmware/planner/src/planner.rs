@@ -17,7 +17,7 @@
 use crate::bits::{Adjacency, flood};
 use crate::clearance::Disc;
 use crate::config::{Config, Laser};
-use crate::drive::{self, Drive, Ground, Place, Surround};
+use crate::drive::{self, Drive, Ground, Incline, Place, Surround};
 use crate::field::preference::p_diff;
 use crate::field::{
     GOAL, Preference, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, descent, solve,
@@ -37,7 +37,8 @@ use crate::strategy::lookout::{Found, Grounds};
 use crate::strategy::ouroboros::{Ouroboros, Round};
 use crate::strategy::tdbvp::{Surroundings, Tdbvp};
 use crate::strategy::{Road, Strategist, lookout};
-use crate::terrain::{Levels, Preferences, Storeys, Terrain};
+use crate::terrain::sidling::{Bias, Slope, Wedge};
+use crate::terrain::{Heights, Levels, Preferences, Storeys, Terrain};
 use crate::topology::Topology;
 use crate::view::{self, Rows, SCALES, View};
 
@@ -52,6 +53,8 @@ const BLOCKED_M: f32 = 0.12;
 /// Where ground that stops the robot lies on uneven ground, if it was never measured: between its front and where the tilted beams meet
 /// level ground, metres.
 const FRONT_M: f32 = 0.8;
+/// A goal that is higher or lower by less lies level with the robot, metres: what a block of heights is rounded by, and as much again.
+const LEVEL_M: f32 = 0.2;
 
 /// What a step is given.
 #[derive(Clone, Copy, Debug)]
@@ -93,6 +96,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     /// What can only be seen is searched for, when nothing is left to drive to.
     lookouts: lookout::Search,
     drive: Drive,
+    /// Up or down the slope that it is on, where it may not be crossed.
+    wedge: Option<Wedge>,
     status: Status,
     started: bool,
     /// A skeleton was published that no road was planned on yet.
@@ -157,6 +162,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             preferences: Preferences::new(),
             lookouts: lookout::Search::new(),
             drive: Drive::new(),
+            wedge: None,
             status: Status::Exploring,
             started: false,
             fresh: false,
@@ -177,6 +183,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.strategy.reset(config);
         self.lookouts = lookout::Search::new();
         self.drive = Drive::new();
+        self.wedge = None;
         self.status = Status::Exploring;
         self.started = false;
         self.fresh = false;
@@ -667,9 +674,27 @@ fn steer<const TILES: usize, const SLOTS: usize>(
     let Some((origin, scale)) = *window_at else {
         return Output::default();
     };
-    let heading_at = |place: Place| heading_at(window, (origin, scale), &input.pose, place);
-    let here = heading_at(Place::default());
-    let mut surround = Surround::empty();
+    let heights = state.map.heights();
+    let incline = config
+        .terrain
+        .as_ref()
+        .and_then(|terrain| Incline::new(terrain, &heights, &input.pose));
+    let bias = Bias {
+        before: state.wedge,
+        goal: wedge_of_goal(state, input.pose.z_m),
+    };
+    let headed = |place: Place| {
+        let wanted = heading_at(window, (origin, scale), &input.pose, place)?;
+        Some(match &incline {
+            Some(incline) => incline.heading(place, wanted, bias),
+            None => (wanted, None),
+        })
+    };
+    let heading_at = |place: Place| headed(place).map(|(heading, _)| heading);
+    let here = headed(Place::default());
+    state.wedge = here.and_then(|(_, wedge)| wedge);
+    let here = here.map(|(heading, _)| heading);
+    let mut surround = Surround::empty().on(incline.clone());
     match &state.around {
         Around::Near(near) => {
             surround.see(&input.pose, near.points());
@@ -708,6 +733,25 @@ fn steer<const TILES: usize, const SLOTS: usize>(
         velocity: within_limits(config, velocity),
         heading_rad: math::wrap(input.pose.yaw_rad + here.unwrap_or(0.0)),
         ..Output::default()
+    }
+}
+
+/// Whether the road's goal lies clearly higher or lower than the robot, as far as its height is known.
+fn wedge_of_goal<const TILES: usize, const SLOTS: usize>(
+    state: &State<TILES, SLOTS>,
+    robot_m: f32,
+) -> Option<Wedge> {
+    let Around::Storeys(storeys) = &state.around else {
+        return None;
+    };
+    let goal = state.strategy.frontier.road().goal();
+    let rise_m = storeys.height_around_m(state.map.tiles(), goal)? - robot_m;
+    if rise_m.abs() < LEVEL_M {
+        None
+    } else if rise_m > 0.0 {
+        Some(Wedge::Up)
+    } else {
+        Some(Wedge::Down)
     }
 }
 
@@ -774,9 +818,24 @@ fn local_goal<const TILES: usize, const SLOTS: usize>(
             shield.cells().for_each(|cell| view.block(cell));
         }
         view.free_robot(robot.cell());
+        keep_off_rims(state, disc, robot, view);
         road.local_goals(robot)
             .find_map(|cell| goal_cells(view, cell))
     })
+}
+
+/// What the drive keeps the robot's hull off on uneven ground, obstacles of either sign and ground that was never measured, the window keeps its
+/// centre off: between two such cells the field would lead where the drive does not go.
+fn keep_off_rims<const TILES: usize, const SLOTS: usize>(
+    state: &State<TILES, SLOTS>,
+    disc: &Disc,
+    robot: Point,
+    view: &mut View,
+) {
+    if let Around::Storeys(_) = state.around {
+        let rims = near::rim_cells(state.map.tiles(), robot);
+        view.keep_off(robot.cell(), rims, disc);
+    }
 }
 
 /// The passable window cells of a coarse cell, if there are any.
@@ -796,13 +855,35 @@ fn prefer<const TILES: usize, const SLOTS: usize>(
     let global = state.preferences.global(terrain);
     let has_sides = state.strategy.tdbvp().is_some();
     let Workspace { window, view, .. } = workspace;
+    let crossed = crossed(terrain, &heights, window, view);
     window.change_preferences(|x, y, old| {
+        if View::has(&crossed, (x, y)) {
+            return Preference::nearest(terrain.least_preference);
+        }
         let height_m = heights.height_m(view.cell(x, y));
         let difference_m = height_m.map(|height_m| height_m - input.pose.z_m);
         let epsilon = state.preferences.of_cell(terrain, global, difference_m);
         let side = if has_sides { old.get().to_num() } else { 0.0 };
         Preference::nearest(epsilon + side)
     });
+}
+
+/// Cells in which the last field leads across a slope that may not be crossed: they repel as much as cells may, whatever their height. Along its own
+/// height a robot would else be drawn just there. Not in [Maffei-Terrain].
+fn crossed(terrain: &Terrain, heights: &Heights<'_>, window: &Window, view: &View) -> Rows {
+    let mut rows = [0; SIDE];
+    let Some(most) = terrain.most_lean().filter(|_| terrain.mode.has_heights()) else {
+        return rows;
+    };
+    for (y, row) in rows.iter_mut().enumerate() {
+        for x in 0..SIDE {
+            let is_crossed = Slope::at(heights, view.cell(x, y))
+                .zip(descent::gradient(window, x, y))
+                .is_some_and(|(slope, way)| slope.is_crossed(way, most));
+            *row |= u64::from(is_crossed) << x;
+        }
+    }
+    rows
 }
 
 /// A field was solved: how flat it is around the robot decides the next one's preferences.
@@ -829,6 +910,7 @@ fn charge_rails<const TILES: usize, const SLOTS: usize>(
     let view = &mut workspace.view;
     view.look_around(state.map.tiles(), disc, robot, 1);
     view.free_robot(robot);
+    keep_off_rims(state, disc, input.pose.point(), view);
     slide(workspace);
     let around = Surroundings {
         topology: &state.topology,

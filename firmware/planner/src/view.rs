@@ -174,6 +174,34 @@ impl View {
         }
     }
 
+    /// Keep the robot's centre off cells (their middles) by the disc, or by as much as it keeps now where that is less: so it is never shut in.
+    /// Where a window cell is a map cell; in a larger one there is no telling.
+    pub fn keep_off(&mut self, robot: Cell, cells: impl Iterator<Item = Point>, disc: &Disc) {
+        if self.scale != 1 {
+            return;
+        }
+        for cell in cells.map(Point::cell) {
+            let (dx, dy) = (robot.x - cell.x, robot.y - cell.y);
+            self.clear_disc(cell, disc, dx * dx + dy * dy);
+        }
+    }
+
+    /// Nothing in the disc around a cell, and nearer to it than the root of `near2`, is passable.
+    fn clear_disc(&mut self, cell: Cell, disc: &Disc, near2: i32) {
+        let (x, y) = (cell.x - self.origin.x, cell.y - self.origin.y);
+        for dy in -disc.reach()..=disc.reach() {
+            let row = usize::try_from(y + dy).unwrap_or(SIDE);
+            let (Some(row), Some(half)) = (self.passable.get_mut(row), disc.half_width(dy)) else {
+                continue;
+            };
+            for dx in -half..=half {
+                if dx * dx + dy * dy < near2 && (0..SIDE as i32).contains(&(x + dx)) {
+                    *row &= !(1 << (x + dx));
+                }
+            }
+        }
+    }
+
     /// Let the robot out where its own cell is not passable (it stands nearer to something than its radius, or the map is
     /// wrong by a cell): within four cells of it, whatever does not touch an obstacle counts as passable; failing
     /// that, whatever is no obstacle.
@@ -304,6 +332,32 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Around a cell to be kept off, and a robot that stands nearer to another one than that.
+    #[test]
+    fn the_centre_is_kept_off_cells_but_never_shut_in() {
+        let (tiles, disc) = (room(), Disc::new(0.3));
+        let robot = Cell { x: -10, y: 0 };
+        let mut view = View::new();
+        view.look_around(&tiles, &disc, robot, 1);
+        let before = view.passable;
+        let (far, near) = (Cell { x: -16, y: 1 }, Cell { x: -10, y: 2 });
+        view.keep_off(robot, [far, near].map(Cell::centre).into_iter(), &disc);
+        for (y, row) in before.iter().enumerate() {
+            for x in 0..SIDE {
+                let cell = view.cell(x, y);
+                let within = |of: Cell, most2: i32| {
+                    let (dx, dy) = (cell.x - of.x, cell.y - of.y);
+                    dx * dx + dy * dy < most2
+                };
+                let kept = within(far, 9) || within(near, 4);
+                let wanted = row >> x & 1 == 1 && !kept;
+                assert_eq!(View::has(&view.passable, (x, y)), wanted, "{cell:?}");
+            }
+        }
+        let place = view.place(robot).expect("the middle");
+        assert!(View::has(&view.passable, place), "it stands 2 cells off");
     }
 
     #[test]

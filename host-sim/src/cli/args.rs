@@ -48,7 +48,7 @@ pub(super) struct ExploreArgs {
     /// Heed uneven ground, with these preferences in the field [default: both with --strategy terrain, flat ground else]
     #[arg(long, value_enum, value_name = "WHICH")]
     pub(super) preference: Option<PreferenceArg>,
-    /// Heed uneven ground, with these parameters, any of [default: h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005,climb=20,step=0.07]
+    /// Heed uneven ground, with these parameters, any of [default: h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005,climb=20,roll=20,step=0.07]
     #[arg(long, value_name = "PARAMETERS", value_parser = terrain)]
     pub(super) terrain: Option<Terrain>,
     /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback; direct for baselines]

@@ -2,7 +2,8 @@
 //!
 //! Neither is on the wire. The heights are those of the mirror, which are the device's; the preferences follow from them by the
 //! planner's own code ([Maffei-Terrain, eqs. 3 to 5]), with the `p_diff` of the window that is shown. The device has used that of the field
-//! before it, and between 1e-10 and 1e-4 it knows whether heights count, where here they do.
+//! before it, and between 1e-10 and 1e-4 it knows whether heights count, where here they do. What a limit of the roll makes of ways across slopes is
+//! left out.
 //!
 //! Metres above the start; ε from −2 to 2.
 

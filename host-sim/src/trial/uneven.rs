@@ -1,6 +1,6 @@
 //! The parameters of uneven ground as text: `h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005`.
 //!
-//! The defaults are those of [Maffei-Terrain, Table I]; `climb` (degrees) and `step` (metres) are the robot's own. Whoever is asked
+//! The defaults are those of [Maffei-Terrain, Table I]; `climb` and `roll` (degrees) and `step` (metres) are the robot's own. Whoever is asked
 //! for a preference beyond 2 either way says why not: the relaxation of the field diverges.
 
 use core::fmt;
@@ -20,8 +20,16 @@ pub const TABLE_I: Terrain = Terrain {
     height_scale: I4F12::lit("2"),
     global_scale: I16F16::lit("0.005"),
     climb: I4F12::lit("0.349"),
+    roll: I4F12::lit("0.349"),
     step: I4F12::lit("0.07"),
 };
+
+/// An angle in degrees as the wire has it, to the nearest step: so 20° are the default's 20°.
+#[must_use]
+pub fn radians(degrees: f64) -> I4F12 {
+    let step = I4F12::DELTA.to_num::<f64>();
+    I4F12::saturating_from_num((degrees.to_radians() / step).round() * step)
+}
 
 /// Why a text gives no parameters.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,7 +55,7 @@ fn bounds(name: &str) -> Option<([f64; 2], &'static str)> {
         "h_hole" => ([-7.0, -0.01], "it is a height below the ground in metres"),
         "lambda_h" => ([0.0, 7.0], "it is a scale"),
         "lambda_g" => ([0.0, 100.0], "it is a scale"),
-        "climb" => ([1.0, 45.0], "it is a slope in degrees"),
+        "climb" | "roll" => ([1.0, 45.0], "it is a slope in degrees"),
         "step" => ([0.01, 1.0], "it is a height in metres"),
         _ => return None,
     })
@@ -80,7 +88,8 @@ pub fn changed(mut terrain: Terrain, text: &str) -> Result<Terrain, TerrainError
             "h_hole" => terrain.hole = short,
             "lambda_h" => terrain.height_scale = short,
             "lambda_g" => terrain.global_scale = I16F16::saturating_from_num(value),
-            "climb" => terrain.climb = I4F12::saturating_from_num(value.to_radians()),
+            "climb" => terrain.climb = radians(value),
+            "roll" => terrain.roll = radians(value),
             _ => terrain.step = short,
         }
     }
@@ -99,6 +108,16 @@ mod tests {
         assert_eq!(terrain.global_scale, I16F16::lit("0.25"));
         assert_eq!(terrain.most, I4F12::lit("2"));
         assert_eq!(terrain.least, TABLE_I.least);
+    }
+
+    #[test]
+    fn a_roll_limit_as_large_as_the_climb_is_no_less() {
+        assert_eq!(TABLE_I.roll, TABLE_I.climb);
+        assert_eq!(changed(TABLE_I, "climb=20,roll=20").unwrap(), TABLE_I);
+        let limited = changed(TABLE_I, "roll=15").unwrap();
+        assert!(limited.roll < limited.climb);
+        let error = changed(TABLE_I, "roll=0").unwrap_err().to_string();
+        assert!(error.contains("roll must be from 1 to 45"), "{error}");
     }
 
     #[test]

@@ -134,10 +134,10 @@ fn terrain() -> impl Strategy<Value = Terrain> {
         Just(Preference::Both),
     ];
     let heights = [short(), short(), short(), short()];
-    let preferences = [short(), short(), short(), short()];
+    let preferences = [short(), short(), short(), short(), short()];
     (preference, heights, preferences, long()).prop_map(
         |(preference, [obstacle, near, hole, step], preferences, global_scale)| {
-            let [least, most, height_scale, climb] = preferences;
+            let [least, most, height_scale, climb, roll] = preferences;
             Terrain {
                 preference,
                 obstacle,
@@ -148,6 +148,7 @@ fn terrain() -> impl Strategy<Value = Terrain> {
                 height_scale,
                 global_scale,
                 climb,
+                roll,
                 step,
             }
         },

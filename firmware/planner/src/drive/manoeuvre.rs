@@ -129,6 +129,12 @@ impl Plan {
         }
     }
 
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.motions.is_empty()
+    }
+
     /// Forget it.
     pub fn clear(&mut self) {
         *self = Self::new();

@@ -9,10 +9,12 @@
 //! Invariant: whatever is driven can be followed by a stop that touches nothing known, so the zero command is always safe.
 //! Units: metres, seconds, radians; robot frame, x forward.
 
+pub mod incline;
 pub mod manoeuvre;
 mod open;
 pub mod surround;
 
+pub use incline::Incline;
 pub use manoeuvre::{Attempt, Budget, Choice, Found, Ground, Leads, Plan, Search};
 pub use surround::{Place, Surround};
 
@@ -64,6 +66,8 @@ const FIRST_BUDGET: Budget = Budget {
     poses: SEARCH_BUDGET.poses / 3,
     points: SEARCH_BUDGET.points / 3,
 };
+/// Steps between a search that found nothing and the next, on ground that inclines: some two skeletons.
+const REST_STEPS: u8 = 20;
 /// Speed backwards where there is no room to turn, metres a second.
 const REVERSE_MPS: f32 = 0.15;
 /// An error this near to half a turn can be driven backwards, radians.
@@ -76,6 +80,8 @@ pub struct Drive {
     search: Option<Search>,
     /// To which side it looks around.
     looks_right: bool,
+    /// Steps until the next search may begin, where one found nothing.
+    rest: u8,
 }
 
 impl Drive {
@@ -86,6 +92,7 @@ impl Drive {
             plan: Plan::new(),
             search: None,
             looks_right: false,
+            rest: 0,
         }
     }
 
@@ -118,7 +125,7 @@ impl Drive {
             if let Some(twist) = directly(config, error, now, surround) {
                 return twist;
             }
-            if is_moving(now) {
+            if is_moving(now) || self.rests() {
                 return Twist::default();
             }
             let first = Choice::of(config.period_s, |twist| {
@@ -128,7 +135,18 @@ impl Drive {
             budget = FIRST_BUDGET;
         }
         self.go_on_searching(ground, budget, scratch);
+        // Nothing else is planned while a search goes on, and in the open, held by the slope only, one would follow the other.
+        if self.search.is_none() && self.plan.is_empty() && surround.inclines() {
+            self.rest = REST_STEPS;
+        }
         Twist::default()
+    }
+
+    /// Whether the planner has its turn before the next search.
+    fn rests(&mut self) -> bool {
+        let rests = self.rest > 0;
+        self.rest = self.rest.saturating_sub(1);
+        rests
     }
 
     /// Turn on the spot to see what is around, as far as there is room, to one side and then to the other.
@@ -204,6 +222,22 @@ fn directly(config: &Config, error: f32, now: Twist, surround: &Surround) -> Opt
                 .filter(|_| turnable())
         })
         .or_else(|| back(error).filter(admits))
+        .or_else(|| {
+            turns_away(config, error, surround)
+                .into_iter()
+                .flatten()
+                .find(admits)
+        })
+}
+
+/// Turns that bring its back to where the robot goes, on a slope that it may not turn round on.
+fn turns_away(config: &Config, error: f32, surround: &Surround) -> [Option<Twist>; 2] {
+    let askew = math::wrap(error + math::PI);
+    if surround.is_steep() && surround.is_arc_clear(Place::default(), 0.0, askew, CREEP_MARGIN_M) {
+        turns(config, askew)
+    } else {
+        [None; 2]
+    }
 }
 
 /// Straight back, where the heading is behind.

@@ -3,12 +3,16 @@
 //! The robot is its rectangle. A motion is clear if the rectangle, at places at most `CHECK_EVERY_M` apart for any part of it,
 //! keeps a margin from every near point; a point that is nearer than the margin already may hardly come nearer.
 //!
+//! Where the ground is too steep to be crossed, a place is not clear in which the robot leans too far aside ([`Incline`]): a boundary that depends on
+//! the heading.
+//!
 //! What stands behind the robot and was only seen from afar is no near point; there the map's obstacle cells count.
 //!
 //! Units: metres, seconds, radians; robot frame, x forward.
 
 use heapless::Vec;
 
+use super::incline::Incline;
 use crate::config::Config;
 use crate::geometry::{CELL_M, Point, Pose, Twist};
 use crate::math;
@@ -18,6 +22,8 @@ use crate::near::MOST_POINTS;
 pub const HALF_LENGTH_M: f32 = 0.254;
 /// Half the 3-AT's width over its wheels, metres.
 pub const HALF_WIDTH_M: f32 = 0.2485;
+/// The 3-AT's height, metres.
+const HEIGHT_M: f32 = 0.277;
 /// Half the robot's diagonal, metres.
 const HALF_DIAGONAL_M: f32 = 0.355;
 /// A place of the robot is checked every so many metres that any part of it moved.
@@ -72,12 +78,47 @@ struct Threat {
 #[derive(Debug)]
 pub struct Surround {
     threats: Vec<Threat, { MOST_POINTS + MOST_CELLS }>,
+    hull: Hull,
+    /// How the ground inclines, where that bounds the headings.
+    incline: Option<Incline>,
 }
 
-/// Distance of a point from the robot's rectangle, by the larger overhang; negative inside.
-fn overhang(x_m: f32, y_m: f32) -> f32 {
-    let (along, across) = (x_m.abs() - HALF_LENGTH_M, y_m.abs() - HALF_WIDTH_M);
-    if along > across { along } else { across }
+/// What the robot covers seen from above, metres from its middle.
+#[derive(Clone, Copy, Debug)]
+struct Hull {
+    front: f32,
+    back: f32,
+    left: f32,
+    right: f32,
+}
+
+impl Hull {
+    /// On the level.
+    const LEVEL: Self = Self {
+        front: HALF_LENGTH_M,
+        back: HALF_LENGTH_M,
+        left: HALF_WIDTH_M,
+        right: HALF_WIDTH_M,
+    };
+
+    /// Where it leans its top reaches out over what is downhill.
+    fn leaning(pose: &Pose) -> Self {
+        let reach = |angle: f32| HEIGHT_M * math::sin_cos(angle).0;
+        let (nose, right) = (reach(pose.pitch_rad), reach(pose.roll_rad));
+        Self {
+            front: HALF_LENGTH_M + nose.max(0.0),
+            back: HALF_LENGTH_M + (-nose).max(0.0),
+            left: HALF_WIDTH_M + (-right).max(0.0),
+            right: HALF_WIDTH_M + right.max(0.0),
+        }
+    }
+
+    /// Distance of a point from it, by the larger overhang; negative inside.
+    fn overhang(&self, x_m: f32, y_m: f32) -> f32 {
+        let along = x_m.abs() - if x_m < 0.0 { self.back } else { self.front };
+        let across = y_m.abs() - if y_m < 0.0 { self.right } else { self.left };
+        if along > across { along } else { across }
+    }
 }
 
 /// The robot's frame.
@@ -121,7 +162,28 @@ impl Surround {
     pub const fn empty() -> Self {
         Self {
             threats: Vec::new(),
+            hull: Hull::LEVEL,
+            incline: None,
         }
+    }
+
+    /// Stand on ground that inclines.
+    #[must_use]
+    pub fn on(mut self, incline: Option<Incline>) -> Self {
+        self.incline = incline;
+        self
+    }
+
+    /// Whether the ground bounds the headings.
+    #[must_use]
+    pub const fn inclines(&self) -> bool {
+        self.incline.is_some()
+    }
+
+    /// Whether the robot stands on ground that it may not turn round on.
+    #[must_use]
+    pub fn is_steep(&self) -> bool {
+        self.incline.as_ref().is_some_and(Incline::is_steep)
     }
 
     /// See the points from `pose`.
@@ -130,7 +192,7 @@ impl Surround {
         self.threats.clear();
         for &point in points {
             let at = frame.within(point);
-            let clearance_m = overhang(at.x_m, at.y_m);
+            let clearance_m = self.hull.overhang(at.x_m, at.y_m);
             // A point well inside the robot is a false echo or a passing hand; it cannot be avoided any more.
             if clearance_m > -0.02 {
                 // There are no more points than threats.
@@ -144,7 +206,7 @@ impl Surround {
         let frame = Frame::of(pose);
         let seen = self.threats.len();
         for at in cells.map(|cell| frame.within(cell)) {
-            let clearance_m = overhang(at.x_m, at.y_m);
+            let clearance_m = self.hull.overhang(at.x_m, at.y_m);
             let near = |threat: &Threat| {
                 let (dx, dy) = (threat.at.x_m - at.x_m, threat.at.y_m - at.y_m);
                 dx * dx + dy * dy < KNOWN_M * KNOWN_M
@@ -157,10 +219,11 @@ impl Surround {
         }
     }
 
-    /// Keep off cells (their middles) on all sides, by half a cell more than their middles say: any part of one may be what is not to be
+    /// Keep off cells (their middles) on all sides, as the robot leans, by half a cell more than their middles say: any part of one may be what is not to be
     /// touched.
     pub fn keep_off(&mut self, pose: &Pose, cells: impl Iterator<Item = Point>) {
         let frame = Frame::of(pose);
+        self.hull = Hull::leaning(pose);
         self.threats.clear();
         for cell in cells {
             let at = frame.within(cell);
@@ -170,7 +233,7 @@ impl Surround {
                 x_m: at.x_m * part,
                 y_m: at.y_m * part,
             };
-            let clearance_m = overhang(at.x_m, at.y_m);
+            let clearance_m = self.hull.overhang(at.x_m, at.y_m);
             if clearance_m > 0.0 {
                 // What does not fit is not the only thing around the robot.
                 let _ = self.threats.push(Threat { at, clearance_m });
@@ -193,13 +256,17 @@ impl Surround {
             .fold(f32::MAX, f32::min)
     }
 
-    /// Whether the robot at this place keeps `margin_m` from every point.
+    /// Whether the robot at this place keeps `margin_m` from every point, and does not lean too far aside.
     #[must_use]
     pub fn is_clear(&self, place: Place, margin_m: f32) -> bool {
         let (sin, cos) = math::sin_cos(place.yaw_rad);
+        let stands = |incline: &Incline| incline.admits(place, (sin, cos));
+        if !self.incline.as_ref().is_none_or(stands) {
+            return false;
+        }
         self.threats.iter().all(|threat| {
             let (dx, dy) = (threat.at.x_m - place.x_m, threat.at.y_m - place.y_m);
-            let now = overhang(dx * cos + dy * sin, dy * cos - dx * sin);
+            let now = self.hull.overhang(dx * cos + dy * sin, dy * cos - dx * sin);
             let least = (threat.clearance_m - SLACK_M).max(FLOOR_M.min(threat.clearance_m));
             now >= margin_m.min(least - 1e-5)
         })

@@ -65,8 +65,9 @@ pub fn ascend(window: &Window, x: usize, y: usize) -> Option<(usize, usize)> {
     best.1
 }
 
-/// Twice ∇q at the centre of a reached cell.
-fn gradient(window: &Window, x: usize, y: usize) -> Option<(f32, f32)> {
+/// Twice ∇q at the centre of a reached cell; `None` in all others.
+#[must_use]
+pub fn gradient(window: &Window, x: usize, y: usize) -> Option<(f32, f32)> {
     if !window.is_reached(x, y) {
         return None;
     }

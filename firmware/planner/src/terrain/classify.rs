@@ -44,6 +44,11 @@ const BROW: i32 = 10;
 const WAYS: i32 = 3;
 /// Ground that leads over a brow is no steeper than this part of the climb: a rim casts a shadow as steep as the tilted beams.
 const GENTLE: f32 = 0.75;
+/// What leads over a gap higher than an edge that may be driven over blends in: its grade lies between those on both sides, to within this. A kerb
+/// in a gap lies between level ground and level ground.
+const BLEND: f32 = 0.1;
+/// How far from the gap these grades are measured, cells, the best first.
+const GRADE: [i32; 3] = [3, 4, 2];
 /// Measured cells among the eight around that it takes to free an obstacle of the map.
 const WELL_KNOWN: u32 = 6;
 
@@ -175,11 +180,42 @@ pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell) -> bool 
             let way_m = (there + here) as f32 * cells * CELL_M;
             let most_m = GENTLE * terrain.climb * way_m;
             ways += 1;
-            let rise = high.zip(low).map(|(high, low)| (high - low).abs());
-            gentle += i32::from(rise.is_some_and(|rise_m| rise_m <= most_m));
+            let rise = high.zip(low).map(|(high, low)| high - low);
+            let on = |cells: i32| Cell {
+                x: cell.x + cells * dx,
+                y: cell.y + cells * dy,
+            };
+            let step_m = cells * CELL_M;
+            let blends = |rise_m: f32| {
+                let grade = rise_m / way_m;
+                let beyond = grade_on(heights, &on, there, 1, step_m);
+                let before = grade_on(heights, &on, -here, -1, step_m);
+                beyond
+                    .zip(before)
+                    .is_some_and(|(a, b)| (a.min(b) - BLEND..=a.max(b) + BLEND).contains(&grade))
+            };
+            gentle += i32::from(rise.is_some_and(|rise_m| {
+                rise_m.abs() <= most_m && (rise_m.abs() <= terrain.step_m || blends(rise_m))
+            }));
         }
     }
     ways >= WAYS && ways == gentle
+}
+
+/// The grade of the ground beside a gap, from its cell at `from` outwards to the first measured one of the next [`GRADE`]; positive where it rises
+/// along the direction.
+fn grade_on(
+    heights: &Heights<'_>,
+    on: &impl Fn(i32) -> Cell,
+    from: i32,
+    way: i32,
+    step_m: f32,
+) -> Option<f32> {
+    let near_m = heights.height_m(on(from))?;
+    GRADE.into_iter().find_map(|cells| {
+        let far_m = heights.height_m(on(from + way * cells))?;
+        Some((far_m - near_m) / ((way * cells) as f32 * step_m))
+    })
 }
 
 /// Whether measured cells on both sides, at most four apart, lead over a cell.

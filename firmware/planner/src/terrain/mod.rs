@@ -15,6 +15,7 @@
 //! | [`rooms`] | what level beams say through a doorway |
 //! | [`classify`] | heights and marks into the map's classes |
 //! | [`preference`] | eqs. 3 to 5 and their hysteresis |
+//! | [`sidling`] | how far the robot leans aside on a slope, and which headings keep that within its limit |
 //! | [`tilt`] | what is believed of the attitude |
 //! | [`storeys`] | how high the ground lies everywhere, and which goals are preferred for it |
 //!
@@ -28,6 +29,7 @@ pub mod elevation;
 pub mod preference;
 pub mod ray;
 pub mod rooms;
+pub mod sidling;
 pub mod storeys;
 pub mod survey;
 pub mod tilt;
@@ -62,6 +64,9 @@ pub struct Terrain {
     pub global_scale: f32,
     /// Steepest slope that may be driven on, a tangent. Default: 0.364 (20°, the 3-AT's grade).
     pub climb: f32,
+    /// Steepest slope that may be driven across, a tangent; as large as `climb`, there is no such limit. Default: as `climb`; the 3-AT's is
+    /// 0.268 (15°).
+    pub roll: f32,
     /// Highest edge that may be driven over, metres. Default: 0.07.
     pub step_m: f32,
 }
@@ -78,6 +83,7 @@ impl Terrain {
         height_scale: 2.0,
         global_scale: 0.005,
         climb: 0.364,
+        roll: 0.364,
         step_m: 0.07,
     };
 }

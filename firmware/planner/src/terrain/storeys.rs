@@ -96,6 +96,30 @@ impl<const TILES: usize> Storeys<TILES> {
         self.blocks.get_mut(half / 2)?.get_mut(half % 2)
     }
 
+    /// The height of the ground around a cell, metres; where none was measured, the mean of the blocks beside that have one. A goal lies where
+    /// the measured ends, and its own block was often hardly met: taken for level, it would draw the robot up a slope.
+    #[must_use]
+    pub fn height_around_m<const SLOTS: usize>(
+        &self,
+        tiles: &Tiles<TILES, SLOTS>,
+        cell: Cell,
+    ) -> Option<f32> {
+        let beside = || {
+            let (mut sum_m, mut count) = (0.0, 0_u8);
+            for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
+                let near = Cell {
+                    x: cell.x + dx * BLOCK,
+                    y: cell.y + dy * BLOCK,
+                };
+                if let Some(height_m) = self.height_m(tiles, near) {
+                    (sum_m, count) = (sum_m + height_m, count + 1);
+                }
+            }
+            (count > 0).then(|| sum_m / f32::from(count))
+        };
+        self.height_m(tiles, cell).or_else(beside)
+    }
+
     /// The height of the ground around a cell, metres; `None` where none was measured. Of a folded tile it is the tile's.
     #[must_use]
     pub fn height_m<const SLOTS: usize>(
@@ -190,7 +214,7 @@ impl<const TILES: usize> Levels<'_, TILES> {
     /// The level of a goal, at most [`MOST_LEVEL`]; 0 where its height is not known.
     #[must_use]
     pub fn of<const SLOTS: usize>(&self, tiles: &Tiles<TILES, SLOTS>, goal: Cell) -> u32 {
-        let Some(height_m) = self.storeys.height_m(tiles, goal) else {
+        let Some(height_m) = self.storeys.height_around_m(tiles, goal) else {
             return 0;
         };
         let least = self.terrain.least_preference;
@@ -206,7 +230,7 @@ impl<const TILES: usize> Levels<'_, TILES> {
 mod tests {
     use std::boxed::Box;
 
-    use super::{Levels, MOST_LEVEL, Storeys};
+    use super::{BLOCK, Levels, MOST_LEVEL, Storeys};
     use crate::geometry::Cell;
     use crate::map::{Class, Tiles};
     use crate::terrain::Terrain;
@@ -258,6 +282,29 @@ mod tests {
         }
         assert_eq!(storeys.height_m(&tiles, at(0, 29)), None, "never measured");
         assert_eq!(storeys.height_m(&tiles, at(0, 500)), None, "no tile");
+    }
+
+    /// The frontier's own block is not measured, the one before it is.
+    #[test]
+    fn a_goal_where_the_measured_ends_is_as_high_as_what_is_beside_it() {
+        let (storeys, tiles) = climbed();
+        let edge = (100..200)
+            .find(|&x| storeys.height_m(&tiles, at(x, 3)).is_none())
+            .expect("the window ended");
+        let before_m = storeys
+            .height_m(&tiles, at(edge - BLOCK, 3))
+            .expect("measured");
+        let height_m = storeys
+            .height_around_m(&tiles, at(edge, 3))
+            .expect("beside");
+        assert!((height_m - before_m).abs() < 1e-3, "{height_m} {before_m}");
+        let levels = Levels {
+            storeys: &storeys,
+            terrain: &Terrain::TABLE_I,
+            storey_m: 0.0,
+        };
+        assert_eq!(levels.of(&tiles, at(edge, 3)), MOST_LEVEL);
+        assert_eq!(storeys.height_around_m(&tiles, at(edge + 9, 3)), None);
     }
 
     #[test]

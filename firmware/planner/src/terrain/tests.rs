@@ -206,6 +206,30 @@ fn a_corner_is_not_led_over_and_a_gap_is() {
     }
 }
 
+/// Ground by the column, with a gap of eight cells that was never measured; whether the gap is led over in its middle.
+fn leads_over_gap(height_m: impl Fn(f32) -> f32) -> bool {
+    let mut heights = std::vec![0; 2 * WINDOW_CELLS];
+    let mut marks = std::vec![0; WINDOW_CELLS];
+    let mut origin = Cell::default();
+    let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+    window.follow(Cell::default());
+    let all = (-30..30).flat_map(|y| (-30..30).map(move |x| Cell { x, y }));
+    for cell in all.filter(|cell| !(0..8).contains(&cell.x)) {
+        window.measure(cell, height_m(cell.centre().x_m));
+    }
+    let asked = Cell { x: 4, y: 2 };
+    classify::leads_over(&window.read(), &Terrain::TABLE_I, asked)
+}
+
+/// From above both look alike across the gap, a fifth of a metre down; beside it they do not.
+#[test]
+fn a_brow_is_led_over_and_a_kerb_in_a_gap_is_not() {
+    assert!(leads_over_gap(|x| -0.15 * x * x.max(0.0)), "a brow");
+    assert!(leads_over_gap(|x| -0.2 * x), "a slope");
+    assert!(!leads_over_gap(|x| if x > 0.4 { -0.2 } else { 0.0 }));
+    assert!(leads_over_gap(|x| if x > 0.4 { -0.05 } else { 0.0 }), "low");
+}
+
 #[test]
 fn flat_ground_needs_all_tiles_and_uneven_ground_lends_some() {
     let point = |tile: f32| Point {
