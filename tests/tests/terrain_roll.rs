@@ -4,7 +4,7 @@
 
 use fieldline_tests::runs::{self, in_parallel};
 use fieldline_tests::table::Table;
-use fieldline_tests::uneven::{self, Told, Tour};
+use fieldline_tests::uneven::{Told, Tour};
 use fieldline_tests::{golden, worlds};
 use host_sim::world::World;
 
