@@ -69,6 +69,8 @@ const _CHECKS: () = assert!(
 );
 /// Rounds in a row that must find nothing before the exploration is over: noise may close a way for a moment.
 const EMPTY_ROUNDS: u8 = 5;
+/// Times that bars are lifted once more before that.
+const MOST_LIFTED: u8 = 2;
 
 /// What the strategy remembers.
 #[derive(Debug)]
@@ -79,6 +81,8 @@ pub struct Frontier {
     patience: Patience,
     empty_rounds: u8,
     second_chance: bool,
+    /// Times that bars were lifted again since, on uneven ground.
+    lifted: u8,
     /// It got wedged at both chances, and only looks any more.
     only_looks: bool,
     /// It had not moved before that since the second chance began.
@@ -143,6 +147,7 @@ impl Frontier {
             patience: Patience::new(),
             empty_rounds: 0,
             second_chance: false,
+            lifted: 0,
             only_looks: false,
             immobile: false,
             lookout: None,
@@ -239,7 +244,7 @@ impl Frontier {
 
     /// The exploration is over and the robot goes on: what it drives to needs no second chance.
     pub(super) fn go_on(&mut self) {
-        self.second_chance = false;
+        (self.second_chance, self.lifted) = (false, 0);
         self.only_looks = false;
         self.patience.begin_next_try();
         self.road.clear();
@@ -263,7 +268,7 @@ impl Frontier {
             self.road = road.leading_to(lookout.stand);
             return self.go_and_look(lookout, along_centre, robot, time_ms);
         } else {
-            return self.do_without();
+            return self.do_without(known.levels.is_some());
         }
         match self
             .patience
@@ -539,9 +544,16 @@ impl Frontier {
     }
 
     /// No frontier is within reach.
-    fn do_without(&mut self) -> Outlook {
+    ///
+    /// On uneven ground what is ahead is measured from near by, often from another side only, and a bar in the one way up shuts off everything
+    /// above. So there bars are lifted some times more.
+    fn do_without(&mut self, is_uneven: bool) -> Outlook {
         self.road.clear();
         if !self.second_chance {
+            return self.begin_second_chance();
+        }
+        if is_uneven && !self.bars.is_empty() && self.lifted < MOST_LIFTED {
+            self.lifted += 1;
             return self.begin_second_chance();
         }
         self.empty_rounds = self.empty_rounds.saturating_add(1);
