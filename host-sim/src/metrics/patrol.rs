@@ -3,7 +3,7 @@
 //! A rail is a centre cell of the map at the end, visited whenever the robot's centre is within 1 m of it. Its *age* is the
 //! time since its last visit, in the exploration or on patrol; since the start, if there was none. Ages are taken in every step of the patrol.
 //!
-//! Spurs no longer than [`SPUR_M`] are left out: one that ends in a corner or at a dent of a wall comes and goes with the noise of the map,
+//! Spurs no longer than 1.5 m are left out: one that ends in a corner or at a dent of a wall comes and goes with the noise of the map,
 //! and may be there at the end for the first time.
 
 use std::collections::BTreeSet;
@@ -50,7 +50,7 @@ impl Patrol {
     }
 }
 
-/// The rails without their spurs: what leads from an end to where the way parts, if that is within [`SPUR_M`].
+/// The rails without their spurs: what leads from an end to where the way parts, if that is within 1.5 m.
 #[must_use]
 pub fn without_spurs(rails: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let cells: BTreeSet<[i32; 2]> = rails.iter().map(cell_of).collect();

@@ -1,6 +1,6 @@
 //! How the ground inclines around the robot, and how far it would lean aside there.
 //!
-//! Slopes are taken from the window of heights at places [`STEP_M`] apart, once a step; a place of a motion has that of the nearest.
+//! Slopes are taken from the window of heights at places 0.3 m apart, once a step; a place of a motion has that of the nearest.
 //!
 //! Invariant: where the ground was not measured it is taken as level, and holds nothing up. Units: metres, tangents, radians; robot frame, x forward.
 
