@@ -825,15 +825,14 @@ fn local_goal<const TILES: usize, const SLOTS: usize>(
 }
 
 /// What the drive keeps the robot's hull off on uneven ground, obstacles of either sign and ground that was never measured, the window keeps its
-/// centre off: between two such cells the field would lead where the drive does not go. Where the attitude jitters there are such cells everywhere,
-/// until they are measured from nearer.
+/// centre off: between two such cells the field would lead where the drive does not go.
 fn keep_off_rims<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     disc: &Disc,
     robot: Point,
     view: &mut View,
 ) {
-    if matches!(state.around, Around::Storeys(_)) && state.map.is_sure() {
+    if let Around::Storeys(_) = state.around {
         let rims = near::rim_cells(state.map.tiles(), robot);
         view.keep_off(robot.cell(), rims, disc);
     }

@@ -41,12 +41,6 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         Heights::new(self.evidence.bytes(), self.tiles.lent_bytes(), self.window)
     }
 
-    /// Whether the attitude is sure: what was never measured was not to be seen.
-    #[must_use]
-    pub fn is_sure(&self) -> bool {
-        self.tilt.is_calm()
-    }
-
     /// Scans and pose into the window, and the window into the map.
     pub(super) fn survey(&mut self, config: &Config, terrain: &Terrain, input: &Input<'_>) {
         let input = &Input {

@@ -109,11 +109,6 @@ impl<'a, 'm> Survey<'a, 'm> {
         self
     }
 
-    /// Whether the attitude is sure. Where it jitters, ground that was not measured says nothing: behind the brow of every slope there is some.
-    const fn is_calm(&self) -> bool {
-        self.reach_m.is_infinite()
-    }
-
     /// Take everything in. `first` is the first survey of a session.
     pub fn run(&mut self, config: &Config, input: &Input<'_>, first: bool) {
         if first {
@@ -182,7 +177,7 @@ impl<'a, 'm> Survey<'a, 'm> {
             if stands || level {
                 return;
             }
-        } else if self.is_calm() && self.may_be_rim(ray, &footing, gap_m, rise_m) {
+        } else if self.may_be_rim(ray, &footing, gap_m, rise_m) {
             self.suspect(ray, footing.s_m, ray.length_m);
         } else if self.is_rim(ray, &footing, gap_m, rise_m) {
             self.sink(
