@@ -1,14 +1,12 @@
-//! What the device's map said of every cell, and when: a link that reads the tiles around the robot after every step.
+//! What the device's map said of every cell, and when: the tiles around the robot, read after every step ([`crate::watched`]).
 //!
 //! Classes change only where the window of heights lies, 3.2 m around the robot at the most, which the nine tiles around it hold. Reading
 //! changes no command. Milliseconds; map cells of 10 cm.
 
 use std::collections::BTreeMap;
 
-use fieldline_protocol::message::{
-    Command, Control, FieldRow, Frontier, Identity, Observation, Status, Tile,
-};
-use host_sim::link::{Link, LinkError, LinkStats};
+use fieldline_protocol::message::{Observation, Tile};
+use host_sim::link::{Link, LinkError};
 use host_sim::report::MapCell;
 use host_sim::report::grid_map::{CELL_M, TILE_SIDE};
 
@@ -21,10 +19,9 @@ pub struct History {
     changes: BTreeMap<[i32; 2], Vec<Change>>,
 }
 
-/// A link, watched.
-#[derive(Debug)]
-pub struct Watched<L> {
-    link: L,
+/// Writes the history, step by step.
+#[derive(Debug, Default)]
+pub struct Watcher {
     tiles: BTreeMap<(i16, i16), Vec<u8>>,
     /// What was seen.
     pub history: History,
@@ -77,18 +74,22 @@ fn class(code: u8) -> MapCell {
     }
 }
 
-impl<L: Link> Watched<L> {
+impl Watcher {
     /// Before a run.
     #[must_use]
-    pub fn new(link: L) -> Self {
-        Self {
-            link,
-            tiles: BTreeMap::new(),
-            history: History::default(),
-        }
+    pub fn new() -> Self {
+        Self::default()
     }
 
-    fn look(&mut self, observation: &Observation) -> Result<(), LinkError> {
+    /// Read the tiles around the robot, after a step.
+    ///
+    /// # Errors
+    /// As [`LinkError`].
+    pub fn look(
+        &mut self,
+        link: &mut dyn Link,
+        observation: &Observation,
+    ) -> Result<(), LinkError> {
         let side_m = CELL_M * f64::from(TILE_SIDE);
         let tile = |m: f64| (m / side_m).floor() as i16;
         let (x, y) = (
@@ -97,45 +98,13 @@ impl<L: Link> Watched<L> {
         );
         for (dx, dy) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))) {
             let place = (x + dx, y + dy);
-            if let Some(tile) = self.link.tile(place.0, place.1)? {
+            if let Some(tile) = link.tile(place.0, place.1)? {
                 let before = self.tiles.entry(place).or_default();
                 self.history.note(observation.time_ms, &tile, before);
                 *before = tile.cells.to_vec();
             }
         }
         Ok(())
-    }
-}
-
-impl<L: Link> Link for Watched<L> {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        self.link.hello()
-    }
-
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        self.link.control(control)
-    }
-
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        let command = self.link.observe(observation)?;
-        self.look(observation)?;
-        Ok(command)
-    }
-
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        self.link.tile(x, y)
-    }
-
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
-        self.link.field_row(row)
-    }
-
-    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
-        self.link.frontiers()
-    }
-
-    fn stats(&self) -> LinkStats {
-        self.link.stats()
     }
 }
 

@@ -8,6 +8,7 @@
 //! | [`runs`] | whole explorations, several at a time, and their row in a table |
 //! | [`loops`] | tables of explorations that close loops, with the papers' ratios |
 //! | [`history`] | what the map said of every cell, and when |
+//! | [`watched`] | a link that is looked at after every step |
 //! | [`uneven`] | whole explorations of uneven ground, and their row in a table |
 //! | [`wilcoxon`] | the signed-rank test of paired runs |
 //! | [`worlds`] | the built-in worlds by kind; worlds drawn by others, where there are any |
@@ -33,6 +34,7 @@ pub mod runs;
 pub mod starts;
 pub mod table;
 pub mod uneven;
+pub mod watched;
 pub mod wilcoxon;
 pub mod worlds;
 

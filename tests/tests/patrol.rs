@@ -4,15 +4,14 @@
 //! (`host_sim::metrics::patrol`). The window's field is read after every step in which one was solved; *flat* means that the robot's cell
 //! has no slope there. A step that solves none goes on by the field before; a step without a command is *still*.
 
-use fieldline_protocol::message::{
-    Command, Control, FieldRow, Frontier, Identity, Observation, Status, Tile,
-};
+use fieldline_protocol::message::{Command, Observation, Status};
 use fieldline_tests::loops::TDBVP;
 use fieldline_tests::runs::{self, Unseen, in_parallel};
 use fieldline_tests::table::{Table, number};
+use fieldline_tests::watched::Watched;
 use fieldline_tests::{full, golden, worlds};
 use host_sim::link::direct::Direct;
-use host_sim::link::{Link, LinkError, LinkStats};
+use host_sim::link::{Link, LinkError};
 use host_sim::report::Report;
 use host_sim::trial::mission::{Mission, explore};
 use host_sim::trial::{Step, oracle, snapshot};
@@ -29,54 +28,23 @@ const MOST_TOURS: f64 = 1.5;
 const MOST_STILL: usize = 5;
 const STEPS_PER_S: usize = 5;
 
-/// A link that looks at the field after every step.
-struct Slopes<L> {
-    link: L,
-    /// Of each step: whether the field solved in it is flat at the robot; nothing where none was solved.
-    flat: Vec<Option<bool>>,
-}
-
-impl<L: Link> Link for Slopes<L> {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        self.link.hello()
+/// Whether the field solved in a step is flat at the robot; nothing where none was solved.
+fn is_flat(
+    link: &mut dyn Link,
+    observation: &Observation,
+    command: &Command,
+) -> Result<Option<bool>, LinkError> {
+    if command.status != Status::Exploring || command.cost.cycles == 0 {
+        return Ok(None);
     }
-
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        self.link.control(control)
-    }
-
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        let command = self.link.observe(observation)?;
-        let solved = command.status == Status::Exploring && command.cost.cycles > 0;
-        let window = match solved {
-            true => snapshot::window(&mut self.link)?,
-            false => None,
-        };
-        self.flat.push(window.map(|window| {
-            let q: Vec<f64> = window.q.iter().map(|&q| f64::from(q)).collect();
-            let place = |at: f64, origin: i32| at / window.cell_m - f64::from(origin);
-            let x = place(observation.pose.x.to_num(), window.origin_x);
-            let y = place(observation.pose.y.to_num(), window.origin_y);
-            oracle::heading_at(&q, x, y).is_none()
-        }));
-        Ok(command)
-    }
-
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        self.link.tile(x, y)
-    }
-
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
-        self.link.field_row(row)
-    }
-
-    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
-        self.link.frontiers()
-    }
-
-    fn stats(&self) -> LinkStats {
-        self.link.stats()
-    }
+    let window = snapshot::window(link)?;
+    Ok(window.map(|window| {
+        let q: Vec<f64> = window.q.iter().map(|&q| f64::from(q)).collect();
+        let place = |at: f64, origin: i32| at / window.cell_m - f64::from(origin);
+        let x = place(observation.pose.x.to_num(), window.origin_x);
+        let y = place(observation.pose.y.to_num(), window.origin_y);
+        oracle::heading_at(&q, x, y).is_none()
+    }))
 }
 
 /// A patrol from one start.
@@ -96,15 +64,16 @@ fn patrol(start: usize) -> Patrol {
         start,
         ..Mission::default()
     };
-    let mut link = Slopes {
-        link: Direct::new(),
-        flat: Vec::new(),
-    };
+    let mut flat = Vec::new();
+    let mut link = Watched::new(Direct::new(), |link, observation, command| {
+        flat.push(is_flat(link, observation, command)?);
+        Ok(())
+    });
     let world = worlds::builtin(WORLD);
     let run = explore(&mission, &world, &mut link, &mut Unseen);
     let (report, record) = run.expect("the start is free");
     let steps = usize::from(PATROL_S) * STEPS_PER_S;
-    let flat = &link.flat[link.flat.len().saturating_sub(steps)..];
+    let flat = &flat[flat.len().saturating_sub(steps)..];
     let is_still = |step: &Step| step.command.velocity == Default::default();
     let last = &record.steps[record.steps.len().saturating_sub(steps)..];
     let groups = last.chunk_by(|a, b| is_still(a) == is_still(b));
@@ -157,6 +126,9 @@ fn faults(patrol: &Patrol) -> Vec<String> {
         None => faults.push("did not come to its end".into()),
         Some(ages) if ages.oldest_rail_s > MOST_TOURS * TOUR_S => {
             faults.push(format!("a rail waited for {} s", ages.oldest_rail_s));
+        }
+        Some(ages) if ages.mean_age_s >= TOUR_S => {
+            faults.push(format!("rails wait for {} s in the mean", ages.mean_age_s));
         }
         Some(_) => {}
     }

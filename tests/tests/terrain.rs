@@ -14,10 +14,11 @@
 use core::fmt::Write as _;
 
 use fieldline_protocol::message::Preference;
-use fieldline_tests::history::{History, Watched};
+use fieldline_tests::history::{History, Watcher};
 use fieldline_tests::runs::{self, explored, in_parallel};
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::uneven::{self, Told, Tour, word};
+use fieldline_tests::watched::Watched;
 use fieldline_tests::wilcoxon::signed_rank;
 use fieldline_tests::{full, golden, worlds};
 use host_sim::link::direct::Direct;
@@ -273,9 +274,12 @@ fn uneven_worlds_drawn_by_others() {
         .flat_map(|world| seeds.clone().map(|seed| Tour::of(world, 0, seed)))
         .collect();
     let watched = in_parallel(&tours, |tour| {
-        let mut link = Watched::new(Direct::new());
+        let mut watcher = Watcher::new();
+        let mut link = Watched::new(Direct::new(), |link, observation, _| {
+            watcher.look(link, observation)
+        });
         let (report, record) = explored(&tour.mission(), tour.world, &mut link);
-        let shares = barriers(&link.history, tour.world);
+        let shares = barriers(&watcher.history, tour.world);
         (tour.told(report, &record), shares)
     });
     let mut ever = Table::new(

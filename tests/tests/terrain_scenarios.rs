@@ -12,10 +12,11 @@
 //! Places are those of the worlds as drawn (`host_sim::world`). Metres, give or take one cell.
 
 use fieldline_planner::geometry::Cell;
-use fieldline_tests::history::{History, Watched};
+use fieldline_tests::history::{History, Watcher};
 use fieldline_tests::runs::{explored, faults, in_parallel};
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::uneven::Tour;
+use fieldline_tests::watched::Watched;
 use fieldline_tests::{full, golden, worlds};
 use host_sim::link::direct::Direct;
 use host_sim::metrics::{GroundTruth, Truly};
@@ -58,14 +59,17 @@ fn tales(world: &World) -> Vec<Tale> {
     let count = if full() { world.starts().len() } else { 2 };
     let starts: Vec<usize> = (0..count).collect();
     let tales = in_parallel(&starts, |&start| {
-        let mut link = Watched::new(Direct::new());
+        let mut watcher = Watcher::new();
+        let mut link = Watched::new(Direct::new(), |link, observation, _| {
+            watcher.look(link, observation)
+        });
         let mission = Tour::of(world, start, 0).mission();
         let (report, record) = explored(&mission, world, &mut link);
         Tale {
             start,
             report,
             record,
-            history: link.history,
+            history: watcher.history,
         }
     });
     for tale in &tales {
