@@ -10,7 +10,7 @@ use std::path::Path;
 use fieldline_protocol::BAUD;
 use fieldline_protocol::message::{Observation, Status, Strategy, Twist};
 use fieldline_tests::costs;
-use fieldline_tests::runs::{FRONTIER, Run};
+use fieldline_tests::runs::{FRONTIER, Run, in_parallel};
 use fieldline_tests::{emulator, worlds};
 use host_sim::link::endpoint::{Endpoint, Patience};
 use host_sim::link::fault::{Faults, Faulty};
@@ -107,7 +107,7 @@ fn the_emulated_chip_explores_as_the_host_does_and_within_its_means() {
     let Some(image) = emulator::image() else {
         return;
     };
-    let reports = SMALL.map(|name| {
+    let reports = in_parallel(&SMALL, |name| {
         let world = worlds::builtin(name);
         let report = by("qemu", &world, &mut emulated(&image));
         assert_same(&world, &clean(&world), &report);
@@ -129,13 +129,10 @@ fn every_world_costs_the_chip_no_more_than_it_has() {
         assert_same(world, &clean(world), &report);
         report
     };
-    let ours: Vec<Report> = worlds::EXPLORABLE
-        .map(|name| explore(&worlds::builtin(name)))
-        .into();
+    let ours = in_parallel(&worlds::EXPLORABLE, |name| explore(&worlds::builtin(name)));
     costs::check("costs-full.txt", &ours);
     if let Some(others) = worlds::drawn_by_others() {
-        let reports: Vec<Report> = others.iter().map(explore).collect();
-        costs::check("costs-data.txt", &reports);
+        costs::check("costs-data.txt", &in_parallel(&others, explore));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Loops and rails on the emulated chip: whole runs give the same command stream as by call, bit for bit, in steps that it has time for.
 
 use fieldline_tests::loops::{OUROBOROS, TDBVP};
-use fieldline_tests::runs::Run;
+use fieldline_tests::runs::{Run, in_parallel};
 use fieldline_tests::{emulator, worlds};
 use host_sim::link::endpoint::{Endpoint, Patience};
 use host_sim::link::qemu;
@@ -15,7 +15,7 @@ fn the_emulated_chip_closes_loops_as_the_host_does() {
         return;
     };
     let world = worlds::builtin("tdbvp-nested");
-    for strategy in [OUROBOROS, TDBVP] {
+    in_parallel(&[OUROBOROS, TDBVP], |&strategy| {
         let run = Run {
             world: &world,
             strategy,
@@ -33,5 +33,5 @@ fn the_emulated_chip_closes_loops_as_the_host_does() {
         );
         let cost = report.planner.instructions.expect("the chip counts them");
         assert!(cost.max <= MOST, "{strategy}: {cost:?}");
-    }
+    });
 }

@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use fieldline_tests::runs::explored;
+use fieldline_tests::runs::{explored, in_parallel};
 use fieldline_tests::uneven::Tour;
 use fieldline_tests::{costs, emulator, full, worlds};
 use host_sim::link::direct::Direct;
@@ -45,9 +45,7 @@ fn the_emulated_chip_explores_uneven_ground_as_the_host_does() {
     let Some(image) = emulator::image() else {
         return;
     };
-    for name in WORLDS {
-        on_both(name, &image);
-    }
+    in_parallel(&WORLDS, |name| on_both(name, &image));
 }
 
 #[test]
@@ -58,6 +56,6 @@ fn every_uneven_world_costs_the_chip_no_more_than_it_has() {
     let Some(image) = emulator::image() else {
         return;
     };
-    let reports = worlds::UNEVEN.map(|name| on_both(name, &image));
+    let reports = in_parallel(&worlds::UNEVEN, |name| on_both(name, &image));
     costs::check("costs-terrain.txt", &reports);
 }

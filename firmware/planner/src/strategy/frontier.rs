@@ -19,7 +19,7 @@ use crate::bits::{Adjacency, flood};
 use crate::clearance::Disc;
 use crate::field::SIDE;
 use crate::geometry::{CELL_M, Cell, Point};
-use crate::grid::{Plane, Site};
+use crate::grid::{Plane, PlaneMut, Site};
 use crate::map::{Class, Tiles};
 use crate::math;
 use crate::skeleton::{Residues, WaveSpace, Wavefront};
@@ -31,6 +31,8 @@ use crate::view::{Rows, View};
 
 /// Goals dropped at the most; the list is the report's too.
 pub const MOST_DROPPED: usize = 32;
+/// A road that leaves the storey by so many levels more than its goal does goes by another storey: 1 m with Table I's parameters.
+const OTHER_STOREY: u32 = 4;
 /// Around a dropped goal no other is taken, metres.
 const DROP_RADIUS_M: f32 = 0.5;
 /// Leftover cells this near are one group, metres.
@@ -414,6 +416,7 @@ impl Frontier {
         self.dropped.last_mut()
     }
 
+    /// The way to a goal; where heights are preferred, one that keeps to the storey if it is not much longer.
     fn find_road<const TILES: usize, const SLOTS: usize>(
         &self,
         known: &Known<'_, TILES, SLOTS>,
@@ -423,8 +426,58 @@ impl Frontier {
         if self.only_looks {
             return None;
         }
-        let frame = known.topology.frame();
         let way = known.topology.skeleton()?;
+        let road = self.find_road_on(way, known, robot, lent)?;
+        Some(
+            self.keep_to_storey(&road, known, robot, lent)
+                .unwrap_or(road),
+        )
+    }
+
+    /// A way to a goal that leaves the storey no farther than the robot and the goal do, for a road that leaves it farther; if there is one
+    /// that is no longer than what goals so far off the storey are put back by.
+    fn keep_to_storey<const TILES: usize, const SLOTS: usize>(
+        &self,
+        road: &Road,
+        known: &Known<'_, TILES, SLOTS>,
+        robot: Point,
+        lent: &mut Lent<'_>,
+    ) -> Option<Road> {
+        let levels = known.levels.as_ref()?;
+        let level = |cell: Cell| levels.of(known.tiles, cell);
+        let least = level(road.goal()).max(1);
+        let most = road.cells().iter().copied().map(level).max()?;
+        let excess = most
+            .checked_sub(least)
+            .filter(|&excess| excess >= OTHER_STOREY)?;
+        let frame = known.topology.frame();
+        // A map so large that the way does not fit behind the wave has to do with the shortest road.
+        let (residues, spare) = lent.residues.split_at_mut_checked(frame.shape.words())?;
+        let mut on_storey = PlaneMut::new(frame.shape, spare.as_flattened_mut()).ok()?;
+        on_storey.fill(0);
+        for site in known.topology.skeleton()?.sites() {
+            if level(frame.cell(site)) <= least {
+                on_storey.set(site);
+            }
+        }
+        let mut lent = Lent {
+            residues,
+            ring: &mut *lent.ring,
+            view: &mut *lent.view,
+        };
+        let detour = self.find_road_on(on_storey.view(), known, robot, &mut lent)?;
+        (detour.steps() <= road.steps() + LATER_STEPS * excess).then_some(detour)
+    }
+
+    /// The way to a goal along these centre cells.
+    fn find_road_on<const TILES: usize, const SLOTS: usize>(
+        &self,
+        way: Plane<'_>,
+        known: &Known<'_, TILES, SLOTS>,
+        robot: Point,
+        lent: &mut Lent<'_>,
+    ) -> Option<Road> {
+        let frame = known.topology.frame();
         let goals = known.topology.frontier()?;
         let residues = Residues::new(frame.shape, &mut *lent.residues).ok()?;
         let mut space = WaveSpace {

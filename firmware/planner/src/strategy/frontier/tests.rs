@@ -99,3 +99,88 @@ fn the_nearer_goal_waits_if_it_lies_on_another_storey() {
     assert!(near(goal(Some(-0.9)), west), "it is the robot's storey");
     assert!(near(goal(Some(-0.45)), west), "as far off as the other one");
 }
+
+/// A corridor to the east, closed in the west, and a way round from x = 4 to 60 cells, 4 m to the north.
+fn corridor_with_a_way_round() -> Box<Tiles<24, 64>> {
+    let mut tiles = Box::<Tiles<24, 64>>::default();
+    tiles.reset(8, 8);
+    let is_free = |x: i32, y: i32| {
+        let straight = (-4..80).contains(&x) && y.abs() < 6;
+        let aside = (-4..8).contains(&x) || (54..66).contains(&x);
+        straight
+            || (aside && (0..46).contains(&y))
+            || (-4..66).contains(&x) && (34..46).contains(&y)
+    };
+    for (x, y) in (-5..80).flat_map(|x| (-6..47).map(move |y| (x, y))) {
+        let class = if is_free(x, y) {
+            Class::Free
+        } else {
+            Class::Obstacle
+        };
+        tiles.set(Cell { x, y }, class).expect("room");
+    }
+    tiles
+}
+
+/// Level ground, but for a dip in the corridor.
+fn dip(tiles: &Tiles<24, 64>, dip_m: f32) -> Box<Storeys<24>> {
+    let (mut heights, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
+    let mut origin = Cell::default();
+    let mut storeys = Box::<Storeys<24>>::default();
+    for middle in (0..=80).step_by(20) {
+        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+        window.follow(Cell { x: middle, y: 20 });
+        for (x, y) in (middle - 32..middle + 32).flat_map(|x| (-8..48).map(move |y| (x, y))) {
+            let is_dip = (16..40).contains(&x) && y < 16;
+            window.measure(Cell { x, y }, if is_dip { -dip_m } else { 0.0 });
+        }
+        storeys.note(&window.read(), tiles);
+    }
+    storeys
+}
+
+/// How far north the road to the frontier in the east leads, cells, with memory for so many pairs behind the wave.
+fn northmost(dip_m: f32, pairs: usize) -> i32 {
+    let tiles = corridor_with_a_way_round();
+    let storeys = dip(&tiles, dip_m);
+    let disc = Disc::new(0.3);
+    let mut topology = Box::new(Topology::<64>::new());
+    topology.reset(Space::KnownFree);
+    while !topology.advance(&tiles, &disc, u32::MAX) {}
+    let known = Known {
+        topology: &topology,
+        tiles: &tiles,
+        disc: &disc,
+        levels: Some(Levels {
+            storeys: &storeys,
+            terrain: &Terrain::TABLE_I,
+            storey_m: 0.0,
+        }),
+    };
+    let words = topology.frame().shape.words();
+    let (mut residues, mut ring) = (vec![[0; 2]; words + pairs], vec![0; 1024]);
+    let mut view = View::new();
+    let lent = Lent {
+        residues: &mut residues,
+        ring: &mut ring,
+        view: &mut view,
+    };
+    let robot = Point {
+        x_m: 0.05,
+        y_m: 0.05,
+    };
+    let mut frontier = Frontier::new();
+    assert_eq!(frontier.replan(&known, robot, 0, lent), Outlook::Road);
+    assert!(frontier.road().goal().x >= 76, "the only frontier");
+    let cells = frontier.road().cells().iter();
+    cells.map(|cell| cell.y).max().expect("a road")
+}
+
+#[test]
+fn a_road_by_another_storey_gives_way_to_one_that_keeps_to_its_own() {
+    let room = 64 * 8;
+    assert!(northmost(0.0, room) < 8, "level ground: straight on");
+    assert!(northmost(0.5, room) < 8, "half a metre is no other storey");
+    assert!(northmost(1.5, room) > 30, "round a dip of 1.5 m");
+    assert!(northmost(1.5, 1) < 8, "no memory for a second way");
+}
