@@ -98,6 +98,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     drive: Drive,
     /// Up or down the slope that it is on, where it may not be crossed.
     wedge: Option<Wedge>,
+    /// The one in which the drive found no way, until it searches again.
+    shut: Option<Wedge>,
     status: Status,
     started: bool,
     /// A skeleton was published that no road was planned on yet.
@@ -163,6 +165,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             lookouts: lookout::Search::new(),
             drive: Drive::new(),
             wedge: None,
+            shut: None,
             status: Status::Exploring,
             started: false,
             fresh: false,
@@ -183,7 +186,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.strategy.reset(config);
         self.lookouts = lookout::Search::new();
         self.drive = Drive::new();
-        self.wedge = None;
+        (self.wedge, self.shut) = (None, None);
         self.status = Status::Exploring;
         self.started = false;
         self.fresh = false;
@@ -682,6 +685,7 @@ fn steer<const TILES: usize, const SLOTS: usize>(
     let bias = Bias {
         before: state.wedge,
         goal: wedge_of_goal(state, input.pose.z_m),
+        shut: state.shut,
     };
     let headed = |place: Place| {
         let wanted = heading_at(window, (origin, scale), &input.pose, place)?;
@@ -716,12 +720,20 @@ fn steer<const TILES: usize, const SLOTS: usize>(
             heading_at,
             potential_at: Some(&potential_at),
         };
-        state.drive.follow(
+        let rested = state.drive.is_resting();
+        let velocity = state.drive.follow(
             config,
             &ground,
             input.velocity,
             bytemuck::cast_slice_mut(scratch),
-        )
+        );
+        // Where it finds no way in one wedge it goes in the other until it searches again.
+        state.shut = match (rested, state.drive.is_resting()) {
+            (_, false) => None,
+            (false, true) => state.wedge,
+            (true, true) => state.shut,
+        };
+        velocity
     } else if is_at_goal(window, (origin, scale), input.pose.point()) {
         // In the goal's own cell there is no slope: look around until it is explored.
         state.drive.look_around(config, &surround, input.velocity)

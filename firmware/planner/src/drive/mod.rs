@@ -102,6 +102,12 @@ impl Drive {
         self.search.is_some()
     }
 
+    /// Whether the last search found nothing, and the next one has to wait.
+    #[must_use]
+    pub const fn is_resting(&self) -> bool {
+        self.rest > 0
+    }
+
     /// The velocity for the heading that the field has at the robot's place, from the velocity `now`; zero where nothing is
     /// admissible, and while a search goes on.
     pub fn follow<H: Fn(Place) -> Option<f32>>(
@@ -111,6 +117,7 @@ impl Drive {
         now: Twist,
         scratch: &mut [u32],
     ) -> Twist {
+        self.rest = self.rest.saturating_sub(1);
         let surround = ground.surround;
         let mut budget = SEARCH_BUDGET;
         if self.search.is_none() {
@@ -125,7 +132,7 @@ impl Drive {
             if let Some(twist) = directly(config, error, now, surround) {
                 return twist;
             }
-            if is_moving(now) || self.rests() {
+            if is_moving(now) || self.is_resting() {
                 return Twist::default();
             }
             let first = Choice::of(config.period_s, |twist| {
@@ -140,13 +147,6 @@ impl Drive {
             self.rest = REST_STEPS;
         }
         Twist::default()
-    }
-
-    /// Whether the planner has its turn before the next search.
-    fn rests(&mut self) -> bool {
-        let rests = self.rest > 0;
-        self.rest = self.rest.saturating_sub(1);
-        rests
     }
 
     /// Turn on the spot to see what is around, as far as there is room, to one side and then to the other.

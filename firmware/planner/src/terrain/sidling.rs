@@ -43,11 +43,18 @@ pub struct Bias {
     pub before: Option<Wedge>,
     /// That its goal lies there.
     pub goal: Option<Wedge>,
+    /// Against it, for now: that the drive found no way there.
+    pub shut: Option<Wedge>,
 }
 
 impl Bias {
     /// Cosine of the way's angle with uphill from which on it is taken uphill.
     fn least_up(self) -> f32 {
+        match self.shut {
+            Some(Wedge::Up) => return f32::INFINITY,
+            Some(Wedge::Down) => return f32::NEG_INFINITY,
+            None => {}
+        }
         let against = |wedge: Option<Wedge>, by: f32| match wedge {
             Some(Wedge::Up) => -by,
             Some(Wedge::Down) => by,
@@ -251,7 +258,11 @@ mod tests {
         let degrees = |degrees: f32| degrees * PI / 180.0;
         let (up, down) = (Some(Wedge::Up), Some(Wedge::Down));
         let wedge = |heading, before, goal| {
-            let bias = Bias { before, goal };
+            let bias = Bias {
+                before,
+                goal,
+                shut: None,
+            };
             slope.heading(degrees(heading), MOST, bias).1
         };
         assert_eq!([5.0, -5.0].map(|way| wedge(way, None, None)), [up, down]);
@@ -263,13 +274,31 @@ mod tests {
         // To the east, a little down, but uphill before: north-east.
         let bias = Bias {
             before: up,
-            goal: None,
+            ..Bias::default()
         };
         let (heading, _) = slope.heading(degrees(-12.0), MOST, bias);
         assert!(
             (degrees(45.0)..degrees(60.0)).contains(&heading),
             "{heading}"
         );
+    }
+
+    #[test]
+    fn a_wedge_without_a_way_is_left_to_the_other() {
+        let slope = Slope { x: 0.0, y: 0.33 };
+        for (shut, other) in [(Wedge::Up, Wedge::Down), (Wedge::Down, Wedge::Up)] {
+            for k in 0..64 {
+                let bias = Bias {
+                    before: Some(shut),
+                    goal: Some(shut),
+                    shut: Some(shut),
+                };
+                let wanted_rad = 0.1 * k as f32 - PI;
+                let (heading, wedge) = slope.heading(wanted_rad, MOST, bias);
+                assert_eq!(wedge, Some(other), "{wanted_rad}");
+                assert!(slope.lean(math::sin_cos(heading)).abs() <= MOST);
+            }
+        }
     }
 
     #[test]
