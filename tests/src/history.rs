@@ -1,7 +1,7 @@
 //! What the device's map said of every cell, and when: the tiles around the robot, read after every step ([`crate::watched`]).
 //!
-//! Classes change only where the window of heights lies, 3.2 m around the robot at the most, which the nine tiles around it hold. Reading
-//! changes no command. Milliseconds; map cells of 10 cm.
+//! Classes change where the window of heights lies, 3.2 m around the robot at the most, and in rooms that level beams look into, as far as the
+//! laser reaches, 12 m: that is four tiles on every side of the robot's own. Reading changes no command. Milliseconds; map cells of 10 cm.
 
 use std::collections::BTreeMap;
 
@@ -9,6 +9,9 @@ use fieldline_protocol::message::{Observation, Tile};
 use host_sim::link::{Link, LinkError};
 use host_sim::report::MapCell;
 use host_sim::report::grid_map::{CELL_M, TILE_SIDE};
+
+/// Tiles on every side of the robot's own in which its map may change in a step: 12.8 m.
+const REACH_TILES: i16 = 4;
 
 /// When a cell became what.
 pub type Change = (u32, MapCell);
@@ -96,7 +99,11 @@ impl Watcher {
             tile(observation.pose.x.to_num()),
             tile(observation.pose.y.to_num()),
         );
-        for (dx, dy) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))) {
+        let around = -REACH_TILES..=REACH_TILES;
+        for (dx, dy) in around
+            .clone()
+            .flat_map(|dy| around.clone().map(move |dx| (dx, dy)))
+        {
             let place = (x + dx, y + dy);
             if let Some(tile) = link.tile(place.0, place.1)? {
                 let before = self.tiles.entry(place).or_default();
