@@ -136,6 +136,8 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                     continue;
                 }
                 let leads_over = is_sure && classify::leads_over(&self.heights(), terrain, cell);
+                // What was glimpsed is there.
+                let gone = gone.filter(|_| self.heights().glimpse_m(cell).is_none());
                 let class = if leads_over { Some(Class::Free) } else { gone };
                 if let Some(class) = class {
                     // Where there is no room nothing is known in any case.

@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | obstacle | something stands there; or it is measured, and too high over a cell beside it |
 //! | negative obstacle | never measured, and its ground is gone |
-//! | free | measured and neither; or between measured cells on both sides that lead over it |
+//! | free | measured and neither; or between measured cells on both sides that lead over it; or glimpsed, and near |
 //! | as before | anything else: what the map says stays, until something better is known |
 //!
 //! Too high over a cell `d` cells away means more than `climb · d + STEP` for d of 1 and 2, and over 4 cells more than the climb alone
@@ -18,6 +18,7 @@ use fixed::types::I7F9;
 
 use super::Terrain;
 use super::elevation::{Heights, WINDOW_SIDE};
+use super::glimpse;
 use crate::geometry::{CELL_M, Cell};
 use crate::map::rows::Row;
 
@@ -63,6 +64,7 @@ pub struct Steps {
     half: i32,
     /// From one end of a bridge to the other.
     bridge: i32,
+    climb: f32,
 }
 
 impl Steps {
@@ -79,6 +81,7 @@ impl Steps {
             four: steps(rise(4.0) + NOISE_M),
             half: steps(0.3 * rise(4.0)),
             bridge: steps(0.7 * rise(4.0)),
+            climb: terrain.climb,
         }
     }
 }
@@ -116,7 +119,9 @@ pub fn row(heights: &Heights<'_>, steps: &Steps, y: i32, known: Row) -> Classes 
             }
         } else if heights.is_sunken(cell) {
             classes.negative |= bit;
-        } else if known.unknown() & bit != 0 && is_bridged(steps, bits) {
+        } else if known.unknown() & bit != 0
+            && (is_bridged(steps, bits) || glimpse::is_enough(heights, steps.climb, cell))
+        {
             classes.free |= bit;
         }
     }

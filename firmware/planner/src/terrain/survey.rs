@@ -64,6 +64,8 @@ const SETTLED_M: f32 = 0.9;
 const RIM_M: f32 = 0.6;
 /// What a beam meets begins where the beam ends and lies behind: so much farther on it is marked, metres, three deviations of a range.
 const BEHIND_M: f32 = 0.03;
+/// Ground is glimpsed so many times as far off as it is measured.
+const GLIMPSE: f32 = 2.0;
 /// The share of the kernel that must be measured for its mean to count.
 const ENOUGH: u16 = 8;
 
@@ -192,6 +194,8 @@ impl<'a, 'm> Survey<'a, 'm> {
         let linked = gap_m <= LINKED_M || (!level && rise_m.abs() <= self.terrain.climb * gap_m);
         if linked && ray.length_m < self.reach_m {
             self.elevation.measure(cell, z_m);
+        } else if linked && ray.length_m < GLIMPSE * self.reach_m {
+            self.elevation.glimpse(cell, z_m);
         }
     }
 
