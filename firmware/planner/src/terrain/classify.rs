@@ -50,6 +50,8 @@ const GENTLE: f32 = 0.75;
 const BLEND: f32 = 0.1;
 /// How far from the gap these grades are measured, cells, the best first.
 const GRADE: [i32; 3] = [3, 4, 2];
+/// The farthest of them.
+const FARTHEST: f32 = 4.0;
 /// Measured cells among the eight around that it takes to free an obstacle of the map.
 const WELL_KNOWN: u32 = 6;
 
@@ -165,9 +167,10 @@ fn is_well_known(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
 }
 
 /// Whether the nearest measured cells on both sides of a cell that was never measured lead over it gently, in three of the four directions
-/// at least and in all in which there are two, and nothing between them is known to be gone.
+/// at least and in all in which there are two, and nothing between them is known to be gone. Two heights may differ by `slack_m` for errors
+/// of the attitude alone.
 #[must_use]
-pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell) -> bool {
+pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell, slack_m: f32) -> bool {
     let reach = |dx: i32, dy: i32| {
         (1..=BROW).find_map(|far| {
             let near = Cell {
@@ -183,7 +186,7 @@ pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell) -> bool 
     for (dx, dy, cells) in [(1, 0, 1.0), (1, 1, 1.41), (0, 1, 1.0), (-1, 1, 1.41)] {
         if let (Some((there, high)), Some((here, low))) = (reach(dx, dy), reach(-dx, -dy)) {
             let way_m = (there + here) as f32 * cells * CELL_M;
-            let most_m = GENTLE * terrain.climb * way_m;
+            let most_m = GENTLE * terrain.climb * way_m + slack_m;
             ways += 1;
             let rise = high.zip(low).map(|(high, low)| high - low);
             let on = |cells: i32| Cell {
@@ -191,16 +194,19 @@ pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell) -> bool 
                 y: cell.y + cells * dy,
             };
             let step_m = cells * CELL_M;
+            // Over the longest of the ways that grades are measured on.
+            let blend = BLEND + slack_m / (FARTHEST * step_m);
             let blends = |rise_m: f32| {
                 let grade = rise_m / way_m;
                 let beyond = grade_on(heights, &on, there, 1, step_m);
                 let before = grade_on(heights, &on, -here, -1, step_m);
                 beyond
                     .zip(before)
-                    .is_some_and(|(a, b)| (a.min(b) - BLEND..=a.max(b) + BLEND).contains(&grade))
+                    .is_some_and(|(a, b)| (a.min(b) - blend..=a.max(b) + blend).contains(&grade))
             };
             gentle += i32::from(rise.is_some_and(|rise_m| {
-                rise_m.abs() <= most_m && (rise_m.abs() <= terrain.step_m || blends(rise_m))
+                rise_m.abs() <= most_m
+                    && (rise_m.abs() <= terrain.step_m + slack_m || blends(rise_m))
             }));
         }
     }

@@ -24,6 +24,7 @@ use super::Terrain;
 use super::classify::leads_over;
 use super::elevation::{Elevation, WINDOW_SIDE};
 use super::ray::{Attitude, Mount, Ray};
+use super::tilt::Tilt;
 use crate::config::{Config, Laser};
 use crate::field::preference::KERNEL_CELLS;
 use crate::geometry::{CELL_M, Cell, Point};
@@ -87,6 +88,8 @@ pub struct Survey<'a, 'm> {
     robot_z_m: f32,
     /// Heights are measured within this distance, metres.
     reach_m: f32,
+    /// Two heights may differ by so much for errors of the attitude alone, metres.
+    slack_m: f32,
 }
 
 impl<'a, 'm> Survey<'a, 'm> {
@@ -101,13 +104,15 @@ impl<'a, 'm> Survey<'a, 'm> {
             robot: input.pose.point(),
             robot_z_m: input.pose.z_m,
             reach_m: f32::INFINITY,
+            slack_m: 0.0,
         }
     }
 
-    /// The survey that measures no height farther off than this, metres.
+    /// The survey of an attitude that is believed so far.
     #[must_use]
-    pub const fn within(mut self, reach_m: f32) -> Self {
-        self.reach_m = reach_m;
+    pub fn believing(mut self, tilt: &Tilt) -> Self {
+        self.reach_m = tilt.reach_m();
+        self.slack_m = tilt.slack_m();
         self
     }
 
@@ -330,7 +335,9 @@ impl<'a, 'm> Survey<'a, 'm> {
             for x in middle.x - reach..=middle.x + reach {
                 let cell = Cell { x, y };
                 let heights = self.elevation.read();
-                if heights.is_suspect(cell) && !leads_over(&heights, self.terrain, cell) {
+                if heights.is_suspect(cell)
+                    && !leads_over(&heights, self.terrain, cell, self.slack_m)
+                {
                     self.elevation.sink(cell);
                 }
             }

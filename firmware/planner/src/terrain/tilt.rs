@@ -30,6 +30,8 @@ const MOST_STEPS: u8 = 100;
 const CALM: f32 = 0.0026;
 /// What the attitude may lift the end of a beam by, metres.
 const ERROR_M: f32 = 0.03;
+/// Two deviations of a difference of two heights that each err by [`ERROR_M`], metres.
+const SLACK_M: f32 = 2.0 * core::f32::consts::SQRT_2 * ERROR_M;
 /// A difference of more deviations of a single slope than this is motion. That is 4.3 of the difference's own, √(1 + SMOOTHED²): at three, one
 /// step in fifty would be taken for motion, and these steps, believed as they come, would be just those that err most.
 const MOTION: f32 = 5.0;
@@ -87,6 +89,12 @@ impl Tilt {
         } else {
             ERROR_M / (SMOOTHED * self.sigma())
         }
+    }
+
+    /// What two heights may differ by for the attitude alone, metres: two deviations, at the reach.
+    #[must_use]
+    pub fn slack_m(&self) -> f32 {
+        if self.is_calm() { 0.0 } else { SLACK_M }
     }
 
     /// Standard deviation of a single slope.
