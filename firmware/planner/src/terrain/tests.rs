@@ -234,14 +234,14 @@ fn a_brow_is_led_over_and_a_kerb_in_a_gap_is_not() {
 /// A slope of 0.2 that the attitude's errors lift by 4 cm before the gap and let down by 4 cm behind it.
 #[test]
 fn errors_of_the_attitude_do_not_make_ground_be_gone() {
-    let slope = |x: f32| {
-        -0.2 * x
-            + if x < -0.2 || x > 1.0 {
-                0.0
-            } else {
-                -0.04 * x.signum()
-            }
+    let lift_m = |x: f32| {
+        if (-0.2..=1.0).contains(&x) {
+            -0.04 * x.signum()
+        } else {
+            0.0
+        }
     };
+    let slope = |x: f32| -0.2 * x + lift_m(x);
     let steep = |x: f32| if x > 0.4 { -0.5 } else { 0.0 };
     assert!(!leads_over_gap(0.0, slope));
     assert!(leads_over_gap(0.085, slope));
