@@ -53,7 +53,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             &mut self.window,
         );
         Survey::new(&mut elevation, terrain, input)
-            .within(self.tilt.reach_m())
+            .believing(&self.tilt)
             .run(config, input, !self.surveyed);
         self.surveyed = true;
         if self.tilt.is_calm() {
@@ -135,7 +135,10 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                 if self.tiles.class(cell) != Class::Unknown {
                     continue;
                 }
-                let leads_over = is_sure && classify::leads_over(&self.heights(), terrain, cell);
+                let leads_over =
+                    is_sure && classify::leads_over(&self.heights(), terrain, cell, 0.0);
+                // What was glimpsed is there.
+                let gone = gone.filter(|_| self.heights().glimpse_m(cell).is_none());
                 let class = if leads_over { Some(Class::Free) } else { gone };
                 if let Some(class) = class {
                     // Where there is no room nothing is known in any case.

@@ -4,7 +4,7 @@
 //! | --- | --- |
 //! | obstacle | something stands there; or it is measured, and too high over a cell beside it |
 //! | negative obstacle | never measured, and its ground is gone |
-//! | free | measured and neither; or between measured cells on both sides that lead over it |
+//! | free | measured and neither; or between measured cells on both sides that lead over it; or glimpsed, and near |
 //! | as before | anything else: what the map says stays, until something better is known |
 //!
 //! Too high over a cell `d` cells away means more than `climb · d + STEP` for d of 1 and 2, and over 4 cells more than the climb alone
@@ -18,6 +18,7 @@ use fixed::types::I7F9;
 
 use super::Terrain;
 use super::elevation::{Heights, WINDOW_SIDE};
+use super::glimpse;
 use crate::geometry::{CELL_M, Cell};
 use crate::map::rows::Row;
 
@@ -49,6 +50,8 @@ const GENTLE: f32 = 0.75;
 const BLEND: f32 = 0.1;
 /// How far from the gap these grades are measured, cells, the best first.
 const GRADE: [i32; 3] = [3, 4, 2];
+/// The farthest of them.
+const FARTHEST: f32 = 4.0;
 /// Measured cells among the eight around that it takes to free an obstacle of the map.
 const WELL_KNOWN: u32 = 6;
 
@@ -63,6 +66,7 @@ pub struct Steps {
     half: i32,
     /// From one end of a bridge to the other.
     bridge: i32,
+    climb: f32,
 }
 
 impl Steps {
@@ -79,6 +83,7 @@ impl Steps {
             four: steps(rise(4.0) + NOISE_M),
             half: steps(0.3 * rise(4.0)),
             bridge: steps(0.7 * rise(4.0)),
+            climb: terrain.climb,
         }
     }
 }
@@ -116,7 +121,9 @@ pub fn row(heights: &Heights<'_>, steps: &Steps, y: i32, known: Row) -> Classes 
             }
         } else if heights.is_sunken(cell) {
             classes.negative |= bit;
-        } else if known.unknown() & bit != 0 && is_bridged(steps, bits) {
+        } else if known.unknown() & bit != 0
+            && (is_bridged(steps, bits) || glimpse::is_enough(heights, steps.climb, cell))
+        {
             classes.free |= bit;
         }
     }
@@ -160,9 +167,10 @@ fn is_well_known(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
 }
 
 /// Whether the nearest measured cells on both sides of a cell that was never measured lead over it gently, in three of the four directions
-/// at least and in all in which there are two, and nothing between them is known to be gone.
+/// at least and in all in which there are two, and nothing between them is known to be gone. Two heights may differ by `slack_m` for errors
+/// of the attitude alone.
 #[must_use]
-pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell) -> bool {
+pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell, slack_m: f32) -> bool {
     let reach = |dx: i32, dy: i32| {
         (1..=BROW).find_map(|far| {
             let near = Cell {
@@ -178,7 +186,7 @@ pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell) -> bool 
     for (dx, dy, cells) in [(1, 0, 1.0), (1, 1, 1.41), (0, 1, 1.0), (-1, 1, 1.41)] {
         if let (Some((there, high)), Some((here, low))) = (reach(dx, dy), reach(-dx, -dy)) {
             let way_m = (there + here) as f32 * cells * CELL_M;
-            let most_m = GENTLE * terrain.climb * way_m;
+            let most_m = GENTLE * terrain.climb * way_m + slack_m;
             ways += 1;
             let rise = high.zip(low).map(|(high, low)| high - low);
             let on = |cells: i32| Cell {
@@ -186,16 +194,19 @@ pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell) -> bool 
                 y: cell.y + cells * dy,
             };
             let step_m = cells * CELL_M;
+            // Over the longest of the ways that grades are measured on.
+            let blend = BLEND + slack_m / (FARTHEST * step_m);
             let blends = |rise_m: f32| {
                 let grade = rise_m / way_m;
                 let beyond = grade_on(heights, &on, there, 1, step_m);
                 let before = grade_on(heights, &on, -here, -1, step_m);
                 beyond
                     .zip(before)
-                    .is_some_and(|(a, b)| (a.min(b) - BLEND..=a.max(b) + BLEND).contains(&grade))
+                    .is_some_and(|(a, b)| (a.min(b) - blend..=a.max(b) + blend).contains(&grade))
             };
             gentle += i32::from(rise.is_some_and(|rise_m| {
-                rise_m.abs() <= most_m && (rise_m.abs() <= terrain.step_m || blends(rise_m))
+                rise_m.abs() <= most_m
+                    && (rise_m.abs() <= terrain.step_m + slack_m || blends(rise_m))
             }));
         }
     }

@@ -6,7 +6,8 @@
 //!
 //! A height is an [`I7F9`]: ±64 m around the start in steps of 2 mm. Beside it lies a byte of marks: how often the cell was
 //! measured, how sure it is that something stands in it, and whether the ground seems to be gone. Of a cell never measured the height says
-//! whether that is suspected.
+//! whether that is suspected. Ground met from too far off to be measured is glimpsed: it has a height of its own kind, counted and marked at
+//! once, which denies that the ground is gone and gives way to the first that is measured.
 //!
 //! The window owns no memory. A session on flat ground has no use for it, and one on uneven ground none for the counts of
 //! [`crate::map::Evidence`], so the heights lie in the latter's 8 KB and the marks in the last tiles of the map's pool.
@@ -32,7 +33,7 @@ const COUNT: u8 = 0x0f;
 const STANDING: u8 = 0x70;
 /// One hit of something that stands.
 const ONE_STANDING: u8 = 0x10;
-/// The ground seems to be gone.
+/// The ground seems to be gone; with a count, the height is but glimpsed.
 const SUNKEN: u8 = 0x80;
 /// Hits from which on something stands there: fewer are false returns.
 const SURE: u8 = 3;
@@ -52,6 +53,18 @@ pub struct Elevation<'a> {
     heights: &'a mut [[u8; 2]],
     marks: &'a mut [u8],
     origin: &'a mut Cell,
+}
+
+/// Whether a mark is of a height that is but glimpsed.
+#[inline(always)]
+const fn is_glimpse(mark: u8) -> bool {
+    mark & SUNKEN != 0 && mark & COUNT != 0
+}
+
+/// How often a cell of this mark was measured.
+#[inline(always)]
+const fn measured(mark: u8) -> u8 {
+    if is_glimpse(mark) { 0 } else { mark & COUNT }
 }
 
 /// Where a cell of the window at `origin` is stored; `None` outside of it.
@@ -94,7 +107,7 @@ impl<'a> Heights<'a> {
     #[must_use]
     pub fn fixed(&self, cell: Cell) -> Option<I7F9> {
         let slot = slot(self.origin, cell)?;
-        if self.mark(slot) & COUNT == 0 {
+        if measured(self.mark(slot)) == 0 {
             return None;
         }
         Some(I7F9::from_le_bytes(*self.heights.get(slot)?))
@@ -107,10 +120,17 @@ impl<'a> Heights<'a> {
         self.fixed(cell).map(metres)
     }
 
+    /// The mean height of a cell that was glimpsed and never measured, metres.
+    #[must_use]
+    pub fn glimpse_m(&self, cell: Cell) -> Option<f32> {
+        let slot = slot(self.origin, cell).filter(|&slot| is_glimpse(self.mark(slot)))?;
+        Some(metres(I7F9::from_le_bytes(*self.heights.get(slot)?)))
+    }
+
     /// How often a cell was measured, up to 15.
     #[must_use]
     pub fn count(&self, cell: Cell) -> u8 {
-        slot(self.origin, cell).map_or(0, |slot| self.mark(slot) & COUNT)
+        slot(self.origin, cell).map_or(0, |slot| measured(self.mark(slot)))
     }
 
     /// Whether something stands in a cell.
@@ -123,7 +143,7 @@ impl<'a> Heights<'a> {
     /// Whether the ground of a cell seems to be gone.
     #[must_use]
     pub fn is_sunken(&self, cell: Cell) -> bool {
-        slot(self.origin, cell).is_some_and(|slot| self.mark(slot) & SUNKEN != 0)
+        slot(self.origin, cell).is_some_and(|slot| self.mark(slot) & (COUNT | SUNKEN) == SUNKEN)
     }
 
     /// Whether the ground of a cell never measured is suspected to be gone, and not yet believed to be.
@@ -219,6 +239,32 @@ impl<'a> Elevation<'a> {
     /// counts for less, until it gives way, and where there was but one before, the lower one stays. Then the ground is not gone, and what stands there stands less surely. Outside the
     /// window nothing happens.
     pub fn measure(&mut self, cell: Cell, height_m: f32) {
+        self.forget_glimpse(cell);
+        self.average(cell, height_m);
+    }
+
+    /// Ground was met in a cell from too far off to measure it: into the mean of such, if it was never measured.
+    pub fn glimpse(&mut self, cell: Cell, height_m: f32) {
+        if self.read().count(cell) > 0 {
+            return;
+        }
+        self.average(cell, height_m);
+        if let Some(mark) = self.mark_mut(cell) {
+            *mark |= SUNKEN;
+        }
+    }
+
+    /// What was but glimpsed gives way.
+    fn forget_glimpse(&mut self, cell: Cell) {
+        if let Some(mark) = self.mark_mut(cell)
+            && is_glimpse(*mark)
+        {
+            *mark &= STANDING;
+        }
+    }
+
+    /// A height into the mean of a cell.
+    fn average(&mut self, cell: Cell, height_m: f32) {
         let Some(slot) = slot(*self.origin, cell) else {
             return;
         };
@@ -251,6 +297,7 @@ impl<'a> Elevation<'a> {
 
     /// Something was met that stands in a cell.
     pub fn stand(&mut self, cell: Cell) {
+        self.forget_glimpse(cell);
         if let Some(mark) = self.mark_mut(cell) {
             let standing = (*mark & STANDING).saturating_add(2 * ONE_STANDING);
             *mark = *mark & COUNT | standing.min(STANDING);
@@ -278,6 +325,7 @@ impl<'a> Elevation<'a> {
 
     /// The robot stands on a cell.
     pub fn tread(&mut self, cell: Cell, height_m: f32) {
+        self.forget_glimpse(cell);
         if let Some(mark) = self.mark_mut(cell) {
             *mark &= COUNT;
         }
@@ -398,6 +446,41 @@ mod tests {
         bench.window().suspect(other);
         bench.window().sink(other);
         assert!(!bench.read().is_suspect(other), "it is sure now");
+    }
+
+    #[test]
+    fn a_glimpse_denies_that_ground_is_gone_and_is_no_height() {
+        let mut bench = around_zero();
+        bench.window().sink(CELL);
+        bench.window().glimpse(CELL, -0.5);
+        bench.window().glimpse(CELL, -0.4);
+        bench.window().sink(CELL);
+        bench.window().suspect(CELL);
+        assert!(!bench.read().is_sunken(CELL) && !bench.read().is_suspect(CELL));
+        let glimpse_m = bench.read().glimpse_m(CELL).expect("glimpsed");
+        assert!((glimpse_m + 0.45).abs() < 0.002, "{glimpse_m}");
+        assert_eq!(bench.read().height_m(CELL), None);
+        assert_eq!(bench.read().count(CELL), 0);
+        // The first measured height counts alone, and later glimpses not at all.
+        bench.window().measure(CELL, 0.25);
+        bench.window().glimpse(CELL, 0.5);
+        assert_eq!(bench.read().height_m(CELL), Some(0.25));
+        assert_eq!(bench.read().count(CELL), 1);
+        assert_eq!(bench.read().glimpse_m(CELL), None);
+    }
+
+    #[test]
+    fn what_stands_or_is_stood_on_was_not_glimpsed() {
+        let mut bench = around_zero();
+        bench.window().glimpse(CELL, 0.0);
+        bench.window().stand(CELL);
+        bench.window().stand(CELL);
+        assert!(bench.read().is_standing(CELL));
+        assert_eq!(bench.read().height_m(CELL), None);
+        bench.window().glimpse(CELL, 0.0);
+        bench.window().tread(CELL, 0.125);
+        assert_eq!(bench.read().height_m(CELL), Some(0.125));
+        assert!(!bench.read().is_standing(CELL));
     }
 
     #[test]

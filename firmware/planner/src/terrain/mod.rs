@@ -13,6 +13,7 @@
 //! | [`ray`] | beams in three dimensions, from the tilted robot |
 //! | [`survey`] | beams into heights, and into marks where something stands or the ground is gone |
 //! | [`rooms`] | what level beams say through a doorway |
+//! | [`glimpse`] | ground met from too far off to be measured, and when that is enough |
 //! | [`classify`] | heights and marks into the map's classes |
 //! | [`preference`] | eqs. 3 to 5 and their hysteresis |
 //! | [`sidling`] | how far the robot leans aside on a slope, and which headings keep that within its limit |
@@ -26,6 +27,7 @@
 
 pub mod classify;
 pub mod elevation;
+pub mod glimpse;
 pub mod preference;
 pub mod ray;
 pub mod rooms;

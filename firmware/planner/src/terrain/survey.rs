@@ -24,6 +24,7 @@ use super::Terrain;
 use super::classify::leads_over;
 use super::elevation::{Elevation, WINDOW_SIDE};
 use super::ray::{Attitude, Mount, Ray};
+use super::tilt::Tilt;
 use crate::config::{Config, Laser};
 use crate::field::preference::KERNEL_CELLS;
 use crate::geometry::{CELL_M, Cell, Point};
@@ -64,6 +65,8 @@ const SETTLED_M: f32 = 0.9;
 const RIM_M: f32 = 0.6;
 /// What a beam meets begins where the beam ends and lies behind: so much farther on it is marked, metres, three deviations of a range.
 const BEHIND_M: f32 = 0.03;
+/// Ground is glimpsed so many times as far off as it is measured.
+const GLIMPSE: f32 = 2.0;
 /// The share of the kernel that must be measured for its mean to count.
 const ENOUGH: u16 = 8;
 
@@ -85,6 +88,8 @@ pub struct Survey<'a, 'm> {
     robot_z_m: f32,
     /// Heights are measured within this distance, metres.
     reach_m: f32,
+    /// Two heights may differ by so much for errors of the attitude alone, metres.
+    slack_m: f32,
 }
 
 impl<'a, 'm> Survey<'a, 'm> {
@@ -99,13 +104,15 @@ impl<'a, 'm> Survey<'a, 'm> {
             robot: input.pose.point(),
             robot_z_m: input.pose.z_m,
             reach_m: f32::INFINITY,
+            slack_m: 0.0,
         }
     }
 
-    /// The survey that measures no height farther off than this, metres.
+    /// The survey of an attitude that is believed so far.
     #[must_use]
-    pub const fn within(mut self, reach_m: f32) -> Self {
-        self.reach_m = reach_m;
+    pub fn believing(mut self, tilt: &Tilt) -> Self {
+        self.reach_m = tilt.reach_m();
+        self.slack_m = tilt.slack_m();
         self
     }
 
@@ -192,6 +199,8 @@ impl<'a, 'm> Survey<'a, 'm> {
         let linked = gap_m <= LINKED_M || (!level && rise_m.abs() <= self.terrain.climb * gap_m);
         if linked && ray.length_m < self.reach_m {
             self.elevation.measure(cell, z_m);
+        } else if linked && ray.length_m < GLIMPSE * self.reach_m {
+            self.elevation.glimpse(cell, z_m);
         }
     }
 
@@ -326,7 +335,9 @@ impl<'a, 'm> Survey<'a, 'm> {
             for x in middle.x - reach..=middle.x + reach {
                 let cell = Cell { x, y };
                 let heights = self.elevation.read();
-                if heights.is_suspect(cell) && !leads_over(&heights, self.terrain, cell) {
+                if heights.is_suspect(cell)
+                    && !leads_over(&heights, self.terrain, cell, self.slack_m)
+                {
                     self.elevation.sink(cell);
                 }
             }

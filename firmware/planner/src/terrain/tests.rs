@@ -201,13 +201,13 @@ fn a_corner_is_not_led_over_and_a_gap_is() {
             window.measure(cell, 0.0);
         }
         let asked = Cell { x: 2, y: 2 };
-        let leads = classify::leads_over(&window.read(), &Terrain::TABLE_I, asked);
+        let leads = classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, 0.0);
         assert_eq!(leads, expected, "corner: {corner}");
     }
 }
 
 /// Ground by the column, with a gap of eight cells that was never measured; whether the gap is led over in its middle.
-fn leads_over_gap(height_m: impl Fn(f32) -> f32) -> bool {
+fn leads_over_gap(slack_m: f32, height_m: impl Fn(f32) -> f32) -> bool {
     let mut heights = std::vec![0; 2 * WINDOW_CELLS];
     let mut marks = std::vec![0; WINDOW_CELLS];
     let mut origin = Cell::default();
@@ -218,16 +218,34 @@ fn leads_over_gap(height_m: impl Fn(f32) -> f32) -> bool {
         window.measure(cell, height_m(cell.centre().x_m));
     }
     let asked = Cell { x: 4, y: 2 };
-    classify::leads_over(&window.read(), &Terrain::TABLE_I, asked)
+    classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, slack_m)
 }
 
 /// From above both look alike across the gap, a fifth of a metre down; beside it they do not.
 #[test]
 fn a_brow_is_led_over_and_a_kerb_in_a_gap_is_not() {
-    assert!(leads_over_gap(|x| -0.15 * x * x.max(0.0)), "a brow");
-    assert!(leads_over_gap(|x| -0.2 * x), "a slope");
-    assert!(!leads_over_gap(|x| if x > 0.4 { -0.2 } else { 0.0 }));
-    assert!(leads_over_gap(|x| if x > 0.4 { -0.05 } else { 0.0 }), "low");
+    let leads = |height_m: fn(f32) -> f32| leads_over_gap(0.0, height_m);
+    assert!(leads(|x| -0.15 * x * x.max(0.0)), "a brow");
+    assert!(leads(|x| -0.2 * x), "a slope");
+    assert!(!leads(|x| if x > 0.4 { -0.2 } else { 0.0 }));
+    assert!(leads(|x| if x > 0.4 { -0.05 } else { 0.0 }), "low");
+}
+
+/// A slope of 0.2 that the attitude's errors lift by 4 cm before the gap and let down by 4 cm behind it.
+#[test]
+fn errors_of_the_attitude_do_not_make_ground_be_gone() {
+    let lift_m = |x: f32| {
+        if (-0.2..=1.0).contains(&x) {
+            -0.04 * x.signum()
+        } else {
+            0.0
+        }
+    };
+    let slope = |x: f32| -0.2 * x + lift_m(x);
+    let steep = |x: f32| if x > 0.4 { -0.5 } else { 0.0 };
+    assert!(!leads_over_gap(0.0, slope));
+    assert!(leads_over_gap(0.085, slope));
+    assert!(!leads_over_gap(0.085, steep), "a drop of half a metre");
 }
 
 #[test]

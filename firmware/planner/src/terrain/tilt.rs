@@ -4,7 +4,7 @@
 //! g      slope of the robot's plane in the world: turning on the spot does not change it
 //! j      ← j + (|g − 2 g' + g''| − j) / n,    n = min(steps so far, MOST_STEPS)      g', g'': one and two steps ago
 //! sigma  = j / (√6 √(2/π))              what noise from step to step gives; motion does not, it is smooth
-//! ĝ      ← ĝ + GAIN (g − ĝ)             while |g − ĝ| < 3 sigma, else ĝ ← g
+//! ĝ      ← ĝ + GAIN (g − ĝ)             while |g − ĝ| < MOTION sigma, else ĝ ← g
 //! reach  = ERROR_M / (√(GAIN / (2 − GAIN)) sigma)
 //! ```
 //!
@@ -30,8 +30,11 @@ const MOST_STEPS: u8 = 100;
 const CALM: f32 = 0.0026;
 /// What the attitude may lift the end of a beam by, metres.
 const ERROR_M: f32 = 0.03;
-/// A difference of more deviations than this is motion.
-const MOTION: f32 = 3.0;
+/// Two deviations of a difference of two heights that each err by [`ERROR_M`], metres.
+const SLACK_M: f32 = 2.0 * core::f32::consts::SQRT_2 * ERROR_M;
+/// A difference of more deviations of a single slope than this is motion. That is 4.3 of the difference's own, √(1 + SMOOTHED²): at three, one
+/// step in fifty would be taken for motion, and these steps, believed as they come, would be just those that err most.
+const MOTION: f32 = 5.0;
 
 /// The filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -86,6 +89,12 @@ impl Tilt {
         } else {
             ERROR_M / (SMOOTHED * self.sigma())
         }
+    }
+
+    /// What two heights may differ by for the attitude alone, metres: two deviations, at the reach.
+    #[must_use]
+    pub fn slack_m(&self) -> f32 {
+        if self.is_calm() { 0.0 } else { SLACK_M }
     }
 
     /// Standard deviation of a single slope.
@@ -199,6 +208,22 @@ mod tests {
         let (before, after): (f32, f32) = (before / count, after / count);
         assert!(before.sqrt() > 0.05, "{before}");
         assert!(after < 0.5 * before, "{after} of {before}");
+    }
+
+    /// The sweeps that err most decide how many edges the map has that are none.
+    #[test]
+    fn the_worst_of_many_attitudes_is_not_believed() {
+        let sigma = 1.0_f32.to_radians();
+        let (mut tilt, mut seed) = (Tilt::new(), 11);
+        let mut worst = 0.0_f32;
+        for step in 0..5_000 {
+            let believed = tilt.note(&noisy(Pose::default(), sigma, &mut seed));
+            if step > 100 {
+                worst = worst.max(believed.roll_rad.abs().max(believed.pitch_rad.abs()));
+            }
+        }
+        // Of 10,000 numbers that are normal the largest is of about 3.9 deviations.
+        assert!(worst < 4.5 * SMOOTHED * sigma, "{}", worst.to_degrees());
     }
 
     #[test]
