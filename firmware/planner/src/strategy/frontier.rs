@@ -94,6 +94,8 @@ pub struct Frontier {
     lookouts: u8,
     /// It could not go on where it stood, and barred what lies ahead.
     stopped: bool,
+    /// The storey from which the present goal is preferred most, of those that the robot was on since it took it, metres.
+    storey_m: f32,
 }
 
 /// What is known of the space, for a round of planning.
@@ -155,6 +157,7 @@ impl Frontier {
             lookout: None,
             lookouts: 0,
             stopped: false,
+            storey_m: 0.0,
         }
     }
 
@@ -234,6 +237,7 @@ impl Frontier {
             Some(road) if !is_late && is_far(&road) => {
                 self.patience.note_motion(robot, time_ms);
                 (self.lookout, self.empty_rounds) = (None, 0);
+                self.note_storey(known, road.goal());
                 self.road = road;
                 (Outlook::Road, true)
             }
@@ -264,6 +268,7 @@ impl Frontier {
         self.patience.note_motion(robot, time_ms);
         if let Some(road) = road {
             (self.lookout, self.empty_rounds) = (None, 0);
+            self.note_storey(known, road.goal());
             self.road = road;
         } else if let Some((lookout, road)) = self.road_to_lookout(known, robot, &mut lent) {
             let along_centre = road.steps();
@@ -538,10 +543,7 @@ impl Frontier {
         let mut any = false;
         let mut wave = Wavefront::new();
         wave.start(space);
-        let level = |cell| match &known.levels {
-            Some(levels) => levels.of(known.tiles, cell),
-            None => 0,
-        };
+        let level = |cell| self.level_of(known, cell);
         let frame = known.topology.frame();
         let present = goals
             .sites()
@@ -573,12 +575,50 @@ impl Frontier {
         any
     }
 
+    /// How much later a frontier cell starts for its height. The present goal counts by the storey from which it is preferred most, of those
+    /// that the robot was on since it took it: on its way it crosses others, and what is preferred from there would turn it about, and from beyond them
+    /// again. So steps and level of the present goal together only become fewer, and no two goals draw the robot to and fro. A goal that recedes up or
+    /// down a slope is judged by its height where it is now.
+    fn level_of<const TILES: usize, const SLOTS: usize>(
+        &self,
+        known: &Known<'_, TILES, SLOTS>,
+        cell: Cell,
+    ) -> u32 {
+        let Some(levels) = &known.levels else {
+            return 0;
+        };
+        let level = levels.of(known.tiles, cell);
+        if level > 0 && self.is_present(cell) {
+            level.min(levels.from(self.storey_m).of(known.tiles, cell))
+        } else {
+            level
+        }
+    }
+
+    /// A goal is taken, or kept: from here if it is another one, or no less preferred from here.
+    fn note_storey<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        known: &Known<'_, TILES, SLOTS>,
+        goal: Cell,
+    ) {
+        let Some(levels) = &known.levels else {
+            return;
+        };
+        if !self.is_present(goal) || levels.of(known.tiles, goal) <= self.level_of(known, goal) {
+            self.storey_m = levels.storey_m;
+        }
+    }
+
+    /// Whether a cell is beside the present goal.
+    fn is_present(&self, cell: Cell) -> bool {
+        !self.road.is_empty() && near(self.road.goal(), cell, 2.0 * DROP_RADIUS_M)
+    }
+
     /// In which order frontier cells of one storey start; `None` for one that was dropped.
     fn rank(&self, goals: Plane<'_>, site: Site, cell: Cell) -> Option<usize> {
-        let present = !self.road.is_empty() && near(self.road.goal(), cell, 2.0 * DROP_RADIUS_M);
         if self.is_gone(cell) {
             None
-        } else if present {
+        } else if self.is_present(cell) {
             Some(0)
         } else {
             Some(1 + usize::from(company(goals, site) < SMALL_COMPANY))

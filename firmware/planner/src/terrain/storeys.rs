@@ -211,6 +211,12 @@ pub struct Levels<'a, const TILES: usize> {
 }
 
 impl<const TILES: usize> Levels<'_, TILES> {
+    /// As they are from another storey.
+    #[must_use]
+    pub const fn from(&self, storey_m: f32) -> Self {
+        Self { storey_m, ..*self }
+    }
+
     /// The level of a goal, at most [`MOST_LEVEL`]; 0 where its height is not known.
     #[must_use]
     pub fn of<const SLOTS: usize>(&self, tiles: &Tiles<TILES, SLOTS>, goal: Cell) -> u32 {

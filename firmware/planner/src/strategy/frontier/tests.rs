@@ -55,36 +55,43 @@ fn storeys(tiles: &Tiles<24, 64>) -> Box<Storeys<24>> {
 
 /// The x of the goal that a robot at x = 0 takes, where its storey is so high; without heights for `None`.
 fn goal(storey_m: Option<f32>) -> i32 {
+    goals([storey_m])[0]
+}
+
+/// The x of the goals that it takes one after the other, if its storey changes.
+fn goals<const N: usize>(storeys_m: [Option<f32>; N]) -> [i32; N] {
     let tiles = corridor();
     let storeys = storeys(&tiles);
     let disc = Disc::new(0.3);
     let mut topology = Box::new(Topology::<64>::new());
     topology.reset(Space::KnownFree);
     while !topology.advance(&tiles, &disc, u32::MAX) {}
-    let known = Known {
-        topology: &topology,
-        tiles: &tiles,
-        disc: &disc,
-        levels: storey_m.map(|storey_m| Levels {
-            storeys: &storeys,
-            terrain: &Terrain::TABLE_I,
-            storey_m,
-        }),
-    };
     let (mut residues, mut ring) = (vec![[0; 2]; 64 * 8], vec![0; 1024]);
     let mut view = View::new();
-    let lent = Lent {
-        residues: &mut residues,
-        ring: &mut ring,
-        view: &mut view,
-    };
     let mut frontier = Frontier::new();
     let robot = Point {
         x_m: 0.05,
         y_m: 0.05,
     };
-    assert_eq!(frontier.replan(&known, robot, 0, lent), Outlook::Road);
-    frontier.road().goal().x
+    storeys_m.map(|storey_m| {
+        let known = Known {
+            topology: &topology,
+            tiles: &tiles,
+            disc: &disc,
+            levels: storey_m.map(|storey_m| Levels {
+                storeys: &storeys,
+                terrain: &Terrain::TABLE_I,
+                storey_m,
+            }),
+        };
+        let lent = Lent {
+            residues: &mut residues,
+            ring: &mut ring,
+            view: &mut view,
+        };
+        assert_eq!(frontier.replan(&known, robot, 0, lent), Outlook::Road);
+        frontier.road().goal().x
+    })
 }
 
 #[test]
@@ -99,6 +106,16 @@ fn the_nearer_goal_waits_if_it_lies_on_another_storey() {
     assert!(near(goal(Some(-0.9)), west), "it is the robot's storey");
     assert!(near(goal(Some(-0.45)), west), "as far off as the other one");
 }
+
+#[test]
+fn a_goal_is_not_left_for_the_storeys_on_the_way_to_it() {
+    let [west, east] = ENDS;
+    let all_near = |goals: [i32; 3], end: i32| goals.iter().all(|goal| (goal - end).abs() <= 3);
+    // To a fresh eye the second storey's goal is the other one each time.
+    let from_above = goals([0.0, -0.45, 0.0].map(Some));
+    assert!(all_near(from_above, east), "{from_above:?}");
+    let from_below = goals([-0.9, 0.0, 0.0].map(Some));
+    assert!(all_near(from_below, west), "{from_below:?}");
 
 /// A corridor to the east, closed in the west, and a way round from x = 4 to 60 cells, 4 m to the north.
 fn corridor_with_a_way_round() -> Box<Tiles<24, 64>> {
