@@ -39,6 +39,8 @@ const BLIND_M: f32 = 1.35;
 const STANCE_M: f32 = 0.25;
 /// Errors of a height, from attitude, range and the cell's own extent, metres.
 const SLACK_M: f32 = 0.10;
+/// What rises more steeply than may be climbed, and by so much more, is no ground, metres.
+const FOOT_M: f32 = 0.03;
 /// From one sample of a beam's way over ground to the next, metres.
 const SAMPLE_M: f32 = CELL_M;
 /// Farther than this from the robot the window may end, metres.
@@ -196,6 +198,11 @@ impl<'a, 'm> Survey<'a, 'm> {
                 return;
             }
         }
+        let cell = if rise_m > self.terrain.climb * gap_m + FOOT_M {
+            self.foot(ray).unwrap_or(cell)
+        } else {
+            cell
+        };
         let linked = gap_m <= LINKED_M || (!level && rise_m.abs() <= self.terrain.climb * gap_m);
         if linked && ray.length_m < self.reach_m {
             self.elevation.measure(cell, z_m);
@@ -240,6 +247,14 @@ impl<'a, 'm> Survey<'a, 'm> {
             s_m: 0.1,
             height_m: self.robot_z_m,
         }
+    }
+
+    /// The cell of what stands where a beam ends, if something is known to stand there: the beam met its foot, which raises no ground before it.
+    fn foot(&self, ray: &Ray) -> Option<Cell> {
+        let heights = self.elevation.read();
+        let behind = |far_m: f32| ray.at(ray.length_m + far_m).cell();
+        let stands = heights.is_standing(behind(BEHIND_M)) || heights.is_standing(behind(CELL_M));
+        stands.then(|| behind(BEHIND_M))
     }
 
     /// Obstacle (a) or (b), of something steep.

@@ -116,6 +116,7 @@ fn a_goal_is_not_left_for_the_storeys_on_the_way_to_it() {
     assert!(all_near(from_above, east), "{from_above:?}");
     let from_below = goals([-0.9, 0.0, 0.0].map(Some));
     assert!(all_near(from_below, west), "{from_below:?}");
+}
 
 /// A corridor to the east, closed in the west, and a way round from x = 4 to 60 cells, 4 m to the north.
 fn corridor_with_a_way_round() -> Box<Tiles<24, 64>> {
