@@ -53,6 +53,10 @@ const BLOCKED_M: f32 = 0.12;
 /// Where ground that stops the robot lies on uneven ground, if it was never measured: between its front and where the tilted beams meet
 /// level ground, metres.
 const FRONT_M: f32 = 0.8;
+/// A while, milliseconds: half a turn.
+const WHILE_MS: u32 = 5_000;
+/// A robot that has stood for so many whiles on uneven ground looks around: two ways were barred by then.
+const WHILES_AT_A_LOSS: u32 = 5;
 /// A goal that is higher or lower by less lies level with the robot, metres: what a block of heights is rounded by, and as much again.
 const LEVEL_M: f32 = 0.2;
 
@@ -741,11 +745,30 @@ fn steer<const TILES: usize, const SLOTS: usize>(
         state.strategy.frontier.note_flat();
         Twist::default()
     };
+    let velocity = if is_at_a_loss(state, velocity, input.time_ms) {
+        state.drive.look_around(config, &surround, input.velocity)
+    } else {
+        velocity
+    };
     Output {
         velocity: within_limits(config, velocity),
         heading_rad: math::wrap(input.pose.yaw_rad + here.unwrap_or(0.0)),
         ..Output::default()
     }
+}
+
+/// Whether the robot has stood for long and still does, on uneven ground: what it has not measured it may see when it turns. It does so every
+/// second while, and searches for a manoeuvre between.
+fn is_at_a_loss<const TILES: usize, const SLOTS: usize>(
+    state: &State<TILES, SLOTS>,
+    velocity: Twist,
+    time_ms: u32,
+) -> bool {
+    let whiles = state.strategy.frontier.standing_ms(time_ms) / WHILE_MS;
+    matches!(state.around, Around::Storeys(_))
+        && velocity == Twist::default()
+        && whiles >= WHILES_AT_A_LOSS
+        && whiles % 2 == 1
 }
 
 /// Whether the road's goal lies clearly higher or lower than the robot, as far as its height is known.

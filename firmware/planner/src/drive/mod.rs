@@ -151,6 +151,8 @@ impl Drive {
 
     /// Turn on the spot to see what is around, as far as there is room, to one side and then to the other.
     pub fn look_around(&mut self, config: &Config, surround: &Surround, now: Twist) -> Twist {
+        // A search is for where the robot stands.
+        self.search = None;
         for _ in 0..2 {
             let turn = Twist {
                 linear_mps: 0.0,

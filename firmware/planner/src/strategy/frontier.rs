@@ -162,6 +162,12 @@ impl Frontier {
         core::mem::replace(&mut self.stopped, false)
     }
 
+    /// How long the robot has stood about where it stands, milliseconds.
+    #[must_use]
+    pub const fn standing_ms(&self, time_ms: u32) -> u32 {
+        self.patience.standing_ms(time_ms)
+    }
+
     /// What the last bar was put up for is gone.
     pub fn lift_bar(&mut self) {
         self.bars.pop();

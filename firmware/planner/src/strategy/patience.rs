@@ -77,6 +77,8 @@ pub(super) struct Patience {
     stood: Point,
     stood_ms: u32,
     stood_bars: u8,
+    /// When it last moved, whatever was barred since.
+    moved_ms: u32,
     /// It moved since the second chance began.
     moved: bool,
     /// The window had no way to the local goal since the last round, and in how many rounds before.
@@ -92,6 +94,7 @@ impl Patience {
             stood: Point { x_m: 0.0, y_m: 0.0 },
             stood_ms: 0,
             stood_bars: 0,
+            moved_ms: 0,
             moved: false,
             flat: false,
             flat_rounds: 0,
@@ -107,8 +110,13 @@ impl Patience {
         let (dx, dy) = (robot.x_m - self.stood.x_m, robot.y_m - self.stood.y_m);
         if dx * dx + dy * dy > MOVED_M * MOVED_M {
             (self.stood, self.stood_ms, self.stood_bars) = (robot, time_ms, 0);
-            self.moved = true;
+            (self.moved, self.moved_ms) = (true, time_ms);
         }
+    }
+
+    /// How long the robot has stood about where it stands, milliseconds.
+    pub(super) const fn standing_ms(&self, time_ms: u32) -> u32 {
+        time_ms.saturating_sub(self.moved_ms)
     }
 
     /// Nothing is known of the way to this goal any more.
@@ -254,5 +262,20 @@ mod tests {
             patience.stood_ms = 500 * k;
             assert_eq!(patience.judge(FAR, 60, 500 * k), Verdict::GoOn);
         }
+    }
+
+    #[test]
+    fn a_robot_stands_from_its_last_move_on_whatever_is_barred() {
+        let mut patience = Patience::new();
+        let here = Point { x_m: 1.0, y_m: 0.0 };
+        let mut barred = 0;
+        for k in 1..=100 {
+            patience.note_motion(here, 500 * k);
+            barred += u32::from(patience.judge(FAR, 40, 500 * k) == Verdict::BarAhead);
+            assert_eq!(patience.standing_ms(500 * k), 500 * (k - 1));
+        }
+        assert_eq!(barred, 3, "one in 14 s");
+        patience.note_motion(Point { x_m: 1.4, y_m: 0.0 }, 60_000);
+        assert_eq!(patience.standing_ms(61_000), 1_000);
     }
 }
