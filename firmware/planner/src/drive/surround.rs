@@ -17,6 +17,7 @@ use crate::config::Config;
 use crate::geometry::{CELL_M, Point, Pose, Twist};
 use crate::math;
 use crate::near::MOST_POINTS;
+use crate::terrain::survey::BEHIND_M;
 
 /// Half the 3-AT's length, metres.
 pub const HALF_LENGTH_M: f32 = 0.254;
@@ -220,7 +221,7 @@ impl Surround {
     }
 
     /// Keep off cells (their middles) on all sides, as the robot leans, by half a cell more than their middles say: any part of one may be what is not to be
-    /// touched.
+    /// touched, and what stands there may begin as much before it as beams' ends are marked behind.
     pub fn keep_off(&mut self, pose: &Pose, cells: impl Iterator<Item = Point>) {
         let frame = Frame::of(pose);
         self.hull = Hull::leaning(pose);
@@ -228,7 +229,7 @@ impl Surround {
         for cell in cells {
             let at = frame.within(cell);
             let away = math::sqrt(at.x_m * at.x_m + at.y_m * at.y_m);
-            let part = ((away - 0.5 * CELL_M) / away.max(1e-3)).max(0.0);
+            let part = ((away - 0.5 * CELL_M - BEHIND_M) / away.max(1e-3)).max(0.0);
             let at = Point {
                 x_m: at.x_m * part,
                 y_m: at.y_m * part,

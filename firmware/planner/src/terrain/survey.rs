@@ -10,7 +10,7 @@
 //! | below what the ground at K leads to expect, and the beam just passes over K | a rim at K: what lies between is gone |
 //! | that, and `dh < h_hole` | gone, P itself as well |
 //! | `dh < h_hole`, but the beam comes down no more steeply than a slope may | a rim at K is suspected: gone if it is not measured by the time that the robot is near |
-//! | else, with K near enough | ground |
+//! | else, with K near enough | ground; of what rises too steeply before what stands, the foot of that |
 //!
 //! Departs from [Maffei-Terrain, III-B] in three ways. (1) Obstacle (a) must also be steep, because level beams meet every slope that
 //! rises. (2) The paper's rule for holes, `h − h_robot < h_hole`, calls everything behind the brow of a long slope a hole, and misses a
@@ -66,7 +66,7 @@ const SETTLED_M: f32 = 0.9;
 /// Behind a rim so much is marked, metres; what lies farther behind may be seen from elsewhere.
 const RIM_M: f32 = 0.6;
 /// What a beam meets begins where the beam ends and lies behind: so much farther on it is marked, metres, three deviations of a range.
-const BEHIND_M: f32 = 0.03;
+pub const BEHIND_M: f32 = 0.03;
 /// Ground is glimpsed so many times as far off as it is measured.
 const GLIMPSE: f32 = 2.0;
 /// The share of the kernel that must be measured for its mean to count.
