@@ -15,7 +15,7 @@ fn the_emulated_chip_closes_loops_as_the_host_does() {
         return;
     };
     let world = worlds::builtin("tdbvp-nested");
-    in_parallel(&[OUROBOROS, TDBVP], |&strategy| {
+    let _ = in_parallel(&[OUROBOROS, TDBVP], |&strategy| {
         let run = Run {
             world: &world,
             strategy,

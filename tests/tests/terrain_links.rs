@@ -45,7 +45,7 @@ fn the_emulated_chip_explores_uneven_ground_as_the_host_does() {
     let Some(image) = emulator::image() else {
         return;
     };
-    in_parallel(&WORLDS, |name| on_both(name, &image));
+    let _ = in_parallel(&WORLDS, |name| on_both(name, &image));
 }
 
 #[test]
