@@ -20,9 +20,10 @@ use crate::bits::ones;
 use crate::config::Laser;
 use crate::drive::surround::{HALF_LENGTH_M, HALF_WIDTH_M};
 use crate::geometry::{CELL_M, Cell, Point, Pose};
-use crate::map::Tiles;
 use crate::map::integrate::{informative_range_mm, level_beams, sensor_point};
+use crate::map::{Class, Tiles};
 use crate::math;
+use crate::terrain::survey::BEHIND_M;
 
 /// Points kept at the most.
 pub const MOST_POINTS: usize = 256;
@@ -182,6 +183,17 @@ pub fn rim_cells<const TILES: usize, const SLOTS: usize>(
         (here | here >> 2 | free(-1) >> 1 | free(1) >> 1) & !(here >> 1)
     };
     cells_around(robot, rims).map(Cell::centre)
+}
+
+/// The same, each with how far before its cell what is there may begin, metres: as far as beams' ends are marked behind, where something stands.
+pub fn rims<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    robot: Point,
+) -> impl Iterator<Item = (Point, f32)> + '_ {
+    rim_cells(tiles, robot).map(|at| match tiles.class(at.cell()) {
+        Class::Obstacle => (at, BEHIND_M),
+        _ => (at, 0.0),
+    })
 }
 
 /// The cells within reach behind the robot, and as far to all sides, that `of` has: bit k of `of(x, y)` is cell (x + k, y).

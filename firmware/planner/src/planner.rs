@@ -710,7 +710,7 @@ fn steer<const TILES: usize, const SLOTS: usize>(
             surround.remember(&input.pose, cells);
         }
         Around::Storeys(_) => {
-            let rims = near::rim_cells(state.map.tiles(), input.pose.point());
+            let rims = near::rims(state.map.tiles(), input.pose.point());
             surround.keep_off(&input.pose, rims);
         }
     }

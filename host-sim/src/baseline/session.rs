@@ -265,7 +265,7 @@ impl<P: Plan> Session<P> {
             return Surround::new(pose, self.near.points());
         }
         let mut surround = Surround::empty();
-        surround.keep_off(pose, near::rim_cells(self.map.tiles(), pose.point()));
+        surround.keep_off(pose, near::rims(self.map.tiles(), pose.point()));
         surround
     }
 

@@ -17,7 +17,6 @@ use crate::config::Config;
 use crate::geometry::{CELL_M, Point, Pose, Twist};
 use crate::math;
 use crate::near::MOST_POINTS;
-use crate::terrain::survey::BEHIND_M;
 
 /// Half the 3-AT's length, metres.
 pub const HALF_LENGTH_M: f32 = 0.254;
@@ -221,15 +220,15 @@ impl Surround {
     }
 
     /// Keep off cells (their middles) on all sides, as the robot leans, by half a cell more than their middles say: any part of one may be what is not to be
-    /// touched, and what stands there may begin as much before it as beams' ends are marked behind.
-    pub fn keep_off(&mut self, pose: &Pose, cells: impl Iterator<Item = Point>) {
+    /// touched; and by so much more as is said of each, metres.
+    pub fn keep_off(&mut self, pose: &Pose, cells: impl Iterator<Item = (Point, f32)>) {
         let frame = Frame::of(pose);
         self.hull = Hull::leaning(pose);
         self.threats.clear();
-        for cell in cells {
+        for (cell, more_m) in cells {
             let at = frame.within(cell);
             let away = math::sqrt(at.x_m * at.x_m + at.y_m * at.y_m);
-            let part = ((away - 0.5 * CELL_M - BEHIND_M) / away.max(1e-3)).max(0.0);
+            let part = ((away - 0.5 * CELL_M - more_m) / away.max(1e-3)).max(0.0);
             let at = Point {
                 x_m: at.x_m * part,
                 y_m: at.y_m * part,
