@@ -29,6 +29,9 @@ use host_sim::world::World;
 const LEAST_COVERAGE: f64 = 0.97;
 /// Seeds of every world in the full table.
 const SEEDS: usize = 10;
+/// A world drawn by others without a barrier but the wall around it, and per cent of its cells that may ever be taken for one.
+const OPEN_GROUND: &str = "mvsim_mesh1";
+const MOST_BARRIERS: f64 = 0.5;
 /// Seeds of every start in the comparison of preferences.
 const SLOPE_SEEDS: u64 = 3;
 
@@ -320,7 +323,7 @@ fn uneven_worlds_drawn_by_others() {
             format!("{:.1}", report.terrain.unwrap_or_default().over_limits_s),
         ]);
     }
-    let runs: Vec<Told> = watched.into_iter().map(|(told, _)| told).collect();
+    let (runs, shares): (Vec<Told>, Vec<[f64; 2]>) = watched.into_iter().unzip();
     let text = format!(
         "Means.\n\n{}\nEvery run.\n\n{}\n{ever}\n{}",
         uneven::means(&runs),
@@ -328,10 +331,13 @@ fn uneven_worlds_drawn_by_others() {
         truths(&runs)
     );
     golden::compare("terrain-data.txt", &text);
-    // How much of them is known within the time limit is a result, in the table.
-    for Told { report, .. } in &runs {
-        let safety = &report.safety;
-        let harm = safety.collisions + safety.falls + safety.tips;
-        assert_eq!(harm, 0, "{} seed {}", report.world, report.seed);
+    assert_explored(&runs);
+    // Open ground, whose slopes are all gentle.
+    for (told, [all, _]) in runs.iter().zip(&shares) {
+        let (world, seed) = (&told.report.world, told.report.seed);
+        assert!(
+            world != OPEN_GROUND || *all < MOST_BARRIERS,
+            "{world} seed {seed}: {all} % were ever a barrier"
+        );
     }
 }
