@@ -2,8 +2,10 @@
 //! [Ouroboros, Algorithm 1, lines 3, 4, 24].
 //!
 //! ```text
-//! starts after:  0 beside the present goal | 10 a large frontier's | 22 a small one's     + 50 · level     ([`crate::terrain::storeys`])
+//! starts after:  0 beside the present goal | 10 a large frontier's | 22 a small one's     + 50 · level
 //! ```
+//!
+//! with the level of [`crate::terrain::storeys`].
 //!
 //! Where heights are preferred, a road that goes by another storey gives way to one that keeps to its own, if that is no longer than what goals
 //! so far off the storey are put back by. Units: map cells, coarse steps of 20 cm.
@@ -62,8 +64,8 @@ impl Frontier {
         )
     }
 
-    /// A way to a goal that leaves the storey no farther than the robot and the goal do, for a road that leaves it farther; if there is one
-    /// that is no longer than what goals so far off the storey are put back by.
+    /// For a road that leaves the storey much farther than its goal does, a way along centre cells that leave it no farther than that (or by one
+    /// level); if there is one that is no longer than what goals so far off the storey are put back by.
     fn keep_to_storey<const TILES: usize, const SLOTS: usize>(
         &self,
         road: &Road,
