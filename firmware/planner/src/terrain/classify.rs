@@ -17,7 +17,7 @@
 use fixed::types::I7F9;
 
 use super::Terrain;
-use super::elevation::{Heights, WINDOW_SIDE};
+use super::elevation::{Ground, Heights, WINDOW_SIDE};
 use super::glimpse;
 use crate::geometry::{CELL_M, Cell};
 use crate::map::rows::Row;
@@ -167,50 +167,52 @@ fn is_well_known(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
 }
 
 /// Whether the nearest measured cells on both sides of a cell that was never measured lead over it gently, in three of the four directions
-/// at least and in all in which there are two, and nothing between them is known to be gone. Two heights may differ by `slack_m` for errors
-/// of the attitude alone.
+/// at least and in all in which there are two, and nothing between them is gone; what is but held to be gone tells nothing if there is `doubt`
+/// of that. Two heights may differ by `slack_m` for errors of the attitude alone.
 #[must_use]
-pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell, slack_m: f32) -> bool {
-    let reach = |dx: i32, dy: i32| {
-        (1..=BROW).find_map(|far| {
-            let near = Cell {
-                x: cell.x + far * dx,
-                y: cell.y + far * dy,
-            };
-            let stops = heights.is_sunken(near) || heights.is_standing(near);
-            let height = heights.height_m(near);
-            (stops || height.is_some()).then_some((far, height.filter(|_| !stops)))
-        })
+pub fn leads_over(
+    heights: &Heights<'_>,
+    terrain: &Terrain,
+    cell: Cell,
+    (slack_m, doubt): (f32, bool),
+) -> bool {
+    let ground = |cell: Cell| {
+        heights
+            .ground(cell)
+            .filter(|ground| !(doubt && *ground == Ground::Doubtful))
     };
-    let (mut ways, mut gentle) = (0, 0);
+    let mut ways = 0;
     for (dx, dy, cells) in [(1, 0, 1.0), (1, 1, 1.41), (0, 1, 1.0), (-1, 1, 1.41)] {
-        if let (Some((there, high)), Some((here, low))) = (reach(dx, dy), reach(-dx, -dy)) {
-            let way_m = (there + here) as f32 * cells * CELL_M;
-            let most_m = GENTLE * terrain.climb * way_m + slack_m;
-            ways += 1;
-            let rise = high.zip(low).map(|(high, low)| high - low);
-            let on = |cells: i32| Cell {
-                x: cell.x + cells * dx,
-                y: cell.y + cells * dy,
-            };
-            let step_m = cells * CELL_M;
-            // Over the longest of the ways that grades are measured on.
-            let blend = BLEND + slack_m / (FARTHEST * step_m);
-            let blends = |rise_m: f32| {
-                let grade = rise_m / way_m;
-                let beyond = grade_on(heights, &on, there, 1, step_m);
-                let before = grade_on(heights, &on, -here, -1, step_m);
-                beyond
-                    .zip(before)
-                    .is_some_and(|(a, b)| (a.min(b) - blend..=a.max(b) + blend).contains(&grade))
-            };
-            gentle += i32::from(rise.is_some_and(|rise_m| {
-                rise_m.abs() <= most_m
-                    && (rise_m.abs() <= terrain.step_m + slack_m || blends(rise_m))
-            }));
+        let on = |cells: i32| Cell {
+            x: cell.x + cells * dx,
+            y: cell.y + cells * dy,
+        };
+        let reach = |way: i32| (1..=BROW).find_map(|far| Some((far, ground(on(way * far))?)));
+        let (Some((there, high)), Some((here, low))) = (reach(1), reach(-1)) else {
+            continue;
+        };
+        let (Ground::At(high), Ground::At(low)) = (high, low) else {
+            return false;
+        };
+        let step_m = cells * CELL_M;
+        let (rise_m, way_m) = (high - low, (there + here) as f32 * step_m);
+        let most_m = GENTLE * terrain.climb * way_m + slack_m;
+        // Over the longest of the ways that grades are measured on.
+        let blend = BLEND + slack_m / (FARTHEST * step_m);
+        let blends = || {
+            let grade = rise_m / way_m;
+            let beyond = grade_on(heights, &on, there, 1, step_m);
+            let before = grade_on(heights, &on, -here, -1, step_m);
+            beyond
+                .zip(before)
+                .is_some_and(|(a, b)| (a.min(b) - blend..=a.max(b) + blend).contains(&grade))
+        };
+        if rise_m.abs() > most_m || (rise_m.abs() > terrain.step_m + slack_m && !blends()) {
+            return false;
         }
+        ways += 1;
     }
-    ways >= WAYS && ways == gentle
+    ways >= WAYS
 }
 
 /// The grade of the ground beside a gap, from its cell at `from` outwards to the first measured one of the next [`GRADE`]; positive where it rises
@@ -227,6 +229,12 @@ fn grade_on(
         let far_m = heights.height_m(on(from + way * cells))?;
         Some((far_m - near_m) / ((way * cells) as f32 * step_m))
     })
+}
+
+/// Whether a cell of the window is led over by measured cells on both sides, at most four apart.
+#[must_use]
+pub fn is_between(heights: &Heights<'_>, steps: &Steps, cell: Cell) -> bool {
+    is_bridged(steps, |dx, dy| at(heights, cell, dx, dy))
 }
 
 /// Whether measured cells on both sides, at most four apart, lead over a cell.

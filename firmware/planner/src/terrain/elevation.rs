@@ -38,6 +38,17 @@ const SUNKEN: u8 = 0x80;
 /// Hits from which on something stands there: fewer are false returns.
 const SURE: u8 = 3;
 
+/// What is known of the ground of a cell, if anything is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ground {
+    /// Measured, metres.
+    At(f32),
+    /// Never measured, and held to be gone.
+    Doubtful,
+    /// Seen to be gone, or something stands on it.
+    Blocked,
+}
+
 /// The window, for reading.
 #[derive(Clone, Copy, Debug)]
 pub struct Heights<'a> {
@@ -127,6 +138,29 @@ impl<'a> Heights<'a> {
         Some(metres(I7F9::from_le_bytes(*self.heights.get(slot)?)))
     }
 
+    /// What is known of a cell's ground: `None` where it was never measured.
+    #[inline(always)]
+    #[must_use]
+    pub fn ground(&self, cell: Cell) -> Option<Ground> {
+        let slot = slot(self.origin, cell)?;
+        let mark = self.mark(slot);
+        if mark == 0 {
+            return None;
+        }
+        let stored = *self.heights.get(slot)?;
+        if mark & STANDING >= SURE * ONE_STANDING {
+            Some(Ground::Blocked)
+        } else if mark & (COUNT | SUNKEN) == SUNKEN {
+            Some(if stored == SUSPECT {
+                Ground::Doubtful
+            } else {
+                Ground::Blocked
+            })
+        } else {
+            (measured(mark) > 0).then(|| Ground::At(metres(I7F9::from_le_bytes(stored))))
+        }
+    }
+
     /// How often a cell was measured, up to 15.
     #[must_use]
     pub fn count(&self, cell: Cell) -> u8 {
@@ -144,6 +178,22 @@ impl<'a> Heights<'a> {
     #[must_use]
     pub fn is_sunken(&self, cell: Cell) -> bool {
         slot(self.origin, cell).is_some_and(|slot| self.mark(slot) & (COUNT | SUNKEN) == SUNKEN)
+    }
+
+    /// Whether nothing was ever met in a cell, and of the eight around one seems to be gone and one is measured.
+    #[must_use]
+    pub fn is_on_a_rim(&self, cell: Cell) -> bool {
+        let around = || {
+            (-1..=1)
+                .flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)))
+                .map(|(dx, dy)| Cell {
+                    x: cell.x + dx,
+                    y: cell.y + dy,
+                })
+        };
+        slot(self.origin, cell).is_some_and(|slot| self.mark(slot) == 0)
+            && around().any(|near| self.is_sunken(near))
+            && around().any(|near| self.count(near) > 0)
     }
 
     /// Whether the ground of a cell never measured is suspected to be gone, and not yet believed to be.
@@ -304,22 +354,34 @@ impl<'a> Elevation<'a> {
         }
     }
 
-    /// The ground of a cell that was never measured seems to be gone.
+    /// The ground of a cell that was never measured was seen to be gone.
     pub fn sink(&mut self, cell: Cell) {
-        if let Some(mark) = self.mark_mut(cell)
-            && *mark & COUNT == 0
-        {
-            *mark |= SUNKEN;
-        }
+        self.doubt(cell, SUNKEN, [0; 2]);
     }
 
     /// The ground of a cell that was never measured may be gone.
     pub fn suspect(&mut self, cell: Cell) {
+        if !self.read().is_sunken(cell) {
+            self.doubt(cell, 0, SUSPECT);
+        }
+    }
+
+    /// Ground that was suspected to be gone, or lies beside such, is held to be.
+    pub fn presume(&mut self, cell: Cell) {
+        if !self.read().is_sunken(cell) {
+            self.doubt(cell, SUNKEN, SUSPECT);
+        }
+    }
+
+    /// What is said of a cell where no ground was ever met.
+    fn doubt(&mut self, cell: Cell, mark: u8, stored: [u8; 2]) {
         if let Some(slot) = slot(*self.origin, cell)
-            && self.marks.get(slot).is_some_and(|mark| mark & COUNT == 0)
-            && let Some(stored) = self.heights.get_mut(slot)
+            && let (Some(of_cell), Some(height)) =
+                (self.marks.get_mut(slot), self.heights.get_mut(slot))
+            && *of_cell & COUNT == 0
         {
-            *stored = SUSPECT;
+            *of_cell |= mark;
+            *height = stored;
         }
     }
 

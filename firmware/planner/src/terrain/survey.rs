@@ -21,8 +21,8 @@
 //! Around the start lies a disc that no laser ever sees; there the robot's own plane is taken for measured. Units: metres.
 
 use super::Terrain;
-use super::classify::leads_over;
-use super::elevation::{Elevation, WINDOW_SIDE};
+use super::classify::{Steps, is_between, leads_over};
+use super::elevation::{Elevation, Heights, WINDOW_SIDE};
 use super::ray::{Attitude, Mount, Ray};
 use super::tilt::Tilt;
 use crate::config::{Config, Laser};
@@ -343,20 +343,38 @@ impl<'a, 'm> Survey<'a, 'm> {
         }
     }
 
-    /// Suspected ground that the robot has come near to was not measured on the way: it is gone, if nothing leads over it.
+    /// Suspected ground that the robot has come near to was not measured on the way: it is held to be gone, if nothing leads over it. So is
+    /// what was never met beside it, where a rim bends away from the beams.
     fn settle_suspicions(&mut self) {
-        let (middle, reach) = (self.robot.cell(), math::floor(SETTLED_M / CELL_M));
-        for y in middle.y - reach..=middle.y + reach {
-            for x in middle.x - reach..=middle.x + reach {
-                let cell = Cell { x, y };
-                let heights = self.elevation.read();
-                if heights.is_suspect(cell)
-                    && !leads_over(&heights, self.terrain, cell, self.slack_m)
-                {
-                    self.elevation.sink(cell);
-                }
+        let reach = math::floor(SETTLED_M / CELL_M);
+        let side = 2 * reach + 1;
+        let middle = self.robot.cell();
+        let near = |k: i32| Cell {
+            x: middle.x - reach + k % side,
+            y: middle.y - reach + k / side,
+        };
+        let all = 0..side * side;
+        for cell in all.clone().map(near) {
+            let heights = self.elevation.read();
+            if heights.is_suspect(cell) && !self.leads_over(&heights, cell) {
+                self.elevation.presume(cell);
             }
         }
+        let steps = Steps::new(self.terrain);
+        // There and back, so that it spreads along a rim both ways.
+        for cell in all.clone().chain(all.rev()).map(near) {
+            let heights = self.elevation.read();
+            if heights.is_on_a_rim(cell)
+                && !is_between(&heights, &steps, cell)
+                && !self.leads_over(&heights, cell)
+            {
+                self.elevation.presume(cell);
+            }
+        }
+    }
+
+    fn leads_over(&self, heights: &Heights<'_>, cell: Cell) -> bool {
+        leads_over(heights, self.terrain, cell, (self.slack_m, true))
     }
 
     /// What was never measured between two lengths of a beam is gone.

@@ -201,7 +201,7 @@ fn a_corner_is_not_led_over_and_a_gap_is() {
             window.measure(cell, 0.0);
         }
         let asked = Cell { x: 2, y: 2 };
-        let leads = classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, 0.0);
+        let leads = classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, (0.0, false));
         assert_eq!(leads, expected, "corner: {corner}");
     }
 }
@@ -218,7 +218,7 @@ fn leads_over_gap(slack_m: f32, height_m: impl Fn(f32) -> f32) -> bool {
         window.measure(cell, height_m(cell.centre().x_m));
     }
     let asked = Cell { x: 4, y: 2 };
-    classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, slack_m)
+    classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, (slack_m, false))
 }
 
 /// From above both look alike across the gap, a fifth of a metre down; beside it they do not.
