@@ -194,6 +194,11 @@ fn holes() -> Table {
     for tale in tales(&worlds::builtin("holes")) {
         for (name, hole) in ["north-east", "south-west"].iter().zip(HOLES) {
             let rim = Rim::of(&tale, hole);
+            let start = tale.start;
+            assert_eq!(
+                rim.named, rim.near,
+                "start {start}: cells of the {name} hole's rim that were negative before the robot was near, and all"
+            );
             table.row(vec![
                 tale.start.to_string(),
                 (*name).into(),

@@ -12,6 +12,7 @@
 //! | [`elevation`] | the mean height of every cell in a window of 64 × 64 cells around the robot |
 //! | [`ray`] | beams in three dimensions, from the tilted robot |
 //! | [`survey`] | beams into heights, and into marks where something stands or the ground is gone |
+//! | [`suspicion`] | ground that is held to be gone because it was not measured on the way |
 //! | [`rooms`] | what level beams say through a doorway |
 //! | [`glimpse`] | ground met from too far off to be measured, and when that is enough |
 //! | [`classify`] | heights and marks into the map's classes |
@@ -34,6 +35,7 @@ pub mod rooms;
 pub mod sidling;
 pub mod storeys;
 pub mod survey;
+pub mod suspicion;
 pub mod tilt;
 
 #[cfg(test)]

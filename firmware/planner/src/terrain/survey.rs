@@ -9,7 +9,7 @@
 //! | steeper than the climb, ĥ not known yet, nearer than `d_obs` | obstacle (b) |
 //! | below what the ground at K leads to expect, and the beam just passes over K | a rim at K: what lies between is gone |
 //! | that, and `dh < h_hole` | gone, P itself as well |
-//! | `dh < h_hole`, but the beam comes down no more steeply than a slope may | a rim at K is suspected: gone if it is not measured by the time that the robot is near |
+//! | `dh < h_hole`, but the beam comes down no more steeply than a slope may | a rim at K is suspected ([`super::suspicion`]) |
 //! | else, with K near enough | ground; of what rises too steeply before what stands, the foot of that |
 //!
 //! Departs from [Maffei-Terrain, III-B] in three ways. (1) Obstacle (a) must also be steep, because level beams meet every slope that
@@ -21,9 +21,9 @@
 //! Around the start lies a disc that no laser ever sees; there the robot's own plane is taken for measured. Units: metres.
 
 use super::Terrain;
-use super::classify::{Steps, is_between, leads_over};
-use super::elevation::{Elevation, Heights, WINDOW_SIDE};
+use super::elevation::{Elevation, WINDOW_SIDE};
 use super::ray::{Attitude, Mount, Ray};
+use super::suspicion;
 use super::tilt::Tilt;
 use crate::config::{Config, Laser};
 use crate::field::preference::KERNEL_CELLS;
@@ -61,8 +61,6 @@ const STEEP: f32 = 0.85;
 const DOUBTFUL: f32 = 0.3;
 /// And if it passes no higher over K than this, metres: K was measured long before, and from elsewhere.
 const DOUBTFUL_M: f32 = 0.3;
-/// Suspected ground nearer to the robot than this is gone, metres: the steep beams met level ground farther off, and would have met a slope.
-const SETTLED_M: f32 = 0.9;
 /// Behind a rim so much is marked, metres; what lies farther behind may be seen from elsewhere.
 const RIM_M: f32 = 0.6;
 /// What a beam meets begins where the beam ends and lies behind: so much farther on it is marked, metres, three deviations of a range.
@@ -132,7 +130,12 @@ impl<'a, 'm> Survey<'a, 'm> {
                 }
             }
         }
-        self.settle_suspicions();
+        suspicion::settle(
+            self.elevation,
+            self.terrain,
+            self.robot.cell(),
+            self.slack_m,
+        );
     }
 
     /// The robot's own plane is ground within a radius.
@@ -341,40 +344,6 @@ impl<'a, 'm> Survey<'a, 'm> {
             self.elevation.suspect(ray.at(s_m).cell());
             s_m += SAMPLE_M;
         }
-    }
-
-    /// Suspected ground that the robot has come near to was not measured on the way: it is held to be gone, if nothing leads over it. So is
-    /// what was never met beside it, where a rim bends away from the beams.
-    fn settle_suspicions(&mut self) {
-        let reach = math::floor(SETTLED_M / CELL_M);
-        let side = 2 * reach + 1;
-        let middle = self.robot.cell();
-        let near = |k: i32| Cell {
-            x: middle.x - reach + k % side,
-            y: middle.y - reach + k / side,
-        };
-        let all = 0..side * side;
-        for cell in all.clone().map(near) {
-            let heights = self.elevation.read();
-            if heights.is_suspect(cell) && !self.leads_over(&heights, cell) {
-                self.elevation.presume(cell);
-            }
-        }
-        let steps = Steps::new(self.terrain);
-        // There and back, so that it spreads along a rim both ways.
-        for cell in all.clone().chain(all.rev()).map(near) {
-            let heights = self.elevation.read();
-            if heights.is_on_a_rim(cell)
-                && !is_between(&heights, &steps, cell)
-                && !self.leads_over(&heights, cell)
-            {
-                self.elevation.presume(cell);
-            }
-        }
-    }
-
-    fn leads_over(&self, heights: &Heights<'_>, cell: Cell) -> bool {
-        leads_over(heights, self.terrain, cell, (self.slack_m, true))
     }
 
     /// What was never measured between two lengths of a beam is gone.
