@@ -985,3 +985,53 @@ fn slide(workspace: &mut Workspace) {
     }
     *at = Some((view.origin, view.scale));
 }
+
+#[cfg(test)]
+mod tests {
+    use std::boxed::Box;
+    use std::vec::Vec;
+
+    use super::*;
+
+    /// Turn rates of a robot that stands where no field leads anywhere, at these times since it last moved.
+    fn turn_rates<const N: usize>(terrain: Option<Terrain>, times_ms: [u32; N]) -> [f32; N] {
+        let config = Config {
+            terrain,
+            ..Config::pioneer_3at(heapless::Vec::new())
+        };
+        let mut state = Box::<State<20, 400>>::default();
+        state.reset(&config);
+        let mut workspace = Box::<Workspace>::default();
+        workspace.window_at = Some((Cell { x: -30, y: -30 }, 1));
+        times_ms.map(|time_ms| {
+            let input = Input {
+                time_ms,
+                pose: Pose::default(),
+                velocity: Twist::default(),
+                scans: [&[], &[]],
+            };
+            let Twist {
+                linear_mps,
+                angular_radps,
+            } = steer(&config, &mut state, &mut workspace, &input).velocity;
+            assert_eq!(linear_mps, 0.0);
+            angular_radps
+        })
+    }
+
+    #[test]
+    fn a_robot_that_has_stood_for_25_s_on_uneven_ground_looks_around_every_second_while() {
+        let times_ms = [
+            5_000, 15_000, 24_999, 25_000, 29_999, 30_000, 34_999, 35_000, 40_000, 45_000,
+        ];
+        let turns = turn_rates(Some(Terrain::TABLE_I), times_ms).map(|rate| rate != 0.0);
+        let when: Vec<u32> = times_ms
+            .into_iter()
+            .zip(turns)
+            .filter(|&(_, turns)| turns)
+            .map(|(at, _)| at)
+            .collect();
+        assert_eq!(when, [25_000, 29_999, 35_000, 45_000]);
+        assert_eq!(turn_rates(None, times_ms), [0.0; 10], "flat ground");
+    }
+}
