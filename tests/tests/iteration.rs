@@ -13,16 +13,15 @@
 
 use std::path::Path;
 
-use fieldline_protocol::message::{
-    Command, Control, FieldRow, Frontier, Identity, Observation, Status, Tile,
-};
+use fieldline_protocol::message::{Command, Observation};
 use fieldline_tests::loops::OUROBOROS;
 use fieldline_tests::plot::{Series, svg};
 use fieldline_tests::table::Table;
+use fieldline_tests::watched::Watched;
 use fieldline_tests::{emulator, full, golden, worlds};
 use host_sim::baseline::{Bvp, Session};
 use host_sim::link::endpoint::{Endpoint, Patience};
-use host_sim::link::{Link, LinkError, LinkStats, qemu};
+use host_sim::link::{Link, qemu};
 use host_sim::trial::mission::{Mission, explore};
 use host_sim::trial::{Flow, Progress, Step, Watch};
 use host_sim::world::World;
@@ -46,40 +45,24 @@ impl Watch for Gauge {
     }
 }
 
-/// The full grid, and cells times cycles of each of its steps.
-struct Metered {
-    session: Session<Bvp>,
-    work: Vec<f64>,
-}
-
-impl Link for Metered {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        self.session.hello()
-    }
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        self.session.control(control)
-    }
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        let before = self.session.plan.work();
-        let command = self.session.observe(observation);
-        let after = self.session.plan.work();
+/// Steps over the full grid with the area known after each, and cells times cycles of each.
+fn metered(world: &World) -> Vec<Point> {
+    let session = Session::new(Bvp::new());
+    let mut before = session.plan.work();
+    let mut works = Vec::new();
+    let look = |session: &mut Session<Bvp>, _: &Observation, _: &Command| {
+        let after = session.plan.work();
         let cells = (after.cells - before.cells) as f64;
-        self.work
-            .push(cells * (after.cycles - before.cycles) as f64);
-        command
-    }
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        self.session.tile(x, y)
-    }
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
-        self.session.field_row(row)
-    }
-    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
-        self.session.frontiers()
-    }
-    fn stats(&self) -> LinkStats {
-        self.session.stats()
-    }
+        works.push(cells * (after.cycles - before.cycles) as f64);
+        before = after;
+        Ok(())
+    };
+    let mut link = Watched::new(session, look);
+    let run = explored(world, "bvp", &mut link);
+    run.iter()
+        .map(|(known_m2, _)| *known_m2)
+        .zip(works)
+        .collect()
 }
 
 /// Known area and cost of a step.
@@ -157,12 +140,7 @@ fn a_step_costs_the_same_however_much_is_known() {
                 .map(|(known_m2, step)| (*known_m2, planning(step))),
         );
         Vec::extend(&mut steps, run);
-        let mut metered = Metered {
-            session: Session::new(Bvp::new()),
-            work: Vec::new(),
-        };
-        let run = explored(&world, "bvp", &mut metered);
-        works.extend(run.iter().map(|(known_m2, _)| *known_m2).zip(metered.work));
+        works.extend(metered(&world));
     }
     let k = per_cell(&steps);
     grid.extend(

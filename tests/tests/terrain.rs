@@ -34,6 +34,10 @@ const OPEN_GROUND: &str = "mvsim_mesh1";
 const MOST_BARRIERS: f64 = 0.5;
 /// Seeds of every start in the comparison of preferences.
 const SLOPE_SEEDS: u64 = 3;
+/// A run with preferences crosses the big slope no more often: there, and back to what was left.
+const MOST_CROSSINGS: u32 = 2;
+/// Of a difference between runs with and without, the probability that chance alone makes it as large must be less.
+const SIGNIFICANT: f64 = 0.05;
 
 /// Up to this standard deviation of roll and pitch every world must be explored and its map be right, degrees.
 const MOST_NOISE_DEG: f64 = 1.0;
@@ -143,6 +147,29 @@ impl Pairs<'_> {
             .collect()
     }
 
+    /// What preferences are for: no run with them crosses the slope more than there and back, and they cross it less than
+    /// runs without.
+    fn assert_crossed_less(&self) {
+        let too_often = self
+            .with
+            .iter()
+            .filter(|run| run.crossings > MOST_CROSSINGS);
+        let too_often: Vec<_> = too_often
+            .map(|run| (run.report.start, run.report.seed, run.crossings))
+            .collect();
+        assert!(
+            too_often.is_empty(),
+            "start, seed, crossings: {too_often:?}"
+        );
+        let crossings: Quantity = |run| f64::from(run.crossings);
+        let [with, without] = [self.with, self.without].map(|runs| mean(runs, crossings));
+        let p = signed_rank(&self.differences(crossings)).p_greater;
+        assert!(
+            with < without && p < SIGNIFICANT,
+            "{with} {without}, p = {p}"
+        );
+    }
+
     /// One line for each quantity.
     fn table(&self) -> Table {
         let columns = [
@@ -156,12 +183,11 @@ impl Pairs<'_> {
         ];
         let mut table = Table::new(1, &columns);
         for (name, of) in QUANTITIES {
-            let mean = |runs: &[Told]| Some(runs.iter().map(of).sum::<f64>() / runs.len() as f64);
             let test = signed_rank(&self.differences(of));
             table.row(vec![
                 name.into(),
-                number(mean(self.with), 2),
-                number(mean(self.without), 2),
+                number(Some(mean(self.with, of)), 2),
+                number(Some(mean(self.without, of)), 2),
                 test.pairs.to_string(),
                 format!("{:.1}", test.positive),
                 format!("{:.4}", test.p_greater),
@@ -174,6 +200,10 @@ impl Pairs<'_> {
 
 /// A number of a run.
 type Quantity = fn(&Told) -> f64;
+
+fn mean(runs: &[Told], of: Quantity) -> f64 {
+    runs.iter().map(of).sum::<f64>() / runs.len() as f64
+}
 
 /// What is compared.
 const QUANTITIES: [(&str, Quantity); 4] = [
@@ -217,6 +247,7 @@ fn preferences_on_the_big_slope() {
     golden::compare("terrain-slope.txt", &text);
     // How often a run without preferences comes to its end is a result, in the table.
     assert_explored(with);
+    pairs.assert_crossed_less();
 }
 
 #[test]

@@ -266,6 +266,7 @@ fn sight(pose: &Pose, laser: &Laser, ranges_mm: &[u16], from: Point, point: Poin
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drive::Surround;
     use crate::planner::{INVALID_MM, NO_RETURN_MM};
 
     fn laser() -> Laser {
@@ -342,5 +343,34 @@ mod tests {
             near.update(&pose, &laser(), &[400 + (k % 7) as u16 * 100; 181]);
             assert!(near.points().len() <= MOST_POINTS);
         }
+    }
+
+    /// The room between the robot and a row of cells across its way, the first that are not free.
+    fn room_before(class: Class) -> f32 {
+        let mut tiles = Tiles::<16, 64>::new();
+        tiles.reset(8, 8);
+        for (x, y) in (-10..=6).flat_map(|x| (-10..10).map(move |y| (x, y))) {
+            let class = if x == 6 { class } else { Class::Free };
+            tiles.set(Cell { x, y }, class).expect("room");
+        }
+        let pose = Pose {
+            x_m: 0.05,
+            y_m: 0.05,
+            ..Pose::default()
+        };
+        let mut surround = Surround::empty();
+        surround.keep_off(&pose, rims(&tiles, pose.point()));
+        surround.clearance_m()
+    }
+
+    /// What stands begins where beams end, and its cell is that of so much behind.
+    #[test]
+    fn the_robot_keeps_three_centimetres_more_off_what_stands_than_off_what_is_gone() {
+        let [stands_m, gone_m, unknown_m] =
+            [Class::Obstacle, Class::Negative, Class::Unknown].map(room_before);
+        // To the near side of the cell right ahead.
+        assert!((gone_m - (0.55 - HALF_LENGTH_M)).abs() < 1e-4, "{gone_m}");
+        assert_eq!(unknown_m, gone_m);
+        assert!((gone_m - stands_m - 0.03).abs() < 1e-4, "{stands_m}");
     }
 }

@@ -12,8 +12,9 @@
 
 use fieldline_planner::geometry::Cell;
 
-use super::coverage::{MAP_CELL_M, Truth, centre_m, truth};
+use super::coverage::{MAP_CELL_M, centre_m};
 use super::frame::Frame;
+use super::gentle::{is_gentle, level};
 use super::reach::START_SLACK_M;
 use crate::robot::{
     Limits, Pose, fall_along_m, ground_m, is_aground, resting, rise_along_m, wheels,
@@ -24,11 +25,6 @@ use crate::world::{Start, World};
 pub const HEADINGS: usize = 16;
 /// Cells to the next one along each heading of the first quarter.
 const STEPS: [[i32; 2]; 4] = [[1, 0], [2, 1], [1, 1], [1, 2]];
-/// Distance over which the slope of a cell is taken, metres.
-const SLOPE_M: f64 = 0.1;
-/// How far from its centre the ground under a robot matters, cells.
-const NEAR_CELLS: i32 = 4;
-
 /// What was reached and covered.
 #[derive(Clone, Debug)]
 pub struct Footing {
@@ -82,37 +78,6 @@ impl Footing {
             .index(cell)
             .is_some_and(|index| self.covered[index])
     }
-}
-
-/// Is a cell's own ground within the limits: free of walls, no steeper than the climb, without an edge?
-#[must_use]
-pub fn is_gentle(world: &World, cell: Cell, limits: &Limits) -> bool {
-    let [x, y] = centre_m(cell);
-    let Some(here_m) = world.ground_m(x, y) else {
-        return false;
-    };
-    let inside = |x: f64, y: f64| {
-        let grid = world.occupancy();
-        grid.index(grid.cell_at(x, y)).is_some()
-    };
-    // Beyond the border the ground is taken as level; a hole inside is an edge.
-    let beside = |dx: f64, dy: f64| match world.ground_m(x + dx, y + dy) {
-        None if inside(x + dx, y + dy) => f64::NAN,
-        height_m => height_m.unwrap_or(here_m),
-    };
-    let d = SLOPE_M;
-    let gx = (beside(d, 0.0) - beside(-d, 0.0)) / (2.0 * d);
-    let gy = (beside(0.0, d) - beside(0.0, -d)) / (2.0 * d);
-    let edge_m = limits.step_m.max(limits.drop_m);
-    let smooth = (0..8).all(|k| {
-        let bearing = f64::from(k) * core::f64::consts::FRAC_PI_4;
-        let rise_m = beside(d * libm::cos(bearing), d * libm::sin(bearing)) - here_m;
-        rise_m.abs() <= edge_m
-    });
-    // Comparisons with the NaN of a hole are false.
-    smooth
-        && (gx * gx + gy * gy).sqrt() <= libm::tan(limits.climb_rad) + 1e-9
-        && truth(world, cell) == Truth::Free
 }
 
 /// The search.
@@ -299,66 +264,6 @@ fn step_along(heading: usize) -> [i32; 2] {
     [dx, dy]
 }
 
-/// Cells around which the ground rises by so little that neither slope nor edge can be beyond the limits.
-fn level(world: &World, frame: &Frame, limits: &Limits) -> Vec<bool> {
-    // Over the wheel base and over the track, a little less for what lies between the points looked at.
-    let slopes = [
-        0.268 * libm::tan(limits.climb_rad),
-        0.394 * libm::tan(limits.side_rad),
-    ];
-    let little_m = 0.8
-        * slopes[0]
-            .min(slopes[1])
-            .min(limits.step_m)
-            .min(limits.drop_m);
-    let spans = spans_m(world, frame);
-    let across = widened(&spans, frame, [1, 0]);
-    let around = widened(&across, frame, [0, 1]);
-    around
-        .into_iter()
-        .map(|[low_m, high_m]| high_m - low_m <= little_m)
-        .collect()
-}
-
-/// Least and greatest height of each cell; endless at a hole.
-fn spans_m(world: &World, frame: &Frame) -> Vec<[f64; 2]> {
-    let points: Vec<[f64; 2]> = (0..25)
-        .map(|k| [k % 5, k / 5].map(|k| f64::from(k) * 0.25 * MAP_CELL_M))
-        .collect();
-    (0..frame.len())
-        .map(|index| {
-            let cell = frame.cell(index);
-            let corner = [cell.x, cell.y].map(|k| f64::from(k) * MAP_CELL_M);
-            points.iter().fold(
-                [f64::INFINITY, f64::NEG_INFINITY],
-                |[low, high], [x, y]| match world.ground_m(corner[0] + x, corner[1] + y) {
-                    Some(z) => [low.min(z), high.max(z)],
-                    None => [f64::NEG_INFINITY, f64::INFINITY],
-                },
-            )
-        })
-        .collect()
-}
-
-/// Spans over all cells within [`NEAR_CELLS`] along an axis; beyond the frame there is nothing.
-fn widened(spans: &[[f64; 2]], frame: &Frame, [ax, ay]: [i32; 2]) -> Vec<[f64; 2]> {
-    (0..frame.len())
-        .map(|index| {
-            let cell = frame.cell(index);
-            (-NEAR_CELLS..=NEAR_CELLS)
-                .filter_map(|k| {
-                    frame.index(Cell {
-                        x: cell.x + k * ax,
-                        y: cell.y + k * ay,
-                    })
-                })
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], other| {
-                    [low.min(spans[other][0]), high.max(spans[other][1])]
-                })
-        })
-        .collect()
-}
-
 /// Gentle cells within the radius of a reached one.
 fn covered(
     world: &World,
@@ -390,121 +295,4 @@ fn covered(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::world::{Class, Elevation, GridCell, Occupancy};
-
-    /// 10 × 6 m of ground, sampled every 5 cm, with a start at (1, 3) looking east.
-    fn world(height_m: impl Fn(f64, f64) -> f64) -> (World, Start) {
-        let size = [200, 120];
-        let elevation = Elevation::from_fn(size, 0.05, [0.0, 0.0], height_m);
-        let start = Start {
-            x_m: 1.0,
-            y_m: 3.0,
-            yaw_rad: 0.0,
-        };
-        let floor = Occupancy::filled(size[0], size[1], 0.05, [0.0, 0.0], Class::Free);
-        (World::uneven("test", floor, elevation, vec![start]), start)
-    }
-
-    fn footing(height_m: impl Fn(f64, f64) -> f64, limits: &Limits) -> Footing {
-        let (world, start) = world(height_m);
-        Footing::new(&world, start, 0.3, limits)
-    }
-
-    fn cell(x_m: f64, y_m: f64) -> Cell {
-        let of = |m: f64| (m / MAP_CELL_M).floor() as i32;
-        Cell {
-            x: of(x_m),
-            y: of(y_m),
-        }
-    }
-
-    /// A plane that rises eastwards from x = 3 to x = 7 and is level on both sides, rounded over half a metre.
-    fn ramp(degrees: f64) -> impl Fn(f64, f64) -> f64 {
-        let grade = degrees.to_radians().tan();
-        let soft = |t: f64| {
-            if t < 0.0 {
-                0.0
-            } else if t < 0.5 {
-                t * t
-            } else {
-                t - 0.25
-            }
-        };
-        move |x: f64, _| grade * (soft(x - 3.0) - soft(x - 6.5))
-    }
-
-    #[test]
-    fn level_ground_is_reached_up_to_the_radius_and_covered_whole() {
-        let footing = footing(|_, _| 0.4, &Limits::WORKING);
-        // Centres from 0.35 to 9.65 m and from 0.35 to 5.65 m.
-        let reached = (0..footing.frame().len())
-            .filter(|index| footing.reaches(footing.frame().cell(*index)))
-            .count();
-        assert_eq!(reached, 94 * 54);
-        assert!(footing.covers(cell(0.15, 3.0)) && footing.covers(cell(5.0, 0.05)));
-        assert!((0..HEADINGS).all(|k| footing.reaches_heading(cell(5.0, 3.0), k)));
-    }
-
-    #[test]
-    fn a_slope_that_can_be_climbed_but_not_crossed_is_taken_head_on() {
-        let gentle = footing(ramp(12.0), &Limits::WORKING);
-        assert!((0..HEADINGS).all(|k| gentle.reaches_heading(cell(5.0, 3.0), k)));
-        let steep = footing(ramp(18.0), &Limits::WORKING);
-        assert!(steep.reaches(cell(9.0, 3.0)), "the top");
-        let headings: Vec<usize> = (0..HEADINGS)
-            .filter(|k| steep.reaches_heading(cell(5.0, 3.0), *k))
-            .collect();
-        // A slope of 18° crossed at an angle φ rolls by atan(tan 18° sin φ): 12.9° at 45°, 16.7° at 67.5°.
-        assert_eq!(headings, [0, 1, 2, 6, 7, 8, 9, 10, 14, 15]);
-        let closed = footing(ramp(23.0), &Limits::WORKING);
-        assert!(!closed.reaches(cell(5.0, 3.0)) && !closed.reaches(cell(9.0, 3.0)));
-        let wider = Limits::WORKING.changed("climb=25").expect("limits");
-        assert!(footing(ramp(23.0), &wider).reaches(cell(9.0, 3.0)));
-    }
-
-    #[test]
-    fn an_edge_is_crossed_where_it_is_low_enough() {
-        let kerb = |height_m: f64| move |x: f64, _| if x > 5.0 { height_m } else { 0.0 };
-        for (height_m, passes) in [(0.05, true), (0.10, false), (-0.05, true), (-0.3, false)] {
-            let footing = footing(kerb(height_m), &Limits::WORKING);
-            assert_eq!(footing.reaches(cell(8.0, 3.0)), passes, "{height_m}");
-            assert_eq!(footing.covers(cell(8.0, 3.0)), passes, "{height_m}");
-            assert!(footing.covers(cell(4.6, 3.0)), "{height_m}");
-        }
-    }
-
-    #[test]
-    fn no_wheel_comes_nearer_to_a_hole_than_its_radius_and_its_rim_is_not_gentle() {
-        let hole = |x: f64, y: f64| {
-            if (x - 5.0).abs() < 1.0 && (y - 3.0).abs() < 1.0 {
-                f64::NAN
-            } else {
-                0.0
-            }
-        };
-        let footing = footing(hole, &Limits::WORKING);
-        // The front axle is 0.134 m ahead of the centre; surface ends within a sample of 4.0.
-        assert!(!footing.reaches_heading(cell(3.85, 3.0), 0));
-        assert!(footing.reaches_heading(cell(3.65, 3.0), 0));
-        assert!(footing.reaches(cell(8.0, 3.0)) && !footing.covers(cell(5.0, 3.0)));
-        let (world, _) = world(hole);
-        assert!(!is_gentle(&world, cell(3.95, 3.0), &Limits::WORKING));
-        assert!(is_gentle(&world, cell(3.75, 3.0), &Limits::WORKING));
-    }
-
-    #[test]
-    fn walls_keep_their_distance_as_on_the_flat() {
-        let (world, start) = world(|_, _| 0.0);
-        let mut grid = world.occupancy().clone();
-        // A wall with a gap of 0.7 m in its middle.
-        for j in (0..120).filter(|j| !(53..67).contains(j)) {
-            grid.set(GridCell { i: 100, j }, Class::Wall);
-        }
-        let elevation = world.elevation().expect("uneven").clone();
-        let world = World::uneven("wall", grid, elevation, vec![start]);
-        assert!(Footing::new(&world, start, 0.3, &Limits::WORKING).reaches(cell(8.0, 3.0)));
-        assert!(!Footing::new(&world, start, 0.4, &Limits::WORKING).reaches(cell(8.0, 3.0)));
-    }
-}
+mod tests;

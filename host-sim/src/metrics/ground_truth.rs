@@ -17,8 +17,9 @@ use core::ops::Add;
 use fieldline_planner::geometry::Cell;
 
 use super::coverage::{MAP_CELL_M, Truth, centre_m, truth};
-use super::footing::{Footing, is_gentle};
+use super::footing::Footing;
 use super::frame::Frame;
+use super::gentle::is_gentle;
 use crate::report::MapCell;
 use crate::robot::Limits;
 use crate::world::World;

@@ -4,6 +4,7 @@ mod coverage;
 mod crossings;
 mod footing;
 mod frame;
+mod gentle;
 mod ground_truth;
 mod localization;
 mod loops;
@@ -15,8 +16,9 @@ mod safety;
 
 pub use coverage::{Coverage, DIRECTIONS, MAP_CELL_M, Truth, map_cells, truth};
 pub use crossings::crossings;
-pub use footing::{Footing, HEADINGS, is_gentle};
+pub use footing::{Footing, HEADINGS};
 pub use frame::Frame;
+pub use gentle::is_gentle;
 pub use ground_truth::{GroundTruth, Score, Table, Truly};
 pub use localization::Localization;
 pub use loops::{LEAST_M, Loops};

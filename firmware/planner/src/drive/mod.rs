@@ -9,8 +9,10 @@
 //! Invariant: whatever is driven can be followed by a stop that touches nothing known, so the zero command is always safe.
 //! Units: metres, seconds, radians; robot frame, x forward.
 
+mod ground;
 pub mod incline;
 pub mod manoeuvre;
+mod motion;
 mod open;
 pub mod surround;
 

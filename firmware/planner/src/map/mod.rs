@@ -3,9 +3,12 @@
 //! [`tiles`] keeps the class of every cell for the whole run, [`evidence`] the counts around the robot, and
 //! [`integrate`] turns beams into both.
 
+mod class;
 pub mod evidence;
+mod extent;
 pub mod folding;
 pub mod integrate;
+mod page;
 pub mod rows;
 pub mod tiles;
 mod uneven;

@@ -7,6 +7,7 @@ pub mod frontier;
 pub mod lookout;
 mod nearest;
 pub mod ouroboros;
+mod paths;
 mod patience;
 pub mod road;
 pub mod tdbvp;

@@ -29,6 +29,7 @@
 pub mod classify;
 pub mod elevation;
 pub mod glimpse;
+mod heights;
 pub mod preference;
 pub mod ray;
 pub mod rooms;

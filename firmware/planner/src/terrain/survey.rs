@@ -362,3 +362,6 @@ fn window_m(ray: &Ray) -> f32 {
     let (x, y) = (ray.along.0.abs(), ray.along.1.abs());
     WITHIN_M / if x > y { x } else { y }
 }
+
+#[cfg(test)]
+mod tests;

@@ -14,9 +14,10 @@ use super::{DROP_RADIUS_M, Frontier, Known, Lent, near};
 use crate::geometry::{Cell, Point};
 use crate::grid::{Plane, PlaneMut, Site};
 use crate::map::Tiles;
-use crate::skeleton::{Residues, WaveSpace, Wavefront};
+use crate::skeleton::{WaveSpace, Wavefront};
 use crate::strategy::Road;
 use crate::strategy::nearest::Centres;
+use crate::strategy::paths::Paths;
 use crate::terrain::storeys::{LATER_STEPS, MOST_LEVEL};
 use crate::topology::Frame;
 
@@ -44,6 +45,18 @@ const _CHECKS: () = assert!(
     LATER_STEPS > HEAD_START + SMALL_LATER,
     "the ranks of a level start before the next level"
 );
+
+impl<const TILES: usize, const SLOTS: usize> Known<'_, TILES, SLOTS> {
+    /// These centre cells, to look for the nearest of.
+    fn centres<'a>(&'a self, way: Plane<'a>) -> Centres<'a, TILES, SLOTS> {
+        Centres {
+            tiles: self.tiles,
+            disc: self.disc,
+            frame: self.topology.frame(),
+            way,
+        }
+    }
+}
 
 impl Frontier {
     /// The way to a goal; where heights are preferred, one that keeps to the storey if it is not much longer.
@@ -107,35 +120,29 @@ impl Frontier {
         robot: Point,
         lent: &mut Lent<'_>,
     ) -> Option<Road> {
-        let frame = known.topology.frame();
         let goals = known.topology.frontier()?;
-        let residues = Residues::new(frame.shape, &mut *lent.residues).ok()?;
-        let mut space = WaveSpace {
-            way,
-            residues,
-            ring: &mut *lent.ring,
-        };
-        if !self.spread(&mut space, goals, known) {
+        let mut paths = Paths::open(known.centres(way), lent)?;
+        if !self.spread(&mut paths.space, goals, known) {
             return None;
         }
-        let centres = Centres {
-            tiles: known.tiles,
-            disc: known.disc,
-            frame,
-            way,
-        };
-        let is_reached = |site| space.residues.get(site).is_some();
         let robot = robot.cell();
-        let Some((entry, steps)) = centres.nearest(robot, lent.view, is_reached) else {
+        let found = paths.entry(robot);
+        let Paths {
+            centres,
+            space,
+            view,
+        } = paths;
+        let Some((entry, steps)) = found else {
             // With a centre cell near by that no wave reached, there is no way.
-            if centres.nearest(robot, lent.view, |_| true).is_some() {
+            if centres.nearest(robot, view, |_| true).is_some() {
                 return None;
             }
+            let is_reached = |site| space.residues.get(site).is_some();
             let (entry, line) = centres.nearest_by_air(robot, is_reached)?;
-            return Some(walk_down(&space, frame, known.tiles, line, entry));
+            return Some(walk_down(&space, centres.frame, known.tiles, line, entry));
         };
         let at_once = core::iter::empty();
-        Some(walk_down(&space, frame, known.tiles, at_once, entry).after(steps))
+        Some(walk_down(&space, centres.frame, known.tiles, at_once, entry).after(steps))
     }
 
     /// Wave from every frontier cell that was not dropped; those beside the present goal first, and those on another storey last. Whether
@@ -255,30 +262,10 @@ pub(super) fn road_to<const TILES: usize, const SLOTS: usize>(
     robot: Point,
     lent: &mut Lent<'_>,
 ) -> Option<Road> {
-    let frame = known.topology.frame();
-    let way = known.topology.skeleton()?;
-    let residues = Residues::new(frame.shape, &mut *lent.residues).ok()?;
-    let mut space = WaveSpace {
-        way,
-        residues,
-        ring: &mut *lent.ring,
-    };
-    let centres = Centres {
-        tiles: known.tiles,
-        disc: known.disc,
-        frame,
-        way,
-    };
-    let (nearest, _) = centres.nearest(place, lent.view, |_| true)?;
-    let mut wave = Wavefront::new();
-    wave.start(&mut space);
-    wave.seed(&mut space, nearest);
-    // Without a budget it always comes to its end.
-    let _ = wave.advance(&mut space, None, u32::MAX);
-    let is_reached = |site| space.residues.get(site).is_some();
-    let (entry, steps) = centres.nearest(robot.cell(), lent.view, is_reached)?;
-    let way = core::iter::once(entry).chain(space.residues.descent(entry));
-    Some(Road::along(way.map(|site| frame.cell(site))).after(steps))
+    let mut paths = Paths::open(known.centres(known.topology.skeleton()?), lent)?;
+    let (nearest, _) = paths.centres.nearest(place, paths.view, |_| true)?;
+    paths.spread(core::iter::once(nearest));
+    paths.road(robot.cell())
 }
 
 /// The road from the cells before the entry to the frontier, and one cell into the unexplored beyond it.

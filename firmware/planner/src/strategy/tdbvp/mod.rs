@@ -34,12 +34,12 @@ use self::sides::Sides;
 use super::frontier::{Lent, Outlook};
 use super::nearest::Centres;
 use super::ouroboros::Round;
+use super::paths::Paths;
 use super::{Frontier, Road};
 use crate::config::Laser;
 use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::map::Tiles;
-use crate::skeleton::{Residues, WaveSpace, Wavefront};
 use crate::topology::Topology;
 use crate::view::View;
 
@@ -330,30 +330,15 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         let frame = round.topology.frame();
         let way = round.topology.skeleton()?;
         let rank = |site| self.rank(frame.cell(site));
-        let residues = Residues::new(frame.shape, &mut *lent.residues).ok()?;
-        let mut space = WaveSpace {
-            way,
-            residues,
-            ring: &mut *lent.ring,
-        };
-        let mut wave = Wavefront::new();
-        wave.start(&mut space);
-        for site in way.sites().filter(|&site| rank(site) == oldest) {
-            wave.seed(&mut space, site);
-        }
-        // Without a budget it always comes to its end.
-        let _ = wave.advance(&mut space, None, u32::MAX);
         let centres = Centres {
             tiles: round.tiles,
             disc: round.disc,
             frame,
             way,
         };
-        let is_reached = |site| space.residues.get(site).is_some();
-        let robot = round.pose.point().cell();
-        let (entry, steps) = centres.nearest(robot, lent.view, is_reached)?;
-        let way = core::iter::once(entry).chain(space.residues.descent(entry));
-        Some(Road::along(way.map(|site| frame.cell(site))).after(steps))
+        let mut paths = Paths::open(centres, lent)?;
+        paths.spread(way.sites().filter(|&site| rank(site) == oldest));
+        paths.road(round.pose.point().cell())
     }
 }
 

@@ -1,0 +1,67 @@
+//! Uneven ground in the window: what each cell is preferred by before the field is solved, and what the field says of its flatness after
+//! [Maffei-Terrain, eqs. 3 to 5].
+//!
+//! Units: metres; preferences are pure numbers.
+
+use super::Input;
+use super::state::State;
+use super::workspace::Workspace;
+use crate::field::preference::p_diff;
+use crate::field::{Preference, SIDE, Window, descent};
+use crate::terrain::sidling::Slope;
+use crate::terrain::{Heights, Terrain};
+use crate::view::{Rows, View};
+
+/// Give every cell of the window its preference [Maffei-Terrain, eqs. 3 to 5], beside what the strategy prefers.
+pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
+    terrain: &Terrain,
+    state: &State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    input: &Input<'_>,
+) {
+    let heights = state.map.heights();
+    let global = state.preferences.global(terrain);
+    let has_sides = state.strategy.tdbvp().is_some();
+    let Workspace { window, view, .. } = workspace;
+    let crossed = crossed(terrain, &heights, window, view);
+    window.change_preferences(|x, y, old| {
+        if View::has(&crossed, (x, y)) {
+            return Preference::nearest(terrain.least_preference);
+        }
+        let height_m = heights.height_m(view.cell(x, y));
+        let difference_m = height_m.map(|height_m| height_m - input.pose.z_m);
+        let epsilon = state.preferences.of_cell(terrain, global, difference_m);
+        let side = if has_sides { old.get().to_num() } else { 0.0 };
+        Preference::nearest(epsilon + side)
+    });
+}
+
+/// Cells in which the last field leads across a slope that may not be crossed: they repel as much as cells may, whatever their height. Along its own
+/// height a robot would else be drawn just there. Not in [Maffei-Terrain].
+fn crossed(terrain: &Terrain, heights: &Heights<'_>, window: &Window, view: &View) -> Rows {
+    let mut rows = [0; SIDE];
+    let Some(most) = terrain.most_lean().filter(|_| terrain.mode.has_heights()) else {
+        return rows;
+    };
+    for (y, row) in rows.iter_mut().enumerate() {
+        for x in 0..SIDE {
+            let is_crossed = Slope::at(heights, view.cell(x, y))
+                .zip(descent::gradient(window, x, y))
+                .is_some_and(|(slope, way)| slope.is_crossed(way, most));
+            *row |= u64::from(is_crossed) << x;
+        }
+    }
+    rows
+}
+
+/// A field was solved: how flat it is around the robot decides the next one's preferences.
+pub(super) fn note_flatness<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
+    workspace: &Workspace,
+    input: &Input<'_>,
+) {
+    let place = workspace.view.place(input.pose.point().cell());
+    if let Some((x, y)) = place.filter(|&(x, y)| workspace.window.is_reached(x, y)) {
+        state.preferences.note(p_diff(&workspace.window, x, y));
+    }
+}

@@ -1,0 +1,96 @@
+//! Memory of a step, and the last window's field as it is shown.
+//!
+//! Units: map cells; q is 1 at a goal.
+
+use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, Window};
+use crate::geometry::Cell;
+use crate::view::View;
+
+/// Words of scratch.
+pub(super) const SCRATCH: usize = SCRATCH_FLOATS;
+/// Words of the wave's queue.
+pub(super) const RING: usize = 1024;
+
+/// Memory of a step: the field, kept as a warm start for the next one, and scratch that the wave and the multigrid use in turn.
+#[derive(Debug)]
+pub struct Workspace {
+    pub(super) window: Window,
+    /// Its least map cell and its scale.
+    pub(super) window_at: Option<(Cell, i32)>,
+    /// What stands in the window.
+    pub(super) view: View,
+    pub(super) scratch: [f32; SCRATCH],
+}
+
+impl Workspace {
+    /// Cleared.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            window: Window::new(),
+            window_at: None,
+            view: View::new(),
+            scratch: [0.0; SCRATCH],
+        }
+    }
+
+    /// The last window's field.
+    #[must_use]
+    pub const fn window(&self) -> &Window {
+        &self.window
+    }
+}
+
+impl Default for Workspace {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// One row of the last step's window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FieldRow {
+    /// Least map cell of the window.
+    pub origin: Cell,
+    /// Map cells along a window cell.
+    pub scale: u8,
+    /// q = 1 − p, scaled so that a goal is 1; 0 on obstacles and where no goal can be reached from.
+    pub q: [f32; SIDE],
+    /// What each cell is in the boundary-value problem.
+    pub kinds: [CellKind; SIDE],
+}
+
+/// What a cell is in the window's boundary-value problem.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CellKind {
+    /// Relaxed.
+    Free,
+    /// p = 1, or without a way to a goal.
+    #[default]
+    Obstacle,
+    /// p = 0.
+    Goal,
+}
+
+impl Workspace {
+    /// One row of the last step's field, row 0 the least y; `None` before the first window and beyond the last row.
+    #[must_use]
+    pub fn field_row(&self, row: u8) -> Option<FieldRow> {
+        let (origin, scale) = self.window_at?;
+        let y = usize::from(row);
+        (y < SIDE).then(|| FieldRow {
+            origin,
+            scale: scale as u8,
+            q: core::array::from_fn(|x| self.window.q(x, y) / GOAL),
+            kinds: core::array::from_fn(|x| {
+                if self.window.is_goal(x, y) {
+                    CellKind::Goal
+                } else if self.window.is_reached(x, y) {
+                    CellKind::Free
+                } else {
+                    CellKind::Obstacle
+                }
+            }),
+        })
+    }
+}

@@ -1,0 +1,77 @@
+//! Single beams into a window of level ground with a wall across it: what each raises.
+//!
+//! Units: metres, map cells.
+
+use std::vec;
+
+use super::{Elevation, Survey};
+use crate::geometry::{Cell, Point, Pose, Twist};
+use crate::planner::Input;
+use crate::terrain::Terrain;
+use crate::terrain::elevation::WINDOW_CELLS;
+use crate::terrain::ray::Ray;
+
+/// Column of the wall's cells: its face is at x = 2 m.
+const WALL: i32 = 20;
+/// The last column of ground before it.
+const BEFORE: Cell = Cell { x: WALL - 1, y: 0 };
+
+/// Mean height and count of the ground right before the wall, measured twice and then met by a beam of the tilted laser that ends a centimetre
+/// before the wall's face, `z_m` high. Whether anything is known to stand is said by `walled`.
+fn before_wall(walled: bool, z_m: f32) -> (f32, u8) {
+    let (mut heights, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
+    let mut origin = Cell::default();
+    let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+    window.follow(Cell::default());
+    for (x, y) in (-5..=WALL).flat_map(|x| (-20..=20).map(move |y| (x, y))) {
+        for _ in 0..2 {
+            match (x < WALL, walled) {
+                (true, _) => window.measure(Cell { x, y }, 0.0),
+                (false, true) => window.stand(Cell { x, y }),
+                (false, false) => {}
+            }
+        }
+    }
+    let input = Input {
+        time_ms: 0,
+        pose: Pose::default(),
+        velocity: Twist::default(),
+        scans: [&[], &[]],
+    };
+    let (from_z_m, length_m) = (0.45, 0.1 * WALL as f32 - 0.01 - 0.15);
+    let ray = Ray {
+        from: Point {
+            x_m: 0.15,
+            y_m: 0.05,
+        },
+        from_z_m,
+        along: (1.0, 0.0),
+        slope: (z_m - from_z_m) / length_m,
+        length_m,
+    };
+    let mut survey = Survey::new(&mut window, &Terrain::TABLE_I, &input);
+    survey.judge(&ray, (false, true));
+    let heights = window.read();
+    let height_m = heights.height_m(BEFORE).expect("it was measured");
+    (height_m, heights.count(BEFORE))
+}
+
+/// The beam ends in the cell before the wall's, for its range is off by a centimetre; what it met is the wall.
+#[test]
+fn the_foot_of_a_wall_raises_no_ground_before_it() {
+    assert_eq!(before_wall(true, 0.12), (0.0, 2));
+}
+
+#[test]
+fn what_rises_as_much_where_nothing_stands_is_ground() {
+    let (height_m, count) = before_wall(false, 0.12);
+    assert!((height_m - 0.12 / 3.0).abs() < 0.002, "{height_m}");
+    assert_eq!(count, 3);
+}
+
+#[test]
+fn ground_that_hardly_rises_is_measured_up_to_the_wall() {
+    let (height_m, count) = before_wall(true, 0.02);
+    assert!((height_m - 0.02 / 3.0).abs() < 0.002, "{height_m}");
+    assert_eq!(count, 3);
+}

@@ -1,0 +1,39 @@
+//! The program as a user meets it: what it leaves behind, what it prints where, and what it says to bad input.
+
+mod commands;
+mod refusals;
+mod runs;
+
+use assert_cmd::Command;
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// The program, in a folder of its own.
+fn host_sim(folder: &TempDir) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_host-sim"));
+    command
+        .current_dir(folder.path())
+        .env("RUST_BACKTRACE", "1");
+    command
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().expect("a folder")
+}
+
+/// What it did: exit status, standard output, standard error.
+fn outcome(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
+    let output = host_sim(folder).args(arguments).output().expect("runs");
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("text");
+    (
+        output.status.code().expect("an exit status"),
+        text(output.stdout),
+        text(output.stderr),
+    )
+}
+
+/// The reports that a `--json` run printed: every line is one, or the test fails.
+fn reports(stdout: &str) -> Vec<Value> {
+    let parse = |line| serde_json::from_str(line).expect("a JSON object a line");
+    stdout.lines().map(parse).collect()
+}

@@ -1,0 +1,274 @@
+//! Bad input is refused in one line that names it.
+
+use std::fs;
+
+use tempfile::TempDir;
+
+use crate::{folder, outcome};
+
+/// It refused: status 2, nothing on standard output, and one line that has all these words in it.
+#[track_caller]
+fn refused(folder: &TempDir, arguments: &[&str], words: &[&str]) {
+    let (status, stdout, stderr) = outcome(folder, arguments);
+    assert_eq!(
+        (status, stdout.as_str()),
+        (2, ""),
+        "{arguments:?}: {stderr}"
+    );
+    assert!(stderr.starts_with("host-sim: "), "{arguments:?}: {stderr}");
+    assert_eq!(stderr.lines().count(), 1, "{arguments:?}: {stderr}");
+    for panic in ["panicked", "backtrace"] {
+        assert!(!stderr.contains(panic), "{arguments:?}: {stderr}");
+    }
+    for word in words {
+        assert!(
+            stderr.contains(word),
+            "{arguments:?}: no {word:?} in: {stderr}"
+        );
+    }
+}
+
+#[test]
+fn bad_worlds_are_refused_in_one_line() {
+    let folder = folder();
+    let world = |name: &str, more: &str| {
+        let text = format!(
+            "image: walls.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\n\
+             free_thresh: 0.196\nrobots: [[2, 2, 0]]\n{more}"
+        );
+        fs::write(folder.path().join(name), text).unwrap();
+    };
+    let mut walls = b"P5\n40 40\n255\n".to_vec();
+    walls.extend([254; 1600]);
+    fs::write(folder.path().join("walls.pgm"), &walls).unwrap();
+    world("good.yaml", "");
+    assert_ne!(
+        outcome(&folder, &["explore", "good.yaml", "--time-limit", "1"]).0,
+        2
+    );
+
+    refused(
+        &folder,
+        &["explore", "nowhere.yaml"],
+        &["nowhere.yaml", "office"],
+    );
+    world("key.yaml", "colour: red\n");
+    refused(
+        &folder,
+        &["explore", "key.yaml"],
+        &["key.yaml", "colour", "occupied_thresh"],
+    );
+    world("height.yaml", "wall_height: tall\n");
+    refused(
+        &folder,
+        &["explore", "height.yaml"],
+        &["height.yaml", "wall_height"],
+    );
+    let edit = |name: &str, from: &str, to: &str| {
+        let text = fs::read_to_string(folder.path().join("good.yaml")).unwrap();
+        fs::write(folder.path().join(name), text.replace(from, to)).unwrap();
+    };
+    edit("image.yaml", "walls.pgm", "missing.pgm");
+    refused(
+        &folder,
+        &["explore", "image.yaml"],
+        &["image.yaml", "missing.pgm", "relative"],
+    );
+    edit("threshold.yaml", "0.65", "1.65");
+    refused(
+        &folder,
+        &["explore", "threshold.yaml"],
+        &["occupied_thresh", "1.65"],
+    );
+    edit("outside.yaml", "[2, 2, 0]", "[-2, 2, 0]");
+    refused(
+        &folder,
+        &["explore", "outside.yaml"],
+        &["robots[0]", "(-2.00, 2.00)"],
+    );
+    let mut walled = walls.clone();
+    walled[13..].fill(0);
+    fs::write(folder.path().join("solid.pgm"), &walled).unwrap();
+    edit("wall.yaml", "walls.pgm", "solid.pgm");
+    refused(&folder, &["explore", "wall.yaml"], &["robots[0]", "wall"]);
+    fs::write(folder.path().join("short.pgm"), &walls[..500]).unwrap();
+    edit("short.yaml", "walls.pgm", "short.pgm");
+    refused(
+        &folder,
+        &["explore", "short.yaml"],
+        &["short.pgm", "truncated"],
+    );
+    // The signature and a header without an end.
+    let png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0(\0\0\0(\x08\0\0\0\0";
+    fs::write(folder.path().join("short.png"), png).unwrap();
+    edit("png.yaml", "walls.pgm", "short.png");
+    refused(&folder, &["explore", "png.yaml"], &["short.png"]);
+    let mut png = Vec::new();
+    let mut header = png::Encoder::new(&mut png, 40, 40);
+    header.set_color(png::ColorType::Grayscale);
+    let mut writer = header.write_header().unwrap();
+    let speckled: Vec<u8> = (0..1600_u32).map(|k| ((k * k * 37) >> 3) as u8).collect();
+    writer.write_image_data(&speckled).unwrap();
+    writer.finish().unwrap();
+    for length in [8, 20, 40, png.len() / 2, png.len() - 13] {
+        fs::write(folder.path().join("short.png"), &png[..length]).unwrap();
+        refused(
+            &folder,
+            &["explore", "png.yaml"],
+            &["short.png", "truncated", "copy the whole file"],
+        );
+    }
+    // Numbers that are none, or none that a robot could drive in.
+    for (from, to, words) in [
+        ("resolution: 0.1", "resolution: .nan", "finite"),
+        ("resolution: 0.1", "resolution: -0.1", "above 0 m"),
+        ("resolution: 0.1", "resolution: 1e9", "1000 m a side"),
+        ("origin: [0, 0, 0]", "origin: [.inf, 0, 0]", "finite"),
+        ("origin: [0, 0, 0]", "origin: [500000, 0, 0]", "3000 m"),
+        ("origin: [0, 0, 0]", "origin: [0, 0, 1]", "yaw"),
+        (
+            "free_thresh: 0.196",
+            "free_thresh: 0.9",
+            "free_thresh (0.9)",
+        ),
+        ("negate: 0", "negate: 2", "0 or 1"),
+        ("[2, 2, 0]", "[.nan, 2, 0]", "finite"),
+    ] {
+        edit("number.yaml", from, to);
+        refused(
+            &folder,
+            &["explore", "number.yaml"],
+            &["number.yaml", words],
+        );
+    }
+    // A good world before a bad one is not run.
+    refused(&folder, &["explore", "good.yaml", "key.yaml"], &["colour"]);
+}
+
+#[test]
+fn bad_arguments_are_refused_in_one_line() {
+    let folder = folder();
+    let explore = |more: &[&str], words: &[&str]| {
+        refused(&folder, &[&["explore", "loop"], more].concat(), words);
+    };
+    explore(&["--strategy", "magic"], &["magic", "frontier"]);
+    explore(
+        &["--link", "tcp"],
+        &["tcp", "direct, loopback, qemu or serial:DEVICE[@BAUD]"],
+    );
+    explore(&["--link", "serial:"], &["serial:/dev/"]);
+    explore(
+        &["--link", "serial:/dev/fieldline-none"],
+        &["/dev/fieldline-none"],
+    );
+    explore(&["--link", "serial:/dev/null@0"], &["baud"]);
+    explore(&["--fault", "drop=7"], &["drop=7", "0 to 0.5"]);
+    explore(&["--fault", "rain=0.1"], &["rain", "duplicate"]);
+    explore(
+        &["--link", "direct", "--fault", "drop=0.1"],
+        &["direct", "loopback"],
+    );
+    explore(&["--odometry", "gps"], &["gps", "truth, noisy"]);
+    explore(&["--start", "7"], &["robots[7]", "2 starts"]);
+    for bad in ["x", "-1", "1.5", "99999999999999999999"] {
+        explore(&["--start", bad], &[bad, "whole number"]);
+        explore(&["--seed", bad], &[bad, "whole number"]);
+    }
+    for bad in ["0", "-5", "nan", "inf", "1e300"] {
+        explore(&["--time-limit", bad], &[bad, "above 0"]);
+    }
+    explore(&["--snapshots", "501"], &["'501'", "0 to 500"]);
+    explore(&["--imu-noise", "90"], &["'90'", "degrees from 0 to 20"]);
+    explore(&["--laser-noise", "-1"], &["'-1'", "metres from 0 to 1"]);
+    explore(
+        &["--limits", "climb=steep"],
+        &["climb", "degrees and metres"],
+    );
+    explore(
+        &["--limits", "climb=40"],
+        &["--limits climb=40", "--failing"],
+    );
+    refused(&folder, &["explore", "loop@7"], &["robots[7]", "2 starts"]);
+    for bad in ["64", "-5x5", "nanx5", "infx5", "0x9"] {
+        explore(&["--map-shape", bad], &[bad, "128x32"]);
+    }
+    for bad in ["", ","] {
+        explore(&["--fault", bad], &["no fault is named", "drop=P"]);
+    }
+    explore(&["--fault", "drop=nan"], &["drop=nan", "0 to 0.5"]);
+    explore(&["--fault", "reset@-1"], &["reset@-1", "from 1 on"]);
+    explore(
+        &["--fault", "drop=0.1,drop=0.2"],
+        &["'drop'", "given twice"],
+    );
+    explore(
+        &["--strategy", "greedy-frontier", "--preference", "off"],
+        &["greedy-frontier", "leave --preference and --terrain out"],
+    );
+    explore(
+        &["--strategy", "bvp", "--fault", "drop=0.1"],
+        &["bvp", "leave --fault out"],
+    );
+    explore(
+        &["--strategy", "bvp", "--link", "qemu"],
+        &["bvp", "leave --link out"],
+    );
+    refused(&folder, &["explore", ""], &["without a name", "office"]);
+    explore(&["--map-shape", "500x500"], &["--map-shape", "400"]);
+    fs::write(folder.path().join("file"), "").unwrap();
+    explore(&["--out", "file/sub"], &["file/sub", "--out"]);
+    explore(&["--out", "file"], &["file", "--out"]);
+    refused(&folder, &["explor"], &["explor", "--help"]);
+    refused(&folder, &["explore", "--fast"], &["--fast", "--help"]);
+}
+
+#[test]
+fn bad_windows_are_refused_in_one_line() {
+    let folder = folder();
+    let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
+    refused(&folder, &["solve", "none.txt"], &["none.txt", "existing"]);
+    write("empty.txt", b"");
+    refused(
+        &folder,
+        &["solve", "empty.txt"],
+        &["empty.txt", "at least one cell"],
+    );
+    write("letter.txt", b"...\n.x.\n");
+    refused(
+        &folder,
+        &["solve", "letter.txt"],
+        &["letter.txt", "line 2, column 2", "'x'", "R robot"],
+    );
+    write("ragged.txt", b"...\n..\n");
+    refused(&folder, &["solve", "ragged.txt"], &["line 2", "2 cells"]);
+    write("tall.txt", "...\n".repeat(62).as_bytes());
+    refused(&folder, &["solve", "tall.txt"], &["line 62", "61"]);
+    write("wide.txt", ".".repeat(62).as_bytes());
+    refused(
+        &folder,
+        &["solve", "wide.txt"],
+        &["line 1, column 62", "61"],
+    );
+    write("bytes.txt", b"\xff\xfe\x00");
+    refused(&folder, &["solve", "bytes.txt"], &["bytes.txt", "text"]);
+    write("w.txt", b"R.G\n");
+    write("e.csv", b"0,3,0\n");
+    let preferred = ["solve", "w.txt", "--preference", "e.csv"];
+    refused(
+        &folder,
+        &preferred,
+        &["e.csv", "line 1, column 2", "within -2 and 2"],
+    );
+    write("e.csv", b"0,0\n");
+    refused(&folder, &preferred, &["e.csv", "line 1"]);
+    refused(
+        &folder,
+        &["solve", "w.txt", "--solver", "cholesky"],
+        &["cholesky", "multigrid"],
+    );
+    refused(
+        &folder,
+        &["solve", "w.txt", "--out", "no/where.csv"],
+        &["no/where.csv", "--out"],
+    );
+}

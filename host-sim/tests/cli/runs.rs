@@ -1,0 +1,249 @@
+//! Runs: what they leave behind, what they print where, and how they end.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::{folder, outcome, reports};
+
+const FILES: [&str; 7] = [
+    "commands.csv",
+    "map.pgm",
+    "map.yaml",
+    "report.json",
+    "run.png",
+    "trajectory.tum",
+    "trajectory_truth.tum",
+];
+
+fn files(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let name = |entry: std::io::Result<fs::DirEntry>| {
+        entry
+            .expect("readable")
+            .file_name()
+            .into_string()
+            .expect("text")
+    };
+    let mut names: Vec<String> = entries.map(name).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn without_arguments_it_explores_the_office_and_leaves_a_folder() {
+    let folder = folder();
+    let (status, stdout, stderr) = outcome(&folder, &[]);
+    assert_eq!(status, 0, "{stdout}{stderr}");
+    assert!(
+        stdout.starts_with("office · frontier · seed 0: explored, "),
+        "{stdout}"
+    );
+    assert!(
+        stderr.contains("office: files in out/office-frontier-0"),
+        "{stderr}"
+    );
+    let run = folder.path().join("out/office-frontier-0");
+    assert_eq!(files(&run), FILES);
+    let report = fs::read_to_string(run.join("report.json")).unwrap();
+    let report: Value = serde_json::from_str(&report).unwrap();
+    assert_eq!(report["outcome"]["reason"], "explored");
+    assert_eq!(report["link"], "loopback");
+    assert_eq!(report["debug"]["map_matches_mirror"], true);
+    assert!(report["coverage"]["fraction"].as_f64().unwrap() > 0.98);
+    let steps = report["steps"].as_u64().unwrap() as usize;
+    let lines = |name: &str| fs::read_to_string(run.join(name)).unwrap().lines().count();
+    assert_eq!(lines("commands.csv"), steps + 1);
+    assert_eq!(lines("trajectory.tum"), steps);
+    assert_eq!(lines("trajectory_truth.tum"), steps);
+}
+
+#[test]
+fn json_is_one_report_a_line_and_nothing_else() {
+    let folder = folder();
+    let arguments = ["explore", "loop", "cave", "loop", "--json", "--out", "runs"];
+    let (status, stdout, _) = outcome(&folder, &arguments);
+    let reports = reports(&stdout);
+    let words: Vec<_> = reports
+        .iter()
+        .map(|r| {
+            (
+                r["world"].as_str().unwrap(),
+                r["outcome"]["reason"].as_str().unwrap(),
+            )
+        })
+        .collect();
+    assert_eq!(
+        words,
+        [
+            ("loop", "explored"),
+            ("cave", "explored"),
+            ("loop", "explored")
+        ]
+    );
+    assert_eq!(status, 0, "every run ended explored");
+    let runs = folder.path().join("runs");
+    assert_eq!(
+        files(&runs),
+        ["cave-frontier-0", "loop-frontier-0", "loop-frontier-0-2"]
+    );
+    for (name, report) in files(&runs).iter().zip([1, 0, 2]) {
+        assert_eq!(files(&runs.join(name)), FILES);
+        let file = fs::read_to_string(runs.join(name).join("report.json")).unwrap();
+        let file: Value = serde_json::from_str(&file).unwrap();
+        assert_eq!(file, reports[report], "file and line say the same");
+    }
+}
+
+#[test]
+fn one_world_goes_straight_into_out_and_the_time_limit_ends_it() {
+    let folder = folder();
+    let arguments = [
+        "explore",
+        "hall",
+        "--time-limit",
+        "3",
+        "--json",
+        "--out",
+        "here",
+    ];
+    let (status, stdout, stderr) = outcome(&folder, &arguments);
+    assert_eq!(status, 1);
+    let report = &reports(&stdout)[0];
+    assert_eq!(report["outcome"]["status"], "time-limit");
+    assert_eq!(report["sim_time_s"], 3.0);
+    assert_eq!(files(&folder.path().join("here")), FILES);
+    assert!(stderr.contains("allow more with --time-limit"), "{stderr}");
+}
+
+#[test]
+fn snapshots_of_an_uneven_run_change_nothing_but_leave_pictures() {
+    let folder = folder();
+    let run = |more: &[&str]| {
+        let arguments = ["explore", "causeway@1", "--time-limit", "13", "--json"];
+        let (status, stdout, _) = outcome(&folder, &[&arguments, more].concat());
+        assert_eq!(status, 1, "the time is up");
+        reports(&stdout).remove(0)
+    };
+    let plain = run(&["--link", "direct"]);
+    assert_eq!(plain["start"], 1);
+    assert_eq!(plain["terrain"]["working"]["climb_deg"], 20.0);
+    assert!(plain["terrain"]["classes"]["cells"][0][1].as_u64().unwrap() > 1_000);
+    let home = folder.path().join("out/causeway@1-frontier-0");
+    assert_eq!(files(&home), FILES, "no series unless asked for");
+    for link in ["direct", "loopback"] {
+        let taken = run(&["--link", link, "--snapshots", "3"]);
+        assert_eq!(taken["digest"], plain["digest"]);
+        assert_eq!(taken["coverage"], plain["coverage"]);
+        let series = home.join("snapshots");
+        assert_eq!(files(&series), ["001.png", "002.png", "003.png"]);
+        let pictures = files(&series).into_iter().map(|name| series.join(name));
+        let pictures: Vec<_> = pictures.chain([home.join("run.png")]).collect();
+        let sizes = pictures.iter().map(|path| {
+            let png = fs::read(path).unwrap();
+            assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
+            // Width and height.
+            png[16..24].to_vec()
+        });
+        let mut sizes: Vec<_> = sizes.collect();
+        sizes.dedup();
+        assert_eq!(sizes.len(), 1, "all of one size: they make a film");
+    }
+}
+
+#[test]
+fn the_rung_and_faults_on_it_change_no_command() {
+    let folder = folder();
+    let digest = |more: &[&str]| {
+        let arguments = ["explore", "cluttered", "--time-limit", "20", "--json"];
+        let (_, stdout, _) = outcome(&folder, &[&arguments, more].concat());
+        let report = reports(&stdout).remove(0);
+        (
+            report["digest"].clone(),
+            report["link_stats"]["retries"].clone(),
+        )
+    };
+    let clean = digest(&["--link", "direct"]);
+    assert_eq!(digest(&["--link", "loopback"]).0, clean.0);
+    let faults = "drop=0.02,duplicate=0.02,corrupt=0.02,truncate=0.02,delay=0.02";
+    let faulty = digest(&["--link", "loopback", "--fault", faults]);
+    assert_eq!(faulty.0, clean.0);
+    assert!(faulty.1.as_u64().unwrap() > 0, "the faults were felt");
+    assert_ne!(digest(&["--seed", "1"]).0, clean.0);
+}
+
+#[test]
+fn a_device_that_falls_silent_or_resets_ends_the_run_with_a_typed_fault() {
+    let folder = folder();
+    for (fault, reason) in [("silent@60", "link-silent"), ("reset@60", "device-reset")] {
+        let arguments = ["explore", "loop", "--json", "--fault", fault];
+        let (status, stdout, stderr) = outcome(&folder, &arguments);
+        let report = &reports(&stdout)[0];
+        assert_eq!(status, 1);
+        assert_eq!(report["outcome"]["status"], "fault", "{fault}");
+        assert_eq!(report["outcome"]["reason"], reason, "{fault}");
+        assert_eq!(report["fault"], fault);
+        assert_eq!(report["safety"]["collisions"], 0, "{fault}");
+        assert!(stderr.contains("host-sim: loop: "), "{stderr}");
+        assert_eq!(files(&folder.path().join("out/loop-frontier-0")), FILES);
+    }
+}
+
+#[test]
+fn check_field_fills_the_heading_error() {
+    let folder = folder();
+    let arguments = [
+        "explore",
+        "loop",
+        "--time-limit",
+        "10",
+        "--json",
+        "--check-field",
+    ];
+    let (_, stdout, _) = outcome(&folder, &arguments);
+    let report = &reports(&stdout)[0];
+    let field = &report["field"];
+    assert!(report["debug"]["checked_windows"].as_u64().unwrap() > 30);
+    let worst = field["worst_heading_error_deg"].as_f64().unwrap();
+    assert!((0.0..=180.0).contains(&worst));
+    assert_eq!(field["heading_error_deg"]["max"].as_f64(), Some(worst));
+    assert!(
+        field["heading_error_deg"]["p50"].as_f64().unwrap() < 2.0,
+        "{field}"
+    );
+}
+
+/// The interrupt key stops the robot, and the report is still written.
+#[cfg(unix)]
+#[test]
+fn the_interrupt_key_ends_a_run_in_good_order() {
+    use std::process::{Command, Stdio};
+    let folder = folder();
+    let child = Command::new(env!("CARGO_BIN_EXE_host-sim"))
+        .args(["explore", "hall", "--realtime", "--json", "--out", "run"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(core::time::Duration::from_secs(3));
+    let id = child.id().to_string();
+    assert!(
+        Command::new("kill")
+            .args(["-INT", &id])
+            .status()
+            .unwrap()
+            .success()
+    );
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let report = reports(&String::from_utf8(output.stdout).unwrap()).remove(0);
+    assert_eq!(report["outcome"]["status"], "interrupted");
+    let time_s = report["sim_time_s"].as_f64().unwrap();
+    assert!(
+        time_s < 3.5,
+        "{time_s} s: faster than the clock on the wall"
+    );
+    assert_eq!(files(&folder.path().join("run")), FILES);
+}
