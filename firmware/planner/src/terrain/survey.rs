@@ -9,7 +9,7 @@
 //! | steeper than the climb, ĥ not known yet, nearer than `d_obs` | obstacle (b) |
 //! | below what the ground at K leads to expect, and the beam just passes over K | a rim at K: what lies between is gone |
 //! | that, and `dh < h_hole` | gone, P itself as well |
-//! | `dh < h_hole`, but the beam comes down no more steeply than a slope may | a rim at K is suspected: gone if it is not measured by the time that the robot is near |
+//! | `dh < h_hole`, but the beam comes down no more steeply than a slope may | a rim at K is suspected: gone if it is not measured by the time that it is near ahead of the robot |
 //! | else, with K near enough | ground; of what rises too steeply before what stands, the foot of that |
 //!
 //! Departs from [Maffei-Terrain, III-B] in three ways. (1) Obstacle (a) must also be steep, because level beams meet every slope that
@@ -87,6 +87,8 @@ pub struct Survey<'a, 'm> {
     terrain: &'a Terrain,
     attitude: Attitude,
     robot: Point,
+    /// Sine and cosine of the robot's heading.
+    facing: (f32, f32),
     robot_z_m: f32,
     /// Heights are measured within this distance, metres.
     reach_m: f32,
@@ -104,6 +106,7 @@ impl<'a, 'm> Survey<'a, 'm> {
             terrain,
             attitude: Attitude::of(&input.pose),
             robot: input.pose.point(),
+            facing: math::sin_cos(input.pose.yaw_rad),
             robot_z_m: input.pose.z_m,
             reach_m: f32::INFINITY,
             slack_m: 0.0,
@@ -351,12 +354,20 @@ impl<'a, 'm> Survey<'a, 'm> {
                 let cell = Cell { x, y };
                 let heights = self.elevation.read();
                 if heights.is_suspect(cell)
+                    && self.is_ahead(cell)
                     && !leads_over(&heights, self.terrain, cell, self.slack_m)
                 {
                     self.elevation.sink(cell);
                 }
             }
         }
+    }
+
+    /// Whether a cell lies in the half that the lasers look into: to what lies behind a robot may have backed, and no beam had the chance to meet it.
+    fn is_ahead(&self, cell: Cell) -> bool {
+        let (sin, cos) = self.facing;
+        let centre = cell.centre();
+        (centre.x_m - self.robot.x_m) * cos + (centre.y_m - self.robot.y_m) * sin >= 0.0
     }
 
     /// What was never measured between two lengths of a beam is gone.
