@@ -36,7 +36,7 @@ use charge::{charge, charge_rails, local_goal};
 use plan::{look_for_lookouts, replan};
 use prefer::{note_flatness, prefer};
 use state::Around;
-use steer::steer;
+use steer::{look_about, steer};
 
 /// Range code: nothing came back, so free up to the range limit.
 pub const NO_RETURN_MM: u16 = 16_383;
@@ -128,7 +128,10 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     if charge_rails(state, workspace, &disc, &input).is_none() {
         let Some(goal) = local_goal(state, &disc, &input, &mut workspace.view) else {
             laps.lap(Stage::Window);
-            return Output::default();
+            return Output {
+                velocity: look_about(config, state, &input),
+                ..Output::default()
+            };
         };
         charge(workspace, &goal);
     }

@@ -17,6 +17,9 @@ const REACH: i32 = 2;
 const SIDE: usize = 2 * REACH as usize + 1;
 /// So far ahead the robot turns to what comes, metres: half its length and the way in which it brakes from half its speed.
 const AHEAD_M: f32 = 0.45;
+/// The part of the limit that a measured lean may take: on ground of 15° a slope is measured to about half a degree, and a robot that turns on the
+/// spot there leans by all of it.
+const SURE: f32 = 0.95;
 
 /// Slopes around the robot, and the greatest lean.
 #[derive(Clone, Debug)]
@@ -71,13 +74,13 @@ impl Incline {
     /// Whether the robot may stand at a place, by the sine and cosine of its heading there.
     #[must_use]
     pub fn admits(&self, place: Place, heading: (f32, f32)) -> bool {
-        self.lean(place, heading) <= self.most.max(self.now)
+        self.lean(place, heading) <= (SURE * self.most).max(self.now)
     }
 
     /// Whether the robot stands on ground that it may not turn on.
     #[must_use]
     pub fn is_steep(&self) -> bool {
-        self.at(Place::default()).steepness() > self.most
+        self.at(Place::default()).steepness() > SURE * self.most
     }
 
     /// The heading for one that is wanted at a place: turned towards the fall line of the slope there, or else of the slope ahead. In which
@@ -140,6 +143,22 @@ mod tests {
         let turns = [0.0, 40.0, -40.0, 180.0, 140.0].map(stands);
         assert_eq!(turns, [true; 5]);
         assert_eq!([60.0, 90.0, -90.0, 120.0].map(stands), [false; 4]);
+    }
+
+    #[test]
+    fn ground_as_steep_as_the_limit_is_not_turned_on_and_ground_that_surely_is_less_is() {
+        let ground = |part: f32| Incline {
+            slopes: [[Slope {
+                x: 0.0,
+                y: part * TERRAIN.roll,
+            }; SIDE]; SIDE],
+            ..slope_from(9.0, 0.0)
+        };
+        let everywhere = |part: f32| {
+            (0..48).all(|k| ground(part).admits(Place::default(), facing(0.13 * k as f32)))
+        };
+        assert!(everywhere(0.9) && !ground(0.9).is_steep());
+        assert!(!everywhere(0.98) && ground(0.98).is_steep());
     }
 
     #[test]

@@ -38,9 +38,11 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         return Output::default();
     };
     let heights = state.map.heights();
+    // A robot that found no way within the limit of its roll for so long leaves it rather than stand there for good.
     let incline = config
         .terrain
         .as_ref()
+        .filter(|_| whiles_stood(state, input.time_ms) < WHILES_AT_A_LOSS)
         .and_then(|terrain| Incline::new(terrain, &heights, &input.pose));
     let bias = Bias {
         before: state.wedge,
@@ -58,18 +60,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     let here = headed(Place::default());
     state.wedge = here.and_then(|(_, wedge)| wedge);
     let here = here.map(|(heading, _)| heading);
-    let mut surround = Surround::empty().on(incline.clone());
-    match &state.around {
-        Around::Near(near) => {
-            surround.see(&input.pose, near.points());
-            let cells = near::obstacle_cells(state.map.tiles(), input.pose.point());
-            surround.remember(&input.pose, cells);
-        }
-        Around::Storeys(_) => {
-            let rims = near::rims(state.map.tiles(), input.pose.point());
-            surround.keep_off(&input.pose, rims);
-        }
-    }
+    let surround = surround(state, &input.pose, incline.clone());
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
             let (x, y) = view::position((origin, scale), ahead(&input.pose, place));
@@ -113,6 +104,41 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     }
 }
 
+/// What stands around the robot, or what it keeps off.
+fn surround<const TILES: usize, const SLOTS: usize>(
+    state: &State<TILES, SLOTS>,
+    pose: &Pose,
+    incline: Option<Incline>,
+) -> Surround {
+    let mut surround = Surround::empty().on(incline);
+    match &state.around {
+        Around::Near(near) => {
+            surround.see(pose, near.points());
+            let cells = near::obstacle_cells(state.map.tiles(), pose.point());
+            surround.remember(pose, cells);
+        }
+        Around::Storeys(_) => {
+            let rims = near::rims(state.map.tiles(), pose.point());
+            surround.keep_off(pose, rims);
+        }
+    }
+    surround
+}
+
+/// Without a local goal: stand, or look around after long.
+pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    input: &Input<'_>,
+) -> Twist {
+    if !is_at_a_loss(state, Twist::default(), input.time_ms) {
+        return Twist::default();
+    }
+    let surround = surround(state, &input.pose, None);
+    let wish = state.drive.look_around(config, &surround, input.velocity);
+    within_limits(config, wish)
+}
+
 /// Whether the robot has stood for long and still does, on uneven ground: what it has not measured it may see when it turns. It does so every
 /// second while, and searches for a manoeuvre between.
 fn is_at_a_loss<const TILES: usize, const SLOTS: usize>(
@@ -120,11 +146,19 @@ fn is_at_a_loss<const TILES: usize, const SLOTS: usize>(
     velocity: Twist,
     time_ms: u32,
 ) -> bool {
-    let whiles = state.strategy.frontier.standing_ms(time_ms) / WHILE_MS;
+    let whiles = whiles_stood(state, time_ms);
     matches!(state.around, Around::Storeys(_))
         && velocity == Twist::default()
         && whiles >= WHILES_AT_A_LOSS
         && whiles % 2 == 1
+}
+
+/// For how many whiles the robot has stood about where it stands.
+fn whiles_stood<const TILES: usize, const SLOTS: usize>(
+    state: &State<TILES, SLOTS>,
+    time_ms: u32,
+) -> u32 {
+    state.strategy.frontier.standing_ms(time_ms) / WHILE_MS
 }
 
 /// Whether the road's goal lies clearly higher or lower than the robot, as far as its height is known.
