@@ -43,8 +43,10 @@ impl Frontier {
         };
         let goals = (goals, &starts);
         let road = self.find_road_on(way, goals, known, robot, &mut lent)?;
-        let on_storey = self.keep_to_storey(&road, goals, known, robot, &mut lent);
-        Some(on_storey.unwrap_or(road))
+        match self.keep_to_storey(&road, goals, known, robot, &mut lent) {
+            None => Some(road),
+            detour => detour,
+        }
     }
 
     /// For a road that leaves the storey much farther than its goal does, a way along centre cells that leave it no farther than that (or by one
