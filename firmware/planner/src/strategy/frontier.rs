@@ -12,6 +12,7 @@
 mod bars;
 mod leftovers;
 mod roads;
+mod starts;
 
 use heapless::Vec;
 

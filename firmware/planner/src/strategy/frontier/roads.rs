@@ -1,16 +1,11 @@
-//! Roads: the wave from every frontier cell, each starting the later the less it is preferred, and the way down it from the robot
-//! [Ouroboros, Algorithm 1, lines 3, 4, 24].
-//!
-//! ```text
-//! starts after:  0 beside the present goal | 10 a large frontier's | 22 a small one's     + 50 · level
-//! ```
-//!
-//! with the level of [`crate::terrain::storeys`].
+//! Roads: the wave from every frontier cell, each starting the later the less it is preferred ([`super::starts`]), and the way down it from
+//! the robot [Ouroboros, Algorithm 1, lines 3, 4, 24].
 //!
 //! Where heights are preferred, a road that goes by another storey gives way to one that keeps to its own, if that is no longer than what goals
 //! so far off the storey are put back by. Units: map cells, coarse steps of 20 cm.
 
-use super::{DROP_RADIUS_M, Frontier, Known, Lent, near};
+use super::starts::{Starts, later};
+use super::{Frontier, Known, Lent};
 use crate::geometry::{Cell, Point};
 use crate::grid::{Plane, PlaneMut, Site};
 use crate::map::Tiles;
@@ -18,33 +13,13 @@ use crate::skeleton::{WaveSpace, Wavefront};
 use crate::strategy::Road;
 use crate::strategy::nearest::Centres;
 use crate::strategy::paths::Paths;
-use crate::terrain::storeys::{LATER_STEPS, MOST_LEVEL};
+use crate::terrain::storeys::LATER_STEPS;
 use crate::topology::Frame;
 
 /// A road that leaves the storey by so many levels more than its goal does goes by another storey: 1 m with Table I's parameters.
 const OTHER_STOREY: u32 = 4;
-/// Head start of the present goal, coarse steps: what turning about costs.
-const HEAD_START: u32 = 10;
-/// A frontier cell with fewer around it, within 2 cells and with itself, is a small one's: a corner, the foot of a wall.
-const SMALL_COMPANY: u32 = 4;
-/// By so many coarse steps a small frontier is as if farther away. The papers have all unexplored cells start at once; on the
-/// built-in worlds, three seeds, the mean time to 99 % is thereby (seconds; 30 steps in the last column):
-///
-/// | | at once | 12 steps | 30 steps |
-/// | --- | --- | --- | --- |
-/// | office | 264 | 262 | 282 |
-/// | cave | 99 | 98 | 98 |
-/// | loop | 112 | 108 | 108 |
-/// | cluttered | 67 | 61 | 61 |
-/// | hall | 67 | 64 | 64 |
-/// | narrow-doors | 83 | 78 | 78 |
-const SMALL_LATER: u32 = 12;
-/// How much later frontier cells start by their rank: beside the present goal, large, small.
-const RANKS_LATER: [u32; 3] = [0, HEAD_START, HEAD_START + SMALL_LATER];
-const _CHECKS: () = assert!(
-    LATER_STEPS > HEAD_START + SMALL_LATER,
-    "the ranks of a level start before the next level"
-);
+/// Words of the wave's queue in which the starts of frontier cells are kept, six a word: a wave rarely has so many cells waiting.
+const START_WORDS: usize = 170;
 
 impl<const TILES: usize, const SLOTS: usize> Known<'_, TILES, SLOTS> {
     /// These centre cells, to look for the nearest of.
@@ -70,11 +45,21 @@ impl Frontier {
             return None;
         }
         let way = known.topology.skeleton()?;
-        let road = self.find_road_on(way, known, robot, lent)?;
-        Some(
-            self.keep_to_storey(&road, known, robot, lent)
-                .unwrap_or(road),
-        )
+        let goals = known.topology.frontier()?;
+        let queue = lent.ring.len().saturating_sub(START_WORDS);
+        let (ring, numbers) = lent.ring.split_at_mut(queue);
+        let starts = self.starts(goals, known, numbers);
+        let mut lent = Lent {
+            residues: &mut *lent.residues,
+            ring,
+            view: &mut *lent.view,
+        };
+        let goals = (goals, &starts);
+        let road = self.find_road_on(way, goals, known, robot, &mut lent)?;
+        match self.keep_to_storey(&road, goals, known, robot, &mut lent) {
+            None => Some(road),
+            detour => detour,
+        }
     }
 
     /// For a road that leaves the storey much farther than its goal does, a way along centre cells that leave it no farther than that (or by one
@@ -82,6 +67,7 @@ impl Frontier {
     fn keep_to_storey<const TILES: usize, const SLOTS: usize>(
         &self,
         road: &Road,
+        goals: (Plane<'_>, &Starts<'_>),
         known: &Known<'_, TILES, SLOTS>,
         robot: Point,
         lent: &mut Lent<'_>,
@@ -108,7 +94,7 @@ impl Frontier {
             ring: &mut *lent.ring,
             view: &mut *lent.view,
         };
-        let detour = self.find_road_on(on_storey.view(), known, robot, &mut lent)?;
+        let detour = self.find_road_on(on_storey.view(), goals, known, robot, &mut lent)?;
         (detour.steps() <= road.steps() + LATER_STEPS * excess).then_some(detour)
     }
 
@@ -116,11 +102,11 @@ impl Frontier {
     fn find_road_on<const TILES: usize, const SLOTS: usize>(
         &self,
         way: Plane<'_>,
+        goals: (Plane<'_>, &Starts<'_>),
         known: &Known<'_, TILES, SLOTS>,
         robot: Point,
         lent: &mut Lent<'_>,
     ) -> Option<Road> {
-        let goals = known.topology.frontier()?;
         let mut paths = Paths::open(known.centres(way), lent)?;
         if !self.spread(&mut paths.space, goals, known) {
             return None;
@@ -145,114 +131,29 @@ impl Frontier {
         Some(walk_down(&space, centres.frame, known.tiles, at_once, entry).after(steps))
     }
 
-    /// Wave from every frontier cell that was not dropped; those beside the present goal first, and those on another storey last. Whether
-    /// there are any.
+    /// Wave from every frontier cell that was not dropped, each at its start. Whether there are any.
     fn spread<const TILES: usize, const SLOTS: usize>(
         &self,
         space: &mut WaveSpace<'_>,
-        goals: Plane<'_>,
+        (goals, starts): (Plane<'_>, &Starts<'_>),
         known: &Known<'_, TILES, SLOTS>,
     ) -> bool {
         let mut any = false;
         let mut wave = Wavefront::new();
         wave.start(space);
-        let level = |cell| self.level_of(known, cell);
-        let frame = known.topology.frame();
-        let present = goals
-            .sites()
-            .fold(0_u32, |levels, site| levels | 1 << level(frame.cell(site)));
         let mut now = 0;
-        for turn in (0..=MOST_LEVEL).filter(|turn| present >> turn & 1 == 1) {
-            // Ranks that were met; the first is gone through in any case.
-            let mut ranks = 1;
-            for (rank, later) in RANKS_LATER.into_iter().enumerate() {
-                if ranks >> rank & 1 == 0 {
-                    continue;
-                }
-                let start = turn * LATER_STEPS + later;
-                wave.advance_levels(space, start - now);
-                now = start;
-                for site in goals.sites() {
-                    let cell = frame.cell(site);
-                    if level(cell) == turn
-                        && let Some(its_rank) = self.rank(goals, site, cell)
-                    {
-                        ranks |= 1 << its_rank;
-                        any |= its_rank == rank && wave.seed(space, site);
-                    }
-                }
+        for number in starts.in_order() {
+            let start = later(number);
+            wave.advance_levels(space, start - now);
+            now = start;
+            for site in starts.sites(number, self, goals, known) {
+                any |= wave.seed(space, site);
             }
         }
         // Without a budget it always comes to its end.
         let _ = wave.advance(space, None, u32::MAX);
         any
     }
-
-    /// How much later a frontier cell starts for its height. The present goal counts by the storey from which it is preferred most, of those
-    /// that the robot was on since it took it: on its way it crosses others, and what is preferred from there would turn it about, and from beyond them
-    /// again. So steps and level of the present goal together only become fewer, and no two goals draw the robot to and fro. A goal that recedes up or
-    /// down a slope is judged by its height where it is now.
-    fn level_of<const TILES: usize, const SLOTS: usize>(
-        &self,
-        known: &Known<'_, TILES, SLOTS>,
-        cell: Cell,
-    ) -> u32 {
-        let Some(levels) = &known.levels else {
-            return 0;
-        };
-        let level = levels.of(known.tiles, cell);
-        if level > 0 && self.is_present(cell) {
-            level.min(levels.from(self.storey_m).of(known.tiles, cell))
-        } else {
-            level
-        }
-    }
-
-    /// A goal is taken, or kept: from here if it is another one, or no less preferred from here.
-    pub(super) fn note_storey<const TILES: usize, const SLOTS: usize>(
-        &mut self,
-        known: &Known<'_, TILES, SLOTS>,
-        goal: Cell,
-    ) {
-        let Some(levels) = &known.levels else {
-            return;
-        };
-        if !self.is_present(goal) || levels.of(known.tiles, goal) <= self.level_of(known, goal) {
-            self.storey_m = levels.storey_m;
-        }
-    }
-
-    /// Whether a cell is beside the present goal.
-    fn is_present(&self, cell: Cell) -> bool {
-        !self.road.is_empty() && near(self.road.goal(), cell, 2.0 * DROP_RADIUS_M)
-    }
-
-    /// In which order frontier cells of one storey start; `None` for one that was dropped.
-    fn rank(&self, goals: Plane<'_>, site: Site, cell: Cell) -> Option<usize> {
-        if self.is_gone(cell) {
-            None
-        } else if self.is_present(cell) {
-            Some(0)
-        } else {
-            Some(1 + usize::from(company(goals, site) < SMALL_COMPANY))
-        }
-    }
-}
-
-/// Frontier cells in the square of five by five around one.
-fn company(goals: Plane<'_>, site: Site) -> u32 {
-    let (word, bit) = (usize::from(site.x / 32), site.x % 32);
-    (0..5)
-        .filter_map(|dy| (usize::from(site.y) + dy).checked_sub(2))
-        .map(|row| {
-            let before = word.checked_sub(1).map_or(0, |word| goals.word(row, word));
-            let after = goals.word(row, word + 1);
-            let wide = u64::from(before >> 30)
-                | u64::from(goals.word(row, word)) << 2
-                | u64::from(after & 3) << 34;
-            (wide >> bit & 0x1f).count_ones()
-        })
-        .sum()
 }
 
 /// The road to the centre cell nearest to a place.

@@ -3,9 +3,11 @@
 use std::boxed::Box;
 use std::vec;
 
+use super::starts::later;
 use super::{Frontier, Known, Lent, Outlook};
 use crate::clearance::Disc;
 use crate::geometry::{Cell, Point};
+use crate::grid::Site;
 use crate::map::{Class, Tiles};
 use crate::terrain::elevation::{Elevation, WINDOW_CELLS};
 use crate::terrain::{Levels, Storeys, Terrain};
@@ -201,4 +203,45 @@ fn a_road_by_another_storey_gives_way_to_one_that_keeps_to_its_own() {
     assert!(northmost(0.5, room) < 8, "half a metre is no other storey");
     assert!(northmost(1.5, room) > 30, "round a dip of 1.5 m");
     assert!(northmost(1.5, 1) < 8, "no memory for a second way");
+}
+
+/// The sites of each number, in the order of numbers, with memory for so many words of them.
+fn starts(words: usize) -> vec::Vec<(u32, vec::Vec<Site>)> {
+    let tiles = corridor();
+    let storeys = storeys(&tiles);
+    let disc = Disc::new(0.3);
+    let mut topology = Box::new(Topology::<64>::new());
+    topology.reset(Space::KnownFree);
+    while !topology.advance(&tiles, &disc, u32::MAX) {}
+    let known = Known {
+        topology: &topology,
+        tiles: &tiles,
+        disc: &disc,
+        levels: Some(Levels {
+            storeys: &storeys,
+            terrain: &Terrain::TABLE_I,
+            storey_m: 0.0,
+        }),
+    };
+    let frontier = Frontier::new();
+    let goals = topology.frontier().expect("it was published");
+    let mut numbers = vec![u32::MAX; words];
+    let starts = frontier.starts(goals, &known, &mut numbers);
+    let sites = |number| starts.sites(number, &frontier, goals, &known).collect();
+    starts
+        .in_order()
+        .map(|number| (number, sites(number)))
+        .collect()
+}
+
+#[test]
+fn starts_that_found_no_room_are_the_same() {
+    let all = starts(100);
+    assert!(all.len() > 1, "{all:?}");
+    assert!(all.is_sorted_by_key(|(number, _)| later(*number)));
+    let count: usize = all.iter().map(|(_, sites)| sites.len()).sum();
+    assert!(count > 6, "more than a word holds: {count}");
+    for words in 0..2 {
+        assert_eq!(starts(words), all, "{words} words");
+    }
 }
