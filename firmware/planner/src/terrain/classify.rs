@@ -7,15 +7,8 @@
 //! | free | measured and neither; or between measured cells on both sides that lead over it; or glimpsed, and near |
 //! | as before | anything else: what the map says stays, until something better is known |
 //!
-//! Too high is an edge, or a slope:
-//!
-//! ```text
-//! edge   h − h(d) > climb · d + STEP                                    for a cell d = 1 or 2 away
-//! slope  |a + b| > 4 climb + NOISE, and |a|, |b| > HALF                 a = (h − h(±2, 0), h − h(0, ±2)),  b = the same from there
-//! ```
-//!
-//! Of each axis the side counts to which both halves of the way fall, so the slope is the length of the gradient and not what the axes cut
-//! from it, and an edge alone, which lies in one half, is none. The lower side stays free [*departs* from
+//! Too high over a cell `d` cells away means more than `climb · d + STEP` for d of 1 and 2, and over 4 cells more than the climb alone
+//! allows if both halves of the way take part: an edge, or a slope. The lower side stays free [*departs* from
 //! Maffei-Terrain, III-B: a mean over a kernel of 2 m blurs edges, and calls the upper side of every edge an obstacle a metre deep].
 //! An obstacle of the map is only freed where most cells around are measured too.
 //!
@@ -155,34 +148,14 @@ fn is_too_high(steps: &Steps, height: i32, bits: impl Fn(i32, i32) -> Option<i32
     ONE.into_iter().any(|beside| over(beside) > steps.one)
         || TWO.into_iter().any(|(dx, dy)| {
             let corner = dx != 0 && dy != 0;
-            over((dx, dy)) > if corner { steps.two_corner } else { steps.two }
+            let drop = over((dx, dy));
+            drop > if corner { steps.two_corner } else { steps.two }
+                || (!corner
+                    && drop > steps.half
+                    && bits(2 * dx, 2 * dy).is_some_and(|low| {
+                        height - low > steps.four && height - low - drop > steps.half
+                    }))
         })
-        || is_too_steep(steps, height, bits)
-}
-
-/// Whether the ground falls more steeply from a cell than may be climbed, whatever the direction.
-#[inline(always)]
-fn is_too_steep(steps: &Steps, height: i32, bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
-    // By how much it falls over two cells, and over the two behind them.
-    let falls = |dx: i32, dy: i32| {
-        let near = height - bits(dx, dy)?;
-        // What is more than enough needs no square.
-        let far = |low: i32| (height - near - low).min(steps.four + 1);
-        (near > 0).then_some((near, far(bits(2 * dx, 2 * dy)?)))
-    };
-    let axis = |dx: i32, dy: i32| {
-        [falls(dx, dy), falls(-dx, -dy)]
-            .into_iter()
-            .flatten()
-            .max_by_key(|&(near, far)| near.min(far))
-            .filter(|&(_, far)| far > 0)
-            .unwrap_or_default()
-    };
-    let ((x, far_x), (y, far_y)) = (axis(2, 0), axis(0, 2));
-    let is_longer = |x: i32, y: i32, than: i32| x * x + y * y > than * than;
-    is_longer(x + far_x, y + far_y, steps.four)
-        && is_longer(x, y, steps.half)
-        && is_longer(far_x, far_y, steps.half)
 }
 
 /// Whether most cells around are measured.
@@ -272,133 +245,4 @@ fn is_bridged(steps: &Steps, bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
     BRIDGES.into_iter().any(|(there, here)| {
         leads(bits(there, 0), bits(-here, 0)) || leads(bits(0, there), bits(0, -here))
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Classes, Steps, row};
-    use crate::geometry::{Cell, Point};
-    use crate::map::rows::Row;
-    use crate::terrain::Terrain;
-    use crate::terrain::elevation::{Elevation, WINDOW_CELLS};
-
-    /// Rows and columns that have ground to all sides.
-    const INNER: core::ops::Range<i32> = -20..20;
-
-    /// The classes of a window of ground, by its row from −32 on, where nothing was known.
-    fn classes(mut height_m: impl FnMut(Point, u32) -> f32) -> [Classes; 64] {
-        let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
-        let mut origin = Cell::default();
-        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
-        window.follow(Cell::default());
-        for y in -32..32 {
-            for x in -32..32 {
-                let cell = Cell { x, y };
-                // Once may be a false return.
-                for time in 0..4 {
-                    window.measure(cell, height_m(cell.centre(), time));
-                }
-            }
-        }
-        let steps = Steps::new(&Terrain::TABLE_I);
-        core::array::from_fn(|k| row(&window.read(), &steps, k as i32 - 32, Row::default()))
-    }
-
-    /// Obstacles among the cells that have ground to all sides.
-    fn obstacles(classes: &[Classes; 64]) -> u32 {
-        let inner = INNER.map(|x| 1_u64 << (x + 32)).sum::<u64>();
-        let rows = INNER.filter_map(|y| classes.get((y + 32) as usize));
-        rows.map(|row| (row.obstacle & inner).count_ones()).sum()
-    }
-
-    /// All of them.
-    const ALL: u32 = 1600;
-
-    /// Obstacles on a plane of so many degrees that rises towards a bearing.
-    fn on_a_plane(degrees: f32, bearing: f32) -> u32 {
-        let (grade, (sin, cos)) = (degrees.to_radians().tan(), bearing.to_radians().sin_cos());
-        obstacles(&classes(|at, _| grade * (at.x_m * cos + at.y_m * sin)))
-    }
-
-    #[test]
-    fn whether_a_slope_is_too_steep_does_not_depend_on_its_direction() {
-        // tan 21.9° is the climb and what two means may be off by, over 0.4 m. Heights are in steps of 2 mm.
-        for bearing in (0..360).step_by(5) {
-            assert_eq!(on_a_plane(21.2, bearing as f32), 0, "{bearing}");
-            assert_eq!(on_a_plane(22.5, bearing as f32), ALL, "{bearing}");
-        }
-    }
-
-    /// About normal, of deviation 1.
-    fn normal(seed: &mut u64) -> f32 {
-        let mut sum = -6.0;
-        for _ in 0..12 {
-            *seed = seed
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            sum += (*seed >> 40) as f32 / (1_u32 << 24) as f32;
-        }
-        sum
-    }
-
-    #[test]
-    fn noise_takes_few_cells_of_a_slope_for_obstacles_in_every_direction() {
-        let mut seed = 7;
-        let mut share = |degrees: f32, bearing: f32| {
-            let grade = degrees.to_radians().tan();
-            let (sin, cos) = bearing.to_radians().sin_cos();
-            // Means of four of these are off by 5 mm.
-            let ground =
-                classes(|at, _| grade * (at.x_m * cos + at.y_m * sin) + 0.01 * normal(&mut seed));
-            obstacles(&ground) as f32 / ALL as f32
-        };
-        // Along a diagonal the cell's own error counts in both axes, and the gradient's deviation is √1.5 times as large.
-        for (degrees, most) in [(17.5, 0.0), (20.0, 0.08)] {
-            let shares = [0.0, 22.5, 45.0].map(|bearing| share(degrees, bearing));
-            assert!(shares.iter().all(|&share| share <= most), "{shares:?}");
-        }
-        let steep = [0.0, 22.5, 45.0].map(|bearing| share(24.0, bearing));
-        assert!(steep.iter().all(|&share| share > 0.9), "{steep:?}");
-    }
-
-    #[test]
-    fn an_edge_that_may_be_driven_over_is_no_slope_and_a_higher_one_is_an_obstacle_at_its_brow() {
-        for bearing in [0.0_f32, 30.0, 45.0, 90.0, 200.0] {
-            let (sin, cos) = bearing.to_radians().sin_cos();
-            let terrace = |height_m: f32| {
-                let along = move |at: Point| at.x_m * cos + at.y_m * sin;
-                obstacles(&classes(
-                    |at, _| if along(at) > 0.02 { height_m } else { 0.0 },
-                ))
-            };
-            assert_eq!(terrace(0.07), 0, "{bearing}");
-            assert!((40..200).contains(&terrace(0.15)), "{bearing}");
-        }
-        // The corner of a terrace falls along both axes.
-        let corner = |at: Point, _| f32::from(u8::from(at.x_m > 0.0 && at.y_m > 0.0)) * 0.07;
-        assert_eq!(obstacles(&classes(corner)), 0);
-    }
-
-    #[test]
-    fn of_ground_that_is_not_measured_along_one_axis_the_other_decides() {
-        // Two rows of ground and nothing beside.
-        let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
-        let mut origin = Cell::default();
-        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
-        window.follow(Cell::default());
-        for (x, y) in (-32..32).flat_map(|x| [(x, 0), (x, 1)]) {
-            let grade = if y == 0 { 0.36 } else { 0.45 };
-            let height_m = 0.1 * grade * x as f32;
-            window.measure(Cell { x, y }, height_m);
-            window.measure(Cell { x, y }, height_m);
-        }
-        let steps = Steps::new(&Terrain {
-            step_m: 9.0,
-            ..Terrain::TABLE_I
-        });
-        let of = |y: i32| row(&window.read(), &steps, y, Row::default());
-        assert_eq!(of(0).obstacle, 0);
-        // Four cells to the lower side are measured of the fifth cell from the left on.
-        assert_eq!(of(1).obstacle, u64::MAX << 4);
-    }
 }
