@@ -136,7 +136,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                     continue;
                 }
                 let leads_over =
-                    is_sure && classify::leads_over(&self.heights(), terrain, cell, (0.0, false));
+                    is_sure && classify::leads_over(&self.heights(), terrain, cell, 0.0);
                 // What was glimpsed is there.
                 let gone = gone.filter(|_| self.heights().glimpse_m(cell).is_none());
                 let class = if leads_over { Some(Class::Free) } else { gone };

@@ -3,7 +3,7 @@
 //! | class | of a cell |
 //! | --- | --- |
 //! | obstacle | something stands there; or it is measured, and too high over a cell beside it |
-//! | negative obstacle | never measured, and its ground is gone |
+//! | negative obstacle | never measured, and its ground is gone, or held to be where the map knows of none |
 //! | free | measured and neither; or between measured cells on both sides that lead over it; or glimpsed, and near |
 //! | as before | anything else: what the map says stays, until something better is known |
 //!
@@ -120,7 +120,11 @@ pub fn row(heights: &Heights<'_>, steps: &Steps, y: i32, known: Row) -> Classes 
                 classes.free |= bit;
             }
         } else if heights.is_sunken(cell) {
-            classes.negative |= bit;
+            // What is but held to be gone is, unless ground was measured there before the window came by again.
+            let is_held = heights.ground(cell) == Some(Ground::Doubtful);
+            if !is_held || (known.unknown() | known.obstacle()) & bit != 0 {
+                classes.negative |= bit;
+            }
         } else if known.unknown() & bit != 0
             && (is_bridged(steps, bits) || glimpse::is_enough(heights, steps.climb, cell))
         {
@@ -167,19 +171,14 @@ fn is_well_known(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
 }
 
 /// Whether the nearest measured cells on both sides of a cell that was never measured lead over it gently, in three of the four directions
-/// at least and in all in which there are two, and nothing between them is gone; what is but held to be gone tells nothing if there is `doubt`
-/// of that. Two heights may differ by `slack_m` for errors of the attitude alone.
+/// at least and in all in which there are two, and nothing between them is gone; what is but held to be gone tells nothing.
+/// Two heights may differ by `slack_m` for errors of the attitude alone.
 #[must_use]
-pub fn leads_over(
-    heights: &Heights<'_>,
-    terrain: &Terrain,
-    cell: Cell,
-    (slack_m, doubt): (f32, bool),
-) -> bool {
+pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell, slack_m: f32) -> bool {
     let ground = |cell: Cell| {
         heights
             .ground(cell)
-            .filter(|ground| !(doubt && *ground == Ground::Doubtful))
+            .filter(|ground| *ground != Ground::Doubtful)
     };
     let mut ways = 0;
     for (dx, dy, cells) in [(1, 0, 1.0), (1, 1, 1.41), (0, 1, 1.0), (-1, 1, 1.41)] {

@@ -85,8 +85,6 @@ pub struct Survey<'a, 'm> {
     terrain: &'a Terrain,
     attitude: Attitude,
     robot: Point,
-    /// Sine and cosine of the robot's heading.
-    facing: (f32, f32),
     robot_z_m: f32,
     /// Heights are measured within this distance, metres.
     reach_m: f32,
@@ -104,7 +102,6 @@ impl<'a, 'm> Survey<'a, 'm> {
             terrain,
             attitude: Attitude::of(&input.pose),
             robot: input.pose.point(),
-            facing: math::sin_cos(input.pose.yaw_rad),
             robot_z_m: input.pose.z_m,
             reach_m: f32::INFINITY,
             slack_m: 0.0,
@@ -136,7 +133,7 @@ impl<'a, 'm> Survey<'a, 'm> {
         suspicion::settle(
             self.elevation,
             self.terrain,
-            (self.robot, self.facing),
+            self.robot.cell(),
             self.slack_m,
         );
     }

@@ -1,7 +1,7 @@
 //! Suspicions: ground that is held to be gone because the robot came near without measuring it.
 //!
 //! ```text
-//! held to be gone:  suspected and ahead of the robot, or on a rim;  within SETTLED_M of it;  nothing leads over it
+//! held to be gone:  suspected, or on a rim;  within SETTLED_M of the robot;  nothing leads over it
 //! on a rim:         nothing was ever met in it, and of the eight cells around one is gone and one is measured
 //! ```
 //!
@@ -10,46 +10,32 @@
 //! cells before the corner, and the robot that drives along one side turns there beside ground that it never saw. A rim does not end in the
 //! open, so there what goes on along measured ground is taken for gone as well.
 //!
-//! What is but held to be gone is no evidence against the ground beside it, and gives way to the first height that is measured. Not in
+//! What is but held to be gone is no evidence against the ground beside it, gives way to the first height that is measured, and is none in
+//! the map where ground was measured before: a robot that comes again, or backs, has in the window but the strip that it stood on. Not in
 //! [Maffei-Terrain], whose ray back to the robot marks whatever was not detected. Units: metres, map cells.
 
 use super::Terrain;
 use super::classify::{Steps, is_between, leads_over};
 use super::elevation::Elevation;
-use crate::geometry::{CELL_M, Cell, Point};
+use crate::geometry::{CELL_M, Cell};
 use crate::math;
 
 /// Ground nearer to the robot than this that was never measured will not be, metres: the steep beams met level ground farther off, and would
 /// have met a slope.
 const SETTLED_M: f32 = 0.9;
 
-/// Settle what is suspected around a robot that heads so, by its sine and cosine. Two heights may differ by `slack_m` for errors of the attitude
-/// alone.
-pub fn settle(
-    elevation: &mut Elevation<'_>,
-    terrain: &Terrain,
-    (robot, (sin, cos)): (Point, (f32, f32)),
-    slack_m: f32,
-) {
-    let middle = robot.cell();
+/// Settle what is suspected around the robot at `middle`. Two heights may differ by `slack_m` for errors of the attitude alone.
+pub fn settle(elevation: &mut Elevation<'_>, terrain: &Terrain, middle: Cell, slack_m: f32) {
     let reach = math::floor(SETTLED_M / CELL_M);
     let side = 2 * reach + 1;
     let near = |k: i32| Cell {
         x: middle.x - reach + k % side,
         y: middle.y - reach + k / side,
     };
-    // To what lies behind a robot may have backed, and no beam had the chance to meet it.
-    let is_ahead = |cell: Cell| {
-        let centre = cell.centre();
-        (centre.x_m - robot.x_m) * cos + (centre.y_m - robot.y_m) * sin >= 0.0
-    };
     let all = 0..side * side;
     for cell in all.clone().map(near) {
         let heights = elevation.read();
-        if heights.is_suspect(cell)
-            && is_ahead(cell)
-            && !leads_over(&heights, terrain, cell, (slack_m, true))
-        {
+        if heights.is_suspect(cell) && !leads_over(&heights, terrain, cell, slack_m) {
             elevation.presume(cell);
         }
     }
@@ -59,7 +45,7 @@ pub fn settle(
         let heights = elevation.read();
         if heights.is_on_a_rim(cell)
             && !is_between(&heights, &steps, cell)
-            && !leads_over(&heights, terrain, cell, (slack_m, true))
+            && !leads_over(&heights, terrain, cell, slack_m)
         {
             elevation.presume(cell);
         }
@@ -72,12 +58,9 @@ mod tests {
     use std::vec;
 
     use super::settle;
-    use crate::geometry::{Cell, Point};
+    use crate::geometry::Cell;
     use crate::terrain::Terrain;
     use crate::terrain::elevation::{Elevation, Heights, WINDOW_CELLS};
-
-    /// The robot, which heads north.
-    const NORTH: (Point, (f32, f32)) = (Point { x_m: 0.0, y_m: 0.0 }, (1.0, 0.0));
 
     /// What two steps make of rows from the north, the robot in the middle of them: `.` measured at 0, `v` seen to be gone, `s` suspected, anything else never met.
     fn settled(rows: &[&str]) -> String {
@@ -102,7 +85,7 @@ mod tests {
             }
         }
         for _ in 0..2 {
-            settle(&mut window, &Terrain::TABLE_I, NORTH, 0.0);
+            settle(&mut window, &Terrain::TABLE_I, Cell::default(), 0.0);
         }
         let drawn = |heights: &Heights<'_>, cell: Cell| match () {
             () if heights.is_sunken(cell) => 'v',

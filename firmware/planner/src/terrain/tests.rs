@@ -7,7 +7,6 @@ use super::Terrain;
 use super::classify;
 use super::elevation::{Elevation, WINDOW_CELLS};
 use super::ray::{Attitude, Mount};
-use super::survey::Survey;
 use crate::config::{Config, Laser};
 use crate::geometry::{Cell, Point, Pose, Twist};
 use crate::map::{Class, Map};
@@ -202,7 +201,7 @@ fn a_corner_is_not_led_over_and_a_gap_is() {
             window.measure(cell, 0.0);
         }
         let asked = Cell { x: 2, y: 2 };
-        let leads = classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, (0.0, false));
+        let leads = classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, 0.0);
         assert_eq!(leads, expected, "corner: {corner}");
     }
 }
@@ -219,7 +218,7 @@ fn leads_over_gap(slack_m: f32, height_m: impl Fn(f32) -> f32) -> bool {
         window.measure(cell, height_m(cell.centre().x_m));
     }
     let asked = Cell { x: 4, y: 2 };
-    classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, (slack_m, false))
+    classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, slack_m)
 }
 
 /// From above both look alike across the gap, a fifth of a metre down; beside it they do not.
@@ -247,36 +246,6 @@ fn errors_of_the_attitude_do_not_make_ground_be_gone() {
     assert!(!leads_over_gap(0.0, slope));
     assert!(leads_over_gap(0.085, slope));
     assert!(!leads_over_gap(0.085, steep), "a drop of half a metre");
-}
-
-/// Which of what is suspected before and behind a robot that heads so is gone after a step in which it saw nothing.
-fn settled(yaw_rad: f32) -> [bool; 2] {
-    let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
-    let mut origin = Cell::default();
-    let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
-    let input = Input {
-        time_ms: 0,
-        pose: Pose {
-            yaw_rad,
-            ..Pose::default()
-        },
-        velocity: Twist::default(),
-        scans: [&[], &[]],
-    };
-    window.follow(Cell::default());
-    let cells = [Cell { x: 6, y: 1 }, Cell { x: -6, y: 1 }];
-    for cell in cells {
-        window.suspect(cell);
-    }
-    Survey::new(&mut window, &Terrain::TABLE_I, &input).run(&config(), &input, false);
-    cells.map(|cell| window.read().is_sunken(cell))
-}
-
-/// To what lies behind it a robot may have backed, without a beam on it.
-#[test]
-fn what_is_suspected_is_settled_ahead_and_not_behind() {
-    assert_eq!(settled(0.0), [true, false]);
-    assert_eq!(settled(math::PI), [false, true]);
 }
 
 #[test]
