@@ -28,6 +28,8 @@ const TURNS: usize = 5;
 const STEP_MS: u32 = 200;
 /// Cells around a goal that are given up with it.
 const GIVEN_UP: i32 = 3;
+/// Cells around the place before a robot that cannot go on where it trusts the ground: behind a brow no less is out of its view.
+const TRUSTED: i32 = 5;
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// From here on the window of heights lies where the counts were.
@@ -115,22 +117,27 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// The robot stood by a cell, and neither it nor what is around it was measured. Behind a brow ground stays out of view: where what is
     /// measured on both sides leads over it gently it is taken for free, and else for gone.
     pub fn give_up_ground(&mut self, terrain: &Terrain, goal: Cell) {
-        self.lead_over(terrain, goal, Some(Class::Negative));
+        self.lead_over(terrain, (goal, GIVEN_UP), Some(Class::Negative));
     }
 
     /// The robot cannot go on for ground around a cell that was never measured: what leads over it gently is taken for free. Whether
     /// there was any.
     pub fn trust_ground(&mut self, terrain: &Terrain, ahead: Cell) -> bool {
-        self.lead_over(terrain, ahead, None)
+        self.lead_over(terrain, (ahead, TRUSTED), None)
     }
 
     /// Take ground around a cell that was never measured for free where it is led over, and else for `gone`; whether any is free now.
-    fn lead_over(&mut self, terrain: &Terrain, middle: Cell, gone: Option<Class>) -> bool {
+    fn lead_over(
+        &mut self,
+        terrain: &Terrain,
+        (middle, reach): (Cell, i32),
+        gone: Option<Class>,
+    ) -> bool {
         let mut any = false;
         // With an attitude that is not sure a rim beside it may have gone unnoticed: trusted, ground at two holes let the robot fall.
         let is_sure = self.tilt.is_calm();
-        for y in middle.y - GIVEN_UP..=middle.y + GIVEN_UP + 1 {
-            for x in middle.x - GIVEN_UP..=middle.x + GIVEN_UP + 1 {
+        for y in middle.y - reach..=middle.y + reach + 1 {
+            for x in middle.x - reach..=middle.x + reach + 1 {
                 let cell = Cell { x, y };
                 if self.tiles.class(cell) != Class::Unknown {
                     continue;
