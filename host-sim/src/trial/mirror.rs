@@ -74,7 +74,8 @@ impl Mirror {
     }
 
     /// Whether these tiles are this map: all of it, and nothing else. On uneven ground the planner also gives up ground that it never
-    /// got to see, and the observations alone do not tell when: what it holds for a negative obstacle and what is unknown here is not compared.
+    /// got to see, or trusts it, and the observations alone do not tell when: what it holds for a negative obstacle, what is unknown here and
+    /// what it trusts though it is negative here is not compared.
     #[must_use]
     pub fn equals(&self, tiles: &BTreeMap<(i16, i16), Tile>) -> bool {
         let reach = |of: fn(&(i16, i16)) -> i16| {
@@ -91,7 +92,9 @@ impl Mirror {
                         ours.iter().zip(theirs).all(|(ours, theirs)| {
                             let known = (ours | ours >> 1) & 0x55;
                             let given_up = theirs & theirs >> 1 & 0x55 | !known & 0x55;
-                            (ours ^ theirs) & !(given_up | given_up << 1) == 0
+                            let trusted = ours & ours >> 1 & theirs & !(theirs >> 1) & 0x55;
+                            let either = given_up | trusted;
+                            (ours ^ theirs) & !(either | either << 1) == 0
                         })
                     }
                     (ours, theirs) => ours.as_ref().map(<[u8; 256]>::as_slice) == theirs,

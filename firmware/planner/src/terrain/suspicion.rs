@@ -54,12 +54,16 @@ pub fn settle(elevation: &mut Elevation<'_>, terrain: &Terrain, middle: Cell, sl
 
 #[cfg(test)]
 mod tests {
+    use std::boxed::Box;
     use std::string::String;
     use std::vec;
 
     use super::settle;
     use crate::geometry::Cell;
+    use crate::map::rows::Row;
+    use crate::map::{Class, Tiles};
     use crate::terrain::Terrain;
+    use crate::terrain::classify::{self, Steps};
     use crate::terrain::elevation::{Elevation, Heights, WINDOW_CELLS};
 
     /// What two steps make of rows from the north, the robot in the middle of them: `.` measured at 0, `v` seen to be gone, `s` suspected, anything else never met.
@@ -170,5 +174,33 @@ mod tests {
         ]);
         assert!(!seen.contains('v'), "{seen}");
         assert_eq!(seen.matches('s').count(), 2, "{seen}");
+    }
+
+    /// The bits of a row of the window with one cell held to be gone and one seen to be, where the map has this.
+    fn negative(known: Row) -> u64 {
+        let mut heights = vec![0; 2 * WINDOW_CELLS];
+        let mut marks = vec![0; WINDOW_CELLS];
+        let mut origin = Cell::default();
+        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+        window.follow(Cell { x: 32, y: 32 });
+        window.presume(Cell { x: 3, y: 9 });
+        window.sink(Cell { x: 5, y: 9 });
+        classify::row(&window.read(), &Steps::new(&Terrain::TABLE_I), 9, known).negative
+    }
+
+    /// A robot that comes again, or backs, has nothing in the window but the strip that it stands on.
+    #[test]
+    fn what_is_held_to_be_gone_is_not_where_ground_was_measured_before() {
+        for (class, expected) in [
+            (Class::Unknown, 1 << 3 | 1 << 5),
+            (Class::Negative, 1 << 3 | 1 << 5),
+            (Class::Free, 1 << 5),
+        ] {
+            let mut tiles = Box::<Tiles<4, 400>>::default();
+            for x in 0..64 {
+                tiles.set(Cell { x, y: 9 }, class).expect("room");
+            }
+            assert_eq!(negative(tiles.row(0, 9)), expected, "{class:?}");
+        }
     }
 }
