@@ -54,7 +54,6 @@ pub fn settle(elevation: &mut Elevation<'_>, terrain: &Terrain, middle: Cell, sl
 
 #[cfg(test)]
 mod tests {
-    use std::boxed::Box;
     use std::string::String;
     use std::vec;
 
@@ -196,7 +195,8 @@ mod tests {
             (Class::Negative, 1 << 3 | 1 << 5),
             (Class::Free, 1 << 5),
         ] {
-            let mut tiles = Box::<Tiles<4, 400>>::default();
+            let mut tiles = Tiles::<4, 16>::new();
+            tiles.reset(4, 4);
             for x in 0..64 {
                 tiles.set(Cell { x, y: 9 }, class).expect("room");
             }
