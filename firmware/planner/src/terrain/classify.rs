@@ -122,7 +122,7 @@ pub fn row(heights: &Heights<'_>, steps: &Steps, y: i32, known: Row) -> Classes 
         } else if heights.is_sunken(cell) {
             // What is but held to be gone is, unless ground was measured there before the window came by again.
             let is_held = heights.ground(cell) == Some(Ground::Doubtful);
-            if !is_held || (known.unknown() | known.obstacle()) & bit != 0 {
+            if !is_held || known.free() & bit == 0 {
                 classes.negative |= bit;
             }
         } else if known.unknown() & bit != 0

@@ -65,7 +65,8 @@ mod tests {
     use crate::terrain::classify::{self, Steps};
     use crate::terrain::elevation::{Elevation, Heights, WINDOW_CELLS};
 
-    /// What two steps make of rows from the north, the robot in the middle of them: `.` measured at 0, `v` seen to be gone, `s` suspected, anything else never met.
+    /// What two steps make of rows from the north, the robot in the middle of them: `.` measured at 0, `v` seen to be gone, `s` suspected,
+    /// anything else never met.
     fn settled(rows: &[&str]) -> String {
         let mut heights = vec![0; 2 * WINDOW_CELLS];
         let mut marks = vec![0; WINDOW_CELLS];
