@@ -24,6 +24,8 @@ const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::Cells>();
 const AT_ONCE: i32 = 12;
 /// Of the beams into a room whose walls are known, every so many-th is looked at in a step.
 const TURNS: usize = 5;
+/// Cells told of in a step before what else is seen through doorways waits for the next one: a whole room at once is too much for a step.
+const MOST_TOLD: u32 = 2_000;
 /// About a step, milliseconds.
 const STEP_MS: u32 = 200;
 /// Cells around a goal that are given up with it.
@@ -75,6 +77,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// What is seen through doorways, where nothing is known yet.
     fn look_into_rooms(&mut self, config: &Config, terrain: &Terrain, input: &Input<'_>) {
         let turn = (input.time_ms / STEP_MS) as usize % TURNS;
+        let mut told = 0;
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             let look = Look::new(&input.pose, terrain, laser, ranges_mm);
             let Some(look) = look.filter(|_| is_level(laser)) else {
@@ -89,8 +92,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                     number % TURNS == turn || look.end(number).is_some_and(is_new)
                 };
                 for number in beams {
-                    if is_due(&self.tiles, number) {
-                        look.tell(number, |cell, part| self.suppose(cell, part));
+                    if told < MOST_TOLD && is_due(&self.tiles, number) {
+                        look.tell(number, |cell, part| {
+                            told += 1;
+                            self.suppose(cell, part);
+                        });
                     }
                 }
             }

@@ -7,8 +7,7 @@
 //! | free | measured and neither; or between measured cells on both sides that lead over it; or glimpsed, and near |
 //! | as before | anything else: what the map says stays, until something better is known |
 //!
-//! Too high over a cell `d` cells away means more than `climb · d + STEP` for d of 1 and 2, and over 4 cells more than the climb alone
-//! allows if both halves of the way take part: an edge, or a slope. The lower side stays free [*departs* from
+//! Too high is an edge or a slope as [`super::falls`] tells them. The lower side stays free [*departs* from
 //! Maffei-Terrain, III-B: a mean over a kernel of 2 m blurs edges, and calls the upper side of every edge an obstacle a metre deep].
 //! An obstacle of the map is only freed where most cells around are measured too.
 //!
@@ -18,25 +17,12 @@ use fixed::types::I7F9;
 
 use super::Terrain;
 use super::elevation::{Ground, Heights, WINDOW_SIDE};
-use super::glimpse;
+use super::{falls, glimpse};
 use crate::geometry::{CELL_M, Cell};
 use crate::map::rows::Row;
 
 /// What a mean may be off beside its neighbour, metres.
 const NOISE_M: f32 = 0.015;
-/// Beside a cell, to all sides.
-const ONE: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
-/// Two away.
-const TWO: [(i32, i32); 8] = [
-    (2, 0),
-    (2, 2),
-    (0, 2),
-    (-2, 2),
-    (-2, 0),
-    (-2, -2),
-    (0, -2),
-    (2, -2),
-];
 /// How far the cells are that a bridge rests on, to either side.
 const BRIDGES: [(i32, i32); 6] = [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 1)];
 /// How far to either side ground is looked for over a brow, cells.
@@ -58,12 +44,12 @@ const WELL_KNOWN: u32 = 6;
 /// How much higher a cell may lie than one near it, in steps of a height.
 #[derive(Clone, Copy, Debug)]
 pub struct Steps {
-    one: i32,
-    two: i32,
-    two_corner: i32,
+    pub(super) one: i32,
+    pub(super) two: i32,
+    pub(super) two_corner: i32,
     /// Over four cells, and over half of them.
-    four: i32,
-    half: i32,
+    pub(super) four: i32,
+    pub(super) half: i32,
     /// From one end of a bridge to the other.
     bridge: i32,
     climb: f32,
@@ -111,9 +97,8 @@ pub fn row(heights: &Heights<'_>, steps: &Steps, y: i32, known: Row) -> Classes 
         if heights.is_standing(cell) {
             classes.obstacle |= bit;
         } else if let Some(height) = bits(0, 0) {
-            if is_too_high(steps, height, bits) {
-                // Once may be a false return.
-                if heights.count(cell) > 1 {
+            if let Some(fall) = falls::too_high(steps, height, bits) {
+                if falls::is_sure(heights, cell, fall) {
                     classes.obstacle |= bit;
                 }
             } else if known.obstacle() & bit == 0 || is_well_known(bits) {
@@ -143,23 +128,6 @@ fn at(heights: &Heights<'_>, cell: Cell, dx: i32, dy: i32) -> Option<i32> {
     heights
         .fixed(near)
         .map(|height| i32::from(height.to_bits()))
-}
-
-/// Whether a cell lies too high over one near it.
-#[inline(always)]
-fn is_too_high(steps: &Steps, height: i32, bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
-    let over = |(dx, dy): (i32, i32)| bits(dx, dy).map_or(i32::MIN, |low| height - low);
-    ONE.into_iter().any(|beside| over(beside) > steps.one)
-        || TWO.into_iter().any(|(dx, dy)| {
-            let corner = dx != 0 && dy != 0;
-            let drop = over((dx, dy));
-            drop > if corner { steps.two_corner } else { steps.two }
-                || (!corner
-                    && drop > steps.half
-                    && bits(2 * dx, 2 * dy).is_some_and(|low| {
-                        height - low > steps.four && height - low - drop > steps.half
-                    }))
-        })
 }
 
 /// Whether most cells around are measured.

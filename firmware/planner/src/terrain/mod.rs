@@ -28,6 +28,7 @@
 
 pub mod classify;
 pub mod elevation;
+pub mod falls;
 pub mod glimpse;
 mod heights;
 pub mod preference;
