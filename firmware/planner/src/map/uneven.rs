@@ -25,7 +25,7 @@ const AT_ONCE: i32 = 12;
 /// Of the beams into a room whose walls are known, every so many-th is looked at in a step.
 const TURNS: usize = 5;
 /// Cells told of in a step before what else is seen through doorways waits for the next one: a whole room at once is too much for a step.
-const MOST_TOLD: u32 = 2_000;
+const MOST_TOLD: u32 = 5_000;
 /// About a step, milliseconds.
 const STEP_MS: u32 = 200;
 /// Cells around a goal that are given up with it.

@@ -165,7 +165,7 @@ impl<'a> Look<'a> {
         if let Some(before) = number.checked_sub(1).and_then(|before| self.ray(before)) {
             tell_between(&before, &ray, &mut found);
         }
-        tell_ray(&ray, &mut found);
+        tell_ray(&ray, 0.0, &mut found);
     }
 }
 
@@ -182,6 +182,14 @@ fn tell_between(one: &Ray, other: &Ray, found: &mut impl FnMut(Cell, Part)) {
         return;
     }
     let count = math::floor(apart_m / STRIDE_M);
+    // So far the two themselves cross all there is between them.
+    let (ux, uy) = one.along;
+    let (vx, vy) = other.along;
+    let parting = (ux * vy - uy * vx).abs();
+    let from_m = one
+        .length_m
+        .min(other.length_m)
+        .min(STRIDE_M / parting.max(1e-3));
     for k in 1..=count {
         let part = k as f32 / (count + 1) as f32;
         let (x, y) = (
@@ -196,14 +204,15 @@ fn tell_between(one: &Ray, other: &Ray, found: &mut impl FnMut(Cell, Part)) {
                 length_m,
                 ..*one
             };
-            tell_ray(&ray, found);
+            tell_ray(&ray, from_m, found);
         }
     }
 }
 
-fn tell_ray(ray: &Ray, found: &mut impl FnMut(Cell, Part)) {
+/// A beam from a length on.
+fn tell_ray(ray: &Ray, from_m: f32, found: &mut impl FnMut(Cell, Part)) {
     let wall = wall(ray);
-    let mut s_m = 0.0;
+    let mut s_m = from_m;
     while s_m < ray.length_m {
         let cell = ray.at(s_m).cell();
         if cell != wall {
