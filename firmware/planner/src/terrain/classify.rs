@@ -29,6 +29,8 @@ const BRIDGES: [(i32, i32); 6] = [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 1)
 const BROW: i32 = 10;
 /// In how many of four directions it must be found: over the corner of a hole it is in one.
 const WAYS: i32 = 3;
+/// Ground that leads over a brow is no steeper than this part of the climb: a rim casts a shadow as steep as the tilted beams.
+const GENTLE: f32 = 0.75;
 /// What leads over a gap higher than an edge that may be driven over blends in: its grade lies between those on both sides, to within this. A kerb
 /// in a gap lies between level ground and level ground.
 const BLEND: f32 = 0.1;
@@ -136,7 +138,7 @@ fn is_well_known(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
     known > WELL_KNOWN
 }
 
-/// Whether the nearest measured cells on both sides of a cell that was never measured lead over it, no more steeply than may be climbed, in three of the four directions
+/// Whether the nearest measured cells on both sides of a cell that was never measured lead over it gently, in three of the four directions
 /// at least and in all in which there are two, and nothing between them is gone; what is but held to be gone tells nothing.
 /// Two heights may differ by `slack_m` for errors of the attitude alone.
 #[must_use]
@@ -161,7 +163,7 @@ pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell, slack_m:
         };
         let step_m = cells * CELL_M;
         let (rise_m, way_m) = (high - low, (there + here) as f32 * step_m);
-        let most_m = terrain.climb * way_m + slack_m;
+        let most_m = GENTLE * terrain.climb * way_m + slack_m;
         // Over the longest of the ways that grades are measured on.
         let blend = BLEND + slack_m / (FARTHEST * step_m);
         let blends = || {

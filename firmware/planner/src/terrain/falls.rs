@@ -2,14 +2,16 @@
 //!
 //! ```text
 //! edge   h − h(d) > climb · d + STEP              for a cell d = 1 or 2 away
+//!        h − h(4) > 4 climb + NOISE               along an axis, if both halves of the way take part by more than HALF
 //! slope  |a + b| > 4 climb + NOISE                a = (h(2, 0) − h, h(0, 2) − h),  b = (h − h(−2, 0), h − h(0, −2))
 //!        |a|, |b| > HALF
 //! ```
 //!
-//! Of an axis along which the ground does not rise in both halves alike nothing counts: so a slope is the length of the gradient, whatever its
-//! direction, and an edge alone, which lies in one half, is none. No cell's error counts in both axes, so a diagonal is measured as well as an
-//! axis. Not in [Maffei-Terrain], which knows no slope but against the kernel's mean. Units: map cells, heights in steps of
-//! [`fixed::types::I7F9`].
+//! Of an axis along which the ground does not rise in both halves alike nothing counts in a slope: so it is the length of the gradient, whatever
+//! its direction, and an edge alone, which lies in one half, is none. No cell's error counts in both axes, so a diagonal is measured as well
+//! as an axis. The second rule for edges tells no slope that the last does not, but tells it from its upper end: an edge that beams smear
+//! over some cells is one of its upper side. Not in [Maffei-Terrain], which knows no slope but against the kernel's mean. Units: map cells,
+//! heights in steps of [`fixed::types::I7F9`].
 
 use super::classify::Steps;
 use super::elevation::Heights;
@@ -41,6 +43,12 @@ pub fn too_high(
     let fall = |(dx, dy): (i32, i32)| near(dx, dy).map(|low| height - low);
     let is_edge = |fall: Option<i32>, most: i32| fall.is_some_and(|fall| fall > most);
     let two = TWO.map(fall);
+    let is_smeared = |near: Option<i32>, (dx, dy): (i32, i32)| {
+        let far = || fall((2 * dx, 2 * dy));
+        near.filter(|&near| near > steps.half)
+            .and_then(|near| Some((near, far()?)))
+            .is_some_and(|(near, far)| far > steps.four && far - near > steps.half)
+    };
     if ONE
         .into_iter()
         .any(|beside| is_edge(fall(beside), steps.one))
@@ -48,6 +56,10 @@ pub fn too_high(
         || CORNERS
             .into_iter()
             .any(|corner| is_edge(fall(corner), steps.two_corner))
+        || two
+            .into_iter()
+            .zip(TWO)
+            .any(|(near, way)| is_smeared(near, way))
     {
         Some(Fall::Edge)
     } else {
@@ -128,12 +140,13 @@ mod tests {
 
     #[test]
     fn a_slope_is_told_from_what_was_measured_more_than_once() {
-        let grade = 30.0_f32.to_radians().tan();
+        // Along a diagonal, where neither axis alone is too steep.
+        let grade = 25.0_f32.to_radians().tan() * core::f32::consts::FRAC_1_SQRT_2;
         let ground = |x: i32| {
             move |at: Point, time: u32| {
                 // Of one column only the first is kept.
                 let is_kept = time == 0 || at.cell().x != x;
-                is_kept.then_some(grade * at.x_m)
+                is_kept.then_some(grade * (at.x_m + at.y_m))
             }
         };
         let everywhere = obstacles(&classes_where(ground(1000)));
@@ -236,7 +249,7 @@ mod tests {
         });
         let of = |y: i32| row(&window.read(), &steps, y, Row::default());
         assert_eq!(of(0).obstacle, 0);
-        // Two cells to both sides are measured of all but the outermost.
-        assert_eq!(of(1).obstacle, (u64::MAX << 4) >> 2);
+        // Four cells to the lower side are measured of the fifth cell from the left on, and two to both sides of the third.
+        assert_eq!(of(1).obstacle, u64::MAX << 2);
     }
 }

@@ -192,13 +192,14 @@ impl<'a, 'm> Survey<'a, 'm> {
         } else if self.may_be_rim(ray, &footing, gap_m, rise_m) {
             self.suspect(ray, footing.s_m, ray.length_m);
         } else if self.is_rim(ray, &footing, gap_m, rise_m) {
+            self.sink(
+                ray,
+                footing.s_m,
+                (footing.s_m + RIM_M).min(ray.length_m - SAMPLE_M),
+            );
             if rise_m < self.terrain.hole_m {
-                let to_m = (footing.s_m + RIM_M).min(ray.length_m - SAMPLE_M);
-                self.sink(ray, footing.s_m, to_m);
                 return;
             }
-            // A brow that bends as quickly looks the same until the slope behind it is measured.
-            self.suspect(ray, footing.s_m, ray.length_m);
         }
         let cell = if rise_m > self.terrain.climb * gap_m + FOOT_M {
             self.foot(ray).unwrap_or(cell)
@@ -293,13 +294,10 @@ impl<'a, 'm> Survey<'a, 'm> {
         if rise_m > -LEAST_DROP_M || gap_m < 1.5 * SAMPLE_M || !self.is_steep(ray) {
             return false;
         }
-        let slope = self.slope_at(ray, footing);
-        if rise_m < self.terrain.hole_m
-            && -rise_m > STEEP * self.terrain.climb * gap_m
-            && rise_m < slope * gap_m - LEAST_DROP_M
-        {
+        if rise_m < self.terrain.hole_m && -rise_m > STEEP * self.terrain.climb * gap_m {
             return self.elevation.read().count(ray.at(footing.s_m).cell()) > 1;
         }
+        let slope = self.slope_at(ray, footing);
         // What rises steeply up to K is a thing that stands, and casts a shadow.
         slope < self.terrain.climb
             && rise_m < slope * gap_m - LEAST_DROP_M - BEND * gap_m
