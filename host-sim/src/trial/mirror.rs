@@ -88,15 +88,10 @@ impl Mirror {
                 let ours = self.map.tiles().packed(i32::from(x), i32::from(y));
                 let theirs = tiles.get(&(x, y)).map(|tile| tile.cells.as_slice());
                 match (&ours, theirs) {
-                    (Some(ours), Some(theirs)) if self.config.terrain.is_some() => {
-                        ours.iter().zip(theirs).all(|(ours, theirs)| {
-                            let known = (ours | ours >> 1) & 0x55;
-                            let given_up = theirs & theirs >> 1 & 0x55 | !known & 0x55;
-                            let trusted = ours & ours >> 1 & theirs & !(theirs >> 1) & 0x55;
-                            let either = given_up | trusted;
-                            (ours ^ theirs) & !(either | either << 1) == 0
-                        })
-                    }
+                    (Some(ours), Some(theirs)) if self.config.terrain.is_some() => ours
+                        .iter()
+                        .zip(theirs)
+                        .all(|(&ours, &theirs)| may_be(ours, theirs)),
                     (ours, theirs) => ours.as_ref().map(<[u8; 256]>::as_slice) == theirs,
                 }
             })
@@ -104,14 +99,25 @@ impl Mirror {
     }
 }
 
+/// Whether four cells of a device on uneven ground may be what they are, where these are ours.
+const fn may_be(ours: u8, theirs: u8) -> bool {
+    const LOW: u8 = 0x55;
+    let known = (ours | ours >> 1) & LOW;
+    let given_up = theirs & theirs >> 1 & LOW;
+    let trusted = ours & ours >> 1 & theirs & !(theirs >> 1) & LOW;
+    let either = !known & LOW | given_up | trusted;
+    (ours ^ theirs) & !(either | either << 1) == 0
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
 
-    use super::Mirror;
+    use super::{Mirror, may_be};
     use crate::sim::{SimConfig, Simulator};
     use crate::world::World;
     use fieldline_planner::geometry::Cell;
+    use fieldline_planner::map::Class;
     use fieldline_protocol::message::{Status, Strategy, Tile};
 
     fn seen_from_the_start() -> (Mirror, BTreeMap<(i16, i16), Tile>) {
@@ -159,6 +165,30 @@ mod tests {
         let middle = *tiles.keys().nth(tiles.len() / 2).unwrap();
         lost.remove(&middle);
         assert!(!mirror.equals(&lost));
+    }
+
+    #[test]
+    fn on_uneven_ground_a_device_may_give_up_what_it_knows_and_trust_what_is_negative_and_no_more()
+    {
+        let classes = [
+            Class::Unknown,
+            Class::Free,
+            Class::Obstacle,
+            Class::Negative,
+        ];
+        for (place, ours) in (0..4).flat_map(|place| classes.map(|ours| (place, ours))) {
+            for theirs in classes {
+                let at = |class: Class| (class as u8) << (2 * place);
+                let is_told = ours == theirs
+                    || ours == Class::Unknown
+                    || theirs == Class::Negative
+                    || (ours == Class::Negative && theirs == Class::Free);
+                // The cells beside it are the same in both.
+                let beside = 0b01_10_11_01 & !(0b11 << (2 * place));
+                let may = may_be(beside | at(ours), beside | at(theirs));
+                assert_eq!(may, is_told, "{ours:?} {theirs:?} {place}");
+            }
+        }
     }
 
     #[test]

@@ -186,3 +186,83 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 }
+
+#[cfg(test)]
+impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
+    /// Measure the ground around a cell, where it has a height, metres.
+    pub(crate) fn lay_ground(&mut self, middle: Cell, height_m: impl Fn(Cell) -> Option<f32>) {
+        let mut elevation = Elevation::new(
+            self.evidence.bytes_mut(),
+            self.tiles.lent_bytes_mut(),
+            &mut self.window,
+        );
+        elevation.follow(middle);
+        let half = WINDOW_SIDE / 2;
+        for y in middle.y - half..middle.y + half {
+            for x in middle.x - half..middle.x + half {
+                let cell = Cell { x, y };
+                if let Some(height_m) = height_m(cell) {
+                    elevation.measure(cell, height_m);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::boxed::Box;
+    use std::vec::Vec;
+
+    use super::{Class, Config, Steps, TRUSTED, Terrain};
+    use crate::geometry::Cell;
+    use crate::map::Map;
+
+    /// Columns of a ditch that no beam met.
+    const DITCH: core::ops::RangeInclusive<i32> = 30..=33;
+
+    /// A map of level ground with the ditch in it.
+    fn with_a_ditch(far_side_m: f32) -> Box<Map<152, 400>> {
+        let config = Config {
+            terrain: Some(Terrain::TABLE_I),
+            ..Config::pioneer_3at(heapless::Vec::new())
+        };
+        let mut map = Box::new(Map::new());
+        map.begin(&config);
+        map.lay_ground(Cell { x: 32, y: 32 }, |cell| {
+            (!DITCH.contains(&cell.x)).then_some(if cell.x > 33 { far_side_m } else { 0.0 })
+        });
+        (0..64).for_each(|y| map.classify(&Steps::new(&Terrain::TABLE_I), y));
+        map
+    }
+
+    /// Rows of the ditch that are free.
+    fn free_rows(map: &Map<152, 400>) -> Vec<i32> {
+        let is_free = |y: &i32| {
+            DITCH
+                .map(|x| map.tiles().class(Cell { x, y: *y }))
+                .all(|class| class == Class::Free)
+        };
+        (0..64).filter(is_free).collect()
+    }
+
+    #[test]
+    fn ground_is_trusted_half_a_metre_around_the_place_that_stops_the_robot_and_no_farther() {
+        let mut map = with_a_ditch(0.0);
+        let ahead = Cell { x: 31, y: 30 };
+        assert!(map.trust_ground(&Terrain::TABLE_I, ahead));
+        let rows: Vec<i32> = (30 - TRUSTED..=31 + TRUSTED).collect();
+        assert_eq!(free_rows(&map), rows);
+        assert!(!map.trust_ground(&Terrain::TABLE_I, ahead), "there was any");
+    }
+
+    #[test]
+    fn ground_that_lies_higher_behind_a_gap_is_not_trusted_but_given_up() {
+        let mut map = with_a_ditch(0.2);
+        let ahead = Cell { x: 31, y: 30 };
+        assert!(!map.trust_ground(&Terrain::TABLE_I, ahead));
+        assert_eq!(map.tiles().class(ahead), Class::Unknown);
+        map.give_up_ground(&Terrain::TABLE_I, ahead);
+        assert_eq!(map.tiles().class(ahead), Class::Negative);
+    }
+}

@@ -232,6 +232,7 @@ mod tests {
     use std::vec::Vec;
 
     use super::*;
+    use crate::field::{SIDE, solve};
     use crate::terrain::Terrain;
 
     /// Turn rates of a robot that stands where no field leads anywhere, at these times since it last moved.
@@ -274,5 +275,52 @@ mod tests {
             .collect();
         assert_eq!(when, [25_000, 29_999, 35_000, 45_000]);
         assert_eq!(turn_rates(None, times_ms), [0.0; 10], "flat ground");
+    }
+
+    /// The heading that is driven, degrees, by a robot on a slope that rises to the north while the field leads east, when it has stood so long.
+    fn heading_deg(roll: f32, standing_ms: u32) -> f32 {
+        let config = Config {
+            terrain: Some(Terrain {
+                roll,
+                ..Terrain::TABLE_I
+            }),
+            ..Config::pioneer_3at(heapless::Vec::new())
+        };
+        let mut state = Box::<State<152, 400>>::default();
+        state.reset(&config);
+        state
+            .map
+            .lay_ground(Cell::default(), |cell| Some(0.03 * cell.y as f32));
+        let mut workspace = Box::<Workspace>::default();
+        let half = SIDE as i32 / 2;
+        workspace.window_at = Some((Cell { x: -half, y: -half }, 1));
+        let inner = u64::MAX << 2 >> 4 << 1;
+        let free = core::array::from_fn(|y| if (1..SIDE - 1).contains(&y) { inner } else { 0 });
+        workspace
+            .window
+            .set_boundary(&free, &free.map(|row| row & 1 << (SIDE - 4)));
+        solve(
+            &mut workspace.window,
+            &mut workspace.scratch,
+            &config.solver,
+        );
+        let input = Input {
+            time_ms: standing_ms,
+            pose: Pose::default(),
+            velocity: Twist::default(),
+            scans: [&[], &[]],
+        };
+        steer(&config, &mut state, &mut workspace, &input)
+            .heading_rad
+            .to_degrees()
+    }
+
+    #[test]
+    fn a_robot_that_has_stood_for_25_s_leaves_the_limit_of_its_roll() {
+        // tan 15°, on a slope of 16.7°.
+        let limit = 0.268;
+        assert!(heading_deg(limit, 20_000).abs() > 5.0);
+        assert!(heading_deg(limit, 25_000).abs() < 1.0);
+        assert!(heading_deg(Terrain::TABLE_I.climb, 20_000).abs() < 1.0);
     }
 }
