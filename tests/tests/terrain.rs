@@ -42,8 +42,8 @@ const SIGNIFICANT: f64 = 0.05;
 /// Up to this standard deviation of roll and pitch every world must be explored and its map be right, degrees.
 const MOST_NOISE_DEG: f64 = 1.0;
 
-/// What is an obstacle in the map and in truth, of what is one in the map: as the simulator measures, and with worse noise, where a gradient
-/// takes more of a slope for too steep than its axes did.
+/// What is an obstacle in truth too, of what is one in the map: as the simulator measures, and with worse noise, where more of a slope looks too
+/// steep. The aim is the first of them for both.
 const LEAST_PRECISION: f64 = 0.97;
 const LEAST_PRECISION_IN_NOISE: f64 = 0.96;
 /// Knows all but 0.04 % at its end, and stands between a wall and what it holds to be gone on the slope's brow.
