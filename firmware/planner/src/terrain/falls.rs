@@ -102,7 +102,6 @@ pub fn is_sure(heights: &Heights<'_>, cell: Cell, fall: Fall) -> bool {
 
 #[cfg(test)]
 mod tests {
-
     use crate::geometry::{Cell, Point};
     use crate::map::rows::Row;
     use crate::terrain::Terrain;
@@ -138,23 +137,6 @@ mod tests {
         core::array::from_fn(|k| row(&window.read(), &steps, k as i32 - 32, Row::default()))
     }
 
-    #[test]
-    fn a_slope_is_told_from_what_was_measured_more_than_once() {
-        // Along a diagonal, where neither axis alone is too steep.
-        let grade = 25.0_f32.to_radians().tan() * core::f32::consts::FRAC_1_SQRT_2;
-        let ground = |x: i32| {
-            move |at: Point, time: u32| {
-                // Of one column only the first is kept.
-                let is_kept = time == 0 || at.cell().x != x;
-                is_kept.then_some(grade * (at.x_m + at.y_m))
-            }
-        };
-        let everywhere = obstacles(&classes_where(ground(1000)));
-        assert_eq!(everywhere, ALL);
-        // The column itself, and those two away to both sides.
-        assert_eq!(obstacles(&classes_where(ground(0))), ALL - 3 * 40);
-    }
-
     /// Obstacles among the cells that have ground to all sides.
     fn obstacles(classes: &[Classes; 64]) -> u32 {
         let inner = INNER.map(|x| 1_u64 << (x + 32)).sum::<u64>();
@@ -178,6 +160,23 @@ mod tests {
             assert_eq!(on_a_plane(21.2, bearing as f32), 0, "{bearing}");
             assert_eq!(on_a_plane(22.5, bearing as f32), ALL, "{bearing}");
         }
+    }
+
+    #[test]
+    fn a_slope_is_told_from_what_was_measured_more_than_once() {
+        // Along a diagonal, where neither axis alone is too steep.
+        let grade = 25.0_f32.to_radians().tan() * core::f32::consts::FRAC_1_SQRT_2;
+        let ground = |x: i32| {
+            move |at: Point, time: u32| {
+                // Of one column only the first is kept.
+                let is_kept = time == 0 || at.cell().x != x;
+                is_kept.then_some(grade * (at.x_m + at.y_m))
+            }
+        };
+        let everywhere = obstacles(&classes_where(ground(1000)));
+        assert_eq!(everywhere, ALL);
+        // The column itself, and those two away to both sides.
+        assert_eq!(obstacles(&classes_where(ground(0))), ALL - 3 * 40);
     }
 
     /// About normal, of deviation 1.

@@ -16,6 +16,7 @@
 //! | [`rooms`] | what level beams say through a doorway |
 //! | [`glimpse`] | ground met from too far off to be measured, and when that is enough |
 //! | [`classify`] | heights and marks into the map's classes |
+//! | [`falls`] | where the ground lies too high over that beside it: edges, and slopes in any direction |
 //! | [`preference`] | eqs. 3 to 5 and their hysteresis |
 //! | [`sidling`] | how far the robot leans aside on a slope, and which headings keep that within its limit |
 //! | [`tilt`] | what is believed of the attitude |
