@@ -14,6 +14,8 @@
 //!
 //! Places are those of the worlds as drawn (`host_sim::world`). Metres, give or take one cell.
 
+use core::fmt::Write as _;
+
 use std::collections::BTreeMap;
 
 use fieldline_planner::geometry::Cell;
@@ -48,8 +50,6 @@ const CLIFF: Cliff = Cliff {
 };
 /// Of the cells of the cliff's face, those that must have the right class first.
 const LEAST_SHARE: f64 = 0.95;
-/// Of the rims' cells, those that must be negative in time: what the map knew as free before is not.
-const LEAST_NAMED: f64 = 0.93;
 
 struct Cliff {
     y_m: [f64; 2],
@@ -181,7 +181,8 @@ impl Rim {
     }
 }
 
-fn holes() -> Table {
+/// What the map said of the rims of holes, and the rims that it had too late, a line each.
+fn holes() -> (Table, String) {
     let columns = [
         "holes: start",
         "hole",
@@ -193,11 +194,18 @@ fn holes() -> Table {
         "falls",
     ];
     let mut table = Table::new(0, &columns);
-    let (mut named, mut near) = (0, 0);
+    let mut late = String::new();
     for tale in tales(&worlds::builtin("holes")) {
         for (name, hole) in ["north-east", "south-west"].iter().zip(HOLES) {
             let rim = Rim::of(&tale, hole);
-            (named, near) = (named + rim.named, near + rim.near);
+            let start = tale.start;
+            if rim.named != rim.near {
+                let (named, near) = (rim.named, rim.near);
+                let _ = writeln!(
+                    late,
+                    "start {start}: {named} of {near} cells of the {name} hole's rim were negative before the robot was near"
+                );
+            }
             table.row(vec![
                 tale.start.to_string(),
                 (*name).into(),
@@ -212,11 +220,7 @@ fn holes() -> Table {
             ]);
         }
     }
-    assert!(
-        f64::from(named) >= LEAST_NAMED * f64::from(near),
-        "{named} of {near} cells of rims were negative before the robot was near"
-    );
-    table
+    (table, late)
 }
 
 /// Whether a place is in the building's room, clear of its walls.
@@ -363,11 +367,14 @@ fn cliff() -> Table {
 
 #[test]
 fn what_the_map_said_when_it_mattered() {
-    let text = format!("{}\n{}\n{}", holes(), building(), cliff());
+    let (rims, late) = holes();
+    let text = format!("{rims}\n{}\n{}", building(), cliff());
     let name = if full() {
         "scenarios-full.txt"
     } else {
         "scenarios.txt"
     };
     golden::compare(name, &text);
+    // After the table, so that it is there to read.
+    assert!(late.is_empty(), "\n{late}");
 }

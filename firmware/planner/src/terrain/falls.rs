@@ -107,6 +107,7 @@ mod tests {
     use crate::terrain::Terrain;
     use crate::terrain::classify::{Classes, Steps, row};
     use crate::terrain::elevation::{Elevation, WINDOW_CELLS};
+    use crate::terrain::tilt::tests::normal;
 
     /// Rows and columns that have ground to all sides.
     const INNER: core::ops::Range<i32> = -20..20;
@@ -177,18 +178,6 @@ mod tests {
         assert_eq!(everywhere, ALL);
         // The column itself, and those two away to both sides.
         assert_eq!(obstacles(&classes_where(ground(0))), ALL - 3 * 40);
-    }
-
-    /// About normal, of deviation 1.
-    fn normal(seed: &mut u64) -> f32 {
-        let mut sum = -6.0;
-        for _ in 0..12 {
-            *seed = seed
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            sum += (*seed >> 40) as f32 / (1_u32 << 24) as f32;
-        }
-        sum
     }
 
     #[test]

@@ -134,13 +134,13 @@ impl Tilt {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::{CALM, ERROR_M, SMOOTHED, Tilt};
     use crate::geometry::Pose;
     use crate::terrain::ray::Attitude;
 
     /// Twelve uniform numbers of variance 1/12 each: about normal.
-    fn normal(seed: &mut u64) -> f32 {
+    pub(in crate::terrain) fn normal(seed: &mut u64) -> f32 {
         let mut sum = -6.0;
         for _ in 0..12 {
             *seed = seed
