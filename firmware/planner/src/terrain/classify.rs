@@ -3,7 +3,7 @@
 //! | class | of a cell |
 //! | --- | --- |
 //! | obstacle | something stands there; or it is measured, and too high over a cell beside it |
-//! | negative obstacle | never measured, and its ground is gone, or held to be where the map knows of none |
+//! | negative obstacle | never measured, and its ground is gone, or presumed to be where the map knows of none |
 //! | free | measured and neither; or between measured cells on both sides that lead over it; or glimpsed, and near |
 //! | as before | anything else: what the map says stays, until something better is known |
 //!
@@ -29,17 +29,38 @@ const BRIDGES: [(i32, i32); 6] = [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 1)
 const BROW: i32 = 10;
 /// In how many of four directions it must be found: over the corner of a hole it is in one.
 const WAYS: i32 = 3;
-/// Ground that leads over a brow is no steeper than this part of the climb: a rim casts a shadow as steep as the tilted beams.
-const GENTLE: f32 = 0.75;
 /// What leads over a gap higher than an edge that may be driven over blends in: its grade lies between those on both sides, to within this. A kerb
 /// in a gap lies between level ground and level ground.
 const BLEND: f32 = 0.1;
-/// How far from the gap these grades are measured, cells, the best first.
-const GRADE: [i32; 3] = [3, 4, 2];
-/// The farthest of them.
-const FARTHEST: f32 = 4.0;
 /// Measured cells among the eight around that it takes to free an obstacle of the map.
 const WELL_KNOWN: u32 = 6;
+
+/// How ground leads over a gap, by how sure the attitude is in which its sides were measured.
+struct Brow {
+    /// It is no steeper than this part of the climb.
+    gentle: f32,
+    /// How far from the gap the grades on both sides are measured, cells, the best first.
+    grades: &'static [i32],
+    /// Whether the first height of a cell, which may be a false return, may forbid it.
+    heeds_first: bool,
+}
+
+impl Brow {
+    /// Of heights that are right: over a long way their noise tells least.
+    const CALM: Self = Self {
+        gentle: 1.0,
+        grades: &[8, 7, 6, 5, 4, 3],
+        heeds_first: false,
+    };
+    /// Of an attitude that errs: what is far was measured in another one, and a rim casts a shadow as steep as the tilted beams.
+    const SHAKEN: Self = Self {
+        gentle: 0.75,
+        grades: &[3, 4, 2],
+        heeds_first: true,
+    };
+    /// The farthest of the latter, cells.
+    const FARTHEST: f32 = 4.0;
+}
 
 /// How much higher a cell may lie than one near it, in steps of a height.
 #[derive(Clone, Copy, Debug)]
@@ -105,9 +126,8 @@ pub fn row(heights: &Heights<'_>, steps: &Steps, y: i32, known: Row) -> Classes 
                 classes.free |= bit;
             }
         } else if heights.is_sunken(cell) {
-            // What is but held to be gone is, unless ground was measured there before the window came by again.
-            let is_held = heights.ground(cell) == Some(Ground::Doubtful);
-            if !is_held || known.free() & bit == 0 {
+            // What is but presumed to be gone is, unless ground was measured there before the window came by again.
+            if !heights.is_presumed(cell) || known.free() & bit == 0 {
                 classes.negative |= bit;
             }
         } else if known.unknown() & bit != 0
@@ -138,11 +158,16 @@ fn is_well_known(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
     known > WELL_KNOWN
 }
 
-/// Whether the nearest measured cells on both sides of a cell that was never measured lead over it gently, in three of the four directions
-/// at least and in all in which there are two, and nothing between them is gone; what is but held to be gone tells nothing.
-/// Two heights may differ by `slack_m` for errors of the attitude alone.
+/// Whether the nearest measured cells on both sides of a cell that was never measured lead over it, no more steeply than may be climbed, in
+/// three of the four directions at least and in all in which there are two, and nothing between them is gone; what is but held to be gone
+/// tells nothing. Two heights may differ by `slack_m` for errors of the attitude alone.
 #[must_use]
 pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell, slack_m: f32) -> bool {
+    let brow = if slack_m > 0.0 {
+        Brow::SHAKEN
+    } else {
+        Brow::CALM
+    };
     let ground = |cell: Cell| {
         heights
             .ground(cell)
@@ -163,36 +188,37 @@ pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell, slack_m:
         };
         let step_m = cells * CELL_M;
         let (rise_m, way_m) = (high - low, (there + here) as f32 * step_m);
-        let most_m = GENTLE * terrain.climb * way_m + slack_m;
-        // Over the longest of the ways that grades are measured on.
-        let blend = BLEND + slack_m / (FARTHEST * step_m);
+        let most_m = brow.gentle * terrain.climb * way_m + slack_m;
+        let blend = BLEND + slack_m / (Brow::FARTHEST * step_m);
         let blends = || {
             let grade = rise_m / way_m;
-            let beyond = grade_on(heights, &on, there, 1, step_m);
-            let before = grade_on(heights, &on, -here, -1, step_m);
+            let beyond = grade_on(heights, &on, (there, 1), brow.grades, step_m);
+            let before = grade_on(heights, &on, (-here, -1), brow.grades, step_m);
             beyond
                 .zip(before)
                 .is_some_and(|(a, b)| (a.min(b) - blend..=a.max(b) + blend).contains(&grade))
         };
-        if rise_m.abs() > most_m || (rise_m.abs() > terrain.step_m + slack_m && !blends()) {
+        if rise_m.abs() <= most_m && (rise_m.abs() <= terrain.step_m + slack_m || blends()) {
+            ways += 1;
+        } else if brow.heeds_first || (heights.count(on(there)) > 1 && heights.count(on(-here)) > 1)
+        {
             return false;
         }
-        ways += 1;
     }
     ways >= WAYS
 }
 
-/// The grade of the ground beside a gap, from its cell at `from` outwards to the first measured one of the next [`GRADE`]; positive where it rises
-/// along the direction.
+/// The grade of the ground beside a gap, from its cell at `from` outwards to the first measured one of those so many cells away; positive where
+/// it rises along the direction.
 fn grade_on(
     heights: &Heights<'_>,
     on: &impl Fn(i32) -> Cell,
-    from: i32,
-    way: i32,
+    (from, way): (i32, i32),
+    grades: &[i32],
     step_m: f32,
 ) -> Option<f32> {
     let near_m = heights.height_m(on(from))?;
-    GRADE.into_iter().find_map(|cells| {
+    grades.iter().find_map(|&cells| {
         let far_m = heights.height_m(on(from + way * cells))?;
         Some((far_m - near_m) / ((way * cells) as f32 * step_m))
     })

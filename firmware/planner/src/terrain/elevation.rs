@@ -17,7 +17,7 @@
 
 use fixed::types::I7F9;
 
-use super::heights::{COUNT, ONE_STANDING, STANDING, SUNKEN, SUSPECT, is_glimpse, slot};
+use super::heights::{COUNT, ONE_STANDING, PRESUMED, STANDING, SUNKEN, SUSPECT, is_glimpse, slot};
 pub use super::heights::{Ground, Heights, WINDOW_CELLS, WINDOW_SIDE, metres};
 use crate::geometry::Cell;
 
@@ -184,10 +184,17 @@ impl<'a> Elevation<'a> {
         }
     }
 
-    /// Ground that was suspected to be gone, or lies beside such, is held to be.
-    pub fn presume(&mut self, cell: Cell) {
+    /// Ground that was suspected to be gone is held to be.
+    pub fn believe(&mut self, cell: Cell) {
         if !self.read().is_sunken(cell) {
             self.doubt(cell, SUNKEN, SUSPECT);
+        }
+    }
+
+    /// Ground that lies beside what is gone is held to be as well.
+    pub fn presume(&mut self, cell: Cell) {
+        if !self.read().is_sunken(cell) {
+            self.doubt(cell, SUNKEN, PRESUMED);
         }
     }
 

@@ -126,7 +126,7 @@ impl<'a> Heights<'a> {
         if mark & STANDING >= SURE * ONE_STANDING {
             Some(Ground::Blocked)
         } else if mark & (COUNT | SUNKEN) == SUNKEN {
-            Some(if stored == SUSPECT {
+            Some(if stored == SUSPECT || stored == PRESUMED {
                 Ground::Doubtful
             } else {
                 Ground::Blocked
@@ -171,6 +171,15 @@ impl<'a> Heights<'a> {
             && around().any(|near| self.count(near) > 0)
     }
 
+    /// Whether the ground of a cell is held to be gone because it lies on a rim, and no beam ever said so.
+    #[must_use]
+    pub fn is_presumed(&self, cell: Cell) -> bool {
+        slot(self.origin, cell).is_some_and(|slot| {
+            self.mark(slot) & (COUNT | SUNKEN) == SUNKEN
+                && self.heights.get(slot) == Some(&PRESUMED)
+        })
+    }
+
     /// Whether the ground of a cell never measured is suspected to be gone, and not yet believed to be.
     #[must_use]
     pub fn is_suspect(&self, cell: Cell) -> bool {
@@ -180,8 +189,10 @@ impl<'a> Heights<'a> {
     }
 }
 
-/// What the height of a cell never measured says if its ground is suspected to be gone, or but held to be; nothing else is ever stored there.
+/// What the height of a cell never measured says if its ground is suspected to be gone, or but held to be for that.
 pub(super) const SUSPECT: [u8; 2] = [1, 0];
+/// And if it is held to be gone because it lies on a rim; nothing else is ever stored there.
+pub(super) const PRESUMED: [u8; 2] = [2, 0];
 
 /// A stored height in metres.
 #[inline(always)]

@@ -9,6 +9,7 @@
 //! | steeper than the climb, ĥ not known yet, nearer than `d_obs` | obstacle (b) |
 //! | below what the ground at K leads to expect, and the beam just passes over K | a rim at K: what lies between is gone |
 //! | that, and `dh < h_hole` | gone, P itself as well |
+//! | that, but no lower than behind a brow of a slope that may be climbed | a rim at K is suspected |
 //! | `dh < h_hole`, but the beam comes down no more steeply than a slope may | a rim at K is suspected ([`super::suspicion`]) |
 //! | else, with K near enough | ground; of what rises too steeply before what stands, the foot of that |
 //!
@@ -61,6 +62,8 @@ const STEEP: f32 = 0.85;
 const DOUBTFUL: f32 = 0.3;
 /// And if it passes no higher over K than this, metres: K was measured long before, and from elsewhere.
 const DOUBTFUL_M: f32 = 0.3;
+/// Behind a brow of a slope that may be climbed a beam meets no ground that lies so much lower than its bend tells any nearer than this, metres.
+const BROW_M: f32 = 0.45;
 /// Behind a rim so much is marked, metres; what lies farther behind may be seen from elsewhere.
 const RIM_M: f32 = 0.6;
 /// What a beam meets begins where the beam ends and lies behind: so much farther on it is marked, metres, three deviations of a range.
@@ -192,12 +195,16 @@ impl<'a, 'm> Survey<'a, 'm> {
         } else if self.may_be_rim(ray, &footing, gap_m, rise_m) {
             self.suspect(ray, footing.s_m, ray.length_m);
         } else if self.is_rim(ray, &footing, gap_m, rise_m) {
-            self.sink(
-                ray,
-                footing.s_m,
-                (footing.s_m + RIM_M).min(ray.length_m - SAMPLE_M),
-            );
-            if rise_m < self.terrain.hole_m {
+            let to_m = (footing.s_m + RIM_M).min(ray.length_m - SAMPLE_M);
+            let is_hole = rise_m < self.terrain.hole_m;
+            // A brow that bends as quickly looks the same until the slope behind it is measured.
+            let is_brow = gap_m > BROW_M && -rise_m < self.terrain.climb * gap_m;
+            if is_hole || !is_brow || self.slack_m > 0.0 {
+                self.sink(ray, footing.s_m, to_m);
+            } else {
+                self.suspect(ray, footing.s_m, ray.length_m);
+            }
+            if is_hole {
                 return;
             }
         }
@@ -300,7 +307,7 @@ impl<'a, 'm> Survey<'a, 'm> {
         let slope = self.slope_at(ray, footing);
         // What rises steeply up to K is a thing that stands, and casts a shadow.
         slope < self.terrain.climb
-            && rise_m < slope * gap_m - LEAST_DROP_M - BEND * gap_m
+            && is_bent(slope, gap_m, rise_m)
             && self.is_grazing(ray, footing, GRAZING_M)
     }
 
@@ -355,6 +362,11 @@ impl<'a, 'm> Survey<'a, 'm> {
             s_m += SAMPLE_M;
         }
     }
+}
+
+/// Whether P lies lower than the slope at K foretells.
+fn is_bent(slope: f32, gap_m: f32, rise_m: f32) -> bool {
+    rise_m < slope * gap_m - LEAST_DROP_M - BEND * gap_m
 }
 
 /// How far a beam runs in the window at the least.

@@ -10,9 +10,11 @@
 //! cells before the corner, and the robot that drives along one side turns there beside ground that it never saw. A rim does not end in the
 //! open, so there what goes on along measured ground is taken for gone as well.
 //!
-//! What is but held to be gone is no evidence against the ground beside it, gives way to the first height that is measured, and is none in
-//! the map where ground was measured before: a robot that comes again, or backs, has in the window but the strip that it stood on. Not in
-//! [Maffei-Terrain], whose ray back to the robot marks whatever was not detected. Units: metres, map cells.
+//! What is but held to be gone is no evidence against the ground beside it and gives way to the first height that is measured. What lies on
+//! a rim, and no beam said anything of, is not gone in the map where ground was measured before: a robot that comes again, or backs, has in
+//! the window but the strip that it stood on. What a beam told is: a hole's far wall and the foot of a kerb are measured as ground from the
+//! other side. Of an attitude that errs a suspicion is worth no more than a rim. Not in [Maffei-Terrain], whose ray back to the robot marks
+//! whatever was not detected. Units: metres, map cells.
 
 use super::Terrain;
 use super::classify::{Steps, is_between, leads_over};
@@ -36,7 +38,12 @@ pub fn settle(elevation: &mut Elevation<'_>, terrain: &Terrain, middle: Cell, sl
     for cell in all.clone().map(near) {
         let heights = elevation.read();
         if heights.is_suspect(cell) && !leads_over(&heights, terrain, cell, slack_m) {
-            elevation.presume(cell);
+            // Errors of the attitude raise suspicions on ground that was measured well before.
+            if slack_m > 0.0 {
+                elevation.presume(cell);
+            } else {
+                elevation.believe(cell);
+            }
         }
     }
     let steps = Steps::new(terrain);
@@ -176,7 +183,7 @@ mod tests {
         assert_eq!(seen.matches('s').count(), 2, "{seen}");
     }
 
-    /// The bits of a row of the window with one cell held to be gone and one seen to be, where the map has this.
+    /// The bits of a row of the window with one cell presumed to be gone, one believed and one seen to be, where the map has this.
     fn negative(known: Row) -> u64 {
         let mut heights = vec![0; 2 * WINDOW_CELLS];
         let mut marks = vec![0; WINDOW_CELLS];
@@ -185,16 +192,21 @@ mod tests {
         window.follow(Cell { x: 32, y: 32 });
         window.presume(Cell { x: 3, y: 9 });
         window.sink(Cell { x: 5, y: 9 });
+        window.suspect(Cell { x: 7, y: 9 });
+        window.believe(Cell { x: 7, y: 9 });
         classify::row(&window.read(), &Steps::new(&Terrain::TABLE_I), 9, known).negative
     }
 
-    /// A robot that comes again, or backs, has nothing in the window but the strip that it stands on.
+    /// A robot that comes again, or backs, has nothing in the window but the strip that it stands on; but what was free from the other side, a
+    /// hole's wall or the foot of a kerb, is gone from this one.
     #[test]
-    fn what_is_held_to_be_gone_is_not_where_ground_was_measured_before() {
+    fn what_is_presumed_to_be_gone_is_not_where_ground_was_measured_before_and_what_a_beam_told_is()
+    {
+        let (presumed, told) = (1 << 3, 1 << 5 | 1 << 7);
         for (class, expected) in [
-            (Class::Unknown, 1 << 3 | 1 << 5),
-            (Class::Negative, 1 << 3 | 1 << 5),
-            (Class::Free, 1 << 5),
+            (Class::Unknown, presumed | told),
+            (Class::Negative, presumed | told),
+            (Class::Free, told),
         ] {
             let mut tiles = Tiles::<4, 16>::new();
             tiles.reset(4, 4);
@@ -203,5 +215,29 @@ mod tests {
             }
             assert_eq!(negative(tiles.row(0, 9)), expected, "{class:?}");
         }
+    }
+
+    /// What is suspected behind level ground in the middle, after the robot came near with this much error of the attitude: whether it is held
+    /// to be gone, and whether for being on a rim alone.
+    fn held(slack_m: f32) -> (bool, bool) {
+        let mut heights = vec![0; 2 * WINDOW_CELLS];
+        let mut marks = vec![0; WINDOW_CELLS];
+        let mut origin = Cell::default();
+        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+        window.follow(Cell::default());
+        for (x, y) in (-8..=0).flat_map(|x| (-8..=8).map(move |y| (x, y))) {
+            window.measure(Cell { x, y }, 0.0);
+        }
+        let behind = Cell { x: 1, y: 0 };
+        window.suspect(behind);
+        settle(&mut window, &Terrain::TABLE_I, Cell::default(), slack_m);
+        let heights = window.read();
+        (heights.is_sunken(behind), heights.is_presumed(behind))
+    }
+
+    #[test]
+    fn a_suspicion_of_an_attitude_that_errs_is_worth_no_more_than_a_rim() {
+        assert_eq!(held(0.0), (true, false));
+        assert_eq!(held(0.05), (true, true));
     }
 }

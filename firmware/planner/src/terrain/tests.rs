@@ -229,6 +229,46 @@ fn a_brow_is_led_over_and_a_kerb_in_a_gap_is_not() {
     assert!(leads(|x| -0.2 * x), "a slope");
     assert!(!leads(|x| if x > 0.4 { -0.2 } else { 0.0 }));
     assert!(leads(|x| if x > 0.4 { -0.05 } else { 0.0 }), "low");
+    let steep = |x: f32| -0.33 * x;
+    assert!(leads(steep), "a slope that may be climbed");
+    assert!(
+        !leads_over_gap(0.001, steep),
+        "as steep as a shadow, and an attitude that errs"
+    );
+}
+
+/// Whether the middle of a gap of eight by eight cells in level ground is led over, of which one cell beside the gap was first measured half a
+/// metre too high, and then `again` times.
+fn leads_over_beside_a_false_height(slack_m: f32, again: u32) -> bool {
+    let mut heights = std::vec![0; 2 * WINDOW_CELLS];
+    let mut marks = std::vec![0; WINDOW_CELLS];
+    let mut origin = Cell::default();
+    let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+    window.follow(Cell::default());
+    let wrong = Cell { x: 8, y: 4 };
+    let all = (-30..30).flat_map(|y| (-30..30).map(move |x| Cell { x, y }));
+    let gap = 0..8;
+    for cell in all.filter(|cell| !(gap.contains(&cell.x) && gap.contains(&cell.y))) {
+        if cell != wrong {
+            window.measure(cell, 0.0);
+            window.measure(cell, 0.0);
+        }
+    }
+    for _ in 0..=again {
+        window.measure(wrong, 0.5);
+    }
+    let asked = Cell { x: 4, y: 4 };
+    classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, slack_m)
+}
+
+#[test]
+fn one_height_beside_a_gap_may_be_a_false_return_and_forbids_nothing() {
+    assert!(leads_over_beside_a_false_height(0.0, 0));
+    assert!(!leads_over_beside_a_false_height(0.0, 1));
+    assert!(
+        !leads_over_beside_a_false_height(0.05, 0),
+        "an attitude that errs"
+    );
 }
 
 /// A slope of 0.2 that the attitude's errors lift by 4 cm before the gap and let down by 4 cm behind it.

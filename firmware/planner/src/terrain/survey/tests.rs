@@ -1,4 +1,4 @@
-//! Single beams into a window of level ground with a wall across it: what each raises.
+//! Single beams into a window of level ground with a wall across it, or with nothing behind an edge: what each raises, and what it says is gone.
 //!
 //! Units: metres, map cells.
 
@@ -74,4 +74,59 @@ fn ground_that_hardly_rises_is_measured_up_to_the_wall() {
     let (height_m, count) = before_wall(true, 0.02);
     assert!((height_m - 0.02 / 3.0).abs() < 0.002, "{height_m}");
     assert_eq!(count, 3);
+}
+
+/// What is said of the first cell behind level ground that ends 2 m before the origin, by a tilted beam that passes so high over its last
+/// cell and meets something so far behind that: gone, or suspected to be.
+fn behind_an_edge(over_m: f32, gap_m: f32, slack_m: f32) -> (bool, bool) {
+    let (mut heights, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
+    let mut origin = Cell::default();
+    let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+    window.follow(Cell::default());
+    for (x, y) in (-5..WALL).flat_map(|x| (-20..=20).map(move |y| (x, y))) {
+        window.measure(Cell { x, y }, 0.0);
+        window.measure(Cell { x, y }, 0.0);
+    }
+    let input = Input {
+        time_ms: 0,
+        pose: Pose::default(),
+        velocity: Twist::default(),
+        scans: [&[], &[]],
+    };
+    let (slope, last_m) = (-0.4, 1.8);
+    let ray = Ray {
+        from: Point {
+            x_m: 0.15,
+            y_m: 0.05,
+        },
+        from_z_m: over_m - slope * last_m,
+        along: (1.0, 0.0),
+        slope,
+        length_m: last_m + gap_m,
+    };
+    let mut survey = Survey::new(&mut window, &Terrain::TABLE_I, &input);
+    survey.slack_m = slack_m;
+    survey.judge(&ray, (false, true));
+    let (heights, behind) = (window.read(), Cell { x: WALL, y: 0 });
+    (heights.is_sunken(behind), heights.is_suspect(behind))
+}
+
+#[test]
+fn behind_a_kerb_the_ground_is_gone_and_behind_what_may_be_a_brow_it_is_suspected() {
+    const GONE: (bool, bool) = (true, false);
+    const SUSPECTED: (bool, bool) = (false, true);
+    assert_eq!(behind_an_edge(0.0, 0.4, 0.0), GONE, "near");
+    assert_eq!(behind_an_edge(0.0, 0.7, 0.0), GONE, "steeper than a slope");
+    assert_eq!(behind_an_edge(0.05, 0.8, 0.0), SUSPECTED);
+    assert_eq!(
+        behind_an_edge(0.05, 0.8, 0.05),
+        GONE,
+        "an attitude that errs"
+    );
+    assert_eq!(behind_an_edge(0.02, 1.8, 0.0), GONE, "a hole");
+    assert_eq!(
+        behind_an_edge(0.05, 0.2, 0.0),
+        (false, false),
+        "level ground"
+    );
 }
