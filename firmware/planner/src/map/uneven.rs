@@ -121,12 +121,12 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 
     /// The robot stood by a cell, and neither it nor what is around it was measured. Behind a brow ground stays out of view: where what is
-    /// measured on both sides leads over it gently it is taken for free, and else for gone.
+    /// measured on both sides leads over it, it is taken for free, and else for gone.
     pub fn give_up_ground(&mut self, terrain: &Terrain, goal: Cell) {
         self.lead_over(terrain, (goal, GIVEN_UP), Some(Class::Negative));
     }
 
-    /// The robot cannot go on for ground around a cell that was never measured: what leads over it gently is taken for free. Whether
+    /// The robot cannot go on for ground around a cell that was never measured: what leads over it is taken for free. Whether
     /// there was any.
     pub fn trust_ground(&mut self, terrain: &Terrain, ahead: Cell) -> bool {
         self.lead_over(terrain, (ahead, TRUSTED), None)

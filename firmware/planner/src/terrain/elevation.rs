@@ -191,7 +191,7 @@ impl<'a> Elevation<'a> {
         }
     }
 
-    /// Ground that lies beside what is gone is held to be as well.
+    /// Ground that lies beside what is gone, or was suspected in an attitude that errs, is held to be gone where the map knows of none.
     pub fn presume(&mut self, cell: Cell) {
         if !self.read().is_sunken(cell) {
             self.doubt(cell, SUNKEN, PRESUMED);

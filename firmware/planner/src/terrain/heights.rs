@@ -171,7 +171,7 @@ impl<'a> Heights<'a> {
             && around().any(|near| self.count(near) > 0)
     }
 
-    /// Whether the ground of a cell is held to be gone because it lies on a rim, and no beam ever said so.
+    /// Whether the ground of a cell is but presumed to be gone: it lies on a rim, or was suspected in an attitude that errs.
     #[must_use]
     pub fn is_presumed(&self, cell: Cell) -> bool {
         slot(self.origin, cell).is_some_and(|slot| {
@@ -191,7 +191,7 @@ impl<'a> Heights<'a> {
 
 /// What the height of a cell never measured says if its ground is suspected to be gone, or but held to be for that.
 pub(super) const SUSPECT: [u8; 2] = [1, 0];
-/// And if it is held to be gone because it lies on a rim; nothing else is ever stored there.
+/// And if it is but presumed to be gone; nothing else is ever stored there.
 pub(super) const PRESUMED: [u8; 2] = [2, 0];
 
 /// A stored height in metres.
