@@ -15,6 +15,37 @@ use crate::terrain::ray::Ray;
 const WALL: i32 = 20;
 /// The last column of ground before it.
 const BEFORE: Cell = Cell { x: WALL - 1, y: 0 };
+/// The robot stands upright at the origin.
+const AT_REST: Input<'_> = Input {
+    time_ms: 0,
+    pose: Pose {
+        x_m: 0.0,
+        y_m: 0.0,
+        z_m: 0.0,
+        roll_rad: 0.0,
+        pitch_rad: 0.0,
+        yaw_rad: 0.0,
+    },
+    velocity: Twist {
+        linear_mps: 0.0,
+        angular_radps: 0.0,
+    },
+    scans: [&[], &[]],
+};
+
+/// A beam straight ahead.
+const fn ahead(from_z_m: f32, slope: f32, length_m: f32) -> Ray {
+    Ray {
+        from: Point {
+            x_m: 0.15,
+            y_m: 0.05,
+        },
+        from_z_m,
+        along: (1.0, 0.0),
+        slope,
+        length_m,
+    }
+}
 
 /// Mean height and count of the ground right before the wall, measured twice and then met by a beam of the tilted laser that ends a centimetre
 /// before the wall's face, `z_m` high. Whether anything is known to stand is said by `walled`.
@@ -32,24 +63,9 @@ fn before_wall(walled: bool, z_m: f32) -> (f32, u8) {
             }
         }
     }
-    let input = Input {
-        time_ms: 0,
-        pose: Pose::default(),
-        velocity: Twist::default(),
-        scans: [&[], &[]],
-    };
     let (from_z_m, length_m) = (0.45, 0.1 * WALL as f32 - 0.01 - 0.15);
-    let ray = Ray {
-        from: Point {
-            x_m: 0.15,
-            y_m: 0.05,
-        },
-        from_z_m,
-        along: (1.0, 0.0),
-        slope: (z_m - from_z_m) / length_m,
-        length_m,
-    };
-    let mut survey = Survey::new(&mut window, &Terrain::TABLE_I, &input);
+    let ray = ahead(from_z_m, (z_m - from_z_m) / length_m, length_m);
+    let mut survey = Survey::new(&mut window, &Terrain::TABLE_I, &AT_REST);
     survey.judge(&ray, (false, true));
     let heights = window.read();
     let height_m = heights.height_m(BEFORE).expect("it was measured");
@@ -76,7 +92,7 @@ fn ground_that_hardly_rises_is_measured_up_to_the_wall() {
     assert_eq!(count, 3);
 }
 
-/// What is said of the first cell behind level ground that ends 2 m before the origin, by a tilted beam that passes so high over its last
+/// What is said of the first cell behind level ground that ends 2 m from the origin, by a tilted beam that passes so high over its last
 /// cell and meets something so far behind that: gone, or suspected to be.
 fn behind_an_edge(over_m: f32, gap_m: f32, slack_m: f32) -> (bool, bool) {
     let (mut heights, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
@@ -87,24 +103,9 @@ fn behind_an_edge(over_m: f32, gap_m: f32, slack_m: f32) -> (bool, bool) {
         window.measure(Cell { x, y }, 0.0);
         window.measure(Cell { x, y }, 0.0);
     }
-    let input = Input {
-        time_ms: 0,
-        pose: Pose::default(),
-        velocity: Twist::default(),
-        scans: [&[], &[]],
-    };
     let (slope, last_m) = (-0.4, 1.8);
-    let ray = Ray {
-        from: Point {
-            x_m: 0.15,
-            y_m: 0.05,
-        },
-        from_z_m: over_m - slope * last_m,
-        along: (1.0, 0.0),
-        slope,
-        length_m: last_m + gap_m,
-    };
-    let mut survey = Survey::new(&mut window, &Terrain::TABLE_I, &input);
+    let ray = ahead(over_m - slope * last_m, slope, last_m + gap_m);
+    let mut survey = Survey::new(&mut window, &Terrain::TABLE_I, &AT_REST);
     survey.slack_m = slack_m;
     survey.judge(&ray, (false, true));
     let (heights, behind) = (window.read(), Cell { x: WALL, y: 0 });
