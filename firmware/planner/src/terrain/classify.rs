@@ -26,7 +26,7 @@ const NOISE_M: f32 = 0.015;
 /// How far the cells are that a bridge rests on, to either side.
 const BRIDGES: [(i32, i32); 6] = [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 1)];
 /// How far to either side ground is looked for over a brow, cells.
-const BROW: i32 = 10;
+const REACH: i32 = 10;
 /// In how many of four directions it must be found: over the corner of a hole it is in one.
 const WAYS: i32 = 3;
 /// What leads over a gap higher than an edge that may be driven over blends in: its grade lies between those on both sides, to within this. A kerb
@@ -179,7 +179,7 @@ pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell, slack_m:
             x: cell.x + cells * dx,
             y: cell.y + cells * dy,
         };
-        let reach = |way: i32| (1..=BROW).find_map(|far| Some((far, ground(on(way * far))?)));
+        let reach = |way: i32| (1..=REACH).find_map(|far| Some((far, ground(on(way * far))?)));
         let (Some((there, high)), Some((here, low))) = (reach(1), reach(-1)) else {
             continue;
         };

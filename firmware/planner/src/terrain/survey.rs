@@ -9,14 +9,15 @@
 //! | steeper than the climb, ĥ not known yet, nearer than `d_obs` | obstacle (b) |
 //! | below what the ground at K leads to expect, and the beam just passes over K | a rim at K: what lies between is gone |
 //! | that, and `dh < h_hole` | gone, P itself as well |
-//! | that, but no lower than behind a brow of a slope that may be climbed | a rim at K is suspected |
+//! | that, but far enough behind K and no lower than a slope that may be climbed leads, by a sure attitude | a rim at K is suspected |
 //! | `dh < h_hole`, but the beam comes down no more steeply than a slope may | a rim at K is suspected ([`super::suspicion`]) |
 //! | else, with K near enough | ground; of what rises too steeply before what stands, the foot of that |
 //!
 //! Departs from [Maffei-Terrain, III-B] in three ways. (1) Obstacle (a) must also be steep, because level beams meet every slope that
 //! rises. (2) The paper's rule for holes, `h − h_robot < h_hole`, calls everything behind the brow of a long slope a hole, and misses a
 //! drop of 0.2 m, which fells a 3-AT. A beam over a rim tells the two apart: behind a brow the ground bends down before the beam loses it, so that
-//! the slope at K, carried on, foretells P; behind a rim it does not. (3) A ray back from P ends at K: what lies nearer is measured,
+//! the slope at K, carried on, foretells P; behind a rim it does not. A brow that bends quickly is like a low rim until the slope behind it is
+//! measured, so that is suspected. (3) A ray back from P ends at K: what lies nearer is measured,
 //! and where it is not (the beam passes high over K) nothing is said of a rim that nobody saw.
 //!
 //! Around the start lies a disc that no laser ever sees; there the robot's own plane is taken for measured. Units: metres.

@@ -5,7 +5,8 @@
 //! on a rim:         nothing was ever met in it, and of the eight cells around one is gone and one is measured
 //! ```
 //!
-//! Beams that come down too gently to tell a rim from a slope leave a suspicion ([`super::survey`]). And at the corner of a hole beams pass
+//! Beams that come down too gently to tell a rim from a slope, and those that meet what may be the slope behind a brow, leave a suspicion
+//! ([`super::survey`]). And at the corner of a hole beams pass
 //! over what is gone and meet the other side's face just below the ground, as they would in a dip: no beam says anything of the last
 //! cells before the corner, and the robot that drives along one side turns there beside ground that it never saw. A rim does not end in the
 //! open, so there what goes on along measured ground is taken for gone as well.
