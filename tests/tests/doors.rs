@@ -14,11 +14,11 @@
 
 use std::collections::VecDeque;
 
-use fieldline_planner::clearance::{Disc, is_passable};
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::grid::{Plane, Site};
 use fieldline_planner::map::{Class, Tiles};
-use fieldline_planner::topology::Topology;
+use fieldline_planner::roadmap::configuration_space::{Disc, is_passable};
+use fieldline_planner::roadmap::skeleton::Topology;
 use fieldline_tests::golden;
 use fieldline_tests::table::Table;
 

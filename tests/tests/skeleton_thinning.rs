@@ -3,7 +3,7 @@
 mod skeleton_common;
 
 use fieldline_planner::grid::{PlaneMut, Region, ShapeError};
-use fieldline_planner::skeleton::{Progress, Thinning, marks_for};
+use fieldline_planner::roadmap::{Progress, Thinning, marks_for};
 use skeleton_common::{Map, Rng, any_anchors, any_map, discs, noise, rooms};
 
 type AnyThinning = Thinning<16>;

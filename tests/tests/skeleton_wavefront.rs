@@ -3,7 +3,7 @@
 mod skeleton_common;
 
 use fieldline_planner::grid::{Plane, PlaneMut, Site};
-use fieldline_planner::skeleton::{Barrier, Progress, Residues, WaveSpace, Wavefront};
+use fieldline_planner::roadmap::{Barrier, Progress, Residues, WaveSpace, Wavefront};
 use skeleton_common::{Map, Rng, any_map, site};
 
 /// The memory of a wave.

@@ -5,11 +5,12 @@
 //! directions are integer arithmetic and the same bits on every machine.
 
 use fieldline_planner::config::{self, Config};
+use fieldline_planner::config::{Mode, Terrain};
 use fieldline_planner::geometry::{CELL_M, Pose, Twist};
+use fieldline_planner::input::Input;
 use fieldline_planner::math;
-use fieldline_planner::planner::Input;
+use fieldline_planner::robot;
 use fieldline_planner::status::{self, Frontier, Residue};
-use fieldline_planner::terrain::{Mode, Terrain};
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
 
@@ -74,8 +75,8 @@ pub fn wire_twist(twist: &Twist) -> wire::Twist {
     }
 }
 
-fn laser(laser: &wire::Laser) -> config::Laser {
-    config::Laser {
+fn laser(laser: &wire::Laser) -> robot::Laser {
+    robot::Laser {
         x_m: float(laser.x),
         y_m: float(laser.y),
         z_m: float(laser.z),

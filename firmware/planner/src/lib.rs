@@ -17,27 +17,24 @@
 #[cfg(test)]
 extern crate std;
 
-pub mod bits;
-pub mod clearance;
 pub mod config;
 pub mod drive;
 pub mod field;
 pub mod geometry;
 pub mod grid;
-pub mod laps;
+pub mod ground;
+pub mod input;
 pub mod map;
 pub mod math;
-pub mod near;
+pub mod path;
 pub mod planner;
-pub mod reached;
-pub mod remainder;
-pub mod skeleton;
+pub mod profiling;
+pub mod roadmap;
+pub mod robot;
 pub mod status;
 pub mod strategy;
-pub mod terrain;
-pub mod topology;
-pub mod view;
 
 pub use config::Config;
-pub use laps::{Laps, Stage};
-pub use planner::{Input, Output, State, Workspace, step};
+pub use input::Input;
+pub use planner::{Output, State, Workspace, step};
+pub use profiling::{Laps, Stage};

@@ -25,12 +25,14 @@ mod workspace;
 pub use state::State;
 pub use workspace::{CellKind, FieldRow, Workspace};
 
-use crate::clearance::Disc;
-use crate::config::{Config, Laser};
+use crate::config::Config;
 use crate::field::{SolverConfig, Stop, solve};
-use crate::geometry::{Pose, Twist};
-use crate::laps::{Laps, Stage};
-use crate::map::integrate::is_level;
+use crate::geometry::Twist;
+use crate::input::Input;
+use crate::profiling::{Laps, Stage};
+use crate::roadmap::configuration_space::Disc;
+use crate::robot::Laser;
+use crate::robot::is_level;
 use crate::status::{Fault, Status};
 use charge::{charge, charge_rails, local_goal};
 use plan::{look_for_lookouts, replan};
@@ -38,25 +40,8 @@ use prefer::{note_flatness, prefer};
 use state::Around;
 use steer::{look_about, steer};
 
-/// Range code: nothing came back, so free up to the range limit.
-pub const NO_RETURN_MM: u16 = 16_383;
-/// Range code: no information.
-pub const INVALID_MM: u16 = 0;
 /// The robot that starts inside something sees it nearer than this everywhere, metres.
 const BLOCKED_M: f32 = 0.12;
-
-/// What a step is given.
-#[derive(Clone, Copy, Debug)]
-pub struct Input<'a> {
-    /// The host's clock, milliseconds.
-    pub time_ms: u32,
-    /// Odometry.
-    pub pose: Pose,
-    /// Measured velocity.
-    pub velocity: Twist,
-    /// Ranges in millimetres of each laser of [`Config::lasers`]; [`NO_RETURN_MM`] and [`INVALID_MM`] are codes.
-    pub scans: [&'a [u16]; 2],
-}
 
 /// What a step answers.
 #[derive(Clone, Copy, Debug, Default)]

@@ -8,10 +8,10 @@
 //! Invariant: the cells of the outermost ring are not passable, so a passable cell has eight neighbours by plain index
 //! arithmetic. Units: map cells of 10 cm; index = row · width + column.
 
-use fieldline_planner::clearance::{Disc, for_each_strip};
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::map::Tiles;
 use fieldline_planner::map::tiles::{Extent, TILE_SIDE};
+use fieldline_planner::roadmap::configuration_space::{Disc, for_each_strip};
 
 const PASSABLE: u8 = 1;
 const UNKNOWN: u8 = 2;
@@ -297,9 +297,9 @@ impl Chart {
 #[cfg(test)]
 pub(super) mod sketch {
     use super::Chart;
-    use fieldline_planner::clearance::Disc;
     use fieldline_planner::geometry::{Cell, Point};
     use fieldline_planner::map::{Class, Tiles};
+    use fieldline_planner::roadmap::configuration_space::Disc;
 
     /// A chart of rows of characters, greatest y first, least x and y at cell (0, 0): `#` obstacle, `?` unknown, `R` the robot on
     /// a free cell, anything else free. The robot is a point, so that every cell but the obstacles is passable. Beyond the

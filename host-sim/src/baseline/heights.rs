@@ -5,8 +5,8 @@
 use std::collections::BTreeMap;
 
 use fieldline_planner::geometry::Cell;
-use fieldline_planner::terrain::Heights;
-use fieldline_planner::terrain::elevation::WINDOW_SIDE;
+use fieldline_planner::ground::Heights;
+use fieldline_planner::ground::elevation::WINDOW_SIDE;
 
 /// Cells along a block's side.
 const SIDE: i32 = 64;
@@ -51,7 +51,7 @@ fn place(cell: Cell) -> ((i32, i32), usize) {
 mod tests {
     use super::HeightGrid;
     use fieldline_planner::geometry::Cell;
-    use fieldline_planner::terrain::elevation::{Elevation, WINDOW_CELLS};
+    use fieldline_planner::ground::elevation::{Elevation, WINDOW_CELLS};
 
     #[test]
     fn what_leaves_the_window_is_kept_and_what_is_measured_anew_is_changed() {

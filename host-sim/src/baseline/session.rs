@@ -15,17 +15,18 @@ use fieldline_device::convert;
 use fieldline_device::limits;
 use fieldline_device::session::{self, Boot};
 use fieldline_device::{SLOTS, TILES};
-use fieldline_planner::clearance::Disc;
 use fieldline_planner::config::Config;
-use fieldline_planner::drive::{Drive, Ground, Place, Surround, manoeuvre};
+use fieldline_planner::config::Terrain;
+use fieldline_planner::drive::{Drive, Ground, Place, Surround, recovery};
 use fieldline_planner::geometry::{Cell, Point, Pose, Twist};
+use fieldline_planner::input::Input;
 use fieldline_planner::map::Map;
-use fieldline_planner::map::integrate::is_level;
+use fieldline_planner::map::obstacle_points::{self, NearField};
 use fieldline_planner::math;
-use fieldline_planner::near::{self, NearField};
-use fieldline_planner::planner::{Input, starts_blocked};
+use fieldline_planner::planner::starts_blocked;
+use fieldline_planner::roadmap::configuration_space::Disc;
+use fieldline_planner::robot::is_level;
 use fieldline_planner::status::{self, Residue};
-use fieldline_planner::terrain::Terrain;
 use fieldline_protocol::message::{
     Command, Control, Cost, Fault, FieldRow, Finish, Frontier, Identity, MAX_FRONTIERS,
     Observation, Refusal, Start, Status, TILE_DATES, TILE_SKELETON_BYTES, Tile,
@@ -149,7 +150,7 @@ impl<P: Plan> Session<P> {
             given_up: 0,
             drive: Drive::new(),
             chart: Chart::new(),
-            scratch: vec![0; manoeuvre::SCRATCH_WORDS],
+            scratch: vec![0; recovery::SCRATCH_WORDS],
             calls: 0,
         }
     }
@@ -265,7 +266,7 @@ impl<P: Plan> Session<P> {
             return Surround::new(pose, self.near.points());
         }
         let mut surround = Surround::empty();
-        surround.keep_off(pose, near::rims(self.map.tiles(), pose.point()));
+        surround.keep_off(pose, obstacle_points::rims(self.map.tiles(), pose.point()));
         surround
     }
 

@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 use fieldline_device::{SLOTS, TILES, convert};
 use fieldline_planner::config::Config;
 use fieldline_planner::geometry::{Cell, Pose};
+use fieldline_planner::input::Input;
 use fieldline_planner::map::{Class, Map};
-use fieldline_planner::planner::Input;
 use fieldline_protocol::message::{Observation, Start, Status, Tile};
 
 use super::relief::Relief;

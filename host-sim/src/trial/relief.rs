@@ -7,9 +7,11 @@
 //!
 //! Metres above the start; ε from −2 to 2.
 
-use fieldline_planner::field::preference::KERNEL_CELLS;
+use fieldline_planner::config::KERNEL_CELLS;
+use fieldline_planner::config::Terrain;
+use fieldline_planner::field::height_preference::Preferences;
 use fieldline_planner::geometry::{Cell, Pose};
-use fieldline_planner::terrain::{Heights, Preferences, Terrain};
+use fieldline_planner::ground::Heights;
 use fieldline_protocol::message::FIELD_SIDE;
 
 use super::snapshot::{Window, WindowCell};
@@ -87,7 +89,7 @@ fn p_diff(window: &Window, pose: &Pose) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fieldline_planner::terrain::elevation::{Elevation, WINDOW_CELLS};
+    use fieldline_planner::ground::elevation::{Elevation, WINDOW_CELLS};
 
     /// A window at cell (10, −30) whose q halves with every column to the left of its last, which is a goal.
     fn window() -> Window {

@@ -4,11 +4,12 @@
 //!
 //! Invariant: where the ground was not measured it is taken as level, and holds nothing up. Units: metres, tangents, radians; robot frame, x forward.
 
-use super::surround::Place;
+use crate::config::Terrain;
+use crate::drive::collision::Place;
+use crate::drive::side_slope::{Bias, Slope, Wedge};
 use crate::geometry::{Point, Pose};
+use crate::ground::Heights;
 use crate::math;
-use crate::terrain::sidling::{Bias, Slope, Wedge};
-use crate::terrain::{Heights, Terrain};
 
 /// From one place to the next, metres.
 const STEP_M: f32 = 0.3;
@@ -102,7 +103,7 @@ impl Incline {
 mod tests {
     use super::*;
     use crate::geometry::Cell;
-    use crate::terrain::elevation::{Elevation, WINDOW_CELLS};
+    use crate::ground::elevation::{Elevation, WINDOW_CELLS};
 
     /// 15° across, 20° up.
     const TERRAIN: Terrain = Terrain {

@@ -9,16 +9,17 @@
 //! Invariant: whatever is driven can be followed by a stop that touches nothing known, so the zero command is always safe.
 //! Units: metres, seconds, radians; robot frame, x forward.
 
-mod ground;
+pub mod collision;
 pub mod incline;
-pub mod manoeuvre;
 mod motion;
-mod open;
-pub mod surround;
+mod open_list;
+pub mod recovery;
+mod search_query;
+pub mod side_slope;
 
+pub use collision::{Place, Surround};
 pub use incline::Incline;
-pub use manoeuvre::{Attempt, Budget, Choice, Found, Ground, Leads, Plan, Search};
-pub use surround::{Place, Surround};
+pub use recovery::{Attempt, Budget, Choice, Found, Ground, Leads, Plan, Search};
 
 use crate::config::Config;
 use crate::geometry::Twist;

@@ -9,7 +9,7 @@
 //!
 //! Units: headings in radians, counter-clockwise from x; positions in cells, cell (x, y) covering [x, x+1) × [y, y+1).
 
-use super::window::{STRIDE, Window, index};
+use crate::field::window::{STRIDE, Window, index};
 use crate::math;
 
 /// The heading of −∇p at the centre of cell (x, y); `None` where the field is flat: on goals, obstacles, outside, in

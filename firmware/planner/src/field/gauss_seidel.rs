@@ -10,8 +10,8 @@
 
 use core::cell::Cell;
 
-use super::runs::Runs;
-use super::window::{Preference, STRIDE, Window, index};
+use crate::field::runs::Runs;
+use crate::field::window::{Preference, STRIDE, Window, index};
 
 /// Relax every reached cell once, from the lowest row up, left to right.
 pub(super) fn sweep(window: &mut Window) {

@@ -60,12 +60,15 @@ mod runs;
 mod seed;
 
 pub mod descent;
+pub mod height_preference;
+pub mod local_grid;
 pub mod preference;
 pub mod solver;
 pub mod window;
 
+pub use crate::config::{Method, SolverConfig};
 pub use multigrid::SCRATCH_FLOATS;
-pub use solver::{Method, Solution, SolverConfig, Stop, solve};
+pub use solver::{Solution, Stop, solve};
 pub use window::{GOAL, Preference, PreferenceError, SIDE, Window};
 
 /// The window and the multigrid's scratch memory go into the chip's 64 KB of core-coupled memory.

@@ -12,11 +12,11 @@
 //!
 //! Invariant: 0 ≤ q ≤ GOAL. A cycle's cost hardly depends on the field's values.
 
-use super::gauss_seidel;
-use super::pyramid::{
+use crate::field::gauss_seidel;
+use crate::field::pyramid::{
     self, EAST, EMPTY, Equation, FINEST, NORTH, OUT, Pyramid, SOURCE, SOUTH, WEST,
 };
-use super::window::{GOAL, Preference, SIDE, STRIDE, Window};
+use crate::field::window::{GOAL, Preference, SIDE, STRIDE, Window};
 
 /// Floats of scratch memory that a cycle needs, 36 KB. Their content before and after means nothing.
 pub const SCRATCH_FLOATS: usize = pyramid::FLOATS;

@@ -11,10 +11,8 @@
 //! In q-form `|p_r − p_n| = |q_r − q_n|`, and small values keep their precision: in a converged field it is right to
 //! 1e-4 down to 1e-30; in any other it is as right as the field.
 
-use super::window::{GOAL, SIDE, Window};
-
-/// `K_n`, width of the kernel in cells [Terrain, Table I].
-pub const KERNEL_CELLS: usize = 20;
+use crate::config::KERNEL_CELLS;
+use crate::field::window::{GOAL, SIDE, Window};
 
 /// `p_diff` at cell (x, y), where p runs from 0 to 1; 0 if no goal can be reached from it, or it is alone in its kernel.
 #[must_use]

@@ -5,7 +5,7 @@
 //!
 //! Invariant: `reached ⊆ free ∪ goal`, and a free cell beside (4-neighbourhood) a reached one is reached.
 
-use super::window::SIDE;
+use crate::field::window::SIDE;
 
 /// The free cells with a way, over free cells, to some goal cell. Goals themselves are not in the answer.
 pub(super) fn flood(free: &[u64; SIDE], goal: &[u64; SIDE]) -> [u64; SIDE] {

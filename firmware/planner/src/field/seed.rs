@@ -16,8 +16,8 @@
 
 use core::cell::Cell;
 
-use super::runs::Runs;
-use super::window::{SIDE, STRIDE, Window, index};
+use crate::field::runs::Runs;
+use crate::field::window::{SIDE, STRIDE, Window, index};
 
 /// What a cell takes of its neighbour's value: about the field's fall from cell to cell indoors. From 1, a flat start,
 /// the heading behind doors takes a third more cycles.

@@ -7,11 +7,12 @@
 //! The budget is in multigrid cycles, a hard bound on time: Gauss–Seidel spends [`SWEEPS_PER_CYCLE`] sweeps for one.
 //! A field that ran out of budget stays in the window, and the next call goes on from it.
 
-use super::gauss_seidel;
-use super::multigrid::{self, SCRATCH_FLOATS};
-use super::runs::Runs;
-use super::seed;
-use super::window::{Window, index};
+use crate::config::{Method, SolverConfig};
+use crate::field::gauss_seidel;
+use crate::field::multigrid::{self, SCRATCH_FLOATS};
+use crate::field::runs::Runs;
+use crate::field::seed;
+use crate::field::window::{Window, index};
 
 /// Gauss–Seidel sweeps that cost about as much as a multigrid cycle.
 pub const SWEEPS_PER_CYCLE: u16 = 5;
@@ -26,40 +27,6 @@ const PATIENCE: u16 = 12;
 /// Relative change of any cell in one sweep below which Gauss–Seidel has converged. Its slowest modes lose less than a
 /// hundredth of their error a sweep, so this leaves up to a few thousandths.
 const SWEEP_TOLERANCE: f32 = 1e-5;
-
-/// How to solve.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Method {
-    /// Multigrid where it works, Gauss–Seidel where it does not.
-    #[default]
-    Auto,
-    /// Multigrid, come what may.
-    Multigrid,
-    /// Gauss–Seidel from q = 0.
-    GaussSeidel,
-}
-
-/// Parameters of a solve.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SolverConfig {
-    /// Most multigrid cycles, each worth [`SWEEPS_PER_CYCLE`] sweeps. Default: 12; a heading is right in 1 when warm, in
-    /// 2 or 3 cold, and in 5 in all but one of twenty cold windows.
-    pub max_cycles: u16,
-    /// max |x − 1| below which the multigrid stops. Default: 0.05.
-    pub tolerance: f32,
-    /// How to solve. Default: [`Method::Auto`].
-    pub method: Method,
-}
-
-impl Default for SolverConfig {
-    fn default() -> Self {
-        Self {
-            max_cycles: 12,
-            tolerance: 0.05,
-            method: Method::Auto,
-        }
-    }
-}
 
 /// Why a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,9 +12,9 @@ use core::fmt;
 
 use fixed::types::I3F13;
 
-use super::multigrid::Origin;
-use super::reach;
-use super::runs::Runs;
+use crate::field::multigrid::Origin;
+use crate::field::reach;
+use crate::field::runs::Runs;
 
 /// Cells along a side of the window [Ouroboros, Table I].
 pub const SIDE: usize = 61;

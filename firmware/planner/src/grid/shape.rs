@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::Site;
+use crate::grid::Site;
 
 /// Greatest number of words in a row: a row and a word more then have one bit each in a `u32`.
 pub const MAX_WORDS_PER_ROW: usize = 31;

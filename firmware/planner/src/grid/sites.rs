@@ -1,6 +1,6 @@
 //! A cell of a plane, and walks over cells.
 
-use super::Plane;
+use crate::grid::Plane;
 
 /// A cell of a bit plane, by column and row. Not a [`crate::geometry::Cell`]: a plane has its own origin and scale.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -8,8 +8,8 @@
 //! Invariant: a slot belongs to exactly one cell of the window (cell mod 128), and entering strips are cleared.
 //! Units: map cells.
 
-use super::tiles::Class;
 use crate::geometry::Cell;
+use crate::grid::Class;
 
 /// Cells along the window's side.
 pub const EVIDENCE_SIDE: i32 = 128;

@@ -13,21 +13,22 @@
 //!
 //! Units: metres, radians; ranges in millimetres.
 
-use super::tiles::{Class, NoRoom, Page};
-use super::walk::Walk;
-use super::{Evidence, Map};
-use crate::config::Laser;
 use crate::geometry::{CELL_M, Cell, Point, Pose};
+use crate::grid::Class;
+use crate::input::informative_range_mm;
+use crate::input::{INVALID_MM, NO_RETURN_MM};
+use crate::map::tiles::{NoRoom, Page};
+use crate::map::traversal::Walk;
+use crate::map::{Evidence, Map};
 use crate::math;
-use crate::planner::{INVALID_MM, NO_RETURN_MM};
+use crate::robot::Laser;
+use crate::robot::is_level;
 
 /// An obstacle's least height above the robot's ground for the tilted laser, metres: above the 3-AT's ground clearance
 /// and three sigma of an attitude error of 1° at the tilted beam's reach.
 pub const STEP_M: f32 = 0.15;
 /// Length before a beam's end in which it does not erode obstacles, metres.
 const GUARD_M: f32 = 0.35;
-/// A laser tilted less than this is level, radians.
-const LEVEL_RAD: f32 = 0.05;
 
 /// One beam in the plane.
 #[derive(Clone, Copy, Debug)]
@@ -73,24 +74,6 @@ pub(crate) fn sensor_point(pose: &Pose, laser: &Laser) -> Point {
         x_m: pose.x_m + laser.x_m * cos - laser.y_m * sin,
         y_m: pose.y_m + laser.x_m * sin + laser.y_m * cos,
     }
-}
-
-/// Whether the laser sweeps the level plane.
-#[must_use]
-pub fn is_level(laser: &Laser) -> bool {
-    laser.pitch_rad.abs() < LEVEL_RAD
-}
-
-/// The range of beam `i` if it says anything: not if it is invalid, nor if it is a dropout, a lone no-return between two
-/// returns.
-pub(crate) fn informative_range_mm(ranges_mm: &[u16], i: usize, limit_mm: u16) -> Option<u16> {
-    let range = *ranges_mm.get(i)?;
-    let returned = |k: Option<usize>| {
-        k.and_then(|k| ranges_mm.get(k))
-            .is_none_or(|&range| range != INVALID_MM && range < limit_mm)
-    };
-    let dropout = range >= limit_mm && returned(i.checked_sub(1)) && returned(Some(i + 1));
-    (range != INVALID_MM && !dropout).then_some(range)
 }
 
 /// The level laser's beams that carry information.
@@ -311,7 +294,7 @@ impl Passing<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::planner::NO_RETURN_MM;
+    use crate::input::NO_RETURN_MM;
 
     type Plan = Map<144, 144>;
 

@@ -3,25 +3,26 @@
 //! [`tiles`] keeps the class of every cell for the whole run, [`evidence`] the counts around the robot, and
 //! [`integrate`] turns beams into both.
 
-mod class;
+pub mod compaction;
+mod elevation_layer;
 pub mod evidence;
 mod extent;
-pub mod folding;
 pub mod integrate;
+pub mod obstacle_points;
 mod page;
 pub mod rows;
 pub mod tiles;
-mod uneven;
-mod walk;
+mod traversal;
 
+pub use crate::grid::Class;
+pub use compaction::Lodger;
 pub use evidence::Evidence;
-pub use folding::Lodger;
-pub use tiles::{Class, Tiles};
+pub use tiles::Tiles;
 
 use crate::config::Config;
 use crate::geometry::Cell;
-use crate::planner::Input;
-use crate::terrain::Tilt;
+use crate::ground::Tilt;
+use crate::input::Input;
 
 /// A robot that moved more cells than this between two observations was carried.
 const LONGEST_STRIDE: i32 = 10;

@@ -1,7 +1,7 @@
 //! A tile's cells: two planes of a word a row, `low` and `high` bits of the class code, bit k = column k.
 
-use super::class::Class;
-use super::tiles::TILE_ROWS;
+use crate::grid::Class;
+use crate::map::tiles::TILE_ROWS;
 
 /// A bit of every cell of a tile, row by row.
 pub(super) type Plane = [u32; TILE_ROWS];

@@ -4,51 +4,12 @@
 //!
 //! Units: map cells.
 
-use super::folding::ZEROS;
-use super::tiles::{Plane, TILE_ROWS, Tiles, Trail};
+use crate::grid::Row;
+use crate::map::compaction::ZEROS;
+use crate::map::tiles::{Plane, TILE_ROWS, Tiles, Trail};
 
 /// Columns to the left of a [`Line`]'s own that its halo begins.
 pub const HALO: i32 = 16;
-
-/// 64 cells of a row: bit k of each word is column x + k.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Row {
-    low: u64,
-    high: u64,
-    trail: u64,
-}
-
-impl Row {
-    /// Cells that stand in the way, of either sign.
-    #[must_use]
-    pub const fn obstacle(self) -> u64 {
-        self.high
-    }
-
-    /// Negative obstacles.
-    #[must_use]
-    pub const fn negative(self) -> u64 {
-        self.high & self.low
-    }
-
-    /// Cells known to be traversable.
-    #[must_use]
-    pub const fn free(self) -> u64 {
-        self.low & !self.high
-    }
-
-    /// Cells on or beside the robot's way so far.
-    #[must_use]
-    pub const fn trail(self) -> u64 {
-        self.trail
-    }
-
-    /// Cells never measured.
-    #[must_use]
-    pub const fn unknown(self) -> u64 {
-        !(self.low | self.high)
-    }
-}
 
 /// 32 cells of a row, and what stands up to [`HALO`] columns beside them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -10,12 +10,12 @@
 //! Invariant: `extent` covers every tile in use and is at most w by h tiles, so no two tiles share a slot.
 //! Units: cells of [`crate::geometry::CELL_M`].
 
-pub use super::class::Class;
-pub use super::extent::{Extent, NoRoom};
-use super::folding::{Entry, ONES, Spare, ZEROS};
-pub(super) use super::page::{Cells, Page, Plane};
-use super::rows::{Column, Row, RowReader};
 use crate::geometry::Cell;
+use crate::grid::{Class, Row};
+use crate::map::compaction::{Entry, ONES, Spare, ZEROS};
+pub use crate::map::extent::{Extent, NoRoom};
+pub(super) use crate::map::page::{Cells, Page, Plane};
+use crate::map::rows::{Column, RowReader};
 
 /// Cells along a tile's side.
 pub const TILE_SIDE: i32 = 32;

@@ -3,15 +3,15 @@
 //!
 //! Units: map cells.
 
-use super::Input;
-use super::state::{Around, State};
-use super::workspace::Workspace;
-use crate::clearance::Disc;
 use crate::field::SIDE;
+use crate::field::local_grid::{Rows, SCALES, View};
 use crate::geometry::{Cell, Point};
-use crate::near;
+use crate::input::Input;
+use crate::map::obstacle_points;
+use crate::planner::state::{Around, State};
+use crate::planner::workspace::Workspace;
+use crate::roadmap::configuration_space::Disc;
 use crate::strategy::tdbvp::Surroundings;
-use crate::view::{Rows, SCALES, View};
 
 /// See the smallest window that holds a local goal; the goal's cells in it.
 pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
@@ -45,7 +45,7 @@ fn keep_off_rims<const TILES: usize, const SLOTS: usize>(
     view: &mut View,
 ) {
     if let Around::Storeys(_) = state.around {
-        let rims = near::rim_cells(state.map.tiles(), robot);
+        let rims = obstacle_points::rim_cells(state.map.tiles(), robot);
         view.keep_off(robot.cell(), rims, disc);
     }
 }

@@ -2,17 +2,17 @@
 //!
 //! Units: map cells.
 
-use super::state::State;
-use super::workspace::Workspace;
-use crate::bits::{Adjacency, flood};
-use crate::clearance::Disc;
 use crate::field::SIDE;
+use crate::field::local_grid::{Rows, View};
 use crate::geometry::Cell;
+use crate::grid::bits::{Adjacency, flood};
 use crate::map::tiles::NoRoom;
-use crate::remainder::no_room;
+use crate::path::map_exits::no_room;
+use crate::planner::state::State;
+use crate::planner::workspace::Workspace;
+use crate::roadmap::configuration_space::Disc;
 use crate::status::{Fault, Finish, Status};
 use crate::strategy::frontier::Known;
-use crate::view::{Rows, View};
 
 /// A robot whose centre has less room than this, in cells, is boxed in: one square metre.
 const BOX_CELLS: u32 = 100;

@@ -3,20 +3,22 @@
 //!
 //! Units: metres, map cells.
 
-use super::Input;
-use super::ending::finish;
-use super::state::{Around, State};
-use super::steer::ahead;
-use super::workspace::Workspace;
-use crate::clearance::Disc;
 use crate::config::Config;
+use crate::config::Terrain;
 use crate::drive::Place;
+use crate::field::height_preference::Preferences;
 use crate::geometry::Pose;
+use crate::input::Input;
+use crate::path::height_levels::Levels;
+use crate::path::viewpoint::{Found, Grounds};
+use crate::planner::ending::finish;
+use crate::planner::state::{Around, State};
+use crate::planner::steer::ahead;
+use crate::planner::workspace::Workspace;
+use crate::roadmap::configuration_space::Disc;
 use crate::status::{Fault, Status};
 use crate::strategy::frontier::{Lent, Outlook};
-use crate::strategy::lookout::{Found, Grounds};
 use crate::strategy::ouroboros::Round;
-use crate::terrain::{Levels, Preferences, Terrain};
 
 /// Where ground that stops the robot lies on uneven ground, if it was never measured: between its front and where the tilted beams meet
 /// level ground, metres.

@@ -3,14 +3,15 @@
 //!
 //! Units: metres; preferences are pure numbers.
 
-use super::Input;
-use super::state::State;
-use super::workspace::Workspace;
+use crate::config::Terrain;
+use crate::drive::side_slope::Slope;
+use crate::field::local_grid::{Rows, View};
 use crate::field::preference::p_diff;
 use crate::field::{Preference, SIDE, Window, descent};
-use crate::terrain::sidling::Slope;
-use crate::terrain::{Heights, Terrain};
-use crate::view::{Rows, View};
+use crate::ground::Heights;
+use crate::input::Input;
+use crate::planner::state::State;
+use crate::planner::workspace::Workspace;
 
 /// Give every cell of the window its preference [Maffei-Terrain, eqs. 3 to 5], beside what the strategy prefers.
 pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(

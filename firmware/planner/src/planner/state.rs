@@ -2,20 +2,22 @@
 //!
 //! Invariant: only [`super::step`] and [`State::reset`] change it. Units: map cells.
 
-use super::workspace::{RING, SCRATCH};
 use crate::config::Config;
+use crate::drive::side_slope::Wedge;
 use crate::drive::{self, Drive};
+use crate::field::height_preference::Preferences;
 use crate::geometry::Cell;
 use crate::map::Map;
-use crate::near::NearField;
-use crate::reached;
+use crate::map::obstacle_points::NearField;
+use crate::path::height_levels::Storeys;
+use crate::path::{Road, viewpoint};
+use crate::planner::workspace::{RING, SCRATCH};
+use crate::roadmap::reachability;
+use crate::roadmap::skeleton::Topology;
 use crate::status::{Frontier, Status};
+use crate::strategy::Strategist;
 use crate::strategy::ouroboros::Ouroboros;
 use crate::strategy::tdbvp::Tdbvp;
-use crate::strategy::{Road, Strategist, lookout};
-use crate::terrain::sidling::Wedge;
-use crate::terrain::{Preferences, Storeys};
-use crate::topology::Topology;
 
 /// What a planner remembers from step to step. `TILES` map tiles in the pool, `SLOTS` tile places in the box.
 #[derive(Debug)]
@@ -27,7 +29,7 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     /// What ground is preferred, where it is uneven.
     pub(super) preferences: Preferences,
     /// What can only be seen is searched for, when nothing is left to drive to.
-    pub(super) lookouts: lookout::Search,
+    pub(super) lookouts: viewpoint::Search,
     pub(super) drive: Drive,
     /// Up or down the slope that it is on, where it may not be crossed.
     pub(super) wedge: Option<Wedge>,
@@ -60,11 +62,11 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     const CHECK: () = {
         assert!(SLOTS * 16 + RING <= SCRATCH, "the wave fits the scratch");
         assert!(
-            reached::scratch_words(SLOTS) <= SCRATCH,
+            reachability::scratch_words(SLOTS) <= SCRATCH,
             "the flood at the end fits the scratch"
         );
         assert!(
-            drive::manoeuvre::SCRATCH_WORDS <= SCRATCH,
+            drive::recovery::SCRATCH_WORDS <= SCRATCH,
             "a search fits the scratch"
         );
     };
@@ -79,7 +81,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             topology: Topology::new(),
             strategy: Strategist::new(),
             preferences: Preferences::new(),
-            lookouts: lookout::Search::new(),
+            lookouts: viewpoint::Search::new(),
             drive: Drive::new(),
             wedge: None,
             shut: None,
@@ -101,7 +103,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.topology
             .reset(Strategist::<SLOTS>::space(config.strategy));
         self.strategy.reset(config);
-        self.lookouts = lookout::Search::new();
+        self.lookouts = viewpoint::Search::new();
         self.drive = Drive::new();
         (self.wedge, self.shut) = (None, None);
         self.status = Status::Exploring;

@@ -2,17 +2,18 @@
 //!
 //! Units: metres, seconds, radians; milliseconds where a name says so.
 
-use super::state::{Around, State};
-use super::workspace::Workspace;
-use super::{Input, Output};
 use crate::config::Config;
+use crate::drive::side_slope::{Bias, Wedge};
 use crate::drive::{Ground, Incline, Place, Surround};
+use crate::field::local_grid;
 use crate::field::{Window, descent};
 use crate::geometry::{Cell, Point, Pose, Twist};
+use crate::input::Input;
+use crate::map::obstacle_points;
 use crate::math;
-use crate::near;
-use crate::terrain::sidling::{Bias, Wedge};
-use crate::view;
+use crate::planner::Output;
+use crate::planner::state::{Around, State};
+use crate::planner::workspace::Workspace;
 
 /// A while, milliseconds: half a turn.
 const WHILE_MS: u32 = 5_000;
@@ -63,7 +64,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     let surround = surround(state, &input.pose, incline.clone());
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
-            let (x, y) = view::position((origin, scale), ahead(&input.pose, place));
+            let (x, y) = local_grid::position((origin, scale), ahead(&input.pose, place));
             potential_at(window, x, y)
         };
         let ground = Ground {
@@ -114,11 +115,11 @@ fn surround<const TILES: usize, const SLOTS: usize>(
     match &state.around {
         Around::Near(near) => {
             surround.see(pose, near.points());
-            let cells = near::obstacle_cells(state.map.tiles(), pose.point());
+            let cells = obstacle_points::obstacle_cells(state.map.tiles(), pose.point());
             surround.remember(pose, cells);
         }
         Around::Storeys(_) => {
-            let rims = near::rims(state.map.tiles(), pose.point());
+            let rims = obstacle_points::rims(state.map.tiles(), pose.point());
             surround.keep_off(pose, rims);
         }
     }
@@ -190,7 +191,7 @@ fn within_limits(config: &Config, wish: Twist) -> Twist {
 }
 
 fn is_at_goal(window: &Window, (origin, scale): (Cell, i32), robot: Point) -> bool {
-    let (x, y) = view::position((origin, scale), robot);
+    let (x, y) = local_grid::position((origin, scale), robot);
     match (
         usize::try_from(math::floor(x)),
         usize::try_from(math::floor(y)),
@@ -222,7 +223,7 @@ pub(super) fn ahead(pose: &Pose, place: Place) -> Point {
 
 /// The field's heading at a place near the robot, radians to the left of the robot's own.
 fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Option<f32> {
-    let (x, y) = view::position(at, ahead(pose, place));
+    let (x, y) = local_grid::position(at, ahead(pose, place));
     descent::heading_at(window, x, y).map(|heading| math::wrap(heading - pose.yaw_rad))
 }
 
@@ -232,8 +233,8 @@ mod tests {
     use std::vec::Vec;
 
     use super::*;
+    use crate::config::Terrain;
     use crate::field::{SIDE, solve};
-    use crate::terrain::Terrain;
 
     /// Turn rates of a robot that stands where no field leads anywhere, at these times since it last moved.
     fn turn_rates<const N: usize>(terrain: Option<Terrain>, times_ms: [u32; N]) -> [f32; N] {

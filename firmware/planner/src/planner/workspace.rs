@@ -2,9 +2,9 @@
 //!
 //! Units: map cells; q is 1 at a goal.
 
+use crate::field::local_grid::View;
 use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, Window};
 use crate::geometry::Cell;
-use crate::view::View;
 
 /// Words of scratch.
 pub(super) const SCRATCH: usize = SCRATCH_FLOATS;

@@ -4,24 +4,19 @@
 //! memory that they share (`More`).
 
 pub mod frontier;
-pub mod lookout;
-mod nearest;
 pub mod ouroboros;
-mod paths;
-mod patience;
-pub mod road;
 pub mod tdbvp;
 
 pub use frontier::Frontier;
 pub use ouroboros::Ouroboros;
-pub use road::Road;
 pub use tdbvp::Tdbvp;
 
-use crate::config::{Config, Laser, Strategy};
+use crate::config::{Config, Strategy};
 use crate::field::Window;
+use crate::field::local_grid::View;
 use crate::geometry::Pose;
-use crate::topology::Space;
-use crate::view::View;
+use crate::roadmap::skeleton::Space;
+use crate::robot::Laser;
 use frontier::{Lent, Outlook};
 use ouroboros::Round;
 use ouroboros::shield::Shield;

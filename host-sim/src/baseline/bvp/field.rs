@@ -11,7 +11,7 @@
 //!
 //! Units: cells of the chart; headings in radians, counter-clockwise from x.
 
-use fieldline_planner::field::preference::KERNEL_CELLS;
+use fieldline_planner::config::KERNEL_CELLS;
 use fieldline_planner::geometry::{CELL_M, Cell, Point};
 use fieldline_planner::math;
 

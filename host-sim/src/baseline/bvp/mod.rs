@@ -24,10 +24,11 @@ mod graph;
 mod multigrid;
 pub mod patience;
 
+use fieldline_planner::config::Mode;
+use fieldline_planner::field::height_preference::Preferences;
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::math;
 use fieldline_planner::status::Frontier;
-use fieldline_planner::terrain::{Mode, Preferences};
 use fieldline_protocol::message::{FIELD_SIDE, FieldRow};
 
 use super::session::{Outlook, Plan, Scene, Uneven};
@@ -230,9 +231,9 @@ mod tests {
     use crate::baseline::chart::sketch::chart;
     use crate::baseline::heights::HeightGrid;
     use crate::baseline::session::{Outlook, Plan, Scene, Uneven};
+    use fieldline_planner::config::Terrain;
     use fieldline_planner::geometry::{Cell, Point, Pose};
-    use fieldline_planner::terrain::Terrain;
-    use fieldline_planner::terrain::elevation::{Elevation, WINDOW_CELLS};
+    use fieldline_planner::ground::elevation::{Elevation, WINDOW_CELLS};
     use fieldline_protocol::message::FIELD_SIDE;
 
     fn pose(at: Point) -> Pose {

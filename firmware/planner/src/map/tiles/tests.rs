@@ -1,7 +1,7 @@
 //! Cells, extents and pools of small maps.
 
-use super::{Class, NoRoom, Tiles};
 use crate::geometry::Cell;
+use crate::map::tiles::{Class, NoRoom, Tiles};
 
 fn small() -> Tiles<4, 24> {
     let mut tiles = Tiles::new();

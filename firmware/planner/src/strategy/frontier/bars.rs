@@ -1,12 +1,12 @@
 //! Where a way that cannot be driven is barred: at the first cell of the road that the window has no way to, or where the robot's front
 //! meets what stops it. Units: map cells, metres.
 
-use super::{Known, near};
-use crate::bits::{Adjacency, flood};
 use crate::field::SIDE;
+use crate::field::local_grid::{Rows, View};
 use crate::geometry::{Cell, Point};
-use crate::strategy::Road;
-use crate::view::{Rows, View};
+use crate::grid::bits::{Adjacency, flood};
+use crate::path::Road;
+use crate::strategy::frontier::{Known, near};
 
 /// A robot that cannot go on is barred from its road this far ahead, metres: where its front meets what stops it.
 const BAR_AHEAD_M: f32 = 0.5;

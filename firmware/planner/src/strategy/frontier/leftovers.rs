@@ -1,8 +1,8 @@
 //! Leftovers: what is listed at the end of frontiers that were never reached, in groups. Units: map cells, metres.
 
-use super::{Frontier, Known, near};
 use crate::geometry::Cell;
 use crate::status::{Frontier as Leftover, Residue};
+use crate::strategy::frontier::{Frontier, Known, near};
 
 /// Leftover cells this near are one group, metres.
 const GROUP_RADIUS_M: f32 = 2.0;

@@ -4,17 +4,17 @@
 //! Where heights are preferred, a road that goes by another storey gives way to one that keeps to its own, if that is no longer than what goals
 //! so far off the storey are put back by. Units: map cells, coarse steps of 20 cm.
 
-use super::starts::{Starts, later};
-use super::{Frontier, Known, Lent};
 use crate::geometry::{Cell, Point};
 use crate::grid::{Plane, PlaneMut, Site};
 use crate::map::Tiles;
-use crate::skeleton::{WaveSpace, Wavefront};
-use crate::strategy::Road;
-use crate::strategy::nearest::Centres;
-use crate::strategy::paths::Paths;
-use crate::terrain::storeys::LATER_STEPS;
-use crate::topology::Frame;
+use crate::path::Road;
+use crate::path::height_levels::LATER_STEPS;
+use crate::path::nearest::Centres;
+use crate::path::search::Paths;
+use crate::roadmap::skeleton::Frame;
+use crate::roadmap::{WaveSpace, Wavefront};
+use crate::strategy::frontier::starts::{Starts, later};
+use crate::strategy::frontier::{Frontier, Known, Lent};
 
 /// A road that leaves the storey by so many levels more than its goal does goes by another storey: 1 m with Table I's parameters.
 const OTHER_STOREY: u32 = 4;

@@ -4,15 +4,15 @@
 //! starts after:  0 beside the present goal | 10 a large frontier's | 22 a small one's     + 50 · level
 //! ```
 //!
-//! with the level of [`crate::terrain::storeys`]. To find it takes far longer than to start a wave, and it is asked for once for every other
+//! with the level of [`crate::path::height_levels`]. To find it takes far longer than to start a wave, and it is asked for once for every other
 //! start there is, in each search of a round; so it is found once and kept, five bits a frontier cell.
 //!
 //! Units: coarse steps of 20 cm.
 
-use super::{DROP_RADIUS_M, Frontier, Known, near};
 use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
-use crate::terrain::storeys::{LATER_STEPS, MOST_LEVEL};
+use crate::path::height_levels::{LATER_STEPS, MOST_LEVEL};
+use crate::strategy::frontier::{DROP_RADIUS_M, Frontier, Known, near};
 
 /// Head start of the present goal, coarse steps: what turning about costs.
 const HEAD_START: u32 = 10;

@@ -3,16 +3,17 @@
 use std::boxed::Box;
 use std::vec;
 
-use super::starts::later;
-use super::{Frontier, Known, Lent, Outlook};
-use crate::clearance::Disc;
+use crate::config::Terrain;
+use crate::field::local_grid::View;
 use crate::geometry::{Cell, Point};
 use crate::grid::Site;
+use crate::ground::elevation::{Elevation, WINDOW_CELLS};
 use crate::map::{Class, Tiles};
-use crate::terrain::elevation::{Elevation, WINDOW_CELLS};
-use crate::terrain::{Levels, Storeys, Terrain};
-use crate::topology::{Space, Topology};
-use crate::view::View;
+use crate::path::height_levels::{Levels, Storeys};
+use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::skeleton::{Space, Topology};
+use crate::strategy::frontier::starts::later;
+use crate::strategy::frontier::{Frontier, Known, Lent, Outlook};
 
 /// Half the width of the corridor, cells.
 const HALF: i32 = 8;

@@ -10,17 +10,17 @@ use std::collections::{BTreeMap, VecDeque};
 use std::string::String;
 use std::vec::Vec;
 
-use self::worlds::{ADJACENT, NESTED, ROOMS, THREE_LOOPS, TREES};
-use super::detour::Limits;
-use super::ground::quarters;
-use super::scenes::{Memory, POINT_M, SLOTS, TILES, at, pose_in};
-use super::{Ouroboros, Round, Tally};
-use crate::clearance::Disc;
+use crate::config::Limits;
 use crate::geometry::{Cell, Pose};
 use crate::map::{Class, Tiles};
+use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::skeleton::{Space, Topology};
 use crate::strategy::Frontier;
 use crate::strategy::frontier::Outlook;
-use crate::topology::{Space, Topology};
+use crate::strategy::ouroboros::exploring::worlds::{ADJACENT, NESTED, ROOMS, THREE_LOOPS, TREES};
+use crate::strategy::ouroboros::ground::quarters;
+use crate::strategy::ouroboros::scenes::{Memory, POINT_M, SLOTS, TILES, at, pose_in};
+use crate::strategy::ouroboros::{Ouroboros, Round, Tally};
 
 /// Cells that the robot sees: as much of these loops as 12 m are of one of 70 m.
 const SIGHT: i32 = 8;

@@ -2,11 +2,11 @@
 //!
 //! Units: coarse cells of 20 cm, named by the least of their four map cells.
 
-use crate::clearance::{Disc, is_passable};
 use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
 use crate::map::{Class, Tiles};
-use crate::topology::Frame;
+use crate::roadmap::configuration_space::{Disc, is_passable};
+use crate::roadmap::skeleton::Frame;
 
 /// The skeleton and the map.
 #[derive(Clone, Copy, Debug)]

@@ -21,13 +21,13 @@
 //!
 //! Units: steps along the skeleton, 20 cm and a little more.
 
-use super::ground::Ground;
-use super::shield::Shield;
 use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
 use crate::math;
-use crate::skeleton::Residues;
-use crate::skeleton::branches::{MOST_WAYS, ways};
+use crate::roadmap::Residues;
+use crate::roadmap::branches::{MOST_WAYS, ways};
+use crate::strategy::ouroboros::ground::Ground;
+use crate::strategy::ouroboros::shield::Shield;
 
 /// Steps from the robot's cell to a head.
 const TO_HEAD: u32 = 2;

@@ -22,12 +22,11 @@
 //!
 //! Units: map cells, metres, milliseconds.
 
-pub mod crumbs;
-pub mod detour;
-mod errand;
+pub mod closed_regions;
 pub mod ground;
+pub mod loop_budget;
 pub mod loop_road;
-pub mod marks;
+mod revisit;
 pub mod round;
 pub mod shield;
 pub mod tractor;
@@ -37,23 +36,23 @@ mod exploring;
 #[cfg(test)]
 mod scenes;
 
-use self::crumbs::Crumbs;
-use self::detour::Detour;
-use self::errand::Errand;
-use self::loop_road::{LoopRoad, build_shield, way_back};
-use self::marks::Marks;
-pub use self::round::Round;
-use self::round::STEP_M;
-use self::shield::Shield;
-use self::tractor::Fate;
-use super::Frontier;
-use super::frontier::{Lent, Outlook};
-use super::road::Road;
 use crate::geometry::{CELL_M, Cell, Pose};
 use crate::grid::Site;
 use crate::math;
-use crate::skeleton::Residues;
-use crate::skeleton::branches::surroundings;
+use crate::path::breadcrumbs::Crumbs;
+use crate::path::cell_path::Road;
+use crate::roadmap::Residues;
+use crate::roadmap::branches::surroundings;
+use crate::strategy::Frontier;
+use crate::strategy::frontier::{Lent, Outlook};
+use crate::strategy::ouroboros::closed_regions::Marks;
+use crate::strategy::ouroboros::loop_budget::Detour;
+use crate::strategy::ouroboros::loop_road::{LoopRoad, build_shield, way_back};
+use crate::strategy::ouroboros::revisit::Errand;
+pub use crate::strategy::ouroboros::round::Round;
+use crate::strategy::ouroboros::round::STEP_M;
+use crate::strategy::ouroboros::shield::Shield;
+use crate::strategy::ouroboros::tractor::Fate;
 
 /// Rounds in a row without a loop road after which the loop is lost.
 const LOST_ROUNDS: u8 = 3;
@@ -220,10 +219,10 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         round: &mut Round<'_, TILES, SLOTS>,
         lent: &mut Lent<'_>,
     ) -> Option<Outlook> {
-        self.stage = match errand::find(round, &mut self.marks, lent) {
-            errand::Found::None => return Some(Outlook::Nothing),
-            errand::Found::NotHere => Stage::Search,
-            errand::Found::Place(goal) => {
+        self.stage = match revisit::find(round, &mut self.marks, lent) {
+            revisit::Found::None => return Some(Outlook::Nothing),
+            revisit::Found::NotHere => Stage::Search,
+            revisit::Found::Place(goal) => {
                 self.errand = Some(Errand::to(goal));
                 Stage::Explore
             }
@@ -242,14 +241,14 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         let road = road_to(goal, round, lent).filter(|road| {
             let errand = self.errand.as_mut();
             let is_over = errand.is_none_or(|errand| errand.is_over(road.steps(), round.limits));
-            road.steps() > errand::DONE_STEPS && !is_over
+            road.steps() > revisit::DONE_STEPS && !is_over
         });
         if let Some(road) = road {
             let (known, robot) = (round.known(), round.pose.point());
             return Some(frontier.follow(road, &known, robot, round.time_ms, lent.view));
         }
         // No loop was begun on the way here.
-        errand::settle(round, &mut self.marks, goal);
+        revisit::settle(round, &mut self.marks, goal);
         self.errand = None;
         self.stage = Stage::Search;
         None

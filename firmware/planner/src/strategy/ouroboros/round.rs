@@ -3,17 +3,17 @@
 //!
 //! Invariant: the skeleton is whole again after each wave.
 
-use super::detour::Limits;
-use super::ground::Ground;
-use crate::clearance::Disc;
+use crate::config::Limits;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::map::Tiles;
-use crate::skeleton::{Barrier, Residues, WaveSpace, Wavefront};
+use crate::path::height_levels::Levels;
+use crate::path::nearest::Centres;
+use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::skeleton::Topology;
+use crate::roadmap::{Barrier, Residues, WaveSpace, Wavefront};
 use crate::strategy::frontier::{Known, Lent};
-use crate::strategy::nearest::Centres;
-use crate::terrain::Levels;
-use crate::topology::Topology;
+use crate::strategy::ouroboros::ground::Ground;
 
 /// Metres along a step of the skeleton.
 pub(super) const STEP_M: f32 = 2.0 * crate::geometry::CELL_M;
@@ -23,7 +23,7 @@ const BLOCKED: usize = 9;
 /// What a round works on.
 #[derive(Debug)]
 pub struct Round<'a, const TILES: usize, const SLOTS: usize> {
-    /// The published skeleton, of [`crate::topology::Space::AnchoredNotObstacle`]; whole again after each call.
+    /// The published skeleton, of [`crate::roadmap::skeleton::Space::AnchoredNotObstacle`]; whole again after each call.
     pub topology: &'a mut Topology<SLOTS>,
     /// The map.
     pub tiles: &'a Tiles<TILES, SLOTS>,

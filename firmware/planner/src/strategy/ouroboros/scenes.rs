@@ -4,7 +4,7 @@
 //! point, and the robot with its heading `>`, `<`, `v` (towards greater y) or `^`. In what comes back, `b` and `f` are the loop road's back and
 //! front, `=` the shield, `+` other centre cells. The robot is a point, so it fits wherever there is no obstacle.
 
-mod errands;
+mod revisits;
 mod roads;
 mod walls;
 
@@ -12,20 +12,20 @@ use core::f32::consts::{FRAC_PI_2, PI};
 use std::string::String;
 use std::vec::Vec;
 
-use super::Round;
-use super::detour::Limits;
-use super::ground::Ground;
-use super::loop_road::{LoopRoad, build_shield};
-use super::shield::{Flaw, Shield};
-use crate::clearance::Disc;
+use crate::config::Limits;
+use crate::field::local_grid::View;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::map::{Class, Tiles};
-use crate::skeleton::Residues;
-use crate::skeleton::branches::surroundings;
+use crate::roadmap::Residues;
+use crate::roadmap::branches::surroundings;
+use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::skeleton::{Space, Topology};
 use crate::strategy::frontier::Lent;
-use crate::topology::{Space, Topology};
-use crate::view::View;
+use crate::strategy::ouroboros::Round;
+use crate::strategy::ouroboros::ground::Ground;
+use crate::strategy::ouroboros::loop_road::{LoopRoad, build_shield};
+use crate::strategy::ouroboros::shield::{Flaw, Shield};
 
 pub(super) const TILES: usize = 30;
 pub(super) const SLOTS: usize = 48;

@@ -11,9 +11,9 @@
 
 use core::fmt;
 
-use super::ground::Ground;
 use crate::geometry::Cell;
-use crate::skeleton::branches::{Kind, kind};
+use crate::roadmap::branches::{Kind, kind};
+use crate::strategy::ouroboros::ground::Ground;
 
 /// Cells of a shield to one side of the road at the most: 6.4 m.
 pub const MOST_REACH: u8 = 32;

@@ -9,10 +9,10 @@
 //!
 //! Units: metres; map cells.
 
-use super::crumbs::Crumbs;
-use super::marks::Marks;
 use crate::geometry::{CELL_M, Cell, Pose};
 use crate::math;
+use crate::path::breadcrumbs::Crumbs;
+use crate::strategy::ouroboros::closed_regions::Marks;
 
 /// A robot this near has reached it [Ouroboros, line 7: `Threshold`; the paper gives no value].
 pub const REACHED_M: f32 = 1.0;

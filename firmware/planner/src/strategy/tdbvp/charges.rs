@@ -10,17 +10,17 @@
 //!
 //! Units: window cells; shares of a goal's charge.
 
-use super::Rails;
-use super::fresh::Fresh;
-use super::sides::{DISC_M, EPSILON, Side};
+use crate::field::local_grid::{Rows, View};
 use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::{Plane, Site};
 use crate::map::Tiles;
 use crate::math;
-use crate::skeleton::branches::{Kind, kind};
-use crate::topology::Frame;
-use crate::view::{Rows, View};
+use crate::roadmap::branches::{Kind, kind};
+use crate::roadmap::skeleton::Frame;
+use crate::strategy::tdbvp::Rails;
+use crate::strategy::tdbvp::pending_visits::Fresh;
+use crate::strategy::tdbvp::sides::{DISC_M, EPSILON, Side};
 
 /// The unexplored around a goal that was given up is no goal, cells.
 const GIVEN_UP_CELLS: i32 = 7;

@@ -20,28 +20,29 @@
 //! Units: map cells, metres, milliseconds.
 
 mod charges;
-mod fresh;
+mod pending_visits;
 pub mod rails;
 pub mod sides;
 
 #[cfg(test)]
 mod scenes;
 
-use self::charges::{CentreCells, charge_rails, prefer, unexplored};
-use self::fresh::{Fresh, VISIT_M};
-pub use self::rails::Rails;
-use self::sides::Sides;
-use super::frontier::{Lent, Outlook};
-use super::nearest::Centres;
-use super::ouroboros::Round;
-use super::paths::Paths;
-use super::{Frontier, Road};
-use crate::config::Laser;
+use crate::field::local_grid::View;
 use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::map::Tiles;
-use crate::topology::Topology;
-use crate::view::View;
+use crate::path::Road;
+use crate::path::nearest::Centres;
+use crate::path::search::Paths;
+use crate::roadmap::skeleton::Topology;
+use crate::robot::Laser;
+use crate::strategy::Frontier;
+use crate::strategy::frontier::{Lent, Outlook};
+use crate::strategy::ouroboros::Round;
+use crate::strategy::tdbvp::charges::{CentreCells, charge_rails, prefer, unexplored};
+use crate::strategy::tdbvp::pending_visits::{Fresh, VISIT_M};
+pub use crate::strategy::tdbvp::rails::Rails;
+use crate::strategy::tdbvp::sides::Sides;
 
 /// Time without a first visit after which a robot that has something left to explore follows a road to it, milliseconds.
 /// With a minute, three adjacent loops took 378 s instead of 343 (means of four starts), and rooms without a loop 810 s instead of 584.

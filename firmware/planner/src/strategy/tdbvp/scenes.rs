@@ -2,17 +2,17 @@
 //!
 //! `#` obstacle, `.` free, coarse cells of 20 cm; the first row of a picture is the least y. `>` is the robot, facing along x.
 
-use super::ROOM_M;
-use super::charges::{CentreCells, charge_rails, prefer};
-use super::fresh::Fresh;
-use super::rails::Rails;
-use super::sides::Side;
-use crate::clearance::Disc;
+use crate::field::local_grid::{View, position};
 use crate::field::{SCRATCH_FLOATS, SIDE, SolverConfig, Window, descent, solve};
 use crate::geometry::Cell;
 use crate::map::{Class, Tiles};
-use crate::topology::{Space, Topology};
-use crate::view::{View, position};
+use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::skeleton::{Space, Topology};
+use crate::strategy::tdbvp::ROOM_M;
+use crate::strategy::tdbvp::charges::{CentreCells, charge_rails, prefer};
+use crate::strategy::tdbvp::pending_visits::Fresh;
+use crate::strategy::tdbvp::rails::Rails;
+use crate::strategy::tdbvp::sides::Side;
 
 /// A corridor from the left that ends at one across.
 const FORK: &str = "

@@ -26,7 +26,7 @@
 //!
 //! Units: metres, radians.
 
-use crate::config::Laser;
+use crate::robot::Laser;
 
 /// Greatest range that counts, metres: what is farther is open anyhow.
 const FARTHEST_M: f32 = 4.0;
@@ -142,7 +142,7 @@ fn mean_range(laser: &Laser, ranges_mm: &[u16], side: Side) -> Option<f32> {
     let (mut sum_m, mut beams) = (0.0, 0.0);
     for (k, &range_mm) in ranges_mm.iter().enumerate() {
         let bearing = laser.first_bearing_rad + k as f32 * laser.bearing_step_rad;
-        if range_mm != crate::planner::INVALID_MM && is_beside(bearing) {
+        if range_mm != crate::input::INVALID_MM && is_beside(bearing) {
             sum_m += (f32::from(range_mm) * 1e-3).min(FARTHEST_M);
             beams += 1.0;
         }
@@ -153,7 +153,7 @@ fn mean_range(laser: &Laser, ranges_mm: &[u16], side: Side) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::{Side, Sides};
-    use crate::config::Laser;
+    use crate::robot::Laser;
 
     const LASER: Laser = Laser {
         x_m: 0.0,

@@ -2,10 +2,10 @@
 
 use std::vec::Vec;
 
-use super::super::loop_road::{build_shield, way_back};
-use super::{Found, Memory, Scene, assert_picture};
 use crate::grid::Site;
-use crate::skeleton::Residues;
+use crate::roadmap::Residues;
+use crate::strategy::ouroboros::loop_road::{build_shield, way_back};
+use crate::strategy::ouroboros::scenes::{Found, Memory, Scene, assert_picture};
 
 /// The same way, blocked below.
 const NO_LOOP: &str = "

@@ -3,9 +3,9 @@
 use std::string::String;
 use std::vec::Vec;
 
-use super::super::Ouroboros;
-use super::super::shield::{Flaw, Shield};
-use super::{Memory, Scene, assert_picture, at, pose_in};
+use crate::strategy::ouroboros::Ouroboros;
+use crate::strategy::ouroboros::scenes::{Memory, Scene, assert_picture, at, pose_in};
+use crate::strategy::ouroboros::shield::{Flaw, Shield};
 
 /// A block, and the way round it.
 const RING: &str = "

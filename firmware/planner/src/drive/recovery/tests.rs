@@ -1,0 +1,123 @@
+//! Ways out of dead ends, corners and boxes made of points.
+
+use crate::drive::Surround;
+use crate::drive::recovery::*;
+use crate::geometry::{Point, Pose};
+
+/// Points of walls given as segments, 2 cm apart.
+fn walls(segments: &[[f32; 4]]) -> std::vec::Vec<Point> {
+    let mut points = std::vec::Vec::new();
+    for &[x0, y0, x1, y1] in segments {
+        let n = (((x1 - x0).abs() + (y1 - y0).abs()) / 0.04) as i32 + 1;
+        for k in 0..=n {
+            let t = k as f32 / n as f32;
+            points.push(Point {
+                x_m: x0 + (x1 - x0) * t,
+                y_m: y0 + (y1 - y0) * t,
+            });
+        }
+    }
+    points
+}
+
+const BUDGET: Budget = Budget {
+    poses: 100,
+    points: 2_000,
+};
+
+fn search(points: &[Point], pose: Pose, heading: f32) -> Option<(Plan, Surround)> {
+    let mut scratch = std::vec![0; SCRATCH_WORDS];
+    let surround = Surround::new(&pose, points);
+    let heading_at = |_: Place| Some(math::wrap(heading - pose.yaw_rad));
+    let ground = Ground {
+        surround: &surround,
+        heading_at,
+        potential_at: None,
+    };
+    let mut search = Search::start(
+        Attempt {
+            margin_m: 0.02,
+            leads: Leads::Farther,
+        },
+        Choice::ALL,
+        &mut scratch,
+    );
+    loop {
+        match search.advance(&ground, BUDGET, &mut scratch) {
+            Found::Plan(plan) => return Some((plan, surround)),
+            Found::Pending => {}
+            Found::Nothing => return None,
+        }
+    }
+}
+
+/// Drives a plan as far as it goes; the pose at its end and the periods it took.
+fn drive_out(points: &[Point], pose: Pose, heading: f32) -> (Place, usize) {
+    let (mut plan, surround) = search(points, pose, heading).expect("a way out");
+    let (mut place, mut periods) = (Place::default(), 0);
+    while let Some(twist) = plan.next(0.2) {
+        place = place.after(twist.linear_mps * 0.2, twist.angular_radps * 0.2);
+        assert!(surround.is_clear(place, 0.01), "touches at {place:?}");
+        periods += 1;
+    }
+    (place, periods)
+}
+
+/// In a dead end too narrow to turn in, with nothing wider within reach, the robot backs out.
+#[test]
+fn it_backs_out_of_a_dead_end() {
+    let dead_end = walls(&[
+        [-1.2, 0.32, 0.6, 0.32],
+        [-1.2, -0.32, 0.6, -0.32],
+        [0.6, 0.32, 0.6, -0.32],
+    ]);
+    let askew = Pose {
+        yaw_rad: 0.1,
+        ..Pose::default()
+    };
+    let (end, _) = drive_out(&dead_end, askew, math::PI);
+    assert!(end.yaw_rad.abs() < 0.4 && end.x_m < -0.2, "{end:?}");
+}
+
+/// Wedged at a slant in an L of 0.72 m: it gets round the corner.
+#[test]
+fn it_gets_round_a_tight_corner_from_a_slant() {
+    let corner = walls(&[
+        [-0.36, -0.36, 1.2, -0.36],
+        [-0.36, -0.36, -0.36, 1.2],
+        [0.36, 0.36, 1.2, 0.36],
+        [0.36, 0.36, 0.36, 1.2],
+    ]);
+    let slant = Pose {
+        yaw_rad: math::PI - 0.3,
+        ..Pose::default()
+    };
+    let (end, _) = drive_out(&corner, slant, math::PI / 2.0);
+    let yaw = slant.yaw_rad + end.yaw_rad;
+    assert!(math::wrap(yaw - math::PI / 2.0).abs() < 0.25, "{yaw}");
+}
+
+#[test]
+fn in_the_open_it_just_turns() {
+    let (end, periods) = drive_out(&[], Pose::default(), math::PI / 2.0);
+    assert!(
+        end.x_m.abs() < 0.05 && (end.y_m - GO_ON_M).abs() < 0.01,
+        "{end:?}"
+    );
+    assert_eq!(
+        periods,
+        2 * (11 + 8),
+        "82.5° are near enough, and on it goes"
+    );
+}
+
+#[test]
+fn a_box_has_no_way_out() {
+    let closed = walls(&[
+        [-0.3, -0.3, 0.3, -0.3],
+        [-0.3, 0.3, 0.3, 0.3],
+        [-0.3, -0.3, -0.3, 0.3],
+        [0.3, -0.3, 0.3, 0.3],
+    ]);
+    assert!(search(&closed, Pose::default(), 0.0).is_none());
+}

@@ -1,0 +1,308 @@
+//! What ground is preferred: ε of every cell of the window [Maffei-Terrain, III-C].
+//!
+//! ```text
+//! ε_height(x, y) = max(−λ_h |h(x_r, y_r) − h(x, y)|, ε_hmin)        (eq. 3; 0 where the height is unknown)
+//! ε_global       = min(−λ_g ln p_diff(x_r, y_r), ε_gmax)            (eq. 4)
+//! ε(x, y)        = ε_global + ε_height(x, y), within [ε_hmin, ε_gmax]     (eq. 5)
+//! ```
+//!
+//! `p_diff` is that of the last field ([`crate::field::preference`]). Below 1e-10 the field around the robot is so flat that `ε_height` is
+//! left out until `p_diff` is above 1e-4 again. Where it is 0, `ε_global` is at its limit. Before the first field it is 0.
+
+use crate::config::{Mode, Terrain};
+use crate::geometry::Pose;
+use crate::math;
+
+/// `p_diff` below which heights no longer count.
+pub const TOO_FLAT: f32 = 1e-10;
+/// `p_diff` above which they count again.
+pub const STEEP_AGAIN: f32 = 1e-4;
+
+/// A robot that leans less than this stands level, radians.
+const LEVEL_RAD: f32 = 0.1;
+
+/// What the preferences remember from field to field.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Preferences {
+    p_diff: Option<f32>,
+    ignores_heights: bool,
+    storey_m: f32,
+}
+
+/// Of a cell whose height differs by so much from the robot's [eq. 3].
+#[must_use]
+pub fn of_height(terrain: &Terrain, difference_m: f32) -> f32 {
+    (-terrain.height_scale * difference_m.abs()).max(terrain.least_preference)
+}
+
+/// Of all cells [eq. 4].
+#[must_use]
+pub fn of_flatness(terrain: &Terrain, p_diff: f32) -> f32 {
+    if p_diff > 0.0 {
+        (-terrain.global_scale * math::ln(p_diff)).min(terrain.most_preference)
+    } else {
+        terrain.most_preference
+    }
+}
+
+impl Preferences {
+    /// Before the first field.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            p_diff: None,
+            ignores_heights: false,
+            storey_m: 0.0,
+        }
+    }
+
+    /// The robot stands here: on its storey, if it stands about level.
+    pub fn stand(&mut self, pose: &Pose) {
+        if pose.roll_rad.abs() < LEVEL_RAD && pose.pitch_rad.abs() < LEVEL_RAD {
+            self.storey_m = pose.z_m;
+        }
+    }
+
+    /// Height of the ground that the robot last stood on level, metres.
+    #[must_use]
+    pub const fn storey_m(&self) -> f32 {
+        self.storey_m
+    }
+
+    /// A field was solved, with this `p_diff` around the robot.
+    pub fn note(&mut self, p_diff: f32) {
+        self.p_diff = Some(p_diff);
+        if p_diff < TOO_FLAT {
+            self.ignores_heights = true;
+        } else if p_diff > STEEP_AGAIN {
+            self.ignores_heights = false;
+        }
+    }
+
+    /// Whether the field is so flat that heights do not count.
+    #[must_use]
+    pub const fn ignores_heights(&self) -> bool {
+        self.ignores_heights
+    }
+
+    /// The last field's `p_diff`.
+    #[must_use]
+    pub const fn p_diff(&self) -> Option<f32> {
+        self.p_diff
+    }
+
+    /// `ε_global`, if it is used.
+    #[must_use]
+    pub fn global(&self, terrain: &Terrain) -> f32 {
+        match (terrain.mode, self.p_diff) {
+            (Mode::Global | Mode::Both, Some(p_diff)) => of_flatness(terrain, p_diff),
+            _ => 0.0,
+        }
+    }
+
+    /// ε of a cell, given `ε_global` and how much its height differs from the robot's, if that is known [eq. 5].
+    #[must_use]
+    pub fn of_cell(&self, terrain: &Terrain, global: f32, difference_m: Option<f32>) -> f32 {
+        let heights = terrain.mode.has_heights() && !self.ignores_heights;
+        let height = match difference_m {
+            Some(difference_m) if heights => of_height(terrain, difference_m),
+            _ => 0.0,
+        };
+        (global + height).clamp(terrain.least_preference, terrain.most_preference)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::boxed::Box;
+
+    use super::{Mode, Preferences, STEEP_AGAIN, TOO_FLAT, of_flatness, of_height};
+    use crate::config::Terrain;
+    use crate::field::preference::p_diff;
+    use crate::field::{GOAL, Preference, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, solve};
+
+    /// Pseudorandom numbers in [0, 1).
+    struct Random(u64);
+
+    impl Random {
+        fn next(&mut self) -> f64 {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        }
+    }
+
+    fn close(ours: f32, exact: f64) -> bool {
+        (f64::from(ours) - exact).abs() <= 1e-4 * exact.abs() + 1e-30
+    }
+
+    fn solved(free: &[u64; SIDE], goal: &[u64; SIDE], epsilon: f32) -> Box<Window> {
+        let mut window = Box::new(Window::new());
+        window.set_boundary(free, goal);
+        window.set_preferences(|_, _| Preference::nearest(epsilon));
+        let mut scratch = [0.0; SCRATCH_FLOATS];
+        let config = SolverConfig {
+            max_cycles: 200,
+            ..SolverConfig::default()
+        };
+        assert_eq!(
+            solve(&mut window, &mut scratch, &config).stop,
+            Stop::Converged
+        );
+        window
+    }
+
+    /// The mean of `|q_r − q_n|` over the kernel, by the book.
+    fn exact_p_diff(window: &Window, x: i32, y: i32) -> f64 {
+        let q = |x: i32, y: i32| f64::from(window.q(x as usize, y as usize)) / f64::from(GOAL);
+        let (mut sum, mut cells) = (0.0, 0.0);
+        for v in (y - 10).max(0)..(y + 10).min(SIDE as i32) {
+            for u in (x - 10).max(0)..(x + 10).min(SIDE as i32) {
+                if window.is_reached(u as usize, v as usize) && (u, v) != (x, y) {
+                    sum += (q(x, y) - q(u, v)).abs();
+                    cells += 1.0;
+                }
+            }
+        }
+        sum / cells
+    }
+
+    /// Random windows, heights and parameters: eqs. 3 to 5 and `p_diff` against doubles.
+    #[test]
+    fn random_states_equal_the_formulas_in_doubles() {
+        let mut random = Random(7);
+        let mut states = 0;
+        while states < 120 {
+            let density = 0.25 * random.next();
+            let free: [u64; SIDE] = core::array::from_fn(|_| {
+                (0..SIDE).fold(0, |row, x| row | u64::from(random.next() > density) << x)
+            });
+            let mut goal = [0; SIDE];
+            goal[(random.next() * 61.0) as usize] = 1 << (random.next() * 61.0) as u32;
+            let window = solved(&free, &goal, 0.0);
+            let (x, y) = (
+                (random.next() * 61.0) as usize,
+                (random.next() * 61.0) as usize,
+            );
+            if !window.is_reached(x, y) {
+                continue;
+            }
+            states += 1;
+            let flatness = p_diff(&window, x, y);
+            assert!(close(flatness, exact_p_diff(&window, x as i32, y as i32)));
+
+            let [scale_h, scale_g, least, most] =
+                [4.0, 0.05, -2.0, 2.0].map(|most| (random.next() * most) as f32);
+            let terrain = Terrain {
+                height_scale: scale_h,
+                global_scale: scale_g,
+                least_preference: least,
+                most_preference: most,
+                ..Terrain::TABLE_I
+            };
+            let mut preferences = Preferences::new();
+            preferences.note(flatness);
+            let exact_global =
+                (-f64::from(scale_g) * f64::from(flatness).ln()).min(f64::from(most));
+            let global = preferences.global(&terrain);
+            assert!(close(global, exact_global), "{global} {exact_global}");
+            let difference = (random.next() - 0.5) as f32;
+            let exact_height =
+                (-f64::from(scale_h) * f64::from(difference).abs()).max(f64::from(least));
+            assert!(close(of_height(&terrain, difference), exact_height));
+            let counts = if flatness < TOO_FLAT {
+                0.0
+            } else {
+                exact_height
+            };
+            let sum = exact_global + counts;
+            let exact = sum.clamp(f64::from(least), f64::from(most));
+            let ours = preferences.of_cell(&terrain, global, Some(difference));
+            // A sum of opposite signs is as right as its terms.
+            let error = (f64::from(ours) - exact).abs();
+            assert!(
+                error <= 1e-4 * exact.abs().max(exact_global),
+                "{ours} {exact}"
+            );
+        }
+    }
+
+    /// A corridor two cells wide and winding: by its far end the field is flatter than 1e-10; nearer to the goal it recovers.
+    fn corridor() -> ([u64; SIDE], [u64; SIDE]) {
+        let mut free = [0; SIDE];
+        for (y, row) in free.iter_mut().enumerate() {
+            let turn = if y / 3 % 2 == 0 { 1 << 60 } else { 1 };
+            *row = if y % 3 == 2 { turn } else { (1 << SIDE) - 1 };
+        }
+        let mut goal = [0; SIDE];
+        goal[0] = 1;
+        (free, goal)
+    }
+
+    #[test]
+    fn heights_are_left_out_below_1e10_and_come_back_above_1e4() {
+        let (free, goal) = corridor();
+        let window = solved(&free, &goal, 0.0);
+        let terrain = Terrain::TABLE_I;
+        let mut preferences = Preferences::new();
+        // Towards the flat end and back, a row of the corridor at a time.
+        let (mut left_out, mut back_at) = (0.0, 0.0);
+        let ways = (0..SIDE).chain((0..SIDE).rev()).filter(|y| y % 3 == 0);
+        let mut before = false;
+        for y in ways {
+            for x in [10, 30, 50] {
+                let flatness = p_diff(&window, x, y);
+                preferences.note(flatness);
+                match (before, preferences.ignores_heights()) {
+                    (false, true) => left_out = flatness,
+                    (true, false) => back_at = flatness,
+                    (true, true) => assert!(flatness <= STEEP_AGAIN),
+                    (false, false) => assert!(flatness >= TOO_FLAT),
+                }
+                before = preferences.ignores_heights();
+                let global = preferences.global(&terrain);
+                let level = preferences.of_cell(&terrain, global, Some(0.0));
+                let lower = preferences.of_cell(&terrain, global, Some(-0.2));
+                assert_eq!(before, level == lower, "{flatness}");
+            }
+        }
+        assert!(left_out > 0.0 && left_out < TOO_FLAT, "{left_out}");
+        assert!(back_at > STEEP_AGAIN, "{back_at}");
+    }
+
+    #[test]
+    fn the_thresholds_are_the_papers() {
+        let mut preferences = Preferences::new();
+        let mut ignores = |p_diff: f32| {
+            preferences.note(p_diff);
+            preferences.ignores_heights()
+        };
+        let noted = [1e-9, 1.1e-10, 0.9e-10, 1e-7, 0.9e-4, 1.1e-4, 1e-9].map(&mut ignores);
+        assert_eq!(noted, [false, false, true, true, true, false, false]);
+    }
+
+    #[test]
+    fn the_mode_says_what_counts() {
+        let mut preferences = Preferences::new();
+        preferences.note(1e-3);
+        let global = of_flatness(&Terrain::TABLE_I, 1e-3);
+        let of = |mode, difference_m| {
+            let terrain = Terrain {
+                mode,
+                ..Terrain::TABLE_I
+            };
+            preferences.of_cell(&terrain, preferences.global(&terrain), difference_m)
+        };
+        assert_eq!(of(Mode::Off, Some(0.1)), 0.0);
+        assert_eq!(of(Mode::Height, Some(0.1)), -0.2);
+        assert_eq!(of(Mode::Height, Some(-9.0)), -0.5);
+        assert_eq!(of(Mode::Height, None), 0.0);
+        assert_eq!(of(Mode::Global, Some(0.1)), global);
+        assert_eq!(of(Mode::Both, Some(0.1)), global - 0.2);
+        assert_eq!(of(Mode::Both, None), global);
+        // A field of nothing is as flat as can be.
+        assert_eq!(of_flatness(&Terrain::TABLE_I, 0.0), 0.5);
+    }
+}

@@ -1,0 +1,309 @@
+//! Bit planes: one bit a cell, 32 cells a word, over memory lent by the caller. The one place that indexes.
+//!
+//! Bit k of word j of a row is column 32 j + k. Rows are stored one after another, row 0 first; a printed plane shows
+//! row 0 on its first line. Whatever lies outside a plane reads 0 and cannot be written. Shapes are chosen at run
+//! time, so one piece of memory serves a square box as well as a long one.
+//!
+//! Invariant: a plane's slice holds exactly `shape.words()` words, so that an index computed from a row and a word
+//! inside the shape is inside the slice.
+//!
+//! Units: cells; the side of a cell is the caller's business.
+
+use core::fmt;
+
+pub mod bits;
+mod class;
+mod shape;
+mod sites;
+
+pub use class::{Class, Row};
+pub use shape::{MAX_ROWS, MAX_WORDS_PER_ROW, Region, Shape, ShapeError};
+pub use sites::{Site, Sites};
+
+/// A plane to look at.
+#[derive(Clone, Copy, Debug)]
+pub struct Plane<'a> {
+    shape: Shape,
+    words: &'a [u32],
+}
+
+/// A plane to change.
+#[derive(Debug)]
+pub struct PlaneMut<'a> {
+    shape: Shape,
+    words: &'a mut [u32],
+}
+
+impl<'a> Plane<'a> {
+    /// A plane over the first words of `words`.
+    ///
+    /// # Errors
+    /// When the memory is too small for the shape.
+    pub fn new(shape: Shape, words: &'a [u32]) -> Result<Self, ShapeError> {
+        let needs = shape.lend(words.len())?;
+        let words = words.get(..needs).unwrap_or(&[]);
+        Ok(Self { shape, words })
+    }
+
+    /// Rows and words.
+    #[must_use]
+    pub const fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    /// All words, row after row.
+    #[must_use]
+    pub const fn words(&self) -> &'a [u32] {
+        self.words
+    }
+
+    /// Whether the cell is set.
+    #[must_use]
+    #[inline]
+    pub fn get(&self, site: Site) -> bool {
+        self.word(usize::from(site.y), usize::from(site.x / 32)) & site.bit() != 0
+    }
+
+    /// 32 cells of a row.
+    #[must_use]
+    #[inline]
+    pub fn word(&self, row: usize, word: usize) -> u32 {
+        self.shape.index(row, word).map_or(0, |i| at(self.words, i))
+    }
+
+    /// The words of a row; none outside.
+    #[must_use]
+    pub fn row(&self, row: usize) -> &'a [u32] {
+        row_range(self.shape, row)
+            .and_then(|range| self.words.get(range))
+            .unwrap_or(&[])
+    }
+
+    /// The set cells around a site, in the order of [`Site::neighbours`].
+    pub fn neighbours(&self, site: Site) -> impl Iterator<Item = Site> + use<'a> {
+        let plane = *self;
+        site.neighbours().filter(move |&near| plane.get(near))
+    }
+
+    /// The set cells, row after row.
+    #[must_use]
+    pub fn sites(&self) -> Sites<'a> {
+        Sites::new(*self)
+    }
+
+    /// Number of set cells.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.words.iter().map(|w| w.count_ones() as usize).sum()
+    }
+}
+
+impl<'a> PlaneMut<'a> {
+    /// A plane over the first words of `words`, which keep their values.
+    ///
+    /// # Errors
+    /// When the memory is too small for the shape.
+    pub fn new(shape: Shape, words: &'a mut [u32]) -> Result<Self, ShapeError> {
+        let needs = shape.lend(words.len())?;
+        let words = words.get_mut(..needs).unwrap_or(&mut []);
+        Ok(Self { shape, words })
+    }
+
+    /// Rows and words.
+    #[must_use]
+    pub const fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    /// The same plane, to look at.
+    #[must_use]
+    pub fn view(&self) -> Plane<'_> {
+        Plane {
+            shape: self.shape,
+            words: self.words,
+        }
+    }
+
+    /// Whether the cell is set.
+    #[must_use]
+    pub fn get(&self, site: Site) -> bool {
+        self.view().get(site)
+    }
+
+    /// Set a cell; whether it was clear before. Outside nothing happens.
+    pub fn set(&mut self, site: Site) -> bool {
+        let was = self.word_mut(site).map(|word| {
+            let was = *word;
+            *word |= site.bit();
+            was
+        });
+        was.is_some_and(|word| word & site.bit() == 0)
+    }
+
+    /// Clear a cell; whether it was set before. Outside nothing happens.
+    pub fn clear(&mut self, site: Site) -> bool {
+        let was = self.word_mut(site).map(|word| {
+            let was = *word;
+            *word &= !site.bit();
+            was
+        });
+        was.is_some_and(|word| word & site.bit() != 0)
+    }
+
+    /// Set every word to `word`.
+    pub fn fill(&mut self, word: u32) {
+        self.words.fill(word);
+    }
+
+    /// The words of a row; none outside.
+    #[must_use]
+    pub fn row_mut(&mut self, row: usize) -> &mut [u32] {
+        row_range(self.shape, row)
+            .and_then(|range| self.words.get_mut(range))
+            .unwrap_or(&mut [])
+    }
+
+    /// All words, row after row.
+    #[must_use]
+    pub fn words_mut(&mut self) -> &mut [u32] {
+        self.words
+    }
+
+    fn word_mut(&mut self, site: Site) -> Option<&mut u32> {
+        let index = self
+            .shape
+            .index(usize::from(site.y), usize::from(site.x / 32))?;
+        self.words.get_mut(index)
+    }
+}
+
+fn row_range(shape: Shape, row: usize) -> Option<core::ops::Range<usize>> {
+    let start = shape.index(row, 0)?;
+    Some(start..start + shape.words_per_row())
+}
+
+/// The word at an index, 0 outside.
+#[inline(always)]
+pub(crate) fn at(words: &[u32], index: usize) -> u32 {
+    words.get(index).copied().unwrap_or(0)
+}
+
+/// The words at `index − 1`, `index`, `index + 1`, 0 outside: one check for the three.
+#[inline(always)]
+pub(crate) fn triple(words: &[u32], index: usize) -> [u32; 3] {
+    match words
+        .get(index.wrapping_sub(1)..)
+        .and_then(|rest| rest.first_chunk::<3>())
+    {
+        Some(three) => *three,
+        None => triple_at_end(words, index),
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn triple_at_end(words: &[u32], index: usize) -> [u32; 3] {
+    [
+        at(words, index.wrapping_sub(1)),
+        at(words, index),
+        at(words, index.wrapping_add(1)),
+    ]
+}
+
+/// The picture of a plane: `#` set, `.` clear, one line a row, row 0 first.
+impl fmt::Display for Plane<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for row in 0..self.shape.rows() {
+            for word in self.row(row) {
+                for k in 0..32 {
+                    f.write_str(if word >> k & 1 == 1 { "#" } else { "." })?;
+                }
+            }
+            f.write_str("\n")?;
+        }
+        Ok(())
+    }
+}
+
+/// Draw a picture into a plane, from its corner (0, 0): `#` sets, any other character clears; one line a row, row 0
+/// first, blanks around a line ignored. Cells beyond the picture are cleared, cells beyond the plane dropped.
+pub fn draw(plane: &mut PlaneMut<'_>, picture: &str) {
+    plane.fill(0);
+    let lines = picture.lines().map(str::trim).filter(|l| !l.is_empty());
+    for (y, line) in (0_u16..).zip(lines) {
+        for (x, character) in (0_u16..).zip(line.chars()) {
+            if character == '#' {
+                plane.set(Site { x, y });
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+    use std::vec::Vec;
+
+    use super::{Plane, PlaneMut, Shape, Site, draw, triple};
+
+    #[test]
+    fn bit_k_of_word_j_is_column_32_j_plus_k() {
+        let shape = Shape::new(2, 3).unwrap();
+        let mut words = [0; 7];
+        let mut plane = PlaneMut::new(shape, &mut words).unwrap();
+        assert!(plane.set(Site { x: 33, y: 1 }));
+        assert!(!plane.set(Site { x: 33, y: 1 }));
+        assert!(plane.set(Site { x: 0, y: 2 }));
+        assert!(!plane.set(Site { x: 64, y: 0 }), "beyond the last column");
+        assert!(!plane.set(Site { x: 0, y: 3 }), "beyond the last row");
+        assert_eq!(plane.view().row(1), [0, 2]);
+        assert_eq!(plane.view().count(), 2);
+        assert!(plane.clear(Site { x: 33, y: 1 }));
+        assert!(!plane.clear(Site { x: 33, y: 1 }));
+        assert_eq!(words, [0, 0, 0, 0, 1, 0, 0]);
+    }
+
+    #[test]
+    fn neighbours_come_sides_first_and_never_from_the_next_row() {
+        let shape = Shape::new(1, 3).unwrap();
+        let mut words = [u32::MAX; 3];
+        words[1] = !(1 << 30);
+        let plane = Plane::new(shape, &words).unwrap();
+        let around: Vec<(u16, u16)> = plane
+            .neighbours(Site { x: 31, y: 1 })
+            .map(|s| (s.x, s.y))
+            .collect();
+        assert_eq!(around, [(31, 0), (31, 2), (30, 0), (30, 2)]);
+        let corner: Vec<(u16, u16)> = plane
+            .neighbours(Site { x: 0, y: 0 })
+            .map(|s| (s.x, s.y))
+            .collect();
+        assert_eq!(corner, [(1, 0), (0, 1), (1, 1)]);
+    }
+
+    #[test]
+    fn a_picture_is_read_back_as_drawn() {
+        let picture = "
+            #..#.
+            .##..
+        ";
+        let shape = Shape::new(1, 3).unwrap();
+        let mut words = [u32::MAX; 3];
+        draw(&mut PlaneMut::new(shape, &mut words).unwrap(), picture);
+        assert_eq!(words, [0b01001, 0b00110, 0]);
+        let plane = Plane::new(shape, &words).unwrap();
+        let text = plane.to_string();
+        assert!(text.starts_with("#..#...") && text.lines().count() == 3);
+        let sites: Vec<(u16, u16)> = plane.sites().map(|s| (s.x, s.y)).collect();
+        assert_eq!(sites, [(0, 0), (3, 0), (1, 1), (2, 1)]);
+    }
+
+    #[test]
+    fn three_words_read_zero_beyond_the_ends() {
+        let words = [1, 2, 3];
+        assert_eq!(triple(&words, 1), [1, 2, 3]);
+        assert_eq!(triple(&words, 0), [0, 1, 2]);
+        assert_eq!(triple(&words, 2), [2, 3, 0]);
+        assert_eq!(triple(&words, 9), [0, 0, 0]);
+    }
+}

@@ -1,0 +1,226 @@
+//! The elevation window: 64 × 64 cells around the robot, each with the running mean of the heights measured in it.
+//!
+//! ```text
+//! h ← h + (z − h) / n,    n = min(measurements so far, MOST_COUNT)          [Maffei-Terrain, III-B]
+//! ```
+//!
+//! A height is an [`I7F9`]: ±64 m around the start in steps of 2 mm. Beside it lies a byte of marks: how often the cell was
+//! measured, how sure it is that something stands in it, and whether the ground seems to be gone. Of a cell never measured the height says
+//! whether that is suspected. Ground met from too far off to be measured is glimpsed: it has a height of its own kind, counted and marked at
+//! once, which denies that the ground is gone and gives way to the first that is measured.
+//!
+//! The window owns no memory. A session on flat ground has no use for it, and one on uneven ground none for the counts of
+//! [`crate::map::Evidence`], so the heights lie in the latter's 8 KB and the marks in the last tiles of the map's pool.
+//!
+//! Invariant: a slot belongs to exactly one cell of the window (cell mod 64), and strips that enter are cleared.
+//! Units: map cells, metres above the start.
+
+use fixed::types::I7F9;
+
+use crate::geometry::Cell;
+use crate::ground::heights::{
+    COUNT, ONE_STANDING, PRESUMED, STANDING, SUNKEN, SUSPECT, is_glimpse, slot,
+};
+pub use crate::ground::heights::{Ground, Heights, WINDOW_CELLS, WINDOW_SIDE, metres};
+
+/// Measurements that a mean remembers.
+const MOST_COUNT: u8 = 15;
+/// What is farther off a mean, in steps of a height, may be false: 0.15 m.
+const OUTLIER: i32 = I7F9::lit("0.15").to_bits() as i32;
+
+/// The window.
+#[derive(Debug)]
+pub struct Elevation<'a> {
+    heights: &'a mut [[u8; 2]],
+    marks: &'a mut [u8],
+    origin: &'a mut Cell,
+}
+
+impl<'a> Elevation<'a> {
+    /// The window over memory for [`WINDOW_CELLS`] cells, all zeros at first.
+    #[must_use]
+    pub fn new(heights: &'a mut [u8], marks: &'a mut [u8], origin: &'a mut Cell) -> Self {
+        let (heights, _) = heights.as_chunks_mut();
+        Self {
+            heights,
+            marks,
+            origin,
+        }
+    }
+
+    /// The window, for reading.
+    #[inline(always)]
+    #[must_use]
+    pub fn read(&self) -> Heights<'_> {
+        Heights {
+            heights: self.heights,
+            marks: self.marks,
+            origin: *self.origin,
+        }
+    }
+
+    /// Keep the window around `centre`; nothing is known of cells that enter.
+    pub fn follow(&mut self, centre: Cell) {
+        let half = WINDOW_SIDE / 2;
+        let next = Cell {
+            x: centre.x - half,
+            y: centre.y - half,
+        };
+        let old = core::mem::replace(self.origin, next);
+        let (dx, dy) = (next.x - old.x, next.y - old.y);
+        if dx.abs() >= WINDOW_SIDE || dy.abs() >= WINDOW_SIDE {
+            self.marks.fill(0);
+            self.heights.fill([0; 2]);
+            return;
+        }
+        let entering = |from: i32, to: i32| {
+            if to > from {
+                from + WINDOW_SIDE..to + WINDOW_SIDE
+            } else {
+                to..from
+            }
+        };
+        for y in entering(old.y, next.y) {
+            for x in next.x..next.x + WINDOW_SIDE {
+                self.clear(Cell { x, y });
+            }
+        }
+        for x in entering(old.x, next.x) {
+            for y in next.y..next.y + WINDOW_SIDE {
+                self.clear(Cell { x, y });
+            }
+        }
+    }
+
+    fn mark_mut(&mut self, cell: Cell) -> Option<&mut u8> {
+        self.marks.get_mut(slot(*self.origin, cell)?)
+    }
+
+    fn clear(&mut self, cell: Cell) {
+        let Some(slot) = slot(*self.origin, cell) else {
+            return;
+        };
+        if let (Some(mark), Some(stored)) = (self.marks.get_mut(slot), self.heights.get_mut(slot)) {
+            (*mark, *stored) = (0, [0; 2]);
+        }
+    }
+
+    /// Ground was measured in a cell: into its mean. What is far off the mean is left out, for it may be a false return; but then the mean
+    /// counts for less, until it gives way, and where there was but one before, the lower one stays. Then the ground is not gone, and what stands there stands less surely. Outside the
+    /// window nothing happens.
+    pub fn measure(&mut self, cell: Cell, height_m: f32) {
+        self.forget_glimpse(cell);
+        self.average(cell, height_m);
+    }
+
+    /// Ground was met in a cell from too far off to measure it: into the mean of such, if it was never measured.
+    pub fn glimpse(&mut self, cell: Cell, height_m: f32) {
+        if self.read().count(cell) > 0 {
+            return;
+        }
+        self.average(cell, height_m);
+        if let Some(mark) = self.mark_mut(cell) {
+            *mark |= SUNKEN;
+        }
+    }
+
+    /// What was but glimpsed gives way.
+    fn forget_glimpse(&mut self, cell: Cell) {
+        if let Some(mark) = self.mark_mut(cell)
+            && is_glimpse(*mark)
+        {
+            *mark &= STANDING;
+        }
+    }
+
+    /// A height into the mean of a cell.
+    fn average(&mut self, cell: Cell, height_m: f32) {
+        let Some(slot) = slot(*self.origin, cell) else {
+            return;
+        };
+        let (Some(mark), Some(stored)) = (self.marks.get_mut(slot), self.heights.get_mut(slot))
+        else {
+            return;
+        };
+        let count = (*mark & COUNT).saturating_add(1).min(MOST_COUNT);
+        let height = I7F9::saturating_from_num(if height_m.is_nan() { 0.0 } else { height_m });
+        let mean = i32::from(if count == 1 {
+            height.to_bits()
+        } else {
+            I7F9::from_le_bytes(*stored).to_bits()
+        });
+        let off = i32::from(height.to_bits()) - mean;
+        let n = i32::from(count);
+        if off.abs() > OUTLIER {
+            *mark = *mark & !COUNT | count.saturating_sub(2).max(1);
+            if count == 2 && off < 0 {
+                *stored = height.to_le_bytes();
+            }
+            return;
+        }
+        // Rounded to nearest, so that a mean does not creep downwards.
+        let mean = mean + (2 * off + n).div_euclid(2 * n);
+        *stored = I7F9::from_bits(mean as i16).to_le_bytes();
+        let standing = (*mark & STANDING).saturating_sub(ONE_STANDING) & STANDING;
+        *mark = standing | count;
+    }
+
+    /// Something was met that stands in a cell.
+    pub fn stand(&mut self, cell: Cell) {
+        self.forget_glimpse(cell);
+        if let Some(mark) = self.mark_mut(cell) {
+            let standing = (*mark & STANDING).saturating_add(2 * ONE_STANDING);
+            *mark = *mark & COUNT | standing.min(STANDING);
+        }
+    }
+
+    /// The ground of a cell that was never measured was seen to be gone.
+    pub fn sink(&mut self, cell: Cell) {
+        self.doubt(cell, SUNKEN, [0; 2]);
+    }
+
+    /// The ground of a cell that was never measured may be gone.
+    pub fn suspect(&mut self, cell: Cell) {
+        if !self.read().is_sunken(cell) {
+            self.doubt(cell, 0, SUSPECT);
+        }
+    }
+
+    /// Ground that was suspected to be gone is held to be.
+    pub fn believe(&mut self, cell: Cell) {
+        if !self.read().is_sunken(cell) {
+            self.doubt(cell, SUNKEN, SUSPECT);
+        }
+    }
+
+    /// Ground that lies beside what is gone, or was suspected in an attitude that errs, is held to be gone where the map knows of none.
+    pub fn presume(&mut self, cell: Cell) {
+        if !self.read().is_sunken(cell) {
+            self.doubt(cell, SUNKEN, PRESUMED);
+        }
+    }
+
+    /// What is said of a cell where no ground was ever met.
+    fn doubt(&mut self, cell: Cell, mark: u8, stored: [u8; 2]) {
+        if let Some(slot) = slot(*self.origin, cell)
+            && let (Some(of_cell), Some(height)) =
+                (self.marks.get_mut(slot), self.heights.get_mut(slot))
+            && *of_cell & COUNT == 0
+        {
+            *of_cell |= mark;
+            *height = stored;
+        }
+    }
+
+    /// The robot stands on a cell.
+    pub fn tread(&mut self, cell: Cell, height_m: f32) {
+        self.forget_glimpse(cell);
+        if let Some(mark) = self.mark_mut(cell) {
+            *mark &= COUNT;
+        }
+        self.measure(cell, height_m);
+    }
+}
+
+#[cfg(test)]
+mod tests;

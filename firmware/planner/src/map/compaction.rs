@@ -1,0 +1,452 @@
+//! Room in the pool: tiles that say little are kept in less than a page.
+//!
+//! | a tile | is kept |
+//! | --- | --- |
+//! | free from edge to edge | in its entry of the directory, as such |
+//! | without anything that stands in the way | as its low plane, half a page |
+//! | else | in a page: low plane, high plane |
+//!
+//! Uneven ground shares the pool with the marks of its window, and open ground of 50 × 50 m has twice as many tiles as are left. So when
+//! pages run short, every tile away from the robot is *folded* as far as it can be, and *unfolded* before the robot's window comes to it.
+//! Reading sees no difference. A folded tile is not written, except that free stays free.
+//!
+//! Spare pages and spare halves are two lists: the first word of each holds the next one's number, plus 1. Two halves of a page that are
+//! both spare become a page again.
+//!
+//! Invariant: every page given out so far is in the directory once, or spare once, or two halves each of which is.
+
+use crate::geometry::Cell;
+use crate::map::tiles::{NoRoom, Plane, TILE_ROWS, TILE_SIDE, Tiles};
+
+/// The entry of a tile that is all free; its low byte is what its lodger left.
+const ALL: u16 = 0x8000;
+/// The entry of a tile in half a page.
+const HALF: u16 = 0x4000;
+/// With fewer pages than this tiles are folded: the window comes to nine at a time, and [`KEPT_BACK`] are no one's.
+const LOW: usize = 24;
+/// Once there are folded tiles, so many pages are kept back for those that the robot comes to.
+const KEPT_BACK: usize = 10;
+/// Cells around the window in which tiles are unfolded: the window is there in a step or two.
+const AHEAD: i32 = 2;
+/// A plane of ones.
+pub(super) static ONES: Plane = [u32::MAX; TILE_ROWS];
+/// A plane of zeros.
+pub(super) static ZEROS: Plane = [0; TILE_ROWS];
+
+/// What the directory says of a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Entry {
+    /// Never touched.
+    Nothing,
+    /// Stored in this page.
+    Page(usize),
+    /// Stored in this half: of page `h / 2`.
+    Half(usize),
+    /// All free; with a byte of the lodger's.
+    AllFree(i8),
+}
+
+impl Entry {
+    /// As stored.
+    #[inline(always)]
+    pub(super) const fn of(word: u16) -> Self {
+        if word & ALL != 0 {
+            Self::AllFree(word as i8)
+        } else if word & HALF != 0 {
+            Self::Half((word & !HALF) as usize)
+        } else if word == 0 {
+            Self::Nothing
+        } else {
+            Self::Page(word as usize - 1)
+        }
+    }
+
+    pub(super) const fn word(self) -> u16 {
+        match self {
+            Self::Nothing => 0,
+            Self::Page(page) => page as u16 + 1,
+            Self::Half(half) => HALF | half as u16,
+            Self::AllFree(kept) => ALL | kept as u8 as u16,
+        }
+    }
+}
+
+/// Whoever has something by the page of a tile, and a byte of it by what a tile is folded into.
+pub trait Lodger {
+    /// The page is given up: the byte to keep.
+    fn leave_page(&mut self, page: usize) -> i8;
+    /// The tile is in a page again.
+    fn enter_page(&mut self, page: usize, kept: i8);
+    /// The tile is in this half of a page now.
+    fn enter_half(&mut self, half: usize, kept: i8);
+    /// The half is given up: what was kept.
+    fn leave_half(&mut self, half: usize) -> i8;
+}
+
+/// Nobody.
+impl Lodger for () {
+    fn leave_page(&mut self, _: usize) -> i8 {
+        0
+    }
+
+    fn enter_page(&mut self, _: usize, _: i8) {}
+
+    fn enter_half(&mut self, _: usize, _: i8) {}
+
+    fn leave_half(&mut self, _: usize) -> i8 {
+        0
+    }
+}
+
+/// What is spare, and how much is folded.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Spare {
+    /// Pages given out so far, one after the other.
+    pub(super) given: u16,
+    /// Pages on the list.
+    pages: u16,
+    /// The first of them, plus 1.
+    page: u16,
+    /// The first half on its list, plus 1.
+    half: u16,
+    /// Tiles that are folded.
+    folded: u16,
+}
+
+impl Spare {
+    /// Nothing was given out.
+    pub(super) const NONE: Self = Self {
+        given: 0,
+        pages: 0,
+        page: 0,
+        half: 0,
+        folded: 0,
+    };
+
+    /// Pages that something lies in.
+    pub(super) const fn used(&self) -> usize {
+        (self.given - self.pages) as usize
+    }
+}
+
+impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
+    /// Pages that nothing lies in.
+    fn spare_pages(&self) -> usize {
+        self.capacity().saturating_sub(self.spare.used())
+    }
+
+    /// Whether a tile never touched may have a page.
+    pub(super) fn has_page(&self) -> bool {
+        let kept_back = if self.spare.folded > 0 { KEPT_BACK } else { 0 };
+        self.spare_pages() > kept_back
+    }
+
+    /// A page of any content.
+    pub(super) fn take_page(&mut self) -> Result<usize, NoRoom> {
+        if let Some(page) = self.spare.page.checked_sub(1) {
+            let page = usize::from(page);
+            self.spare.page = self.next(2 * page);
+            self.spare.pages -= 1;
+            return Ok(page);
+        }
+        let page = usize::from(self.spare.given);
+        if page >= self.capacity() {
+            return Err(NoRoom::Pool);
+        }
+        self.spare.given += 1;
+        Ok(page)
+    }
+
+    fn plane_mut(&mut self, half: usize) -> Option<&mut Plane> {
+        self.pool.get_mut(half / 2)?.get_mut(half % 2)
+    }
+
+    /// What follows a half on its list.
+    fn next(&self, half: usize) -> u16 {
+        let plane = self.pool.get(half / 2).and_then(|page| page.get(half % 2));
+        plane
+            .and_then(|plane| plane.first())
+            .map_or(0, |&word| word as u16)
+    }
+
+    fn set_next(&mut self, half: usize, next: u16) {
+        if let Some(word) = self.plane_mut(half).and_then(|plane| plane.first_mut()) {
+            *word = next.into();
+        }
+    }
+
+    fn return_page(&mut self, page: usize) {
+        self.set_next(2 * page, self.spare.page);
+        self.spare.page = page as u16 + 1;
+        self.spare.pages += 1;
+    }
+
+    /// The half is spare; if the page's other one is too, the page is.
+    fn return_half(&mut self, half: usize) {
+        let other = (half ^ 1) as u16 + 1;
+        let mut before = None;
+        let mut at = self.spare.half;
+        while let Some(here) = at.checked_sub(1) {
+            let next = self.next(here.into());
+            if at == other {
+                match before {
+                    Some(before) => self.set_next(before, next),
+                    None => self.spare.half = next,
+                }
+                return self.return_page(half / 2);
+            }
+            (before, at) = (Some(usize::from(here)), next);
+        }
+        self.set_next(half, self.spare.half);
+        self.spare.half = half as u16 + 1;
+    }
+
+    /// Unfold the tiles around the square of `side` cells at `window`, and if pages run short fold all others.
+    pub(super) fn fold(&mut self, window: Cell, side: i32, lodger: &mut impl Lodger) {
+        let is_short = self.spare_pages() < LOW;
+        let Some(extent) = self.extent().filter(|_| is_short || self.spare.folded > 0) else {
+            return;
+        };
+        let is_near = |tile: i32, from: i32| {
+            let least = tile * TILE_SIDE;
+            least + TILE_SIDE > from - AHEAD && least < from + side + AHEAD
+        };
+        for y in extent.least.1..=extent.greatest.1 {
+            for x in extent.least.0..=extent.greatest.0 {
+                let slot = self.slot(x, y);
+                if is_near(x, window.x) && is_near(y, window.y) {
+                    // Where there is no room it stays as it is, and is tried again.
+                    let _ = self.unfold_tile(slot, lodger);
+                } else if is_short {
+                    self.fold_tile(slot, lodger);
+                }
+            }
+        }
+    }
+
+    fn fold_tile(&mut self, slot: usize, lodger: &mut impl Lodger) {
+        let Entry::Page(page) = Entry::of(self.directory.get(slot).copied().unwrap_or(0)) else {
+            return;
+        };
+        let Some(&[low, high]) = self.pool.get(page) else {
+            return;
+        };
+        if high != ZEROS {
+            return;
+        }
+        let kept = lodger.leave_page(page);
+        let entry = if low == ONES {
+            self.return_page(page);
+            Entry::AllFree(kept)
+        } else {
+            let half = self.move_low(page, low);
+            lodger.enter_half(half, kept);
+            Entry::Half(half)
+        };
+        self.spare.folded += 1;
+        self.enter(slot, entry);
+    }
+
+    /// The low plane of a page into a spare half, or where it is if there is none; the rest of the page is spare.
+    fn move_low(&mut self, page: usize, low: Plane) -> usize {
+        let Some(half) = self.spare.half.checked_sub(1) else {
+            self.return_half(2 * page + 1);
+            return 2 * page;
+        };
+        let half = usize::from(half);
+        self.spare.half = self.next(half);
+        if let Some(plane) = self.plane_mut(half) {
+            *plane = low;
+        }
+        self.return_page(page);
+        half
+    }
+
+    fn unfold_tile(&mut self, slot: usize, lodger: &mut impl Lodger) -> Result<(), NoRoom> {
+        let entry = Entry::of(self.directory.get(slot).copied().unwrap_or(0));
+        let (low, kept) = match entry {
+            Entry::Nothing | Entry::Page(_) => return Ok(()),
+            Entry::AllFree(kept) => (ONES, kept),
+            Entry::Half(half) => (self.plane_mut(half).map_or(ZEROS, |low| *low), 0),
+        };
+        let page = self.take_page()?;
+        let kept = if let Entry::Half(half) = entry {
+            self.return_half(half);
+            lodger.leave_half(half)
+        } else {
+            kept
+        };
+        if let Some(cells) = self.pool.get_mut(page) {
+            *cells = [low, ZEROS];
+        }
+        lodger.enter_page(page, kept);
+        self.spare.folded -= 1;
+        self.enter(slot, Entry::Page(page));
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::boxed::Box;
+    use std::collections::BTreeMap;
+    use std::vec::Vec;
+
+    use super::{Entry, KEPT_BACK, LOW, Lodger, NoRoom, Tiles};
+    use crate::geometry::Cell;
+    use crate::map::Class;
+
+    const TILES: usize = 40;
+    const FAR: Cell = Cell { x: 0, y: 9_000 };
+    type Small = Tiles<TILES, 400>;
+
+    /// Keeps the number of the tile by its page, and checks that nothing is in two places.
+    #[derive(Default)]
+    struct Guest {
+        pages: BTreeMap<usize, i8>,
+        halves: BTreeMap<usize, i8>,
+    }
+
+    impl Lodger for Guest {
+        fn leave_page(&mut self, page: usize) -> i8 {
+            self.pages.remove(&page).unwrap()
+        }
+
+        fn enter_page(&mut self, page: usize, kept: i8) {
+            assert_eq!(self.pages.insert(page, kept), None);
+            assert!(!self.halves.contains_key(&(2 * page)));
+            assert!(!self.halves.contains_key(&(2 * page + 1)));
+        }
+
+        fn enter_half(&mut self, half: usize, kept: i8) {
+            assert_eq!(self.halves.insert(half, kept), None);
+            assert!(!self.pages.contains_key(&(half / 2)));
+        }
+
+        fn leave_half(&mut self, half: usize) -> i8 {
+            self.halves.remove(&half).unwrap()
+        }
+    }
+
+    fn small() -> Box<Small> {
+        let mut tiles = Box::<Small>::default();
+        tiles.reset(20, 20);
+        tiles
+    }
+
+    fn corner(tile: i32) -> Cell {
+        Cell {
+            x: 32 * (tile % 20),
+            y: 32 * (tile / 20),
+        }
+    }
+
+    fn cells(tile: i32) -> impl Iterator<Item = Cell> {
+        (0..1024).map(move |k| Cell {
+            x: corner(tile).x + k % 32,
+            y: corner(tile).y + k / 32,
+        })
+    }
+
+    fn free(tiles: &mut Small, tile: i32) -> Result<(), NoRoom> {
+        cells(tile).try_for_each(|cell| tiles.set(cell, Class::Free))
+    }
+
+    /// The robot drives over free ground; the window is the last tile.
+    #[test]
+    fn free_ground_is_not_bounded_by_the_pool() {
+        let mut tiles = small();
+        for tile in 0..200 {
+            free(&mut tiles, tile).unwrap();
+            tiles.fold(corner(tile), 32, &mut ());
+            assert!(tiles.used() <= TILES - LOW + 9, "{}", tiles.used());
+        }
+        for tile in 0..200 {
+            assert!(cells(tile).all(|cell| tiles.class(cell) == Class::Free));
+            let Cell { x, y } = corner(tile);
+            assert_eq!(tiles.row(x, y + 5).free() as u32, u32::MAX);
+            assert_eq!(tiles.packed(x / 32, y / 32), Some([0x55; 256]));
+            assert!(tiles.is_touched(x / 32, y / 32) && tiles.room(x / 32, y / 32).is_ok());
+        }
+    }
+
+    #[test]
+    fn a_folded_tile_is_written_once_the_window_is_there() {
+        let mut tiles = small();
+        (0..30).for_each(|tile| free(&mut tiles, tile).unwrap());
+        tiles.fold(FAR, 64, &mut ());
+        assert_eq!(tiles.used(), 0);
+        let (wall, edits) = (corner(3), tiles.edits());
+        assert_eq!(tiles.set(wall, Class::Free), Ok(()));
+        assert_eq!(tiles.set(wall, Class::Obstacle), Err(NoRoom::Pool));
+        assert_eq!((tiles.class(wall), tiles.edits()), (Class::Free, edits));
+        tiles.fold(wall, 8, &mut ());
+        assert_eq!(tiles.set(wall, Class::Obstacle), Ok(()));
+        tiles.fold(FAR, 64, &mut ());
+        let standing = cells(3).filter(|&cell| tiles.class(cell) != Class::Free);
+        assert_eq!(standing.collect::<Vec<_>>(), [wall]);
+    }
+
+    #[test]
+    fn pages_are_kept_back_for_folded_tiles() {
+        let mut tiles = small();
+        (0..30).for_each(|tile| free(&mut tiles, tile).unwrap());
+        tiles.fold(FAR, 64, &mut ());
+        let news = (100..160).filter(|&tile| tiles.set(corner(tile), Class::Obstacle).is_ok());
+        assert_eq!(news.count(), TILES - KEPT_BACK);
+        assert_eq!(tiles.room(19, 19), Err(NoRoom::Pool));
+        tiles.fold(corner(24), 32, &mut ());
+        let around = [4, 24, 25, 23].map(|tile| tiles.set(corner(tile), Class::Negative));
+        assert_eq!(around, [Ok(()); 4]);
+    }
+
+    /// Random tiles are written, folded and unfolded while the window jumps about: the map is what was written, every page and half is
+    /// in one place, and everyone finds what he left.
+    #[test]
+    fn nothing_is_lost_or_in_two_places() {
+        let (mut tiles, mut guest) = (small(), Guest::default());
+        let mut twin = BTreeMap::new();
+        let mut seed = 3_u32;
+        let mut random = |below: i32| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as i32 % below
+        };
+        let (mut halves, mut written) = (0, 0);
+        for _ in 0..4_000 {
+            let tile = random(60);
+            tiles.fold(corner(tile), 1, &mut guest);
+            for _ in 0..40 {
+                let cell = cells(tile).nth(random(1024) as usize).unwrap();
+                let class = match random(800) {
+                    0 => Class::Obstacle,
+                    _ => Class::Free,
+                };
+                let was = tiles.entry(cell.x / 32, cell.y / 32);
+                if tiles.set(cell, class).is_ok() {
+                    twin.insert((cell.x, cell.y), class);
+                    written += 1;
+                    if was == Entry::Nothing
+                        && let Entry::Page(page) = tiles.entry(cell.x / 32, cell.y / 32)
+                    {
+                        guest.enter_page(page, tile as i8);
+                    }
+                }
+            }
+            halves = halves.max(guest.halves.len());
+        }
+        assert!(halves > 20 && written > 60_000, "{halves} {written}");
+        for cell in (0..60).flat_map(cells) {
+            let expected = twin.get(&(cell.x, cell.y)).copied().unwrap_or_default();
+            assert_eq!(tiles.class(cell), expected, "{cell:?}");
+        }
+        for tile in 0..60 {
+            let kept = match tiles.entry(corner(tile).x / 32, corner(tile).y / 32) {
+                Entry::Nothing => continue,
+                Entry::Page(page) => guest.pages[&page],
+                Entry::Half(half) => guest.halves[&half],
+                Entry::AllFree(kept) => kept,
+            };
+            assert_eq!(i32::from(kept), tile);
+        }
+    }
+}

@@ -1,0 +1,365 @@
+//! The near field: what the level laser met around the robot, exact where the map's cells are coarse.
+//!
+//! A door of 0.65 m leaves 8 cm beside a 3-AT, less than a map cell. So the points within `REACH_M` are kept, also those that
+//! have left the field of view. A point is the mean of the returns that fell on it,
+//!
+//! ```text
+//! p ← p + (r − p) / n,    n = min(returns so far, MOST_RETURNS)
+//! ```
+//!
+//! because of many single returns of a wall the nearest, which is the one that would count, is two or three sigma too near. It
+//! goes when a beam passes through its place, when the robot stands on it, and when it leaves the view with one return only:
+//! a false one, which nothing could disprove any more. Behind the robot, where it only turns and backs out, less is kept.
+//!
+//! Invariant: at most [`MOST_POINTS`] points, the farthest give way; as many counts as points.
+//! Units: metres, odometry frame.
+
+use heapless::Vec;
+
+use crate::geometry::{CELL_M, Cell, Point, Pose};
+use crate::grid::bits::ones;
+use crate::ground::survey::BEHIND_M;
+use crate::input::{has_company, informative_range_mm};
+use crate::map::integrate::{level_beams, sensor_point};
+use crate::map::{Class, Tiles};
+use crate::math;
+use crate::robot::Laser;
+use crate::robot::{HALF_LENGTH_M, HALF_WIDTH_M};
+
+/// Points kept at the most.
+pub const MOST_POINTS: usize = 256;
+/// Distance from the robot's centre within which points ahead are kept, metres: half the robot and its braking distance.
+pub const REACH_M: f32 = 1.2;
+/// The same to the sides and behind, metres: half its diagonal and the longest leg backwards.
+const REACH_BEHIND_M: f32 = 0.8;
+/// Returns this near to a point are returns of it, metres: two sigma of a range and some. What is rounded off a sharp corner is
+/// a third of it.
+const SAME_M: f32 = 0.025;
+/// Returns in a mean at the most; later ones count as much as the last of these.
+const MOST_RETURNS: u8 = 8;
+/// A beam that ends this far behind a point went through its place, metres: five sigma of a range.
+const THROUGH_M: f32 = 0.05;
+/// A point this far inside the robot's rectangle is none, metres: the robot stands there.
+const INSIDE_M: f32 = 0.01;
+
+/// What stands around the robot.
+#[derive(Debug, Default)]
+pub struct NearField {
+    points: Vec<Point, MOST_POINTS>,
+    /// Returns of each point.
+    returns: Vec<u8, MOST_POINTS>,
+}
+
+fn distance2(a: Point, b: Point) -> f32 {
+    let (dx, dy) = (a.x_m - b.x_m, a.y_m - b.y_m);
+    dx * dx + dy * dy
+}
+
+impl NearField {
+    /// Nothing around.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            points: Vec::new(),
+            returns: Vec::new(),
+        }
+    }
+
+    /// Forget everything.
+    pub fn clear(&mut self) {
+        self.points.clear();
+        self.returns.clear();
+    }
+
+    /// The points.
+    #[must_use]
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// Enter the level laser's scan, taken at `pose`.
+    pub fn update(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
+        self.forget(pose, laser, ranges_mm);
+        for beam in level_beams(pose, laser, ranges_mm).filter(|beam| beam.hit) {
+            let end = beam.end();
+            if within_reach(pose, end) && has_company(ranges_mm, beam.number) {
+                self.enter(pose.point(), end);
+            }
+        }
+    }
+
+    fn forget(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
+        let from = sensor_point(pose, laser);
+        let mut index = 0;
+        while let (Some(&point), Some(&returns)) = (self.points.get(index), self.returns.get(index))
+        {
+            let stays = within_reach(pose, point)
+                && !is_inside(pose, point)
+                && match sight(pose, laser, ranges_mm, from, point) {
+                    Sight::At => true,
+                    Sight::Through => false,
+                    Sight::None => returns > 1,
+                };
+            if stays {
+                index += 1;
+            } else {
+                self.points.swap_remove(index);
+                self.returns.swap_remove(index);
+            }
+        }
+    }
+
+    /// A return: of a point that is there, or a new point.
+    fn enter(&mut self, centre: Point, end: Point) {
+        let near = |&&mut point: &&mut Point| {
+            (point.x_m - end.x_m).abs() < SAME_M && distance2(point, end) < SAME_M * SAME_M
+        };
+        let known = self.points.iter_mut().zip(&mut self.returns);
+        let mut known = known.filter(|(point, _)| near(point));
+        if let Some((point, returns)) = known.next() {
+            *returns = (*returns + 1).min(MOST_RETURNS);
+            let part = 1.0 / f32::from(*returns);
+            point.x_m += part * (end.x_m - point.x_m);
+            point.y_m += part * (end.y_m - point.y_m);
+        } else {
+            self.insert(centre, end);
+        }
+    }
+
+    fn insert(&mut self, centre: Point, point: Point) {
+        if self.points.is_full() {
+            let farther = |best: (usize, f32), (k, &point): (usize, &Point)| {
+                let far = distance2(point, centre);
+                if far > best.1 { (k, far) } else { best }
+            };
+            let (farthest, far) = self.points.iter().enumerate().fold((0, 0.0), farther);
+            if far < distance2(point, centre) {
+                return;
+            }
+            self.points.swap_remove(farthest);
+            self.returns.swap_remove(farthest);
+        }
+        // There is room now, so these cannot fail.
+        let _ = self.points.push(point);
+        let _ = self.returns.push(1);
+    }
+}
+
+/// The middles of the map's obstacle cells within reach behind the robot: what [`NearField`] never met, or has forgotten.
+pub fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    robot: Point,
+) -> impl Iterator<Item = Point> + '_ {
+    let obstacles = |x, y| tiles.row(x, y).obstacle();
+    cells_around(robot, obstacles).map(|cell| {
+        let corner = cell.corner();
+        Point {
+            x_m: corner.x_m + 0.5 * CELL_M,
+            y_m: corner.y_m + 0.5 * CELL_M,
+        }
+    })
+}
+
+/// The middles of the cells around the robot that it must not touch on uneven ground, as far as they border on free cells:
+/// obstacles of either sign, and ground never measured.
+pub fn rim_cells<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    robot: Point,
+) -> impl Iterator<Item = Point> + '_ {
+    let rims = |x, y| {
+        let free = |dy: i32| tiles.row(x - 1, y + dy).free();
+        let here = free(0);
+        (here | here >> 2 | free(-1) >> 1 | free(1) >> 1) & !(here >> 1)
+    };
+    cells_around(robot, rims).map(Cell::centre)
+}
+
+/// The same, each with how far before its cell what is there may begin, metres: as far as beams' ends are marked behind, where something stands.
+pub fn rims<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    robot: Point,
+) -> impl Iterator<Item = (Point, f32)> + '_ {
+    rim_cells(tiles, robot).map(|at| match tiles.class(at.cell()) {
+        Class::Obstacle => (at, BEHIND_M),
+        _ => (at, 0.0),
+    })
+}
+
+/// The cells within reach behind the robot, and as far to all sides, that `of` has: bit k of `of(x, y)` is cell (x + k, y).
+fn cells_around(robot: Point, of: impl Fn(i32, i32) -> u64) -> impl Iterator<Item = Cell> {
+    let reach = math::floor(REACH_BEHIND_M / CELL_M);
+    let Cell { x, y } = robot.cell();
+    let (x, across) = (x - reach, (1 << (2 * reach + 1)) - 1);
+    (y - reach..=y + reach).flat_map(move |y| {
+        let row = of(x, y) as u32 & across;
+        ones(row).map(move |k| Cell { x: x + k as i32, y })
+    })
+}
+
+fn within_reach(pose: &Pose, point: Point) -> bool {
+    let far2 = distance2(point, pose.point());
+    let (sin, cos) = math::sin_cos(pose.yaw_rad);
+    let ahead = (point.x_m - pose.x_m) * cos + (point.y_m - pose.y_m) * sin > 0.0;
+    let reach = if ahead { REACH_M } else { REACH_BEHIND_M };
+    far2 < reach * reach
+}
+
+/// Whether the robot's rectangle covers a point, by more than the error of one.
+fn is_inside(pose: &Pose, point: Point) -> bool {
+    let (sin, cos) = math::sin_cos(pose.yaw_rad);
+    let (dx, dy) = (point.x_m - pose.x_m, point.y_m - pose.y_m);
+    let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
+    along.abs() < HALF_LENGTH_M - INSIDE_M && across.abs() < HALF_WIDTH_M - INSIDE_M
+}
+
+/// What a scan says of the place of a point.
+enum Sight {
+    /// A beam ended there.
+    At,
+    /// A beam went through.
+    Through,
+    /// Nothing: it is out of view, or hidden behind something nearer.
+    None,
+}
+
+/// Judged by the two beams that pass the point on either side: at a corner one meets it, or nothing, and the other goes by.
+fn sight(pose: &Pose, laser: &Laser, ranges_mm: &[u16], from: Point, point: Point) -> Sight {
+    let (dx, dy) = (point.x_m - from.x_m, point.y_m - from.y_m);
+    let bearing = math::wrap(math::atan2(dy, dx) - pose.yaw_rad - laser.first_bearing_rad);
+    let right = math::floor(bearing / laser.bearing_step_rad);
+    if right < 0 || right + 1 >= ranges_mm.len() as i32 {
+        return Sight::None;
+    }
+    let distance = math::sqrt(dx * dx + dy * dy);
+    let beyond = |index: usize| {
+        informative_range_mm(ranges_mm, index, laser.range_limit_mm)
+            .map(|range| f32::from(range) * 1e-3 - distance)
+    };
+    let beyond = [beyond(right as usize), beyond(right as usize + 1)];
+    if beyond
+        .iter()
+        .flatten()
+        .any(|beyond| beyond.abs() <= THROUGH_M)
+    {
+        Sight::At
+    } else if beyond
+        .iter()
+        .all(|beyond| beyond.is_some_and(|beyond| beyond > THROUGH_M))
+    {
+        Sight::Through
+    } else {
+        Sight::None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drive::Surround;
+    use crate::input::{INVALID_MM, NO_RETURN_MM};
+
+    fn laser() -> Laser {
+        Laser {
+            x_m: 0.0,
+            y_m: 0.0,
+            z_m: 0.4,
+            pitch_rad: 0.0,
+            first_bearing_rad: -math::PI / 2.0,
+            bearing_step_rad: math::PI / 180.0,
+            beams: 181,
+            range_limit_mm: 12_000,
+        }
+    }
+
+    #[test]
+    fn a_lone_false_return_is_not_kept() {
+        let mut near = NearField::new();
+        let mut scan = [NO_RETURN_MM; 181];
+        scan[90] = 500;
+        near.update(&Pose::default(), &laser(), &scan);
+        assert!(near.points().is_empty());
+    }
+
+    /// A scan that sees one thing, 4 beams wide, at a bearing (degrees) and range; nothing else.
+    fn thing(bearing: i32, range_mm: u16) -> [u16; 181] {
+        let mut scan = [NO_RETURN_MM; 181];
+        for k in -2..2 {
+            scan[(bearing + 90 + k) as usize] = range_mm;
+        }
+        scan
+    }
+
+    #[test]
+    fn a_point_is_remembered_behind_the_robot_and_forgotten_when_seen_through() {
+        let mut near = NearField::new();
+        let here = Pose::default();
+        near.update(&here, &laser(), &thing(0, 800));
+        assert!(!near.points().is_empty());
+        let turned = Pose {
+            yaw_rad: math::PI,
+            ..here
+        };
+        near.update(&turned, &laser(), &[NO_RETURN_MM; 181]);
+        assert!(!near.points().is_empty(), "out of view");
+        near.update(&here, &laser(), &[NO_RETURN_MM; 181]);
+        assert!(near.points().is_empty(), "seen through");
+    }
+
+    #[test]
+    fn a_hidden_point_stays_and_a_far_one_goes() {
+        let mut near = NearField::new();
+        let here = Pose::default();
+        near.update(&here, &laser(), &thing(0, 1000));
+        let count = near.points().len();
+        near.update(&here, &laser(), &thing(0, 500));
+        assert!(
+            near.points().len() > count,
+            "hidden behind the nearer thing"
+        );
+        let away = Pose { x_m: -2.0, ..here };
+        near.update(&away, &laser(), &[INVALID_MM; 181]);
+        assert!(near.points().is_empty());
+    }
+
+    #[test]
+    fn a_wall_is_thinned_and_the_store_never_overflows() {
+        let mut near = NearField::new();
+        for k in 0..400 {
+            let pose = Pose {
+                yaw_rad: k as f32 * 0.7,
+                ..Pose::default()
+            };
+            near.update(&pose, &laser(), &[400 + (k % 7) as u16 * 100; 181]);
+            assert!(near.points().len() <= MOST_POINTS);
+        }
+    }
+
+    /// The room between the robot and a row of cells across its way, the first that are not free.
+    fn room_before(class: Class) -> f32 {
+        let mut tiles = Tiles::<16, 64>::new();
+        tiles.reset(8, 8);
+        for (x, y) in (-10..=6).flat_map(|x| (-10..10).map(move |y| (x, y))) {
+            let class = if x == 6 { class } else { Class::Free };
+            tiles.set(Cell { x, y }, class).expect("room");
+        }
+        let pose = Pose {
+            x_m: 0.05,
+            y_m: 0.05,
+            ..Pose::default()
+        };
+        let mut surround = Surround::empty();
+        surround.keep_off(&pose, rims(&tiles, pose.point()));
+        surround.clearance_m()
+    }
+
+    /// What stands begins where beams end, and its cell is that of so much behind.
+    #[test]
+    fn the_robot_keeps_three_centimetres_more_off_what_stands_than_off_what_is_gone() {
+        let [stands_m, gone_m, unknown_m] =
+            [Class::Obstacle, Class::Negative, Class::Unknown].map(room_before);
+        // To the near side of the cell right ahead.
+        assert!((gone_m - (0.55 - HALF_LENGTH_M)).abs() < 1e-4, "{gone_m}");
+        assert_eq!(unknown_m, gone_m);
+        assert!((gone_m - stands_m - 0.03).abs() < 1e-4, "{stands_m}");
+    }
+}

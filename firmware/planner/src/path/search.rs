@@ -1,0 +1,64 @@
+//! Centre cells opened for a wave, in lent memory, and the road from a place down to where it began.
+//!
+//! All that plans along the skeleton begins with this: the wave's distances and queue, and the search for the centre cell nearest to the robot,
+//! over the same centre cells.
+//!
+//! Units: map cells, coarse steps of 20 cm; sites of the topology's frame.
+
+use crate::field::local_grid::View;
+use crate::geometry::Cell;
+use crate::grid::Site;
+use crate::path::Road;
+use crate::path::nearest::Centres;
+use crate::roadmap::{Residues, WaveSpace, Wavefront};
+use crate::strategy::frontier::Lent;
+
+/// Centre cells, a wave's memory over them, and the window in which the nearest one is looked for.
+#[derive(Debug)]
+pub(crate) struct Paths<'a, const TILES: usize, const SLOTS: usize> {
+    pub(crate) centres: Centres<'a, TILES, SLOTS>,
+    pub(crate) space: WaveSpace<'a>,
+    pub(crate) view: &'a mut View,
+}
+
+impl<'a, const TILES: usize, const SLOTS: usize> Paths<'a, TILES, SLOTS> {
+    /// These centre cells, to none of which a wave came yet; `None` if what is lent is too small for them.
+    pub(crate) fn open(centres: Centres<'a, TILES, SLOTS>, lent: &'a mut Lent<'_>) -> Option<Self> {
+        let residues = Residues::new(centres.frame.shape, &mut *lent.residues).ok()?;
+        let space = WaveSpace {
+            way: centres.way,
+            residues,
+            ring: &mut *lent.ring,
+        };
+        Some(Self {
+            centres,
+            space,
+            view: &mut *lent.view,
+        })
+    }
+
+    /// Wave from these sites, all at once, to everything that they can be reached from.
+    pub(crate) fn spread(&mut self, sites: impl Iterator<Item = Site>) {
+        let mut wave = Wavefront::new();
+        wave.start(&mut self.space);
+        for site in sites {
+            wave.seed(&mut self.space, site);
+        }
+        // Without a budget it always comes to its end.
+        let _ = wave.advance(&mut self.space, None, u32::MAX);
+    }
+
+    /// The centre cell nearest to a place of those that the wave came to, and the coarse steps there.
+    pub(crate) fn entry(&mut self, from: Cell) -> Option<(Site, u32)> {
+        let is_reached = |site| self.space.residues.get(site).is_some();
+        self.centres.nearest(from, self.view, is_reached)
+    }
+
+    /// The road from a place to where the wave began.
+    pub(crate) fn road(&mut self, from: Cell) -> Option<Road> {
+        let (entry, steps) = self.entry(from)?;
+        let way = core::iter::once(entry).chain(self.space.residues.descent(entry));
+        let frame = self.centres.frame;
+        Some(Road::along(way.map(|site| frame.cell(site))).after(steps))
+    }
+}

@@ -1,0 +1,207 @@
+//! Lookouts as pictures: a character is 4 × 4 cells of 10 cm, greatest y first; `#` obstacle, `.` free, `?` unexplored, `R` the robot.
+
+use std::boxed::Box;
+use std::vec::Vec;
+
+use crate::geometry::Cell;
+use crate::map::{Class, Tiles};
+use crate::path::viewpoint::{Found, Grounds, Lookout, Search, along, distance};
+use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::reachability::scratch_words;
+
+const SLOTS: usize = 24;
+type Map = Tiles<20, SLOTS>;
+
+fn drawn(picture: &[&str]) -> (Box<Map>, Cell) {
+    let mut tiles = Box::new(Map::new());
+    tiles.reset(4, 4);
+    let mut robot = Cell::default();
+    for (row, line) in picture.iter().rev().enumerate() {
+        for (column, letter) in line.chars().enumerate() {
+            let corner = Cell {
+                x: 4 * column as i32,
+                y: 4 * row as i32,
+            };
+            let class = match letter {
+                '#' => Class::Obstacle,
+                '?' => continue,
+                _ => Class::Free,
+            };
+            for k in 0..16 {
+                let cell = Cell {
+                    x: corner.x + k % 4,
+                    y: corner.y + k / 4,
+                };
+                tiles.set(cell, class).unwrap();
+            }
+            if letter == 'R' {
+                robot = Cell {
+                    x: corner.x + 2,
+                    y: corner.y + 2,
+                };
+            }
+        }
+    }
+    (tiles, robot)
+}
+
+/// A search from beginning to end, in scratch of any content.
+fn search(tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Lookout> {
+    let mut scratch = std::vec![0xdead_beef; scratch_words(SLOTS)];
+    let grounds = Grounds {
+        tiles,
+        discs: [&Disc::new(0.3), &Disc::new(0.22)],
+        robot,
+    };
+    let is_gone = |gap| gone.iter().any(|&cell| distance(cell, gap) < 0.5);
+    let mut search = Search::new();
+    search.begin(tiles.extent(), &mut scratch);
+    for _ in 0..100 {
+        match search.advance(&grounds, is_gone, &mut scratch) {
+            Found::Pending => assert!(search.is_running()),
+            Found::Lookout(lookout) => return Some(lookout),
+            Found::Nothing => return None,
+        }
+    }
+    panic!("a search without an end");
+}
+
+/// Whether there is a straight view from a lookout's stand to what it is for, by every ray that there is.
+fn sees(tiles: &Map, lookout: Lookout) -> bool {
+    let class = |cell| tiles.class(cell);
+    (0..super::RAYS).map(super::ray).any(|ray| {
+        let cells: Vec<Cell> = (-60..60).map(|k| along(lookout.gap, ray, k)).collect();
+        let at = |cell| cells.iter().position(|&other| other == cell);
+        match (at(lookout.stand), at(lookout.gap), at(lookout.beyond)) {
+            (Some(stand), Some(gap), Some(beyond)) if stand <= gap && gap < beyond => {
+                let dark = cells[gap..beyond]
+                    .iter()
+                    .position(|&c| class(c) == Class::Unknown);
+                let dark = dark.map_or(beyond, |dark| gap + dark);
+                cells[stand..dark].iter().all(|&c| class(c) == Class::Free)
+                    && cells[dark..=beyond]
+                        .iter()
+                        .all(|&c| class(c) == Class::Unknown)
+            }
+            _ => false,
+        }
+    })
+}
+
+/// A hall below, and a room above behind a gap of 0.4 m: only what lies straight ahead of the gap was seen.
+const GAP: [&str; 14] = [
+    "##########################",
+    "#????????.???????????????#",
+    "#????????.???????????????#",
+    "#????????.???????????????#",
+    "#????????.???????????????#",
+    "#????????.???????????????#",
+    "#########.################",
+    "#........................#",
+    "#........................#",
+    "#........................#",
+    "#..R.....................#",
+    "#........................#",
+    "#........................#",
+    "##########################",
+];
+
+#[test]
+fn a_shadow_behind_a_gap_is_looked_into_through_it() {
+    let (tiles, robot) = drawn(&GAP);
+    let lookout = search(&tiles, robot, &[]).expect("something to see");
+    assert!(lookout.stand.y < 28, "in the hall: {lookout:?}");
+    assert!(lookout.gap.y >= 32, "in the room: {lookout:?}");
+    assert_eq!(tiles.class(lookout.beyond), Class::Unknown);
+    assert!(sees(&tiles, lookout), "{lookout:?}");
+}
+
+/// One gap after another is given up, until there is none.
+#[test]
+fn what_was_given_up_is_not_looked_at_again_and_there_is_an_end() {
+    let (tiles, robot) = drawn(&GAP);
+    let mut gone = Vec::new();
+    while let Some(lookout) = search(&tiles, robot, &gone) {
+        assert!(gone.iter().all(|&cell| distance(cell, lookout.gap) >= 0.5));
+        assert!(sees(&tiles, lookout), "{lookout:?}");
+        gone.push(lookout.gap);
+    }
+    assert!((2..40).contains(&gone.len()), "{gone:?}");
+}
+
+#[test]
+fn of_two_gaps_the_nearer_is_taken() {
+    let mut picture = GAP;
+    for line in &mut picture[1..6] {
+        *line = "#????????.??????????.????#";
+    }
+    picture[6] = "#########.##########.#####";
+    let (tiles, robot) = drawn(&picture);
+    let lookout = search(&tiles, robot, &[]).expect("something to see");
+    assert!(lookout.stand.x < 60, "{lookout:?}");
+    let robot = Cell { x: 90, ..robot };
+    let lookout = search(&tiles, robot, &[]).expect("something to see");
+    assert!(lookout.stand.x > 60, "{lookout:?}");
+}
+
+#[test]
+fn where_everything_is_known_there_is_nothing_to_see() {
+    let picture = GAP.map(|line| line.replace('?', "."));
+    let lines: Vec<&str> = picture.iter().map(|line| line.as_str()).collect();
+    let (tiles, robot) = drawn(&lines);
+    assert_eq!(search(&tiles, robot, &[]), None);
+}
+
+/// The unexplored beside the room cannot be seen into from anywhere: there is no gap.
+#[test]
+fn through_a_wall_nothing_is_seen() {
+    let mut picture = GAP;
+    picture[6] = "##########################";
+    let (tiles, robot) = drawn(&picture);
+    assert_eq!(search(&tiles, robot, &[]), None);
+}
+
+/// Cracks of a cell or two are the noise at a wall's foot.
+#[test]
+fn a_crack_is_no_gap() {
+    let picture = GAP.map(|line| line.replace('?', "."));
+    let lines: Vec<&str> = picture.iter().map(|line| line.as_str()).collect();
+    let (mut tiles, robot) = drawn(&lines);
+    for x in 0..104 {
+        tiles.set(Cell { x, y: 30 }, Class::Unknown).unwrap();
+    }
+    assert_eq!(search(&tiles, robot, &[]), None);
+}
+
+/// In a passage of 0.6 m the robot's own disc finds no passable cell; it searches as a narrower robot.
+#[test]
+fn a_robot_in_a_narrow_place_looks_too() {
+    let mut picture = GAP;
+    for (row, line) in [
+        (7, "#......................###"),
+        (8, "##########################"),
+        (9, "##########################"),
+    ] {
+        picture[row] = line;
+    }
+    let (mut tiles, _) = drawn(&picture);
+    // A passage of six cells below the room's wall.
+    for x in 4..92 {
+        for y in 22..28 {
+            tiles.set(Cell { x, y }, Class::Free).unwrap();
+        }
+    }
+    let robot = Cell { x: 40, y: 25 };
+    let lookout = search(&tiles, robot, &[]).expect("something to see");
+    assert!(sees(&tiles, lookout), "{lookout:?}");
+}
+
+#[test]
+fn without_a_map_or_memory_nothing_is_found() {
+    let mut search = Search::new();
+    search.begin(None, &mut [0; scratch_words(SLOTS)]);
+    assert!(!search.is_running());
+    let (tiles, _) = drawn(&GAP);
+    search.begin(tiles.extent(), &mut [0; 10]);
+    assert!(!search.is_running());
+}

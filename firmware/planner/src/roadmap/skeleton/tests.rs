@@ -1,0 +1,176 @@
+//! Scenes: what a published skeleton looks like in each space.
+
+use std::string::String;
+use std::vec::Vec;
+
+use crate::geometry::Cell;
+use crate::map::{Class, Tiles};
+use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::skeleton::{Space, Topology};
+
+const SPACES: [Space; 3] = [
+    Space::KnownFree,
+    Space::AnchoredNotObstacle,
+    Space::NotObstacle,
+];
+
+/// The scene's coarse cells, row 0 first: `#` obstacle, `.` free, `?` never measured.
+fn scene(picture: &str) -> Tiles<9, 24> {
+    let mut tiles = Tiles::new();
+    tiles.reset(6, 4);
+    for (y, row) in (0..).zip(picture.split_whitespace()) {
+        for (x, character) in (0..).zip(row.chars()) {
+            let class = match character {
+                '#' => Class::Obstacle,
+                '.' => Class::Free,
+                _ => continue,
+            };
+            for k in 0..4 {
+                let cell = Cell {
+                    x: 2 * x + (k & 1),
+                    y: 2 * y + (k >> 1),
+                };
+                tiles.set(cell, class).unwrap();
+            }
+        }
+    }
+    tiles
+}
+
+fn publish(space: Space, tiles: &Tiles<9, 24>, budget: u32) -> Topology<24> {
+    let mut topology = Topology::new();
+    topology.reset(space);
+    // A robot of a point: a cell is passable if it is not an obstacle.
+    while !topology.advance(tiles, &Disc::new(0.05), budget) {}
+    topology
+}
+
+/// The scene with its skeleton, `+`, and its frontier cells, `*`.
+fn skeleton(space: Space, picture: &str) -> Vec<String> {
+    let topology = publish(space, &scene(picture), 10_000);
+    let (way, frontier) = (topology.skeleton().unwrap(), topology.frontier().unwrap());
+    let seen = |x: usize, y: usize, character: char| {
+        let cell = Cell {
+            x: 2 * x as i32,
+            y: 2 * y as i32,
+        };
+        let site = topology.frame().site(cell).unwrap();
+        match (way.get(site), frontier.get(site)) {
+            (true, true) => '*',
+            (true, false) => '+',
+            (false, is_frontier) => {
+                assert!(!is_frontier, "a frontier cell off the skeleton at {site:?}");
+                character
+            }
+        }
+    };
+    let rows = picture.split_whitespace().enumerate();
+    rows.map(|(y, row)| {
+        row.chars()
+            .enumerate()
+            .map(|(x, c)| seen(x, y, c))
+            .collect()
+    })
+    .collect()
+}
+
+/// A corridor round a block, seen but for its end: only the space that holds the unexplored has the loop.
+const RING: &str = "
+    #############
+    #...........#
+    #...........#
+    #...........#
+    #...#####...#
+    #...#####...#
+    #...#####...#
+    #.....???...#
+    #.....???...#
+    #.....???...#
+    #############
+";
+
+#[test]
+fn a_loop_through_the_unexplored_is_there_where_the_unexplored_is_thinned() {
+    let known = "
+        #############
+        #...........#
+        #...++++++..#
+        #..+......+.#
+        #.+.#####.+.#
+        #.+.#####.+.#
+        #.+.#####.+.#
+        #..+.*???*..#
+        #...+*???*..#
+        #....*???*..#
+        #############";
+    let anchored = "
+        #############
+        #...........#
+        #...++++++..#
+        #..+......+.#
+        #.+.#####.+.#
+        #.+.#####.+.#
+        #.+.#####.+.#
+        #..+.*???*..#
+        #...+*+++*..#
+        #....*???*..#
+        #############";
+    let bare = "
+        #############
+        #...........#
+        #...++++++..#
+        #..+......+.#
+        #.+.#####.+.#
+        #.+.#####.+.#
+        #.+.#####.+.#
+        #..+..???.+.#
+        #...++*+*+..#
+        #.....???...#
+        #############";
+    for (space, expected) in SPACES.into_iter().zip([known, anchored, bare]) {
+        let rows = skeleton(space, RING);
+        let expected: Vec<&str> = expected.split_whitespace().collect();
+        assert_eq!(rows, expected, "{space:?}\n{}", rows.join("\n"));
+    }
+}
+
+/// A wide way with a corner that was not seen.
+const CORNER: &str = "
+    ################
+    #..............#
+    #..............#
+    #..............#
+    #..............#
+    #..............#
+    #...........???#
+    #...........???#
+    ################
+";
+
+#[test]
+fn an_unexplored_corner_is_a_frontier_only_where_the_frontier_is_anchored() {
+    let counts = SPACES.map(|space| {
+        let rows = skeleton(space, CORNER);
+        rows.iter()
+            .map(|row| row.matches('*').count())
+            .sum::<usize>()
+    });
+    assert_eq!(counts, [5, 5, 0]);
+}
+
+#[test]
+fn a_round_in_instalments_is_the_round_in_one() {
+    let tiles = scene(RING);
+    for space in SPACES {
+        let [one, other] = [1_000_000, 41].map(|budget| publish(space, &tiles, budget));
+        let words = |topology: &Topology<24>| {
+            let (way, frontier) = (topology.skeleton().unwrap(), topology.frontier().unwrap());
+            (
+                topology.frame(),
+                way.words().to_vec(),
+                frontier.words().to_vec(),
+            )
+        };
+        assert_eq!(words(&one), words(&other), "{space:?}");
+    }
+}
