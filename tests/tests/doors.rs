@@ -17,8 +17,8 @@ use std::collections::VecDeque;
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::grid::{Plane, Site};
 use fieldline_planner::map::{Class, Tiles};
-use fieldline_planner::roadmap::configuration_space::{Disc, is_passable};
-use fieldline_planner::roadmap::skeleton::Topology;
+use fieldline_planner::roadmap::configuration_space::{Footprint, is_passable};
+use fieldline_planner::roadmap::skeleton::Skeleton;
 use fieldline_tests::golden;
 use fieldline_tests::table::Table;
 
@@ -123,7 +123,7 @@ fn flood(from: (i32, i32), diagonal: bool, open: impl Fn(i32, i32) -> bool) -> V
 }
 
 /// Whether passable map cells join the two halves.
-fn is_open_at_10_cm(door: &Door, tiles: &Room, disc: &Disc) -> bool {
+fn is_open_at_10_cm(door: &Door, tiles: &Room, disc: &Footprint) -> bool {
     let open = |x: i32, y: i32| {
         (0..ROOM).contains(&x) && (0..ROOM).contains(&y) && is_passable(tiles, disc, Cell { x, y })
     };
@@ -132,8 +132,8 @@ fn is_open_at_10_cm(door: &Door, tiles: &Room, disc: &Disc) -> bool {
 }
 
 /// Whether the skeleton has a way from half to half.
-fn is_open_at_20_cm(door: &Door, tiles: &Room, disc: &Disc) -> bool {
-    let mut topology: Topology<16> = Topology::new();
+fn is_open_at_20_cm(door: &Door, tiles: &Room, disc: &Footprint) -> bool {
+    let mut topology: Skeleton<16> = Skeleton::new();
     while !topology.advance(tiles, disc, u32::MAX) {}
     let way = topology.skeleton().expect("it was published");
     let frame = topology.frame();
@@ -173,7 +173,7 @@ fn doors(width_cm: u32) -> impl Iterator<Item = Door> {
 }
 
 /// Per cent of the doors of a width that are open: at 10 cm and at 20 cm, in the narrow map and in the wide one.
-fn open_percent(width_cm: u32, disc: &Disc) -> [f64; 4] {
+fn open_percent(width_cm: u32, disc: &Footprint) -> [f64; 4] {
     let mut open = [0_u32; 4];
     let mut all = 0;
     for door in doors(width_cm) {
@@ -195,7 +195,7 @@ fn open_percent(width_cm: u32, disc: &Disc) -> [f64; 4] {
 
 #[test]
 fn doors_are_open_wherever_they_lie_and_gaps_are_closed() {
-    let disc = Disc::new(RADIUS_M);
+    let disc = Footprint::new(RADIUS_M);
     let mut table = Table::new(
         0,
         &[

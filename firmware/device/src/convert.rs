@@ -5,7 +5,7 @@
 //! directions are integer arithmetic and the same bits on every machine.
 
 use fieldline_planner::config::{self, Config};
-use fieldline_planner::config::{Mode, Terrain};
+use fieldline_planner::config::{PreferenceMode, UnevenGround};
 use fieldline_planner::geometry::{CELL_M, Pose, Twist};
 use fieldline_planner::input::Input;
 use fieldline_planner::math;
@@ -75,8 +75,8 @@ pub fn wire_twist(twist: &Twist) -> wire::Twist {
     }
 }
 
-fn laser(laser: &wire::Laser) -> robot::Laser {
-    robot::Laser {
+fn laser(laser: &wire::Laser) -> robot::LaserMount {
+    robot::LaserMount {
         x_m: float(laser.x),
         y_m: float(laser.y),
         z_m: float(laser.z),
@@ -88,18 +88,18 @@ fn laser(laser: &wire::Laser) -> robot::Laser {
     }
 }
 
-fn terrain(terrain: &wire::Terrain) -> Terrain {
+fn terrain(terrain: &wire::Terrain) -> UnevenGround {
     // At most 45°: the session's limits see to it.
     let tangent = |angle: fixed::types::I4F12| {
         let (sin, cos) = math::sin_cos(float(angle));
         sin / cos
     };
-    Terrain {
+    UnevenGround {
         mode: match terrain.preference {
-            wire::Preference::Off => Mode::Off,
-            wire::Preference::Height => Mode::Height,
-            wire::Preference::Global => Mode::Global,
-            wire::Preference::Both => Mode::Both,
+            wire::Preference::Off => PreferenceMode::Off,
+            wire::Preference::Height => PreferenceMode::Height,
+            wire::Preference::Global => PreferenceMode::Global,
+            wire::Preference::Both => PreferenceMode::Both,
         },
         obstacle_m: float(terrain.obstacle),
         near_m: float(terrain.near),
@@ -141,7 +141,7 @@ pub fn config(start: &wire::Start) -> Config {
         linear_accel_mps2: float(start.linear_accel),
         angular_accel_radps2: float(start.angular_accel),
         period_s,
-        terrain: start.terrain.as_ref().map(terrain),
+        ground: start.terrain.as_ref().map(terrain),
         ..default
     }
 }

@@ -7,7 +7,7 @@
 //! Invariant: a cost's instructions are the sum of its stages'.
 //! Units: instructions in the emulator, where they are exact; on silicon whatever the board counts and documents.
 
-use fieldline_planner::{Laps, Stage};
+use fieldline_planner::{Stage, StageTimer};
 use fieldline_protocol::message::Stages;
 
 /// A counter of instructions and a mark of the deepest stack.
@@ -83,9 +83,9 @@ impl<'m, M: Meter> Stopwatch<'m, M> {
     }
 }
 
-impl<M: Meter> Laps for Stopwatch<'_, M> {
+impl<M: Meter> StageTimer for Stopwatch<'_, M> {
     #[inline(never)]
-    fn lap(&mut self, stage: Stage) {
+    fn mark(&mut self, stage: Stage) {
         let counted = self.take();
         let total = match stage {
             Stage::Sense => &mut self.stages.sense,
@@ -117,7 +117,7 @@ pub(crate) fn sum(stages: &Stages) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::{Meter, Stopwatch, sum};
-    use fieldline_planner::{Laps, Stage};
+    use fieldline_planner::{Stage, StageTimer};
     use fieldline_protocol::message::Stages;
 
     /// Counts in the given steps, from just below where it wraps.
@@ -140,9 +140,9 @@ mod tests {
         let mut script = Script(u32::MAX - 1, std::vec![5, 100, 7, 30, 2].into_iter());
         let mut watch = Stopwatch::new(&mut script, u32::MAX - 1, 1000);
         watch.lap_of_session();
-        watch.lap(Stage::Sense);
-        watch.lap(Stage::Drive);
-        watch.lap(Stage::Sense);
+        watch.mark(Stage::Sense);
+        watch.mark(Stage::Drive);
+        watch.mark(Stage::Sense);
         watch.lap_of_session();
         let stages = Stages {
             session: 1007,

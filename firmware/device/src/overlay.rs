@@ -70,7 +70,7 @@ pub(crate) fn road<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     from: u8,
 ) -> Road {
-    let (ouroboros, cells) = (state.ouroboros(), state.road().cells());
+    let (ouroboros, cells) = (state.ouroboros(), state.path().cells());
     let rest = cells.iter().skip(from.into());
     Road {
         tractor: ouroboros.and_then(Ouroboros::tractor).map(short),

@@ -13,7 +13,7 @@
 
 use fieldline_planner::field::SIDE;
 use fieldline_planner::planner::{self, CellKind, Output};
-use fieldline_planner::{Config, Laps, State, Workspace, step};
+use fieldline_planner::{Config, StageTimer, State, Workspace, step};
 use fieldline_protocol::message::{
     Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, Frontier, MAX_FRONTIERS,
     MAX_SCANS, Observation, Refusal, Road, Start, Status, Tile, Twist,
@@ -151,7 +151,7 @@ impl Pilot {
         &mut self,
         memory: &mut Memory<'_, TILES, SLOTS>,
         observation: &Observation,
-        laps: &mut impl Laps,
+        laps: &mut impl StageTimer,
     ) -> Result<Command, Refusal> {
         let config = self.config.as_ref().ok_or(Refusal::NotStarted)?;
         if !limits::matches(observation, config.lasers.iter().map(|laser| laser.beams)) {

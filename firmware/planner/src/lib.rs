@@ -37,4 +37,4 @@ pub mod strategy;
 pub use config::Config;
 pub use input::Input;
 pub use planner::{Output, State, Workspace, step};
-pub use profiling::{Laps, Stage};
+pub use profiling::{Stage, StageTimer};

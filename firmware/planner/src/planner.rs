@@ -1,4 +1,4 @@
-//! One step of the exploration, read as the paper's algorithm box [Ouroboros, Algorithm 1].
+//! One step of the exploration, read as the paper's algorithm box [Jorge15, Algorithm 1].
 //!
 //! ```text
 //! sense:   scans + odometry → map, near field
@@ -6,7 +6,7 @@
 //! line 4:  move the robot to the Voronoi    (strategy)
 //! line 24: propagate from the unexplored    (strategy)
 //! line 26: exit when there is none          (status)
-//! line 27: define the local goal            (road)
+//! line 27: define the local goal            (path)
 //! line 28: compute the local potential      (view, field)
 //! line 29: follow it                        (descent, drive)
 //! ```
@@ -29,15 +29,15 @@ use crate::config::Config;
 use crate::field::{SolverConfig, Stop, solve};
 use crate::geometry::Twist;
 use crate::input::Input;
-use crate::profiling::{Laps, Stage};
-use crate::roadmap::configuration_space::Disc;
-use crate::robot::Laser;
+use crate::profiling::{Stage, StageTimer};
+use crate::roadmap::configuration_space::Footprint;
+use crate::robot::LaserMount;
 use crate::robot::is_level;
 use crate::status::{Fault, Status};
 use charge::{charge, charge_rails, local_goal};
-use plan::{look_for_lookouts, replan};
+use plan::{look_for_viewpoints, replan};
 use prefer::{note_flatness, prefer};
-use state::Around;
+use state::GroundModel;
 use steer::{look_about, steer};
 
 /// The robot that starts inside something sees it nearer than this everywhere, metres.
@@ -58,13 +58,13 @@ pub struct Output {
     pub budget_exhausted: bool,
 }
 
-/// One step: what was sensed in, what to drive out. `laps` hears of each stage's end.
+/// One step: what was sensed in, what to drive out. `timer` hears of each stage's end.
 pub fn step<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     input: Input<'_>,
-    laps: &mut impl Laps,
+    timer: &mut impl StageTimer,
 ) -> Output {
     if state.status != Status::Exploring {
         return Output {
@@ -73,22 +73,22 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         };
     }
     sense(config, state, &input);
-    laps.lap(Stage::Sense);
+    timer.mark(Stage::Sense);
     // A search for a manoeuvre has the scratch; until it is over the robot stands and plans nothing else.
     if state.drive.is_searching() {
         let output = steer(config, state, workspace, &input);
-        laps.lap(Stage::Drive);
+        timer.mark(Stage::Drive);
         return output;
     }
-    if state.lookouts.is_running() {
-        look_for_lookouts(config, state, workspace, &input);
-        laps.lap(Stage::Plan);
+    if state.viewpoints.is_running() {
+        look_for_viewpoints(config, state, workspace, &input);
+        timer.mark(Stage::Plan);
         return Output {
             status: state.status,
             ..Output::default()
         };
     }
-    let disc = Disc::new(if state.strategy.frontier.is_second_chance() {
+    let disc = Footprint::new(if state.strategy.frontier.is_second_chance() {
         config.tight_radius_m
     } else {
         config.robot_radius_m
@@ -97,12 +97,12 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     let planned = state.fresh;
     if planned {
         state.fresh = !replan(config, state, workspace, &disc, &input);
-        laps.lap(Stage::Plan);
+        timer.mark(Stage::Plan);
     } else {
         state.fresh = state
             .topology
             .advance(state.map.tiles(), &disc, config.topology_units);
-        laps.lap(Stage::Topology);
+        timer.mark(Stage::Topology);
     }
     if state.status != Status::Exploring {
         return Output {
@@ -112,7 +112,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     }
     if charge_rails(state, workspace, &disc, &input).is_none() {
         let Some(goal) = local_goal(state, &disc, &input, &mut workspace.view) else {
-            laps.lap(Stage::Window);
+            timer.mark(Stage::Window);
             return Output {
                 velocity: look_about(config, state, &input),
                 ..Output::default()
@@ -120,27 +120,27 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         };
         charge(workspace, &goal);
     }
-    if let Some(terrain) = &config.terrain {
+    if let Some(terrain) = &config.ground {
         prefer(terrain, state, workspace, &input);
     }
-    laps.lap(Stage::Window);
-    // A step that planned a road has spent the time of two cycles on it.
+    timer.mark(Stage::Window);
+    // A step that planned a path has spent the time of two cycles on it.
     let most = config.solver.max_cycles;
     let solver = SolverConfig {
         max_cycles: if planned { most.div_ceil(2) } else { most },
         ..config.solver
     };
     let solution = solve(&mut workspace.window, &mut workspace.scratch, &solver);
-    if config.terrain.is_some() {
+    if config.ground.is_some() {
         note_flatness(state, workspace, &input);
     }
-    laps.lap(Stage::Solve);
+    timer.mark(Stage::Solve);
     let output = Output {
         cycles: solution.cycles + solution.sweeps,
         budget_exhausted: solution.stop == Stop::Budget,
         ..steer(config, state, workspace, &input)
     };
-    laps.lap(Stage::Drive);
+    timer.mark(Stage::Drive);
     output
 }
 
@@ -160,13 +160,13 @@ fn sense<const TILES: usize, const SLOTS: usize>(
     state.map.observe(config, input);
     let level = level_scans(config, input).find(|(_, ranges_mm)| !ranges_mm.is_empty());
     state.strategy.note(&input.pose, input.time_ms, level);
-    match &mut state.around {
-        Around::Near(near) => {
+    match &mut state.ground {
+        GroundModel::Flat(near) => {
             for (laser, ranges_mm) in level_scans(config, input) {
                 near.update(&input.pose, laser, ranges_mm);
             }
         }
-        Around::Storeys(storeys) => {
+        GroundModel::Uneven(storeys) => {
             state.preferences.stand(&input.pose);
             storeys.note(&state.map.heights(), state.map.tiles());
             state.map.fold(storeys);
@@ -178,7 +178,7 @@ fn sense<const TILES: usize, const SLOTS: usize>(
 fn level_scans<'a>(
     config: &'a Config,
     input: &Input<'a>,
-) -> impl Iterator<Item = (&'a Laser, &'a [u16])> {
+) -> impl Iterator<Item = (&'a LaserMount, &'a [u16])> {
     let scans = config.lasers.iter().zip(input.scans);
     scans.filter(|(laser, _)| is_level(laser))
 }

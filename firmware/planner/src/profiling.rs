@@ -10,7 +10,7 @@ pub enum Stage {
     Sense,
     /// An instalment of loading and thinning.
     Topology,
-    /// The wave over a new skeleton, and the road down it.
+    /// The wave over a new skeleton, and the path down it.
     Plan,
     /// The window's cells and boundary.
     Window,
@@ -21,13 +21,13 @@ pub enum Stage {
 }
 
 /// Takes notice of the ends of stages.
-pub trait Laps {
-    /// Everything since the last lap, or since the step began, was `stage`. A step may have several laps of a stage, or none.
-    fn lap(&mut self, stage: Stage);
+pub trait StageTimer {
+    /// Everything since the last lap, or since the step began, was `stage`. A step may have several timer of a stage, or none.
+    fn mark(&mut self, stage: Stage);
 }
 
 /// Takes no notice.
-impl Laps for () {
+impl StageTimer for () {
     #[inline(always)]
-    fn lap(&mut self, _: Stage) {}
+    fn mark(&mut self, _: Stage) {}
 }

@@ -15,7 +15,7 @@ const LEVEL_RAD: f32 = 0.05;
 
 /// Where a laser sits and how it sweeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Laser {
+pub struct LaserMount {
     /// Metres ahead of the robot's centre.
     pub x_m: f32,
     /// Metres to its left.
@@ -36,6 +36,6 @@ pub struct Laser {
 
 /// Whether the laser sweeps the level plane.
 #[must_use]
-pub fn is_level(laser: &Laser) -> bool {
+pub fn is_level(laser: &LaserMount) -> bool {
     laser.pitch_rad.abs() < LEVEL_RAD
 }

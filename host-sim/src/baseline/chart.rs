@@ -11,7 +11,7 @@
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::map::Tiles;
 use fieldline_planner::map::tiles::{Extent, TILE_SIDE};
-use fieldline_planner::roadmap::configuration_space::{Disc, for_each_strip};
+use fieldline_planner::roadmap::configuration_space::{Footprint, for_each_strip};
 
 const PASSABLE: u8 = 1;
 const UNKNOWN: u8 = 2;
@@ -126,7 +126,7 @@ impl Chart {
     pub fn draw<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        disc: &Disc,
+        disc: &Footprint,
         robot: Point,
     ) {
         let Some(extent) = tiles.extent() else {
@@ -212,7 +212,7 @@ impl Chart {
     fn copy<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        disc: &Disc,
+        disc: &Footprint,
     ) {
         let Frame {
             origin,
@@ -299,7 +299,7 @@ pub(super) mod sketch {
     use super::Chart;
     use fieldline_planner::geometry::{Cell, Point};
     use fieldline_planner::map::{Class, Tiles};
-    use fieldline_planner::roadmap::configuration_space::Disc;
+    use fieldline_planner::roadmap::configuration_space::Footprint;
 
     /// A chart of rows of characters, greatest y first, least x and y at cell (0, 0): `#` obstacle, `?` unknown, `R` the robot on
     /// a free cell, anything else free. The robot is a point, so that every cell but the obstacles is passable. Beyond the
@@ -330,7 +330,7 @@ pub(super) mod sketch {
             }
         }
         let mut chart = Chart::new();
-        chart.draw(&tiles, &Disc::new(radius_m), robot.centre());
+        chart.draw(&tiles, &Footprint::new(radius_m), robot.centre());
         (chart, robot.centre())
     }
 }

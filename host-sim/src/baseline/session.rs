@@ -1,7 +1,7 @@
 //! A host-only planner as a [`Link`]: everything but the strategy is the device's own code.
 //!
 //! ```text
-//! observation → Map, NearField → Chart → Plan (the strategy) → heading → Drive → command
+//! observation → Map, ObstaclePoints → Chart → Plan (the strategy) → heading → Drive → command
 //!                └→ HeightGrid ───────────┘   on uneven ground, where the map's rims take the near field's place
 //! ```
 //!
@@ -16,15 +16,15 @@ use fieldline_device::limits;
 use fieldline_device::session::{self, Boot};
 use fieldline_device::{SLOTS, TILES};
 use fieldline_planner::config::Config;
-use fieldline_planner::config::Terrain;
-use fieldline_planner::drive::{Drive, Ground, Place, Surround, recovery};
+use fieldline_planner::config::UnevenGround;
+use fieldline_planner::drive::{CollisionChecker, Drive, Ground, Place, recovery};
 use fieldline_planner::geometry::{Cell, Point, Pose, Twist};
 use fieldline_planner::input::Input;
 use fieldline_planner::map::Map;
-use fieldline_planner::map::obstacle_points::{self, NearField};
+use fieldline_planner::map::obstacle_points::{self, ObstaclePoints};
 use fieldline_planner::math;
 use fieldline_planner::planner::starts_blocked;
-use fieldline_planner::roadmap::configuration_space::Disc;
+use fieldline_planner::roadmap::configuration_space::Footprint;
 use fieldline_planner::robot::is_level;
 use fieldline_planner::status::{self, Residue};
 use fieldline_protocol::message::{
@@ -62,7 +62,7 @@ pub struct Scene<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Uneven<'a> {
     /// Its parameters.
-    pub terrain: &'a Terrain,
+    pub terrain: &'a UnevenGround,
     /// How high it lies.
     pub heights: &'a HeightGrid,
 }
@@ -123,7 +123,7 @@ pub struct Session<P> {
     started: bool,
     empty_since_ms: Option<u32>,
     map: Box<Map<TILES, SLOTS>>,
-    near: NearField,
+    near: ObstaclePoints,
     heights: HeightGrid,
     /// Goals whose ground was given up with them.
     given_up: usize,
@@ -145,7 +145,7 @@ impl<P: Plan> Session<P> {
             started: false,
             empty_since_ms: None,
             map: Box::new(Map::new()),
-            near: NearField::new(),
+            near: ObstaclePoints::new(),
             heights: HeightGrid::default(),
             given_up: 0,
             drive: Drive::new(),
@@ -186,7 +186,7 @@ impl<P: Plan> Session<P> {
             return standing(self.status);
         }
         if !self.drive.is_searching() {
-            let disc = Disc::new(config.robot_radius_m);
+            let disc = Footprint::new(config.robot_radius_m);
             self.chart.draw(self.map.tiles(), &disc, input.pose.point());
             self.look(config, input);
         }
@@ -211,13 +211,13 @@ impl<P: Plan> Session<P> {
                 }
             }
         }
-        if let Some(terrain) = &config.terrain {
+        if let Some(terrain) = &config.ground {
             self.give_up_ground(terrain);
         }
     }
 
     /// Ground that stays out of view where a goal was given up is settled, as the planner settles it.
-    fn give_up_ground(&mut self, terrain: &Terrain) {
+    fn give_up_ground(&mut self, terrain: &UnevenGround) {
         let dropped = self.plan.dropped();
         let new = dropped.iter().skip(self.given_up);
         for frontier in new.filter(|frontier| frontier.reason == Residue::Unobservable) {
@@ -235,7 +235,7 @@ impl<P: Plan> Session<P> {
             }
         }
         self.map.observe(config, input);
-        if config.terrain.is_some() {
+        if config.ground.is_some() {
             self.heights.keep(&self.map.heights());
             self.map.fold(&mut ());
             return;
@@ -261,11 +261,11 @@ impl<P: Plan> Session<P> {
     }
 
     /// What is near: by the level beams, or on uneven ground, where they end on slopes, by the map.
-    fn surround(&self, config: &Config, pose: &Pose) -> Surround {
-        if config.terrain.is_none() {
-            return Surround::new(pose, self.near.points());
+    fn surround(&self, config: &Config, pose: &Pose) -> CollisionChecker {
+        if config.ground.is_none() {
+            return CollisionChecker::new(pose, self.near.points());
         }
-        let mut surround = Surround::empty();
+        let mut surround = CollisionChecker::empty();
         surround.keep_off(pose, obstacle_points::rims(self.map.tiles(), pose.point()));
         surround
     }
@@ -318,12 +318,12 @@ fn scene<'a>(chart: &'a Chart, ground: Option<Uneven<'a>>, input: &Input<'_>) ->
 
 /// The ground, where the session heeds it.
 fn ground<'a>(config: &'a Config, heights: &'a HeightGrid) -> Option<Uneven<'a>> {
-    let terrain = config.terrain.as_ref()?;
+    let terrain = config.ground.as_ref()?;
     Some(Uneven { terrain, heights })
 }
 
 /// A turn on the spot where that touches nothing.
-fn look_around(config: &Config, input: &Input<'_>, surround: &Surround) -> Twist {
+fn look_around(config: &Config, input: &Input<'_>, surround: &CollisionChecker) -> Twist {
     let turn = Twist {
         linear_mps: 0.0,
         angular_radps: LOOK_AROUND_RADPS,

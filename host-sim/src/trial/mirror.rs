@@ -55,7 +55,7 @@ impl Mirror {
         };
         self.pose = input.pose;
         self.map.observe(&self.config, &input);
-        if self.config.terrain.is_some() {
+        if self.config.ground.is_some() {
             self.map.fold(&mut ());
         }
     }
@@ -69,7 +69,7 @@ impl Mirror {
     /// Heights and preferences in a window; `None` where the planner takes all ground for flat.
     #[must_use]
     pub fn relief(&self, window: &Window) -> Option<Relief> {
-        let terrain = self.config.terrain.as_ref()?;
+        let terrain = self.config.ground.as_ref()?;
         Some(Relief::of(&self.map.heights(), terrain, &self.pose, window))
     }
 
@@ -88,7 +88,7 @@ impl Mirror {
                 let ours = self.map.tiles().packed(i32::from(x), i32::from(y));
                 let theirs = tiles.get(&(x, y)).map(|tile| tile.cells.as_slice());
                 match (&ours, theirs) {
-                    (Some(ours), Some(theirs)) if self.config.terrain.is_some() => ours
+                    (Some(ours), Some(theirs)) if self.config.ground.is_some() => ours
                         .iter()
                         .zip(theirs)
                         .all(|(&ours, &theirs)| may_be(ours, theirs)),

@@ -1,14 +1,14 @@
 //! What the ground around the robot is to the planner: heights of the last window's cells, and their preferences.
 //!
 //! Neither is on the wire. The heights are those of the mirror, which are the device's; the preferences follow from them by the
-//! planner's own code ([Maffei-Terrain, eqs. 3 to 5]), with the `p_diff` of the window that is shown. The device has used that of the field
+//! planner's own code ([Maffei-UnevenGround, eqs. 3 to 5]), with the `p_diff` of the window that is shown. The device has used that of the field
 //! before it, and between 1e-10 and 1e-4 it knows whether heights count, where here they do. What a limit of the roll makes of ways across slopes is
 //! left out.
 //!
 //! Metres above the start; ε from −2 to 2.
 
 use fieldline_planner::config::KERNEL_CELLS;
-use fieldline_planner::config::Terrain;
+use fieldline_planner::config::UnevenGround;
 use fieldline_planner::field::height_preference::Preferences;
 use fieldline_planner::geometry::{Cell, Pose};
 use fieldline_planner::ground::Heights;
@@ -29,7 +29,7 @@ pub struct Relief {
 impl Relief {
     /// Of a window, for a robot at `pose`.
     #[must_use]
-    pub fn of(heights: &Heights<'_>, terrain: &Terrain, pose: &Pose, window: &Window) -> Self {
+    pub fn of(heights: &Heights<'_>, terrain: &UnevenGround, pose: &Pose, window: &Window) -> Self {
         let mut preferences = Preferences::new();
         if let Some(flatness) = p_diff(window, pose) {
             preferences.note(flatness);
@@ -127,7 +127,7 @@ mod tests {
             elevation.tread(Cell { x, y: 3 }, height_m);
         }
         // The robot stands in column 40 of the window.
-        let (window, terrain) = (window(), Terrain::TABLE_I);
+        let (window, terrain) = (window(), UnevenGround::TABLE_I);
         let relief = Relief::of(&elevation.read(), &terrain, &pose(5.05), &window);
         let row = 33 * FIELD_SIDE;
         assert_eq!(relief.heights_m[row + 9], None);
@@ -155,7 +155,7 @@ mod tests {
         let (bytes, marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
         let heights = Heights::new(&bytes, &marks, Cell { x: 8, y: -32 });
         for x_m in [1.05, -3.0, 20.0] {
-            let relief = Relief::of(&heights, &Terrain::TABLE_I, &pose(x_m), &window());
+            let relief = Relief::of(&heights, &UnevenGround::TABLE_I, &pose(x_m), &window());
             assert!(relief.preferences.iter().all(|epsilon| *epsilon == 0.0));
         }
     }

@@ -2,12 +2,12 @@
 //!
 //! Units: metres; slopes are tangents; preferences are pure numbers.
 
-/// `K_n`, width of the kernel in cells [Terrain, Table I].
+/// `K_n`, width of the kernel in cells [Maffei20, Table I].
 pub const KERNEL_CELLS: usize = 20;
 
 /// Which preferences are used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mode {
+pub enum PreferenceMode {
     /// None.
     Off,
     /// `ε_height`.
@@ -19,7 +19,7 @@ pub enum Mode {
     Both,
 }
 
-impl Mode {
+impl PreferenceMode {
     /// Whether heights count.
     #[must_use]
     pub const fn has_heights(self) -> bool {
@@ -27,11 +27,11 @@ impl Mode {
     }
 }
 
-/// Parameters of uneven ground [Maffei-Terrain, Table I], and the robot's limits on it.
+/// Parameters of uneven ground [Maffei20, Table I], and the robot's limits on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Terrain {
+pub struct UnevenGround {
     /// Which preferences are used. Default: both.
-    pub mode: Mode,
+    pub mode: PreferenceMode,
     /// `h_obs`: what stands higher than this over the mean ground around it is an obstacle, metres. Default: 0.30.
     pub obstacle_m: f32,
     /// `d_obs`: what the level laser meets nearer than this over ground not yet measured is an obstacle, metres. Default: 1.5.
@@ -56,10 +56,10 @@ pub struct Terrain {
     pub step_m: f32,
 }
 
-impl Terrain {
+impl UnevenGround {
     /// Table I, and the limits of a Pioneer 3-AT.
     pub const TABLE_I: Self = Self {
-        mode: Mode::Both,
+        mode: PreferenceMode::Both,
         obstacle_m: 0.30,
         near_m: 1.5,
         hole_m: -0.60,
@@ -73,7 +73,7 @@ impl Terrain {
     };
 }
 
-impl Default for Terrain {
+impl Default for UnevenGround {
     fn default() -> Self {
         Self::TABLE_I
     }

@@ -4,7 +4,7 @@
 
 /// Bounds of a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct LoopLimits {
     /// A shorter loop is not worth closing: it corrects nothing. Default: 20, a round of 6.4 m across, which lasers that see twice as
     /// far have in view all the way. At 10 a robot among trees goes round most of them, and takes twice the time.
     pub least_m: f32,
@@ -18,7 +18,7 @@ pub struct Limits {
     pub slack_m: f32,
 }
 
-impl Default for Limits {
+impl Default for LoopLimits {
     fn default() -> Self {
         Self {
             least_m: 20.0,
@@ -30,7 +30,7 @@ impl Default for Limits {
     }
 }
 
-impl Limits {
+impl LoopLimits {
     /// Whether a loop of this expected length is too long, with so much frontier left.
     #[must_use]
     pub fn is_too_long(&self, loop_m: f32, frontier_m: f32) -> bool {

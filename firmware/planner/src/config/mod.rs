@@ -4,13 +4,13 @@ mod ground;
 mod loops;
 mod solver;
 
-pub use ground::{KERNEL_CELLS, Mode, Terrain};
-pub use loops::Limits;
+pub use ground::{KERNEL_CELLS, PreferenceMode, UnevenGround};
+pub use loops::LoopLimits;
 pub use solver::{Method, SolverConfig};
 
 use heapless::Vec;
 
-use crate::robot::Laser;
+use crate::robot::LaserMount;
 
 /// What plans.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,9 +33,9 @@ pub struct Config {
     /// What plans. Default: the frontier.
     pub strategy: Strategy,
     /// Which loops are worth closing, where the strategy closes loops.
-    pub loops: Limits,
+    pub loops: LoopLimits,
     /// The laser scanners; the first one is level.
-    pub lasers: Vec<Laser, 2>,
+    pub lasers: Vec<LaserMount, 2>,
     /// The map's box in tiles of 3.2 m, across and up.
     pub box_tiles: (u8, u8),
     /// Radius that the robot needs, metres. Default: 0.30.
@@ -57,16 +57,16 @@ pub struct Config {
     /// Topological work in a step, thinning words. Default: 6,000.
     pub topology_units: u32,
     /// How to go about uneven ground; on flat ground, where lasers see only what stands, `None`. Default: `None`.
-    pub terrain: Option<Terrain>,
+    pub ground: Option<UnevenGround>,
 }
 
 impl Config {
     /// A Pioneer 3-AT with the given lasers, in the largest square box of the default image.
     #[must_use]
-    pub fn pioneer_3at(lasers: Vec<Laser, 2>) -> Self {
+    pub fn pioneer_3at(lasers: Vec<LaserMount, 2>) -> Self {
         Self {
             strategy: Strategy::Frontier,
-            loops: Limits::default(),
+            loops: LoopLimits::default(),
             lasers,
             box_tiles: (20, 20),
             robot_radius_m: 0.30,
@@ -81,7 +81,7 @@ impl Config {
                 ..SolverConfig::default()
             },
             topology_units: 6_000,
-            terrain: None,
+            ground: None,
         }
     }
 }

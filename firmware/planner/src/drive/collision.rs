@@ -69,7 +69,7 @@ struct Threat {
 
 /// What stands around the robot, in its frame.
 #[derive(Debug)]
-pub struct Surround {
+pub struct CollisionChecker {
     threats: Vec<Threat, { MOST_POINTS + MOST_CELLS }>,
     hull: Hull,
     /// How the ground inclines, where that bounds the headings.
@@ -141,7 +141,7 @@ fn towards(from: f32, to: f32, most: f32) -> f32 {
     from + (to - from).clamp(-most, most)
 }
 
-impl Surround {
+impl CollisionChecker {
     /// The points as seen from `pose`.
     #[must_use]
     pub fn new(pose: &Pose, points: &[Point]) -> Self {
@@ -329,14 +329,14 @@ mod tests {
         Config::pioneer_3at(Vec::new())
     }
 
-    fn wall_ahead(distance_m: f32) -> Surround {
+    fn wall_ahead(distance_m: f32) -> CollisionChecker {
         let points: std::vec::Vec<Point> = (-10..=10)
             .map(|k| Point {
                 x_m: distance_m,
                 y_m: k as f32 * 0.05,
             })
             .collect();
-        Surround::new(&Pose::default(), &points)
+        CollisionChecker::new(&Pose::default(), &points)
     }
 
     #[test]
@@ -384,12 +384,12 @@ mod tests {
             y_m: 0.1 * y as f32,
         };
         let half: std::vec::Vec<Point> = (1..4).map(wall).collect();
-        let mut surround = Surround::new(&Pose::default(), &half);
+        let mut surround = CollisionChecker::new(&Pose::default(), &half);
         surround.remember(&Pose::default(), (-3..4).map(wall));
         assert_eq!(surround.points(), 3 + 4, "cells with a point are left out");
         assert!(surround.is_arc_clear(Place::default(), -0.08, 0.0, 0.0));
         assert!(!surround.is_arc_clear(Place::default(), -0.15, 0.0, 0.0));
-        let mut right = Surround::empty();
+        let mut right = CollisionChecker::empty();
         right.remember(&Pose::default(), (-3..0).map(wall));
         assert!(!right.is_arc_clear(Place::default(), -0.15, 0.0, 0.0));
     }
@@ -397,7 +397,7 @@ mod tests {
     /// Ahead the laser sees for itself, and a cell that the robot stands on is none.
     #[test]
     fn cells_in_view_or_under_the_robot_are_not_remembered() {
-        let mut surround = Surround::empty();
+        let mut surround = CollisionChecker::empty();
         let at = |x_m, y_m| Point { x_m, y_m };
         let cells = [at(0.4, 0.0), at(0.15, 0.3), at(0.0, 0.2), at(-0.2, 0.0)];
         surround.remember(&Pose::default(), cells.into_iter());

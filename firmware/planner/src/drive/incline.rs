@@ -4,9 +4,9 @@
 //!
 //! Invariant: where the ground was not measured it is taken as level, and holds nothing up. Units: metres, tangents, radians; robot frame, x forward.
 
-use crate::config::Terrain;
+use crate::config::UnevenGround;
 use crate::drive::collision::Place;
-use crate::drive::side_slope::{Bias, Slope, Wedge};
+use crate::drive::side_slope::{Hysteresis, Slope, SlopeDirection};
 use crate::geometry::{Point, Pose};
 use crate::ground::Heights;
 use crate::math;
@@ -34,7 +34,7 @@ pub struct Incline {
 impl Incline {
     /// As seen from `pose`; `None` where everything that may be climbed may be crossed.
     #[must_use]
-    pub fn new(terrain: &Terrain, heights: &Heights<'_>, pose: &Pose) -> Option<Self> {
+    pub fn new(terrain: &UnevenGround, heights: &Heights<'_>, pose: &Pose) -> Option<Self> {
         let most = terrain.most_lean()?;
         let (sin, cos) = math::sin_cos(pose.yaw_rad);
         let slope = |row: usize, column: usize| {
@@ -87,7 +87,12 @@ impl Incline {
     /// The heading for one that is wanted at a place: turned towards the fall line of the slope there, or else of the slope ahead. In which
     /// wedge it is, if there are wedges.
     #[must_use]
-    pub fn heading(&self, place: Place, wanted_rad: f32, bias: Bias) -> (f32, Option<Wedge>) {
+    pub fn heading(
+        &self,
+        place: Place,
+        wanted_rad: f32,
+        bias: Hysteresis,
+    ) -> (f32, Option<SlopeDirection>) {
         let ahead = Place {
             yaw_rad: wanted_rad,
             ..place
@@ -106,9 +111,9 @@ mod tests {
     use crate::ground::elevation::{Elevation, WINDOW_CELLS};
 
     /// 15° across, 20° up.
-    const TERRAIN: Terrain = Terrain {
+    const TERRAIN: UnevenGround = UnevenGround {
         roll: 0.268,
-        ..Terrain::TABLE_I
+        ..UnevenGround::TABLE_I
     };
 
     /// A robot at (0, 0), and ground that rises to the north by 0.34 from `y_m` on.
@@ -176,11 +181,12 @@ mod tests {
         let before = slope_from(0.35, 0.0);
         assert!(!before.is_steep());
         // North-east by east is wanted.
-        let (heading, wedge) = before.heading(Place::default(), 0.5, Bias::default());
+        let (heading, wedge) = before.heading(Place::default(), 0.5, Hysteresis::default());
         assert_eq!(wedge, None, "0.45 m that way the slope has not begun");
         assert_eq!(heading, 0.5);
-        let (heading, wedge) = slope_from(0.1, 0.0).heading(Place::default(), 0.5, Bias::default());
-        assert_eq!(wedge, Some(Wedge::Up));
+        let (heading, wedge) =
+            slope_from(0.1, 0.0).heading(Place::default(), 0.5, Hysteresis::default());
+        assert_eq!(wedge, Some(SlopeDirection::Up));
         assert!(heading > 0.7 && heading < 0.9, "{heading}");
     }
 

@@ -17,7 +17,7 @@ pub mod recovery;
 mod search_query;
 pub mod side_slope;
 
-pub use collision::{Place, Surround};
+pub use collision::{CollisionChecker, Place};
 pub use incline::Incline;
 pub use recovery::{Attempt, Budget, Choice, Found, Ground, Leads, Plan, Search};
 
@@ -153,7 +153,12 @@ impl Drive {
     }
 
     /// Turn on the spot to see what is around, as far as there is room, to one side and then to the other.
-    pub fn look_around(&mut self, config: &Config, surround: &Surround, now: Twist) -> Twist {
+    pub fn look_around(
+        &mut self,
+        config: &Config,
+        surround: &CollisionChecker,
+        now: Twist,
+    ) -> Twist {
         // A search is for where the robot stands.
         self.search = None;
         for _ in 0..2 {
@@ -205,7 +210,7 @@ fn is_moving(now: Twist) -> bool {
 }
 
 /// What needs no manoeuvre: ahead, turning on the spot, or straight back.
-fn directly(config: &Config, error: f32, now: Twist, surround: &Surround) -> Option<Twist> {
+fn directly(config: &Config, error: f32, now: Twist, surround: &CollisionChecker) -> Option<Twist> {
     let admits = |&twist: &Twist| {
         let creeps = twist.linear_mps.abs() <= CREEP_MPS;
         surround.admits(
@@ -236,7 +241,7 @@ fn directly(config: &Config, error: f32, now: Twist, surround: &Surround) -> Opt
 }
 
 /// Turns that bring its back to where the robot goes, on a slope that it may not turn round on.
-fn turns_away(config: &Config, error: f32, surround: &Surround) -> [Option<Twist>; 2] {
+fn turns_away(config: &Config, error: f32, surround: &CollisionChecker) -> [Option<Twist>; 2] {
     let askew = math::wrap(error + math::PI);
     if surround.is_steep() && surround.is_arc_clear(Place::default(), 0.0, askew, CREEP_MARGIN_M) {
         turns(config, askew)

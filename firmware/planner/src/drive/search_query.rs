@@ -2,7 +2,7 @@
 //!
 //! Units: metres, radians; robot frame at the start.
 
-use crate::drive::collision::{Place, Surround};
+use crate::drive::collision::{CollisionChecker, Place};
 use crate::math;
 
 /// Alignment with the field at the end, radians.
@@ -33,7 +33,7 @@ pub enum Leads {
 #[expect(missing_debug_implementations, reason = "it lends closures")]
 pub struct Ground<'a, H> {
     /// What stands around.
-    pub surround: &'a Surround,
+    pub surround: &'a CollisionChecker,
     /// The field's heading.
     pub heading_at: H,
     /// How far along the field a place is (q of its cell); `None` where that is not asked for.
@@ -80,7 +80,7 @@ impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
         if !self.asks_on(place, length_m, attempt) {
             return false;
         }
-        *points += Surround::places_on(length_m) * self.surround.points();
+        *points += CollisionChecker::places_on(length_m) * self.surround.points();
         self.surround
             .is_arc_clear(place, length_m, 0.0, attempt.margin_m)
     }

@@ -8,9 +8,9 @@
 //!
 //! What a robot may climb head-on it may not cross: of a slope steeper than its limit `r` two wedges of headings are left, and between them it
 //! cannot turn there. So a way is taken in one wedge, forwards or backwards, until it leads clearly into the other one; a way straight across becomes
-//! a zigzag. Not in [Maffei-Terrain], which names it as open. Units: tangents, metres, radians.
+//! a zigzag. Not in [Maffei20], which names it as open. Units: tangents, metres, radians.
 
-use crate::config::Terrain;
+use crate::config::UnevenGround;
 use crate::geometry::{CELL_M, Cell};
 use crate::ground::elevation::Heights;
 use crate::math;
@@ -29,7 +29,7 @@ const HOMING: f32 = 0.15;
 /// Which end of the fall line is gone for. No value is zero: so a planner without any is all zeros, and takes no place in the image's flash.
 #[repr(u8)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wedge {
+pub enum SlopeDirection {
     /// Uphill.
     Up = 1,
     /// Downhill.
@@ -38,26 +38,26 @@ pub enum Wedge {
 
 /// What is in favour of a wedge where a way leads across.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Bias {
+pub struct Hysteresis {
     /// That the robot went for it in the last step.
-    pub before: Option<Wedge>,
+    pub before: Option<SlopeDirection>,
     /// That its goal lies there.
-    pub goal: Option<Wedge>,
+    pub goal: Option<SlopeDirection>,
     /// Against it, for now: that the drive found no way there.
-    pub shut: Option<Wedge>,
+    pub shut: Option<SlopeDirection>,
 }
 
-impl Bias {
+impl Hysteresis {
     /// Cosine of the way's angle with uphill from which on it is taken uphill.
     fn least_up(self) -> f32 {
         match self.shut {
-            Some(Wedge::Up) => return f32::INFINITY,
-            Some(Wedge::Down) => return f32::NEG_INFINITY,
+            Some(SlopeDirection::Up) => return f32::INFINITY,
+            Some(SlopeDirection::Down) => return f32::NEG_INFINITY,
             None => {}
         }
-        let against = |wedge: Option<Wedge>, by: f32| match wedge {
-            Some(Wedge::Up) => -by,
-            Some(Wedge::Down) => by,
+        let against = |wedge: Option<SlopeDirection>, by: f32| match wedge {
+            Some(SlopeDirection::Up) => -by,
+            Some(SlopeDirection::Down) => by,
             None => 0.0,
         };
         against(self.before, STEADY) + against(self.goal, HOMING)
@@ -144,7 +144,12 @@ impl Slope {
     /// The heading nearest to this one that leans no more than the part of `most` that is kept to, and in which wedge it is; as it is where
     /// the slope may be crossed.
     #[must_use]
-    pub fn heading(self, heading_rad: f32, most: f32, bias: Bias) -> (f32, Option<Wedge>) {
+    pub fn heading(
+        self,
+        heading_rad: f32,
+        most: f32,
+        bias: Hysteresis,
+    ) -> (f32, Option<SlopeDirection>) {
         let (steepness, most) = (self.steepness(), KEPT * most);
         if steepness <= most {
             return (heading_rad, None);
@@ -152,9 +157,9 @@ impl Slope {
         let up_rad = math::atan2(self.y, self.x);
         let (_, along) = math::sin_cos(heading_rad - up_rad);
         let (wedge, middle_rad) = if along >= bias.least_up() {
-            (Wedge::Up, up_rad)
+            (SlopeDirection::Up, up_rad)
         } else {
-            (Wedge::Down, up_rad + math::PI)
+            (SlopeDirection::Down, up_rad + math::PI)
         };
         let half_rad = math::atan2(most, math::sqrt(steepness * steepness - most * most));
         let off_rad = math::wrap(heading_rad - middle_rad).clamp(-half_rad, half_rad);
@@ -162,7 +167,7 @@ impl Slope {
     }
 }
 
-impl Terrain {
+impl UnevenGround {
     /// The greatest lean, if any slope that may be climbed is too steep to be crossed.
     #[must_use]
     pub fn most_lean(&self) -> Option<f32> {
@@ -184,8 +189,8 @@ fn mean(pairs: impl Iterator<Item = (Option<f32>, Option<f32>)>) -> Option<f32> 
 
 #[cfg(test)]
 mod tests {
-    use super::{Bias, KEPT, Slope, Wedge};
-    use crate::config::Terrain;
+    use super::{Hysteresis, KEPT, Slope, SlopeDirection};
+    use crate::config::UnevenGround;
     use crate::geometry::Cell;
     use crate::ground::elevation::{Elevation, WINDOW_CELLS};
     use crate::math::{self, PI};
@@ -240,7 +245,7 @@ mod tests {
                 let (x, y) = (steep * cos, steep * sin);
                 let slope = Slope { x, y };
                 let heading = math::wrap(0.31 * k as f32);
-                let (kept, wedge) = slope.heading(heading, MOST, Bias::default());
+                let (kept, wedge) = slope.heading(heading, MOST, Hysteresis::default());
                 let lean = slope.lean(math::sin_cos(kept)).abs();
                 assert!(lean <= KEPT * MOST + 1e-5, "{steep} {k}: {lean}");
                 let turn = math::wrap(kept - heading).abs();
@@ -256,9 +261,9 @@ mod tests {
         // It rises to the north.
         let slope = Slope { x: 0.0, y: 0.35 };
         let degrees = |degrees: f32| degrees * PI / 180.0;
-        let (up, down) = (Some(Wedge::Up), Some(Wedge::Down));
+        let (up, down) = (Some(SlopeDirection::Up), Some(SlopeDirection::Down));
         let wedge = |heading, before, goal| {
-            let bias = Bias {
+            let bias = Hysteresis {
                 before,
                 goal,
                 shut: None,
@@ -272,9 +277,9 @@ mod tests {
         assert_eq!([-3.0, -8.0].map(|way| wedge(way, up, down)), [up, down]);
         assert_eq!([21.0, 26.0].map(|way| wedge(way, down, down)), [down, up]);
         // To the east, a little down, but uphill before: north-east.
-        let bias = Bias {
+        let bias = Hysteresis {
             before: up,
-            ..Bias::default()
+            ..Hysteresis::default()
         };
         let (heading, _) = slope.heading(degrees(-12.0), MOST, bias);
         assert!(
@@ -286,9 +291,12 @@ mod tests {
     #[test]
     fn a_wedge_without_a_way_is_left_to_the_other() {
         let slope = Slope { x: 0.0, y: 0.33 };
-        for (shut, other) in [(Wedge::Up, Wedge::Down), (Wedge::Down, Wedge::Up)] {
+        for (shut, other) in [
+            (SlopeDirection::Up, SlopeDirection::Down),
+            (SlopeDirection::Down, SlopeDirection::Up),
+        ] {
             for k in 0..64 {
-                let bias = Bias {
+                let bias = Hysteresis {
                     before: Some(shut),
                     goal: Some(shut),
                     shut: Some(shut),
@@ -335,9 +343,9 @@ mod tests {
 
     #[test]
     fn a_limit_as_steep_as_the_climb_is_none() {
-        let terrain = Terrain::TABLE_I;
+        let terrain = UnevenGround::TABLE_I;
         assert_eq!(terrain.most_lean(), None);
         let roll = MOST;
-        assert_eq!(Terrain { roll, ..terrain }.most_lean(), Some(MOST));
+        assert_eq!(UnevenGround { roll, ..terrain }.most_lean(), Some(MOST));
     }
 }

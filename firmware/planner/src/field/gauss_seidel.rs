@@ -1,4 +1,4 @@
-//! Gauss–Seidel: one sweep in row order, the papers' method [BVP; Terrain, eq. 2], in q-form:
+//! Gauss–Seidel: one sweep in row order, the papers' method [Prestes02; Maffei20, eq. 2], in q-form:
 //!
 //! ```text
 //! q ← ((N + S) + (W + E) + (ε/2) (|N − S| + |W − E|)) / 4

@@ -1,4 +1,4 @@
-//! What ground is preferred: ε of every cell of the window [Maffei-Terrain, III-C].
+//! What ground is preferred: ε of every cell of the window [Maffei20, III-C].
 //!
 //! ```text
 //! ε_height(x, y) = max(−λ_h |h(x_r, y_r) − h(x, y)|, ε_hmin)        (eq. 3; 0 where the height is unknown)
@@ -9,7 +9,7 @@
 //! `p_diff` is that of the last field ([`crate::field::preference`]). Below 1e-10 the field around the robot is so flat that `ε_height` is
 //! left out until `p_diff` is above 1e-4 again. Where it is 0, `ε_global` is at its limit. Before the first field it is 0.
 
-use crate::config::{Mode, Terrain};
+use crate::config::{PreferenceMode, UnevenGround};
 use crate::geometry::Pose;
 use crate::math;
 
@@ -31,13 +31,13 @@ pub struct Preferences {
 
 /// Of a cell whose height differs by so much from the robot's [eq. 3].
 #[must_use]
-pub fn of_height(terrain: &Terrain, difference_m: f32) -> f32 {
+pub fn of_height(terrain: &UnevenGround, difference_m: f32) -> f32 {
     (-terrain.height_scale * difference_m.abs()).max(terrain.least_preference)
 }
 
 /// Of all cells [eq. 4].
 #[must_use]
-pub fn of_flatness(terrain: &Terrain, p_diff: f32) -> f32 {
+pub fn of_flatness(terrain: &UnevenGround, p_diff: f32) -> f32 {
     if p_diff > 0.0 {
         (-terrain.global_scale * math::ln(p_diff)).min(terrain.most_preference)
     } else {
@@ -93,16 +93,18 @@ impl Preferences {
 
     /// `ε_global`, if it is used.
     #[must_use]
-    pub fn global(&self, terrain: &Terrain) -> f32 {
+    pub fn global(&self, terrain: &UnevenGround) -> f32 {
         match (terrain.mode, self.p_diff) {
-            (Mode::Global | Mode::Both, Some(p_diff)) => of_flatness(terrain, p_diff),
+            (PreferenceMode::Global | PreferenceMode::Both, Some(p_diff)) => {
+                of_flatness(terrain, p_diff)
+            }
             _ => 0.0,
         }
     }
 
     /// ε of a cell, given `ε_global` and how much its height differs from the robot's, if that is known [eq. 5].
     #[must_use]
-    pub fn of_cell(&self, terrain: &Terrain, global: f32, difference_m: Option<f32>) -> f32 {
+    pub fn of_cell(&self, terrain: &UnevenGround, global: f32, difference_m: Option<f32>) -> f32 {
         let heights = terrain.mode.has_heights() && !self.ignores_heights;
         let height = match difference_m {
             Some(difference_m) if heights => of_height(terrain, difference_m),
@@ -116,8 +118,8 @@ impl Preferences {
 mod tests {
     use std::boxed::Box;
 
-    use super::{Mode, Preferences, STEEP_AGAIN, TOO_FLAT, of_flatness, of_height};
-    use crate::config::Terrain;
+    use super::{PreferenceMode, Preferences, STEEP_AGAIN, TOO_FLAT, of_flatness, of_height};
+    use crate::config::UnevenGround;
     use crate::field::preference::p_diff;
     use crate::field::{GOAL, Preference, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, solve};
 
@@ -195,12 +197,12 @@ mod tests {
 
             let [scale_h, scale_g, least, most] =
                 [4.0, 0.05, -2.0, 2.0].map(|most| (random.next() * most) as f32);
-            let terrain = Terrain {
+            let terrain = UnevenGround {
                 height_scale: scale_h,
                 global_scale: scale_g,
                 least_preference: least,
                 most_preference: most,
-                ..Terrain::TABLE_I
+                ..UnevenGround::TABLE_I
             };
             let mut preferences = Preferences::new();
             preferences.note(flatness);
@@ -245,7 +247,7 @@ mod tests {
     fn heights_are_left_out_below_1e10_and_come_back_above_1e4() {
         let (free, goal) = corridor();
         let window = solved(&free, &goal, 0.0);
-        let terrain = Terrain::TABLE_I;
+        let terrain = UnevenGround::TABLE_I;
         let mut preferences = Preferences::new();
         // Towards the flat end and back, a row of the corridor at a time.
         let (mut left_out, mut back_at) = (0.0, 0.0);
@@ -287,22 +289,22 @@ mod tests {
     fn the_mode_says_what_counts() {
         let mut preferences = Preferences::new();
         preferences.note(1e-3);
-        let global = of_flatness(&Terrain::TABLE_I, 1e-3);
+        let global = of_flatness(&UnevenGround::TABLE_I, 1e-3);
         let of = |mode, difference_m| {
-            let terrain = Terrain {
+            let terrain = UnevenGround {
                 mode,
-                ..Terrain::TABLE_I
+                ..UnevenGround::TABLE_I
             };
             preferences.of_cell(&terrain, preferences.global(&terrain), difference_m)
         };
-        assert_eq!(of(Mode::Off, Some(0.1)), 0.0);
-        assert_eq!(of(Mode::Height, Some(0.1)), -0.2);
-        assert_eq!(of(Mode::Height, Some(-9.0)), -0.5);
-        assert_eq!(of(Mode::Height, None), 0.0);
-        assert_eq!(of(Mode::Global, Some(0.1)), global);
-        assert_eq!(of(Mode::Both, Some(0.1)), global - 0.2);
-        assert_eq!(of(Mode::Both, None), global);
+        assert_eq!(of(PreferenceMode::Off, Some(0.1)), 0.0);
+        assert_eq!(of(PreferenceMode::Height, Some(0.1)), -0.2);
+        assert_eq!(of(PreferenceMode::Height, Some(-9.0)), -0.5);
+        assert_eq!(of(PreferenceMode::Height, None), 0.0);
+        assert_eq!(of(PreferenceMode::Global, Some(0.1)), global);
+        assert_eq!(of(PreferenceMode::Both, Some(0.1)), global - 0.2);
+        assert_eq!(of(PreferenceMode::Both, None), global);
         // A field of nothing is as flat as can be.
-        assert_eq!(of_flatness(&Terrain::TABLE_I, 0.0), 0.5);
+        assert_eq!(of_flatness(&UnevenGround::TABLE_I, 0.0), 0.5);
     }
 }

@@ -1,6 +1,6 @@
 //! What stands in the local window: 61 × 61 cells around the robot, as bit rows.
 //!
-//! A window cell is `scale` × `scale` map cells (1, 2 or 4): where no centre cell is near, the window grows [Ouroboros,
+//! A window cell is `scale` × `scale` map cells (1, 2 or 4): where no centre cell is near, the window grows [Jorge15,
 //! III-B] by growing its cells, at the same memory and time. It is passable if any of its map cells is: passable cells
 //! on the two sides of a wall are five cells apart, so no wall is lost at 20 cm. At 40 cm one would be, so there all of
 //! its map cells must be passable; that closes doors, but a window of this scale is only asked for in the open.
@@ -11,7 +11,7 @@
 use crate::field::SIDE;
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::map::Tiles;
-use crate::roadmap::configuration_space::{Disc, Strip, for_each_strip};
+use crate::roadmap::configuration_space::{Footprint, Strip, for_each_strip};
 
 /// Scales that a window may grow to.
 pub const SCALES: [i32; 3] = [1, 2, 4];
@@ -24,7 +24,7 @@ const INSIDE: u64 = (1 << SIDE) - 1;
 
 /// The window's cells.
 #[derive(Clone, Debug)]
-pub struct View {
+pub struct LocalGrid {
     /// Least map cell.
     pub origin: Cell,
     /// Map cells along a window cell; 0 before the first look.
@@ -51,7 +51,7 @@ fn squeeze(word: u32, scale: i32) -> u64 {
     })
 }
 
-impl View {
+impl LocalGrid {
     /// A window of nothing: all zeros, so that a static one costs no flash.
     #[must_use]
     pub const fn new() -> Self {
@@ -68,7 +68,7 @@ impl View {
     pub fn look_around<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        disc: &Disc,
+        disc: &Footprint,
         centre: Cell,
         scale: i32,
     ) {
@@ -176,7 +176,7 @@ impl View {
 
     /// Keep the robot's centre off cells (their middles) by the disc, or by as much as it keeps now where that is less: so it is never shut in.
     /// Where a window cell is a map cell; in a larger one there is no telling.
-    pub fn keep_off(&mut self, robot: Cell, cells: impl Iterator<Item = Point>, disc: &Disc) {
+    pub fn keep_off(&mut self, robot: Cell, cells: impl Iterator<Item = Point>, disc: &Footprint) {
         if self.scale != 1 {
             return;
         }
@@ -187,7 +187,7 @@ impl View {
     }
 
     /// Nothing in the disc around a cell, and nearer to it than the root of `near2`, is passable.
-    fn clear_disc(&mut self, cell: Cell, disc: &Disc, near2: i32) {
+    fn clear_disc(&mut self, cell: Cell, disc: &Footprint, near2: i32) {
         let (x, y) = (cell.x - self.origin.x, cell.y - self.origin.y);
         for dy in -disc.reach()..=disc.reach() {
             let row = usize::try_from(y + dy).unwrap_or(SIDE);
@@ -243,7 +243,7 @@ impl View {
     }
 }
 
-impl Default for View {
+impl Default for LocalGrid {
     fn default() -> Self {
         Self::new()
     }
@@ -282,19 +282,19 @@ mod tests {
 
     #[test]
     fn the_window_at_scale_one_is_the_map() {
-        let (tiles, disc) = (room(), Disc::new(0.3));
-        let mut view = View::new();
+        let (tiles, disc) = (room(), Footprint::new(0.3));
+        let mut view = LocalGrid::new();
         view.look_around(&tiles, &disc, Cell { x: 3, y: -2 }, 1);
         for y in 0..SIDE {
             for x in 0..SIDE {
                 let cell = view.cell(x, y);
                 assert_eq!(view.place(cell), Some((x, y)));
                 assert_eq!(
-                    View::has(&view.passable, (x, y)),
+                    LocalGrid::has(&view.passable, (x, y)),
                     is_passable(&tiles, &disc, cell)
                 );
                 assert_eq!(
-                    View::has(&view.obstacle, (x, y)),
+                    LocalGrid::has(&view.obstacle, (x, y)),
                     tiles.class(cell) == Class::Obstacle
                 );
             }
@@ -303,9 +303,9 @@ mod tests {
 
     #[test]
     fn a_grown_window_is_passable_where_any_of_its_cells_is() {
-        let (tiles, disc) = (room(), Disc::new(0.3));
+        let (tiles, disc) = (room(), Footprint::new(0.3));
         for scale in [2, 4] {
-            let mut view = View::new();
+            let mut view = LocalGrid::new();
             view.look_around(&tiles, &disc, Cell { x: -5, y: 9 }, scale);
             for y in 0..SIDE {
                 for x in 0..SIDE {
@@ -325,7 +325,7 @@ mod tests {
                     }
                     let wanted = if scale < 4 { any } else { all };
                     assert_eq!(
-                        View::has(&view.passable, (x, y)),
+                        LocalGrid::has(&view.passable, (x, y)),
                         wanted,
                         "scale {scale} ({x}, {y})"
                     );
@@ -334,12 +334,12 @@ mod tests {
         }
     }
 
-    /// Around a cell to be kept off, and a robot that stands nearer to another one than that.
+    /// GroundModel a cell to be kept off, and a robot that stands nearer to another one than that.
     #[test]
     fn the_centre_is_kept_off_cells_but_never_shut_in() {
-        let (tiles, disc) = (room(), Disc::new(0.3));
+        let (tiles, disc) = (room(), Footprint::new(0.3));
         let robot = Cell { x: -10, y: 0 };
-        let mut view = View::new();
+        let mut view = LocalGrid::new();
         view.look_around(&tiles, &disc, robot, 1);
         let before = view.passable;
         let (far, near) = (Cell { x: -16, y: 1 }, Cell { x: -10, y: 2 });
@@ -353,25 +353,28 @@ mod tests {
                 };
                 let kept = within(far, 9) || within(near, 4);
                 let wanted = row >> x & 1 == 1 && !kept;
-                assert_eq!(View::has(&view.passable, (x, y)), wanted, "{cell:?}");
+                assert_eq!(LocalGrid::has(&view.passable, (x, y)), wanted, "{cell:?}");
             }
         }
         let place = view.place(robot).expect("the middle");
-        assert!(View::has(&view.passable, place), "it stands 2 cells off");
+        assert!(
+            LocalGrid::has(&view.passable, place),
+            "it stands 2 cells off"
+        );
     }
 
     #[test]
     fn a_robot_too_near_to_a_wall_is_let_out() {
-        let (tiles, disc) = (room(), Disc::new(0.3));
+        let (tiles, disc) = (room(), Footprint::new(0.3));
         let robot = Cell { x: -28, y: 0 };
-        let mut view = View::new();
+        let mut view = LocalGrid::new();
         view.look_around(&tiles, &disc, robot, 1);
         let place = view.place(robot).unwrap();
-        assert!(!View::has(&view.passable, place));
+        assert!(!LocalGrid::has(&view.passable, place));
         view.free_robot(robot);
-        assert!(View::has(&view.passable, place));
+        assert!(LocalGrid::has(&view.passable, place));
         assert!(
-            !View::has(&view.passable, (place.0 - 2, place.1)),
+            !LocalGrid::has(&view.passable, (place.0 - 2, place.1)),
             "not into the wall"
         );
     }

@@ -1,6 +1,6 @@
 //! The potential in the local window, and the way down it.
 //!
-//! Obstacles hold p = 1, goals p = 0, and every free cell between them satisfies [BVP; Terrain, eq. 1]
+//! Obstacles hold p = 1, goals p = 0, and every free cell between them satisfies [Prestes02; Maffei20, eq. 1]
 //!
 //! ```text
 //! ∇²p − ε (|∂p/∂x| + |∂p/∂y|) = 0          ε: the cell's preference, |ε| ≤ 2

@@ -1,4 +1,4 @@
-//! How flat the field is around the robot [Terrain, §III]:
+//! How flat the field is around the robot [Maffei20, §III]:
 //!
 //! ```text
 //! p_diff(r) = mean of |p_r − p_n| over the cells n of the kernel around the robot's cell r

@@ -240,7 +240,7 @@ impl Level<'_> {
 }
 
 /// A cell beside others: south and north, west and east.
-type Around<'a> = (
+type GroundModel<'a> = (
     (&'a Cell<f32>, &'a Cell<f32>),
     (&'a Cell<f32>, &'a Cell<f32>),
 );
@@ -248,7 +248,7 @@ type Around<'a> = (
 /// x ← (b + Σ A x) / D.
 #[inline(always)]
 fn relax(
-    ((equation, here), ((south, north), (west, east))): ((&Equation, &Cell<f32>), Around<'_>),
+    ((equation, here), ((south, north), (west, east))): ((&Equation, &Cell<f32>), GroundModel<'_>),
 ) {
     let upright = equation[SOUTH] * south.get() + equation[NORTH] * north.get();
     let level = equation[WEST] * west.get() + equation[EAST] * east.get();

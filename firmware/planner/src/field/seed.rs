@@ -9,7 +9,7 @@
 //! q ← 0.85 n  where  16 q < n = max(N, S, W, E)
 //! ```
 //!
-//! Around a warm field this continues it outwards. A cold window is raised by a finer comb, to about 0.85 to the power of
+//! GroundModel a warm field this continues it outwards. A cold window is raised by a finer comb, to about 0.85 to the power of
 //! the distance to the nearest goal, so that the start has roughly the field's shape.
 //!
 //! Invariant: no cell falls; afterwards no reached cell is below a sixteenth of its neighbours.

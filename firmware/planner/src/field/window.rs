@@ -1,7 +1,7 @@
 //! The local window: 61 × 61 cells of the field q, their boundary and their preferences.
 //!
 //! Cell (x, y), 0 ≤ x, y < [`SIDE`]: x to the right, y up. What is neither free nor a goal is an obstacle, and so is
-//! everything outside the window [Ouroboros: 61 × 61 cells].
+//! everything outside the window [Jorge15: 61 × 61 cells].
 //!
 //! Invariants: q is [`GOAL`] on goals, 0 on obstacles, outside, and on free cells that no goal can be reached from;
 //! elsewhere 0 ≤ q ≤ `GOAL`. A reachable cell that is new has q = 0 until the solver gives it a value.
@@ -16,7 +16,7 @@ use crate::field::multigrid::Origin;
 use crate::field::reach;
 use crate::field::runs::Runs;
 
-/// Cells along a side of the window [Ouroboros, Table I].
+/// Cells along a side of the window [Jorge15, Table I].
 pub const SIDE: usize = 61;
 
 /// The value of q on a goal: 2¹⁰⁰.
@@ -39,7 +39,7 @@ pub(super) const fn index(x: usize, y: usize) -> usize {
 /// How much a cell attracts (positive) or repels (negative): ε of the equation, within ±2.
 ///
 /// Up to there every neighbour's weight (1 ± ε/2)/4 is non-negative, so that the maximum principle holds; beyond, the
-/// relaxation diverges [Terrain, §III]. Resolution 2⁻¹³.
+/// relaxation diverges [Maffei20, §III]. Resolution 2⁻¹³.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Preference(I3F13);
 
@@ -188,7 +188,7 @@ impl Window {
 
     /// Give the goal (x, y) a share of a goal's charge, from 0 to 1, until the next boundary; what is no goal stays as it is.
     ///
-    /// With it p has other boundary values than 0 and 1 [TDBVP, IV].
+    /// With it p has other boundary values than 0 and 1 [Maffei14, IV].
     pub fn charge(&mut self, x: usize, y: usize, share: f32) {
         if !self.is_goal(x, y) {
             return;

@@ -11,7 +11,7 @@ pub enum Class {
     Free = 1,
     /// Stands in the way.
     Obstacle = 2,
-    /// A hole, cliff or downward slope [Terrain, III-B].
+    /// A hole, cliff or downward slope [Maffei20, III-B].
     Negative = 3,
 }
 

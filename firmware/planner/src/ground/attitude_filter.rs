@@ -1,4 +1,4 @@
-//! Tilt: the attitude as it is believed, and how far a beam may be trusted with it.
+//! AttitudeFilter: the attitude as it is believed, and how far a beam may be trusted with it.
 //!
 //! ```text
 //! g      slope of the robot's plane in the world: turning on the spot does not change it
@@ -11,7 +11,7 @@
 //! An error of the attitude tilts a whole sweep: of 1° it lifts the ground 3 m to the side by 5 cm, and two sweeps that meet there make an
 //! edge that is none. A mean over many sweeps would cure that, but a robot that drives on has one or two over a cell. So the attitude is
 //! smoothed, and no height is measured farther off than errors of it stay small; the robot looks again from nearer. Below `CALM` the
-//! attitude is taken as it comes: an inertial unit without noise changes nothing. Not in [Maffei-Terrain], which measures attitude without
+//! attitude is taken as it comes: an inertial unit without noise changes nothing. Not in [Maffei20], which measures attitude without
 //! error. Units: tangents, metres, radians.
 
 use crate::geometry::Pose;
@@ -38,7 +38,7 @@ const MOTION: f32 = 5.0;
 
 /// The filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tilt {
+pub struct AttitudeFilter {
     /// The believed slope, along x and y.
     slope: [f32; 2],
     /// The slopes one and two steps ago.
@@ -48,7 +48,7 @@ pub struct Tilt {
     steps: u8,
 }
 
-impl Tilt {
+impl AttitudeFilter {
     /// Before the first step.
     #[must_use]
     pub const fn new() -> Self {
@@ -135,7 +135,7 @@ impl Tilt {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::{CALM, ERROR_M, SMOOTHED, Tilt};
+    use super::{AttitudeFilter, CALM, ERROR_M, SMOOTHED};
     use crate::geometry::Pose;
     use crate::ground::ray::Attitude;
 
@@ -175,7 +175,7 @@ pub(super) mod tests {
 
     #[test]
     fn without_noise_the_attitude_is_taken_bit_by_bit() {
-        let mut tilt = Tilt::new();
+        let mut tilt = AttitudeFilter::new();
         for step in 0..500 {
             let pose = on_a_slope(step);
             assert_eq!(tilt.note(&pose), pose);
@@ -186,7 +186,7 @@ pub(super) mod tests {
     #[test]
     fn noise_is_estimated_and_half_of_its_variance_goes() {
         let sigma = 1.0_f32.to_radians();
-        let (mut tilt, mut seed) = (Tilt::new(), 5);
+        let (mut tilt, mut seed) = (AttitudeFilter::new(), 5);
         let (mut before, mut after, mut count) = (0.0, 0.0, 0.0);
         for step in 0..2_000 {
             let truth = on_a_slope(step);
@@ -214,7 +214,7 @@ pub(super) mod tests {
     #[test]
     fn the_worst_of_many_attitudes_is_not_believed() {
         let sigma = 1.0_f32.to_radians();
-        let (mut tilt, mut seed) = (Tilt::new(), 11);
+        let (mut tilt, mut seed) = (AttitudeFilter::new(), 11);
         let mut worst = 0.0_f32;
         for step in 0..5_000 {
             let believed = tilt.note(&noisy(Pose::default(), sigma, &mut seed));
@@ -229,7 +229,7 @@ pub(super) mod tests {
     #[test]
     fn a_kerb_is_followed_at_once() {
         let sigma = 0.5_f32.to_radians();
-        let (mut tilt, mut seed) = (Tilt::new(), 9);
+        let (mut tilt, mut seed) = (AttitudeFilter::new(), 9);
         for _ in 0..200 {
             tilt.note(&noisy(Pose::default(), sigma, &mut seed));
         }

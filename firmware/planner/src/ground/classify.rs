@@ -8,14 +8,14 @@
 //! | as before | anything else: what the map says stays, until something better is known |
 //!
 //! Too high is an edge or a slope as [`super::falls`] tells them. The lower side stays free [*departs* from
-//! Maffei-Terrain, III-B: a mean over a kernel of 2 m blurs edges, and calls the upper side of every edge an obstacle a metre deep].
+//! Maffei20, III-B: a mean over a kernel of 2 m blurs edges, and calls the upper side of every edge an obstacle a metre deep].
 //! An obstacle of the map is only freed where most cells around are measured too.
 //!
 //! Units: bits, bit k is column `origin.x + k`; heights in steps of [`fixed::types::I7F9`].
 
 use fixed::types::I7F9;
 
-use crate::config::Terrain;
+use crate::config::UnevenGround;
 use crate::geometry::{CELL_M, Cell};
 use crate::grid::Row;
 use crate::ground::elevation::{Ground, Heights, WINDOW_SIDE};
@@ -79,7 +79,7 @@ pub struct Steps {
 impl Steps {
     /// What a robot's limits allow.
     #[must_use]
-    pub fn new(terrain: &Terrain) -> Self {
+    pub fn new(terrain: &UnevenGround) -> Self {
         let steps = |metres: f32| i32::from(I7F9::saturating_from_num(metres).to_bits());
         let rise = |cells: f32| terrain.climb * cells * CELL_M;
         let edge = terrain.step_m + NOISE_M;
@@ -162,7 +162,7 @@ fn is_well_known(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
 /// three of the four directions at least and in all in which there are two, and nothing between them is gone; what is but held to be gone
 /// tells nothing. Two heights may differ by `slack_m` for errors of the attitude alone.
 #[must_use]
-pub fn leads_over(heights: &Heights<'_>, terrain: &Terrain, cell: Cell, slack_m: f32) -> bool {
+pub fn leads_over(heights: &Heights<'_>, terrain: &UnevenGround, cell: Cell, slack_m: f32) -> bool {
     let brow = if slack_m > 0.0 {
         Brow::SHAKEN
     } else {

@@ -1,4 +1,4 @@
-//! Rooms: what the level laser sees through a doorway [Maffei-Terrain, IV, scenario 3].
+//! Rooms: what the level laser sees through a doorway [Maffei20, IV, scenario 3].
 //!
 //! ```text
 //!      room             beams between the jambs J all end on something that stands
@@ -17,12 +17,12 @@
 
 use core::ops::Range;
 
-use crate::config::Terrain;
+use crate::config::UnevenGround;
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::ground::elevation::Heights;
 use crate::ground::ray::{Attitude, Mount, Ray};
 use crate::math;
-use crate::robot::Laser;
+use crate::robot::LaserMount;
 
 /// Widest doorway, metres.
 const DOORWAY_M: f32 = 2.0;
@@ -61,8 +61,8 @@ pub struct Look<'a> {
     mount: Mount<'a>,
     /// Height of the ground that the robot stands on, metres.
     ground_m: f32,
-    terrain: &'a Terrain,
-    laser: &'a Laser,
+    terrain: &'a UnevenGround,
+    laser: &'a LaserMount,
     ranges_mm: &'a [u16],
 }
 
@@ -71,8 +71,8 @@ impl<'a> Look<'a> {
     #[must_use]
     pub fn new(
         pose: &Pose,
-        terrain: &'a Terrain,
-        laser: &'a Laser,
+        terrain: &'a UnevenGround,
+        laser: &'a LaserMount,
         ranges_mm: &'a [u16],
     ) -> Option<Self> {
         let attitude = Attitude::of(pose);
@@ -230,11 +230,11 @@ mod tests {
     use std::vec::Vec;
 
     use super::{Look, Part};
-    use crate::config::Terrain;
+    use crate::config::UnevenGround;
     use crate::geometry::{Cell, Point, Pose};
     use crate::ground::elevation::{Elevation, WINDOW_CELLS};
     use crate::input::NO_RETURN_MM;
-    use crate::robot::Laser;
+    use crate::robot::LaserMount;
     use crate::robot::is_level;
 
     /// A metre is two characters across and one line up; `#` stands. The robot is at (4, 1.5), in the middle, and looks north.
@@ -262,8 +262,8 @@ mod tests {
         yaw_rad: core::f32::consts::FRAC_PI_2,
     };
 
-    fn laser() -> Laser {
-        Laser {
+    fn laser() -> LaserMount {
+        LaserMount {
             x_m: 0.0,
             y_m: 0.0,
             z_m: 0.45,
@@ -303,7 +303,7 @@ mod tests {
                 (0..2).for_each(|_| window.stand(cell));
             }
         }
-        let (terrain, laser) = (Terrain::TABLE_I, Box::new(laser()));
+        let (terrain, laser) = (UnevenGround::TABLE_I, Box::new(laser()));
         assert!(is_level(&laser));
         let mut cells = BTreeMap::new();
         if let Some(look) = Look::new(&pose, &terrain, &laser, ranges_mm) {

@@ -14,10 +14,10 @@
 //! What is but held to be gone is no evidence against the ground beside it and gives way to the first height that is measured. What lies on
 //! a rim, and no beam said anything of, is not gone in the map where ground was measured before: a robot that comes again, or backs, has in
 //! the window but the strip that it stood on. What a beam told is: a hole's far wall and the foot of a kerb are measured as ground from the
-//! other side. Of an attitude that errs a suspicion is worth no more than a rim. Not in [Maffei-Terrain], whose ray back to the robot marks
+//! other side. Of an attitude that errs a suspicion is worth no more than a rim. Not in [Maffei20], whose ray back to the robot marks
 //! whatever was not detected. Units: metres, map cells.
 
-use crate::config::Terrain;
+use crate::config::UnevenGround;
 use crate::geometry::{CELL_M, Cell};
 use crate::ground::classify::{Steps, is_between, leads_over};
 use crate::ground::elevation::Elevation;
@@ -28,7 +28,7 @@ use crate::math;
 const SETTLED_M: f32 = 0.9;
 
 /// Settle what is suspected around the robot at `middle`. Two heights may differ by `slack_m` for errors of the attitude alone.
-pub fn settle(elevation: &mut Elevation<'_>, terrain: &Terrain, middle: Cell, slack_m: f32) {
+pub fn settle(elevation: &mut Elevation<'_>, terrain: &UnevenGround, middle: Cell, slack_m: f32) {
     let reach = math::floor(SETTLED_M / CELL_M);
     let side = 2 * reach + 1;
     let near = |k: i32| Cell {
@@ -66,7 +66,7 @@ mod tests {
     use std::vec;
 
     use super::settle;
-    use crate::config::Terrain;
+    use crate::config::UnevenGround;
     use crate::geometry::Cell;
     use crate::grid::Row;
     use crate::ground::classify::{self, Steps};
@@ -97,7 +97,7 @@ mod tests {
             }
         }
         for _ in 0..2 {
-            settle(&mut window, &Terrain::TABLE_I, Cell::default(), 0.0);
+            settle(&mut window, &UnevenGround::TABLE_I, Cell::default(), 0.0);
         }
         let drawn = |heights: &Heights<'_>, cell: Cell| match () {
             () if heights.is_sunken(cell) => 'v',
@@ -195,7 +195,13 @@ mod tests {
         window.sink(Cell { x: 5, y: 9 });
         window.suspect(Cell { x: 7, y: 9 });
         window.believe(Cell { x: 7, y: 9 });
-        classify::row(&window.read(), &Steps::new(&Terrain::TABLE_I), 9, known).negative
+        classify::row(
+            &window.read(),
+            &Steps::new(&UnevenGround::TABLE_I),
+            9,
+            known,
+        )
+        .negative
     }
 
     /// A robot that comes again, or backs, has nothing in the window but the strip that it stands on; but what was free from the other side, a
@@ -231,7 +237,12 @@ mod tests {
         }
         let behind = Cell { x: 1, y: 0 };
         window.suspect(behind);
-        settle(&mut window, &Terrain::TABLE_I, Cell::default(), slack_m);
+        settle(
+            &mut window,
+            &UnevenGround::TABLE_I,
+            Cell::default(),
+            slack_m,
+        );
         let heights = window.read();
         (heights.is_sunken(behind), heights.is_presumed(behind))
     }

@@ -1,7 +1,7 @@
 //! The elevation window: 64 × 64 cells around the robot, each with the running mean of the heights measured in it.
 //!
 //! ```text
-//! h ← h + (z − h) / n,    n = min(measurements so far, MOST_COUNT)          [Maffei-Terrain, III-B]
+//! h ← h + (z − h) / n,    n = min(measurements so far, MOST_COUNT)          [Maffei20, III-B]
 //! ```
 //!
 //! A height is an [`I7F9`]: ±64 m around the start in steps of 2 mm. Beside it lies a byte of marks: how often the cell was

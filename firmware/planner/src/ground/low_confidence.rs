@@ -8,7 +8,7 @@
 //! would be measured there, and ground never measured stops the robot before its nose goes down. So what was glimpsed there is free to
 //! drive on once the robot stands so near that it will not be measured from where it stands, unless it lies higher or lower than a
 //! gentle slope from the measured ground before it can lead. It becomes no height: beside heights that are measured its errors would
-//! make edges. Not in [Maffei-Terrain], which measures attitude without error. Units: metres, map cells.
+//! make edges. Not in [Maffei20], which measures attitude without error. Units: metres, map cells.
 
 use crate::geometry::{CELL_M, Cell};
 use crate::ground::elevation::{Heights, WINDOW_SIDE};

@@ -1,5 +1,5 @@
 //! Uneven ground: how high it lies around the robot, what of it can be driven on, and what of it is preferred
-//! [Maffei-Terrain, III-B and III-C].
+//! [Maffei20, III-B and III-C].
 //!
 //! ```text
 //! both scans + pose (z, roll, pitch, yaw) → elevation → classes → the map's tiles          each step
@@ -22,7 +22,7 @@
 //! Everything is judged against the ground that the robot stands on and against ground measured beside it, never against the height of the
 //! start. Units: metres; slopes are tangents; heights count from the start.
 //!
-//! [Maffei-Terrain]: "Exploration of 3D terrains using potential fields with elevation-based local distortions".
+//! [Maffei20]: "Exploration of 3D terrains using potential fields with elevation-based local distortions".
 
 pub mod attitude_filter;
 pub mod classify;
@@ -38,5 +38,5 @@ pub mod survey;
 #[cfg(test)]
 mod tests;
 
-pub use attitude_filter::Tilt;
+pub use attitude_filter::AttitudeFilter;
 pub use elevation::{Elevation, Heights};

@@ -9,7 +9,7 @@
 
 use crate::geometry::{Point, Pose};
 use crate::math;
-use crate::robot::Laser;
+use crate::robot::LaserMount;
 
 /// The robot's attitude: its forward, left and up axes in the world.
 #[derive(Clone, Copy, Debug)]
@@ -119,7 +119,7 @@ impl Attitude {
 /// A laser on the tilted robot.
 #[derive(Clone, Copy, Debug)]
 pub struct Mount<'a> {
-    laser: &'a Laser,
+    laser: &'a LaserMount,
     /// From the robot's place to the laser's, in the world.
     offset: [f32; 3],
     sin_tilt: f32,
@@ -129,7 +129,7 @@ pub struct Mount<'a> {
 impl<'a> Mount<'a> {
     /// A laser on a robot in this attitude.
     #[must_use]
-    pub fn new(attitude: &Attitude, laser: &'a Laser) -> Self {
+    pub fn new(attitude: &Attitude, laser: &'a LaserMount) -> Self {
         let (sin_tilt, cos_tilt) = math::sin_cos(laser.pitch_rad);
         Self {
             laser,
@@ -145,10 +145,10 @@ mod tests {
     use super::{Attitude, Mount};
     use crate::geometry::{Point, Pose};
     use crate::math;
-    use crate::robot::Laser;
+    use crate::robot::LaserMount;
 
-    fn laser(pitch_rad: f32) -> Laser {
-        Laser {
+    fn laser(pitch_rad: f32) -> LaserMount {
+        LaserMount {
             x_m: 0.15,
             y_m: 0.0,
             z_m: 0.45,

@@ -10,7 +10,7 @@
 //! Of an axis along which the ground does not rise in both halves alike nothing counts in a slope: so it is the length of the gradient, whatever
 //! its direction, and an edge alone, which lies in one half, is none. No cell's error counts in both axes, so a diagonal is measured as well
 //! as an axis. The second rule for edges tells no slope that the last does not, but tells it from its upper end: an edge that beams smear
-//! over some cells is one of its upper side. Not in [Maffei-Terrain], which knows no slope but against the kernel's mean. Units: map cells,
+//! over some cells is one of its upper side. Not in [Maffei20], which knows no slope but against the kernel's mean. Units: map cells,
 //! heights in steps of [`fixed::types::I7F9`].
 
 use crate::geometry::Cell;
@@ -102,7 +102,7 @@ pub fn is_sure(heights: &Heights<'_>, cell: Cell, fall: Fall) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::config::Terrain;
+    use crate::config::UnevenGround;
     use crate::geometry::{Cell, Point};
     use crate::grid::Row;
     use crate::ground::attitude_filter::tests::normal;
@@ -134,7 +134,7 @@ mod tests {
                 }
             }
         }
-        let steps = Steps::new(&Terrain::TABLE_I);
+        let steps = Steps::new(&UnevenGround::TABLE_I);
         core::array::from_fn(|k| row(&window.read(), &steps, k as i32 - 32, Row::default()))
     }
 
@@ -231,9 +231,9 @@ mod tests {
             window.measure(Cell { x, y }, height_m);
             window.measure(Cell { x, y }, height_m);
         }
-        let steps = Steps::new(&Terrain {
+        let steps = Steps::new(&UnevenGround {
             step_m: 9.0,
-            ..Terrain::TABLE_I
+            ..UnevenGround::TABLE_I
         });
         let of = |y: i32| row(&window.read(), &steps, y, Row::default());
         assert_eq!(of(0).obstacle, 0);

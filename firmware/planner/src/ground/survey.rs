@@ -13,20 +13,20 @@
 //! | `dh < h_hole`, but the beam comes down no more steeply than a slope may | a rim at K is suspected ([`super::suspicion`]) |
 //! | else, with K near enough | ground; of what rises too steeply before what stands, the foot of that |
 //!
-//! Departs from [Maffei-Terrain, III-B] in three ways. (1) Obstacle (a) must also be steep, because level beams meet every slope that
+//! Departs from [Maffei20, III-B] in three ways. (1) Obstacle (a) must also be steep, because level beams meet every slope that
 //! rises. (2) The paper's rule for holes, `h − h_robot < h_hole`, calls everything behind the brow of a long slope a hole, and misses a
 //! drop of 0.2 m, which fells a 3-AT. A beam over a rim tells the two apart: behind a brow the ground bends down before the beam loses it, so that
 //! the slope at K, carried on, foretells P; behind a rim it does not. A brow that bends quickly is like a low rim until the slope behind it is
 //! measured, so that is suspected. (3) A ray back from P ends at K: what lies nearer is measured,
 //! and where it is not (the beam passes high over K) nothing is said of a rim that nobody saw.
 //!
-//! Around the start lies a disc that no laser ever sees; there the robot's own plane is taken for measured. Units: metres.
+//! GroundModel the start lies a disc that no laser ever sees; there the robot's own plane is taken for measured. Units: metres.
 
 use crate::config::Config;
 use crate::config::KERNEL_CELLS;
-use crate::config::Terrain;
+use crate::config::UnevenGround;
 use crate::geometry::{CELL_M, Cell, Point};
-use crate::ground::attitude_filter::Tilt;
+use crate::ground::attitude_filter::AttitudeFilter;
 use crate::ground::drop_inference;
 use crate::ground::elevation::{Elevation, WINDOW_SIDE};
 use crate::ground::ray::{Attitude, Mount, Ray};
@@ -34,7 +34,7 @@ use crate::input::Input;
 use crate::input::has_company;
 use crate::input::informative_range_mm;
 use crate::math;
-use crate::robot::Laser;
+use crate::robot::LaserMount;
 use crate::robot::is_level;
 
 /// Radius around the start that the tilted beams never see, metres: they meet level ground at 1.39 m from the robot's centre.
@@ -88,7 +88,7 @@ struct Footing {
 #[derive(Debug)]
 pub struct Survey<'a, 'm> {
     elevation: &'a mut Elevation<'m>,
-    terrain: &'a Terrain,
+    terrain: &'a UnevenGround,
     attitude: Attitude,
     robot: Point,
     robot_z_m: f32,
@@ -101,7 +101,11 @@ pub struct Survey<'a, 'm> {
 impl<'a, 'm> Survey<'a, 'm> {
     /// A survey from where the input says that the robot is.
     #[must_use]
-    pub fn new(elevation: &'a mut Elevation<'m>, terrain: &'a Terrain, input: &Input<'_>) -> Self {
+    pub fn new(
+        elevation: &'a mut Elevation<'m>,
+        terrain: &'a UnevenGround,
+        input: &Input<'_>,
+    ) -> Self {
         elevation.follow(input.pose.point().cell());
         Self {
             elevation,
@@ -116,7 +120,7 @@ impl<'a, 'm> Survey<'a, 'm> {
 
     /// The survey of an attitude that is believed so far.
     #[must_use]
-    pub fn believing(mut self, tilt: &Tilt) -> Self {
+    pub fn believing(mut self, tilt: &AttitudeFilter) -> Self {
         self.reach_m = tilt.reach_m();
         self.slack_m = tilt.slack_m();
         self
@@ -160,7 +164,7 @@ impl<'a, 'm> Survey<'a, 'm> {
         }
     }
 
-    fn scan(&mut self, laser: &Laser, ranges_mm: &[u16]) {
+    fn scan(&mut self, laser: &LaserMount, ranges_mm: &[u16]) {
         let attitude = self.attitude;
         let mount = Mount::new(&attitude, laser);
         let level = is_level(laser);

@@ -4,7 +4,7 @@ use std::boxed::Box;
 use std::vec::Vec;
 
 use crate::config::Config;
-use crate::config::Terrain;
+use crate::config::UnevenGround;
 use crate::geometry::{Cell, Point, Pose, Twist};
 use crate::ground::classify;
 use crate::ground::elevation::{Elevation, WINDOW_CELLS};
@@ -12,12 +12,12 @@ use crate::ground::ray::{Attitude, Mount};
 use crate::input::{Input, NO_RETURN_MM};
 use crate::map::{Class, Map};
 use crate::math;
-use crate::robot::Laser;
+use crate::robot::LaserMount;
 
 type Ground = dyn Fn(f32, f32) -> f32;
 
-fn laser(x_m: f32, z_m: f32, pitch_rad: f32) -> Laser {
-    Laser {
+fn laser(x_m: f32, z_m: f32, pitch_rad: f32) -> LaserMount {
+    LaserMount {
         x_m,
         y_m: 0.0,
         z_m,
@@ -32,7 +32,7 @@ fn laser(x_m: f32, z_m: f32, pitch_rad: f32) -> Laser {
 fn config() -> Config {
     let lasers = [laser(0.10, 0.40, 0.0), laser(0.15, 0.45, 0.349)];
     Config {
-        terrain: Some(Terrain::TABLE_I),
+        ground: Some(UnevenGround::TABLE_I),
         ..Config::pioneer_3at(lasers.into_iter().collect())
     }
 }
@@ -49,7 +49,7 @@ fn pose(ground: &Ground, x_m: f32) -> Pose {
 }
 
 /// Ranges over the ground, by steps of a centimetre.
-fn scan(ground: &Ground, pose: &Pose, laser: &Laser) -> Vec<u16> {
+fn scan(ground: &Ground, pose: &Pose, laser: &LaserMount) -> Vec<u16> {
     let attitude = Attitude::of(pose);
     let mount = Mount::new(&attitude, laser);
     let datum = ground(0.0, 0.0);
@@ -202,7 +202,7 @@ fn a_corner_is_not_led_over_and_a_gap_is() {
             window.measure(cell, 0.0);
         }
         let asked = Cell { x: 2, y: 2 };
-        let leads = classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, 0.0);
+        let leads = classify::leads_over(&window.read(), &UnevenGround::TABLE_I, asked, 0.0);
         assert_eq!(leads, expected, "corner: {corner}");
     }
 }
@@ -219,7 +219,7 @@ fn leads_over_gap(slack_m: f32, height_m: impl Fn(f32) -> f32) -> bool {
         window.measure(cell, height_m(cell.centre().x_m));
     }
     let asked = Cell { x: 4, y: 2 };
-    classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, slack_m)
+    classify::leads_over(&window.read(), &UnevenGround::TABLE_I, asked, slack_m)
 }
 
 /// From above both look alike across the gap, a fifth of a metre down; beside it they do not.
@@ -259,7 +259,7 @@ fn leads_over_beside_a_false_height(slack_m: f32, again: u32) -> bool {
         window.measure(wrong, 0.5);
     }
     let asked = Cell { x: 4, y: 4 };
-    classify::leads_over(&window.read(), &Terrain::TABLE_I, asked, slack_m)
+    classify::leads_over(&window.read(), &UnevenGround::TABLE_I, asked, slack_m)
 }
 
 #[test]
@@ -297,7 +297,7 @@ fn flat_ground_needs_all_tiles_and_uneven_ground_lends_some() {
     };
     let mut map = Box::<Map<20, 400>>::default();
     let flat = Config {
-        terrain: None,
+        ground: None,
         ..config()
     };
     for (config, expected) in [(flat, 20), (config(), 4)] {

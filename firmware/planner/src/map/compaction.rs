@@ -72,7 +72,7 @@ impl Entry {
 }
 
 /// Whoever has something by the page of a tile, and a byte of it by what a tile is folded into.
-pub trait Lodger {
+pub trait SideTable {
     /// The page is given up: the byte to keep.
     fn leave_page(&mut self, page: usize) -> i8;
     /// The tile is in a page again.
@@ -84,7 +84,7 @@ pub trait Lodger {
 }
 
 /// Nobody.
-impl Lodger for () {
+impl SideTable for () {
     fn leave_page(&mut self, _: usize) -> i8 {
         0
     }
@@ -202,7 +202,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Unfold the tiles around the square of `side` cells at `window`, and if pages run short fold all others.
-    pub(super) fn fold(&mut self, window: Cell, side: i32, lodger: &mut impl Lodger) {
+    pub(super) fn fold(&mut self, window: Cell, side: i32, lodger: &mut impl SideTable) {
         let is_short = self.spare_pages() < LOW;
         let Some(extent) = self.extent().filter(|_| is_short || self.spare.folded > 0) else {
             return;
@@ -224,7 +224,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    fn fold_tile(&mut self, slot: usize, lodger: &mut impl Lodger) {
+    fn fold_tile(&mut self, slot: usize, lodger: &mut impl SideTable) {
         let Entry::Page(page) = Entry::of(self.directory.get(slot).copied().unwrap_or(0)) else {
             return;
         };
@@ -262,7 +262,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         half
     }
 
-    fn unfold_tile(&mut self, slot: usize, lodger: &mut impl Lodger) -> Result<(), NoRoom> {
+    fn unfold_tile(&mut self, slot: usize, lodger: &mut impl SideTable) -> Result<(), NoRoom> {
         let entry = Entry::of(self.directory.get(slot).copied().unwrap_or(0));
         let (low, kept) = match entry {
             Entry::Nothing | Entry::Page(_) => return Ok(()),
@@ -292,7 +292,7 @@ mod tests {
     use std::collections::BTreeMap;
     use std::vec::Vec;
 
-    use super::{Entry, KEPT_BACK, LOW, Lodger, NoRoom, Tiles};
+    use super::{Entry, KEPT_BACK, LOW, NoRoom, SideTable, Tiles};
     use crate::geometry::Cell;
     use crate::map::Class;
 
@@ -307,7 +307,7 @@ mod tests {
         halves: BTreeMap<usize, i8>,
     }
 
-    impl Lodger for Guest {
+    impl SideTable for Guest {
         fn leave_page(&mut self, page: usize) -> i8 {
             self.pages.remove(&page).unwrap()
         }

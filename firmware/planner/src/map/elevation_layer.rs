@@ -5,7 +5,7 @@
 //! map's.
 
 use crate::config::Config;
-use crate::config::Terrain;
+use crate::config::UnevenGround;
 use crate::geometry::Cell;
 use crate::grid::bits::ones64;
 use crate::ground::classify::{self, Steps};
@@ -15,7 +15,7 @@ use crate::ground::survey::Survey;
 use crate::ground::{Elevation, Heights};
 use crate::input::Input;
 use crate::map::tiles::NoRoom;
-use crate::map::{Class, Lodger, Map, Tiles};
+use crate::map::{Class, Map, SideTable, Tiles};
 use crate::robot::is_level;
 
 /// Tiles that hold the marks.
@@ -47,7 +47,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 
     /// Scans and pose into the window, and the window into the map.
-    pub(super) fn survey(&mut self, config: &Config, terrain: &Terrain, input: &Input<'_>) {
+    pub(super) fn survey(&mut self, config: &Config, terrain: &UnevenGround, input: &Input<'_>) {
         let input = &Input {
             pose: self.tilt.note(&input.pose),
             ..*input
@@ -76,7 +76,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 
     /// What is seen through doorways, where nothing is known yet.
-    fn look_into_rooms(&mut self, config: &Config, terrain: &Terrain, input: &Input<'_>) {
+    fn look_into_rooms(&mut self, config: &Config, terrain: &UnevenGround, input: &Input<'_>) {
         let turn = (input.time_ms / STEP_MS) as usize % TURNS;
         let mut told = 0;
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
@@ -117,26 +117,26 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 
     /// Make room in the pool if it runs short ([`super::folding`]), after every survey.
-    pub fn fold(&mut self, lodger: &mut impl Lodger) {
+    pub fn fold(&mut self, lodger: &mut impl SideTable) {
         self.tiles.fold(self.window, WINDOW_SIDE, lodger);
     }
 
     /// The robot stood by a cell, and neither it nor what is around it was measured. Behind a brow ground stays out of view: where what is
     /// measured on both sides leads over it, it is taken for free, and else for gone.
-    pub fn give_up_ground(&mut self, terrain: &Terrain, goal: Cell) {
+    pub fn give_up_ground(&mut self, terrain: &UnevenGround, goal: Cell) {
         self.lead_over(terrain, (goal, GIVEN_UP), Some(Class::Negative));
     }
 
     /// The robot cannot go on for ground around a cell that was never measured: what leads over it is taken for free. Whether
     /// there was any.
-    pub fn trust_ground(&mut self, terrain: &Terrain, ahead: Cell) -> bool {
+    pub fn trust_ground(&mut self, terrain: &UnevenGround, ahead: Cell) -> bool {
         self.lead_over(terrain, (ahead, TRUSTED), None)
     }
 
     /// Take ground around a cell that was never measured for free where it is led over, and else for `gone`; whether any is free now.
     fn lead_over(
         &mut self,
-        terrain: &Terrain,
+        terrain: &UnevenGround,
         (middle, reach): (Cell, i32),
         gone: Option<Class>,
     ) -> bool {
@@ -215,7 +215,7 @@ mod tests {
     use std::boxed::Box;
     use std::vec::Vec;
 
-    use super::{Class, Config, Steps, TRUSTED, Terrain};
+    use super::{Class, Config, Steps, TRUSTED, UnevenGround};
     use crate::geometry::Cell;
     use crate::map::Map;
 
@@ -225,7 +225,7 @@ mod tests {
     /// A map of level ground with the ditch in it.
     fn with_a_ditch(far_side_m: f32) -> Box<Map<152, 400>> {
         let config = Config {
-            terrain: Some(Terrain::TABLE_I),
+            ground: Some(UnevenGround::TABLE_I),
             ..Config::pioneer_3at(heapless::Vec::new())
         };
         let mut map = Box::new(Map::new());
@@ -233,7 +233,7 @@ mod tests {
         map.lay_ground(Cell { x: 32, y: 32 }, |cell| {
             (!DITCH.contains(&cell.x)).then_some(if cell.x > 33 { far_side_m } else { 0.0 })
         });
-        (0..64).for_each(|y| map.classify(&Steps::new(&Terrain::TABLE_I), y));
+        (0..64).for_each(|y| map.classify(&Steps::new(&UnevenGround::TABLE_I), y));
         map
     }
 
@@ -251,19 +251,22 @@ mod tests {
     fn ground_is_trusted_half_a_metre_around_the_place_that_stops_the_robot_and_no_farther() {
         let mut map = with_a_ditch(0.0);
         let ahead = Cell { x: 31, y: 30 };
-        assert!(map.trust_ground(&Terrain::TABLE_I, ahead));
+        assert!(map.trust_ground(&UnevenGround::TABLE_I, ahead));
         let rows: Vec<i32> = (30 - TRUSTED..=31 + TRUSTED).collect();
         assert_eq!(free_rows(&map), rows);
-        assert!(!map.trust_ground(&Terrain::TABLE_I, ahead), "there was any");
+        assert!(
+            !map.trust_ground(&UnevenGround::TABLE_I, ahead),
+            "there was any"
+        );
     }
 
     #[test]
     fn ground_that_lies_higher_behind_a_gap_is_not_trusted_but_given_up() {
         let mut map = with_a_ditch(0.2);
         let ahead = Cell { x: 31, y: 30 };
-        assert!(!map.trust_ground(&Terrain::TABLE_I, ahead));
+        assert!(!map.trust_ground(&UnevenGround::TABLE_I, ahead));
         assert_eq!(map.tiles().class(ahead), Class::Unknown);
-        map.give_up_ground(&Terrain::TABLE_I, ahead);
+        map.give_up_ground(&UnevenGround::TABLE_I, ahead);
         assert_eq!(map.tiles().class(ahead), Class::Negative);
     }
 }

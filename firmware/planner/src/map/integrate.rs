@@ -18,10 +18,10 @@ use crate::grid::Class;
 use crate::input::informative_range_mm;
 use crate::input::{INVALID_MM, NO_RETURN_MM};
 use crate::map::tiles::{NoRoom, Page};
-use crate::map::traversal::Walk;
+use crate::map::traversal::Traversal;
 use crate::map::{Evidence, Map};
 use crate::math;
-use crate::robot::Laser;
+use crate::robot::LaserMount;
 use crate::robot::is_level;
 
 /// An obstacle's least height above the robot's ground for the tilted laser, metres: above the 3-AT's ground clearance
@@ -68,7 +68,7 @@ impl Beam {
 }
 
 /// The sensor's place in the plane.
-pub(crate) fn sensor_point(pose: &Pose, laser: &Laser) -> Point {
+pub(crate) fn sensor_point(pose: &Pose, laser: &LaserMount) -> Point {
     let (sin, cos) = math::sin_cos(pose.yaw_rad);
     Point {
         x_m: pose.x_m + laser.x_m * cos - laser.y_m * sin,
@@ -79,7 +79,7 @@ pub(crate) fn sensor_point(pose: &Pose, laser: &Laser) -> Point {
 /// The level laser's beams that carry information.
 pub(crate) fn level_beams<'a>(
     pose: &Pose,
-    laser: &'a Laser,
+    laser: &'a LaserMount,
     ranges_mm: &'a [u16],
 ) -> impl Iterator<Item = Beam> + 'a {
     let from = sensor_point(pose, laser);
@@ -123,7 +123,7 @@ pub(crate) fn level_beams<'a>(
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Enter one scan of `laser`, taken at `pose`. What there is no room for sets [`Map::out_of_box`] or [`Map::pool_full`].
-    pub fn integrate(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
+    pub fn integrate(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
         if is_level(laser) {
             for beam in level_beams(pose, laser, ranges_mm) {
                 self.free_along(&beam);
@@ -163,7 +163,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         if length_m <= 0.0 {
             return;
         }
-        let mut walk = Walk::new(start, beam.direction, length_m, beam.hit);
+        let mut walk = Traversal::new(start, beam.direction, length_m, beam.hit);
         let mut goes_on = true;
         while goes_on && !walk.is_over() {
             let tile = walk.tile();
@@ -215,7 +215,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         false
     }
 
-    fn mark_standing(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
+    fn mark_standing(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
         let from = sensor_point(pose, laser);
         let (sin_tilt, cos_tilt) = math::sin_cos(laser.pitch_rad + pose.pitch_rad);
         let (sin_roll, _) = math::sin_cos(pose.roll_rad);
@@ -254,13 +254,13 @@ struct Passing<'a> {
 impl Passing<'_> {
     /// Free the cells of the tile; whether the beam goes on in the next.
     #[inline(never)]
-    fn through<const WITNESS: bool>(mut self, walk: &mut Walk) -> bool {
+    fn through<const WITNESS: bool>(mut self, walk: &mut Traversal) -> bool {
         walk.cross(|row, bit, leaves_m| {
             if !self.page.is_free(row, bit) {
                 return self.pass(row, bit, leaves_m);
             }
             if WITNESS {
-                let cell = Walk::cell(self.tile, row, bit);
+                let cell = Traversal::cell(self.tile, row, bit);
                 if self.evidence.covers(cell) {
                     self.evidence.pass_free(cell);
                 }
@@ -276,7 +276,7 @@ impl Passing<'_> {
         if !class.is_open() && !self.stops_at_obstacle && leaves_m > self.guard_from_m {
             return true;
         }
-        let cell = Walk::cell(self.tile, row, bit);
+        let cell = Traversal::cell(self.tile, row, bit);
         let now = if self.evidence.covers(cell) {
             self.evidence.pass(cell, class)
         } else if class == Class::Unknown {
@@ -298,8 +298,8 @@ mod tests {
 
     type Plan = Map<144, 144>;
 
-    fn laser() -> Laser {
-        Laser {
+    fn laser() -> LaserMount {
+        LaserMount {
             x_m: 0.0,
             y_m: 0.0,
             z_m: 0.4,
@@ -314,12 +314,12 @@ mod tests {
     /// The slow twin of [`Map::free_along`]: cell by cell through the map's front door.
     fn free_slowly(map: &mut Plan, beam: &Beam) {
         let (start, length_m) = (beam.at(beam.free_from_m), beam.length_m - beam.free_from_m);
-        let mut walk = Walk::new(start, beam.direction, length_m, beam.hit);
+        let mut walk = Traversal::new(start, beam.direction, length_m, beam.hit);
         let mut goes_on = length_m > 0.0;
         while goes_on && !walk.is_over() {
             let tile = walk.tile();
             goes_on = walk.cross(|row, bit, leaves_m| {
-                let cell = Walk::cell(tile, row, bit);
+                let cell = Traversal::cell(tile, row, bit);
                 let class = map.class(cell);
                 let kept = match class {
                     Class::Free => !beam.is_witness(),

@@ -15,13 +15,13 @@ pub mod tiles;
 mod traversal;
 
 pub use crate::grid::Class;
-pub use compaction::Lodger;
+pub use compaction::SideTable;
 pub use evidence::Evidence;
 pub use tiles::Tiles;
 
 use crate::config::Config;
 use crate::geometry::Cell;
-use crate::ground::Tilt;
+use crate::ground::AttitudeFilter;
 use crate::input::Input;
 
 /// A robot that moved more cells than this between two observations was carried.
@@ -41,7 +41,7 @@ pub struct Map<const TILES: usize, const SLOTS: usize> {
     surveyed: bool,
     /// Which of the rows far off were classified.
     odd: bool,
-    tilt: Tilt,
+    tilt: AttitudeFilter,
     out_of_box: bool,
     pool_full: bool,
 }
@@ -57,7 +57,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             window: Cell { x: 0, y: 0 },
             surveyed: false,
             odd: false,
-            tilt: Tilt::new(),
+            tilt: AttitudeFilter::new(),
             out_of_box: false,
             pool_full: false,
         }
@@ -66,7 +66,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Forget everything and begin a session.
     pub fn begin(&mut self, config: &Config) {
         self.reset(config.box_tiles.0, config.box_tiles.1);
-        if config.terrain.is_some() {
+        if config.ground.is_some() {
             self.make_room_for_heights();
         }
     }
@@ -78,7 +78,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         self.last_visit = None;
         self.surveyed = false;
         self.odd = false;
-        self.tilt = Tilt::new();
+        self.tilt = AttitudeFilter::new();
         self.out_of_box = false;
         self.pool_full = false;
     }
@@ -86,7 +86,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Enter everything that an input says of the space.
     pub fn observe(&mut self, config: &Config, input: &Input<'_>) {
         let robot = input.pose.point();
-        if let Some(terrain) = &config.terrain {
+        if let Some(terrain) = &config.ground {
             self.free_footprint(robot, FOOTPRINT_M);
             self.leave_trail(robot.cell());
             self.survey(config, terrain, input);

@@ -23,7 +23,7 @@ use crate::input::{has_company, informative_range_mm};
 use crate::map::integrate::{level_beams, sensor_point};
 use crate::map::{Class, Tiles};
 use crate::math;
-use crate::robot::Laser;
+use crate::robot::LaserMount;
 use crate::robot::{HALF_LENGTH_M, HALF_WIDTH_M};
 
 /// Points kept at the most.
@@ -44,7 +44,7 @@ const INSIDE_M: f32 = 0.01;
 
 /// What stands around the robot.
 #[derive(Debug, Default)]
-pub struct NearField {
+pub struct ObstaclePoints {
     points: Vec<Point, MOST_POINTS>,
     /// Returns of each point.
     returns: Vec<u8, MOST_POINTS>,
@@ -55,7 +55,7 @@ fn distance2(a: Point, b: Point) -> f32 {
     dx * dx + dy * dy
 }
 
-impl NearField {
+impl ObstaclePoints {
     /// Nothing around.
     #[must_use]
     pub const fn new() -> Self {
@@ -78,7 +78,7 @@ impl NearField {
     }
 
     /// Enter the level laser's scan, taken at `pose`.
-    pub fn update(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
+    pub fn update(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
         self.forget(pose, laser, ranges_mm);
         for beam in level_beams(pose, laser, ranges_mm).filter(|beam| beam.hit) {
             let end = beam.end();
@@ -88,7 +88,7 @@ impl NearField {
         }
     }
 
-    fn forget(&mut self, pose: &Pose, laser: &Laser, ranges_mm: &[u16]) {
+    fn forget(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
         let from = sensor_point(pose, laser);
         let mut index = 0;
         while let (Some(&point), Some(&returns)) = (self.points.get(index), self.returns.get(index))
@@ -145,7 +145,7 @@ impl NearField {
     }
 }
 
-/// The middles of the map's obstacle cells within reach behind the robot: what [`NearField`] never met, or has forgotten.
+/// The middles of the map's obstacle cells within reach behind the robot: what [`ObstaclePoints`] never met, or has forgotten.
 pub fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
@@ -223,7 +223,7 @@ enum Sight {
 }
 
 /// Judged by the two beams that pass the point on either side: at a corner one meets it, or nothing, and the other goes by.
-fn sight(pose: &Pose, laser: &Laser, ranges_mm: &[u16], from: Point, point: Point) -> Sight {
+fn sight(pose: &Pose, laser: &LaserMount, ranges_mm: &[u16], from: Point, point: Point) -> Sight {
     let (dx, dy) = (point.x_m - from.x_m, point.y_m - from.y_m);
     let bearing = math::wrap(math::atan2(dy, dx) - pose.yaw_rad - laser.first_bearing_rad);
     let right = math::floor(bearing / laser.bearing_step_rad);
@@ -255,11 +255,11 @@ fn sight(pose: &Pose, laser: &Laser, ranges_mm: &[u16], from: Point, point: Poin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drive::Surround;
+    use crate::drive::CollisionChecker;
     use crate::input::{INVALID_MM, NO_RETURN_MM};
 
-    fn laser() -> Laser {
-        Laser {
+    fn laser() -> LaserMount {
+        LaserMount {
             x_m: 0.0,
             y_m: 0.0,
             z_m: 0.4,
@@ -273,7 +273,7 @@ mod tests {
 
     #[test]
     fn a_lone_false_return_is_not_kept() {
-        let mut near = NearField::new();
+        let mut near = ObstaclePoints::new();
         let mut scan = [NO_RETURN_MM; 181];
         scan[90] = 500;
         near.update(&Pose::default(), &laser(), &scan);
@@ -291,7 +291,7 @@ mod tests {
 
     #[test]
     fn a_point_is_remembered_behind_the_robot_and_forgotten_when_seen_through() {
-        let mut near = NearField::new();
+        let mut near = ObstaclePoints::new();
         let here = Pose::default();
         near.update(&here, &laser(), &thing(0, 800));
         assert!(!near.points().is_empty());
@@ -307,7 +307,7 @@ mod tests {
 
     #[test]
     fn a_hidden_point_stays_and_a_far_one_goes() {
-        let mut near = NearField::new();
+        let mut near = ObstaclePoints::new();
         let here = Pose::default();
         near.update(&here, &laser(), &thing(0, 1000));
         let count = near.points().len();
@@ -323,7 +323,7 @@ mod tests {
 
     #[test]
     fn a_wall_is_thinned_and_the_store_never_overflows() {
-        let mut near = NearField::new();
+        let mut near = ObstaclePoints::new();
         for k in 0..400 {
             let pose = Pose {
                 yaw_rad: k as f32 * 0.7,
@@ -347,7 +347,7 @@ mod tests {
             y_m: 0.05,
             ..Pose::default()
         };
-        let mut surround = Surround::empty();
+        let mut surround = CollisionChecker::empty();
         surround.keep_off(&pose, rims(&tiles, pose.point()));
         surround.clearance_m()
     }

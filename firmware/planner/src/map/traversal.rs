@@ -15,7 +15,7 @@ use crate::map::tiles::TILE_SIDE;
 
 /// A walk in progress.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Walk {
+pub(super) struct Traversal {
     /// The tile that holds the present cell.
     tile: (i32, i32),
     /// The present cell's row in it, and its column as a bit.
@@ -47,7 +47,7 @@ fn axis(position: f32, index: i32, direction: f32) -> (i32, f32, f32) {
     }
 }
 
-impl Walk {
+impl Traversal {
     /// From `start` in the unit vector's direction for `length_m`; with the cell at its end, or without.
     pub(super) fn new(
         start: Point,
@@ -158,17 +158,17 @@ impl Walk {
 mod tests {
     use std::vec::Vec;
 
-    use super::Walk;
+    use super::Traversal;
     use crate::geometry::{CELL_M, Cell, Point};
     use crate::math;
 
     fn cells(start: Point, direction: (f32, f32), length_m: f32, excludes_end: bool) -> Vec<Cell> {
-        let mut walk = Walk::new(start, direction, length_m, excludes_end);
+        let mut walk = Traversal::new(start, direction, length_m, excludes_end);
         let mut cells = Vec::new();
         loop {
             let tile = walk.tile();
             let goes_on = walk.cross(|row, bit, _| {
-                cells.push(Walk::cell(tile, row, bit));
+                cells.push(Traversal::cell(tile, row, bit));
                 true
             });
             if !goes_on {

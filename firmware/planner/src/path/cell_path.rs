@@ -1,6 +1,6 @@
-//! The road: the way down the wave from the robot's centre cell to the goal it comes from, and the local goal on it.
+//! The path: the way down the wave from the robot's centre cell to the goal it comes from, and the local goal on it.
 //!
-//! The local goal is the last cell of the road within 2 m of the robot [Ouroboros, III-C, sixth step] and within
+//! The local goal is the last cell of the path within 2 m of the robot [Jorge15, III-C, sixth step] and within
 //! [`MOST_STEPS_AHEAD`] steps along it: by distance alone a long way round inside the window would make the field underflow.
 //!
 //! Units: coarse cells of 20 cm, named by the least of their four map cells.
@@ -9,16 +9,16 @@ use heapless::Vec;
 
 use crate::geometry::{Cell, Point};
 
-/// Cells kept of a road; a new one is made long before the robot has used up the last.
+/// Cells kept of a path; a new one is made long before the robot has used up the last.
 pub const ROAD_CELLS: usize = 96;
-/// Radius of the circle that the local goal lies in, metres [Ouroboros, III-C].
+/// Radius of the circle that the local goal lies in, metres [Jorge15, III-C].
 pub const LOCAL_GOAL_M: f32 = 2.0;
-/// Steps along the road to the local goal at the most.
+/// Steps along the path to the local goal at the most.
 pub const MOST_STEPS_AHEAD: usize = 20;
 
 /// The way to a goal.
 #[derive(Clone, Debug, Default)]
-pub struct Road {
+pub struct Path {
     cells: Vec<Cell, ROAD_CELLS>,
     /// Steps to the goal, also those not kept.
     steps: u32,
@@ -40,8 +40,8 @@ fn distance2(a: Point, b: Point) -> f32 {
     dx * dx + dy * dy
 }
 
-impl Road {
-    /// No road.
+impl Path {
+    /// No path.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -51,19 +51,19 @@ impl Road {
         }
     }
 
-    /// The road along these cells, the robot's end first.
+    /// The path along these cells, the robot's end first.
     pub fn along(cells: impl Iterator<Item = Cell>) -> Self {
-        let mut road = Self::new();
+        let mut path = Self::new();
         for cell in cells {
             // What does not fit is counted only.
-            let _ = road.cells.push(cell);
-            road.steps += 1;
-            road.goal = cell;
+            let _ = path.cells.push(cell);
+            path.steps += 1;
+            path.goal = cell;
         }
-        road
+        path
     }
 
-    /// The road that leads straight on to a place, which becomes the goal; the window finds the way round what stands between.
+    /// The path that leads straight on to a place, which becomes the goal; the window finds the way round what stands between.
     #[must_use]
     pub fn leading_to(mut self, place: Cell) -> Self {
         let from = self.goal;
@@ -85,17 +85,17 @@ impl Road {
         self
     }
 
-    /// The road that begins so many steps away from the robot.
+    /// The path that begins so many steps away from the robot.
     #[must_use]
     pub const fn after(mut self, steps: u32) -> Self {
         self.steps += steps;
         self
     }
 
-    /// Let the road end one cell farther, without changing its goal.
+    /// Let the path end one cell farther, without changing its goal.
     pub fn extend(&mut self, cell: Option<Cell>) {
         if let Some(cell) = cell {
-            // A full road is long enough.
+            // A full path is long enough.
             let _ = self.cells.push(cell);
         }
     }
@@ -129,7 +129,7 @@ impl Road {
         &self.cells
     }
 
-    /// The cells of the road that may be the local goal, the best first: from the last one in the circle back to the one
+    /// The cells of the path that may be the local goal, the best first: from the last one in the circle back to the one
     /// nearest to the robot.
     pub fn local_goals(&self, robot: Point) -> impl Iterator<Item = Cell> + '_ {
         let near = |cell: &Cell| distance2(middle(*cell), robot);

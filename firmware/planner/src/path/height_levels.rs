@@ -1,11 +1,11 @@
-//! Storeys: how high the known ground lies, coarsely and everywhere, and how much later a goal counts for lying on another one.
+//! HeightLevels: how high the known ground lies, coarsely and everywhere, and how much later a goal counts for lying on another one.
 //!
 //! ```text
 //! level(x, y) = λ_h |h_storey − h(x, y)| / |ε_hmin|, rounded, at most MOST_LEVEL
 //! a goal's wave starts LATER_STEPS · level later
 //! ```
 //!
-//! Departs from [Maffei-Terrain, III-C]: there one field over the whole grid both bends the way and chooses the goal, for a goal behind n
+//! Departs from [Maffei20, III-C]: there one field over the whole grid both bends the way and chooses the goal, for a goal behind n
 //! cells of ε attracts e^(nε) times less. The window's field is 6 m wide, and which goal the robot goes to is the wave's choice along the
 //! skeleton; so the preference has its say there too: along a slope n grows with the height, so no limit is set to it where eq. 3 has `ε_hmin`. It counts from the *storey*, the ground that the robot last stood on level, and not
 //! from the robot's own height: halfway down a slope both of its ends are equally far off, and a storey would be left half explored.
@@ -13,12 +13,12 @@
 //! Heights of the elevation window are kept as it moves on, one for 8 × 8 cells of every tile of the map. On flat ground there are none,
 //! and their memory is the near field's. A tile that is folded ([`crate::map::compaction`]) keeps one height. Units: decimetres above the start, saturated at ±12.7 m.
 
-use crate::config::Terrain;
+use crate::config::UnevenGround;
 use crate::geometry::Cell;
 use crate::ground::elevation::{Heights, WINDOW_SIDE};
 use crate::map::compaction::Entry;
 use crate::map::tiles::TILE_SIDE;
-use crate::map::{Lodger, Tiles};
+use crate::map::{SideTable, Tiles};
 use crate::math;
 
 /// Cells along a block's side.
@@ -40,12 +40,12 @@ pub const LATER_STEPS: u32 = 50;
 
 /// The heights. `TILES` tiles in the map's pool.
 #[derive(Debug)]
-pub struct Storeys<const TILES: usize> {
+pub struct HeightLevels<const TILES: usize> {
     /// By the tile's place in the pool.
     blocks: [[i8; BLOCKS]; TILES],
 }
 
-impl<const TILES: usize> Storeys<TILES> {
+impl<const TILES: usize> HeightLevels<TILES> {
     /// Nothing measured.
     #[must_use]
     pub const fn new() -> Self {
@@ -138,7 +138,7 @@ impl<const TILES: usize> Storeys<TILES> {
 }
 
 /// A folded tile keeps the mean of its heights, in one of the first two places by its half of a page.
-impl<const TILES: usize> Lodger for Storeys<TILES> {
+impl<const TILES: usize> SideTable for HeightLevels<TILES> {
     fn leave_page(&mut self, page: usize) -> i8 {
         let Some(blocks) = self.blocks.get_mut(page) else {
             return NONE;
@@ -169,7 +169,7 @@ impl<const TILES: usize> Lodger for Storeys<TILES> {
     }
 }
 
-impl<const TILES: usize> Default for Storeys<TILES> {
+impl<const TILES: usize> Default for HeightLevels<TILES> {
     fn default() -> Self {
         Self::new()
     }
@@ -201,16 +201,16 @@ fn mean_m(heights: &Heights<'_>, corner: Cell) -> Option<f32> {
 
 /// How much later goals count, where heights are preferred.
 #[derive(Clone, Copy, Debug)]
-pub struct Levels<'a, const TILES: usize> {
+pub struct LevelCost<'a, const TILES: usize> {
     /// What is known of heights.
-    pub storeys: &'a Storeys<TILES>,
+    pub storeys: &'a HeightLevels<TILES>,
     /// The parameters of the preference.
-    pub terrain: &'a Terrain,
+    pub terrain: &'a UnevenGround,
     /// The robot's storey, metres.
     pub storey_m: f32,
 }
 
-impl<const TILES: usize> Levels<'_, TILES> {
+impl<const TILES: usize> LevelCost<'_, TILES> {
     /// As they are from another storey.
     #[must_use]
     pub const fn from(&self, storey_m: f32) -> Self {
@@ -236,8 +236,8 @@ impl<const TILES: usize> Levels<'_, TILES> {
 mod tests {
     use std::boxed::Box;
 
-    use super::{BLOCK, Levels, MOST_LEVEL, Storeys};
-    use crate::config::Terrain;
+    use super::{BLOCK, HeightLevels, LevelCost, MOST_LEVEL};
+    use crate::config::UnevenGround;
     use crate::geometry::Cell;
     use crate::ground::elevation::{Elevation, WINDOW_CELLS};
     use crate::map::{Class, Tiles};
@@ -249,7 +249,7 @@ mod tests {
     }
 
     /// A slope that rises to the east, seen from a robot that drove up it from x = 0 to 100 cells.
-    fn climbed() -> (Storeys<24>, Box<Tiles<24, 64>>) {
+    fn climbed() -> (HeightLevels<24>, Box<Tiles<24, 64>>) {
         let mut tiles = Box::new(Tiles::new());
         tiles.reset(8, 8);
         for x in -30..140 {
@@ -259,7 +259,7 @@ mod tests {
         }
         let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
         let mut origin = Cell::default();
-        let mut storeys = Storeys::new();
+        let mut storeys = HeightLevels::new();
         for robot in (0..=100).step_by(5) {
             let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
             window.follow(at(robot, 0));
@@ -304,9 +304,9 @@ mod tests {
             .height_around_m(&tiles, at(edge, 3))
             .expect("beside");
         assert!((height_m - before_m).abs() < 1e-3, "{height_m} {before_m}");
-        let levels = Levels {
+        let levels = LevelCost {
             storeys: &storeys,
-            terrain: &Terrain::TABLE_I,
+            terrain: &UnevenGround::TABLE_I,
             storey_m: 0.0,
         };
         assert_eq!(levels.of(&tiles, at(edge, 3)), MOST_LEVEL);
@@ -316,9 +316,9 @@ mod tests {
     #[test]
     fn levels_count_from_the_storey_and_know_no_side() {
         let (storeys, tiles) = climbed();
-        let terrain = &Terrain::TABLE_I;
+        let terrain = &UnevenGround::TABLE_I;
         let level = |storey_m: f32, x: i32| {
-            let levels = Levels {
+            let levels = LevelCost {
                 storeys: &storeys,
                 terrain,
                 storey_m,
@@ -337,11 +337,11 @@ mod tests {
     #[test]
     fn without_a_limit_of_repulsion_there_are_no_levels() {
         let (storeys, tiles) = climbed();
-        let terrain = &Terrain {
+        let terrain = &UnevenGround {
             least_preference: 0.0,
-            ..Terrain::TABLE_I
+            ..UnevenGround::TABLE_I
         };
-        let levels = Levels {
+        let levels = LevelCost {
             storeys: &storeys,
             terrain,
             storey_m: 5.0,
@@ -361,7 +361,7 @@ mod tests {
         for k in 0..64 {
             window.measure(at(k % 8, k / 8), -40.0);
         }
-        let mut storeys = Storeys::<4>::new();
+        let mut storeys = HeightLevels::<4>::new();
         storeys.note(&window.read(), &tiles);
         assert_eq!(storeys.height_m(&tiles, at(1, 1)), Some(-12.7));
     }

@@ -11,14 +11,14 @@
 use crate::geometry::Cell;
 use crate::map::tiles::NoRoom;
 use crate::map::{Map, Tiles};
-use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::{Flood, each};
 
 /// Which room the map wants for what the robot can get to, if any; `found` hears of every place where it ends, see
 /// [`ways_out`]. A map that refused nothing wants none.
 pub fn no_room<const TILES: usize, const SLOTS: usize>(
     map: &Map<TILES, SLOTS>,
-    disc: &Disc,
+    disc: &Footprint,
     robot: Cell,
     scratch: &mut [u32],
     mut found: impl FnMut(Cell),
@@ -40,7 +40,7 @@ pub fn no_room<const TILES: usize, const SLOTS: usize>(
 /// `scratch` is of any content, and must have [`scratch_words`](crate::roadmap::reachability::scratch_words) words; with fewer, nothing is found.
 pub fn ways_out<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
-    disc: &Disc,
+    disc: &Footprint,
     robot: Cell,
     scratch: &mut [u32],
     mut found: impl FnMut(Cell, NoRoom),
@@ -78,7 +78,7 @@ mod tests {
     use crate::geometry::Cell;
     use crate::map::tiles::NoRoom;
     use crate::map::{Class, Tiles};
-    use crate::roadmap::configuration_space::Disc;
+    use crate::roadmap::configuration_space::Footprint;
     use crate::roadmap::reachability::scratch_words;
 
     const SLOTS: usize = 24;
@@ -117,9 +117,15 @@ mod tests {
     fn found(tiles: &Tiles<20, SLOTS>, robot: Cell) -> Vec<(Cell, NoRoom)> {
         let mut list = Vec::new();
         let mut scratch = [0xdead_beef; scratch_words(SLOTS)];
-        ways_out(tiles, &Disc::new(0.3), robot, &mut scratch, |cell, why| {
-            list.push((cell, why));
-        });
+        ways_out(
+            tiles,
+            &Footprint::new(0.3),
+            robot,
+            &mut scratch,
+            |cell, why| {
+                list.push((cell, why));
+            },
+        );
         list
     }
 
@@ -217,9 +223,15 @@ mod tests {
         let mut list = Vec::new();
         let mut scratch = [0; scratch_words(SLOTS)];
         let robot = Cell { x: 10, y: 10 };
-        ways_out(&tiles, &Disc::new(0.3), robot, &mut scratch, |cell, why| {
-            list.push((cell, why));
-        });
+        ways_out(
+            &tiles,
+            &Footprint::new(0.3),
+            robot,
+            &mut scratch,
+            |cell, why| {
+                list.push((cell, why));
+            },
+        );
         assert!(!list.is_empty());
         assert!(
             list.iter()
@@ -243,7 +255,7 @@ mod tests {
         let (tiles, robot) = drawn(&["R"]);
         let mut list = Vec::new();
         let push = |cell, why| list.push((cell, why));
-        ways_out(&tiles, &Disc::new(0.3), robot, &mut [0; 1], push);
+        ways_out(&tiles, &Footprint::new(0.3), robot, &mut [0; 1], push);
         assert!(list.is_empty());
     }
 }

@@ -1,11 +1,11 @@
-//! Paths along the skeleton: how to search one, which goal is worth its cost, whether the robot gets on with it, and what cannot
+//! PathSearch along the skeleton: how to search one, which goal is worth its cost, whether the robot gets on with it, and what cannot
 //! be driven to.
 //!
 //! | file | what it holds |
 //! | --- | --- |
 //! | [`cell_path`] | the path to the present goal, and the local goal on it |
-//! | [`nearest`] | the centre cell nearest to a place [Ouroboros, `moveToVoronoi`] |
-//! | [`search`] | a wave over centre cells and the path down it [Ouroboros, `propagatePotential`] |
+//! | [`nearest`] | the centre cell nearest to a place [Jorge15, `moveToVoronoi`] |
+//! | [`search`] | a wave over centre cells and the path down it [Jorge15, `propagatePotential`] |
 //! | [`progress`] | the progress checker: a goal that comes no nearer is dropped |
 //! | [`height_levels`] | how high the ground lies everywhere, and which goals are preferred for it |
 //! | [`viewpoint`] | places from which the robot can look through gaps |
@@ -16,6 +16,7 @@
 
 pub mod breadcrumbs;
 pub mod cell_path;
+pub mod context;
 pub mod height_levels;
 pub mod map_exits;
 pub(crate) mod nearest;
@@ -23,4 +24,5 @@ pub(crate) mod progress;
 pub(crate) mod search;
 pub mod viewpoint;
 
-pub use cell_path::Road;
+pub use cell_path::Path;
+pub use context::{PlanningContext, PlanningScratch, RoundOutcome};

@@ -1,4 +1,4 @@
-//! The centre cell nearest to a place, by steps through passable cells [Ouroboros, Algorithm 1, lines 4 and 6:
+//! The centre cell nearest to a place, by steps through passable cells [Jorge15, Algorithm 1, lines 4 and 6:
 //! `moveToVoronoi`].
 //!
 //! Not the nearest as the crow flies, which may lie behind a wall. The search grows its window until it finds one. Where the largest
@@ -8,12 +8,12 @@
 //! Units: map cells; sites of the topology's frame.
 
 use crate::field::SIDE;
-use crate::field::local_grid::{Rows, SCALES, View};
+use crate::field::local_grid::{LocalGrid, Rows, SCALES};
 use crate::geometry::Cell;
 use crate::grid::bits::{Adjacency, flood};
 use crate::grid::{Plane, Site};
 use crate::map::Tiles;
-use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::Frame;
 
 /// Longest straight way to a centre cell, cells: no map is wider than 128 m but one that is a corridor.
@@ -23,7 +23,7 @@ const MOST_BY_AIR: i32 = 1_280;
 #[derive(Debug)]
 pub(crate) struct Centres<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) tiles: &'a Tiles<TILES, SLOTS>,
-    pub(crate) disc: &'a Disc,
+    pub(crate) disc: &'a Footprint,
     pub(crate) frame: Frame,
     pub(crate) way: Plane<'a>,
 }
@@ -34,7 +34,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
     pub(crate) fn nearest(
         &self,
         from: Cell,
-        view: &mut View,
+        view: &mut LocalGrid,
         accepts: impl Fn(Site) -> bool,
     ) -> Option<(Site, u32)> {
         SCALES.iter().find_map(|&scale| {
@@ -42,7 +42,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
             view.free_robot(from);
             let targets = self.targets(view, &accepts);
             let mut seeds: Rows = [0; SIDE];
-            View::put(&mut seeds, view.place(from)?);
+            LocalGrid::put(&mut seeds, view.place(from)?);
             let met = flood(&view.passable, &mut seeds, &targets, Adjacency::Four)?;
             let steps = u32::from(met.steps) * scale as u32 / 2;
             Some((self.site_in(view, met.site, &accepts)?, steps))
@@ -77,7 +77,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
     }
 
     /// The passable window cells that hold a centre cell.
-    fn targets(&self, view: &View, accepts: impl Fn(Site) -> bool) -> Rows {
+    fn targets(&self, view: &LocalGrid, accepts: impl Fn(Site) -> bool) -> Rows {
         let mut targets: Rows = [0; SIDE];
         let least = (view.origin.y - self.frame.origin.y).div_euclid(2);
         let first = least.max(0) as usize;
@@ -99,7 +99,12 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
     }
 
     /// A centre cell in a window cell.
-    fn site_in(&self, view: &View, place: Site, accepts: impl Fn(Site) -> bool) -> Option<Site> {
+    fn site_in(
+        &self,
+        view: &LocalGrid,
+        place: Site,
+        accepts: impl Fn(Site) -> bool,
+    ) -> Option<Site> {
         let least = Cell {
             x: view.origin.x + i32::from(place.x) * view.scale,
             y: view.origin.y + i32::from(place.y) * view.scale,

@@ -60,15 +60,15 @@ pub(crate) enum Verdict {
     GoOn,
     /// Give it up.
     Drop(Residue),
-    /// The window has no way along the road.
+    /// The window has no way along the path.
     BarLeak,
-    /// The robot cannot go on along the road.
+    /// The robot cannot go on along the path.
     BarAhead,
 }
 
 /// What is remembered of the ways to the goals.
 #[derive(Debug, Default)]
-pub(crate) struct Patience {
+pub(crate) struct ProgressChecker {
     /// Of late, the oldest first.
     ways: Vec<Way, MOST_WAYS>,
     /// When a way was last judged.
@@ -86,7 +86,7 @@ pub(crate) struct Patience {
     flat_rounds: u8,
 }
 
-impl Patience {
+impl ProgressChecker {
     pub(crate) const fn new() -> Self {
         Self {
             ways: Vec::new(),
@@ -204,7 +204,7 @@ mod tests {
 
     /// A robot that moves 0.5 m in a round of half a second, and what is judged in each until it is not "go on".
     fn verdict(mut round: impl FnMut(u32) -> (Cell, u32)) -> (u32, Verdict) {
-        let mut patience = Patience::new();
+        let mut patience = ProgressChecker::new();
         for k in 0..1_000 {
             let at = Point {
                 x_m: 0.5 * k as f32,
@@ -253,7 +253,7 @@ mod tests {
 
     #[test]
     fn a_goal_whose_way_was_barred_is_begun_anew() {
-        let mut patience = Patience::new();
+        let mut patience = ProgressChecker::new();
         for k in 0..20 {
             patience.judge(FAR, 40, 500 * k);
         }
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn a_robot_stands_from_its_last_move_on_whatever_is_barred() {
-        let mut patience = Patience::new();
+        let mut patience = ProgressChecker::new();
         let here = Point { x_m: 1.0, y_m: 0.0 };
         let mut barred = 0;
         for k in 1..=100 {

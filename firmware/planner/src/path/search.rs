@@ -1,29 +1,32 @@
-//! Centre cells opened for a wave, in lent memory, and the road from a place down to where it began.
+//! Centre cells opened for a wave, in lent memory, and the path from a place down to where it began.
 //!
 //! All that plans along the skeleton begins with this: the wave's distances and queue, and the search for the centre cell nearest to the robot,
 //! over the same centre cells.
 //!
 //! Units: map cells, coarse steps of 20 cm; sites of the topology's frame.
 
-use crate::field::local_grid::View;
+use crate::field::local_grid::LocalGrid;
 use crate::geometry::Cell;
 use crate::grid::Site;
-use crate::path::Road;
+use crate::path::Path;
+use crate::path::PlanningScratch;
 use crate::path::nearest::Centres;
 use crate::roadmap::{Residues, WaveSpace, Wavefront};
-use crate::strategy::frontier::Lent;
 
 /// Centre cells, a wave's memory over them, and the window in which the nearest one is looked for.
 #[derive(Debug)]
-pub(crate) struct Paths<'a, const TILES: usize, const SLOTS: usize> {
+pub(crate) struct PathSearch<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) centres: Centres<'a, TILES, SLOTS>,
     pub(crate) space: WaveSpace<'a>,
-    pub(crate) view: &'a mut View,
+    pub(crate) view: &'a mut LocalGrid,
 }
 
-impl<'a, const TILES: usize, const SLOTS: usize> Paths<'a, TILES, SLOTS> {
+impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
     /// These centre cells, to none of which a wave came yet; `None` if what is lent is too small for them.
-    pub(crate) fn open(centres: Centres<'a, TILES, SLOTS>, lent: &'a mut Lent<'_>) -> Option<Self> {
+    pub(crate) fn open(
+        centres: Centres<'a, TILES, SLOTS>,
+        lent: &'a mut PlanningScratch<'_>,
+    ) -> Option<Self> {
         let residues = Residues::new(centres.frame.shape, &mut *lent.residues).ok()?;
         let space = WaveSpace {
             way: centres.way,
@@ -54,11 +57,11 @@ impl<'a, const TILES: usize, const SLOTS: usize> Paths<'a, TILES, SLOTS> {
         self.centres.nearest(from, self.view, is_reached)
     }
 
-    /// The road from a place to where the wave began.
-    pub(crate) fn road(&mut self, from: Cell) -> Option<Road> {
+    /// The path from a place to where the wave began.
+    pub(crate) fn path(&mut self, from: Cell) -> Option<Path> {
         let (entry, steps) = self.entry(from)?;
         let way = core::iter::once(entry).chain(self.space.residues.descent(entry));
         let frame = self.centres.frame;
-        Some(Road::along(way.map(|site| frame.cell(site))).after(steps))
+        Some(Path::along(way.map(|site| frame.cell(site))).after(steps))
     }
 }

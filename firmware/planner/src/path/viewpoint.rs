@@ -1,4 +1,4 @@
-//! Lookouts: where to stand to see through a gap that the robot does not fit through.
+//! Viewpoints: where to stand to see through a gap that the robot does not fit through.
 //!
 //! A frontier strategy that goes to unexplored cells it can reach leaves what can only be seen: a room behind bars, the floor under
 //! a table, the space between two cupboards. When no frontier is within reach, the map is searched for *gaps*: free cells with an
@@ -21,7 +21,7 @@ use crate::geometry::{CELL_M, Cell};
 use crate::map::tiles::Extent;
 use crate::map::{Class, Tiles};
 use crate::math;
-use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::Flood;
 
 /// Rays from a gap, all around.
@@ -48,7 +48,7 @@ const EDGES_CELLS: i32 = 60;
 
 /// A place to look from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Lookout {
+pub struct Viewpoint {
     /// Where to stand.
     pub stand: Cell,
     /// The last free cell.
@@ -63,7 +63,7 @@ pub enum Found {
     /// Go on with the next instalment.
     Pending,
     /// There is something to see from here.
-    Lookout(Lookout),
+    Viewpoint(Viewpoint),
     /// Nothing more can be seen.
     Nothing,
 }
@@ -74,7 +74,7 @@ pub struct Grounds<'a, const TILES: usize, const SLOTS: usize> {
     /// The map.
     pub tiles: &'a Tiles<TILES, SLOTS>,
     /// The robot's disc, and the one it squeezes through with.
-    pub discs: [&'a Disc; 2],
+    pub discs: [&'a Footprint; 2],
     /// Where the robot stands.
     pub robot: Cell,
 }
@@ -100,7 +100,7 @@ pub struct Search {
     extent: Extent,
     found: bool,
     cost: f32,
-    best: Lookout,
+    best: Viewpoint,
 }
 
 fn distance(a: Cell, b: Cell) -> f32 {
@@ -140,7 +140,7 @@ impl Search {
             },
             found: false,
             cost: 0.0,
-            best: Lookout {
+            best: Viewpoint {
                 stand: Cell { x: 0, y: 0 },
                 gap: Cell { x: 0, y: 0 },
                 beyond: Cell { x: 0, y: 0 },
@@ -188,7 +188,7 @@ impl Search {
             Phase::Scan(block) => self.scan(grounds, &flood, &is_gone, block),
         }
         match (self.phase, self.found) {
-            (Phase::Idle, true) => Found::Lookout(self.best),
+            (Phase::Idle, true) => Found::Viewpoint(self.best),
             (Phase::Idle, false) => Found::Nothing,
             _ => Found::Pending,
         }
@@ -269,17 +269,17 @@ impl Search {
         let apart = count.div_ceil(TRIES) as usize;
         let gaps = cells(&edges, corner).step_by(apart);
         for gap in gaps.filter(|&gap| !is_gone(gap)) {
-            if let Some(lookout) = look_back(grounds.tiles, flood, gap, &mut walked) {
-                self.offer(grounds.robot, lookout);
+            if let Some(viewpoint) = look_back(grounds.tiles, flood, gap, &mut walked) {
+                self.offer(grounds.robot, viewpoint);
             }
         }
         walked
     }
 
-    fn offer(&mut self, robot: Cell, lookout: Lookout) {
-        let cost = distance(robot, lookout.stand) + distance(lookout.stand, lookout.gap);
+    fn offer(&mut self, robot: Cell, viewpoint: Viewpoint) {
+        let cost = distance(robot, viewpoint.stand) + distance(viewpoint.stand, viewpoint.gap);
         if !self.found || cost < self.cost {
-            (self.found, self.cost, self.best) = (true, cost, lookout);
+            (self.found, self.cost, self.best) = (true, cost, viewpoint);
         }
     }
 }
@@ -326,8 +326,8 @@ fn look_back<const TILES: usize, const SLOTS: usize>(
     flood: &Flood<'_>,
     gap: Cell,
     walked: &mut i32,
-) -> Option<Lookout> {
-    let mut best: Option<(i32, Lookout)> = None;
+) -> Option<Viewpoint> {
+    let mut best: Option<(i32, Viewpoint)> = None;
     for ray in (0..RAYS).map(ray) {
         let Some(beyond) = look_on(tiles, gap, ray, walked) else {
             continue;
@@ -340,12 +340,12 @@ fn look_back<const TILES: usize, const SLOTS: usize>(
                 break;
             }
             if flood.is_reached(stand) {
-                best = Some((back, Lookout { stand, gap, beyond }));
+                best = Some((back, Viewpoint { stand, gap, beyond }));
                 break;
             }
         }
     }
-    best.map(|(_, lookout)| lookout)
+    best.map(|(_, viewpoint)| viewpoint)
 }
 
 /// The middle one of the unexplored cells that a ray ends in, if the map has room for it.

@@ -1,27 +1,27 @@
-//! The window around the robot is charged: with a local goal of the road, or with what the strategy has for it
-//! [Ouroboros, Algorithm 1, lines 27 and 28].
+//! The window around the robot is charged: with a local goal of the path, or with what the strategy has for it
+//! [Jorge15, Algorithm 1, lines 27 and 28].
 //!
 //! Units: map cells.
 
 use crate::field::SIDE;
-use crate::field::local_grid::{Rows, SCALES, View};
+use crate::field::local_grid::{LocalGrid, Rows, SCALES};
 use crate::geometry::{Cell, Point};
 use crate::input::Input;
 use crate::map::obstacle_points;
-use crate::planner::state::{Around, State};
+use crate::planner::state::{GroundModel, State};
 use crate::planner::workspace::Workspace;
-use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::configuration_space::Footprint;
 use crate::strategy::tdbvp::Surroundings;
 
 /// See the smallest window that holds a local goal; the goal's cells in it.
 pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
-    disc: &Disc,
+    disc: &Footprint,
     input: &Input<'_>,
-    view: &mut View,
+    view: &mut LocalGrid,
 ) -> Option<Rows> {
-    let (robot, road) = (input.pose.point(), state.strategy.frontier.road());
-    if road.is_empty() {
+    let (robot, path) = (input.pose.point(), state.strategy.frontier.path());
+    if path.is_empty() {
         return None;
     }
     SCALES.iter().find_map(|&scale| {
@@ -31,7 +31,7 @@ pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
         }
         view.free_robot(robot.cell());
         keep_off_rims(state, disc, robot, view);
-        road.local_goals(robot)
+        path.local_goals(robot)
             .find_map(|cell| goal_cells(view, cell))
     })
 }
@@ -40,18 +40,18 @@ pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
 /// centre off: between two such cells the field would lead where the drive does not go.
 fn keep_off_rims<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
-    disc: &Disc,
+    disc: &Footprint,
     robot: Point,
-    view: &mut View,
+    view: &mut LocalGrid,
 ) {
-    if let Around::Storeys(_) = state.around {
+    if let GroundModel::Uneven(_) = state.ground {
         let rims = obstacle_points::rim_cells(state.map.tiles(), robot);
         view.keep_off(robot.cell(), rims, disc);
     }
 }
 
 /// The passable window cells of a coarse cell, if there are any.
-fn goal_cells(view: &View, cell: Cell) -> Option<Rows> {
+fn goal_cells(view: &LocalGrid, cell: Cell) -> Option<Rows> {
     let mut rows: Rows = [0; SIDE];
     view.mark(&mut rows, cell).then_some(rows)
 }
@@ -60,7 +60,7 @@ fn goal_cells(view: &View, cell: Cell) -> Option<Rows> {
 pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
-    disc: &Disc,
+    disc: &Footprint,
     input: &Input<'_>,
 ) -> Option<()> {
     state.strategy.tdbvp()?;

@@ -1,18 +1,18 @@
-//! The end of an exploration: what is left over, and why [Ouroboros, Algorithm 1, line 26].
+//! The end of an exploration: what is left over, and why [Jorge15, Algorithm 1, line 26].
 //!
 //! Units: map cells.
 
 use crate::field::SIDE;
-use crate::field::local_grid::{Rows, View};
+use crate::field::local_grid::{LocalGrid, Rows};
 use crate::geometry::Cell;
 use crate::grid::bits::{Adjacency, flood};
 use crate::map::tiles::NoRoom;
+use crate::path::PlanningContext;
 use crate::path::map_exits::no_room;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
-use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::configuration_space::Footprint;
 use crate::status::{Fault, Finish, Status};
-use crate::strategy::frontier::Known;
 
 /// A robot whose centre has less room than this, in cells, is boxed in: one square metre.
 const BOX_CELLS: u32 = 100;
@@ -21,7 +21,7 @@ const BOX_CELLS: u32 = 100;
 pub(super) fn finish<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
-    disc: &Disc,
+    disc: &Footprint,
     robot: Cell,
 ) {
     const DONE: Status = Status::Finished(Finish::Explored);
@@ -43,7 +43,7 @@ pub(super) fn finish<const TILES: usize, const SLOTS: usize>(
 fn list_ways_out<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
-    disc: &Disc,
+    disc: &Footprint,
     robot: Cell,
 ) -> Option<NoRoom> {
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
@@ -55,9 +55,9 @@ fn list_ways_out<const TILES: usize, const SLOTS: usize>(
 /// List the frontiers that were never within reach.
 fn list_leftovers<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
-    disc: &Disc,
+    disc: &Footprint,
 ) {
-    let known = Known {
+    let known = PlanningContext {
         topology: &state.topology,
         tiles: state.map.tiles(),
         disc,
@@ -69,8 +69,8 @@ fn list_leftovers<const TILES: usize, const SLOTS: usize>(
 /// Why there is no frontier left within reach.
 fn conclude<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
-    view: &mut View,
-    disc: &Disc,
+    view: &mut LocalGrid,
+    disc: &Footprint,
     robot: Cell,
     wanting: Option<NoRoom>,
 ) -> Status {
@@ -86,10 +86,10 @@ fn conclude<const TILES: usize, const SLOTS: usize>(
 }
 
 /// Cells of the window that the robot's centre can get to.
-fn room_cells(view: &View, robot: Cell) -> u32 {
+fn room_cells(view: &LocalGrid, robot: Cell) -> u32 {
     let mut reached: Rows = [0; SIDE];
     if let Some(place) = view.place(robot) {
-        View::put(&mut reached, place);
+        LocalGrid::put(&mut reached, place);
     }
     // With no target it floods everything.
     let _ = flood(&view.passable, &mut reached, &[0; SIDE], Adjacency::Four);

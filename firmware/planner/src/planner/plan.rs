@@ -1,23 +1,23 @@
-//! A new skeleton is planned on: a round of the strategy, and the search for lookouts when it finds nothing to drive to
-//! [Ouroboros, Algorithm 1, lines 4 and 24].
+//! A new skeleton is planned on: a round of the strategy, and the search for viewpoints when it finds nothing to drive to
+//! [Jorge15, Algorithm 1, lines 4 and 24].
 //!
 //! Units: metres, map cells.
 
 use crate::config::Config;
-use crate::config::Terrain;
+use crate::config::UnevenGround;
 use crate::drive::Place;
 use crate::field::height_preference::Preferences;
 use crate::geometry::Pose;
 use crate::input::Input;
-use crate::path::height_levels::Levels;
+use crate::path::height_levels::LevelCost;
 use crate::path::viewpoint::{Found, Grounds};
+use crate::path::{PlanningScratch, RoundOutcome};
 use crate::planner::ending::finish;
-use crate::planner::state::{Around, State};
+use crate::planner::state::{GroundModel, State};
 use crate::planner::steer::ahead;
 use crate::planner::workspace::Workspace;
-use crate::roadmap::configuration_space::Disc;
+use crate::roadmap::configuration_space::Footprint;
 use crate::status::{Fault, Status};
-use crate::strategy::frontier::{Lent, Outlook};
 use crate::strategy::ouroboros::Round;
 
 /// Where ground that stops the robot lies on uneven ground, if it was never measured: between its front and where the tilted beams meet
@@ -29,13 +29,13 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
-    disc: &Disc,
+    disc: &Footprint,
     input: &Input<'_>,
 ) -> bool {
     let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
     let (residues, ring) = words.split_at_mut(SLOTS * 16);
     let (residues, _) = residues.as_chunks_mut::<2>();
-    let lent = Lent {
+    let lent = PlanningScratch {
         residues,
         ring,
         view: &mut workspace.view,
@@ -47,35 +47,35 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         pose: input.pose,
         time_ms: input.time_ms,
         limits: &config.loops,
-        levels: levels(&state.around, config, &state.preferences),
+        levels: levels(&state.ground, config, &state.preferences),
     };
     let Some(outlook) = state.strategy.advance(round, lent) else {
         return false;
     };
-    if let Some(terrain) = &config.terrain {
+    if let Some(terrain) = &config.ground {
         give_up_ground(terrain, state, &input.pose);
     }
     let robot = input.pose.point().cell();
     match outlook {
         // On uneven ground what is seen through a gap is not measured by it.
-        Outlook::Nothing
+        RoundOutcome::Nothing
             if state.strategy.frontier.may_look()
-                && config.terrain.is_none()
+                && config.ground.is_none()
                 && !state.strategy.is_patrolling() =>
         {
             let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
-            state.lookouts.begin(state.map.tiles().extent(), scratch);
+            state.viewpoints.begin(state.map.tiles().extent(), scratch);
         }
-        Outlook::Nothing => finish(state, workspace, disc, robot),
-        Outlook::Stuck => state.status = Status::Fault(Fault::Stuck),
-        Outlook::Road | Outlook::Unsure => {}
+        RoundOutcome::Nothing => finish(state, workspace, disc, robot),
+        RoundOutcome::Stuck => state.status = Status::Fault(Fault::Stuck),
+        RoundOutcome::Path | RoundOutcome::Unsure => {}
     }
     true
 }
 
 /// Decide what to make of ground that was never measured though the robot stood by it.
 fn give_up_ground<const TILES: usize, const SLOTS: usize>(
-    terrain: &Terrain,
+    terrain: &UnevenGround,
     state: &mut State<TILES, SLOTS>,
     pose: &Pose,
 ) {
@@ -95,13 +95,13 @@ fn give_up_ground<const TILES: usize, const SLOTS: usize>(
 
 /// Which goals are preferred for their height.
 fn levels<'a, const TILES: usize>(
-    around: &'a Around<TILES>,
+    around: &'a GroundModel<TILES>,
     config: &'a Config,
     preferences: &Preferences,
-) -> Option<Levels<'a, TILES>> {
-    let terrain = config.terrain.as_ref()?;
+) -> Option<LevelCost<'a, TILES>> {
+    let terrain = config.ground.as_ref()?;
     match around {
-        Around::Storeys(storeys) if terrain.mode.has_heights() => Some(Levels {
+        GroundModel::Uneven(storeys) if terrain.mode.has_heights() => Some(LevelCost {
             storeys,
             terrain,
             storey_m: preferences.storey_m(),
@@ -111,14 +111,14 @@ fn levels<'a, const TILES: usize>(
 }
 
 /// Nothing is left to drive to: search on for what can be seen, and go there or be done.
-pub(super) fn look_for_lookouts<const TILES: usize, const SLOTS: usize>(
+pub(super) fn look_for_viewpoints<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     input: &Input<'_>,
 ) {
     let robot = input.pose.point().cell();
-    let [wide, narrow] = [config.robot_radius_m, config.tight_radius_m].map(Disc::new);
+    let [wide, narrow] = [config.robot_radius_m, config.tight_radius_m].map(Footprint::new);
     let grounds = Grounds {
         tiles: state.map.tiles(),
         discs: [&wide, &narrow],
@@ -126,10 +126,10 @@ pub(super) fn look_for_lookouts<const TILES: usize, const SLOTS: usize>(
     };
     let is_gone = |gap| state.strategy.frontier.is_gone(gap);
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
-    match state.lookouts.advance(&grounds, is_gone, scratch) {
+    match state.viewpoints.advance(&grounds, is_gone, scratch) {
         Found::Pending => {}
-        Found::Lookout(lookout) => {
-            state.strategy.frontier.look_from(lookout);
+        Found::Viewpoint(viewpoint) => {
+            state.strategy.frontier.look_from(viewpoint);
             // The skeleton was not touched meanwhile.
             state.fresh = true;
         }

@@ -1,11 +1,11 @@
 //! Uneven ground in the window: what each cell is preferred by before the field is solved, and what the field says of its flatness after
-//! [Maffei-Terrain, eqs. 3 to 5].
+//! [Maffei20, eqs. 3 to 5].
 //!
 //! Units: metres; preferences are pure numbers.
 
-use crate::config::Terrain;
+use crate::config::UnevenGround;
 use crate::drive::side_slope::Slope;
-use crate::field::local_grid::{Rows, View};
+use crate::field::local_grid::{LocalGrid, Rows};
 use crate::field::preference::p_diff;
 use crate::field::{Preference, SIDE, Window, descent};
 use crate::ground::Heights;
@@ -13,9 +13,9 @@ use crate::input::Input;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 
-/// Give every cell of the window its preference [Maffei-Terrain, eqs. 3 to 5], beside what the strategy prefers.
+/// Give every cell of the window its preference [Maffei20, eqs. 3 to 5], beside what the strategy prefers.
 pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
-    terrain: &Terrain,
+    terrain: &UnevenGround,
     state: &State<TILES, SLOTS>,
     workspace: &mut Workspace,
     input: &Input<'_>,
@@ -26,7 +26,7 @@ pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
     let Workspace { window, view, .. } = workspace;
     let crossed = crossed(terrain, &heights, window, view);
     window.change_preferences(|x, y, old| {
-        if View::has(&crossed, (x, y)) {
+        if LocalGrid::has(&crossed, (x, y)) {
             return Preference::nearest(terrain.least_preference);
         }
         let height_m = heights.height_m(view.cell(x, y));
@@ -38,8 +38,13 @@ pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
 }
 
 /// Cells in which the last field leads across a slope that may not be crossed: they repel as much as cells may, whatever their height. Along its own
-/// height a robot would else be drawn just there. Not in [Maffei-Terrain].
-fn crossed(terrain: &Terrain, heights: &Heights<'_>, window: &Window, view: &View) -> Rows {
+/// height a robot would else be drawn just there. Not in [Maffei20].
+fn crossed(
+    terrain: &UnevenGround,
+    heights: &Heights<'_>,
+    window: &Window,
+    view: &LocalGrid,
+) -> Rows {
     let mut rows = [0; SIDE];
     let Some(most) = terrain.most_lean().filter(|_| terrain.mode.has_heights()) else {
         return rows;

@@ -3,17 +3,17 @@
 //! Invariant: only [`super::step`] and [`State::reset`] change it. Units: map cells.
 
 use crate::config::Config;
-use crate::drive::side_slope::Wedge;
+use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{self, Drive};
 use crate::field::height_preference::Preferences;
 use crate::geometry::Cell;
 use crate::map::Map;
-use crate::map::obstacle_points::NearField;
-use crate::path::height_levels::Storeys;
-use crate::path::{Road, viewpoint};
+use crate::map::obstacle_points::ObstaclePoints;
+use crate::path::height_levels::HeightLevels;
+use crate::path::{Path, viewpoint};
 use crate::planner::workspace::{RING, SCRATCH};
 use crate::roadmap::reachability;
-use crate::roadmap::skeleton::Topology;
+use crate::roadmap::skeleton::Skeleton;
 use crate::status::{Frontier, Status};
 use crate::strategy::Strategist;
 use crate::strategy::ouroboros::Ouroboros;
@@ -23,21 +23,21 @@ use crate::strategy::tdbvp::Tdbvp;
 #[derive(Debug)]
 pub struct State<const TILES: usize, const SLOTS: usize> {
     pub(super) map: Map<TILES, SLOTS>,
-    pub(super) around: Around<TILES>,
-    pub(super) topology: Topology<SLOTS>,
+    pub(super) ground: GroundModel<TILES>,
+    pub(super) topology: Skeleton<SLOTS>,
     pub(super) strategy: Strategist<SLOTS>,
     /// What ground is preferred, where it is uneven.
     pub(super) preferences: Preferences,
     /// What can only be seen is searched for, when nothing is left to drive to.
-    pub(super) lookouts: viewpoint::Search,
+    pub(super) viewpoints: viewpoint::Search,
     pub(super) drive: Drive,
     /// Up or down the slope that it is on, where it may not be crossed.
-    pub(super) wedge: Option<Wedge>,
+    pub(super) wedge: Option<SlopeDirection>,
     /// The one in which the drive found no way, until it searches again.
-    pub(super) shut: Option<Wedge>,
+    pub(super) shut: Option<SlopeDirection>,
     pub(super) status: Status,
     pub(super) started: bool,
-    /// A skeleton was published that no road was planned on yet.
+    /// A skeleton was published that no path was planned on yet.
     pub(super) fresh: bool,
     /// Where the robot began.
     pub(super) start: Cell,
@@ -53,9 +53,9 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     clippy::large_enum_variant,
     reason = "no heap to box into; both are about as large with the pool of an image"
 )]
-pub(super) enum Around<const TILES: usize> {
-    Near(NearField),
-    Storeys(Storeys<TILES>),
+pub(super) enum GroundModel<const TILES: usize> {
+    Flat(ObstaclePoints),
+    Uneven(HeightLevels<TILES>),
 }
 
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
@@ -77,11 +77,11 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let () = Self::CHECK;
         Self {
             map: Map::new(),
-            around: Around::Near(NearField::new()),
-            topology: Topology::new(),
+            ground: GroundModel::Flat(ObstaclePoints::new()),
+            topology: Skeleton::new(),
             strategy: Strategist::new(),
             preferences: Preferences::new(),
-            lookouts: viewpoint::Search::new(),
+            viewpoints: viewpoint::Search::new(),
             drive: Drive::new(),
             wedge: None,
             shut: None,
@@ -96,14 +96,14 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     pub fn reset(&mut self, config: &Config) {
         self.map.begin(config);
         self.preferences = Preferences::new();
-        self.around = match config.terrain {
-            None => Around::Near(NearField::new()),
-            Some(_) => Around::Storeys(Storeys::new()),
+        self.ground = match config.ground {
+            None => GroundModel::Flat(ObstaclePoints::new()),
+            Some(_) => GroundModel::Uneven(HeightLevels::new()),
         };
         self.topology
             .reset(Strategist::<SLOTS>::space(config.strategy));
         self.strategy.reset(config);
-        self.lookouts = viewpoint::Search::new();
+        self.viewpoints = viewpoint::Search::new();
         self.drive = Drive::new();
         (self.wedge, self.shut) = (None, None);
         self.status = Status::Exploring;
@@ -119,14 +119,14 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 
     /// The centre cells.
     #[must_use]
-    pub const fn topology(&self) -> &Topology<SLOTS> {
+    pub const fn topology(&self) -> &Skeleton<SLOTS> {
         &self.topology
     }
 
     /// The way to the present goal.
     #[must_use]
-    pub const fn road(&self) -> &Road {
-        self.strategy.frontier.road()
+    pub const fn path(&self) -> &Path {
+        self.strategy.frontier.path()
     }
 
     /// What is known of loops, where the session's strategy closes them.

@@ -1,10 +1,10 @@
-//! The window's field is followed by a robot that touches nothing [Ouroboros, Algorithm 1, line 29].
+//! The window's field is followed by a robot that touches nothing [Jorge15, Algorithm 1, line 29].
 //!
 //! Units: metres, seconds, radians; milliseconds where a name says so.
 
 use crate::config::Config;
-use crate::drive::side_slope::{Bias, Wedge};
-use crate::drive::{Ground, Incline, Place, Surround};
+use crate::drive::side_slope::{Hysteresis, SlopeDirection};
+use crate::drive::{CollisionChecker, Ground, Incline, Place};
 use crate::field::local_grid;
 use crate::field::{Window, descent};
 use crate::geometry::{Cell, Point, Pose, Twist};
@@ -12,7 +12,7 @@ use crate::input::Input;
 use crate::map::obstacle_points;
 use crate::math;
 use crate::planner::Output;
-use crate::planner::state::{Around, State};
+use crate::planner::state::{GroundModel, State};
 use crate::planner::workspace::Workspace;
 
 /// A while, milliseconds: half a turn.
@@ -41,11 +41,11 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     let heights = state.map.heights();
     // A robot that found no way within the limit of its roll for so long leaves it rather than stand there for good.
     let incline = config
-        .terrain
+        .ground
         .as_ref()
         .filter(|_| whiles_stood(state, input.time_ms) < WHILES_AT_A_LOSS)
         .and_then(|terrain| Incline::new(terrain, &heights, &input.pose));
-    let bias = Bias {
+    let bias = Hysteresis {
         before: state.wedge,
         goal: wedge_of_goal(state, input.pose.z_m),
         shut: state.shut,
@@ -110,15 +110,15 @@ fn surround<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     pose: &Pose,
     incline: Option<Incline>,
-) -> Surround {
-    let mut surround = Surround::empty().on(incline);
-    match &state.around {
-        Around::Near(near) => {
+) -> CollisionChecker {
+    let mut surround = CollisionChecker::empty().on(incline);
+    match &state.ground {
+        GroundModel::Flat(near) => {
             surround.see(pose, near.points());
             let cells = obstacle_points::obstacle_cells(state.map.tiles(), pose.point());
             surround.remember(pose, cells);
         }
-        Around::Storeys(_) => {
+        GroundModel::Uneven(_) => {
             let rims = obstacle_points::rims(state.map.tiles(), pose.point());
             surround.keep_off(pose, rims);
         }
@@ -148,7 +148,7 @@ fn is_at_a_loss<const TILES: usize, const SLOTS: usize>(
     time_ms: u32,
 ) -> bool {
     let whiles = whiles_stood(state, time_ms);
-    matches!(state.around, Around::Storeys(_))
+    matches!(state.ground, GroundModel::Uneven(_))
         && velocity == Twist::default()
         && whiles >= WHILES_AT_A_LOSS
         && whiles % 2 == 1
@@ -162,22 +162,22 @@ fn whiles_stood<const TILES: usize, const SLOTS: usize>(
     state.strategy.frontier.standing_ms(time_ms) / WHILE_MS
 }
 
-/// Whether the road's goal lies clearly higher or lower than the robot, as far as its height is known.
+/// Whether the path's goal lies clearly higher or lower than the robot, as far as its height is known.
 fn wedge_of_goal<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     robot_m: f32,
-) -> Option<Wedge> {
-    let Around::Storeys(storeys) = &state.around else {
+) -> Option<SlopeDirection> {
+    let GroundModel::Uneven(storeys) = &state.ground else {
         return None;
     };
-    let goal = state.strategy.frontier.road().goal();
+    let goal = state.strategy.frontier.path().goal();
     let rise_m = storeys.height_around_m(state.map.tiles(), goal)? - robot_m;
     if rise_m.abs() < LEVEL_M {
         None
     } else if rise_m > 0.0 {
-        Some(Wedge::Up)
+        Some(SlopeDirection::Up)
     } else {
-        Some(Wedge::Down)
+        Some(SlopeDirection::Down)
     }
 }
 
@@ -233,13 +233,13 @@ mod tests {
     use std::vec::Vec;
 
     use super::*;
-    use crate::config::Terrain;
+    use crate::config::UnevenGround;
     use crate::field::{SIDE, solve};
 
     /// Turn rates of a robot that stands where no field leads anywhere, at these times since it last moved.
-    fn turn_rates<const N: usize>(terrain: Option<Terrain>, times_ms: [u32; N]) -> [f32; N] {
+    fn turn_rates<const N: usize>(terrain: Option<UnevenGround>, times_ms: [u32; N]) -> [f32; N] {
         let config = Config {
-            terrain,
+            ground: terrain,
             ..Config::pioneer_3at(heapless::Vec::new())
         };
         let mut state = Box::<State<20, 400>>::default();
@@ -267,7 +267,7 @@ mod tests {
         let times_ms = [
             5_000, 15_000, 24_999, 25_000, 29_999, 30_000, 34_999, 35_000, 40_000, 45_000,
         ];
-        let turns = turn_rates(Some(Terrain::TABLE_I), times_ms).map(|rate| rate != 0.0);
+        let turns = turn_rates(Some(UnevenGround::TABLE_I), times_ms).map(|rate| rate != 0.0);
         let when: Vec<u32> = times_ms
             .into_iter()
             .zip(turns)
@@ -281,9 +281,9 @@ mod tests {
     /// The heading that is driven, degrees, by a robot on a slope that rises to the north while the field leads east, when it has stood so long.
     fn heading_deg(roll: f32, standing_ms: u32) -> f32 {
         let config = Config {
-            terrain: Some(Terrain {
+            ground: Some(UnevenGround {
                 roll,
-                ..Terrain::TABLE_I
+                ..UnevenGround::TABLE_I
             }),
             ..Config::pioneer_3at(heapless::Vec::new())
         };
@@ -322,6 +322,6 @@ mod tests {
         let limit = 0.268;
         assert!(heading_deg(limit, 20_000).abs() > 5.0);
         assert!(heading_deg(limit, 25_000).abs() < 1.0);
-        assert!(heading_deg(Terrain::TABLE_I.climb, 20_000).abs() < 1.0);
+        assert!(heading_deg(UnevenGround::TABLE_I.climb, 20_000).abs() < 1.0);
     }
 }

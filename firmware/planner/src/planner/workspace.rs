@@ -2,7 +2,7 @@
 //!
 //! Units: map cells; q is 1 at a goal.
 
-use crate::field::local_grid::View;
+use crate::field::local_grid::LocalGrid;
 use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, Window};
 use crate::geometry::Cell;
 
@@ -18,7 +18,7 @@ pub struct Workspace {
     /// Its least map cell and its scale.
     pub(super) window_at: Option<(Cell, i32)>,
     /// What stands in the window.
-    pub(super) view: View,
+    pub(super) view: LocalGrid,
     pub(super) scratch: [f32; SCRATCH],
 }
 
@@ -29,7 +29,7 @@ impl Workspace {
         Self {
             window: Window::new(),
             window_at: None,
-            view: View::new(),
+            view: LocalGrid::new(),
             scratch: [0.0; SCRATCH],
         }
     }

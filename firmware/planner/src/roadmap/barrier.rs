@@ -6,7 +6,7 @@ use crate::grid::{PlaneMut, Site};
 
 /// A blocker on the wavefront's way: up to `N` cells of the skeleton that are cleared until it is lowered.
 ///
-/// A wave cannot enter a cell that is not set, so the robot's cell or a wall across the road stops it [Ouroboros, steps
+/// A wave cannot enter a cell that is not set, so the robot's cell or a wall across the path stops it [Jorge15, steps
 /// 3 and 5]. Invariant: every cell held was set before and is cleared now.
 #[derive(Debug)]
 #[must_use = "lower it, or the skeleton stays cut"]

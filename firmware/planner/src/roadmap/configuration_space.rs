@@ -22,12 +22,12 @@ struct Ring([Line; RING]);
 
 /// A disc as half widths: row dy covers columns −h..=h.
 #[derive(Clone, Copy, Debug)]
-pub struct Disc {
+pub struct Footprint {
     half_widths: [Option<u8>; MOST_RADIUS + 1],
     reach: i32,
 }
 
-impl Disc {
+impl Footprint {
     /// The cells whose centre is nearer than `radius_m`, at most [`MOST_RADIUS`] cells.
     #[must_use]
     pub fn new(radius_m: f32) -> Self {
@@ -77,7 +77,7 @@ impl Ring {
     /// The cells of a row whose disc holds an obstacle. From the middle of the disc outwards its rows are less and less
     /// wide: what was found so far is widened by the difference, and the rest at the end.
     #[inline(always)]
-    fn blocked(&self, row: i32, disc: &Disc) -> u64 {
+    fn blocked(&self, row: i32, disc: &Footprint) -> u64 {
         let (mut found, mut half) = (0, 0);
         for (dy, &width) in (0..=disc.reach).zip(&disc.half_widths) {
             let width = width.unwrap_or(0);
@@ -111,7 +111,7 @@ pub struct Strip {
 /// Visit rows `y..y + height` of the 32 columns from `x` on, in order.
 pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
-    disc: &Disc,
+    disc: &Footprint,
     (x, y): (i32, i32),
     height: i32,
     mut visit: impl FnMut(i32, Strip),
@@ -139,7 +139,7 @@ pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
 /// Whether the robot's centre may be in this cell; the slow twin of [`for_each_strip`].
 pub fn is_passable<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
-    disc: &Disc,
+    disc: &Footprint,
     cell: crate::geometry::Cell,
 ) -> bool {
     let stands = |cell| matches!(tiles.class(cell), Class::Obstacle | Class::Negative);
@@ -193,7 +193,7 @@ mod tests {
     fn strips_agree_with_the_cell_by_cell_twin() {
         let tiles = scattered();
         for radius in [0.1, 0.15, 0.2, 0.3, 0.35, 0.45] {
-            let disc = Disc::new(radius);
+            let disc = Footprint::new(radius);
             for x in [-40, -7, 32] {
                 for_each_strip(&tiles, &disc, (x, -31), 62, |y, strip| {
                     for k in 0..32 {
@@ -229,7 +229,7 @@ mod tests {
                     .unwrap();
             }
             let mut lanes = 0;
-            for_each_strip(&tiles, &Disc::new(0.30), (0, 5), 1, |_, strip| {
+            for_each_strip(&tiles, &Footprint::new(0.30), (0, 5), 1, |_, strip| {
                 lanes = (strip.passable & 0x3fff_ffff & !3).count_ones() as i32;
             });
             assert_eq!(lanes, (gap - 4).max(0), "gap {gap}");

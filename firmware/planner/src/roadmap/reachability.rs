@@ -13,7 +13,7 @@
 use crate::geometry::Cell;
 use crate::map::Tiles;
 use crate::map::tiles::Extent;
-use crate::roadmap::configuration_space::{Disc, for_each_strip};
+use crate::roadmap::configuration_space::{Footprint, for_each_strip};
 
 /// Coarse cells along a tile's side.
 const SIDE: usize = 16;
@@ -81,7 +81,7 @@ impl<'a> Flood<'a> {
     pub(crate) fn load<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        disc: &Disc,
+        disc: &Footprint,
         (tile_x, tile_y): (i32, i32),
     ) {
         let corner = Cell {

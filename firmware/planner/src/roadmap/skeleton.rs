@@ -1,7 +1,7 @@
 //! The topology: centre cells of the passable space at 20 cm, made anew in instalments.
 //!
 //! A round loads the map's passable cells into a plane of half the resolution, thins it to the skeleton under a work
-//! budget, and is then published: [`Topology::skeleton`] and the frontier cells on it. [`Space`] says which cells are
+//! budget, and is then published: [`Skeleton::skeleton`] and the frontier cells on it. [`Space`] says which cells are
 //! thinned, and what a frontier is.
 //!
 //! Units: coarse cells of 20 cm; a tile is 16 × 16 of them.
@@ -13,7 +13,7 @@ use crate::map::tiles::Extent;
 use crate::math;
 use crate::roadmap::coarse;
 use crate::roadmap::coarse::Border;
-use crate::roadmap::configuration_space::{Disc, Strip, for_each_strip};
+use crate::roadmap::configuration_space::{Footprint, Strip, for_each_strip};
 use crate::roadmap::{Progress, Thinning};
 
 /// Which cells are thinned, and what a frontier cell is.
@@ -22,7 +22,7 @@ pub enum Space {
     /// The explored passable cells. The frontier cells (explored, with an unexplored cell at a side) are *anchors*: the
     /// thinning keeps them, so every frontier that the robot fits through is on the skeleton and has a way along it.
     ///
-    /// Departs from [Ouroboros, III-C], whose space is [`Self::NotObstacle`] without anchors: there only the unexplored
+    /// Departs from [Jorge15, III-C], whose space is [`Self::NotObstacle`] without anchors: there only the unexplored
     /// cells that the thinning happens to leave are goals, and an unexplored patch beside a wide way leaves none. Measured
     /// with the same planner, 3 seeds on 7 built-in worlds and 2 on 13 buildings drawn by others:
     ///
@@ -38,7 +38,7 @@ pub enum Space {
     #[default]
     KnownFree,
     /// All passable cells, explored or not, from a box slightly larger than the known area, so that ways may run through
-    /// the unexplored [Ouroboros, step 1]. The frontier cells are the unexplored cells beside an explored one that the thinning happens to leave, as in the paper.
+    /// the unexplored [Jorge15, step 1]. The frontier cells are the unexplored cells beside an explored one that the thinning happens to leave, as in the paper.
     NotObstacle,
     /// [`Self::NotObstacle`], with the anchors of [`Self::KnownFree`].
     AnchoredNotObstacle,
@@ -135,7 +135,7 @@ type Words<const SLOTS: usize> = [[u32; 8]; SLOTS];
 
 /// The planes and the round in progress. `SLOTS` tiles of 16 × 16 coarse cells.
 #[derive(Debug)]
-pub struct Topology<const SLOTS: usize> {
+pub struct Skeleton<const SLOTS: usize> {
     /// The published skeleton.
     skeleton: Words<SLOTS>,
     frame: Frame,
@@ -148,7 +148,7 @@ pub struct Topology<const SLOTS: usize> {
     thinning: Thinning<SLOTS>,
 }
 
-impl<const SLOTS: usize> Topology<SLOTS> {
+impl<const SLOTS: usize> Skeleton<SLOTS> {
     /// Nothing known.
     #[must_use]
     pub const fn new() -> Self {
@@ -223,7 +223,7 @@ impl<const SLOTS: usize> Topology<SLOTS> {
     pub fn advance<const TILES: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        disc: &Disc,
+        disc: &Footprint,
         budget: u32,
     ) -> bool {
         let mut left = budget;
@@ -250,7 +250,7 @@ impl<const SLOTS: usize> Topology<SLOTS> {
     fn load<const TILES: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        disc: &Disc,
+        disc: &Footprint,
         tile: usize,
     ) -> u32 {
         let frame = self.next_frame;
@@ -329,7 +329,7 @@ impl<const SLOTS: usize> Topology<SLOTS> {
     }
 }
 
-impl<const SLOTS: usize> Default for Topology<SLOTS> {
+impl<const SLOTS: usize> Default for Skeleton<SLOTS> {
     fn default() -> Self {
         Self::new()
     }

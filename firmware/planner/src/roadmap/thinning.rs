@@ -1,4 +1,4 @@
-//! Guo–Hall thinning, 32 cells at a time, in place and in instalments [Guo & Hall 1989].
+//! Guo–Hall thinning, 32 cells at a time, in place and in instalments [GuoHall89].
 //!
 //! All cells of a subiteration are judged before any is deleted. North is towards row 0, so a plane is seen as an
 //! image with row 0 on top; `opencv_contrib`'s `THINNING_GUOHALL` does too, and gives the same bits. The two

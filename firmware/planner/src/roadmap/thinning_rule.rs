@@ -1,4 +1,4 @@
-//! The cells that a subiteration deletes, 32 at a time [Guo & Hall 1989].
+//! The cells that a subiteration deletes, 32 at a time [GuoHall89].
 //!
 //! A set cell with neighbours p2 (north) … p9 (north-west, clockwise) is deleted when
 //!
@@ -127,7 +127,7 @@ impl Patch {
 
 /// The eight neighbours of 32 cells.
 #[derive(Clone, Copy, Debug)]
-struct Around {
+struct GroundModel {
     north: u32,
     north_east: u32,
     east: u32,
@@ -165,7 +165,7 @@ fn judge<const SECOND: bool>(
     if here & !(north & south & east & west) == 0 {
         return 0;
     }
-    let around = Around {
+    let around = GroundModel {
         north,
         north_east: eastern(north, above_right & sides),
         east,
@@ -194,7 +194,7 @@ const fn western(here: u32, left: u32) -> u32 {
     here << 1 | left >> 31
 }
 
-impl Around {
+impl GroundModel {
     /// Seen from the other side: turned by 180°.
     #[inline(always)]
     const fn turned(self) -> Self {
@@ -213,8 +213,8 @@ impl Around {
 
 /// Where the first subiteration deletes a set cell.
 #[inline(always)]
-const fn deletions(around: Around) -> u32 {
-    let Around {
+const fn deletions(around: GroundModel) -> u32 {
+    let GroundModel {
         north: n,
         north_east: ne,
         east: e,
@@ -240,7 +240,7 @@ const fn deletions(around: Around) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Around, deletions, sides};
+    use super::{GroundModel, deletions, sides};
 
     /// The definition, word for word; p[0] is p2.
     fn deletes(p: [bool; 8], second: bool) -> bool {
@@ -276,7 +276,7 @@ mod tests {
         for code in 0..256_u32 {
             let p = core::array::from_fn(|k| code >> k & 1 == 1);
             let bit = |k: usize| if p[k] { u32::MAX } else { 0 };
-            let around = Around {
+            let around = GroundModel {
                 north: bit(0),
                 north_east: bit(1),
                 east: bit(2),

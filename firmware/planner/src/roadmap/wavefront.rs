@@ -2,7 +2,7 @@
 //!
 //! The wave starts from any number of seeds at once and enters the set cells of the way, 8-connected, level by level.
 //! It leaves distances modulo 3 in [`Residues`]: what the papers' potential from a point source amounts to on centre
-//! cells [Ouroboros, steps 3 and 5]. Cells wait for their turn in a ring. A cell that finds the ring full is not lost:
+//! cells [Jorge15, steps 3 and 5]. Cells wait for their turn in a ring. A cell that finds the ring full is not lost:
 //! it is reached, and its row noted; when the cells of its level have had their turn, the noted rows are gone through
 //! for open cells next to one of this level. That costs time and changes no distance, since a cell of an earlier
 //! level with the same residue has no open neighbour left.

@@ -13,11 +13,11 @@ pub use tdbvp::Tdbvp;
 
 use crate::config::{Config, Strategy};
 use crate::field::Window;
-use crate::field::local_grid::View;
+use crate::field::local_grid::LocalGrid;
 use crate::geometry::Pose;
+use crate::path::{PlanningScratch, RoundOutcome};
 use crate::roadmap::skeleton::Space;
-use crate::robot::Laser;
-use frontier::{Lent, Outlook};
+use crate::robot::LaserMount;
 use ouroboros::Round;
 use ouroboros::shield::Shield;
 use tdbvp::Surroundings;
@@ -25,7 +25,7 @@ use tdbvp::Surroundings;
 /// What plans in a session. `SLOTS` as the map's.
 #[derive(Debug)]
 pub struct Strategist<const SLOTS: usize> {
-    /// What drives to frontiers: road, bars, leftovers, the second chance.
+    /// What drives to frontiers: path, bars, leftovers, the second chance.
     pub frontier: Frontier,
     more: More<SLOTS>,
 }
@@ -109,7 +109,7 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     }
 
     /// The robot is here; to be called in every step, with the scan of the level laser.
-    pub fn note(&mut self, pose: &Pose, time_ms: u32, scan: Option<(&Laser, &[u16])>) {
+    pub fn note(&mut self, pose: &Pose, time_ms: u32, scan: Option<(&LaserMount, &[u16])>) {
         match &mut self.more {
             More::Nothing => {}
             More::Ouroboros(ouroboros) => ouroboros.note_pose(pose),
@@ -117,11 +117,11 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         }
     }
 
-    /// Charge the window otherwise than with a road's local goal; `None` where the strategy has no such charge, or it leads nowhere.
+    /// Charge the window otherwise than with a path's local goal; `None` where the strategy has no such charge, or it leads nowhere.
     pub fn charge<const TILES: usize>(
         &mut self,
         around: &Surroundings<'_, TILES, SLOTS>,
-        (window, view): (&mut Window, &View),
+        (window, view): (&mut Window, &LocalGrid),
     ) -> Option<()> {
         match &mut self.more {
             More::Nothing | More::Ouroboros(_) => None,
@@ -153,8 +153,8 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     pub fn advance<const TILES: usize>(
         &mut self,
         round: Round<'_, TILES, SLOTS>,
-        lent: Lent<'_>,
-    ) -> Option<Outlook> {
+        lent: PlanningScratch<'_>,
+    ) -> Option<RoundOutcome> {
         self.frontier.cut(round.topology);
         match &mut self.more {
             More::Nothing => {

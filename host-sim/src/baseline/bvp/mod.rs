@@ -13,7 +13,7 @@
 //! frontiers. So the paper's known failure, flattening, cannot end a run here. The other one, indecision between far goals, is
 //! in the method and stays.
 //!
-//! On uneven ground ([`Uneven`]) it has the planner's preferences [Maffei-Terrain, eqs. 3 to 5], over the whole grid: every height that was
+//! On uneven ground ([`Uneven`]) it has the planner's preferences [Maffei-UnevenGround, eqs. 3 to 5], over the whole grid: every height that was
 //! ever measured counts, where the chip knows those of a window around the robot.
 //!
 //! # What it would cost on the chip
@@ -24,7 +24,7 @@ mod graph;
 mod multigrid;
 pub mod patience;
 
-use fieldline_planner::config::Mode;
+use fieldline_planner::config::PreferenceMode;
 use fieldline_planner::field::height_preference::Preferences;
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::math;
@@ -92,7 +92,7 @@ impl Bvp {
     /// Give every cell its preference, as flat as the field was in the step before.
     fn prefer(&mut self, scene: &Scene<'_>, ground: &Uneven<'_>) {
         let (terrain, heights) = (ground.terrain, ground.heights);
-        if terrain.mode == Mode::Off {
+        if terrain.mode == PreferenceMode::Off {
             return;
         }
         let global = self.preferences.global(terrain);
@@ -227,11 +227,11 @@ impl Plan for Bvp {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bvp, MOST_CYCLES, Mode};
+    use super::{Bvp, MOST_CYCLES, PreferenceMode};
     use crate::baseline::chart::sketch::chart;
     use crate::baseline::heights::HeightGrid;
     use crate::baseline::session::{Outlook, Plan, Scene, Uneven};
-    use fieldline_planner::config::Terrain;
+    use fieldline_planner::config::UnevenGround;
     use fieldline_planner::geometry::{Cell, Point, Pose};
     use fieldline_planner::ground::elevation::{Elevation, WINDOW_CELLS};
     use fieldline_protocol::message::FIELD_SIDE;
@@ -350,10 +350,10 @@ mod tests {
         let mut heights = HeightGrid::default();
         heights.keep(&elevation.read());
         let turn = |mode| {
-            let terrain = Terrain {
+            let terrain = UnevenGround {
                 mode,
                 least_preference: -1.0,
-                ..Terrain::TABLE_I
+                ..UnevenGround::TABLE_I
             };
             let ground = Uneven {
                 terrain: &terrain,
@@ -371,10 +371,19 @@ mod tests {
             }
             bvp.heading_at(&scene, robot).expect("a way")
         };
-        assert!(turn(Mode::Off) < 0.0, "the shorter way is to the south");
-        assert!(turn(Mode::Global) < 0.0, "which attracts all ground alike");
-        assert!(turn(Mode::Both) > 0.0, "the level one to the north");
-        assert!(turn(Mode::Height) > 0.0);
+        assert!(
+            turn(PreferenceMode::Off) < 0.0,
+            "the shorter way is to the south"
+        );
+        assert!(
+            turn(PreferenceMode::Global) < 0.0,
+            "which attracts all ground alike"
+        );
+        assert!(
+            turn(PreferenceMode::Both) > 0.0,
+            "the level one to the north"
+        );
+        assert!(turn(PreferenceMode::Height) > 0.0);
     }
 
     #[test]

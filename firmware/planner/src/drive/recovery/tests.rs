@@ -1,6 +1,6 @@
 //! Ways out of dead ends, corners and boxes made of points.
 
-use crate::drive::Surround;
+use crate::drive::CollisionChecker;
 use crate::drive::recovery::*;
 use crate::geometry::{Point, Pose};
 
@@ -25,9 +25,9 @@ const BUDGET: Budget = Budget {
     points: 2_000,
 };
 
-fn search(points: &[Point], pose: Pose, heading: f32) -> Option<(Plan, Surround)> {
+fn search(points: &[Point], pose: Pose, heading: f32) -> Option<(Plan, CollisionChecker)> {
     let mut scratch = std::vec![0; SCRATCH_WORDS];
-    let surround = Surround::new(&pose, points);
+    let surround = CollisionChecker::new(&pose, points);
     let heading_at = |_: Place| Some(math::wrap(heading - pose.yaw_rad));
     let ground = Ground {
         surround: &surround,

@@ -4,7 +4,7 @@
 
 use std::vec;
 
-use crate::config::Terrain;
+use crate::config::UnevenGround;
 use crate::geometry::{Cell, Point, Pose, Twist};
 use crate::ground::elevation::WINDOW_CELLS;
 use crate::ground::ray::Ray;
@@ -65,7 +65,7 @@ fn before_wall(walled: bool, z_m: f32) -> (f32, u8) {
     }
     let (from_z_m, length_m) = (0.45, 0.1 * WALL as f32 - 0.01 - 0.15);
     let ray = ahead(from_z_m, (z_m - from_z_m) / length_m, length_m);
-    let mut survey = Survey::new(&mut window, &Terrain::TABLE_I, &AT_REST);
+    let mut survey = Survey::new(&mut window, &UnevenGround::TABLE_I, &AT_REST);
     survey.judge(&ray, (false, true));
     let heights = window.read();
     let height_m = heights.height_m(BEFORE).expect("it was measured");
@@ -105,7 +105,7 @@ fn behind_an_edge(over_m: f32, gap_m: f32, slack_m: f32) -> (bool, bool) {
     }
     let (slope, last_m) = (-0.4, 1.8);
     let ray = ahead(over_m - slope * last_m, slope, last_m + gap_m);
-    let mut survey = Survey::new(&mut window, &Terrain::TABLE_I, &AT_REST);
+    let mut survey = Survey::new(&mut window, &UnevenGround::TABLE_I, &AT_REST);
     survey.slack_m = slack_m;
     survey.judge(&ray, (false, true));
     let (heights, behind) = (window.read(), Cell { x: WALL, y: 0 });

@@ -1,12 +1,12 @@
-//! Lookouts as pictures: a character is 4 × 4 cells of 10 cm, greatest y first; `#` obstacle, `.` free, `?` unexplored, `R` the robot.
+//! Viewpoints as pictures: a character is 4 × 4 cells of 10 cm, greatest y first; `#` obstacle, `.` free, `?` unexplored, `R` the robot.
 
 use std::boxed::Box;
 use std::vec::Vec;
 
 use crate::geometry::Cell;
 use crate::map::{Class, Tiles};
-use crate::path::viewpoint::{Found, Grounds, Lookout, Search, along, distance};
-use crate::roadmap::configuration_space::Disc;
+use crate::path::viewpoint::{Found, Grounds, Search, Viewpoint, along, distance};
+use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::scratch_words;
 
 const SLOTS: usize = 24;
@@ -46,11 +46,11 @@ fn drawn(picture: &[&str]) -> (Box<Map>, Cell) {
 }
 
 /// A search from beginning to end, in scratch of any content.
-fn search(tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Lookout> {
+fn search(tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Viewpoint> {
     let mut scratch = std::vec![0xdead_beef; scratch_words(SLOTS)];
     let grounds = Grounds {
         tiles,
-        discs: [&Disc::new(0.3), &Disc::new(0.22)],
+        discs: [&Footprint::new(0.3), &Footprint::new(0.22)],
         robot,
     };
     let is_gone = |gap| gone.iter().any(|&cell| distance(cell, gap) < 0.5);
@@ -59,20 +59,20 @@ fn search(tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Lookout> {
     for _ in 0..100 {
         match search.advance(&grounds, is_gone, &mut scratch) {
             Found::Pending => assert!(search.is_running()),
-            Found::Lookout(lookout) => return Some(lookout),
+            Found::Viewpoint(viewpoint) => return Some(viewpoint),
             Found::Nothing => return None,
         }
     }
     panic!("a search without an end");
 }
 
-/// Whether there is a straight view from a lookout's stand to what it is for, by every ray that there is.
-fn sees(tiles: &Map, lookout: Lookout) -> bool {
+/// Whether there is a straight view from a viewpoint's stand to what it is for, by every ray that there is.
+fn sees(tiles: &Map, viewpoint: Viewpoint) -> bool {
     let class = |cell| tiles.class(cell);
     (0..super::RAYS).map(super::ray).any(|ray| {
-        let cells: Vec<Cell> = (-60..60).map(|k| along(lookout.gap, ray, k)).collect();
+        let cells: Vec<Cell> = (-60..60).map(|k| along(viewpoint.gap, ray, k)).collect();
         let at = |cell| cells.iter().position(|&other| other == cell);
-        match (at(lookout.stand), at(lookout.gap), at(lookout.beyond)) {
+        match (at(viewpoint.stand), at(viewpoint.gap), at(viewpoint.beyond)) {
             (Some(stand), Some(gap), Some(beyond)) if stand <= gap && gap < beyond => {
                 let dark = cells[gap..beyond]
                     .iter()
@@ -109,11 +109,11 @@ const GAP: [&str; 14] = [
 #[test]
 fn a_shadow_behind_a_gap_is_looked_into_through_it() {
     let (tiles, robot) = drawn(&GAP);
-    let lookout = search(&tiles, robot, &[]).expect("something to see");
-    assert!(lookout.stand.y < 28, "in the hall: {lookout:?}");
-    assert!(lookout.gap.y >= 32, "in the room: {lookout:?}");
-    assert_eq!(tiles.class(lookout.beyond), Class::Unknown);
-    assert!(sees(&tiles, lookout), "{lookout:?}");
+    let viewpoint = search(&tiles, robot, &[]).expect("something to see");
+    assert!(viewpoint.stand.y < 28, "in the hall: {viewpoint:?}");
+    assert!(viewpoint.gap.y >= 32, "in the room: {viewpoint:?}");
+    assert_eq!(tiles.class(viewpoint.beyond), Class::Unknown);
+    assert!(sees(&tiles, viewpoint), "{viewpoint:?}");
 }
 
 /// One gap after another is given up, until there is none.
@@ -121,10 +121,13 @@ fn a_shadow_behind_a_gap_is_looked_into_through_it() {
 fn what_was_given_up_is_not_looked_at_again_and_there_is_an_end() {
     let (tiles, robot) = drawn(&GAP);
     let mut gone = Vec::new();
-    while let Some(lookout) = search(&tiles, robot, &gone) {
-        assert!(gone.iter().all(|&cell| distance(cell, lookout.gap) >= 0.5));
-        assert!(sees(&tiles, lookout), "{lookout:?}");
-        gone.push(lookout.gap);
+    while let Some(viewpoint) = search(&tiles, robot, &gone) {
+        assert!(
+            gone.iter()
+                .all(|&cell| distance(cell, viewpoint.gap) >= 0.5)
+        );
+        assert!(sees(&tiles, viewpoint), "{viewpoint:?}");
+        gone.push(viewpoint.gap);
     }
     assert!((2..40).contains(&gone.len()), "{gone:?}");
 }
@@ -137,11 +140,11 @@ fn of_two_gaps_the_nearer_is_taken() {
     }
     picture[6] = "#########.##########.#####";
     let (tiles, robot) = drawn(&picture);
-    let lookout = search(&tiles, robot, &[]).expect("something to see");
-    assert!(lookout.stand.x < 60, "{lookout:?}");
+    let viewpoint = search(&tiles, robot, &[]).expect("something to see");
+    assert!(viewpoint.stand.x < 60, "{viewpoint:?}");
     let robot = Cell { x: 90, ..robot };
-    let lookout = search(&tiles, robot, &[]).expect("something to see");
-    assert!(lookout.stand.x > 60, "{lookout:?}");
+    let viewpoint = search(&tiles, robot, &[]).expect("something to see");
+    assert!(viewpoint.stand.x > 60, "{viewpoint:?}");
 }
 
 #[test]
@@ -192,8 +195,8 @@ fn a_robot_in_a_narrow_place_looks_too() {
         }
     }
     let robot = Cell { x: 40, y: 25 };
-    let lookout = search(&tiles, robot, &[]).expect("something to see");
-    assert!(sees(&tiles, lookout), "{lookout:?}");
+    let viewpoint = search(&tiles, robot, &[]).expect("something to see");
+    assert!(sees(&tiles, viewpoint), "{viewpoint:?}");
 }
 
 #[test]

@@ -5,8 +5,8 @@ use std::vec::Vec;
 
 use crate::geometry::Cell;
 use crate::map::{Class, Tiles};
-use crate::roadmap::configuration_space::Disc;
-use crate::roadmap::skeleton::{Space, Topology};
+use crate::roadmap::configuration_space::Footprint;
+use crate::roadmap::skeleton::{Skeleton, Space};
 
 const SPACES: [Space; 3] = [
     Space::KnownFree,
@@ -37,11 +37,11 @@ fn scene(picture: &str) -> Tiles<9, 24> {
     tiles
 }
 
-fn publish(space: Space, tiles: &Tiles<9, 24>, budget: u32) -> Topology<24> {
-    let mut topology = Topology::new();
+fn publish(space: Space, tiles: &Tiles<9, 24>, budget: u32) -> Skeleton<24> {
+    let mut topology = Skeleton::new();
     topology.reset(space);
     // A robot of a point: a cell is passable if it is not an obstacle.
-    while !topology.advance(tiles, &Disc::new(0.05), budget) {}
+    while !topology.advance(tiles, &Footprint::new(0.05), budget) {}
     topology
 }
 
@@ -163,7 +163,7 @@ fn a_round_in_instalments_is_the_round_in_one() {
     let tiles = scene(RING);
     for space in SPACES {
         let [one, other] = [1_000_000, 41].map(|budget| publish(space, &tiles, budget));
-        let words = |topology: &Topology<24>| {
+        let words = |topology: &Skeleton<24>| {
             let (way, frontier) = (topology.skeleton().unwrap(), topology.frontier().unwrap());
             (
                 topology.frame(),

@@ -1,31 +1,32 @@
-//! Where a way that cannot be driven is barred: at the first cell of the road that the window has no way to, or where the robot's front
+//! Where a way that cannot be driven is barred: at the first cell of the path that the window has no way to, or where the robot's front
 //! meets what stops it. Units: map cells, metres.
 
 use crate::field::SIDE;
-use crate::field::local_grid::{Rows, View};
+use crate::field::local_grid::{LocalGrid, Rows};
 use crate::geometry::{Cell, Point};
 use crate::grid::bits::{Adjacency, flood};
-use crate::path::Road;
-use crate::strategy::frontier::{Known, near};
+use crate::path::Path;
+use crate::path::PlanningContext;
+use crate::strategy::frontier::near;
 
-/// A robot that cannot go on is barred from its road this far ahead, metres: where its front meets what stops it.
+/// A robot that cannot go on is barred from its path this far ahead, metres: where its front meets what stops it.
 const BAR_AHEAD_M: f32 = 0.5;
 
-/// The first cell of the road that the window's passable cells do not lead to.
+/// The first cell of the path that the window's passable cells do not lead to.
 pub(super) fn leak<const TILES: usize, const SLOTS: usize>(
-    road: &Road,
-    known: &Known<'_, TILES, SLOTS>,
+    path: &Path,
+    known: &PlanningContext<'_, TILES, SLOTS>,
     robot: Point,
-    view: &mut View,
+    view: &mut LocalGrid,
 ) -> Option<Cell> {
     view.look_around(known.tiles, known.disc, robot.cell(), 1);
     view.free_robot(robot.cell());
     let mut reached: Rows = [0; SIDE];
-    View::put(&mut reached, view.place(robot.cell())?);
+    LocalGrid::put(&mut reached, view.place(robot.cell())?);
     // With no target it floods everything.
     let _ = flood(&view.passable, &mut reached, &[0; SIDE], Adjacency::Four);
     let mut wet: Rows = [0; SIDE];
-    road.cells().iter().copied().find(|&cell| {
+    path.cells().iter().copied().find(|&cell| {
         wet.fill(0);
         view.mark(&mut wet, cell);
         wet.iter()
@@ -34,10 +35,10 @@ pub(super) fn leak<const TILES: usize, const SLOTS: usize>(
     })
 }
 
-/// The first cell of the road that is as far ahead of the robot as what stops it.
-pub(super) fn ahead(road: &Road, robot: Point) -> Option<Cell> {
+/// The first cell of the path that is as far ahead of the robot as what stops it.
+pub(super) fn ahead(path: &Path, robot: Point) -> Option<Cell> {
     let robot = robot.cell();
-    road.cells()
+    path.cells()
         .iter()
         .copied()
         .find(|&cell| !near(cell, robot, BAR_AHEAD_M))

@@ -1,8 +1,9 @@
 //! Leftovers: what is listed at the end of frontiers that were never reached, in groups. Units: map cells, metres.
 
 use crate::geometry::Cell;
+use crate::path::PlanningContext;
 use crate::status::{Frontier as Leftover, Residue};
-use crate::strategy::frontier::{Frontier, Known, near};
+use crate::strategy::frontier::{Frontier, near};
 
 /// Leftover cells this near are one group, metres.
 const GROUP_RADIUS_M: f32 = 2.0;
@@ -11,7 +12,7 @@ impl Frontier {
     /// List the frontier cells that were never within reach, in groups, behind the goals that were dropped.
     pub fn list_leftovers<const TILES: usize, const SLOTS: usize>(
         &mut self,
-        known: &Known<'_, TILES, SLOTS>,
+        known: &PlanningContext<'_, TILES, SLOTS>,
     ) {
         let Some(goals) = known.topology.frontier() else {
             return;

@@ -11,8 +11,9 @@
 
 use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
+use crate::path::PlanningContext;
 use crate::path::height_levels::{LATER_STEPS, MOST_LEVEL};
-use crate::strategy::frontier::{DROP_RADIUS_M, Frontier, Known, near};
+use crate::strategy::frontier::{DROP_RADIUS_M, Frontier, near};
 
 /// Head start of the present goal, coarse steps: what turning about costs.
 const HEAD_START: u32 = 10;
@@ -65,7 +66,7 @@ impl Starts<'_> {
         number: u32,
         frontier: &'k Frontier,
         goals: Plane<'k>,
-        known: &'k Known<'_, TILES, SLOTS>,
+        known: &'k PlanningContext<'_, TILES, SLOTS>,
     ) -> impl Iterator<Item = Site> + use<'k, TILES, SLOTS> {
         let its_number = move |(k, site): (usize, Site)| match self.numbers.get(k / PER_WORD) {
             Some(&numbers) => numbers >> (k % PER_WORD * BITS) & NEVER,
@@ -87,7 +88,7 @@ impl Frontier {
     pub(super) fn starts<'a, const TILES: usize, const SLOTS: usize>(
         &self,
         goals: Plane<'_>,
-        known: &Known<'_, TILES, SLOTS>,
+        known: &PlanningContext<'_, TILES, SLOTS>,
         numbers: &'a mut [u32],
     ) -> Starts<'a> {
         let mut present = 0;
@@ -108,7 +109,7 @@ impl Frontier {
         &self,
         goals: Plane<'_>,
         site: Site,
-        known: &Known<'_, TILES, SLOTS>,
+        known: &PlanningContext<'_, TILES, SLOTS>,
     ) -> u32 {
         let cell = known.topology.frame().cell(site);
         match self.rank(goals, site, cell) {
@@ -123,7 +124,7 @@ impl Frontier {
     /// down a slope is judged by its height where it is now.
     fn level_of<const TILES: usize, const SLOTS: usize>(
         &self,
-        known: &Known<'_, TILES, SLOTS>,
+        known: &PlanningContext<'_, TILES, SLOTS>,
         cell: Cell,
     ) -> u32 {
         let Some(levels) = &known.levels else {
@@ -140,7 +141,7 @@ impl Frontier {
     /// A goal is taken, or kept: from here if it is another one, or no less preferred from here.
     pub(super) fn note_storey<const TILES: usize, const SLOTS: usize>(
         &mut self,
-        known: &Known<'_, TILES, SLOTS>,
+        known: &PlanningContext<'_, TILES, SLOTS>,
         goal: Cell,
     ) {
         let Some(levels) = &known.levels else {
@@ -153,7 +154,7 @@ impl Frontier {
 
     /// Whether a cell is beside the present goal.
     fn is_present(&self, cell: Cell) -> bool {
-        !self.road.is_empty() && near(self.road.goal(), cell, 2.0 * DROP_RADIUS_M)
+        !self.path.is_empty() && near(self.path.goal(), cell, 2.0 * DROP_RADIUS_M)
     }
 
     /// In which order frontier cells of one storey start; `None` for one that was dropped.

@@ -3,17 +3,18 @@
 use std::boxed::Box;
 use std::vec;
 
-use crate::config::Terrain;
-use crate::field::local_grid::View;
+use crate::config::UnevenGround;
+use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Point};
 use crate::grid::Site;
 use crate::ground::elevation::{Elevation, WINDOW_CELLS};
 use crate::map::{Class, Tiles};
-use crate::path::height_levels::{Levels, Storeys};
-use crate::roadmap::configuration_space::Disc;
-use crate::roadmap::skeleton::{Space, Topology};
+use crate::path::height_levels::{HeightLevels, LevelCost};
+use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
+use crate::roadmap::configuration_space::Footprint;
+use crate::roadmap::skeleton::{Skeleton, Space};
+use crate::strategy::frontier::Frontier;
 use crate::strategy::frontier::starts::later;
-use crate::strategy::frontier::{Frontier, Known, Lent, Outlook};
 
 /// Half the width of the corridor, cells.
 const HALF: i32 = 8;
@@ -38,10 +39,10 @@ fn corridor() -> Box<Tiles<24, 64>> {
 }
 
 /// Level ground, but for a slope that leads down from `x` = −10 to the west.
-fn storeys(tiles: &Tiles<24, 64>) -> Box<Storeys<24>> {
+fn storeys(tiles: &Tiles<24, 64>) -> Box<HeightLevels<24>> {
     let (mut heights, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
     let mut origin = Cell::default();
-    let mut storeys = Box::<Storeys<24>>::default();
+    let mut storeys = Box::<HeightLevels<24>>::default();
     for middle in (-40..=60).step_by(20) {
         let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
         window.follow(Cell { x: middle, y: 0 });
@@ -65,35 +66,35 @@ fn goal(storey_m: Option<f32>) -> i32 {
 fn goals<const N: usize>(storeys_m: [Option<f32>; N]) -> [i32; N] {
     let tiles = corridor();
     let storeys = storeys(&tiles);
-    let disc = Disc::new(0.3);
-    let mut topology = Box::new(Topology::<64>::new());
+    let disc = Footprint::new(0.3);
+    let mut topology = Box::new(Skeleton::<64>::new());
     topology.reset(Space::KnownFree);
     while !topology.advance(&tiles, &disc, u32::MAX) {}
     let (mut residues, mut ring) = (vec![[0; 2]; 64 * 8], vec![0; 1024]);
-    let mut view = View::new();
+    let mut view = LocalGrid::new();
     let mut frontier = Frontier::new();
     let robot = Point {
         x_m: 0.05,
         y_m: 0.05,
     };
     storeys_m.map(|storey_m| {
-        let known = Known {
+        let known = PlanningContext {
             topology: &topology,
             tiles: &tiles,
             disc: &disc,
-            levels: storey_m.map(|storey_m| Levels {
+            levels: storey_m.map(|storey_m| LevelCost {
                 storeys: &storeys,
-                terrain: &Terrain::TABLE_I,
+                terrain: &UnevenGround::TABLE_I,
                 storey_m,
             }),
         };
-        let lent = Lent {
+        let lent = PlanningScratch {
             residues: &mut residues,
             ring: &mut ring,
             view: &mut view,
         };
-        assert_eq!(frontier.replan(&known, robot, 0, lent), Outlook::Road);
-        frontier.road().goal().x
+        assert_eq!(frontier.replan(&known, robot, 0, lent), RoundOutcome::Path);
+        frontier.path().goal().x
     })
 }
 
@@ -144,10 +145,10 @@ fn corridor_with_a_way_round() -> Box<Tiles<24, 64>> {
 }
 
 /// Level ground, but for a dip in the corridor.
-fn dip(tiles: &Tiles<24, 64>, dip_m: f32) -> Box<Storeys<24>> {
+fn dip(tiles: &Tiles<24, 64>, dip_m: f32) -> Box<HeightLevels<24>> {
     let (mut heights, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
     let mut origin = Cell::default();
-    let mut storeys = Box::<Storeys<24>>::default();
+    let mut storeys = Box::<HeightLevels<24>>::default();
     for middle in (0..=80).step_by(20) {
         let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
         window.follow(Cell { x: middle, y: 20 });
@@ -160,28 +161,28 @@ fn dip(tiles: &Tiles<24, 64>, dip_m: f32) -> Box<Storeys<24>> {
     storeys
 }
 
-/// How far north the road to the frontier in the east leads, cells, with memory for so many pairs behind the wave.
+/// How far north the path to the frontier in the east leads, cells, with memory for so many pairs behind the wave.
 fn northmost(dip_m: f32, pairs: usize) -> i32 {
     let tiles = corridor_with_a_way_round();
     let storeys = dip(&tiles, dip_m);
-    let disc = Disc::new(0.3);
-    let mut topology = Box::new(Topology::<64>::new());
+    let disc = Footprint::new(0.3);
+    let mut topology = Box::new(Skeleton::<64>::new());
     topology.reset(Space::KnownFree);
     while !topology.advance(&tiles, &disc, u32::MAX) {}
-    let known = Known {
+    let known = PlanningContext {
         topology: &topology,
         tiles: &tiles,
         disc: &disc,
-        levels: Some(Levels {
+        levels: Some(LevelCost {
             storeys: &storeys,
-            terrain: &Terrain::TABLE_I,
+            terrain: &UnevenGround::TABLE_I,
             storey_m: 0.0,
         }),
     };
     let words = topology.frame().shape.words();
     let (mut residues, mut ring) = (vec![[0; 2]; words + pairs], vec![0; 1024]);
-    let mut view = View::new();
-    let lent = Lent {
+    let mut view = LocalGrid::new();
+    let lent = PlanningScratch {
         residues: &mut residues,
         ring: &mut ring,
         view: &mut view,
@@ -191,14 +192,14 @@ fn northmost(dip_m: f32, pairs: usize) -> i32 {
         y_m: 0.05,
     };
     let mut frontier = Frontier::new();
-    assert_eq!(frontier.replan(&known, robot, 0, lent), Outlook::Road);
-    assert!(frontier.road().goal().x >= 76, "the only frontier");
-    let cells = frontier.road().cells().iter();
-    cells.map(|cell| cell.y).max().expect("a road")
+    assert_eq!(frontier.replan(&known, robot, 0, lent), RoundOutcome::Path);
+    assert!(frontier.path().goal().x >= 76, "the only frontier");
+    let cells = frontier.path().cells().iter();
+    cells.map(|cell| cell.y).max().expect("a path")
 }
 
 #[test]
-fn a_road_by_another_storey_gives_way_to_one_that_keeps_to_its_own() {
+fn a_path_by_another_storey_gives_way_to_one_that_keeps_to_its_own() {
     let room = 64 * 8;
     assert!(northmost(0.0, room) < 8, "level ground: straight on");
     assert!(northmost(0.5, room) < 8, "half a metre is no other storey");
@@ -210,17 +211,17 @@ fn a_road_by_another_storey_gives_way_to_one_that_keeps_to_its_own() {
 fn starts(words: usize) -> vec::Vec<(u32, vec::Vec<Site>)> {
     let tiles = corridor();
     let storeys = storeys(&tiles);
-    let disc = Disc::new(0.3);
-    let mut topology = Box::new(Topology::<64>::new());
+    let disc = Footprint::new(0.3);
+    let mut topology = Box::new(Skeleton::<64>::new());
     topology.reset(Space::KnownFree);
     while !topology.advance(&tiles, &disc, u32::MAX) {}
-    let known = Known {
+    let known = PlanningContext {
         topology: &topology,
         tiles: &tiles,
         disc: &disc,
-        levels: Some(Levels {
+        levels: Some(LevelCost {
             storeys: &storeys,
-            terrain: &Terrain::TABLE_I,
+            terrain: &UnevenGround::TABLE_I,
             storey_m: 0.0,
         }),
     };

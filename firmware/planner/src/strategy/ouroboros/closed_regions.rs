@@ -1,4 +1,4 @@
-//! Marks: the surroundings of loops that were closed, where no tractor point is made again [Ouroboros, III-A].
+//! Marks: the surroundings of loops that were closed, where no tractor point is made again [Jorge15, III-A].
 //!
 //! Two bits for 0.8 × 0.8 m of the map: *marked*, and *pending*, near the path of the loop that is being closed. The path is pending
 //! until the loop is closed, and forgotten when it is not. Tiles are addressed as the map's are, so the marks lie

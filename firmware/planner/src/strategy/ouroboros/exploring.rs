@@ -1,7 +1,7 @@
 //! Whole explorations of small worlds: every loop is closed, and nothing holds the robot.
 //!
 //! A crude robot: it sees every coarse cell within 1.6 m that no obstacle hides, and in each round goes some cells along the
-//! road, by the shortest way that does not lead through the shield. Worlds are pictures as in [`super::scenes`]; digits are obstacles that
+//! path, by the shortest way that does not lead through the shield. Worlds are pictures as in [`super::scenes`]; digits are obstacles that
 //! name what a loop goes round.
 
 mod worlds;
@@ -10,13 +10,13 @@ use std::collections::{BTreeMap, VecDeque};
 use std::string::String;
 use std::vec::Vec;
 
-use crate::config::Limits;
+use crate::config::LoopLimits;
 use crate::geometry::{Cell, Pose};
 use crate::map::{Class, Tiles};
-use crate::roadmap::configuration_space::Disc;
-use crate::roadmap::skeleton::{Space, Topology};
+use crate::path::RoundOutcome;
+use crate::roadmap::configuration_space::Footprint;
+use crate::roadmap::skeleton::{Skeleton, Space};
 use crate::strategy::Frontier;
-use crate::strategy::frontier::Outlook;
 use crate::strategy::ouroboros::exploring::worlds::{ADJACENT, NESTED, ROOMS, THREE_LOOPS, TREES};
 use crate::strategy::ouroboros::ground::quarters;
 use crate::strategy::ouroboros::scenes::{Memory, POINT_M, SLOTS, TILES, at, pose_in};
@@ -29,7 +29,7 @@ const STRIDE: usize = 3;
 /// Rounds after which something holds the robot.
 const MOST_ROUNDS: usize = 3000;
 /// Bounds for worlds that are as small as the robot's sight is.
-const SMALL: Limits = Limits {
+const SMALL: LoopLimits = LoopLimits {
     least_m: 10.0,
     most_m: 120.0,
     most_per_frontier: 10.0,
@@ -40,10 +40,10 @@ const SMALL: Limits = Limits {
 struct Exploration {
     world: Vec<Vec<char>>,
     tiles: Tiles<TILES, SLOTS>,
-    topology: Topology<SLOTS>,
+    topology: Skeleton<SLOTS>,
     strategy: Ouroboros<SLOTS>,
     frontier: Frontier,
-    limits: Limits,
+    limits: LoopLimits,
     memory: Memory,
     robot: (i32, i32),
     pose: Pose,
@@ -53,14 +53,14 @@ struct Exploration {
 }
 
 impl Exploration {
-    fn new(world: &str, limits: Limits) -> Self {
+    fn new(world: &str, limits: LoopLimits) -> Self {
         let world: Vec<Vec<char>> = world
             .split_whitespace()
             .map(|r| r.chars().collect())
             .collect();
         let mut tiles = Tiles::new();
         tiles.reset(8, 6);
-        let mut topology = Topology::new();
+        let mut topology = Skeleton::new();
         topology.reset(Space::AnchoredNotObstacle);
         let mut strategy = Ouroboros::new();
         strategy.reset(tiles.box_tiles());
@@ -128,8 +128,8 @@ impl Exploration {
     }
 
     /// A whole round on a new skeleton.
-    fn plan(&mut self, time_ms: u32) -> Outlook {
-        let disc = Disc::new(POINT_M);
+    fn plan(&mut self, time_ms: u32) -> RoundOutcome {
+        let disc = Footprint::new(POINT_M);
         self.strategy.note_pose(&self.pose);
         while !self.topology.advance(&self.tiles, &disc, u32::MAX) {}
         self.frontier.cut(&mut self.topology);
@@ -166,9 +166,9 @@ impl Exploration {
             .is_some_and(|shield| shield.holds(at(x as usize, y as usize)))
     }
 
-    /// Some cells on towards the part of the road that is a little ahead.
+    /// Some cells on towards the part of the path that is a little ahead.
     fn go(&mut self) {
-        let cells = self.frontier.road().cells();
+        let cells = self.frontier.path().cells();
         let here = at(self.robot.0 as usize, self.robot.1 as usize);
         let far = |cell: &Cell| (cell.x - here.x).abs().max((cell.y - here.y).abs());
         let Some(nearest) = (0..cells.len().min(20)).min_by_key(|&k| far(&cells[k])) else {
@@ -182,7 +182,7 @@ impl Exploration {
     }
 
     fn step_to(&mut self, to: (i32, i32)) {
-        assert!(!self.is_obstacle(to), "the road leads into an obstacle");
+        assert!(!self.is_obstacle(to), "the path leads into an obstacle");
         let (dx, dy) = (to.0 - self.robot.0, to.1 - self.robot.1);
         let middles = self.middles();
         for (name, turned) in &mut self.turned {
@@ -246,9 +246,9 @@ impl Exploration {
         self.see();
         for round in 0..MOST_ROUNDS {
             match self.plan(round as u32 * 800) {
-                Outlook::Nothing => return round,
-                Outlook::Stuck => panic!("stuck\n{}", self.drawn()),
-                Outlook::Road | Outlook::Unsure => self.go(),
+                RoundOutcome::Nothing => return round,
+                RoundOutcome::Stuck => panic!("stuck\n{}", self.drawn()),
+                RoundOutcome::Path | RoundOutcome::Unsure => self.go(),
             }
         }
         panic!(
@@ -334,7 +334,7 @@ fn nested_loops_are_closed() {
 
 #[test]
 fn rooms_without_a_loop_do_not_hold_the_robot() {
-    let mut exploration = Exploration::new(ROOMS, Limits::default());
+    let mut exploration = Exploration::new(ROOMS, LoopLimits::default());
     exploration.run();
     assert_eq!(exploration.unknown(), 0, "\n{}", exploration.drawn());
     let most = 2 * exploration
@@ -352,21 +352,21 @@ fn rooms_without_a_loop_do_not_hold_the_robot() {
 
 #[test]
 fn small_obstacles_make_no_loop_and_everything_is_seen() {
-    let mut exploration = Exploration::new(TREES, Limits::default());
+    let mut exploration = Exploration::new(TREES, LoopLimits::default());
     exploration.run();
     assert_eq!(exploration.unknown(), 0, "\n{}", exploration.drawn());
 }
 
 #[test]
 fn a_tractor_point_that_falls_on_an_obstacle_is_gone_and_its_loop_with_it() {
-    let mut exploration = Exploration::new(ADJACENT, Limits::default());
+    let mut exploration = Exploration::new(ADJACENT, LoopLimits::default());
     exploration.see();
     let mut time_ms = 0;
     while exploration.strategy.shield().is_none() {
         time_ms += 800;
         assert_ne!(
             exploration.plan(time_ms),
-            Outlook::Nothing,
+            RoundOutcome::Nothing,
             "no loop was begun"
         );
         exploration.go();
@@ -389,16 +389,16 @@ fn a_tractor_point_that_falls_on_an_obstacle_is_gone_and_its_loop_with_it() {
         "nor is anything marked"
     );
     assert!(
-        !exploration.frontier.road().is_empty(),
+        !exploration.frontier.path().is_empty(),
         "the robot goes on exploring"
     );
 }
 
 #[test]
 fn a_loop_that_is_not_worth_the_way_is_not_begun() {
-    let limits = Limits {
+    let limits = LoopLimits {
         least_m: 500.0,
-        ..Limits::default()
+        ..LoopLimits::default()
     };
     let mut exploration = Exploration::new(ADJACENT, limits);
     exploration.run();
@@ -409,7 +409,7 @@ fn a_loop_that_is_not_worth_the_way_is_not_begun() {
 #[test]
 fn a_loop_that_takes_too_long_is_given_up() {
     // The way round a block is 20 m and more; half of that is too far here.
-    let limits = Limits {
+    let limits = LoopLimits {
         detour: 0.2,
         slack_m: 2.0,
         ..SMALL

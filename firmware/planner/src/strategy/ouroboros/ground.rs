@@ -5,7 +5,7 @@
 use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
 use crate::map::{Class, Tiles};
-use crate::roadmap::configuration_space::{Disc, is_passable};
+use crate::roadmap::configuration_space::{Footprint, is_passable};
 use crate::roadmap::skeleton::Frame;
 
 /// The skeleton and the map.
@@ -14,7 +14,7 @@ pub struct Ground<'a, const TILES: usize, const SLOTS: usize> {
     /// The map.
     pub tiles: &'a Tiles<TILES, SLOTS>,
     /// The robot's disc.
-    pub disc: &'a Disc,
+    pub disc: &'a Footprint,
     /// Where the skeleton lies.
     pub frame: Frame,
     /// The centre cells, none of them blocked.

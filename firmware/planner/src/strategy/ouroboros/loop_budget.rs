@@ -2,14 +2,14 @@
 //!
 //! A loop road runs through the unexplored and may not exist. The paper leaves open how long to try: "utility metrics
 //! to avoid undesired conditions, such as staying in a long loop for long time or taking too long to detect a
-//! non-existent loop" [Ouroboros, V]. Here a loop is *worth* closing if its expected length is within bounds that shrink with what
+//! non-existent loop" [Jorge15, V]. Here a loop is *worth* closing if its expected length is within bounds that shrink with what
 //! is left to explore, and it is given up when it is worth it no more, or when the robot has come farther since it began
 //! than a multiple of the longest length that was expected of it meanwhile. So no loop, existing or not, holds the robot
 //! for more than slack + detour · (most + most per frontier · frontier) metres.
 //!
 //! Units: metres.
 
-use crate::config::Limits;
+use crate::config::LoopLimits;
 
 /// The way since a loop was begun.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,18 +38,18 @@ impl Detour {
 
     /// Whether that is too far.
     #[must_use]
-    pub fn is_over(&self, limits: &Limits) -> bool {
+    pub fn is_over(&self, limits: &LoopLimits) -> bool {
         self.come_m > limits.slack_m + limits.detour * self.expected_m
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Detour, Limits};
+    use super::{Detour, LoopLimits};
 
     #[test]
     fn long_loops_are_worth_closing_while_much_is_left() {
-        let limits = Limits::default();
+        let limits = LoopLimits::default();
         assert!(!limits.is_worth(19.0, 100.0), "too short");
         assert!(limits.is_worth(90.0, 0.0));
         assert!(!limits.is_worth(150.0, 2.0));
@@ -58,7 +58,7 @@ mod tests {
 
     #[test]
     fn a_robot_that_wanders_gives_up_and_one_that_goes_round_does_not() {
-        let limits = Limits::default();
+        let limits = LoopLimits::default();
         let mut detour = Detour::new();
         // The whole length of a loop of 72 m, which looked like 20 m at first.
         for step in 0..144 {

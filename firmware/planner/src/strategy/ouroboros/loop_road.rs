@@ -1,14 +1,14 @@
-//! The loop road: the two ways from the robot to the tractor point [Ouroboros, III-C, third step].
+//! The loop road: the two ways from the robot to the tractor point [Jorge15, III-C, third step].
 //!
 //! The wave has gone out from the tractor point with the robot's surroundings as a blocker. Where it came to the robot by two
-//! ways or more there is a loop: the road's *back* is what the shield will be built across, its *front* is where the robot
+//! ways or more there is a loop: the path's *back* is what the shield will be built across, its *front* is where the robot
 //! is to go. Neither is stored: each is the descent from its head, down the wave's distances.
 //!
 //! - Fresh ([`LoopRoad`]): the back is the way most towards where the robot came from, the front the shortest of the others.
 //! - While a loop is being closed ([`way_back`]), the back leads to the previous shield: without that, a robot among adjacent loops
 //!   might go from one to the next and close none.
 //!
-//! Departs from the paper [Ouroboros, III]:
+//! Departs from the paper [Jorge15, III]:
 //!
 //! - What blocks is the robot's cell with its eight neighbours, since a skeleton that is two cells thick or a staircase leads past a
 //!   single cell, and the heads are the cells just outside.
@@ -116,7 +116,7 @@ fn meet(residues: &Residues<'_>, one: &Way, other: &Way) -> Option<(Site, u32)> 
 }
 
 impl Way {
-    /// Walk it down to the tractor point.
+    /// Traversal it down to the tractor point.
     fn measure<const TILES: usize, const SLOTS: usize>(
         ground: &Ground<'_, TILES, SLOTS>,
         residues: &Residues<'_>,
@@ -152,7 +152,7 @@ pub fn way_back<'a>(
     Some(down(residues, *back))
 }
 
-/// The first valid shield along the road's back, from the robot on [Ouroboros, III-C, fourth step].
+/// The first valid shield along the path's back, from the robot on [Jorge15, III-C, fourth step].
 ///
 /// `None` when the cells come to their end, or `MOST_TRIED` of them were looked at, without one.
 #[must_use]
@@ -170,8 +170,8 @@ pub fn build_shield<const TILES: usize, const SLOTS: usize>(
     })
 }
 
-/// Cells of the road by which its direction at the middle one is known.
+/// Cells of the path by which its direction at the middle one is known.
 const SPAN: usize = 5;
 type Span = [Option<Cell>; SPAN];
-/// Cells of the road that are tried: the nearest 8 m. What a shield costs is bounded, and so is the search.
+/// Cells of the path that are tried: the nearest 8 m. What a shield costs is bounded, and so is the search.
 const MOST_TRIED: usize = 40;

@@ -1,4 +1,4 @@
-//! Strategy *ouroboros*: explore, and close every loop on the way [Ouroboros, Algorithm 1].
+//! Strategy *ouroboros*: explore, and close every loop on the way [Jorge15, Algorithm 1].
 //!
 //! ```text
 //! line 3:      update the Voronoi cells                              (topology, the space that is not obstacle)
@@ -16,7 +16,7 @@
 //! skeleton. Between two calls nothing of the wave is needed, so its memory may serve elsewhere.
 //!
 //! What is kept from round to round lies in the map's cells, not in the skeleton's: tractor point, shield, marks and path outlast any
-//! number of skeletons. Departs from [Ouroboros, line 18]: a loop road that is not found is missed for
+//! number of skeletons. Departs from [Jorge15, line 18]: a loop road that is not found is missed for
 //! `LOST_ROUNDS` rounds before the loop is lost, since a skeleton may grow a spur under the robot for a moment; and loops that
 //! are lost again and again are given up, or the robot might begin and lose the same one for ever.
 //!
@@ -40,11 +40,11 @@ use crate::geometry::{CELL_M, Cell, Pose};
 use crate::grid::Site;
 use crate::math;
 use crate::path::breadcrumbs::Crumbs;
-use crate::path::cell_path::Road;
+use crate::path::cell_path::Path;
+use crate::path::{PlanningScratch, RoundOutcome};
 use crate::roadmap::Residues;
 use crate::roadmap::branches::surroundings;
 use crate::strategy::Frontier;
-use crate::strategy::frontier::{Lent, Outlook};
 use crate::strategy::ouroboros::closed_regions::Marks;
 use crate::strategy::ouroboros::loop_budget::Detour;
 use crate::strategy::ouroboros::loop_road::{LoopRoad, build_shield, way_back};
@@ -104,7 +104,7 @@ pub struct Tally {
 }
 
 impl<const SLOTS: usize> Ouroboros<SLOTS> {
-    /// At the start [Ouroboros, line 1].
+    /// At the start [Jorge15, line 1].
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -185,14 +185,14 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
 
     /// Go on with the round on the published skeleton; `None` when it needs another call on the same one, else what it says.
     ///
-    /// The first call of a round comes when a skeleton was published, after [`Frontier::cut`]. The road, to the tractor point or to
+    /// The first call of a round comes when a skeleton was published, after [`Frontier::cut`]. The path, to the tractor point or to
     /// the unexplored, becomes the one of `frontier`, which bars ways and drops goals.
     pub fn advance<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,
         mut round: Round<'_, TILES, SLOTS>,
-        mut lent: Lent<'_>,
-    ) -> Option<Outlook> {
+        mut lent: PlanningScratch<'_>,
+    ) -> Option<RoundOutcome> {
         match core::mem::replace(&mut self.stage, Stage::Look) {
             Stage::Look => self.look(&mut round, &mut lent),
             Stage::Close(robot) => self.close(frontier, &mut round, &mut lent, robot),
@@ -203,7 +203,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             Stage::Explore => {
                 let robot = round.pose.point();
                 let outlook = frontier.replan(&round.known(), robot, round.time_ms, lent);
-                if outlook == Outlook::Nothing {
+                if outlook == RoundOutcome::Nothing {
                     self.stage = Stage::Search;
                     return None;
                 }
@@ -217,10 +217,10 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     fn search<const TILES: usize>(
         &mut self,
         round: &mut Round<'_, TILES, SLOTS>,
-        lent: &mut Lent<'_>,
-    ) -> Option<Outlook> {
+        lent: &mut PlanningScratch<'_>,
+    ) -> Option<RoundOutcome> {
         self.stage = match revisit::find(round, &mut self.marks, lent) {
-            revisit::Found::None => return Some(Outlook::Nothing),
+            revisit::Found::None => return Some(RoundOutcome::Nothing),
             revisit::Found::NotHere => Stage::Search,
             revisit::Found::Place(goal) => {
                 self.errand = Some(Errand::to(goal));
@@ -235,17 +235,17 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         &mut self,
         frontier: &mut Frontier,
         round: &mut Round<'_, TILES, SLOTS>,
-        lent: &mut Lent<'_>,
-    ) -> Option<Outlook> {
+        lent: &mut PlanningScratch<'_>,
+    ) -> Option<RoundOutcome> {
         let goal = self.errand?.goal;
-        let road = road_to(goal, round, lent).filter(|road| {
+        let path = path_to(goal, round, lent).filter(|path| {
             let errand = self.errand.as_mut();
-            let is_over = errand.is_none_or(|errand| errand.is_over(road.steps(), round.limits));
-            road.steps() > revisit::DONE_STEPS && !is_over
+            let is_over = errand.is_none_or(|errand| errand.is_over(path.steps(), round.limits));
+            path.steps() > revisit::DONE_STEPS && !is_over
         });
-        if let Some(road) = road {
+        if let Some(path) = path {
             let (known, robot) = (round.known(), round.pose.point());
-            return Some(frontier.follow(road, &known, robot, round.time_ms, lent.view));
+            return Some(frontier.follow(path, &known, robot, round.time_ms, lent.view));
         }
         // No loop was begun on the way here.
         revisit::settle(round, &mut self.marks, goal);
@@ -258,8 +258,8 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     fn look<const TILES: usize>(
         &mut self,
         round: &mut Round<'_, TILES, SLOTS>,
-        lent: &mut Lent<'_>,
-    ) -> Option<Outlook> {
+        lent: &mut PlanningScratch<'_>,
+    ) -> Option<RoundOutcome> {
         self.stage = Stage::Explore;
         let robot = round.nearest(round.pose.point().cell(), lent)?;
         if self.tractor.is_some() {
@@ -287,7 +287,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     fn move_tractor<const TILES: usize>(
         &mut self,
         round: &Round<'_, TILES, SLOTS>,
-        lent: &mut Lent<'_>,
+        lent: &mut PlanningScratch<'_>,
     ) {
         let centre = self
             .tractor
@@ -319,7 +319,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     fn generate_tractor<const TILES: usize>(
         &self,
         round: &Round<'_, TILES, SLOTS>,
-        lent: &mut Lent<'_>,
+        lent: &mut PlanningScratch<'_>,
     ) -> Option<Cell> {
         let candidate = tractor::candidate(&self.crumbs, &self.marks, &round.pose)?;
         let centre = round.topology.frame().cell(round.nearest(candidate, lent)?);
@@ -330,7 +330,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     fn begin<const TILES: usize>(
         &mut self,
         round: &mut Round<'_, TILES, SLOTS>,
-        lent: &mut Lent<'_>,
+        lent: &mut PlanningScratch<'_>,
         [robot, tractor]: [Site; 2],
     ) -> Option<Shield> {
         round.propagate(tractor, surroundings(robot), None, lent)?;
@@ -338,24 +338,24 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         let residues = Residues::new(ground.frame.shape, lent.residues).ok()?;
         let here = round.pose.point().cell();
         let came = self.crumbs.came_from(here)?;
-        let road = LoopRoad::find(&ground, &residues, (robot, came))?;
-        let meet = ground.cell(road.meet);
-        let loop_m = road.steps() as f32 * STEP_M;
+        let path = LoopRoad::find(&ground, &residues, (robot, came))?;
+        let meet = ground.cell(path.meet);
+        let loop_m = path.steps() as f32 * STEP_M;
         if !round.limits.is_worth(loop_m, round.frontier_m()?)
             || !tractor::may_be_at(meet, &self.marks, &round.pose)
         {
             return None;
         }
-        let shield = build_shield(&ground, road.back(&residues), here)?;
+        let shield = build_shield(&ground, path.back(&residues), here)?;
         self.tractor = Some(meet);
         self.loop_m = loop_m;
-        self.back_m = road.back(&residues).count() as f32 * STEP_M;
+        self.back_m = path.back(&residues).count() as f32 * STEP_M;
         if self.lost_loops == 0 {
             self.detour = Detour::new();
         }
         // The loop's surroundings are those of the way back, and of the way that the robot will come.
         self.marks.forget();
-        for site in road.back(&residues) {
+        for site in path.back(&residues) {
             self.marks.note(ground.cell(site));
         }
         Some(shield)
@@ -376,11 +376,11 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     }
 
     /// No loop road, or no shield, although a loop was being closed: the way so far is good for some rounds more.
-    fn lose(&mut self) -> Option<Outlook> {
+    fn lose(&mut self) -> Option<RoundOutcome> {
         self.lost_rounds += 1;
         if self.lost_rounds < LOST_ROUNDS {
             self.stage = Stage::Look;
-            return Some(Outlook::Road);
+            return Some(RoundOutcome::Path);
         }
         self.lost_loops += 1;
         if self.lost_loops > MOST_LOST {
@@ -397,13 +397,13 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         &mut self,
         frontier: &mut Frontier,
         round: &mut Round<'_, TILES, SLOTS>,
-        lent: &mut Lent<'_>,
+        lent: &mut PlanningScratch<'_>,
         robot: Site,
-    ) -> Option<Outlook> {
-        let road = self.road_to_tractor(round, lent, robot);
-        if let Some(road) = road {
+    ) -> Option<RoundOutcome> {
+        let path = self.path_to_tractor(round, lent, robot);
+        if let Some(path) = path {
             self.lost_rounds = 0;
-            self.loop_m = self.back_m + road.steps() as f32 * STEP_M;
+            self.loop_m = self.back_m + path.steps() as f32 * STEP_M;
             let too_long = round.limits.is_too_long(self.loop_m, round.frontier_m()?);
             if too_long || self.detour.is_over(round.limits) {
                 self.stage = Stage::Explore;
@@ -412,18 +412,18 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             }
             let robot = round.pose.point();
             let known = round.known();
-            return Some(frontier.follow(road, &known, robot, round.time_ms, lent.view));
+            return Some(frontier.follow(path, &known, robot, round.time_ms, lent.view));
         }
         self.stage = Stage::Explore;
         self.lose()
     }
 
-    fn road_to_tractor<const TILES: usize>(
+    fn path_to_tractor<const TILES: usize>(
         &self,
         round: &mut Round<'_, TILES, SLOTS>,
-        lent: &mut Lent<'_>,
+        lent: &mut PlanningScratch<'_>,
         robot: Site,
-    ) -> Option<Road> {
+    ) -> Option<Path> {
         let frame = round.topology.frame();
         let tractor = frame.site(self.tractor?)?;
         let shield = self.shield?;
@@ -432,7 +432,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         let residues = Residues::new(frame.shape, lent.residues).ok()?;
         residues.get(robot)?;
         let way = core::iter::once(robot).chain(residues.descent(robot));
-        Some(Road::along(way.map(|site| frame.cell(site))))
+        Some(Path::along(way.map(|site| frame.cell(site))))
     }
 }
 
@@ -446,7 +446,7 @@ impl<const SLOTS: usize> Default for Ouroboros<SLOTS> {
 fn renew<const TILES: usize, const SLOTS: usize>(
     mut previous: Shield,
     round: &mut Round<'_, TILES, SLOTS>,
-    lent: &mut Lent<'_>,
+    lent: &mut PlanningScratch<'_>,
     robot: Site,
 ) -> Option<Shield> {
     let ground = round.ground()?;
@@ -461,11 +461,11 @@ fn renew<const TILES: usize, const SLOTS: usize>(
 }
 
 /// The way along the skeleton from the robot to a centre cell, or to the one nearest to where it was.
-fn road_to<const TILES: usize, const SLOTS: usize>(
+fn path_to<const TILES: usize, const SLOTS: usize>(
     place: Cell,
     round: &mut Round<'_, TILES, SLOTS>,
-    lent: &mut Lent<'_>,
-) -> Option<Road> {
+    lent: &mut PlanningScratch<'_>,
+) -> Option<Path> {
     let robot = round.nearest(round.pose.point().cell(), lent)?;
     let goal = round.nearest(place, lent)?;
     round.propagate(goal, core::iter::empty(), Some(robot), lent)?;
@@ -473,7 +473,7 @@ fn road_to<const TILES: usize, const SLOTS: usize>(
     let residues = Residues::new(frame.shape, lent.residues).ok()?;
     residues.get(robot)?;
     let way = core::iter::once(robot).chain(residues.descent(robot));
-    Some(Road::along(way.map(|site| frame.cell(site))))
+    Some(Path::along(way.map(|site| frame.cell(site))))
 }
 
 fn distance_m(a: Cell, b: Cell) -> f32 {

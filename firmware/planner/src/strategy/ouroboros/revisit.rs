@@ -3,18 +3,18 @@
 //! A tractor point is made where the robot comes by. What it only saw from afar may be the last part of a loop; the exploration
 //! would end with that loop open. So the robot is sent into the stretch, where a tractor point is made behind it as anywhere.
 //!
-//! Departs from [Ouroboros, Algorithm 1, line 26], where the exploration is complete: "revisiting in fully explored maps" is named as open.
+//! Departs from [Jorge15, Algorithm 1, line 26], where the exploration is complete: "revisiting in fully explored maps" is named as open.
 //! Whatever becomes of an errand, its stretch is marked in the end, so errands come to an end too; and an errand is given up as a loop is,
 //! when the robot has come too far on it.
 //!
 //! Units: metres; map cells; steps along the skeleton, 20 cm and a little more.
 
-use crate::config::Limits;
+use crate::config::LoopLimits;
 use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
+use crate::path::PlanningScratch;
 use crate::roadmap::Residues;
 use crate::roadmap::branches::{Branch, Kind, kind, surroundings, ways};
-use crate::strategy::frontier::Lent;
 use crate::strategy::ouroboros::closed_regions::Marks;
 use crate::strategy::ouroboros::ground::Ground;
 use crate::strategy::ouroboros::loop_budget::Detour;
@@ -53,7 +53,7 @@ pub(super) enum Found {
 pub(super) fn find<const TILES: usize, const SLOTS: usize>(
     round: &mut Round<'_, TILES, SLOTS>,
     marks: &mut Marks<SLOTS>,
-    lent: &mut Lent<'_>,
+    lent: &mut PlanningScratch<'_>,
 ) -> Found {
     for _ in 0..MOST_BRANCHES {
         let Some(site) = first_open(round, marks) else {
@@ -156,7 +156,7 @@ fn end_of_branch(way: Plane<'_>, site: Site) -> Option<End> {
 fn loop_m<const TILES: usize, const SLOTS: usize>(
     round: &mut Round<'_, TILES, SLOTS>,
     at: Site,
-    lent: &mut Lent<'_>,
+    lent: &mut PlanningScratch<'_>,
 ) -> Option<f32> {
     let heads = ways(round.topology.skeleton()?, at);
     let (&from, others) = heads.split_first()?;
@@ -176,7 +176,7 @@ impl Errand {
     }
 
     /// Whether the robot has come too far on it, now that so many steps are left.
-    pub(super) fn is_over(&mut self, steps: u32, limits: &Limits) -> bool {
+    pub(super) fn is_over(&mut self, steps: u32, limits: &LoopLimits) -> bool {
         self.detour.note(0.0, steps as f32 * STEP_M);
         self.detour.is_over(limits)
     }

@@ -3,16 +3,16 @@
 //!
 //! Invariant: the skeleton is whole again after each wave.
 
-use crate::config::Limits;
+use crate::config::LoopLimits;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::map::Tiles;
-use crate::path::height_levels::Levels;
+use crate::path::height_levels::LevelCost;
 use crate::path::nearest::Centres;
-use crate::roadmap::configuration_space::Disc;
-use crate::roadmap::skeleton::Topology;
+use crate::path::{PlanningContext, PlanningScratch};
+use crate::roadmap::configuration_space::Footprint;
+use crate::roadmap::skeleton::Skeleton;
 use crate::roadmap::{Barrier, Residues, WaveSpace, Wavefront};
-use crate::strategy::frontier::{Known, Lent};
 use crate::strategy::ouroboros::ground::Ground;
 
 /// Metres along a step of the skeleton.
@@ -24,24 +24,24 @@ const BLOCKED: usize = 9;
 #[derive(Debug)]
 pub struct Round<'a, const TILES: usize, const SLOTS: usize> {
     /// The published skeleton, of [`crate::roadmap::skeleton::Space::AnchoredNotObstacle`]; whole again after each call.
-    pub topology: &'a mut Topology<SLOTS>,
+    pub topology: &'a mut Skeleton<SLOTS>,
     /// The map.
     pub tiles: &'a Tiles<TILES, SLOTS>,
     /// The robot's disc.
-    pub disc: &'a Disc,
+    pub disc: &'a Footprint,
     /// Where the robot is.
     pub pose: Pose,
     /// The host's clock, milliseconds.
     pub time_ms: u32,
     /// Bounds of a loop.
-    pub limits: &'a Limits,
+    pub limits: &'a LoopLimits,
     /// Which goals are preferred for their height, where any are.
-    pub levels: Option<Levels<'a, TILES>>,
+    pub levels: Option<LevelCost<'a, TILES>>,
 }
 
 impl<const TILES: usize, const SLOTS: usize> Round<'_, TILES, SLOTS> {
-    pub(in crate::strategy) fn known(&self) -> Known<'_, TILES, SLOTS> {
-        Known {
+    pub(in crate::strategy) fn known(&self) -> PlanningContext<'_, TILES, SLOTS> {
+        PlanningContext {
             topology: self.topology,
             tiles: self.tiles,
             disc: self.disc,
@@ -64,7 +64,7 @@ impl<const TILES: usize, const SLOTS: usize> Round<'_, TILES, SLOTS> {
     }
 
     /// `moveToVoronoi`: the centre cell nearest to a map cell.
-    pub(super) fn nearest(&self, from: Cell, lent: &mut Lent<'_>) -> Option<Site> {
+    pub(super) fn nearest(&self, from: Cell, lent: &mut PlanningScratch<'_>) -> Option<Site> {
         let ground = self.ground()?;
         let here = ground.frame.site(from);
         if let Some(site) = here.filter(|&site| ground.way.get(site)) {
@@ -87,7 +87,7 @@ impl<const TILES: usize, const SLOTS: usize> Round<'_, TILES, SLOTS> {
         goal: Site,
         blocked: impl Iterator<Item = Site>,
         until: Option<Site>,
-        lent: &mut Lent<'_>,
+        lent: &mut PlanningScratch<'_>,
     ) -> Option<()> {
         let mut plane = self.topology.skeleton_mut()?;
         // A shield that cuts one branch has fewer centre cells than the robot's surroundings may have.

@@ -4,24 +4,24 @@
 //! point, and the robot with its heading `>`, `<`, `v` (towards greater y) or `^`. In what comes back, `b` and `f` are the loop road's back and
 //! front, `=` the shield, `+` other centre cells. The robot is a point, so it fits wherever there is no obstacle.
 
+mod loop_roads;
 mod revisits;
-mod roads;
 mod walls;
 
 use core::f32::consts::{FRAC_PI_2, PI};
 use std::string::String;
 use std::vec::Vec;
 
-use crate::config::Limits;
-use crate::field::local_grid::View;
+use crate::config::LoopLimits;
+use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::map::{Class, Tiles};
+use crate::path::PlanningScratch;
 use crate::roadmap::Residues;
 use crate::roadmap::branches::surroundings;
-use crate::roadmap::configuration_space::Disc;
-use crate::roadmap::skeleton::{Space, Topology};
-use crate::strategy::frontier::Lent;
+use crate::roadmap::configuration_space::Footprint;
+use crate::roadmap::skeleton::{Skeleton, Space};
 use crate::strategy::ouroboros::Round;
 use crate::strategy::ouroboros::ground::Ground;
 use crate::strategy::ouroboros::loop_road::{LoopRoad, build_shield};
@@ -36,10 +36,10 @@ pub(super) const POINT_M: f32 = 0.05;
 pub(super) struct Scene {
     picture: Vec<Vec<char>>,
     pub(super) tiles: Tiles<TILES, SLOTS>,
-    pub(super) topology: Topology<SLOTS>,
-    pub(super) disc: Disc,
+    pub(super) topology: Skeleton<SLOTS>,
+    pub(super) disc: Footprint,
     pub(super) pose: Pose,
-    limits: Limits,
+    limits: LoopLimits,
 }
 
 /// The coarse cell at a column and row of the picture.
@@ -80,7 +80,7 @@ fn behind(pose: &Pose, cells: i32) -> Cell {
 pub(super) struct Memory {
     residues: Vec<[u32; 2]>,
     ring: Vec<u32>,
-    view: View,
+    view: LocalGrid,
 }
 
 impl Memory {
@@ -88,12 +88,12 @@ impl Memory {
         Self {
             residues: std::vec![[0; 2]; SLOTS * 8],
             ring: std::vec![0; 256],
-            view: View::new(),
+            view: LocalGrid::new(),
         }
     }
 
-    pub(super) fn lend(&mut self) -> Lent<'_> {
-        Lent {
+    pub(super) fn lend(&mut self) -> PlanningScratch<'_> {
+        PlanningScratch {
             residues: &mut self.residues,
             ring: &mut self.ring,
             view: &mut self.view,
@@ -132,8 +132,8 @@ impl Scene {
                 }
             }
         }
-        let disc = Disc::new(POINT_M);
-        let mut topology = Topology::new();
+        let disc = Footprint::new(POINT_M);
+        let mut topology = Skeleton::new();
         topology.reset(Space::AnchoredNotObstacle);
         while !topology.advance(&tiles, &disc, u32::MAX) {}
         Self {
@@ -142,7 +142,7 @@ impl Scene {
             topology,
             disc,
             pose,
-            limits: Limits::default(),
+            limits: LoopLimits::default(),
         }
     }
 
@@ -180,22 +180,22 @@ impl Scene {
         let robot = self.spread(self.find('T').unwrap(), &mut memory);
         let (ground, pose) = (self.ground(), self.pose);
         let residues = Residues::new(ground.frame.shape, &mut memory.residues).unwrap();
-        let road = LoopRoad::find(&ground, &residues, (robot, behind(&pose, 10)))?;
+        let path = LoopRoad::find(&ground, &residues, (robot, behind(&pose, 10)))?;
         let walk = |head: Site| -> Vec<Cell> {
             let sites = core::iter::once(head).chain(residues.descent(head));
             sites.map(|site| ground.frame.cell(site)).collect()
         };
-        assert_eq!(walk(road.back).len() + 1, road.back_steps as usize);
-        assert_eq!(walk(road.front).len() + 1, road.front_steps as usize);
+        assert_eq!(walk(path.back).len() + 1, path.back_steps as usize);
+        assert_eq!(walk(path.front).len() + 1, path.front_steps as usize);
         let until_meet = |cells: Vec<Cell>| -> Vec<Cell> {
-            let tail = cells.len() - road.tail_steps as usize;
-            assert_eq!(cells[tail - 1], ground.frame.cell(road.meet));
+            let tail = cells.len() - path.tail_steps as usize;
+            assert_eq!(cells[tail - 1], ground.frame.cell(path.meet));
             cells[..tail].to_vec()
         };
         Some(Found {
-            back: until_meet(walk(road.back)),
-            front: until_meet(walk(road.front)),
-            shield: build_shield(&ground, road.back(&residues), pose.point().cell()),
+            back: until_meet(walk(path.back)),
+            front: until_meet(walk(path.front)),
+            shield: build_shield(&ground, path.back(&residues), pose.point().cell()),
         })
     }
 
@@ -212,7 +212,7 @@ impl Scene {
         robot
     }
 
-    /// What keeps a shield from standing at each cell of the road's back, from the robot on, up to the valid one.
+    /// What keeps a shield from standing at each cell of the path's back, from the robot on, up to the valid one.
     fn flaws(&mut self) -> Vec<Option<Flaw>> {
         let back = self.look().unwrap().back;
         let (ground, here) = (self.ground(), self.pose.point().cell());

@@ -1,6 +1,6 @@
-//! The shield: a virtual wall across the loop road, behind the robot [Ouroboros, III-A and III-C, fourth step].
+//! The shield: a virtual wall across the loop road, behind the robot [Jorge15, III-A and III-C, fourth step].
 //!
-//! It stands on a centre cell and runs both ways at a right angle to the road until the space ends. Valid is a shield whose two
+//! It stands on a centre cell and runs both ways at a right angle to the path until the space ends. Valid is a shield whose two
 //! ends are at obstacles and which cuts exactly one branch of the skeleton: else the potential would flow round it, or ways
 //! would be blocked that are not the loop's.
 //!
@@ -15,25 +15,25 @@ use crate::geometry::Cell;
 use crate::roadmap::branches::{Kind, kind};
 use crate::strategy::ouroboros::ground::Ground;
 
-/// Cells of a shield to one side of the road at the most: 6.4 m.
+/// Cells of a shield to one side of the path at the most: 6.4 m.
 pub const MOST_REACH: u8 = 32;
 /// Centre cells that lie on a shield at the most: those of a branch that crosses it aslant.
 pub const MOST_CUT: usize = 4;
 /// Cells that must be between the robot and the shield, along either axis: its window must leave it room.
 const CLEAR_CELLS: i32 = 2;
 
-/// A wall across a road.
+/// A wall across a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shield {
     /// The centre cell that it stands on.
     at: Cell,
-    /// Its direction, to the left of the road's.
+    /// Its direction, to the left of the path's.
     along: (i8, i8),
     /// Cells to the left and to the right of `at`.
     reach: [u8; 2],
 }
 
-/// Why a shield cannot stand at a cell of the road.
+/// Why a shield cannot stand at a cell of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flaw {
     /// The cell is no part of a single branch.
@@ -49,10 +49,10 @@ pub enum Flaw {
 impl fmt::Display for Flaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::OffBranch => "no shield at an end or a junction: look farther along the road",
+            Self::OffBranch => "no shield at an end or a junction: look farther along the path",
             Self::OpenEnd => "no shield with an end in the open: look where obstacles are nearer",
             Self::CutsMore => "no shield across two branches: look where they are farther apart",
-            Self::AtRobot => "no shield at the robot: look farther along the road",
+            Self::AtRobot => "no shield at the robot: look farther along the path",
         })
     }
 }
@@ -60,7 +60,7 @@ impl fmt::Display for Flaw {
 impl core::error::Error for Flaw {}
 
 impl Shield {
-    /// The shield across a road at one of its cells, where the road goes from `behind` to `ahead`.
+    /// The shield across a path at one of its cells, where the path goes from `behind` to `ahead`.
     ///
     /// # Errors
     /// What is wrong with it.

@@ -1,10 +1,10 @@
-//! The tractor point: a place behind the robot that it is to come back to by another way [Ouroboros, III-A and III-C, second step].
+//! The tractor point: a place behind the robot that it is to come back to by another way [Jorge15, III-A and III-C, second step].
 //!
 //! It is made on the robot's own path, so it is visited and can be reached, behind the robot and not in the surroundings of a
 //! loop that was closed. From skeleton to skeleton it moves to the nearest centre cell. It is gone when the robot
 //! has come to it, or when the map has put an obstacle there.
 //!
-//! Departs from [Ouroboros, Algorithm 1, line 5]: a tractor point that no loop is being closed to, and that is far behind,
+//! Departs from [Jorge15, Algorithm 1, line 5]: a tractor point that no loop is being closed to, and that is far behind,
 //! is made anew: the robot would have to go back all that way when it meets a loop at last.
 //!
 //! Units: metres; map cells.
@@ -14,7 +14,7 @@ use crate::math;
 use crate::path::breadcrumbs::Crumbs;
 use crate::strategy::ouroboros::closed_regions::Marks;
 
-/// A robot this near has reached it [Ouroboros, line 7: `Threshold`; the paper gives no value].
+/// A robot this near has reached it [Jorge15, line 7: `Threshold`; the paper gives no value].
 pub const REACHED_M: f32 = 1.0;
 /// It is made at least this far behind the robot: a shield must find room between.
 pub const LEAST_BEHIND_M: f32 = 2.5;

@@ -4,13 +4,13 @@
 //! q = 1 − p, a goal's charge being that of p = −0.5:     not visited 1,   unexplored 2/3,   visited (1 − p) · 2/3
 //! ```
 //!
-//! Every centre cell in the window is charged [TDBVP, IV]. Departs from the paper: centre cells near the robot
+//! Every centre cell in the window is charged [Maffei14, IV]. Departs from the paper: centre cells near the robot
 //! and those in its last metres are free: those are what the robot is visiting. Charged as the newest, p = 1, they would be a wall along the middle
 //! of its way.
 //!
 //! Units: window cells; shares of a goal's charge.
 
-use crate::field::local_grid::{Rows, View};
+use crate::field::local_grid::{LocalGrid, Rows};
 use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::{Plane, Site};
@@ -61,7 +61,7 @@ impl CentreCells<'_> {
 /// Charge the window with the rails around the robot, those nearer than `room_m` left out, and with the unexplored if it is a goal. The view has the window's cells.
 pub(super) fn charge_rails<const SLOTS: usize>(
     window: &mut Window,
-    view: &View,
+    view: &LocalGrid,
     (rails, fresh): (&Rails<SLOTS>, &Fresh),
     centres: &CentreCells<'_>,
     (robot, room_m): (Point, f32),
@@ -102,7 +102,7 @@ pub(super) fn charge_rails<const SLOTS: usize>(
 
 /// The passable window cells of the unexplored coarse cells, without those around goals that were given up.
 pub(super) fn unexplored<const TILES: usize, const SLOTS: usize>(
-    view: &View,
+    view: &LocalGrid,
     tiles: &Tiles<TILES, SLOTS>,
     given_up: impl Iterator<Item = Cell>,
 ) -> Rows {
@@ -154,7 +154,7 @@ pub(super) fn parts(centres: &CentreCells<'_>, robot: Point) -> bool {
 /// for ever.
 pub(super) fn prefer(
     window: &mut Window,
-    view: &View,
+    view: &LocalGrid,
     robot: Point,
     (side, [cos, sin]): (Side, [f32; 2]),
 ) {
@@ -174,7 +174,7 @@ pub(super) fn prefer(
 }
 
 /// The passable window cells of a coarse cell.
-fn for_each_part(view: &View, least: Cell, mut visit: impl FnMut((usize, usize))) {
+fn for_each_part(view: &LocalGrid, least: Cell, mut visit: impl FnMut((usize, usize))) {
     for k in 0..4 {
         let part = Cell {
             x: least.x + (k & 1),
@@ -182,7 +182,7 @@ fn for_each_part(view: &View, least: Cell, mut visit: impl FnMut((usize, usize))
         };
         if let Some(place) = view
             .place(part)
-            .filter(|&place| View::has(&view.passable, place))
+            .filter(|&place| LocalGrid::has(&view.passable, place))
         {
             visit(place);
         }

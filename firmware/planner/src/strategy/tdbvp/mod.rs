@@ -1,20 +1,20 @@
-//! Strategy *tdbvp*: time-driven rails [TDBVP, IV and V].
+//! Strategy *tdbvp*: time-driven rails [Maffei14, IV and V].
 //!
 //! The robot follows −∇p in a window in which every centre cell is charged: with the time since it was visited, or
 //! as the best there is where it was not. So it prefers the unexplored to the visited and the long forgotten to the
 //! fresh, turns to the side where it saw openings, and never comes to rest: explored, it patrols, for
 //! as long as the session asks for.
 //!
-//! Where a rail vanishes from the window, or none in it attracts, the robot follows a *road* instead: to the nearest
+//! Where a rail vanishes from the window, or none in it attracts, the robot follows a *path* instead: to the nearest
 //! unexplored along the skeleton, on patrol to the oldest rail; to the skeleton itself where it is off it, by
-//! `nearest` [TDBVP, VII: the nearest rail, else the unexplored, else the skeleton].
+//! `nearest` [Maffei14, VII: the nearest rail, else the unexplored, else the skeleton].
 //!
 //! Departs from the paper:
-//! - Unexplored cells are goals only until [`Frontier`] has given them up, and a robot that lingers follows a road for a while; there the paper
+//! - Unexplored cells are goals only until [`Frontier`] has given them up, and a robot that lingers follows a path for a while; there the paper
 //!   has no rule, and stands before what it cannot see.
-//! - A robot to which nothing new came for `PATIENCE_MS` while something is left follows a road. The paper relies on its rails to
+//! - A robot to which nothing new came for `PATIENCE_MS` while something is left follows a path. The paper relies on its rails to
 //!   lead there in the end.
-//! - On patrol a robot goes by road to a rail that is overdue: the rails lead to the oldest in the window, and what lies beyond may wait for
+//! - On patrol a robot goes by path to a rail that is overdue: the rails lead to the oldest in the window, and what lies beyond may wait for
 //!   ever. So the age of the oldest is bounded, by a tour of everything and the way there.
 //!
 //! Units: map cells, metres, milliseconds.
@@ -27,24 +27,24 @@ pub mod sides;
 #[cfg(test)]
 mod scenes;
 
-use crate::field::local_grid::View;
+use crate::field::local_grid::LocalGrid;
 use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::map::Tiles;
-use crate::path::Road;
+use crate::path::Path;
 use crate::path::nearest::Centres;
-use crate::path::search::Paths;
-use crate::roadmap::skeleton::Topology;
-use crate::robot::Laser;
+use crate::path::search::PathSearch;
+use crate::path::{PlanningScratch, RoundOutcome};
+use crate::roadmap::skeleton::Skeleton;
+use crate::robot::LaserMount;
 use crate::strategy::Frontier;
-use crate::strategy::frontier::{Lent, Outlook};
 use crate::strategy::ouroboros::Round;
 use crate::strategy::tdbvp::charges::{CentreCells, charge_rails, prefer, unexplored};
 use crate::strategy::tdbvp::pending_visits::{Fresh, VISIT_M};
 pub use crate::strategy::tdbvp::rails::Rails;
 use crate::strategy::tdbvp::sides::Sides;
 
-/// Time without a first visit after which a robot that has something left to explore follows a road to it, milliseconds.
+/// Time without a first visit after which a robot that has something left to explore follows a path to it, milliseconds.
 /// With a minute, three adjacent loops took 378 s instead of 343 (means of four starts), and rooms without a loop 810 s instead of 584.
 const PATIENCE_MS: u32 = 15_000;
 /// A robot that is within so many metres for so many milliseconds lingers.
@@ -67,8 +67,8 @@ pub struct Tdbvp<const SLOTS: usize> {
     rails: Rails<SLOTS>,
     fresh: Fresh,
     sides: Sides,
-    /// A road is followed, not the rails.
-    on_road: bool,
+    /// A path is followed, not the rails.
+    on_path: bool,
     /// When a place was visited for the first time, and what time it is.
     new_ms: u32,
     now_ms: u32,
@@ -85,7 +85,7 @@ pub struct Tdbvp<const SLOTS: usize> {
 #[derive(Debug)]
 pub struct Surroundings<'a, const TILES: usize, const SLOTS: usize> {
     /// The published skeleton.
-    pub topology: &'a Topology<SLOTS>,
+    pub topology: &'a Skeleton<SLOTS>,
     /// The map.
     pub tiles: &'a Tiles<TILES, SLOTS>,
     /// Where the robot is.
@@ -100,7 +100,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
             rails: Rails::new(),
             fresh: Fresh::new(),
             sides: Sides::new(),
-            on_road: false,
+            on_path: false,
             new_ms: 0,
             now_ms: 0,
             left: Point { x_m: 0.0, y_m: 0.0 },
@@ -115,7 +115,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     pub fn reset(&mut self, box_tiles: (i32, i32), patrol_s: u16) {
         self.rails.reset(box_tiles);
         (self.fresh, self.sides) = (Fresh::new(), Sides::new());
-        (self.on_road, self.lingers) = (false, false);
+        (self.on_path, self.lingers) = (false, false);
         (self.new_ms, self.now_ms) = (0, 0);
         (self.left, self.left_ms) = (Point { x_m: 0.0, y_m: 0.0 }, 0);
         (self.patrol_ms, self.since_ms) = (u32::from(patrol_s) * 1000, None);
@@ -152,7 +152,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     }
 
     /// The robot is here; to be called in every step, with the scan of the level laser.
-    pub fn note(&mut self, pose: &Pose, time_ms: u32, scan: Option<(&Laser, &[u16])>) {
+    pub fn note(&mut self, pose: &Pose, time_ms: u32, scan: Option<(&LaserMount, &[u16])>) {
         self.now_ms = time_ms;
         self.rails.pass();
         if let Some((laser, ranges_mm)) = scan {
@@ -169,12 +169,12 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         }
     }
 
-    /// Charge the window with the rails; whether that leads the robot anywhere, or a road must.
+    /// Charge the window with the rails; whether that leads the robot anywhere, or a path must.
     pub fn charge<const TILES: usize>(
         &mut self,
         frontier: &Frontier,
         around: &Surroundings<'_, TILES, SLOTS>,
-        (window, view): (&mut Window, &View),
+        (window, view): (&mut Window, &LocalGrid),
     ) -> bool {
         let robot = around.pose.point();
         let Some(way) = around.topology.skeleton() else {
@@ -184,7 +184,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         let centres = CentreCells { frame, way };
         self.visit(&centres, robot);
         window.set_preferences(|_, _| Preference::NONE);
-        if self.on_road {
+        if self.on_path {
             return false;
         }
         let goals = if self.is_patrolling() {
@@ -247,16 +247,16 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         }
     }
 
-    /// A round on a new skeleton: whether anything is left, and the road to it, in case the rails lead nowhere.
+    /// A round on a new skeleton: whether anything is left, and the path to it, in case the rails lead nowhere.
     pub fn advance<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,
         mut round: Round<'_, TILES, SLOTS>,
-        mut lent: Lent<'_>,
-    ) -> Outlook {
+        mut lent: PlanningScratch<'_>,
+    ) -> RoundOutcome {
         if let Some(since_ms) = self.since_ms {
             if round.time_ms.wrapping_sub(since_ms) >= self.patrol_ms {
-                return Outlook::Nothing;
+                return RoundOutcome::Nothing;
             }
             return self.patrol(frontier, &mut round, &mut lent, since_ms);
         }
@@ -265,31 +265,31 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         let (outlook, is_free) =
             frontier.glance(&round.known(), robot, round.time_ms, lent, is_late);
         // What remains for the second chance is where the robot just fits through.
-        self.on_road = !is_free || frontier.is_second_chance();
+        self.on_path = !is_free || frontier.is_second_chance();
         outlook
     }
 
-    /// A round of the patrol: the road to the oldest rail, which is followed where it is overdue and where the rails lead nowhere.
+    /// A round of the patrol: the path to the oldest rail, which is followed where it is overdue and where the rails lead nowhere.
     fn patrol<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,
         round: &mut Round<'_, TILES, SLOTS>,
-        lent: &mut Lent<'_>,
+        lent: &mut PlanningScratch<'_>,
         since_ms: u32,
-    ) -> Outlook {
+    ) -> RoundOutcome {
         let oldest = self.oldest(round, since_ms);
-        let road = oldest.and_then(|(oldest, _)| self.road_to(oldest, round, lent));
-        self.on_road = road.is_some() && oldest.is_some_and(|(_, is_overdue)| is_overdue);
-        let Some(road) = road else {
-            return Outlook::Unsure;
+        let path = oldest.and_then(|(oldest, _)| self.path_to(oldest, round, lent));
+        self.on_path = path.is_some() && oldest.is_some_and(|(_, is_overdue)| is_overdue);
+        let Some(path) = path else {
+            return RoundOutcome::Unsure;
         };
         let (known, robot) = (round.known(), round.pose.point());
-        match frontier.follow(road, &known, robot, round.time_ms, lent.view) {
-            Outlook::Road => Outlook::Road,
+        match frontier.follow(path, &known, robot, round.time_ms, lent.view) {
+            RoundOutcome::Path => RoundOutcome::Path,
             // There is always another rail.
             _ => {
                 frontier.go_on();
-                Outlook::Unsure
+                RoundOutcome::Unsure
             }
         }
     }
@@ -322,12 +322,12 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     }
 
     /// The way along the skeleton to the centre cells of a rank.
-    fn road_to<const TILES: usize>(
+    fn path_to<const TILES: usize>(
         &self,
         oldest: u8,
         round: &mut Round<'_, TILES, SLOTS>,
-        lent: &mut Lent<'_>,
-    ) -> Option<Road> {
+        lent: &mut PlanningScratch<'_>,
+    ) -> Option<Path> {
         let frame = round.topology.frame();
         let way = round.topology.skeleton()?;
         let rank = |site| self.rank(frame.cell(site));
@@ -337,9 +337,9 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
             frame,
             way,
         };
-        let mut paths = Paths::open(centres, lent)?;
+        let mut paths = PathSearch::open(centres, lent)?;
         paths.spread(way.sites().filter(|&site| rank(site) == oldest));
-        paths.road(round.pose.point().cell())
+        paths.path(round.pose.point().cell())
     }
 }
 

@@ -1,4 +1,4 @@
-//! Rails: when the robot last visited the centre cells, and what they are charged with for it [TDBVP, eq. 3].
+//! Rails: when the robot last visited the centre cells, and what they are charged with for it [Maffei14, eq. 3].
 //!
 //! ```text
 //! p = (s − s_oldest) / (s_newest − s_oldest)     visited in step s: the newest 1, the oldest 0
@@ -105,7 +105,7 @@ impl<const SLOTS: usize> Rails<SLOTS> {
         self.date(cell).is_some()
     }
 
-    /// Potential of a centre cell [TDBVP, eq. 3]; where all are equally old, 1.
+    /// Potential of a centre cell [Maffei14, eq. 3]; where all are equally old, 1.
     #[must_use]
     pub fn potential(&self, cell: Cell) -> f32 {
         let Some(date) = self.date(cell) else {

@@ -2,12 +2,12 @@
 //!
 //! `#` obstacle, `.` free, coarse cells of 20 cm; the first row of a picture is the least y. `>` is the robot, facing along x.
 
-use crate::field::local_grid::{View, position};
+use crate::field::local_grid::{LocalGrid, position};
 use crate::field::{SCRATCH_FLOATS, SIDE, SolverConfig, Window, descent, solve};
 use crate::geometry::Cell;
 use crate::map::{Class, Tiles};
-use crate::roadmap::configuration_space::Disc;
-use crate::roadmap::skeleton::{Space, Topology};
+use crate::roadmap::configuration_space::Footprint;
+use crate::roadmap::skeleton::{Skeleton, Space};
 use crate::strategy::tdbvp::ROOM_M;
 use crate::strategy::tdbvp::charges::{CentreCells, charge_rails, prefer};
 use crate::strategy::tdbvp::pending_visits::Fresh;
@@ -43,7 +43,7 @@ const FORK: &str = "
 
 struct Scene {
     tiles: Tiles<16, 64>,
-    topology: Topology<64>,
+    topology: Skeleton<64>,
     rails: Rails<64>,
     fresh: Fresh,
     robot: Cell,
@@ -54,7 +54,7 @@ impl Scene {
     fn new(picture: &str) -> Self {
         let mut scene = Self {
             tiles: Tiles::new(),
-            topology: Topology::new(),
+            topology: Skeleton::new(),
             rails: Rails::new(),
             fresh: Fresh::new(),
             robot: Cell::default(),
@@ -84,7 +84,7 @@ impl Scene {
             }
         }
         scene.topology.reset(Space::KnownFree);
-        let disc = Disc::new(0.1);
+        let disc = Footprint::new(0.1);
         while !scene.topology.advance(&scene.tiles, &disc, u32::MAX) {}
         scene.rails.reset((8, 8));
         for x in 3..=scene.robot.x {
@@ -98,8 +98,8 @@ impl Scene {
 
     /// Where the field leads from the robot: x and y of its heading.
     fn heading(&self, side: Option<Side>) -> (f32, f32) {
-        let mut view = View::new();
-        view.look_around(&self.tiles, &Disc::new(0.1), self.robot, 1);
+        let mut view = LocalGrid::new();
+        view.look_around(&self.tiles, &Footprint::new(0.1), self.robot, 1);
         let centres = CentreCells {
             frame: self.topology.frame(),
             way: self.topology.skeleton().unwrap(),

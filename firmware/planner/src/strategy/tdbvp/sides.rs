@@ -1,4 +1,4 @@
-//! Side preference: at a fork the robot turns to the side where it last saw openings [TDBVP, V].
+//! Side preference: at a fork the robot turns to the side where it last saw openings [Maffei14, V].
 //!
 //! The half disc before the robot is parted into left and right; the preferred side attracts with +ε, the other repels with −ε. An
 //! *opening* is a sudden increase of the ranges to one side, and votes for that side; the preference changes only when two votes
@@ -26,7 +26,7 @@
 //!
 //! Units: metres, radians.
 
-use crate::robot::Laser;
+use crate::robot::LaserMount;
 
 /// Greatest range that counts, metres: what is farther is open anyhow.
 const FARTHEST_M: f32 = 4.0;
@@ -109,7 +109,7 @@ impl Sides {
     }
 
     /// A scan of the level laser.
-    pub fn note(&mut self, laser: &Laser, ranges_mm: &[u16]) {
+    pub fn note(&mut self, laser: &LaserMount, ranges_mm: &[u16]) {
         let [left, right] = &mut self.flanks;
         let opens = |flank: &mut Flank, side| {
             mean_range(laser, ranges_mm, side).is_some_and(|mean_m| flank.note(mean_m))
@@ -130,7 +130,7 @@ impl Default for Sides {
 }
 
 /// Mean of the ranges to a side, none counted farther than [`FARTHEST_M`].
-fn mean_range(laser: &Laser, ranges_mm: &[u16], side: Side) -> Option<f32> {
+fn mean_range(laser: &LaserMount, ranges_mm: &[u16], side: Side) -> Option<f32> {
     let is_beside = |bearing: f32| {
         let left = if side == Side::Left {
             bearing
@@ -153,9 +153,9 @@ fn mean_range(laser: &Laser, ranges_mm: &[u16], side: Side) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::{Side, Sides};
-    use crate::robot::Laser;
+    use crate::robot::LaserMount;
 
-    const LASER: Laser = Laser {
+    const LASER: LaserMount = LaserMount {
         x_m: 0.0,
         y_m: 0.0,
         z_m: 0.3,

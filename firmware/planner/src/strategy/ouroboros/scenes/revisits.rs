@@ -4,7 +4,7 @@
 
 use std::vec::Vec;
 
-use crate::config::Limits;
+use crate::config::LoopLimits;
 use crate::geometry::Cell;
 use crate::strategy::ouroboros::closed_regions::Marks;
 use crate::strategy::ouroboros::revisit::{self, Errand, Found};
@@ -147,9 +147,9 @@ fn there_is_no_errand_for_a_few_metres() {
 #[test]
 fn there_is_no_errand_to_a_loop_that_is_not_worth_it() {
     let mut scene = Scene::parse(RIGHT_LOOP_OPEN);
-    scene.limits = Limits {
+    scene.limits = LoopLimits {
         most_m: 15.0,
-        ..Limits::default()
+        ..LoopLimits::default()
     };
     let mut marks = marks(&scene);
     assert_eq!(errands(&mut scene, &mut marks), []);
@@ -157,7 +157,7 @@ fn there_is_no_errand_to_a_loop_that_is_not_worth_it() {
 
 #[test]
 fn an_errand_is_given_up_when_the_robot_has_come_too_far() {
-    let limits = Limits::default();
+    let limits = LoopLimits::default();
     let mut errand = Errand::to(at(5, 5));
     let steps = 100;
     assert!(!errand.is_over(steps, &limits));

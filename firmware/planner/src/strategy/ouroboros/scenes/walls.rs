@@ -263,9 +263,9 @@ fn no_shield_hangs_in_the_open() {
         #.........................#
         ###########################",
     );
-    let (mouth, road) = (at(10, 7), [at(8, 7), at(12, 7)]);
+    let (mouth, path) = (at(10, 7), [at(8, 7), at(12, 7)]);
     let here = scene.pose.point().cell();
-    let flaw = Shield::build(&scene.ground(), mouth, road, here).unwrap_err();
+    let flaw = Shield::build(&scene.ground(), mouth, path, here).unwrap_err();
     assert_eq!(flaw, Flaw::OpenEnd);
     assert_eq!(scene.flaws(), [Some(Flaw::AtRobot), None]);
 }
