@@ -61,6 +61,13 @@ impl Point {
             y: math::floor(self.y_m / CELL_M),
         }
     }
+
+    /// Squared distance to another point, square metres.
+    #[must_use]
+    pub fn distance2(self, other: Self) -> f32 {
+        let (dx, dy) = (self.x_m - other.x_m, self.y_m - other.y_m);
+        dx * dx + dy * dy
+    }
 }
 
 impl Pose {
@@ -70,6 +77,27 @@ impl Pose {
         Point {
             x_m: self.x_m,
             y_m: self.y_m,
+        }
+    }
+
+    /// A point in the robot's frame (x forward, y left) as a point of the map.
+    #[must_use]
+    pub fn to_map(&self, local: Point) -> Point {
+        let (sin, cos) = math::sin_cos(self.yaw_rad);
+        Point {
+            x_m: self.x_m + local.x_m * cos - local.y_m * sin,
+            y_m: self.y_m + local.x_m * sin + local.y_m * cos,
+        }
+    }
+
+    /// A point of the map as a point in the robot's frame (x forward, y left).
+    #[must_use]
+    pub fn to_robot(&self, point: Point) -> Point {
+        let (sin, cos) = math::sin_cos(self.yaw_rad);
+        let (dx, dy) = (point.x_m - self.x_m, point.y_m - self.y_m);
+        Point {
+            x_m: dx * cos + dy * sin,
+            y_m: dy * cos - dx * sin,
         }
     }
 }
@@ -91,5 +119,50 @@ impl Cell {
             x_m: (self.x as f32 + 0.5) * CELL_M,
             y_m: (self.y as f32 + 0.5) * CELL_M,
         }
+    }
+
+    /// Squared distance between two cells, square metres.
+    #[must_use]
+    pub fn distance2(self, other: Self) -> f32 {
+        let dx = (self.x - other.x) as f32 * CELL_M;
+        let dy = (self.y - other.y) as f32 * CELL_M;
+        dx * dx + dy * dy
+    }
+
+    /// Distance between two cells, metres.
+    #[must_use]
+    pub fn distance_m(self, other: Self) -> f32 {
+        let (dx, dy) = ((self.x - other.x) as f32, (self.y - other.y) as f32);
+        math::sqrt(dx * dx + dy * dy) * CELL_M
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CELL_M, Cell, Point, Pose};
+    use crate::math;
+
+    #[test]
+    fn the_two_frames_are_inverse() {
+        let pose = Pose {
+            x_m: 1.0,
+            y_m: -2.0,
+            yaw_rad: math::PI / 2.0,
+            ..Pose::default()
+        };
+        let ahead = Point { x_m: 3.0, y_m: 1.0 };
+        let map = pose.to_map(ahead);
+        assert!(
+            map.distance2(Point { x_m: 0.0, y_m: 1.0 }) < 1e-10,
+            "{map:?}"
+        );
+        assert!(pose.to_robot(map).distance2(ahead) < 1e-10);
+    }
+
+    #[test]
+    fn distances_of_cells_are_those_of_their_centres() {
+        let (a, b) = (Cell { x: 1, y: 5 }, Cell { x: -2, y: 9 });
+        assert!((a.distance_m(b) - 5.0 * CELL_M).abs() < 1e-6);
+        assert!((a.distance2(b) - a.centre().distance2(b.centre())).abs() < 1e-6);
     }
 }
