@@ -1,7 +1,8 @@
 //! Poses, cells and the only conversions between them.
 //!
-//! Units: metres and radians; x east, y north, angles counter-clockwise from x. A [`Cell`] is a square of side
-//! [`CELL_M`]; cell (i, j) covers [i, i+1) × [j, j+1) times that side, in the odometry frame.
+//! Units: metres and radians; x east, y north, angles counter-clockwise from x. A [`Cell`] is a
+//! square of side [`CELL_M`]; cell (i, j) covers [i, i+1) × [j, j+1) times that side, in the
+//! odometry frame.
 
 use crate::math;
 

@@ -20,12 +20,13 @@ pub struct Input<'a> {
     pub pose: Pose,
     /// Measured velocity.
     pub velocity: Twist,
-    /// Ranges in millimetres of each laser of [`Config::lasers`]; [`NO_RETURN_MM`] and [`INVALID_MM`] are codes.
+    /// Ranges in millimetres of each laser of [`Config::lasers`]; [`NO_RETURN_MM`] and
+    /// [`INVALID_MM`] are codes.
     pub scans: [&'a [u16]; 2],
 }
 
-/// The range of beam `i` if it says anything: not if it is invalid, nor if it is a dropout, a lone no-return between two
-/// returns.
+/// The range of beam `i` if it says anything: not if it is invalid, nor if it is a dropout, a lone
+/// no-return between two returns.
 pub(crate) fn informative_range_mm(ranges_mm: &[u16], i: usize, limit_mm: u16) -> Option<u16> {
     let range = *ranges_mm.get(i)?;
     let returned = |k: Option<usize>| {
@@ -36,8 +37,9 @@ pub(crate) fn informative_range_mm(ranges_mm: &[u16], i: usize, limit_mm: u16) -
     (range != INVALID_MM && !dropout).then_some(range)
 }
 
-/// Whether a beam beside this one ended about as far. Within reach even a pole of 4 cm is hit by two; a lone point is a false
-/// return, and one that fell behind the robot would never be seen through.
+/// Whether a beam beside this one ended about as far. Within reach even a pole of 4 cm is hit by
+/// two; a lone point is a false return, and one that fell behind the robot would never be seen
+/// through.
 pub(crate) fn has_company(ranges_mm: &[u16], number: usize) -> bool {
     let range = |k: Option<usize>| k.and_then(|k| ranges_mm.get(k)).copied();
     let here = range(Some(number)).unwrap_or(0);

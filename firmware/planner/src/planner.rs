@@ -1,21 +1,22 @@
-//! One step of the exploration, read as the paper's algorithm box [Jorge15, Algorithm 1].
+//! One step of the exploration, the papers' algorithm box [Jorge15, Algorithm 1]:
 //!
 //! ```text
-//! sense:   scans + odometry → map, near field
-//! line 3:  update the Voronoi cells         (topology, in instalments)
-//! line 4:  move the robot to the Voronoi    (strategy)
-//! line 24: propagate from the unexplored    (strategy)
-//! line 26: exit when there is none          (status)
-//! line 27: define the local goal            (path)
-//! line 28: compute the local potential      (view, field)
-//! line 29: follow it                        (descent, drive)
+//! sense:   scans + odometry → map, ground model
+//! line 3:  update the Voronoi cells               skeleton, in instalments
+//! line 4:  move the robot to the Voronoi          strategy
+//! line 24: propagate from the unexplored          strategy
+//! line 26: stop when nothing unexplored is left   ending
+//! line 27: choose the local goal                  charge
+//! line 28: compute the local potential            charge, prefer, field
+//! line 29: follow it                              steer, drive
 //! ```
 //!
-//! A pure function of configuration, state, workspace and input: no clock, no I/O, no globals, no logging. Same bits in, same
-//! bits out, on host and target.
+//! A step is a pure function of configuration, state, workspace and input: no clock, no I/O, no
+//! globals, no logging. The same bits in give the same bits out, on host and target.
 
 mod charge;
 mod ending;
+mod ground_model;
 mod plan;
 mod prefer;
 mod state;
@@ -31,34 +32,42 @@ use crate::geometry::Twist;
 use crate::input::Input;
 use crate::profiling::{Stage, StageTimer};
 use crate::roadmap::configuration_space::Footprint;
-use crate::robot::LaserMount;
-use crate::robot::is_level;
+use crate::robot::{LaserMount, is_level};
 use crate::status::{Fault, Status};
 use charge::{charge, charge_rails, local_goal};
-use plan::{look_for_viewpoints, replan};
+use plan::{replan, search_viewpoints};
 use prefer::{note_flatness, prefer};
-use state::GroundModel;
 use steer::{look_about, steer};
 
-/// The robot that starts inside something sees it nearer than this everywhere, metres.
+/// A range below this is inside the robot's own hull, metres.
 const BLOCKED_M: f32 = 0.12;
 
-/// What a step answers.
+/// The answer of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Output {
-    /// What to drive.
+    /// The velocity to drive.
     pub velocity: Twist,
     /// What the planner is doing.
     pub status: Status,
-    /// Heading that the field asks for, radians.
+    /// The field's heading at the robot, radians.
     pub heading_rad: f32,
-    /// Multigrid cycles (or sweeps) spent on the window.
+    /// Multigrid cycles (or Gauss–Seidel sweeps) spent on the window.
     pub cycles: u16,
-    /// The solver's budget ran out before its stop rule held.
+    /// True if the solver's budget ran out before its stop rule held.
     pub budget_exhausted: bool,
 }
 
-/// One step: what was sensed in, what to drive out. `timer` hears of each stage's end.
+impl Output {
+    /// Stand still.
+    fn standing(status: Status) -> Self {
+        Self {
+            status,
+            ..Self::default()
+        }
+    }
+}
+
+/// One step: from scans and odometry to a velocity. `timer` learns the end of each stage.
 pub fn step<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
@@ -67,51 +76,29 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     timer: &mut impl StageTimer,
 ) -> Output {
     if state.status != Status::Exploring {
-        return Output {
-            status: state.status,
-            ..Output::default()
-        };
+        return Output::standing(state.status);
     }
     sense(config, state, &input);
     timer.mark(Stage::Sense);
-    // A search for a manoeuvre has the scratch; until it is over the robot stands and plans nothing else.
+    // A search for a recovery owns the scratch: the robot stands and plans nothing until it is
+    // over.
     if state.drive.is_searching() {
         let output = steer(config, state, workspace, &input);
         timer.mark(Stage::Drive);
         return output;
     }
     if state.viewpoints.is_running() {
-        look_for_viewpoints(config, state, workspace, &input);
+        search_viewpoints(config, state, workspace, &input);
         timer.mark(Stage::Plan);
-        return Output {
-            status: state.status,
-            ..Output::default()
-        };
+        return Output::standing(state.status);
     }
-    let disc = Footprint::new(if state.strategy.frontier.is_second_chance() {
-        config.tight_radius_m
-    } else {
-        config.robot_radius_m
-    });
-    // A new skeleton is planned on in the step after it was finished, so that no step does both.
-    let planned = state.fresh;
-    if planned {
-        state.fresh = !replan(config, state, workspace, &disc, &input);
-        timer.mark(Stage::Plan);
-    } else {
-        state.fresh = state
-            .topology
-            .advance(state.map.tiles(), &disc, config.topology_units);
-        timer.mark(Stage::Topology);
-    }
+    let footprint = state.footprint(config);
+    let planned = advance_plan(config, state, workspace, &footprint, &input, timer);
     if state.status != Status::Exploring {
-        return Output {
-            status: state.status,
-            ..Output::default()
-        };
+        return Output::standing(state.status);
     }
-    if charge_rails(state, workspace, &disc, &input).is_none() {
-        let Some(goal) = local_goal(state, &disc, &input, &mut workspace.view) else {
+    if charge_rails(state, workspace, &footprint, &input).is_none() {
+        let Some(goal) = local_goal(state, &footprint, &input, &mut workspace.view) else {
             timer.mark(Stage::Window);
             return Output {
                 velocity: look_about(config, state, &input),
@@ -120,18 +107,13 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         };
         charge(workspace, &goal);
     }
-    if let Some(terrain) = &config.ground {
-        prefer(terrain, state, workspace, &input);
+    if let Some(ground) = &config.ground {
+        prefer(ground, state, workspace, &input);
     }
     timer.mark(Stage::Window);
-    // A step that planned a path has spent the time of two cycles on it.
-    let most = config.solver.max_cycles;
-    let solver = SolverConfig {
-        max_cycles: if planned { most.div_ceil(2) } else { most },
-        ..config.solver
-    };
+    let solver = budget(config, planned);
     let solution = solve(&mut workspace.window, &mut workspace.scratch, &solver);
-    if config.ground.is_some() {
+    if state.ground.is_uneven() {
         note_flatness(state, workspace, &input);
     }
     timer.mark(Stage::Solve);
@@ -144,7 +126,40 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     output
 }
 
-/// Scans and odometry into the map and the near field.
+/// Plan on a new skeleton, or go on thinning the next one. A skeleton is planned on in the step
+/// after it is complete, so that no step does both. Returns true if this step planned.
+fn advance_plan<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    footprint: &Footprint,
+    input: &Input<'_>,
+    timer: &mut impl StageTimer,
+) -> bool {
+    let planned = state.has_new_skeleton;
+    if planned {
+        state.has_new_skeleton = !replan(config, state, workspace, footprint, input);
+        timer.mark(Stage::Plan);
+    } else {
+        state.has_new_skeleton =
+            state
+                .skeleton
+                .advance(state.map.tiles(), footprint, config.topology_units);
+        timer.mark(Stage::Topology);
+    }
+    planned
+}
+
+/// The solver's budget: a step that planned a path has spent the time of half the cycles on it.
+const fn budget(config: &Config, planned: bool) -> SolverConfig {
+    let most = config.solver.max_cycles;
+    SolverConfig {
+        max_cycles: if planned { most.div_ceil(2) } else { most },
+        ..config.solver
+    }
+}
+
+/// Enter scans and odometry into the map and the ground model.
 fn sense<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
@@ -160,18 +175,9 @@ fn sense<const TILES: usize, const SLOTS: usize>(
     state.map.observe(config, input);
     let level = level_scans(config, input).find(|(_, ranges_mm)| !ranges_mm.is_empty());
     state.strategy.note(&input.pose, input.time_ms, level);
-    match &mut state.ground {
-        GroundModel::Flat(near) => {
-            for (laser, ranges_mm) in level_scans(config, input) {
-                near.update(&input.pose, laser, ranges_mm);
-            }
-        }
-        GroundModel::Uneven(storeys) => {
-            state.preferences.stand(&input.pose);
-            storeys.note(&state.map.heights(), state.map.tiles());
-            state.map.fold(storeys);
-        }
-    }
+    state
+        .ground
+        .observe(config, input, &mut state.map, &mut state.preferences);
 }
 
 /// The level lasers, each with its scan.
@@ -183,7 +189,7 @@ fn level_scans<'a>(
     scans.filter(|(laser, _)| is_level(laser))
 }
 
-/// Whether the level laser sees something closer than the robot's own hull in nearly every beam.
+/// Returns true if nine of ten beams of the level laser end inside the robot's own hull.
 #[must_use]
 pub fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
     let level = level_scans(config, input).next();

@@ -32,12 +32,14 @@ impl PreferenceMode {
 pub struct UnevenGround {
     /// Which preferences are used. Default: both.
     pub mode: PreferenceMode,
-    /// `h_obs`: what stands higher than this over the mean ground around it is an obstacle, metres. Default: 0.30.
+    /// `h_obs`: what stands higher than this over the mean ground around it is an obstacle, metres.
+    /// Default: 0.30.
     pub obstacle_m: f32,
-    /// `d_obs`: what the level laser meets nearer than this over ground not yet measured is an obstacle, metres. Default: 1.5.
+    /// `d_obs`: what the level laser meets nearer than this over ground not yet measured is an
+    /// obstacle, metres. Default: 1.5.
     pub near_m: f32,
-    /// `h_hole`: ground lower than this under what is beside it, with nothing measured between, is itself a negative obstacle, metres.
-    /// Default: −0.60.
+    /// `h_hole`: ground lower than this under what is beside it, with nothing measured between, is
+    /// itself a negative obstacle, metres. Default: −0.60.
     pub hole_m: f32,
     /// `ε_hmin`, at least −2. Default: −0.5.
     pub least_preference: f32,
@@ -49,8 +51,8 @@ pub struct UnevenGround {
     pub global_scale: f32,
     /// Steepest slope that may be driven on, a tangent. Default: 0.364 (20°, the 3-AT's grade).
     pub climb: f32,
-    /// Steepest slope that may be driven across, a tangent; as large as `climb`, there is no such limit. Default: as `climb`; the 3-AT's is
-    /// 0.268 (15°).
+    /// Steepest slope that may be driven across, a tangent; as large as `climb`, there is no such
+    /// limit. Default: as `climb`; the 3-AT's is 0.268 (15°).
     pub roll: f32,
     /// Highest edge that may be driven over, metres. Default: 0.07.
     pub step_m: f32,

@@ -5,12 +5,14 @@
 /// Bounds of a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopLimits {
-    /// A shorter loop is not worth closing: it corrects nothing. Default: 20, a round of 6.4 m across, which lasers that see twice as
-    /// far have in view all the way. At 10 a robot among trees goes round most of them, and takes twice the time.
+    /// A shorter loop is not worth closing: it corrects nothing. Default: 20, a round of 6.4 m
+    /// across, which lasers that see twice as far have in view all the way. At 10 a robot among
+    /// trees goes round most of them, and takes twice the time.
     pub least_m: f32,
     /// A longer loop is not worth closing when nothing else is left to explore. Default: 120.
     pub most_m: f32,
-    /// Metres of loop that are worth closing more for each metre of frontier that is left. Default: 10.
+    /// Metres of loop that are worth closing more for each metre of frontier that is left. Default:
+    /// 10.
     pub most_per_frontier: f32,
     /// Times the longest expected length that the robot may go. Default: 2.
     pub detour: f32,

@@ -40,7 +40,8 @@ pub struct Config {
     pub box_tiles: (u8, u8),
     /// Radius that the robot needs, metres. Default: 0.30.
     pub robot_radius_m: f32,
-    /// Radius in the second chance, metres: half the robot's width less what a cell may be in error. Default: 0.22.
+    /// Radius in the second chance, metres: half the robot's width less what a cell may be in
+    /// error. Default: 0.22.
     pub tight_radius_m: f32,
     /// Greatest speed, metres a second. Default: 0.7 (Pioneer 3-AT).
     pub max_linear_mps: f32,
@@ -56,7 +57,8 @@ pub struct Config {
     pub solver: SolverConfig,
     /// Topological work in a step, thinning words. Default: 6,000.
     pub topology_units: u32,
-    /// How to go about uneven ground; on flat ground, where lasers see only what stands, `None`. Default: `None`.
+    /// How to go about uneven ground; on flat ground, where lasers see only what stands, `None`.
+    /// Default: `None`.
     pub ground: Option<UnevenGround>,
 }
 

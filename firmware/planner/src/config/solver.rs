@@ -17,8 +17,9 @@ pub enum Method {
 /// Parameters of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverConfig {
-    /// Most multigrid cycles, each worth [`crate::field::solver::SWEEPS_PER_CYCLE`] sweeps. Default: 12; a heading is right in 1 when warm, in
-    /// 2 or 3 cold, and in 5 in all but one of twenty cold windows.
+    /// Most multigrid cycles, each worth [`crate::field::solver::SWEEPS_PER_CYCLE`] sweeps.
+    /// Default: 12; a heading is right in 1 when warm, in 2 or 3 cold, and in 5 in all but one of
+    /// twenty cold windows.
     pub max_cycles: u16,
     /// max |x − 1| below which the multigrid stops. Default: 0.05.
     pub tolerance: f32,

@@ -1,77 +1,68 @@
-//! The window around the robot is charged: with a local goal of the path, or with what the strategy has for it
-//! [Jorge15, Algorithm 1, lines 27 and 28].
+//! Charging the window around the robot: with a local goal on the path, or with the strategy's own
+//! boundary values [Jorge15, Algorithm 1, lines 27 and 28].
 //!
 //! Units: map cells.
 
 use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows, SCALES};
-use crate::geometry::{Cell, Point};
+use crate::geometry::Cell;
 use crate::input::Input;
-use crate::map::obstacle_points;
-use crate::planner::state::{GroundModel, State};
+use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 use crate::roadmap::configuration_space::Footprint;
 use crate::strategy::tdbvp::Surroundings;
 
-/// See the smallest window that holds a local goal; the goal's cells in it.
+/// Fill the local grid at the smallest scale that holds a local goal. Returns the goal's cells in
+/// it; `None` if there is no path, or no scale holds a goal.
 pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
-    disc: &Footprint,
+    footprint: &Footprint,
     input: &Input<'_>,
-    view: &mut LocalGrid,
+    grid: &mut LocalGrid,
 ) -> Option<Rows> {
     let (robot, path) = (input.pose.point(), state.strategy.frontier.path());
     if path.is_empty() {
         return None;
     }
+    let tiles = state.map.tiles();
     SCALES.iter().find_map(|&scale| {
-        view.look_around(state.map.tiles(), disc, robot.cell(), scale);
+        grid.look_around(tiles, footprint, robot.cell(), scale);
         if let Some(shield) = state.strategy.shield() {
-            shield.cells().for_each(|cell| view.block(cell));
+            shield.cells().for_each(|cell| grid.block(cell));
         }
-        view.free_robot(robot.cell());
-        keep_off_rims(state, disc, robot, view);
+        grid.free_robot(robot.cell());
+        state.ground.block_rims(tiles, footprint, robot, grid);
         path.local_goals(robot)
-            .find_map(|cell| goal_cells(view, cell))
+            .find_map(|cell| goal_cells(grid, cell))
     })
 }
 
-/// What the drive keeps the robot's hull off on uneven ground, obstacles of either sign and ground that was never measured, the window keeps its
-/// centre off: between two such cells the field would lead where the drive does not go.
-fn keep_off_rims<const TILES: usize, const SLOTS: usize>(
-    state: &State<TILES, SLOTS>,
-    disc: &Footprint,
-    robot: Point,
-    view: &mut LocalGrid,
-) {
-    if let GroundModel::Uneven(_) = state.ground {
-        let rims = obstacle_points::rim_cells(state.map.tiles(), robot);
-        view.keep_off(robot.cell(), rims, disc);
-    }
-}
-
-/// The passable window cells of a coarse cell, if there are any.
-fn goal_cells(view: &LocalGrid, cell: Cell) -> Option<Rows> {
+/// The passable window cells of a coarse cell; `None` if it has none.
+fn goal_cells(grid: &LocalGrid, cell: Cell) -> Option<Rows> {
     let mut rows: Rows = [0; SIDE];
-    view.mark(&mut rows, cell).then_some(rows)
+    grid.mark(&mut rows, cell).then_some(rows)
 }
 
-/// Charge the window with what the strategy has for it beside local goals, if that leads anywhere.
+/// Charge the window with the strategy's own boundary values. `None` if it has none, or they lead
+/// nowhere.
 pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
-    disc: &Footprint,
+    footprint: &Footprint,
     input: &Input<'_>,
 ) -> Option<()> {
     state.strategy.tdbvp()?;
     let robot = input.pose.point().cell();
     let view = &mut workspace.view;
-    view.look_around(state.map.tiles(), disc, robot, 1);
+    view.look_around(state.map.tiles(), footprint, robot, 1);
     view.free_robot(robot);
-    keep_off_rims(state, disc, input.pose.point(), view);
+    let tiles = state.map.tiles();
+    state
+        .ground
+        .block_rims(tiles, footprint, input.pose.point(), view);
     slide(workspace);
     let around = Surroundings {
-        topology: &state.topology,
+        topology: &state.skeleton,
         tiles: state.map.tiles(),
         pose: input.pose,
     };
@@ -79,7 +70,7 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     state.strategy.charge(&around, window)
 }
 
-/// Set the window's boundary, keeping the field of the last window where they overlap.
+/// Set the window's boundary values. The last field stays where the two windows overlap.
 pub(super) fn charge(workspace: &mut Workspace, goal: &Rows) {
     slide(workspace);
     workspace
@@ -87,7 +78,7 @@ pub(super) fn charge(workspace: &mut Workspace, goal: &Rows) {
         .set_boundary(&workspace.view.passable, goal);
 }
 
-/// Move the window to where the view is, with the field where they overlap.
+/// Move the window to the local grid's place, together with the field where they overlap.
 fn slide(workspace: &mut Workspace) {
     let Workspace {
         window,
@@ -103,7 +94,7 @@ fn slide(workspace: &mut Workspace) {
                 steps(view.origin.y, origin.y),
             );
         }
-        // Nothing of a field at another scale is worth keeping.
+        // A field at another scale is of no use.
         _ => window.shift(SIDE as i32, 0),
     }
     *at = Some((view.origin, view.scale));

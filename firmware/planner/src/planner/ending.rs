@@ -1,4 +1,5 @@
-//! The end of an exploration: what is left over, and why [Jorge15, Algorithm 1, line 26].
+//! The end of an exploration: the residual frontiers and the reason [Jorge15, Algorithm 1, line
+//! 26].
 //!
 //! Units: map cells.
 
@@ -14,69 +15,69 @@ use crate::planner::workspace::Workspace;
 use crate::roadmap::configuration_space::Footprint;
 use crate::status::{Fault, Finish, Status};
 
-/// A robot whose centre has less room than this, in cells, is boxed in: one square metre.
+/// Below this room for its centre the robot is boxed in, cells: one square metre.
 const BOX_CELLS: u32 = 100;
 
-/// Nothing is left to do: list what is left over, and say why.
+/// End the exploration: list the residual frontiers and set the status, or begin the patrol.
 pub(super) fn finish<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
-    disc: &Footprint,
+    footprint: &Footprint,
     robot: Cell,
 ) {
     const DONE: Status = Status::Finished(Finish::Explored);
     if state.strategy.is_patrolling() {
-        // What was left over was listed before the patrol.
+        // The residual frontiers were listed before the patrol.
         state.status = DONE;
         return;
     }
-    let wanting = list_ways_out(state, workspace, disc, robot);
-    list_leftovers(state, disc);
-    let status = conclude(state, &mut workspace.view, disc, robot, wanting);
+    let missing = list_ways_out(state, workspace, footprint, robot);
+    list_leftovers(state, footprint);
+    let status = conclude(state, &mut workspace.view, footprint, robot, missing);
     if status != DONE || !state.strategy.begin_patrol() {
         state.status = status;
     }
 }
 
-/// List what the robot can get to and cannot go on from for want of room in the map; which room that is. What lies beyond
-/// the map and cannot be reached is no fault.
+/// List the reachable cells beyond which the map has no room. Returns which room is missing. Cells
+/// beyond the map that cannot be reached do not count.
 fn list_ways_out<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
-    disc: &Footprint,
+    footprint: &Footprint,
     robot: Cell,
 ) -> Option<NoRoom> {
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
-    no_room(&state.map, disc, robot, scratch, |cell| {
+    no_room(&state.map, footprint, robot, scratch, |cell| {
         state.strategy.frontier.list_way_out(cell);
     })
 }
 
-/// List the frontiers that were never within reach.
+/// List the frontiers that could never be reached.
 fn list_leftovers<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
-    disc: &Footprint,
+    footprint: &Footprint,
 ) {
     let known = PlanningContext {
-        topology: &state.topology,
+        topology: &state.skeleton,
         tiles: state.map.tiles(),
-        disc,
+        disc: footprint,
         levels: None,
     };
     state.strategy.frontier.list_leftovers(&known);
 }
 
-/// Why there is no frontier left within reach.
+/// The reason why no frontier can be reached.
 fn conclude<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     view: &mut LocalGrid,
-    disc: &Footprint,
+    footprint: &Footprint,
     robot: Cell,
-    wanting: Option<NoRoom>,
+    missing: Option<NoRoom>,
 ) -> Status {
-    view.look_around(state.map.tiles(), disc, robot, 1);
+    view.look_around(state.map.tiles(), footprint, robot, 1);
     view.free_robot(robot);
-    match wanting {
+    match missing {
         Some(NoRoom::Pool) => Status::Fault(Fault::MapFull),
         Some(NoRoom::Box) => Status::Fault(Fault::OutOfBox),
         None if state.strategy.frontier.is_stuck() => Status::Fault(Fault::Stuck),
@@ -85,13 +86,13 @@ fn conclude<const TILES: usize, const SLOTS: usize>(
     }
 }
 
-/// Cells of the window that the robot's centre can get to.
+/// Window cells that the robot's centre can reach.
 fn room_cells(view: &LocalGrid, robot: Cell) -> u32 {
     let mut reached: Rows = [0; SIDE];
     if let Some(place) = view.place(robot) {
         LocalGrid::put(&mut reached, place);
     }
-    // With no target it floods everything.
+    // Without a target the flood fills everything.
     let _ = flood(&view.passable, &mut reached, &[0; SIDE], Adjacency::Four);
     reached.iter().map(|row| row.count_ones()).sum()
 }

@@ -1,117 +1,99 @@
-//! A new skeleton is planned on: a round of the strategy, and the search for viewpoints when it finds nothing to drive to
-//! [Jorge15, Algorithm 1, lines 4 and 24].
+//! Planning on a new skeleton: one round of the strategy, and the search for viewpoints once no
+//! frontier can be reached [Jorge15, Algorithm 1, lines 4 and 24].
 //!
 //! Units: metres, map cells.
 
-use crate::config::Config;
-use crate::config::UnevenGround;
-use crate::drive::Place;
-use crate::field::height_preference::Preferences;
-use crate::geometry::Pose;
+use crate::config::{Config, UnevenGround};
+use crate::geometry::{Point, Pose};
 use crate::input::Input;
-use crate::path::height_levels::LevelCost;
 use crate::path::viewpoint::{Found, Grounds};
 use crate::path::{PlanningScratch, RoundOutcome};
 use crate::planner::ending::finish;
-use crate::planner::state::{GroundModel, State};
-use crate::planner::steer::ahead;
+use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 use crate::roadmap::configuration_space::Footprint;
 use crate::status::{Fault, Status};
 use crate::strategy::ouroboros::Round;
 
-/// Where ground that stops the robot lies on uneven ground, if it was never measured: between its front and where the tilted beams meet
-/// level ground, metres.
+/// Distance ahead of the robot's centre at which unmeasured ground stops it, metres: between its
+/// front and where the tilted beams meet level ground.
 const FRONT_M: f32 = 0.8;
 
-/// A new skeleton: find the way to go, or find that there is none. Whether that is done, or the next step must go on with it.
+/// Plan one round on a new skeleton. Returns false if the next step must continue the round.
 pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
-    disc: &Footprint,
+    footprint: &Footprint,
     input: &Input<'_>,
 ) -> bool {
     let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
     let (residues, ring) = words.split_at_mut(SLOTS * 16);
     let (residues, _) = residues.as_chunks_mut::<2>();
-    let lent = PlanningScratch {
+    let scratch = PlanningScratch {
         residues,
         ring,
         view: &mut workspace.view,
     };
     let round = Round {
-        topology: &mut state.topology,
+        topology: &mut state.skeleton,
         tiles: state.map.tiles(),
-        disc,
+        disc: footprint,
         pose: input.pose,
         time_ms: input.time_ms,
         limits: &config.loops,
-        levels: levels(&state.ground, config, &state.preferences),
+        levels: state.ground.level_cost(config, &state.preferences),
     };
-    let Some(outlook) = state.strategy.advance(round, lent) else {
+    let Some(outcome) = state.strategy.advance(round, scratch) else {
         return false;
     };
-    if let Some(terrain) = &config.ground {
-        give_up_ground(terrain, state, &input.pose);
+    if let Some(ground) = &config.ground {
+        resolve_unmeasured(ground, state, &input.pose);
     }
-    let robot = input.pose.point().cell();
-    match outlook {
-        // On uneven ground what is seen through a gap is not measured by it.
-        RoundOutcome::Nothing
-            if state.strategy.frontier.may_look()
-                && config.ground.is_none()
-                && !state.strategy.is_patrolling() =>
-        {
+    match outcome {
+        RoundOutcome::Nothing if may_search_viewpoints(state) => {
             let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
             state.viewpoints.begin(state.map.tiles().extent(), scratch);
         }
-        RoundOutcome::Nothing => finish(state, workspace, disc, robot),
+        RoundOutcome::Nothing => finish(state, workspace, footprint, input.pose.point().cell()),
         RoundOutcome::Stuck => state.status = Status::Fault(Fault::Stuck),
         RoundOutcome::Path | RoundOutcome::Unsure => {}
     }
     true
 }
 
-/// Decide what to make of ground that was never measured though the robot stood by it.
-fn give_up_ground<const TILES: usize, const SLOTS: usize>(
-    terrain: &UnevenGround,
+/// Returns true if a look through a gap may show more. On uneven ground it does not: a look through
+/// a gap measures no ground.
+fn may_search_viewpoints<const TILES: usize, const SLOTS: usize>(
+    state: &State<TILES, SLOTS>,
+) -> bool {
+    state.strategy.frontier.may_look()
+        && !state.ground.is_uneven()
+        && !state.strategy.is_patrolling()
+}
+
+/// Decide about ground that stayed unmeasured although the robot stood beside it.
+fn resolve_unmeasured<const TILES: usize, const SLOTS: usize>(
+    ground: &UnevenGround,
     state: &mut State<TILES, SLOTS>,
     pose: &Pose,
 ) {
     while let Some(cell) = state.strategy.frontier.take_unobserved() {
-        state.map.give_up_ground(terrain, cell);
+        state.map.give_up_ground(ground, cell);
     }
     if state.strategy.frontier.take_stop() {
-        let front = Place {
+        let front = Point {
             x_m: FRONT_M,
-            ..Place::default()
+            y_m: 0.0,
         };
-        if state.map.trust_ground(terrain, ahead(pose, front).cell()) {
+        if state.map.trust_ground(ground, pose.to_map(front).cell()) {
             state.strategy.frontier.lift_bar();
         }
     }
 }
 
-/// Which goals are preferred for their height.
-fn levels<'a, const TILES: usize>(
-    around: &'a GroundModel<TILES>,
-    config: &'a Config,
-    preferences: &Preferences,
-) -> Option<LevelCost<'a, TILES>> {
-    let terrain = config.ground.as_ref()?;
-    match around {
-        GroundModel::Uneven(storeys) if terrain.mode.has_heights() => Some(LevelCost {
-            storeys,
-            terrain,
-            storey_m: preferences.storey_m(),
-        }),
-        _ => None,
-    }
-}
-
-/// Nothing is left to drive to: search on for what can be seen, and go there or be done.
-pub(super) fn look_for_viewpoints<const TILES: usize, const SLOTS: usize>(
+/// Continue the search for viewpoints: go to the one that it found, or finish.
+pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
@@ -130,8 +112,8 @@ pub(super) fn look_for_viewpoints<const TILES: usize, const SLOTS: usize>(
         Found::Pending => {}
         Found::Viewpoint(viewpoint) => {
             state.strategy.frontier.look_from(viewpoint);
-            // The skeleton was not touched meanwhile.
-            state.fresh = true;
+            // The skeleton is still the one that the last round planned on.
+            state.has_new_skeleton = true;
         }
         Found::Nothing => finish(state, workspace, &narrow, robot),
     }

@@ -1,5 +1,5 @@
-//! Uneven ground in the window: what each cell is preferred by before the field is solved, and what the field says of its flatness after
-//! [Maffei20, eqs. 3 to 5].
+//! Uneven ground in the window: the preference of each cell before the field is solved, and the
+//! field's flatness after it [Maffei20, eqs. 3 to 5].
 //!
 //! Units: metres; preferences are pure numbers.
 
@@ -13,7 +13,7 @@ use crate::input::Input;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 
-/// Give every cell of the window its preference [Maffei20, eqs. 3 to 5], beside what the strategy prefers.
+/// Add the preference of [Maffei20, eqs. 3 to 5] to the strategy's own in every cell of the window.
 pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
     terrain: &UnevenGround,
     state: &State<TILES, SLOTS>,
@@ -37,8 +37,9 @@ pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
     });
 }
 
-/// Cells in which the last field leads across a slope that may not be crossed: they repel as much as cells may, whatever their height. Along its own
-/// height a robot would else be drawn just there. Not in [Maffei20].
+/// Cells in which the last field leads across a slope that must not be crossed. They repel as
+/// strongly as cells may: otherwise the height preference would draw the robot along its own
+/// height, across the slope. Not in [Maffei20].
 fn crossed(
     terrain: &UnevenGround,
     heights: &Heights<'_>,
@@ -60,7 +61,7 @@ fn crossed(
     rows
 }
 
-/// A field was solved: how flat it is around the robot decides the next one's preferences.
+/// Note how flat the solved field is around the robot: the next preferences depend on it.
 pub(super) fn note_flatness<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &Workspace,

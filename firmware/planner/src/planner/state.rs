@@ -1,17 +1,17 @@
-//! What a planner remembers from step to step, and what can be read of it.
+//! The planner's memory from step to step, and views of it.
 //!
 //! Invariant: only [`super::step`] and [`State::reset`] change it. Units: map cells.
 
+use super::ground_model::GroundModel;
+use super::workspace::{RING, SCRATCH};
 use crate::config::Config;
 use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{self, Drive};
 use crate::field::height_preference::Preferences;
 use crate::geometry::Cell;
 use crate::map::Map;
-use crate::map::obstacle_points::ObstaclePoints;
-use crate::path::height_levels::HeightLevels;
 use crate::path::{Path, viewpoint};
-use crate::planner::workspace::{RING, SCRATCH};
+use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability;
 use crate::roadmap::skeleton::Skeleton;
 use crate::status::{Frontier, Status};
@@ -19,55 +19,47 @@ use crate::strategy::Strategist;
 use crate::strategy::ouroboros::Ouroboros;
 use crate::strategy::tdbvp::Tdbvp;
 
-/// What a planner remembers from step to step. `TILES` map tiles in the pool, `SLOTS` tile places in the box.
+/// The planner's memory from step to step.
+///
+/// `TILES` is the number of map tiles in the pool, `SLOTS` the number of tile places in the map's
+/// box.
 #[derive(Debug)]
 pub struct State<const TILES: usize, const SLOTS: usize> {
     pub(super) map: Map<TILES, SLOTS>,
+    /// All that differs between flat and uneven ground.
     pub(super) ground: GroundModel<TILES>,
-    pub(super) topology: Skeleton<SLOTS>,
+    pub(super) skeleton: Skeleton<SLOTS>,
     pub(super) strategy: Strategist<SLOTS>,
-    /// What ground is preferred, where it is uneven.
+    /// Preferences of the window's cells on uneven ground.
     pub(super) preferences: Preferences,
-    /// What can only be seen is searched for, when nothing is left to drive to.
+    /// The search for viewpoints, which begins when no frontier can be reached.
     pub(super) viewpoints: viewpoint::Search,
     pub(super) drive: Drive,
-    /// Up or down the slope that it is on, where it may not be crossed.
-    pub(super) wedge: Option<SlopeDirection>,
-    /// The one in which the drive found no way, until it searches again.
-    pub(super) shut: Option<SlopeDirection>,
+    /// The direction driven on a slope that the robot must not cross.
+    pub(super) slope_direction: Option<SlopeDirection>,
+    /// The direction in which the drive found no way, until its next search.
+    pub(super) blocked_direction: Option<SlopeDirection>,
     pub(super) status: Status,
     pub(super) started: bool,
-    /// A skeleton was published that no path was planned on yet.
-    pub(super) fresh: bool,
-    /// Where the robot began.
+    /// A skeleton is complete and no path was planned on it yet.
+    pub(super) has_new_skeleton: bool,
+    /// The robot's first cell.
     pub(super) start: Cell,
-}
-
-/// What is kept of the space beside the map. Flat ground has no heights, and on uneven ground level beams end on slopes: what is near is
-/// what the map says.
-///
-/// With its tag of its own, so that the value without anything is all zeros and costs no flash as a static one.
-#[derive(Debug)]
-#[repr(u8)]
-#[allow(
-    clippy::large_enum_variant,
-    reason = "no heap to box into; both are about as large with the pool of an image"
-)]
-pub(super) enum GroundModel<const TILES: usize> {
-    Flat(ObstaclePoints),
-    Uneven(HeightLevels<TILES>),
 }
 
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     const CHECK: () = {
-        assert!(SLOTS * 16 + RING <= SCRATCH, "the wave fits the scratch");
+        assert!(
+            SLOTS * 16 + RING <= SCRATCH,
+            "the wavefront fits the scratch"
+        );
         assert!(
             reachability::scratch_words(SLOTS) <= SCRATCH,
-            "the flood at the end fits the scratch"
+            "the reachability flood fits the scratch"
         );
         assert!(
             drive::recovery::SCRATCH_WORDS <= SCRATCH,
-            "a search fits the scratch"
+            "a recovery search fits the scratch"
         );
     };
 
@@ -77,38 +69,35 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let () = Self::CHECK;
         Self {
             map: Map::new(),
-            ground: GroundModel::Flat(ObstaclePoints::new()),
-            topology: Skeleton::new(),
+            ground: GroundModel::new(),
+            skeleton: Skeleton::new(),
             strategy: Strategist::new(),
             preferences: Preferences::new(),
             viewpoints: viewpoint::Search::new(),
             drive: Drive::new(),
-            wedge: None,
-            shut: None,
+            slope_direction: None,
+            blocked_direction: None,
             status: Status::Exploring,
             started: false,
-            fresh: false,
+            has_new_skeleton: false,
             start: Cell { x: 0, y: 0 },
         }
     }
 
-    /// Forget everything and take the box's shape from `config`.
+    /// Forget everything and begin a session with `config`.
     pub fn reset(&mut self, config: &Config) {
         self.map.begin(config);
         self.preferences = Preferences::new();
-        self.ground = match config.ground {
-            None => GroundModel::Flat(ObstaclePoints::new()),
-            Some(_) => GroundModel::Uneven(HeightLevels::new()),
-        };
-        self.topology
+        self.ground = GroundModel::of(config);
+        self.skeleton
             .reset(Strategist::<SLOTS>::space(config.strategy));
         self.strategy.reset(config);
         self.viewpoints = viewpoint::Search::new();
         self.drive = Drive::new();
-        (self.wedge, self.shut) = (None, None);
+        (self.slope_direction, self.blocked_direction) = (None, None);
         self.status = Status::Exploring;
         self.started = false;
-        self.fresh = false;
+        self.has_new_skeleton = false;
     }
 
     /// The map.
@@ -119,41 +108,57 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 
     /// The centre cells.
     #[must_use]
-    pub const fn topology(&self) -> &Skeleton<SLOTS> {
-        &self.topology
+    pub const fn skeleton(&self) -> &Skeleton<SLOTS> {
+        &self.skeleton
     }
 
-    /// The way to the present goal.
+    /// The planner's status after the last step.
+    #[must_use]
+    pub const fn status(&self) -> Status {
+        self.status
+    }
+
+    /// The footprint that paths are planned for: narrower at the second chance.
+    pub(super) fn footprint(&self, config: &Config) -> Footprint {
+        Footprint::new(if self.strategy.frontier.is_second_chance() {
+            config.tight_radius_m
+        } else {
+            config.robot_radius_m
+        })
+    }
+
+    /// The path to the current goal.
     #[must_use]
     pub const fn path(&self) -> &Path {
         self.strategy.frontier.path()
     }
 
-    /// What is known of loops, where the session's strategy closes them.
+    /// The memory of strategy Ouroboros, if the session uses it.
     #[must_use]
     pub const fn ouroboros(&self) -> Option<&Ouroboros<SLOTS>> {
         self.strategy.ouroboros()
     }
 
-    /// What is known of rails, where the session's strategy follows them.
+    /// The memory of strategy TDBVP, if the session uses it.
     #[must_use]
     pub const fn tdbvp(&self) -> Option<&Tdbvp<SLOTS>> {
         self.strategy.tdbvp()
     }
 
-    /// The cells of a tile (two bits each: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle), or `None` where
-    /// nothing was ever seen.
+    /// The cells of a tile, two bits each: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle.
+    /// `None` if nothing in it was ever measured.
     #[must_use]
     pub fn tile(&self, x: i16, y: i16) -> Option<[u8; 256]> {
         self.map.tiles().packed(i32::from(x), i32::from(y))
     }
 
-    /// The skeleton of a tile: 16 rows of 16 coarse cells.
+    /// The skeleton of a tile: 16 rows of 16 coarse cells, least y first, least x in the lowest
+    /// bit.
     #[must_use]
     pub fn tile_skeleton(&self, x: i16, y: i16) -> [u16; 16] {
-        let frame = self.topology.frame();
+        let frame = self.skeleton.frame();
         let mut rows = [0; 16];
-        let Some(plane) = self.topology.skeleton() else {
+        let Some(plane) = self.skeleton.skeleton() else {
             return rows;
         };
         for (dy, row) in rows.iter_mut().enumerate() {
@@ -169,7 +174,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         rows
     }
 
-    /// Frontiers left over, and why.
+    /// The residual frontiers, each with its reason.
     #[must_use]
     pub fn frontiers(&self) -> &[Frontier] {
         self.strategy.frontier.dropped()

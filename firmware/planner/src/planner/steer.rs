@@ -1,26 +1,24 @@
-//! The window's field is followed by a robot that touches nothing [Jorge15, Algorithm 1, line 29].
+//! Following the window's field without touching anything [Jorge15, Algorithm 1, line 29].
 //!
 //! Units: metres, seconds, radians; milliseconds where a name says so.
 
 use crate::config::Config;
-use crate::drive::side_slope::{Hysteresis, SlopeDirection};
-use crate::drive::{CollisionChecker, Ground, Incline, Place};
+use crate::drive::side_slope::Hysteresis;
+use crate::drive::{Ground, Incline, Place};
 use crate::field::local_grid;
 use crate::field::{Window, descent};
 use crate::geometry::{Cell, Point, Pose, Twist};
 use crate::input::Input;
-use crate::map::obstacle_points;
 use crate::math;
 use crate::planner::Output;
-use crate::planner::state::{GroundModel, State};
+use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 
-/// A while, milliseconds: half a turn.
-const WHILE_MS: u32 = 5_000;
-/// A robot that has stood for so many whiles on uneven ground looks around: two ways were barred by then.
-const WHILES_AT_A_LOSS: u32 = 5;
-/// A goal that is higher or lower by less lies level with the robot, metres: what a block of heights is rounded by, and as much again.
-const LEVEL_M: f32 = 0.2;
+/// The period of looking around, milliseconds: the time of half a turn.
+const LOOK_PERIOD_MS: u32 = 5_000;
+/// Periods after which a standing robot is stalled, on uneven ground: by then two passages were
+/// blocked.
+const STALLED_PERIODS: u32 = 5;
 
 /// Follow the window's field.
 pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
@@ -39,36 +37,41 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         return Output::default();
     };
     let heights = state.map.heights();
-    // A robot that found no way within the limit of its roll for so long leaves it rather than stand there for good.
+    // A robot that is stalled within its roll limit leaves the limit rather than stand there for
+    // ever.
     let incline = config
         .ground
         .as_ref()
-        .filter(|_| whiles_stood(state, input.time_ms) < WHILES_AT_A_LOSS)
-        .and_then(|terrain| Incline::new(terrain, &heights, &input.pose));
-    let bias = Hysteresis {
-        before: state.wedge,
-        goal: wedge_of_goal(state, input.pose.z_m),
-        shut: state.shut,
+        .filter(|_| standing_periods(state, input.time_ms) < STALLED_PERIODS)
+        .and_then(|ground| Incline::new(ground, &heights, &input.pose));
+    let goal = state.strategy.frontier.path().goal();
+    let tiles = state.map.tiles();
+    let hysteresis = Hysteresis {
+        before: state.slope_direction,
+        goal: state.ground.direction_of(tiles, goal, input.pose.z_m),
+        shut: state.blocked_direction,
     };
     let headed = |place: Place| {
         let wanted = heading_at(window, (origin, scale), &input.pose, place)?;
         Some(match &incline {
-            Some(incline) => incline.heading(place, wanted, bias),
+            Some(incline) => incline.heading(place, wanted, hysteresis),
             None => (wanted, None),
         })
     };
     let heading_at = |place: Place| headed(place).map(|(heading, _)| heading);
     let here = headed(Place::default());
-    state.wedge = here.and_then(|(_, wedge)| wedge);
+    state.slope_direction = here.and_then(|(_, direction)| direction);
     let here = here.map(|(heading, _)| heading);
-    let surround = surround(state, &input.pose, incline.clone());
+    let checker = state
+        .ground
+        .collision_checker(tiles, &input.pose, incline.clone());
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
             let (x, y) = local_grid::position((origin, scale), ahead(&input.pose, place));
             potential_at(window, x, y)
         };
         let ground = Ground {
-            surround: &surround,
+            surround: &checker,
             heading_at,
             potential_at: Some(&potential_at),
         };
@@ -79,22 +82,22 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
             input.velocity,
             bytemuck::cast_slice_mut(scratch),
         );
-        // Where it finds no way in one wedge it goes in the other until it searches again.
-        state.shut = match (rested, state.drive.is_resting()) {
+        // Where the drive finds no way in one direction it takes the other, until its next search.
+        state.blocked_direction = match (rested, state.drive.is_resting()) {
             (_, false) => None,
-            (false, true) => state.wedge,
-            (true, true) => state.shut,
+            (false, true) => state.slope_direction,
+            (true, true) => state.blocked_direction,
         };
         velocity
     } else if is_at_goal(window, (origin, scale), input.pose.point()) {
-        // In the goal's own cell there is no slope: look around until it is explored.
-        state.drive.look_around(config, &surround, input.velocity)
+        // The field has no gradient in the goal's own cell: look around until the cell is explored.
+        state.drive.look_around(config, &checker, input.velocity)
     } else {
         state.strategy.frontier.note_flat();
         Twist::default()
     };
-    let velocity = if is_at_a_loss(state, velocity, input.time_ms) {
-        state.drive.look_around(config, &surround, input.velocity)
+    let velocity = if is_stalled(state, velocity, input.time_ms) {
+        state.drive.look_around(config, &checker, input.velocity)
     } else {
         velocity
     };
@@ -105,83 +108,46 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     }
 }
 
-/// What stands around the robot, or what it keeps off.
-fn surround<const TILES: usize, const SLOTS: usize>(
-    state: &State<TILES, SLOTS>,
-    pose: &Pose,
-    incline: Option<Incline>,
-) -> CollisionChecker {
-    let mut surround = CollisionChecker::empty().on(incline);
-    match &state.ground {
-        GroundModel::Flat(near) => {
-            surround.see(pose, near.points());
-            let cells = obstacle_points::obstacle_cells(state.map.tiles(), pose.point());
-            surround.remember(pose, cells);
-        }
-        GroundModel::Uneven(_) => {
-            let rims = obstacle_points::rims(state.map.tiles(), pose.point());
-            surround.keep_off(pose, rims);
-        }
-    }
-    surround
-}
-
-/// Without a local goal: stand, or look around after long.
+/// Without a local goal: stand, and look around once stalled.
 pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     input: &Input<'_>,
 ) -> Twist {
-    if !is_at_a_loss(state, Twist::default(), input.time_ms) {
+    if !is_stalled(state, Twist::default(), input.time_ms) {
         return Twist::default();
     }
-    let surround = surround(state, &input.pose, None);
-    let wish = state.drive.look_around(config, &surround, input.velocity);
+    let checker = state
+        .ground
+        .collision_checker(state.map.tiles(), &input.pose, None);
+    let wish = state.drive.look_around(config, &checker, input.velocity);
     within_limits(config, wish)
 }
 
-/// Whether the robot has stood for long and still does, on uneven ground: what it has not measured it may see when it turns. It does so every
-/// second while, and searches for a manoeuvre between.
-fn is_at_a_loss<const TILES: usize, const SLOTS: usize>(
+/// Returns true if the robot is stalled on uneven ground and should look around: a turn may measure
+/// ground that it has not seen. It looks around in every second period, and searches for a recovery
+/// between.
+fn is_stalled<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     velocity: Twist,
     time_ms: u32,
 ) -> bool {
-    let whiles = whiles_stood(state, time_ms);
-    matches!(state.ground, GroundModel::Uneven(_))
+    let periods = standing_periods(state, time_ms);
+    state.ground.is_uneven()
         && velocity == Twist::default()
-        && whiles >= WHILES_AT_A_LOSS
-        && whiles % 2 == 1
+        && periods >= STALLED_PERIODS
+        && periods % 2 == 1
 }
 
-/// For how many whiles the robot has stood about where it stands.
-fn whiles_stood<const TILES: usize, const SLOTS: usize>(
+/// Whole periods for which the robot has stood where it stands.
+fn standing_periods<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     time_ms: u32,
 ) -> u32 {
-    state.strategy.frontier.standing_ms(time_ms) / WHILE_MS
+    state.strategy.frontier.standing_ms(time_ms) / LOOK_PERIOD_MS
 }
 
-/// Whether the path's goal lies clearly higher or lower than the robot, as far as its height is known.
-fn wedge_of_goal<const TILES: usize, const SLOTS: usize>(
-    state: &State<TILES, SLOTS>,
-    robot_m: f32,
-) -> Option<SlopeDirection> {
-    let GroundModel::Uneven(storeys) = &state.ground else {
-        return None;
-    };
-    let goal = state.strategy.frontier.path().goal();
-    let rise_m = storeys.height_around_m(state.map.tiles(), goal)? - robot_m;
-    if rise_m.abs() < LEVEL_M {
-        None
-    } else if rise_m > 0.0 {
-        Some(SlopeDirection::Up)
-    } else {
-        Some(SlopeDirection::Down)
-    }
-}
-
-/// No faster than the session allows, whatever a manoeuvre has in mind.
+/// Clamp a wish to the session's speeds; recovery motions do not know them.
 fn within_limits(config: &Config, wish: Twist) -> Twist {
     let (linear, angular) = (config.max_linear_mps, config.max_angular_radps);
     Twist {
@@ -212,13 +178,12 @@ fn potential_at(window: &Window, x: f32, y: f32) -> f32 {
     }
 }
 
-/// A place in the robot's frame as a point of the odometry frame.
-pub(super) fn ahead(pose: &Pose, place: Place) -> Point {
-    let (sin, cos) = math::sin_cos(pose.yaw_rad);
-    Point {
-        x_m: pose.x_m + place.x_m * cos - place.y_m * sin,
-        y_m: pose.y_m + place.x_m * sin + place.y_m * cos,
-    }
+/// A place in the robot's frame as a point of the map.
+fn ahead(pose: &Pose, place: Place) -> Point {
+    pose.to_map(Point {
+        x_m: place.x_m,
+        y_m: place.y_m,
+    })
 }
 
 /// The field's heading at a place near the robot, radians to the left of the robot's own.
@@ -236,7 +201,7 @@ mod tests {
     use crate::config::UnevenGround;
     use crate::field::{SIDE, solve};
 
-    /// Turn rates of a robot that stands where no field leads anywhere, at these times since it last moved.
+    /// Turn rates of a robot in a flat field, at these times since it last moved.
     fn turn_rates<const N: usize>(terrain: Option<UnevenGround>, times_ms: [u32; N]) -> [f32; N] {
         let config = Config {
             ground: terrain,
@@ -263,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_has_stood_for_25_s_on_uneven_ground_looks_around_every_second_while() {
+    fn a_robot_stalled_for_25_s_looks_around_every_second_period() {
         let times_ms = [
             5_000, 15_000, 24_999, 25_000, 29_999, 30_000, 34_999, 35_000, 40_000, 45_000,
         ];
@@ -278,7 +243,8 @@ mod tests {
         assert_eq!(turn_rates(None, times_ms), [0.0; 10], "flat ground");
     }
 
-    /// The heading that is driven, degrees, by a robot on a slope that rises to the north while the field leads east, when it has stood so long.
+    /// The heading that a robot drives on a slope that rises to the north, degrees. The field leads
+    /// east, and the robot has stood for this time.
     fn heading_deg(roll: f32, standing_ms: u32) -> f32 {
         let config = Config {
             ground: Some(UnevenGround {
@@ -317,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_has_stood_for_25_s_leaves_the_limit_of_its_roll() {
+    fn a_robot_stalled_for_25_s_leaves_its_roll_limit() {
         // tan 15°, on a slope of 16.7°.
         let limit = 0.268;
         assert!(heading_deg(limit, 20_000).abs() > 5.0);

@@ -1,4 +1,4 @@
-//! Memory of a step, and the last window's field as it is shown.
+//! The scratch memory of a step, and rows of the last field for display.
 //!
 //! Units: map cells; q is 1 at a goal.
 
@@ -8,16 +8,17 @@ use crate::geometry::Cell;
 
 /// Words of scratch.
 pub(super) const SCRATCH: usize = SCRATCH_FLOATS;
-/// Words of the wave's queue.
+/// Words of the wavefront's queue.
 pub(super) const RING: usize = 1024;
 
-/// Memory of a step: the field, kept as a warm start for the next one, and scratch that the wave and the multigrid use in turn.
+/// The memory of a step: the field, which is the next step's warm start, and scratch that the
+/// wavefront and the multigrid use in turn.
 #[derive(Debug)]
 pub struct Workspace {
     pub(super) window: Window,
-    /// Its least map cell and its scale.
+    /// The window's least map cell, and its scale in map cells.
     pub(super) window_at: Option<(Cell, i32)>,
-    /// What stands in the window.
+    /// The passable cells of the window.
     pub(super) view: LocalGrid,
     pub(super) scratch: [f32; SCRATCH],
 }
@@ -54,18 +55,18 @@ pub struct FieldRow {
     pub origin: Cell,
     /// Map cells along a window cell.
     pub scale: u8,
-    /// q = 1 − p, scaled so that a goal is 1; 0 on obstacles and where no goal can be reached from.
+    /// q = 1 − p: 1 at a goal, 0 on obstacles and where no goal can be reached.
     pub q: [f32; SIDE],
-    /// What each cell is in the boundary-value problem.
+    /// The kind of each cell in the boundary-value problem.
     pub kinds: [CellKind; SIDE],
 }
 
-/// What a cell is in the window's boundary-value problem.
+/// The kind of a cell in the window's boundary-value problem.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CellKind {
-    /// Relaxed.
+    /// Its potential is relaxed.
     Free,
-    /// p = 1, or without a way to a goal.
+    /// p = 1: an obstacle, or no goal can be reached.
     #[default]
     Obstacle,
     /// p = 0.
@@ -73,7 +74,8 @@ pub enum CellKind {
 }
 
 impl Workspace {
-    /// One row of the last step's field, row 0 the least y; `None` before the first window and beyond the last row.
+    /// One row of the last step's field; row 0 has the least y. `None` before the first window and
+    /// beyond the last row.
     #[must_use]
     pub fn field_row(&self, row: u8) -> Option<FieldRow> {
         let (origin, scale) = self.window_at?;

@@ -1,0 +1,165 @@
+//! Everything in which the planner treats flat and uneven ground differently.
+//!
+//! | | flat | uneven |
+//! | --- | --- | --- |
+//! | hull keeps clear of | obstacle points of the level lasers | the rims of free cells |
+//! | window keeps clear of | the map's obstacles | the same rims |
+//! | preferences in the field | none | [`Preferences`]: heights, flatness |
+//! | which goals cost more | none | those on other height levels |
+//! | side slope | none | the roll limit and the fall line |
+//! | looks through gaps | from viewpoints | never: a look measures no ground |
+//!
+//! Level beams end on slopes, so obstacle points say nothing on uneven ground.
+//!
+//! Units: metres, milliseconds.
+
+use crate::config::Config;
+use crate::drive::side_slope::SlopeDirection;
+use crate::drive::{CollisionChecker, Incline};
+use crate::field::height_preference::Preferences;
+use crate::field::local_grid::LocalGrid;
+use crate::geometry::{Cell, Point, Pose};
+use crate::input::Input;
+use crate::map::obstacle_points::ObstaclePoints;
+use crate::map::{Map, Tiles, obstacle_points};
+use crate::path::height_levels::{HeightLevels, LevelCost};
+use crate::roadmap::configuration_space::Footprint;
+
+use crate::planner::level_scans;
+
+/// A goal whose height differs by less lies level with the robot, metres: twice the rounding of a
+/// block of heights.
+const LEVEL_M: f32 = 0.2;
+
+/// What the planner keeps of the space beside the map.
+///
+/// The tag is explicit, so that the initial value is all zeros and a static one costs no flash.
+#[derive(Debug)]
+#[repr(u8)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "no heap to box into; both are about as large with the pool of an image"
+)]
+pub(super) enum GroundModel<const TILES: usize> {
+    /// All ground is flat.
+    Flat(ObstaclePoints),
+    /// Heights matter.
+    Uneven(HeightLevels<TILES>),
+}
+
+impl<const TILES: usize> GroundModel<TILES> {
+    /// The model of flat ground, empty.
+    pub(super) const fn new() -> Self {
+        Self::Flat(ObstaclePoints::new())
+    }
+
+    /// The empty model for a session.
+    pub(super) const fn of(config: &Config) -> Self {
+        match config.ground {
+            None => Self::new(),
+            Some(_) => Self::Uneven(HeightLevels::new()),
+        }
+    }
+
+    /// True if heights matter.
+    pub(super) const fn is_uneven(&self) -> bool {
+        matches!(self, Self::Uneven(_))
+    }
+
+    /// Take in one step's scans, after the map did.
+    pub(super) fn observe<const SLOTS: usize>(
+        &mut self,
+        config: &Config,
+        input: &Input<'_>,
+        map: &mut Map<TILES, SLOTS>,
+        preferences: &mut Preferences,
+    ) {
+        match self {
+            Self::Flat(points) => {
+                for (laser, ranges_mm) in level_scans(config, input) {
+                    points.update(&input.pose, laser, ranges_mm);
+                }
+            }
+            Self::Uneven(levels) => {
+                preferences.stand(&input.pose);
+                levels.note(&map.heights(), map.tiles());
+                map.fold(levels);
+            }
+        }
+    }
+
+    /// The cost of goals by their height; `None` where heights do not choose goals.
+    pub(super) fn level_cost<'a>(
+        &'a self,
+        config: &'a Config,
+        preferences: &Preferences,
+    ) -> Option<LevelCost<'a, TILES>> {
+        let terrain = config.ground.as_ref()?;
+        match self {
+            Self::Uneven(storeys) if terrain.mode.has_heights() => Some(LevelCost {
+                storeys,
+                terrain,
+                storey_m: preferences.storey_m(),
+            }),
+            _ => None,
+        }
+    }
+
+    /// Block in the window what the drive keeps the hull clear of. Without this the field would
+    /// lead between two cells where the drive does not go.
+    pub(super) fn block_rims<const SLOTS: usize>(
+        &self,
+        tiles: &Tiles<TILES, SLOTS>,
+        footprint: &Footprint,
+        robot: Point,
+        grid: &mut LocalGrid,
+    ) {
+        if self.is_uneven() {
+            let rims = obstacle_points::rim_cells(tiles, robot);
+            grid.keep_off(robot.cell(), rims, footprint);
+        }
+    }
+
+    /// What the hull must not touch around the robot.
+    pub(super) fn collision_checker<const SLOTS: usize>(
+        &self,
+        tiles: &Tiles<TILES, SLOTS>,
+        pose: &Pose,
+        incline: Option<Incline>,
+    ) -> CollisionChecker {
+        let mut checker = CollisionChecker::empty().on(incline);
+        match self {
+            Self::Flat(points) => {
+                checker.see(pose, points.points());
+                let cells = obstacle_points::obstacle_cells(tiles, pose.point());
+                checker.remember(pose, cells);
+            }
+            Self::Uneven(_) => {
+                let rims = obstacle_points::rims(tiles, pose.point());
+                checker.keep_off(pose, rims);
+            }
+        }
+        checker
+    }
+
+    /// Up or down to the goal, if the goal is clearly higher or lower than the robot and its height
+    /// is known.
+    pub(super) fn direction_of<const SLOTS: usize>(
+        &self,
+        tiles: &Tiles<TILES, SLOTS>,
+        goal: Cell,
+        robot_m: f32,
+    ) -> Option<SlopeDirection> {
+        let Self::Uneven(levels) = self else {
+            return None;
+        };
+        let rise_m = levels.height_around_m(tiles, goal)? - robot_m;
+        if rise_m.abs() < LEVEL_M {
+            None
+        } else if rise_m > 0.0 {
+            Some(SlopeDirection::Up)
+        } else {
+            Some(SlopeDirection::Down)
+        }
+    }
+}
