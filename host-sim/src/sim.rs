@@ -313,7 +313,7 @@ impl<'w> Simulator<'w> {
             linear_accel: at_most(limits.acceleration_mps2.min(limits.braking_mps2)),
             angular_accel: at_most(limits.angular_radps2),
             period_ms: u16::try_from(self.config.period_ms).unwrap_or(u16::MAX),
-            terrain: None,
+            uneven_ground: None,
         }
     }
 

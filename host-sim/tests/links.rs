@@ -248,7 +248,7 @@ fn refusals_are_the_same_on_both_rungs() {
         link.hello().unwrap();
         let error = link.control(&bad).unwrap_err();
         assert!(
-            error.to_string().contains("radius must be 50 to 2000 mm"),
+            error.to_string().contains("radius must be 50 to 600 mm"),
             "{error}"
         );
         let error = link.observe(&Observation::default()).unwrap_err();

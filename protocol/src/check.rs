@@ -1,34 +1,40 @@
-//! The frame's checksum, and the keys folded into it.
+//! The checksum of a frame, and the keys that are mixed into it.
 //!
 //! ```text
 //! check = CRC-24/OPENPGP(sequence ++ body) xor key(kind)
 //! ```
 //!
-//! The key depends on the kind of frame and, but for the hello, on the schema hash: a frame of another schema, kind or
-//! direction fails the check, without a byte spent on saying what it is. Why 24 bits: a full observation needs four bytes of
-//! stuffing, two of sequence and a delimiter, and ten bytes of overhead are what a frame may cost. The polynomial is divisible
-//! by x + 1 and of an order far beyond our longest frame, so up to three wrong bits anywhere are always found, and so is a burst
-//! of up to 24, but for those few that turn the key of one kind into that of another. What is left (damage to
-//! the stuffing moves everything behind it) passes once in 2²⁴, and must then still be a well-formed message of the right
-//! kind with the awaited sequence number.
+//! The key depends on the kind of the frame and, except for the hello, on the schema hash. A frame
+//! of another schema, kind or direction therefore fails the check, and no byte of the frame is
+//! spent on saying what it is.
+//!
+//! Why 24 bits: a frame may cost ten bytes. A full observation needs four bytes of stuffing, two of
+//! sequence number and one delimiter, so three are left.
+//!
+//! What it finds: x + 1 divides the polynomial, and the order of x is far above the length of our
+//! longest frame. All errors of up to three bits are found, and all bursts of up to 24 bits except
+//! the few that turn the key of one kind into the key of another. Damage to the stuffing moves
+//! everything behind it; such a frame passes by chance once in 2²⁴. It must then still hold a
+//! well-formed message of the right kind with the awaited sequence number.
 
 use crc::{CRC_24_OPENPGP, Crc};
 
 use crate::schema::{SCHEMA, fold};
 
-/// Bytes of the checksum.
+/// Length of the checksum, bytes.
 pub const CHECK_BYTES: usize = 3;
 
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_24_OPENPGP);
 
-/// What a frame is.
+/// The kinds of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// From the host: [`crate::message::Request::Hello`].
     Greeting,
     /// From the host: any other request.
     Request,
-    /// From the device: [`crate::message::Reply::Hello`] or [`crate::message::Reply::Incompatible`].
+    /// From the device: [`crate::message::Reply::Hello`] or
+    /// [`crate::message::Reply::Incompatible`].
     Welcome,
     /// From the device: any other reply.
     Reply,
@@ -37,7 +43,8 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// What is folded into the checksum of a frame of this kind. The hello's never change.
+    /// The key that is mixed into the checksum of a frame of this kind. The keys of the two hello
+    /// kinds never change.
     #[must_use]
     pub const fn key(self) -> u32 {
         match self {
@@ -55,16 +62,16 @@ const SCHEMA_KEY: u32 = {
     ((hash ^ (hash >> 40)) & 0xff_ffff) as u32
 };
 
-/// The checksum of sequence number and body, before a key is folded in.
+/// Returns the checksum of `content` (sequence number and body) without a key.
 #[must_use]
 pub fn sum(content: &[u8]) -> u32 {
     CRC.checksum(content)
 }
 
-/// The running checksum of a frame that is being written.
-pub(crate) struct Running(crc::Digest<'static, u32>);
+/// The checksum of the part of a frame that is already written.
+pub(crate) struct RunningChecksum(crc::Digest<'static, u32>);
 
-impl Running {
+impl RunningChecksum {
     pub(crate) fn new() -> Self {
         Self(CRC.digest())
     }
@@ -73,7 +80,7 @@ impl Running {
         self.0.update(&[byte]);
     }
 
-    /// The bytes to send, least significant first.
+    /// Returns the bytes to send, least significant first.
     pub(crate) fn seal(self, kind: Kind) -> [u8; CHECK_BYTES] {
         let [a, b, c, _] = (self.0.finalize() ^ kind.key()).to_le_bytes();
         [a, b, c]
@@ -90,12 +97,12 @@ mod tests {
     const POLYNOMIAL: u32 = 0x0186_4cfb;
 
     #[test]
-    fn the_check_value_of_the_catalogue() {
+    fn checksum_has_the_catalogue_value() {
         assert_eq!(sum(b"123456789"), 0x21_cf02);
     }
 
-    /// x + 1 divides the polynomial: every odd number of wrong bits is found. The order of x exceeds the longest frame:
-    /// every two are.
+    /// x + 1 divides the polynomial, so every odd number of wrong bits is found. The order of x is
+    /// greater than the bits of the longest frame, so every two wrong bits are found.
     #[test]
     fn up_to_three_wrong_bits_are_found() {
         assert_eq!(POLYNOMIAL.count_ones() % 2, 0);
@@ -110,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn every_kind_has_a_key_of_its_own() {
+    fn every_kind_has_its_own_key() {
         let kinds = [
             Kind::Greeting,
             Kind::Request,
@@ -123,10 +130,11 @@ mod tests {
         assert!(keys.iter().all(|key| *key < 1 << 24));
     }
 
-    /// A reply never turns into a log, or a log into a reply, by a burst of up to eight wrong bits anywhere in a frame. (Between
-    /// a hello and the rest, the message's own number stands as well.)
+    /// A burst of up to eight wrong bits never turns a reply into a log or a log into a reply,
+    /// wherever it lies in the frame. A hello differs from the other kinds by its message number as
+    /// well.
     #[test]
-    fn a_wrong_byte_makes_no_reply_of_a_log() {
+    fn one_wrong_byte_never_turns_a_log_into_a_reply() {
         let swap = Kind::Reply.key() ^ Kind::Log.key();
         for burst in 1..=255u32 {
             let mut syndrome = burst;

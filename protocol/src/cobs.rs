@@ -1,18 +1,26 @@
-//! Consistent overhead byte stuffing: bytes without zeros, so that a zero can end a frame.
+//! Consistent overhead byte stuffing: it encodes bytes without zeros, so that a zero can end a
+//! frame.
 //!
-//! A run of n − 1 non-zero bytes and the zero after it become the code n and the run; a run of 254 without a zero has code
-//! 255. Cost: one byte, and one more for every 254 bytes after the first 254. [Cheshire and Baker, 1999]. The final zero is implied by
-//! the end. Both directions are total: no input makes them panic, which the linker proves for the image's receive path.
+//! A run of n − 1 non-zero bytes and the zero after it become the code n and the run. A run of 254
+//! bytes without a zero has code 255. The end of the frame stands for a last zero. The cost is one
+//! byte, and one more for every 254 bytes after the first 254.
+//!
+//! Both directions are total functions: no input makes them panic. The linker proves this for the
+//! receive path of the image (`firmware/stm32f405/examples/panic_free.rs`).
+//!
+//! S. Cheshire and M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on
+//! Networking 7(2), 1999.
 
 /// The output has no room for another byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Full;
+pub(crate) struct Full;
 
-/// Stuffs bytes as they come.
+/// Encoder that takes one byte at a time.
 ///
-/// Invariant: `out[code_at]` is reserved for the code of the open run, whose bytes fill `out[code_at + 1..at]`.
+/// Invariant: `out[code_at]` is reserved for the code of the open run. The bytes of that run fill
+/// `out[code_at + 1..at]`.
 #[derive(Debug)]
-pub struct Stuffer<'a> {
+pub(crate) struct Stuffer<'a> {
     out: &'a mut [u8],
     code_at: usize,
     at: usize,
@@ -21,7 +29,7 @@ pub struct Stuffer<'a> {
 impl<'a> Stuffer<'a> {
     /// Starts a frame at the beginning of `out`.
     #[must_use]
-    pub fn new(out: &'a mut [u8]) -> Self {
+    pub(crate) fn new(out: &'a mut [u8]) -> Self {
         Self {
             out,
             code_at: 0,
@@ -33,7 +41,7 @@ impl<'a> Stuffer<'a> {
     ///
     /// # Errors
     /// [`Full`] if `out` ends.
-    pub fn push(&mut self, byte: u8) -> Result<(), Full> {
+    pub(crate) fn push(&mut self, byte: u8) -> Result<(), Full> {
         if self.at - self.code_at == 255 {
             self.close()?;
         }
@@ -45,11 +53,11 @@ impl<'a> Stuffer<'a> {
         Ok(())
     }
 
-    /// Ends the frame with its delimiter and gives its length.
+    /// Ends the frame with its delimiter and returns its length.
     ///
     /// # Errors
     /// [`Full`] if `out` ends.
-    pub fn finish(mut self) -> Result<usize, Full> {
+    pub(crate) fn finish(mut self) -> Result<usize, Full> {
         self.close()?;
         *self.out.get_mut(self.code_at).ok_or(Full)? = 0;
         Ok(self.at)
@@ -64,10 +72,11 @@ impl<'a> Stuffer<'a> {
     }
 }
 
-/// Undoes the stuffing of `buffer` (without its delimiter) in place and gives the length of the result, or `None` if it is not
-/// a stuffed frame.
+/// Decodes `buffer`, which holds a frame without its delimiter, in place.
+///
+/// Returns the length of the result, or `None` if `buffer` is not a stuffed frame.
 #[must_use]
-pub fn unstuff(buffer: &mut [u8]) -> Option<usize> {
+pub(crate) fn unstuff(buffer: &mut [u8]) -> Option<usize> {
     let (mut from, mut to) = (0, 0);
     while let Some(&code) = buffer.get(from) {
         let end = from + usize::from(code);
@@ -76,7 +85,8 @@ pub fn unstuff(buffer: &mut [u8]) -> Option<usize> {
         }
         from += 1;
         while from < end {
-            // A zero inside is left to the checksum: receivers split at zeros, so there is none.
+            // There is no zero inside: receivers split at zeros. If there were one, the checksum
+            // would find it.
             *buffer.get_mut(to)? = *buffer.get(from)?;
             (from, to) = (from + 1, to + 1);
         }
@@ -118,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn the_examples_of_the_paper() {
+    fn examples_of_the_paper() {
         for (data, frame) in [
             (vec![], vec![1, 0]),
             (vec![0], vec![1, 1, 0]),
@@ -145,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_frame_is_none() {
+    fn invalid_stuffing_is_none() {
         assert_eq!(unstuffed(&[2]), None);
         assert_eq!(unstuffed(&[0]), None);
         assert_eq!(unstuffed(&[1, 3, 7]), None);
@@ -153,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_output_is_told() {
+    fn full_output_is_an_error() {
         for room in 0..6 {
             let mut out = vec![0; room];
             let mut stuffer = Stuffer::new(&mut out);

@@ -1,15 +1,14 @@
-//! What is said between a Fieldline planner and its robot, and nothing else.
+#![doc = include_str!("../README.md")]
+//! ## Modules
 //!
-//! | room | what |
+//! | module | contents |
 //! | --- | --- |
-//! | [`message`] | the messages, plain data |
-//! | [`schema`] | the hash that tells whether two ends mean the same by them |
-//! | [`check`] | the frame's checksum, and the keys that make kinds of frames exclude each other |
-//! | [`cobs`] | byte stuffing: a frame without zeros between two zeros |
-//! | [`frame`] | all of it together: messages to bytes and back |
+//! | [`message`] | the messages: plain data |
+//! | [`frame`] | messages to bytes and back: encoders, and a receiver for each side |
+//! | [`check`] | the checksum of a frame, and the key that each kind of frame has |
 //!
-//! Nothing here can panic on what a peer sends, and no byte sequence can wedge a [`frame::Receiver`]: after any garbage, a
-//! delimiter and a good frame are decoded. The prose specification is in `README.md`.
+//! No input from a peer makes this crate panic. No byte sequence blocks a [`frame::Receiver`]:
+//! after any garbage, it decodes the first good frame behind a delimiter.
 #![no_std]
 #![forbid(unsafe_code)]
 #![cfg_attr(
@@ -26,14 +25,16 @@
 extern crate std;
 
 pub mod check;
-pub mod cobs;
-mod explain;
+mod cobs;
+mod display;
 pub mod frame;
 pub mod message;
-pub mod schema;
+mod schema;
 
 pub use schema::{SCHEMA, VERSION};
 
-/// Bits a second on a serial line. A full observation of two scans takes 17 ms; USART1 divides to it within 0.2 % from
-/// 84 MHz and within 0.8 % from the 16 MHz fallback, which 921 600 would miss by 2 %.
+/// Speed of a serial line, bits per second.
+///
+/// A full observation of two scans takes 17 ms. USART1 reaches this speed within 0.2 % from 84 MHz
+/// and within 0.8 % from the 16 MHz fallback; it would miss 921 600 by 2 %.
 pub const BAUD: u32 = 460_800;

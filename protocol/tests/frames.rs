@@ -1,40 +1,42 @@
-//! Round trips of arbitrary messages, the sizes of the largest ones, and what a frame costs.
+//! Round trips of arbitrary messages, the sizes of the largest messages, and the cost of a frame.
 
 mod common;
 
+use common::arbitrary::{reply, request};
 use common::{
-    hello, largest_observation, replies, reply, reply_frame, request, request_frame, requests,
+    checked_frame, hello, largest_observation, replies, reply_frame, request_frame, requests,
 };
+use fieldline_protocol::check::Kind;
 use fieldline_protocol::frame::{
     BodyError, MAX_LOG_BYTES, MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, TooLong,
     encode_log, encode_reply, encode_request, overhead,
 };
 use fieldline_protocol::message::{
-    BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Counters, Crash, FIELD_CELL_BYTES, FIELD_SIDE,
-    FieldRow, Frontier, Identity, Laser, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM, Preference,
-    ROAD_PAGE, Reply, Request, Residue, Road, Start, Strategy as Plan, TILE_BYTES, TILE_DATES,
-    TILE_SKELETON_BYTES, Terrain, Tile,
+    self, BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Counters, Crash, FIELD_CELL_BYTES,
+    FIELD_SIDE, FieldRow, Identity, Laser, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM, PATH_PAGE, Path,
+    Preference, Reply, Request, ResidualFrontier, ResidualReason, Start, TILE_BYTES,
+    TILE_SKELETON_BYTES, TILE_STAMPS, Tile, UnevenGround,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use proptest::prelude::*;
 
 proptest! {
     #[test]
-    fn every_request_comes_back(sequence in any::<u16>(), request in request()) {
+    fn every_request_round_trips(sequence in any::<u16>(), request in request()) {
         let (heard, tally) = requests(&request_frame(sequence, &request));
         prop_assert_eq!(heard, [(sequence, request)]);
         prop_assert_eq!((tally.received, tally.crc_errors, tally.dropped), (1, 0, 0));
     }
 
     #[test]
-    fn every_reply_comes_back(sequence in any::<u16>(), reply in reply()) {
+    fn every_reply_round_trips(sequence in any::<u16>(), reply in reply()) {
         let (heard, tally) = replies(&reply_frame(sequence, &reply));
         prop_assert_eq!(heard, [(sequence, reply)]);
         prop_assert_eq!((tally.received, tally.crc_errors, tally.dropped), (1, 0, 0));
     }
 
     #[test]
-    fn every_log_comes_back(log in prop::collection::vec(any::<u8>(), 0..=MAX_LOG_BYTES)) {
+    fn every_log_round_trips(log in prop::collection::vec(any::<u8>(), 0..=MAX_LOG_BYTES)) {
         let mut out = [0; MAX_REPLY_FRAME];
         let length = encode_log(3, &log, &mut out).unwrap();
         let mut receiver = Receiver::<MAX_REPLY_FRAME>::new(Side::Host);
@@ -46,14 +48,14 @@ proptest! {
     }
 
     #[test]
-    fn frames_back_to_back_are_told_apart(requests_in in prop::collection::vec(request(), 0..6)) {
+    fn adjacent_frames_are_separated(requests_in in prop::collection::vec(request(), 0..6)) {
         let bytes: Vec<u8> = requests_in.iter().flat_map(|request| request_frame(1, request)).collect();
         let heard: Vec<Request> = requests(&bytes).0.into_iter().map(|(_, request)| request).collect();
         prop_assert_eq!(heard, requests_in);
     }
 
     #[test]
-    fn no_room_is_told(request in request(), room in 0usize..64) {
+    fn a_short_buffer_is_an_error(request in request(), room in 0usize..64) {
         let length = request_frame(1, &request).len();
         let mut out = vec![0; room];
         let fits = encode_request(1, &request, &mut out);
@@ -61,7 +63,7 @@ proptest! {
     }
 }
 
-/// The largest of each kind, by hand.
+/// The largest message of each kind, written by hand.
 #[test]
 fn the_largest_messages_fit_and_fill_their_frames() {
     let worst = request_frame(
@@ -74,8 +76,8 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         y: i16::MIN,
         cells: [0xff; TILE_BYTES].into_iter().collect(),
         skeleton: [0xff; TILE_SKELETON_BYTES].into_iter().collect(),
-        marks: u16::MAX,
-        dates: [u8::MAX; TILE_DATES],
+        closed_regions: u16::MAX,
+        visit_stamps: [u8::MAX; TILE_STAMPS],
     }));
     assert_eq!(reply_frame(u16::MAX, &tile).len(), MAX_REPLY_FRAME);
 
@@ -91,7 +93,7 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         range_limit_mm: u16::MAX,
     };
     let start = Request::Control(Control::Start(Start {
-        strategy: Plan::Tdbvp { patrol_s: u16::MAX },
+        strategy: message::Strategy::Tdbvp { patrol_s: u16::MAX },
         box_tiles: (255, 255),
         lasers: [laser; MAX_SCANS].into_iter().collect(),
         robot_radius_mm: u16::MAX,
@@ -100,7 +102,7 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         linear_accel: far,
         angular_accel: far,
         period_ms: u16::MAX,
-        terrain: Some(Terrain {
+        uneven_ground: Some(UnevenGround {
             preference: Preference::Both,
             obstacle: far,
             near: far,
@@ -148,18 +150,18 @@ fn the_largest_messages_fit_and_fill_their_frames() {
             q: [f32::MAX; FIELD_SIDE].into_iter().collect(),
             cells: [u8::MAX; FIELD_CELL_BYTES].into_iter().collect(),
         })),
-        Reply::Road(Road {
+        Reply::Path(Path {
             tractor: Some((i16::MIN, i16::MIN)),
             shield: Some([(i16::MIN, i16::MIN); 2]),
             length: u8::MAX,
-            cells: [(i16::MIN, i16::MIN); ROAD_PAGE].into_iter().collect(),
+            cells: [(i16::MIN, i16::MIN); PATH_PAGE].into_iter().collect(),
         }),
         Reply::Frontiers(
-            [Frontier {
+            [ResidualFrontier {
                 x: i16::MIN,
                 y: i16::MIN,
                 cells: u16::MAX,
-                reason: Residue::NoProgress,
+                reason: ResidualReason::NoProgress,
             }; MAX_FRONTIERS]
                 .into_iter()
                 .collect(),
@@ -223,9 +225,9 @@ fn a_hello_of_another_version_is_foreign_on_both_sides() {
     );
 }
 
-/// A looped-back line answers nobody: each end is deaf to its own kind.
+/// An end ignores its own kind of frame, so it never takes an echo for an answer.
 #[test]
-fn nobody_hears_himself() {
+fn no_end_accepts_its_own_frames() {
     assert_eq!(replies(&request_frame(1, &hello(1))).0, []);
     assert_eq!(
         requests(&reply_frame(1, &Reply::Hello(Identity::default()))).0,
@@ -233,16 +235,10 @@ fn nobody_hears_himself() {
     );
 }
 
-/// A right checksum does not make a message: left-over bytes and a hello among the requests are malformed.
+/// A body with a correct checksum can still be malformed: left-over bytes, or a hello in a frame of
+/// kind request.
 #[test]
-fn checked_nonsense_is_malformed() {
-    use fieldline_protocol::check::{Kind, sum};
-    let frame = |kind: Kind, body: &[u8]| {
-        let mut content = [&[0, 0][..], body].concat();
-        let check = sum(&content) ^ kind.key();
-        content.extend(&check.to_le_bytes()[..3]);
-        [cobs::encode_vec(&content), vec![0]].concat()
-    };
+fn a_checked_body_can_be_malformed() {
     let hello_body = postcard::to_allocvec(&hello(1)).unwrap();
     for (kind, body) in [
         (Kind::Request, &[5, 0][..]),
@@ -254,7 +250,7 @@ fn checked_nonsense_is_malformed() {
     ] {
         let mut device = Receiver::<MAX_REQUEST_FRAME>::new(Side::Device);
         let mut heard = None;
-        for byte in frame(kind, body) {
+        for byte in checked_frame(kind, 0, body) {
             heard = device.push(byte).map(|frame| frame.request()).or(heard);
         }
         assert_eq!(heard, Some(Err(BodyError::Malformed)), "{kind:?} {body:?}");

@@ -127,8 +127,8 @@ mod tests {
             y: 0,
             cells: cells.into_iter().collect(),
             skeleton: [0; 32].into_iter().collect(),
-            marks: 0,
-            dates: [0; 4],
+            closed_regions: 0,
+            visit_stamps: [0; 4],
         }
     }
 

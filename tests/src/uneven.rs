@@ -3,7 +3,7 @@
 //! Units in tables: seconds of simulated time, metres, per cent of the ground that can be reached. `climb` is the sum of the true height's changes,
 //! up and down. A crossing is a change between the lowest and the highest tenth of the world's heights along the true path.
 
-use fieldline_protocol::message::{Preference, Terrain};
+use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::link::direct::Direct;
 use host_sim::metrics::{Table as Truth, crossings};
 use host_sim::report::Report;
@@ -67,7 +67,7 @@ impl<'a> Tour<'a> {
     pub fn mission(&self) -> Mission {
         Mission {
             strategy: TERRAIN.into(),
-            terrain: Some(Terrain {
+            terrain: Some(UnevenGround {
                 preference: self.preference,
                 roll: self.roll_deg.map_or(TABLE_I.roll, radians),
                 ..TABLE_I

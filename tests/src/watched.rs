@@ -1,7 +1,7 @@
 //! A link that is looked at after every step: whatever the look reads, it changes no command.
 
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Frontier, Identity, Observation, Status, Tile,
+    Command, Control, FieldRow, Identity, Observation, ResidualFrontier, Status, Tile,
 };
 use host_sim::link::{Link, LinkError, LinkStats};
 
@@ -48,7 +48,7 @@ where
         self.link.field_row(row)
     }
 
-    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
+    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
         self.link.frontiers()
     }
 

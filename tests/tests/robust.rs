@@ -98,13 +98,13 @@ impl Madman {
                 self.random.between(4, 20) as u8,
             ),
             lasers: (0..count).map(|k| self.laser(k == 0)).collect(),
-            robot_radius_mm: self.random.between(50, 2000) as u16,
+            robot_radius_mm: self.random.between(50, 600) as u16,
             max_linear: self.narrow().max(I4F12::DELTA),
             max_angular: self.narrow().max(I4F12::DELTA),
             linear_accel: I4F12::MAX,
             angular_accel: I4F12::MAX,
             period_ms: self.random.between(100, 400) as u16,
-            terrain: None,
+            uneven_ground: None,
         };
         for (speed, accel) in [
             (start.max_linear, &mut start.linear_accel),

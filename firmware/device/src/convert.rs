@@ -1,8 +1,10 @@
-//! Wire quantities to the planner's and back: the only place where `fixed` meets `f32`.
+//! Conversions between the wire's quantities and the planner's. No other file mixes `fixed` and
+//! `f32`.
 //!
-//! To the planner the conversion is exact (an `I4F12` has 16 bits, f32 keeps 24) or rounds to nearest (`I16F16` beyond ±128 m: to
-//! 2⁻¹⁶ m or better up to 256 m). To the wire it rounds to nearest and saturates; what is not a number becomes zero. Both
-//! directions are integer arithmetic and the same bits on every machine.
+//! To the planner the conversion is exact for an `I4F12` (16 bits; f32 has 24). It rounds an
+//! `I16F16` beyond ±128 m to nearest: to 2⁻¹⁶ m or better up to 256 m. To the wire it rounds to
+//! nearest and saturates, and a NaN becomes zero. Both directions are integer arithmetic and give
+//! the same bits on every machine.
 
 use fieldline_planner::config::{self, Config};
 use fieldline_planner::config::{PreferenceMode, UnevenGround};
@@ -10,16 +12,16 @@ use fieldline_planner::geometry::{CELL_M, Pose, Twist};
 use fieldline_planner::input::Input;
 use fieldline_planner::math;
 use fieldline_planner::robot;
-use fieldline_planner::status::{self, Frontier, Residue};
+use fieldline_planner::status::{self, Residue};
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
 
-/// A wire quantity as f32.
+/// Returns a wire quantity as f32.
 fn float(quantity: impl LossyInto<f32>) -> f32 {
     quantity.lossy_into()
 }
 
-/// The nearest wire quantity; zero for what is not a number.
+/// Returns the nearest wire quantity; zero for a NaN.
 #[must_use]
 pub fn quantity<F: Fixed>(value: f32) -> F {
     if value.is_nan() {
@@ -29,7 +31,7 @@ pub fn quantity<F: Fixed>(value: f32) -> F {
     }
 }
 
-/// A pose off the wire.
+/// Converts a pose from the wire.
 #[must_use]
 pub fn pose(pose: &wire::Pose) -> Pose {
     Pose {
@@ -42,7 +44,7 @@ pub fn pose(pose: &wire::Pose) -> Pose {
     }
 }
 
-/// A velocity off the wire.
+/// Converts a velocity from the wire.
 #[must_use]
 pub fn twist(twist: &wire::Twist) -> Twist {
     Twist {
@@ -51,7 +53,7 @@ pub fn twist(twist: &wire::Twist) -> Twist {
     }
 }
 
-/// An observation off the wire; a scan that it lacks is empty.
+/// Converts an observation from the wire. A missing scan is empty.
 #[must_use]
 pub fn input(observation: &wire::Observation) -> Input<'_> {
     let scan = |number: usize| match observation.scans.get(number) {
@@ -66,7 +68,7 @@ pub fn input(observation: &wire::Observation) -> Input<'_> {
     }
 }
 
-/// A velocity onto the wire.
+/// Converts a velocity for the wire.
 #[must_use]
 pub fn wire_twist(twist: &Twist) -> wire::Twist {
     wire::Twist {
@@ -88,33 +90,36 @@ fn laser(laser: &wire::Laser) -> robot::LaserMount {
     }
 }
 
-fn terrain(terrain: &wire::Terrain) -> UnevenGround {
-    // At most 45°: the session's limits see to it.
+fn uneven_ground(ground: &wire::UnevenGround) -> UnevenGround {
+    // At most 45°: `limits::check_start` refuses steeper slopes.
     let tangent = |angle: fixed::types::I4F12| {
         let (sin, cos) = math::sin_cos(float(angle));
         sin / cos
     };
     UnevenGround {
-        mode: match terrain.preference {
+        mode: match ground.preference {
             wire::Preference::Off => PreferenceMode::Off,
             wire::Preference::Height => PreferenceMode::Height,
             wire::Preference::Global => PreferenceMode::Global,
             wire::Preference::Both => PreferenceMode::Both,
         },
-        obstacle_m: float(terrain.obstacle),
-        near_m: float(terrain.near),
-        hole_m: float(terrain.hole),
-        least_preference: float(terrain.least),
-        most_preference: float(terrain.most),
-        height_scale: float(terrain.height_scale),
-        global_scale: float(terrain.global_scale),
-        climb: tangent(terrain.climb),
-        roll: tangent(terrain.roll),
-        step_m: float(terrain.step),
+        obstacle_m: float(ground.obstacle),
+        near_m: float(ground.near),
+        hole_m: float(ground.hole),
+        least_preference: float(ground.least),
+        most_preference: float(ground.most),
+        height_scale: float(ground.height_scale),
+        global_scale: float(ground.global_scale),
+        climb: tangent(ground.climb),
+        roll: tangent(ground.roll),
+        step_m: float(ground.step),
     }
 }
 
-/// A session's parameters off the wire.
+/// Converts the parameters of a session from the wire.
+///
+/// On uneven ground the maximum speed is limited to one map cell per period, so that the tilted
+/// laser sweeps every cell.
 #[must_use]
 pub fn config(start: &wire::Start) -> Config {
     let default = Config::pioneer_3at(start.lasers.iter().map(laser).collect());
@@ -129,10 +134,9 @@ pub fn config(start: &wire::Start) -> Config {
         },
         box_tiles: start.box_tiles,
         robot_radius_m,
-        // A robot of another size is narrower by the same part.
+        // The tight radius is the same part of the radius for every robot.
         tight_radius_m: robot_radius_m * (default.tight_radius_m / default.robot_radius_m),
-        max_linear_mps: if start.terrain.is_some() {
-            // From one sweep over the ground to the next at most a cell.
+        max_linear_mps: if start.uneven_ground.is_some() {
             max_linear_mps.min(CELL_M / period_s)
         } else {
             max_linear_mps
@@ -141,14 +145,13 @@ pub fn config(start: &wire::Start) -> Config {
         linear_accel_mps2: float(start.linear_accel),
         angular_accel_radps2: float(start.angular_accel),
         period_s,
-        ground: start.terrain.as_ref().map(terrain),
+        ground: start.uneven_ground.as_ref().map(uneven_ground),
         ..default
     }
 }
 
-/// The planner's status onto the wire.
-#[must_use]
-pub fn wire_status(status: status::Status) -> wire::Status {
+/// Converts the planner's status for the wire.
+pub(crate) fn wire_status(status: status::Status) -> wire::Status {
     match status {
         status::Status::Exploring => wire::Status::Exploring,
         status::Status::Finished(finish) => wire::Status::Finished(match finish {
@@ -165,19 +168,19 @@ pub fn wire_status(status: status::Status) -> wire::Status {
     }
 }
 
-/// A residual frontier onto the wire.
+/// Converts a residual frontier for the wire.
 #[must_use]
-pub fn wire_frontier(frontier: &Frontier) -> wire::Frontier {
+pub fn wire_frontier(frontier: &status::Frontier) -> wire::ResidualFrontier {
     let short = |cell: i32| cell.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
-    wire::Frontier {
+    wire::ResidualFrontier {
         x: short(frontier.cell.x),
         y: short(frontier.cell.y),
         cells: frontier.cells,
         reason: match frontier.reason {
-            Residue::Unreachable => wire::Residue::Unreachable,
-            Residue::Unobservable => wire::Residue::Unobservable,
-            Residue::OutOfBounds => wire::Residue::OutOfBounds,
-            Residue::NoProgress => wire::Residue::NoProgress,
+            Residue::Unreachable => wire::ResidualReason::Unreachable,
+            Residue::Unobservable => wire::ResidualReason::Unobservable,
+            Residue::OutOfBounds => wire::ResidualReason::OutOfBounds,
+            Residue::NoProgress => wire::ResidualReason::NoProgress,
         },
     }
 }
@@ -219,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn every_short_quantity_survives_both_ways() {
+    fn every_short_quantity_round_trips() {
         for bits in i16::MIN..=i16::MAX {
             let short = I4F12::from_bits(bits);
             assert_eq!(quantity::<I4F12>(float(short)), short);
@@ -227,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn long_quantities_survive_within_128_m() {
+    fn long_quantities_round_trip_within_128_m() {
         for bits in (-(1 << 23)..=1 << 23).step_by(997) {
             let long = I16F16::from_bits(bits);
             assert_eq!(quantity::<I16F16>(float(long)), long);
@@ -235,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_saturates_and_what_is_no_number_is_zero() {
+    fn quantities_saturate_and_nan_becomes_zero() {
         let twist = |linear_mps, angular_radps| {
             let twist = wire_twist(&Twist {
                 linear_mps,
@@ -252,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn far_cells_saturate() {
+    fn distant_cells_saturate() {
         let frontier = Frontier {
             cell: Cell {
                 x: 40_000,
@@ -263,11 +266,11 @@ mod tests {
         };
         assert_eq!(
             wire_frontier(&frontier),
-            wire::Frontier {
+            wire::ResidualFrontier {
                 x: i16::MAX,
                 y: i16::MIN,
                 cells: 7,
-                reason: wire::Residue::OutOfBounds,
+                reason: wire::ResidualReason::OutOfBounds,
             }
         );
     }

@@ -1,9 +1,9 @@
-//! Log macros: defmt's with the feature `defmt`, nothing without.
+//! Log macros: those of defmt with the feature `defmt`, no log without it.
 
 #[cfg(feature = "defmt")]
 pub(crate) use defmt::{info, warn as warning};
 
-/// Evaluates its values, so that nothing is unused, and says nothing.
+/// Uses its values, so that no variable is unused, and writes nothing.
 #[cfg(not(feature = "defmt"))]
 macro_rules! nothing {
     ($text:literal $(, $value:expr)* $(,)?) => {{ $( let _ = &$value; )* }};

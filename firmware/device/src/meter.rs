@@ -1,28 +1,29 @@
-//! What a step costs, measured by the board, stage by stage.
+//! Cost of a step, counted by the board and split into stages.
 //!
-//! A `Stopwatch` stands between the board's counter and the planner's laps. It starts when a request is complete, so that taking
-//! the request apart counts too; what it takes to put the reply together is known only once the reply is on its way, and
-//! counts in the next step. Receiving bytes one by one does not count: it goes on while the line is busy.
+//! A `Stopwatch` connects the board's counter to the planner's stages. It starts when a request is
+//! complete, so decoding the request counts too. The cost of encoding a reply is known only after
+//! the reply is written, so it counts in the next step. Receiving single bytes does not count,
+//! because it continues as long as the line is busy.
 //!
-//! Invariant: a cost's instructions are the sum of its stages'.
-//! Units: instructions in the emulator, where they are exact; on silicon whatever the board counts and documents.
+//! Invariant: a cost's instructions are the sum of its stages. Units: instructions in the emulator,
+//! where they are exact; on silicon the board defines the unit.
 
 use fieldline_planner::{Stage, StageTimer};
 use fieldline_protocol::message::Stages;
 
-/// A counter of instructions and a mark of the deepest stack.
+/// A board's counter of instructions, and its record of the deepest stack.
 pub trait Meter {
-    /// A step begins: count nothing else until [`Meter::stop`].
+    /// A step starts: count nothing else until [`Meter::stop`].
     fn start(&mut self);
-    /// The step is over.
+    /// The step has ended.
     fn stop(&mut self);
-    /// What was counted so far, from any origin, wrapping; always the same where nothing is counted.
+    /// Returns the count so far, from any origin, wrapping; a constant where nothing is counted.
     fn count(&mut self) -> u32;
-    /// Deepest stack since boot, bytes; 0 where it is not known.
+    /// Returns the deepest stack since the boot, bytes; 0 where it is not known.
     fn stack_bytes(&self) -> u32;
 }
 
-/// Measures nothing.
+/// A meter that measures nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoMeter;
 
@@ -40,17 +41,17 @@ impl Meter for NoMeter {
     }
 }
 
-/// Takes the time of a step's stages.
+/// Counts the instructions of each stage of a step.
 #[derive(Debug)]
 pub(crate) struct Stopwatch<'m, M> {
     meter: &'m mut M,
-    /// The count at the last lap.
+    /// The meter's count at the last mark.
     since: u32,
     stages: Stages,
 }
 
 impl<'m, M: Meter> Stopwatch<'m, M> {
-    /// Began when the meter's count was `since`; `session` were counted before.
+    /// Starts at the meter's count `since`, with `session` instructions already counted.
     pub(crate) fn new(meter: &'m mut M, since: u32, session: u32) -> Self {
         let stages = Stages {
             session,
@@ -63,7 +64,7 @@ impl<'m, M: Meter> Stopwatch<'m, M> {
         }
     }
 
-    /// What was counted since the last lap.
+    /// Returns the count since the last mark, and sets a new mark.
     fn take(&mut self) -> u32 {
         let now = self.meter.count();
         let counted = now.wrapping_sub(self.since);
@@ -71,13 +72,13 @@ impl<'m, M: Meter> Stopwatch<'m, M> {
         counted
     }
 
-    /// Everything since the last lap was the conversation.
-    pub(crate) fn lap_of_session(&mut self) {
+    /// Adds everything since the last mark to the stage `session`.
+    pub(crate) fn mark_session(&mut self) {
         let counted = self.take();
         self.stages.session = self.stages.session.wrapping_add(counted);
     }
 
-    /// The stages so far.
+    /// Returns the stages so far.
     pub(crate) const fn stages(&self) -> Stages {
         self.stages
     }
@@ -99,7 +100,7 @@ impl<M: Meter> StageTimer for Stopwatch<'_, M> {
     }
 }
 
-/// The sum of the stages.
+/// Returns the sum of the stages.
 pub(crate) fn sum(stages: &Stages) -> u32 {
     let Stages {
         session,
@@ -120,7 +121,7 @@ mod tests {
     use fieldline_planner::{Stage, StageTimer};
     use fieldline_protocol::message::Stages;
 
-    /// Counts in the given steps, from just below where it wraps.
+    /// A meter with a given increment for each call. It starts just below the wrap.
     struct Script(u32, std::vec::IntoIter<u32>);
 
     impl Meter for Script {
@@ -136,14 +137,14 @@ mod tests {
     }
 
     #[test]
-    fn every_count_falls_into_one_stage() {
+    fn every_count_belongs_to_one_stage() {
         let mut script = Script(u32::MAX - 1, std::vec![5, 100, 7, 30, 2].into_iter());
         let mut watch = Stopwatch::new(&mut script, u32::MAX - 1, 1000);
-        watch.lap_of_session();
+        watch.mark_session();
         watch.mark(Stage::Sense);
         watch.mark(Stage::Drive);
         watch.mark(Stage::Sense);
-        watch.lap_of_session();
+        watch.mark_session();
         let stages = Stages {
             session: 1007,
             sense: 130,

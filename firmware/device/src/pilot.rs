@@ -1,22 +1,27 @@
-//! The pilot: planner and protocol joined, without bytes.
+//! The pilot: a session around the planner, without bytes.
 //!
 //! ```text
 //!          Start            Pause             planner
 //!  Idle ─────────► Exploring ─────► Paused    Exploring ─────► Finished / Fault
 //!                     ▲   ◄─────              any ──Stop──► Finished(Stopped)
-//!                     │   Resume              any ──input──► EmergencyStop ──Resume, input released──► as before
+//!                     │   Resume              any ──input──► EmergencyStop ──┐
+//!                     └───────────── Resume, with the input released ◄───────┘
 //! ```
 //!
-//! Only in Exploring does an observation step the planner and may a command move; the emergency stop is latched, and neither releasing the
-//! input nor a new observation ends it, only the host's word (Resume or Start) with the input released. Used directly, a
-//! pilot is the link without bytes: the session calls the same functions, so the stream of commands is the same.
+//! Only in Exploring does an observation step the planner, and only then may a command move the
+//! robot. The emergency stop is latched: releasing the input does not end it, and neither does a
+//! new observation. Only Resume or Start from the host ends it, and only when the input is
+//! released. A resumed session has the state that it had before the stop.
+//!
+//! A pilot used directly is a link without bytes. The session calls the same functions, so both
+//! give the same commands.
 
 use fieldline_planner::field::SIDE;
 use fieldline_planner::planner::{self, CellKind, Output};
 use fieldline_planner::{Config, StageTimer, State, Workspace, step};
 use fieldline_protocol::message::{
-    Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, Frontier, MAX_FRONTIERS,
-    MAX_SCANS, Observation, Refusal, Road, Start, Status, Tile, Twist,
+    Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS, MAX_SCANS,
+    Observation, Path, Refusal, ResidualFrontier, Start, Status, Tile, Twist,
 };
 use heapless::Vec;
 
@@ -25,25 +30,39 @@ use crate::limits;
 use crate::log::{info, warning};
 use crate::overlay;
 
-// What is collected into the wire's bounded lists must fit them.
+// The planner's rows and scans must fit into the wire's bounded lists.
 const _: () = assert!(SIDE == FIELD_SIDE && MAX_SCANS == 2);
 
-/// The planner's memories, lent by whoever has room for them.
+/// The planner's memory. The caller owns it, so that a board can place it.
 #[derive(Debug)]
 pub struct Memory<'a, const TILES: usize, const SLOTS: usize> {
-    /// What the planner remembers.
+    /// Map and state of the strategy.
     pub state: &'a mut State<TILES, SLOTS>,
-    /// Scratch of a step.
+    /// Scratch memory of a step.
     pub workspace: &'a mut Workspace,
 }
 
-/// A session's state but for the map.
+/// State of a session, without the map.
+///
+/// ```
+/// use fieldline_device::{Memory, Pilot};
+/// use fieldline_planner::{State, Workspace};
+/// use fieldline_protocol::message::{Control, Observation, Refusal, Status};
+///
+/// let mut state = Box::new(State::<4, 64>::new());
+/// let mut workspace = Box::new(Workspace::new());
+/// let mut memory = Memory { state: &mut state, workspace: &mut workspace };
+/// let mut pilot = Pilot::new();
+/// assert_eq!(pilot.status(), Status::Idle);
+/// let refused = pilot.observe(&mut memory, &Observation::default(), &mut ());
+/// assert_eq!(refused, Err(Refusal::NotStarted));
+/// ```
 ///
 /// Invariant: `pressed` implies `latched`.
 #[derive(Debug)]
 pub struct Pilot {
     config: Option<Config>,
-    /// What the planner last said.
+    /// The status after the last step.
     planned: Status,
     paused: bool,
     latched: bool,
@@ -57,7 +76,7 @@ impl Default for Pilot {
 }
 
 impl Pilot {
-    /// No session.
+    /// Returns a pilot without a session.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -69,7 +88,7 @@ impl Pilot {
         }
     }
 
-    /// What goes on.
+    /// Returns the status of the session.
     #[must_use]
     pub const fn status(&self) -> Status {
         match self.planned {
@@ -79,19 +98,20 @@ impl Pilot {
         }
     }
 
-    /// Whether the emergency stop input is pressed now. Once pressed, it holds until the host resumes.
+    /// Sets the state of the emergency stop input. Once pressed, the stop holds until the host
+    /// resumes.
     pub fn set_emergency_stop(&mut self, pressed: bool) {
         if pressed && !self.latched {
-            warning!("emergency stop");
+            warning!("emergency stop pressed");
         }
         self.pressed = pressed;
         self.latched |= pressed;
     }
 
-    /// Changes the session's state. A reset is the board's business: here it ends the session.
+    /// Changes the state of the session. A reset only ends the session here; the board reboots.
     ///
     /// # Errors
-    /// [`Refusal`]; the state is then as before.
+    /// [`Refusal`]. The state is then unchanged.
     pub fn control<const TILES: usize, const SLOTS: usize>(
         &mut self,
         memory: &mut Memory<'_, TILES, SLOTS>,
@@ -125,7 +145,7 @@ impl Pilot {
         limits::check_start::<TILES, SLOTS>(start)?;
         let config = convert::config(start);
         info!(
-            "start: box {=u8} x {=u8} tiles, {=usize} lasers, radius {=u16} mm",
+            "session started: box {=u8} x {=u8} tiles, {=usize} lasers, radius {=u16} mm",
             start.box_tiles.0,
             start.box_tiles.1,
             start.lasers.len(),
@@ -142,8 +162,11 @@ impl Pilot {
         Ok(())
     }
 
-    /// One step. An observation that does not match the session's lasers steps nothing and is answered with zero
-    /// velocity and [`Fault::BadObservation`]; the next good one goes on. `laps` hears of the step's stages.
+    /// Makes one step. `laps` is told about each stage of the step.
+    ///
+    /// An observation whose scans do not match the session's lasers makes no step. Its answer has
+    /// zero velocity and [`Fault::BadObservation`]. The session continues with the next correct
+    /// observation.
     ///
     /// # Errors
     /// [`Refusal::NotStarted`] without a session.
@@ -155,11 +178,11 @@ impl Pilot {
     ) -> Result<Command, Refusal> {
         let config = self.config.as_ref().ok_or(Refusal::NotStarted)?;
         if !limits::matches(observation, config.lasers.iter().map(|laser| laser.beams)) {
-            warning!("observation does not match the lasers");
-            return Ok(standing(Status::Fault(Fault::BadObservation)));
+            warning!("the scans of an observation do not match the lasers");
+            return Ok(stopped(Status::Fault(Fault::BadObservation)));
         }
         if self.status() != Status::Exploring {
-            return Ok(standing(self.status()));
+            return Ok(stopped(self.status()));
         }
         let (state, workspace) = (&mut *memory.state, &mut *memory.workspace);
         let output = step(config, state, workspace, convert::input(observation), laps);
@@ -173,7 +196,7 @@ impl Pilot {
         })
     }
 
-    /// One map tile; `None` where nothing was ever seen.
+    /// Returns one map tile; `None` if nothing in it was ever seen.
     #[must_use]
     pub fn tile<const TILES: usize, const SLOTS: usize>(
         memory: &Memory<'_, TILES, SLOTS>,
@@ -187,12 +210,13 @@ impl Pilot {
             y,
             cells: cells.iter().copied().collect(),
             skeleton: rows.iter().flat_map(|row| row.to_le_bytes()).collect(),
-            marks: overlay::marks(memory.state, (x, y)),
-            dates: overlay::dates(memory.state, (x, y)),
+            closed_regions: overlay::closed_regions(memory.state, (x, y)),
+            visit_stamps: overlay::visit_stamps(memory.state, (x, y)),
         })
     }
 
-    /// One row of the last window's field; `None` before the first window and beyond the last row.
+    /// Returns one row of the field in the last window; `None` before the first window and for a
+    /// row beyond the last one.
     #[must_use]
     pub fn field_row<const TILES: usize, const SLOTS: usize>(
         memory: &Memory<'_, TILES, SLOTS>,
@@ -204,20 +228,20 @@ impl Pilot {
             .map(|found| field_row(row, &found))
     }
 
-    /// Where the planner is going: tractor point, shield, and the road without its first `from` cells.
+    /// Returns tractor point, shield, and the path without its first `from` cells.
     #[must_use]
-    pub fn road<const TILES: usize, const SLOTS: usize>(
+    pub fn path<const TILES: usize, const SLOTS: usize>(
         memory: &Memory<'_, TILES, SLOTS>,
         from: u8,
-    ) -> Road {
-        overlay::road(memory.state, from)
+    ) -> Path {
+        overlay::path(memory.state, from)
     }
 
-    /// The residual frontiers, the first [`MAX_FRONTIERS`] of them.
+    /// Returns the first [`MAX_FRONTIERS`] residual frontiers.
     #[must_use]
     pub fn frontiers<const TILES: usize, const SLOTS: usize>(
         memory: &Memory<'_, TILES, SLOTS>,
-    ) -> Vec<Frontier, MAX_FRONTIERS> {
+    ) -> Vec<ResidualFrontier, MAX_FRONTIERS> {
         let frontiers = memory.state.frontiers().iter();
         frontiers
             .take(MAX_FRONTIERS)
@@ -226,7 +250,7 @@ impl Pilot {
     }
 }
 
-/// Window cells on the wire count in their own side, and their kinds take two bits each.
+/// Converts a field row for the wire: the origin in window cells, the cell kinds in two bits each.
 fn field_row(row: u8, found: &planner::FieldRow) -> FieldRow {
     let scale = i32::from(found.scale.max(1));
     let short = |cell: i32| cell.div_euclid(scale) as i16;
@@ -249,16 +273,17 @@ fn field_row(row: u8, found: &planner::FieldRow) -> FieldRow {
     }
 }
 
-/// Zero velocity, and why.
-fn standing(status: Status) -> Command {
+/// Returns a command with zero velocity and the given status.
+fn stopped(status: Status) -> Command {
     Command {
         status,
         ..Command::default()
     }
 }
 
+/// Converts the output of a step for the wire.
 fn command(output: &Output, status: Status) -> Command {
-    // Only an exploring planner moves, whatever else its output says.
+    // Only an exploring planner may move the robot. The velocity of another output is ignored.
     let velocity = if status == Status::Exploring {
         convert::wire_twist(&output.velocity)
     } else {

@@ -1,7 +1,7 @@
 //! The session on a board: serial line, emergency stop and LED through the embedded traits.
 //!
-//! The emergency stop is a normally closed contact to ground with a pull-up: high means pressed or a broken wire. A pin that cannot be
-//! read counts as pressed.
+//! The emergency stop is a normally closed contact to ground with a pull-up. A high level means
+//! that it is pressed or that the wire is broken. A pin that cannot be read counts as pressed.
 
 use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_io::{Error, ErrorKind, Read, ReadReady, Write};
@@ -11,53 +11,53 @@ use crate::meter::Meter;
 use crate::pilot::Memory;
 use crate::session::Session;
 
-/// What a board offers beside its pins and its line.
+/// What the port needs from a board beside its pins and its serial line.
 pub trait Board: Meter {
-    /// Milliseconds of any origin, wrapping.
+    /// Returns the time from any origin, milliseconds, wrapping.
     fn now_ms(&mut self) -> u32;
-    /// Takes waiting log bytes into `out` and gives how many.
+    /// Moves waiting log bytes to `out` and returns how many.
     fn take_log(&mut self, out: &mut [u8]) -> usize;
 }
 
-/// The serial line or the LED failed.
+/// The serial line failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PortError {
-    /// The line, while reading.
+    /// Reading from it failed.
     Read(ErrorKind),
-    /// The line, while writing.
+    /// Writing to it failed.
     Write(ErrorKind),
 }
 
 impl core::fmt::Display for PortError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        let (what, kind) = match self {
+        let (action, kind) = match self {
             Self::Read(kind) => ("reading from", kind),
             Self::Write(kind) => ("writing to", kind),
         };
         write!(
             f,
-            "{what} the serial line failed ({kind:?}); check the wiring"
+            "{action} the serial line failed ({kind:?}); check the wiring"
         )
     }
 }
 
 impl core::error::Error for PortError {}
 
-/// What a turn did.
+/// Result of a turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turn {
-    /// Nothing to do until a byte comes: the board may sleep.
+    /// Nothing moved. The board may sleep until a byte arrives.
     Idle,
     /// Bytes moved.
     Busy,
-    /// Everything is sent and the host wants a reboot.
+    /// Everything is sent, and the host asked for a reboot.
     Reset,
 }
 
-/// The pins and the line of a board.
+/// The pins and the serial line of a board.
 #[derive(Debug)]
 pub struct Port<S, P, L> {
-    /// The serial line. Reading must not block when [`ReadReady`] says that something is there.
+    /// The serial line. Reading must not block while [`ReadReady`] reports bytes.
     pub serial: S,
     /// The emergency stop; high is pressed.
     pub emergency_stop: P,
@@ -66,10 +66,11 @@ pub struct Port<S, P, L> {
 }
 
 impl<S: Read + ReadReady + Write, P: InputPin, L: OutputPin> Port<S, P, L> {
-    /// Moves what there is to move: pins, bytes in, requests answered, bytes out, log.
+    /// Reads the emergency stop, sets the LED, reads bytes and answers requests, then writes
+    /// replies and log.
     ///
     /// # Errors
-    /// [`PortError`]; the session is intact and the next turn may be tried.
+    /// [`PortError`]. The session is intact, and the caller may try the next turn.
     pub fn turn<B: Board, const TILES: usize, const SLOTS: usize>(
         &mut self,
         session: &mut Session,
@@ -79,7 +80,7 @@ impl<S: Read + ReadReady + Write, P: InputPin, L: OutputPin> Port<S, P, L> {
         let now_ms = board.now_ms();
         session.set_emergency_stop(self.emergency_stop.is_high().unwrap_or(true));
         session.tick(now_ms);
-        // A dead LED must not stop the robot's planner.
+        // A failed LED must not stop the planner.
         let _ = self.led.set_state(session.signal().lit(now_ms).into());
 
         let read = self.read(session, memory, board)?;
@@ -123,7 +124,8 @@ impl<S: Read + ReadReady + Write, P: InputPin, L: OutputPin> Port<S, P, L> {
     }
 }
 
-/// Never inlined: its buffers must not lie under a step.
+/// Moves log bytes from the board to the session. Not inlined: its buffer must not be on the stack
+/// during a step.
 #[inline(never)]
 fn take_log<B: Board>(session: &mut Session, board: &mut B) {
     let mut log = [0; MAX_LOG_BYTES];
@@ -137,271 +139,4 @@ fn take_log<B: Board>(session: &mut Session, board: &mut B) {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::collections::VecDeque;
-    use std::vec;
-    use std::vec::Vec;
-
-    use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction};
-    use embedded_io::{ErrorKind, ErrorType, Read, ReadReady, Write};
-    use fieldline_protocol::check::Kind;
-    use fieldline_protocol::frame::{
-        MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_request,
-    };
-    use fieldline_protocol::message::{Control, Reply, Request, Status};
-    use fieldline_protocol::{SCHEMA, VERSION};
-
-    use super::{Board, Port, PortError, Turn};
-    use crate::meter::{Meter, NoMeter};
-    use crate::pilot::tests::Bench;
-    use crate::session::{Boot, Session};
-
-    /// A line with what the host sent, what it hears, and a fault to come.
-    #[derive(Default)]
-    struct Line {
-        to_device: VecDeque<u8>,
-        to_host: Vec<u8>,
-        broken: bool,
-    }
-
-    impl ErrorType for Line {
-        type Error = ErrorKind;
-    }
-
-    impl ReadReady for Line {
-        fn read_ready(&mut self) -> Result<bool, ErrorKind> {
-            Ok(!self.to_device.is_empty())
-        }
-    }
-
-    impl Read for Line {
-        fn read(&mut self, out: &mut [u8]) -> Result<usize, ErrorKind> {
-            if self.broken {
-                return Err(ErrorKind::InvalidData);
-            }
-            let count = out.len().min(self.to_device.len()).min(7);
-            for (place, byte) in out.iter_mut().zip(self.to_device.drain(..count)) {
-                *place = byte;
-            }
-            Ok(count)
-        }
-    }
-
-    impl Write for Line {
-        fn write(&mut self, bytes: &[u8]) -> Result<usize, ErrorKind> {
-            if self.broken {
-                return Err(ErrorKind::BrokenPipe);
-            }
-            let count = bytes.len().min(5);
-            self.to_host.extend_from_slice(&bytes[..count]);
-            Ok(count)
-        }
-
-        fn flush(&mut self) -> Result<(), ErrorKind> {
-            Ok(())
-        }
-    }
-
-    #[derive(Default)]
-    struct Bare {
-        now_ms: u32,
-        log: Vec<u8>,
-    }
-
-    impl Meter for Bare {
-        fn start(&mut self) {
-            NoMeter.start();
-        }
-        fn stop(&mut self) {
-            NoMeter.stop();
-        }
-        fn count(&mut self) -> u32 {
-            NoMeter.count()
-        }
-        fn stack_bytes(&self) -> u32 {
-            NoMeter.stack_bytes()
-        }
-    }
-
-    impl Board for Bare {
-        fn now_ms(&mut self) -> u32 {
-            self.now_ms
-        }
-        fn take_log(&mut self, out: &mut [u8]) -> usize {
-            let count = out.len().min(self.log.len());
-            out[..count].copy_from_slice(&self.log[..count]);
-            self.log.drain(..count);
-            count
-        }
-    }
-
-    fn frame(sequence: u16, request: &Request) -> Vec<u8> {
-        let mut out = [0; MAX_REQUEST_FRAME];
-        let length = encode_request(sequence, request, &mut out).unwrap();
-        out[..length].to_vec()
-    }
-
-    fn booted() -> Session {
-        let mut session = Session::new();
-        session.boot(Boot::default(), 4, 400);
-        session
-    }
-
-    fn greeting() -> Vec<u8> {
-        let hello = Request::Hello {
-            version: VERSION,
-            schema: SCHEMA,
-            nonce: 1,
-        };
-        frame(0, &hello)
-    }
-
-    /// Turns until idle or reset; each turn reads the stop and sets the LED once.
-    fn turn_through(
-        line: Line,
-        session: &mut Session,
-        board: &mut Bare,
-        pins: &[(State, State)],
-    ) -> (Line, Vec<Turn>) {
-        let stops: Vec<_> = pins
-            .iter()
-            .map(|(stop, _)| Transaction::get(*stop))
-            .collect();
-        let leds: Vec<_> = pins.iter().map(|(_, led)| Transaction::set(*led)).collect();
-        let (mut stop, mut led) = (Pin::new(&stops), Pin::new(&leds));
-        let mut port = Port {
-            serial: line,
-            emergency_stop: stop.clone(),
-            led: led.clone(),
-        };
-        let mut bench = Bench::new();
-        let turns = pins
-            .iter()
-            .map(|_| port.turn(session, &mut bench.memory(), board).unwrap())
-            .collect();
-        stop.done();
-        led.done();
-        (port.serial, turns)
-    }
-
-    fn kinds(bytes: &[u8]) -> Vec<Kind> {
-        let mut host = Receiver::<MAX_REPLY_FRAME>::new(Side::Host);
-        let mut kinds = vec![];
-        for byte in bytes {
-            kinds.extend(host.push(*byte).map(|frame| frame.kind));
-        }
-        kinds
-    }
-
-    #[test]
-    fn bytes_go_through_and_the_board_may_sleep() {
-        let mut session = booted();
-        let mut board = Bare {
-            log: vec![1, 2, 3],
-            ..Bare::default()
-        };
-        let line = Line {
-            to_device: greeting().into(),
-            ..Line::default()
-        };
-        // Released; the LED flashes once for "waiting", the line gives seven bytes at a time.
-        let busy = greeting().len().div_ceil(7);
-        let pins = [(State::Low, State::High); 4];
-        let (line, turns) = turn_through(line, &mut session, &mut board, &pins);
-        let expected: Vec<Turn> = (0..4)
-            .map(|turn| if turn < busy { Turn::Busy } else { Turn::Idle })
-            .collect();
-        assert_eq!(turns, expected);
-        assert_eq!(
-            kinds(&line.to_host),
-            [Kind::Welcome, Kind::Log, Kind::Welcome]
-        );
-    }
-
-    #[test]
-    fn a_pressed_or_broken_stop_stops() {
-        let mut session = booted();
-        let mut board = Bare::default();
-        let pins = [(State::High, State::High), (State::High, State::High)];
-        turn_through(Line::default(), &mut session, &mut board, &pins);
-        board.now_ms = 1000;
-        // Only the emergency stop lights the LED a second into the cycle.
-        turn_through(
-            Line::default(),
-            &mut session,
-            &mut board,
-            &[(State::High, State::High)],
-        );
-    }
-
-    #[test]
-    fn the_led_follows_the_clock() {
-        let mut session = booted();
-        let mut board = Bare {
-            now_ms: 125,
-            ..Bare::default()
-        };
-        turn_through(
-            Line::default(),
-            &mut session,
-            &mut board,
-            &[(State::Low, State::Low)],
-        );
-    }
-
-    #[test]
-    fn a_reset_is_reported_once_its_answer_is_out() {
-        let mut session = booted();
-        let mut board = Bare::default();
-        let mut bytes = greeting();
-        bytes.extend(frame(1, &Request::Control(Control::Reset)));
-        let line = Line {
-            to_device: bytes.into(),
-            ..Line::default()
-        };
-        let pins = [(State::Low, State::High); 4];
-        let (line, turns) = turn_through(line, &mut session, &mut board, &pins);
-        assert_eq!(turns.last(), Some(&Turn::Reset));
-        let mut host = Receiver::<MAX_REPLY_FRAME>::new(Side::Host);
-        let mut last = None;
-        for byte in &line.to_host {
-            last = host.push(*byte).map(|frame| frame.reply()).or(last);
-        }
-        assert_eq!(last, Some(Ok(Reply::Control(Status::Idle))));
-    }
-
-    #[test]
-    fn a_broken_line_is_an_error_with_a_name() {
-        let mut session = booted();
-        let mut bench = Bench::new();
-        let turn = |line: Line, session: &mut Session, bench: &mut Bench| {
-            let (mut stop, mut led) = (
-                Pin::new(&[Transaction::get(State::Low)]),
-                Pin::new(&[Transaction::set(State::High)]),
-            );
-            let mut port = Port {
-                serial: line,
-                emergency_stop: stop.clone(),
-                led: led.clone(),
-            };
-            let result = port.turn(session, &mut bench.memory(), &mut Bare::default());
-            stop.done();
-            led.done();
-            result
-        };
-        let broken = Line {
-            broken: true,
-            ..Line::default()
-        };
-        let error = turn(broken, &mut session, &mut bench).unwrap_err();
-        assert_eq!(error, PortError::Write(ErrorKind::BrokenPipe));
-        let noisy = Line {
-            broken: true,
-            to_device: [1].into(),
-            ..Line::default()
-        };
-        let error = turn(noisy, &mut session, &mut bench).unwrap_err();
-        assert_eq!(error, PortError::Read(ErrorKind::InvalidData));
-        assert!(std::format!("{error}").contains("check the wiring"));
-    }
-}
+mod tests;

@@ -1,16 +1,27 @@
-//! Bytes from one producer (an interrupt, a logger) to one consumer (the main loop), without locks.
+//! A ring of bytes from one producer (an interrupt or a logger) to one consumer (the main loop),
+//! without locks.
 //!
-//! Invariant: all three places are below N; going round, `tail` is never passed by `staged`, so one byte of the N stays unused. The
-//! producer alone writes `head` and `staged`, the consumer alone `tail`. Two producers or two consumers at once lose bytes but nothing
-//! worse.
+//! Invariants: `head`, `staged` and `tail` are less than N. Around the ring, `staged` never reaches
+//! `tail` from behind, so one of the N bytes stays unused. Only the producer writes `head` and
+//! `staged`; only the consumer writes `tail`. Two producers or two consumers at once lose bytes;
+//! nothing worse happens.
 
 use core::sync::atomic::{AtomicU8, AtomicU32, AtomicUsize, Ordering};
 
 /// A ring with room for `N` − 1 bytes.
+///
+/// ```
+/// use fieldline_device::ring::Ring;
+///
+/// static RECEIVED: Ring<64> = Ring::new();
+/// RECEIVED.push(7); // in the interrupt
+/// assert_eq!(RECEIVED.pop(), Some(7)); // in the main loop
+/// assert!(RECEIVED.is_empty());
+/// ```
 #[derive(Debug)]
 pub struct Ring<const N: usize> {
     bytes: [AtomicU8; N],
-    /// Written up to here and not yet given to the consumer.
+    /// End of the bytes that the producer wrote. The consumer sees only the bytes before `head`.
     staged: AtomicUsize,
     head: AtomicUsize,
     tail: AtomicUsize,
@@ -23,12 +34,13 @@ impl<const N: usize> Default for Ring<N> {
     }
 }
 
+/// Returns the index after `place` in a ring of `size` bytes.
 const fn after(place: usize, size: usize) -> usize {
     if place + 1 < size { place + 1 } else { 0 }
 }
 
 impl<const N: usize> Ring<N> {
-    /// An empty ring.
+    /// Returns an empty ring.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -40,14 +52,15 @@ impl<const N: usize> Ring<N> {
         }
     }
 
-    /// Producer: adds a byte; it is lost, and counted, if the ring is full.
+    /// Producer: adds a byte. If the ring is full, the byte is lost and counted.
     pub fn push(&self, byte: u8) {
         if self.stage(byte) {
             self.publish();
         }
     }
 
-    /// Producer: writes a byte that the consumer does not see yet; false, and the byte is lost and counted, if the ring is full.
+    /// Producer: writes a byte that the consumer does not see yet. If the ring is full, the byte is
+    /// lost and counted, and the result is false.
     pub fn stage(&self, byte: u8) -> bool {
         let at = self.staged.load(Ordering::Relaxed);
         let next = after(at, N);
@@ -65,19 +78,19 @@ impl<const N: usize> Ring<N> {
         }
     }
 
-    /// Producer: gives what is staged to the consumer.
+    /// Producer: shows all staged bytes to the consumer.
     pub fn publish(&self) {
         self.head
             .store(self.staged.load(Ordering::Relaxed), Ordering::Release);
     }
 
-    /// Producer: forgets what is staged.
+    /// Producer: discards all staged bytes.
     pub fn discard(&self) {
         self.staged
             .store(self.head.load(Ordering::Relaxed), Ordering::Relaxed);
     }
 
-    /// Consumer: the oldest byte.
+    /// Consumer: removes and returns the oldest byte.
     pub fn pop(&self) -> Option<u8> {
         let tail = self.tail.load(Ordering::Relaxed);
         if tail == self.head.load(Ordering::Acquire) {
@@ -88,7 +101,7 @@ impl<const N: usize> Ring<N> {
         Some(byte)
     }
 
-    /// Consumer: moves bytes to `out` and gives how many.
+    /// Consumer: moves bytes to `out` and returns how many.
     pub fn take(&self, out: &mut [u8]) -> usize {
         let mut count = 0;
         for place in out {
@@ -99,13 +112,13 @@ impl<const N: usize> Ring<N> {
         count
     }
 
-    /// Whether the consumer has nothing to take.
+    /// Returns true if the consumer has no byte to take.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.tail.load(Ordering::Relaxed) == self.head.load(Ordering::Acquire)
     }
 
-    /// Bytes lost for lack of room.
+    /// Returns the number of bytes lost because the ring was full.
     #[must_use]
     pub fn lost(&self) -> u32 {
         self.lost.load(Ordering::Relaxed)
@@ -123,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn first_in_first_out_and_full_loses_the_newest() {
+    fn a_full_ring_loses_the_newest_byte() {
         let ring = Ring::<5>::new();
         (1..=6).for_each(|byte| ring.push(byte));
         assert_eq!((all(&ring), ring.lost()), ([1, 2, 3, 4].into(), 2));
@@ -134,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn staged_bytes_come_all_or_not_at_all() {
+    fn staged_bytes_appear_together_or_never() {
         let ring = Ring::<5>::new();
         ring.push(1);
         assert!(ring.stage(2) && ring.stage(3));
@@ -147,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn two_threads_lose_nothing_while_there_is_room() {
+    fn two_threads_exchange_every_byte() {
         static RING: Ring<64> = Ring::new();
         const COUNT: u32 = 100_000;
         let producer = std::thread::spawn(|| {

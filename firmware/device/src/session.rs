@@ -1,21 +1,27 @@
-//! The conversation: bytes in, bytes out.
+//! The conversation with a host: bytes in, bytes out.
 //!
-//! Rules, each with a test below: hello first; one reply per request; a repeated sequence number gets the same reply and steps
-//! nothing; an older one is refused; a new nonce starts the numbers afresh and a repeated hello does not; silence beyond
-//! [`crate::STALE_MS`] while driving is a stale stop; logs go out only where a whole reply still has room.
+//! Rules, each with a test:
 //!
-//! Time is given by [`Session::tick`], in milliseconds of any origin, wrapping.
+//! - The host must send a hello first.
+//! - Every request gets one reply.
+//! - A repeated sequence number gets the same reply and makes no step. An older number is refused.
+//! - A hello with a new nonce restarts the sequence numbers. A repeated hello does not.
+//! - Silence for more than [`crate::STALE_MS`] while driving is a stale stop.
+//! - A log frame is sent only if a whole reply fits behind it.
+//!
+//! [`Session::tick`] sets the time, in milliseconds from any origin, wrapping.
+
+mod identity;
+mod outbox;
 
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::frame::{
-    BodyError, MAX_LOG_BYTES, MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_log,
-    encode_reply, overhead,
+    BodyError, MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_log, encode_reply,
 };
 use fieldline_protocol::message::{
-    Command, Control, Counters, Crash, Identity, Observation, Refusal, Reply, Request, Status,
+    Command, Control, Counters, Identity, Observation, Refusal, Reply, Request, Status,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
-use heapless::Deque;
 
 use crate::STALE_MS;
 use crate::log::{info, warning};
@@ -23,47 +29,39 @@ use crate::meter::{self, Meter, Stopwatch};
 use crate::pilot::{Memory, Pilot};
 use crate::signal::Signal;
 
-/// Bytes waiting to be sent: a reply, another one, and some log.
-const OUTBOX: usize = 2 * MAX_REPLY_FRAME + 128;
+pub use identity::{Boot, identity};
+use identity::{NOT_BOOTED, ZERO_COUNTERS};
+use outbox::Outbox;
 
-/// What the board knows of its last boot.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Boot {
-    /// Boots since power-on.
-    pub boots: u32,
-    /// The crash that caused it.
-    pub crash: Option<Crash>,
-}
-
-/// The last reply, kept for a host that did not hear it.
+/// The last reply, stored for a host that did not receive it.
 #[derive(Debug)]
-struct Answered {
+struct StoredReply {
     sequence: u16,
     frame: [u8; MAX_REPLY_FRAME],
     length: usize,
 }
 
-/// One conversation after another, since boot.
+/// A device's side of its conversations since the boot. The crate's documentation has an example.
 ///
-/// Invariant: `answered` belongs to the host that greeted with `nonce`.
+/// Invariant: `stored` belongs to the host that greeted with `nonce`.
 #[derive(Debug)]
 pub struct Session {
     identity: Identity,
     pilot: Pilot,
     receiver: Receiver<MAX_REQUEST_FRAME>,
-    outbox: Deque<u8, OUTBOX>,
+    outbox: Outbox,
     nonce: Option<u32>,
     incompatible: bool,
-    answered: Option<Answered>,
+    stored: Option<StoredReply>,
     log_sequence: u16,
     counters: Counters,
     now_ms: u32,
     heard_ms: u32,
     stale: bool,
     reset: bool,
-    /// The meter's count when the present request was complete.
-    began: u32,
-    /// What the last command's reply cost.
+    /// The meter's count when the current request was complete.
+    request_count: u32,
+    /// Instructions spent on the reply to the last observation.
     reply_cost: u32,
 }
 
@@ -74,38 +72,39 @@ impl Default for Session {
 }
 
 impl Session {
-    /// A device that has not booted: silent, and a stranger to everybody. Made for a `static`.
+    /// Returns the session of a device that has not booted. It can initialise a `static`.
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            identity: NOBODY,
+            identity: NOT_BOOTED,
             pilot: Pilot::new(),
             receiver: Receiver::new(Side::Device),
-            outbox: Deque::new(),
+            outbox: Outbox::new(),
             nonce: None,
             incompatible: false,
-            answered: None,
+            stored: None,
             log_sequence: 0,
-            counters: NOTHING_COUNTED,
+            counters: ZERO_COUNTERS,
             now_ms: 0,
             heard_ms: 0,
             stale: false,
             reset: false,
-            began: 0,
+            request_count: 0,
             reply_cost: 0,
         }
     }
 
-    /// Boots, with `tile_pool` tiles and `tile_slots` places for them. The hello waits to be sent.
+    /// Boots a device with `tile_pool` tiles and `tile_slots` tile slots, and queues its hello.
     #[inline(never)]
     pub fn boot(&mut self, boot: Boot, tile_pool: usize, tile_slots: usize) {
-        info!("boot {=u32}", boot.boots);
+        info!("boot number {=u32}", boot.boots);
         *self = Self::new();
         self.identity = identity(boot, tile_pool, tile_slots);
-        self.say_who(0);
+        self.send_hello(0);
     }
 
-    /// Takes a byte off the line. The byte that ends a request is answered before this returns: an observation steps the planner.
+    /// Takes a byte from the line. If the byte completes a request, the request is executed and its
+    /// reply queued before this returns. An observation steps the planner.
     pub fn receive<M: Meter, const TILES: usize, const SLOTS: usize>(
         &mut self,
         byte: u8,
@@ -115,60 +114,60 @@ impl Session {
         let Some(frame) = self.receiver.push(byte) else {
             return;
         };
-        self.began = meter.count();
-        let (sequence, greets) = (frame.sequence, frame.kind == Kind::Greeting);
+        self.request_count = meter.count();
+        let (sequence, is_greeting) = (frame.sequence, frame.kind == Kind::Greeting);
         match frame.request() {
-            Ok(request) => self.take(sequence, &request, memory, meter),
-            Err(BodyError::Foreign { version, schema }) if greets => {
-                self.turn_away(sequence, version, schema);
+            Ok(request) => self.handle(sequence, &request, memory, meter),
+            Err(BodyError::Foreign { version, schema }) if is_greeting => {
+                self.reply_incompatible(sequence, version, schema);
             }
-            // A chance collision must cost the host a retry, not its run: no answer.
+            // No answer: a chance collision of the checksum must cost the host a retry, not its
+            // run.
             Err(_) => self.counters.dropped = self.counters.dropped.wrapping_add(1),
         }
     }
 
-    /// Bytes to put on the line, in order. Not all of them at once: ask again after [`Session::sent`].
+    /// Returns the next bytes to send. More bytes may follow: call this again after
+    /// [`Session::sent`].
     #[must_use]
     pub fn pending(&self) -> &[u8] {
-        self.outbox.as_slices().0
+        self.outbox.pending()
     }
 
-    /// The first `count` pending bytes are on the line.
+    /// Removes the first `count` pending bytes, because they were sent.
     pub fn sent(&mut self, count: usize) {
-        for _ in 0..count {
-            self.outbox.pop_front();
-        }
+        self.outbox.sent(count);
     }
 
-    /// It is `now_ms`.
+    /// Sets the time to `now_ms`, and checks for silence of the host.
     pub fn tick(&mut self, now_ms: u32) {
         self.now_ms = now_ms;
         let silent = now_ms.wrapping_sub(self.heard_ms) > u32::from(STALE_MS);
         if silent && !self.stale && self.pilot.status() == Status::Exploring {
-            warning!("stale: no host for {=u16} ms", STALE_MS);
+            warning!("stale stop: no request for {=u16} ms", STALE_MS);
             self.stale = true;
             self.counters.stale_stops = self.counters.stale_stops.wrapping_add(1);
         }
     }
 
-    /// Whether the emergency stop input is pressed.
+    /// Sets the state of the emergency stop input.
     pub fn set_emergency_stop(&mut self, pressed: bool) {
         self.pilot.set_emergency_stop(pressed);
     }
 
-    /// Whether the last command must not be followed any longer, for the host's silence.
+    /// Returns true if the host was silent for so long that nobody may follow the last command.
     #[must_use]
     pub const fn is_stale(&self) -> bool {
         self.stale
     }
 
-    /// Whether the host asked for a reboot. Send what is pending first.
+    /// Returns true if the host asked for a reboot. Send the pending bytes first.
     #[must_use]
     pub const fn wants_reset(&self) -> bool {
         self.reset
     }
 
-    /// What the LED shows.
+    /// Returns the signal for the LED.
     #[must_use]
     pub const fn signal(&self) -> Signal {
         let status = self.pilot.status();
@@ -185,7 +184,7 @@ impl Session {
         }
     }
 
-    /// Counters since boot.
+    /// Returns the counters since the boot.
     #[must_use]
     pub const fn counters(&self) -> Counters {
         let tally = self.receiver.tally();
@@ -197,15 +196,13 @@ impl Session {
         }
     }
 
-    /// How many log bytes the line can take now, such that a reply still has room.
+    /// Returns the number of log bytes that can be queued now.
     #[must_use]
     pub fn log_room(&self) -> usize {
-        let free = OUTBOX - self.outbox.len();
-        free.saturating_sub(MAX_REPLY_FRAME + overhead(MAX_LOG_BYTES))
-            .min(MAX_LOG_BYTES)
+        self.outbox.log_room()
     }
 
-    /// Puts log bytes on the line: as many as [`Session::log_room`] says, and gives how many that were.
+    /// Queues at most [`Session::log_room`] of the log bytes, and returns how many.
     #[inline(never)]
     pub fn log(&mut self, bytes: &[u8]) -> usize {
         let count = bytes.len().min(self.log_room());
@@ -221,16 +218,16 @@ impl Session {
     }
 
     #[inline(never)]
-    fn turn_away(&mut self, sequence: u16, version: u16, schema: u32) {
+    fn reply_incompatible(&mut self, sequence: u16, version: u16, schema: u32) {
         warning!(
-            "host speaks protocol {=u16}, schema {=u32:#x}: refused",
+            "host refused: it uses protocol {=u16}, schema {=u32:#x}",
             version,
             schema
         );
         self.counters.dropped = self.counters.dropped.wrapping_add(1);
         self.incompatible = true;
         self.nonce = None;
-        self.say(
+        self.reply(
             sequence,
             &Reply::Incompatible {
                 version: VERSION,
@@ -239,7 +236,8 @@ impl Session {
         );
     }
 
-    fn take<M: Meter, const TILES: usize, const SLOTS: usize>(
+    /// Executes a request and queues its reply.
+    fn handle<M: Meter, const TILES: usize, const SLOTS: usize>(
         &mut self,
         sequence: u16,
         request: &Request,
@@ -254,7 +252,7 @@ impl Session {
             return self.refuse(sequence, Refusal::NotGreeted);
         }
         match self
-            .answered
+            .stored
             .as_ref()
             .map(|last| sequence.wrapping_sub(last.sequence))
         {
@@ -268,11 +266,11 @@ impl Session {
                     meter.start();
                     let command = self.observe(observation, memory, meter);
                     let done = meter.count();
-                    self.keep_command(sequence, command);
+                    self.reply_command(sequence, command);
                     self.reply_cost = meter.count().wrapping_sub(done);
                     meter.stop();
                 } else {
-                    self.attend(sequence, request, memory);
+                    self.answer(sequence, request, memory);
                 }
             }
         }
@@ -280,27 +278,27 @@ impl Session {
 
     #[inline(never)]
     fn refuse(&mut self, sequence: u16, refusal: Refusal) {
-        self.say(sequence, &Reply::Refused(refusal));
+        self.reply(sequence, &Reply::Refused(refusal));
     }
 
     #[inline(never)]
     fn greet(&mut self, sequence: u16, nonce: u32) {
         if self.nonce != Some(nonce) {
-            info!("host {=u32:#x}", nonce);
+            info!("hello from host {=u32:#x}", nonce);
             self.nonce = Some(nonce);
-            self.answered = None;
+            self.stored = None;
         }
         self.incompatible = false;
-        self.say_who(sequence);
+        self.send_hello(sequence);
     }
 
-    fn say_who(&mut self, sequence: u16) {
+    fn send_hello(&mut self, sequence: u16) {
         self.identity.counters = self.counters();
-        self.say(sequence, &Reply::Hello(self.identity.clone()));
+        self.reply(sequence, &Reply::Hello(self.identity.clone()));
     }
 
-    /// The step. What lies on the stack here lies under the planner's own, so there is little: the replies are built by functions
-    /// of their own, never inlined.
+    /// Steps the planner. The stack of this function lies under the planner's stack, so it is kept
+    /// small: other functions, which are not inlined, build the replies.
     #[inline(never)]
     fn observe<M: Meter, const TILES: usize, const SLOTS: usize>(
         &mut self,
@@ -309,10 +307,10 @@ impl Session {
         meter: &mut M,
     ) -> Result<Command, Refusal> {
         self.stale = false;
-        let mut watch = Stopwatch::new(meter, self.began, self.reply_cost);
-        watch.lap_of_session();
+        let mut watch = Stopwatch::new(meter, self.request_count, self.reply_cost);
+        watch.mark_session();
         let command = self.pilot.observe(memory, observation, &mut watch);
-        watch.lap_of_session();
+        watch.mark_session();
         let stages = watch.stages();
         command.map(|mut command| {
             command.counters = self.counters();
@@ -324,14 +322,14 @@ impl Session {
     }
 
     #[inline(never)]
-    fn keep_command(&mut self, sequence: u16, command: Result<Command, Refusal>) {
+    fn reply_command(&mut self, sequence: u16, command: Result<Command, Refusal>) {
         let reply = command.map_or_else(Reply::Refused, Reply::Command);
-        self.keep(sequence, &reply);
+        self.reply_and_store(sequence, &reply);
     }
 
-    /// Answers everything but hellos and observations.
+    /// Answers a request that is no hello and no observation.
     #[inline(never)]
-    fn attend<const TILES: usize, const SLOTS: usize>(
+    fn answer<const TILES: usize, const SLOTS: usize>(
         &mut self,
         sequence: u16,
         request: &Request,
@@ -347,49 +345,50 @@ impl Session {
             Request::Tile { x, y } => Reply::Tile(Pilot::tile(memory, *x, *y)),
             Request::FieldRow { row } => Reply::FieldRow(Pilot::field_row(memory, *row)),
             Request::Frontiers => Reply::Frontiers(Pilot::frontiers(memory)),
-            Request::Road { from } => Reply::Road(Pilot::road(memory, *from)),
-            // Answered before it came here.
+            Request::Path { from } => Reply::Path(Pilot::path(memory, *from)),
+            // Other functions answer these.
             Request::Hello { .. } | Request::Observation(_) => Reply::Refused(Refusal::OutOfOrder),
         };
-        self.keep(sequence, &reply);
+        self.reply_and_store(sequence, &reply);
     }
 
-    /// Says a reply that need not be kept.
+    /// Queues a reply without storing it.
     #[inline(never)]
-    fn say(&mut self, sequence: u16, reply: &Reply) {
+    fn reply(&mut self, sequence: u16, reply: &Reply) {
         let mut frame = [0; MAX_REPLY_FRAME];
         if let Ok(length) = encode_reply(sequence, reply, &mut frame) {
             self.put(&frame, length);
         }
     }
 
-    /// Says a reply and keeps it for repetition.
-    fn keep(&mut self, sequence: u16, reply: &Reply) {
-        let answered = self.answered.get_or_insert(Answered {
+    /// Queues a reply and stores it for repetition.
+    fn reply_and_store(&mut self, sequence: u16, reply: &Reply) {
+        let stored = self.stored.get_or_insert(StoredReply {
             sequence,
             frame: [0; MAX_REPLY_FRAME],
             length: 0,
         });
-        answered.sequence = sequence;
-        // Every reply fits: MAX_REPLY_FRAME is tested to hold the largest.
-        answered.length = encode_reply(sequence, reply, &mut answered.frame).unwrap_or(0);
-        self.send_kept();
+        stored.sequence = sequence;
+        // Every reply fits: a test checks that MAX_REPLY_FRAME holds the largest.
+        stored.length = encode_reply(sequence, reply, &mut stored.frame).unwrap_or(0);
+        self.send_stored();
     }
 
+    /// Queues the stored reply again.
     fn repeat(&mut self) {
         self.counters.duplicates = self.counters.duplicates.wrapping_add(1);
-        self.send_kept();
+        self.send_stored();
     }
 
-    fn send_kept(&mut self) {
+    fn send_stored(&mut self) {
         let Self {
-            answered,
+            stored,
             outbox,
             counters,
             ..
         } = self;
-        if let Some(answered) = answered {
-            put(outbox, counters, &answered.frame, answered.length);
+        if let Some(stored) = stored {
+            put(outbox, counters, &stored.frame, stored.length);
         }
     }
 
@@ -398,64 +397,12 @@ impl Session {
     }
 }
 
-/// Queues a whole frame or, where the host does not read, none of it.
-fn put(outbox: &mut Deque<u8, OUTBOX>, counters: &mut Counters, frame: &[u8], length: usize) {
-    if OUTBOX - outbox.len() < length {
+/// Queues the first `length` bytes of `frame`, or counts a dropped frame if the host reads too
+/// slowly.
+fn put(outbox: &mut Outbox, counters: &mut Counters, frame: &[u8], length: usize) {
+    if !outbox.put(frame.get(..length).unwrap_or(frame)) {
         counters.dropped = counters.dropped.wrapping_add(1);
-        return;
     }
-    for byte in frame.iter().take(length) {
-        // There is room: checked above.
-        let _ = outbox.push_back(*byte);
-    }
-}
-
-const NOTHING_COUNTED: Counters = Counters {
-    received: 0,
-    crc_errors: 0,
-    dropped: 0,
-    duplicates: 0,
-    stale_stops: 0,
-};
-
-const NOBODY: Identity = Identity {
-    version: VERSION,
-    schema: SCHEMA,
-    build: heapless::String::new(),
-    boots: 0,
-    tile_slots: 0,
-    tile_pool: 0,
-    max_frame: 0,
-    stale_ms: STALE_MS,
-    crash: None,
-    counters: NOTHING_COUNTED,
-};
-
-/// Who a device is that just booted, with `tile_pool` tiles and `tile_slots` places for them.
-#[must_use]
-pub fn identity(boot: Boot, tile_pool: usize, tile_slots: usize) -> Identity {
-    let short = |count: usize| u16::try_from(count).unwrap_or(u16::MAX);
-    Identity {
-        build: build(),
-        boots: boot.boots,
-        tile_slots: short(tile_slots),
-        tile_pool: short(tile_pool),
-        max_frame: short(MAX_REQUEST_FRAME),
-        crash: boot.crash,
-        ..NOBODY
-    }
-}
-
-/// What was built: the name that the builder gave it, or else the version.
-fn build() -> heapless::String<{ fieldline_protocol::message::BUILD_BYTES }> {
-    let name = option_env!("FIELDLINE_BUILD").unwrap_or(env!("CARGO_PKG_VERSION"));
-    let mut build = heapless::String::new();
-    for letter in name.chars() {
-        if build.push(letter).is_err() {
-            break;
-        }
-    }
-    build
 }
 
 #[cfg(test)]

@@ -1,34 +1,34 @@
-//! What the status LED shows: sixteen slots of an eighth of a second, over and over.
+//! Patterns of the status LED: sixteen slots of an eighth of a second, repeated.
 
 use fieldline_protocol::message::Status;
 
 /// Length of a slot, milliseconds.
-pub const SLOT_MS: u32 = 125;
+const SLOT_MS: u32 = 125;
 
-/// What the device wants seen.
+/// A state of the device that the LED shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Signal {
-    /// No host yet: one flash.
+    /// No host has greeted: one flash.
     #[default]
     Waiting,
-    /// A host, no session: two flashes.
+    /// A host has greeted, and there is no session: two flashes.
     Ready,
-    /// Exploring: half a second on, half a second off.
+    /// The session explores: half a second on, half a second off.
     Exploring,
-    /// Held by the host: a second on, a second off.
+    /// The host paused the session: one second on, one second off.
     Paused,
-    /// Exploration ended: three flashes.
+    /// The exploration ended: three flashes.
     Finished,
-    /// The emergency stop: on.
+    /// The emergency stop is latched: on.
     EmergencyStop,
-    /// The host fell silent, or the planner cannot go on, or the host is incompatible: four blinks a second.
+    /// The host is silent or incompatible, or the planner cannot continue: four blinks per second.
     Trouble,
-    /// Rebooted after a crash, and no host yet: on, with two gaps.
+    /// The device rebooted after a crash, and no host has greeted: on, with two gaps.
     Crashed,
 }
 
 impl Signal {
-    /// The signal of a session's status.
+    /// Returns the signal of a session's status.
     #[must_use]
     pub const fn of(status: Status) -> Self {
         match status {
@@ -41,6 +41,7 @@ impl Signal {
         }
     }
 
+    /// Returns one bit per slot, the first slot in the highest bit.
     const fn pattern(self) -> u16 {
         match self {
             Self::Waiting => 0b1000_0000_0000_0000,
@@ -54,7 +55,7 @@ impl Signal {
         }
     }
 
-    /// Whether the LED is on at `now_ms`.
+    /// Returns true if the LED is on at `now_ms`.
     #[must_use]
     pub const fn lit(self, now_ms: u32) -> bool {
         self.pattern() << ((now_ms / SLOT_MS) % 16) & 0x8000 != 0
@@ -74,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn the_patterns_as_they_look() {
+    fn patterns_look_as_documented() {
         for (signal, picture) in [
             (Signal::Waiting, "#..............."),
             (Signal::Ready, "#.#............."),
@@ -86,7 +87,7 @@ mod tests {
             (Signal::Crashed, "############.#.#"),
         ] {
             assert_eq!(seen(signal), picture, "{signal:?}");
-            assert_eq!(signal.lit(2000), signal.lit(0), "every two seconds");
+            assert_eq!(signal.lit(2000), signal.lit(0), "repeats every two seconds");
             assert_eq!(signal.lit(SLOT_MS - 1), signal.lit(0));
         }
     }

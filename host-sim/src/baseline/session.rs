@@ -28,8 +28,8 @@ use fieldline_planner::roadmap::configuration_space::Footprint;
 use fieldline_planner::robot::is_level;
 use fieldline_planner::status::{self, Residue};
 use fieldline_protocol::message::{
-    Command, Control, Cost, Fault, FieldRow, Finish, Frontier, Identity, MAX_FRONTIERS,
-    Observation, Refusal, Start, Status, TILE_DATES, TILE_SKELETON_BYTES, Tile,
+    Command, Control, Cost, Fault, FieldRow, Finish, Identity, MAX_FRONTIERS, Observation, Refusal,
+    ResidualFrontier, Start, Status, TILE_SKELETON_BYTES, TILE_STAMPS, Tile,
 };
 
 use super::chart::Chart;
@@ -401,8 +401,8 @@ impl<P: Plan> Link for Session<P> {
             y,
             cells: cells.into_iter().collect(),
             skeleton: [0; TILE_SKELETON_BYTES].into_iter().collect(),
-            marks: 0,
-            dates: [0; TILE_DATES],
+            closed_regions: 0,
+            visit_stamps: [0; TILE_STAMPS],
         }))
     }
 
@@ -411,7 +411,7 @@ impl<P: Plan> Link for Session<P> {
         Ok(self.plan.field_row(row))
     }
 
-    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
+    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
         self.calls += 1;
         let dropped = self.plan.dropped();
         Ok(dropped

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use fieldline_protocol::message::{Preference, Terrain};
+use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
 use host_sim::robot::{Limits, LimitsError};
@@ -50,7 +50,7 @@ pub(super) struct ExploreArgs {
     pub(super) preference: Option<PreferenceArg>,
     /// Heed uneven ground, with these parameters, any of [default: h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005,climb=20,roll=20,step=0.07]
     #[arg(long, value_name = "PARAMETERS", value_parser = terrain)]
-    pub(super) terrain: Option<Terrain>,
+    pub(super) terrain: Option<UnevenGround>,
     /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback; direct for baselines]
     #[arg(long)]
     pub(super) link: Option<LinkSpec>,
@@ -240,7 +240,7 @@ fn failing(text: &str) -> Result<Limits, LimitsError> {
 }
 
 /// Table I, changed.
-fn terrain(text: &str) -> Result<Terrain, TerrainError> {
+fn terrain(text: &str) -> Result<UnevenGround, TerrainError> {
     uneven::changed(uneven::TABLE_I, text)
 }
 

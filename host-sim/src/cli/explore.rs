@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
 
-use fieldline_protocol::message::Terrain;
+use fieldline_protocol::message::UnevenGround;
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
@@ -148,7 +148,7 @@ fn explore(
 }
 
 /// The parameters of uneven ground, if any are asked for: with them every strategy on the device heeds it, and baseline bvp.
-fn terrain(args: &ExploreArgs) -> Result<Option<Terrain>> {
+fn terrain(args: &ExploreArgs) -> Result<Option<UnevenGround>> {
     if args.preference.is_none() && args.terrain.is_none() {
         return Ok(None);
     }
@@ -159,7 +159,7 @@ fn terrain(args: &ExploreArgs) -> Result<Option<Terrain>> {
         );
     }
     let terrain = args.terrain.unwrap_or(uneven::TABLE_I);
-    Ok(Some(Terrain {
+    Ok(Some(UnevenGround {
         preference: args.preference.map_or(terrain.preference, Into::into),
         ..terrain
     }))

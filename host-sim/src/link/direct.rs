@@ -4,7 +4,8 @@ use fieldline_device::session::{self, Boot};
 use fieldline_device::{Memory, Pilot, SLOTS, State, TILES};
 use fieldline_planner::Workspace;
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Frontier, Identity, Observation, Refusal, Road, Status, Tile,
+    Command, Control, FieldRow, Identity, Observation, Path, Refusal, ResidualFrontier, Status,
+    Tile,
 };
 
 use super::{Link, LinkError, LinkStats};
@@ -74,12 +75,12 @@ impl Link for Direct {
         Ok(self.with(|_, memory| Pilot::field_row(memory, row)))
     }
 
-    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
+    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
         Ok(self.with(|_, memory| Pilot::frontiers(memory).iter().copied().collect()))
     }
 
-    fn road(&mut self, from: u8) -> Result<Road, LinkError> {
-        Ok(self.with(|_, memory| Pilot::road(memory, from)))
+    fn road(&mut self, from: u8) -> Result<Path, LinkError> {
+        Ok(self.with(|_, memory| Pilot::path(memory, from)))
     }
 
     /// Every call counts as a frame sent and one received.

@@ -12,8 +12,8 @@ use fieldline_protocol::frame::{
     BodyError, MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_request,
 };
 use fieldline_protocol::message::{
-    Command, Control, Counters, FieldRow, Frontier, Identity, Observation, Refusal, Reply, Request,
-    Road, Status, Tile,
+    Command, Control, Counters, FieldRow, Identity, Observation, Path, Refusal, Reply, Request,
+    ResidualFrontier, Status, Tile,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 
@@ -285,16 +285,16 @@ impl<L: Line> Link for Endpoint<L> {
         }
     }
 
-    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
+    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
         match self.call(&Request::Frontiers)? {
             Reply::Frontiers(frontiers) => Ok(frontiers.iter().copied().collect()),
             _ => Err(unexpected("a request for frontiers")),
         }
     }
 
-    fn road(&mut self, from: u8) -> Result<Road, LinkError> {
-        match self.call(&Request::Road { from })? {
-            Reply::Road(road) => Ok(road),
+    fn road(&mut self, from: u8) -> Result<Path, LinkError> {
+        match self.call(&Request::Path { from })? {
+            Reply::Path(path) => Ok(path),
             _ => Err(unexpected("a request for the road")),
         }
     }

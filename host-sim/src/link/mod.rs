@@ -13,7 +13,7 @@
 use core::fmt;
 
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Frontier, Identity, Observation, Road, Status, Tile,
+    Command, Control, FieldRow, Identity, Observation, Path, ResidualFrontier, Status, Tile,
 };
 use serde::{Deserialize, Serialize};
 
@@ -113,13 +113,13 @@ pub trait Link {
     ///
     /// # Errors
     /// As [`LinkError`].
-    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError>;
+    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError>;
     /// Where the planner is going, without the first `from` cells of the road; nothing where it does not say.
     ///
     /// # Errors
     /// As [`LinkError`].
-    fn road(&mut self, _from: u8) -> Result<Road, LinkError> {
-        Ok(Road::default())
+    fn road(&mut self, _from: u8) -> Result<Path, LinkError> {
+        Ok(Path::default())
     }
     /// Counters.
     fn stats(&self) -> LinkStats;

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use fieldline_protocol::message::{TILE_DATES, Tile};
+use fieldline_protocol::message::{TILE_STAMPS, Tile};
 
 /// Cells on a tile's side.
 pub const TILE_SIDE: i32 = 32;
@@ -40,7 +40,7 @@ pub struct GridMap {
     cells: Vec<MapCell>,
     skeleton: Vec<bool>,
     /// Marks and dates of tiles that have any, as they were sent.
-    overlay: BTreeMap<(i16, i16), (u16, [u8; TILE_DATES])>,
+    overlay: BTreeMap<(i16, i16), (u16, [u8; TILE_STAMPS])>,
 }
 
 impl GridMap {
@@ -124,13 +124,13 @@ impl GridMap {
     }
 
     /// Lay marks and dates over a tile.
-    pub fn overlay(&mut self, tile: (i16, i16), marks: u16, dates: [u8; TILE_DATES]) {
-        if marks != 0 || dates != [0; TILE_DATES] {
+    pub fn overlay(&mut self, tile: (i16, i16), marks: u16, dates: [u8; TILE_STAMPS]) {
+        if marks != 0 || dates != [0; TILE_STAMPS] {
             self.overlay.insert(tile, (marks, dates));
         }
     }
 
-    fn overlaid(&self, x: i32, y: i32) -> Option<(u16, [u8; TILE_DATES])> {
+    fn overlaid(&self, x: i32, y: i32) -> Option<(u16, [u8; TILE_STAMPS])> {
         let tile = [x, y].map(|at| i16::try_from(at.div_euclid(TILE_SIDE)));
         let [Ok(x), Ok(y)] = tile else {
             return None;
@@ -178,7 +178,7 @@ impl GridMap {
     }
 
     fn lay(&mut self, tile: &Tile) {
-        self.overlay((tile.x, tile.y), tile.marks, tile.dates);
+        self.overlay((tile.x, tile.y), tile.closed_regions, tile.visit_stamps);
         let (left, bottom) = (i32::from(tile.x) * TILE_SIDE, i32::from(tile.y) * TILE_SIDE);
         for row in 0..TILE_SIDE {
             for column in 0..TILE_SIDE {
@@ -265,8 +265,8 @@ mod tests {
             y,
             cells: heapless::Vec::from_slice(&cells).unwrap(),
             skeleton: heapless::Vec::from_slice(&skeleton).unwrap(),
-            marks: 0,
-            dates: [0; 4],
+            closed_regions: 0,
+            visit_stamps: [0; 4],
         };
         ((x, y), tile)
     }
@@ -295,7 +295,7 @@ mod tests {
     #[test]
     fn marks_and_dates_lie_where_their_tile_does() {
         let (_, mut known) = tile(-1, 2, &[(0, 0, 1)]);
-        (known.marks, known.dates) = (1 << 6, [0, 3, 9, 0]);
+        (known.closed_regions, known.visit_stamps) = (1 << 6, [0, 3, 9, 0]);
         let map = GridMap::from_tiles(&[((-1, 2), known)].into());
         // Mark 6 is the third of the second row: 8 × 8 cells from (16, 8) on.
         let marked = [

@@ -137,8 +137,8 @@ mod tests {
                     y,
                     cells,
                     skeleton,
-                    marks: 0,
-                    dates: [0; 4],
+                    closed_regions: 0,
+                    visit_stamps: [0; 4],
                 };
                 tiles.insert((x, y), tile);
             }

@@ -8,7 +8,7 @@ use core::fmt;
 
 use fieldline_planner::geometry::Cell;
 use fieldline_protocol::message::{
-    self as wire, Finish, Observation, Status, Strategy, Terrain, Twist,
+    self as wire, Finish, Observation, Status, Strategy, Twist, UnevenGround,
 };
 
 use super::mirror::Mirror;
@@ -31,7 +31,7 @@ pub struct Mission {
     /// Name of the strategy, for the report.
     pub strategy: String,
     /// Parameters of uneven ground; if `None`, [`super::uneven::TABLE_I`] for [`TERRAIN`], and for others the ground counts as flat.
-    pub terrain: Option<Terrain>,
+    pub terrain: Option<UnevenGround>,
     /// Name of the link, for the report.
     pub link: String,
     /// The faults put on the link, for the report.
@@ -166,7 +166,7 @@ impl Mission {
     }
 
     /// How the device goes about uneven ground, if it is told to.
-    fn terrain(&self) -> Option<Terrain> {
+    fn terrain(&self) -> Option<UnevenGround> {
         let usual = (self.strategy == TERRAIN).then_some(TABLE_I);
         self.terrain.or(usual)
     }
@@ -200,7 +200,7 @@ pub fn explore(
     }
     let setup = Setup {
         start: wire::Start {
-            terrain: mission.terrain(),
+            uneven_ground: mission.terrain(),
             ..simulator.start_message(mission.strategy(), (across, up))
         },
         time_limit_ms: mission.time_limit_ms,

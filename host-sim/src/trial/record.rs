@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use fieldline_protocol::message::{
-    Command, Cost, Frontier, Loops, Observation, Pose, Status, Tile,
+    Command, Cost, Loops, Observation, Pose, ResidualFrontier, Status, Tile,
 };
 
 use super::relief::Relief;
@@ -56,7 +56,7 @@ pub struct Record {
     /// Heights and preferences in it, where the planner heeds them.
     pub relief: Option<Relief>,
     /// Frontiers that were left.
-    pub frontiers: Vec<Frontier>,
+    pub frontiers: Vec<ResidualFrontier>,
     /// Map and window on the way, where that was asked for.
     pub snapshots: Vec<Snapshot>,
     /// What the true ground is to the robot, in an uneven world.
@@ -152,7 +152,7 @@ impl Record {
     /// The report's part on the ending.
     #[must_use]
     pub fn outcome(&self) -> report::Outcome {
-        let residual = |frontier: &Frontier| report::ResidualFrontier {
+        let residual = |frontier: &ResidualFrontier| report::ResidualFrontier {
             x_m: centre_m(frontier.x),
             y_m: centre_m(frontier.y),
             cells: u32::from(frontier.cells),

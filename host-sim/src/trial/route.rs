@@ -1,8 +1,8 @@
 //! Where the planner was going: its road, and tractor point and shield while it closes a loop.
 //!
-//! The road comes over the link in pages of [`ROAD_PAGE`] cells. Units: map cells, the least ones of the planner's own of 20 cm.
+//! The road comes over the link in pages of [`PATH_PAGE`] cells. Units: map cells, the least ones of the planner's own of 20 cm.
 
-use fieldline_protocol::message::ROAD_PAGE;
+use fieldline_protocol::message::PATH_PAGE;
 
 use crate::link::{Link, LinkError};
 use crate::report::grid_map::CELL_M;
@@ -32,7 +32,7 @@ pub fn read(link: &mut dyn Link) -> Result<Route, LinkError> {
         shield: first.shield,
         road: first.cells.to_vec(),
     };
-    let pages = (1..).map(|page| page * ROAD_PAGE);
+    let pages = (1..).map(|page| page * PATH_PAGE);
     for from in pages.map_while(|from| u8::try_from(from).ok()) {
         if from >= first.length {
             break;

@@ -1,8 +1,8 @@
 //! Runs with a scripted device and a point robot: every ending, and what the record then holds.
 
 use fieldline_protocol::message::{
-    Command, Control, Fault, FieldRow, Finish, Frontier, Identity, Observation, Residue, Start,
-    Status, Tile, Twist,
+    Command, Control, Fault, FieldRow, Finish, Identity, Observation, ResidualFrontier,
+    ResidualReason, Start, Status, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -91,19 +91,19 @@ impl Link for Script {
             y,
             cells: heapless::Vec::from_slice(&[0b0101_0101; 256]).unwrap(),
             skeleton: heapless::Vec::new(),
-            marks: 1,
-            dates: [0, 7, 0, 9],
+            closed_regions: 1,
+            visit_stamps: [0, 7, 0, 9],
         }))
     }
     fn field_row(&mut self, _: u8) -> Result<Option<FieldRow>, LinkError> {
         Ok(None)
     }
-    fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
-        Ok(vec![Frontier {
+    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
+        Ok(vec![ResidualFrontier {
             x: 30,
             y: -13,
             cells: 4,
-            reason: Residue::Unreachable,
+            reason: ResidualReason::Unreachable,
         }])
     }
     fn stats(&self) -> LinkStats {

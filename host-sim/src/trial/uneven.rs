@@ -1,16 +1,16 @@
 //! The parameters of uneven ground as text: `h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005`.
 //!
-//! The defaults are those of [Maffei-Terrain, Table I]; `climb` and `roll` (degrees) and `step` (metres) are the robot's own. Whoever is asked
+//! The defaults are those of [Maffei-UnevenGround, Table I]; `climb` and `roll` (degrees) and `step` (metres) are the robot's own. Whoever is asked
 //! for a preference beyond 2 either way says why not: the relaxation of the field diverges.
 
 use core::fmt;
 use core::str::FromStr;
 
-use fieldline_protocol::message::{Preference, Terrain};
+use fieldline_protocol::message::{Preference, UnevenGround};
 use fixed::types::{I4F12, I16F16};
 
 /// What the paper's robot was given, and the 3-AT's limits.
-pub const TABLE_I: Terrain = Terrain {
+pub const TABLE_I: UnevenGround = UnevenGround {
     preference: Preference::Both,
     obstacle: I4F12::lit("0.30"),
     near: I4F12::lit("1.5"),
@@ -65,7 +65,7 @@ fn bounds(name: &str) -> Option<([f64; 2], &'static str)> {
 ///
 /// # Errors
 /// [`TerrainError`] for an unknown name, a text that is no number, and a number out of its bounds.
-pub fn changed(mut terrain: Terrain, text: &str) -> Result<Terrain, TerrainError> {
+pub fn changed(mut terrain: UnevenGround, text: &str) -> Result<UnevenGround, TerrainError> {
     for part in text.split(',').map(str::trim) {
         let Some((name, number)) = part.split_once('=') else {
             return Err(TerrainError(format!("'{part}' is not name=number")));

@@ -1,6 +1,6 @@
 //! The words that reports, tables and progress lines use for the wire's enums. They are part of the report's schema.
 
-use fieldline_protocol::message::{Fault, Finish, Residue, Status};
+use fieldline_protocol::message::{Fault, Finish, ResidualReason, Status};
 
 /// `exploring`, `finished(explored)`, `fault(stuck)` ...
 #[must_use]
@@ -39,11 +39,11 @@ pub fn fault(fault: Fault) -> &'static str {
 
 /// Why a frontier was left.
 #[must_use]
-pub fn residue(residue: Residue) -> &'static str {
+pub fn residue(residue: ResidualReason) -> &'static str {
     match residue {
-        Residue::Unreachable => "unreachable",
-        Residue::Unobservable => "unobservable",
-        Residue::OutOfBounds => "out-of-bounds",
-        Residue::NoProgress => "no-progress",
+        ResidualReason::Unreachable => "unreachable",
+        ResidualReason::Unobservable => "unobservable",
+        ResidualReason::OutOfBounds => "out-of-bounds",
+        ResidualReason::NoProgress => "no-progress",
     }
 }

@@ -42,7 +42,7 @@ pub(crate) fn start() -> Start {
         linear_accel: I4F12::from_num(0.3),
         angular_accel: I4F12::from_num(1.745),
         period_ms: 200,
-        terrain: None,
+        uneven_ground: None,
     }
 }
 

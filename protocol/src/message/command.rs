@@ -1,4 +1,4 @@
-//! What the planner answers an observation: what to drive, what it is doing, and what that cost.
+//! The answer to an observation: what to drive, what the planner does, and what the step cost.
 
 use fixed::types::I16F16;
 use postcard_schema::Schema;
@@ -8,21 +8,21 @@ use serde::{Deserialize, Serialize};
 use super::Identity;
 use super::Twist;
 
-/// What the planner is doing.
+/// What the planner does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Status {
-    /// No session yet.
+    /// There is no session yet.
     #[default]
     Idle,
-    /// Driving to unexplored space.
+    /// The robot drives to unexplored space.
     Exploring,
-    /// Held by the host.
+    /// The host paused the session.
     Paused,
-    /// Held by the e-stop input.
+    /// The emergency stop input stopped the robot.
     EmergencyStop,
-    /// Done.
+    /// The exploration ended.
     Finished(Finish),
-    /// Cannot go on.
+    /// The planner cannot continue.
     Fault(Fault),
 }
 
@@ -31,97 +31,99 @@ pub enum Status {
 pub enum Finish {
     /// No reachable frontier is left.
     Explored,
-    /// The robot has no free way out of where it stands.
+    /// The robot has no free way out of the place where it stands.
     BoxedIn,
     /// The host stopped it.
     Stopped,
 }
 
-/// Why the planner cannot go on.
+/// Why the planner cannot continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Fault {
     /// The start pose lies in an obstacle.
     StartBlocked,
-    /// A way leads on, and every tile of the map's pool is in use.
+    /// A way leads to further space, and every tile of the map's pool is in use.
     MapFull,
-    /// A way leads out of the map's box.
+    /// A way leads to further space, and it leaves the map's box.
     OutOfBox,
-    /// An observation did not match the session's lasers.
+    /// The scans of the observation do not match the session's lasers. The planner made no step.
+    /// This fault ends with the next correct observation.
     BadObservation,
-    /// The robot did not move for too long although commanded.
+    /// The robot did not move for too long although it had a command.
     Stuck,
 }
 
-/// Counters of the device since boot.
+/// Counters of the device since its boot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Counters {
-    /// Frames received and accepted.
+    /// Frames received with a correct checksum.
     pub received: u32,
-    /// Frames dropped for a bad checksum.
+    /// Frames dropped for a wrong checksum.
     pub crc_errors: u32,
-    /// Frames dropped for anything else: framing, length, format, order.
+    /// Frames dropped for any other reason: framing, length, format, order.
     pub dropped: u32,
-    /// Requests answered again from the stored reply.
+    /// Requests that were repeated and got the stored reply.
     pub duplicates: u32,
-    /// Times that the host fell silent for longer than [`Identity::stale_ms`] while driving.
+    /// Number of times that the host was silent for more than [`Identity::stale_ms`] while driving.
     pub stale_stops: u32,
 }
 
-/// Instructions of a step's stages; their sum is [`Cost::instructions`].
+/// Instructions of each stage of a step. Their sum is [`Cost::instructions`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Stages {
-    /// Taking this request apart, and putting the reply before it together.
+    /// Decoding this request and encoding the reply before it.
     pub session: u32,
-    /// Scans and odometry into the map.
+    /// Adding scans and odometry to the map.
     pub sense: u32,
-    /// An instalment of the skeleton.
+    /// One part of the work on the skeleton.
     pub topology: u32,
-    /// The wave over a new skeleton, and the road.
+    /// The wavefront over a new skeleton, and the path.
     pub plan: u32,
     /// The window's cells and boundary.
     pub window: u32,
     /// The window's field.
     pub solve: u32,
-    /// Descent, drive, and the search for a manoeuvre.
+    /// Descent, drive, and the search for a recovery manoeuvre.
     pub drive: u32,
 }
 
 /// What one step cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Cost {
-    /// Instructions of the whole step (exact in the emulator, timer ticks on silicon, 0 on a host).
+    /// Instructions of the whole step: exact in the emulator, timer ticks on silicon, 0 on a host.
     pub instructions: u32,
-    /// The same by stages.
+    /// Instructions of each stage.
     pub stages: Stages,
-    /// Deepest stack so far, bytes; 0 where not measured.
+    /// Deepest stack since the boot, bytes; 0 where it is not measured.
     pub stack_bytes: u32,
-    /// Multigrid cycles or sweeps spent on the window.
+    /// Number of multigrid cycles or sweeps on the window.
     pub cycles: u16,
-    /// The solver's budget ran out before its stop rule held.
+    /// True if the solver's budget ran out before its stop rule was met.
     pub budget_exhausted: bool,
 }
 
-/// What became of loops since the session began; nothing where the strategy closes none.
+/// Loops since the start of the session; all zero for a strategy that closes no loops.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Loops {
-    /// One is being closed: there is a shield behind the robot.
+    /// True if a loop is being closed: there is a shield behind the robot.
     pub closing: bool,
-    /// Loops closed: the tractor point was reached by the way ahead.
+    /// Number of closed loops: the robot reached the tractor point by a way ahead.
     pub closed: u16,
-    /// Loops given up, because there is none or it is too long.
+    /// Number of loops given up because there was no loop or it was too long.
     pub given_up: u16,
 }
 
 /// The answer to an observation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Command {
-    /// What to drive.
+    /// Velocity that the robot must drive.
     pub velocity: Twist,
-    /// What the planner is doing.
+    /// What the planner does.
     pub status: Status,
-    /// Robot heading that the field asks for, radians; meaningful while exploring.
+    /// Heading of the robot that the field asks for, radians; it has a meaning only while
+    /// exploring.
     pub heading: I16F16,
-    /// What became of loops.
+    /// Counts of loops.
     pub loops: Loops,
     /// Counters of the link.
     pub counters: Counters,

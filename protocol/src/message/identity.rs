@@ -1,37 +1,37 @@
-//! Who the device is, and what became of it before.
+//! Who the device is, and what its last crash was.
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 use super::Counters;
 
-/// Bytes of a build identifier.
+/// Maximum length of a build identifier, bytes.
 pub const BUILD_BYTES: usize = 24;
-/// Bytes of a source file's name in a crash report.
+/// Maximum length of a source file's name in a crash report, bytes.
 pub const CRASH_FILE_BYTES: usize = 32;
 
 /// What ended the program before the last reboot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Cause {
-    /// A panic; [`Crash::at`] is the line.
+    /// A panic; [`Crash::at`] is the source line.
     #[default]
     Panic,
     /// A processor fault; [`Crash::at`] is the program counter.
     Fault,
-    /// The stack ran out of its room; [`Crash::at`] is 0.
+    /// The stack overflowed; [`Crash::at`] is 0.
     StackOverflow,
-    /// The main loop did not come round in time; [`Crash::at`] is 0.
+    /// The main loop took too long; [`Crash::at`] is 0.
     Watchdog,
 }
 
-/// A crash: the program stopped, commands zero velocity and reboots.
+/// A crash: the program stopped, sends no further command, and reboots.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Crash {
-    /// What happened.
+    /// What ended the program.
     pub cause: Cause,
     /// Source line or program counter.
     pub at: u32,
-    /// The last letters of the source file's path; empty for a fault.
+    /// End of the source file's path; empty for all causes other than a panic.
     pub file: heapless::String<CRASH_FILE_BYTES>,
 }
 
@@ -44,15 +44,15 @@ pub struct Identity {
     pub schema: u32,
     /// Build identifier.
     pub build: heapless::String<BUILD_BYTES>,
-    /// Boots since power-on.
+    /// Number of boots since power-on.
     pub boots: u32,
-    /// Slots of the map's box, in tiles.
+    /// Number of tile slots: the maximum area of the map's box, tiles.
     pub tile_slots: u16,
-    /// Tiles in the map's pool.
+    /// Number of tiles in the map's pool: the maximum number of tiles that can hold cells.
     pub tile_pool: u16,
-    /// Largest frame accepted, bytes.
+    /// Length of the longest frame that the device accepts, bytes.
     pub max_frame: u16,
-    /// Silence after which the device considers its command stale, milliseconds.
+    /// Silence of the host after which the device's command is stale, milliseconds.
     pub stale_ms: u16,
     /// The crash that caused the last reboot.
     pub crash: Option<Crash>,

@@ -8,18 +8,19 @@ use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 #[cfg(doc)]
-use super::Start;
+use super::{Fault, Start};
 
-/// Beams a scan may have at the most.
+/// Maximum number of beams in a scan.
 pub const MAX_BEAMS: usize = 181;
-/// Laser scanners an observation may carry at the most.
+/// Maximum number of scans in an observation.
 pub const MAX_SCANS: usize = 2;
-/// Range code of a beam that came back from nothing: free up to the range limit. It is the largest two-byte varint.
+/// Range code of a beam without a return: the beam is free up to the range limit. It is the largest
+/// two-byte varint.
 pub const NO_RETURN_MM: u16 = 16_383;
 /// Range code of a beam that carries no information.
 pub const INVALID_MM: u16 = 0;
 
-/// A pose in the odometry frame, metres and radians.
+/// A pose in the odometry's coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Pose {
     /// Metres.
@@ -36,16 +37,16 @@ pub struct Pose {
     pub yaw: I16F16,
 }
 
-/// A planar velocity.
+/// A velocity in the plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Twist {
-    /// Metres a second, forward.
+    /// Forward, metres per second.
     pub linear: I4F12,
-    /// Radians a second, counter-clockwise.
+    /// Counter-clockwise, radians per second.
     pub angular: I4F12,
 }
 
-/// One sweep of one laser. Its geometry is in [`Start::lasers`].
+/// One sweep of one laser. [`Start::lasers`] holds its geometry.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Scan {
     /// Ranges in millimetres, or [`NO_RETURN_MM`], or [`INVALID_MM`].
@@ -53,14 +54,17 @@ pub struct Scan {
 }
 
 /// What the robot sensed at one instant.
+///
+/// The scans must match the session's lasers in number and length. If they do not, the device makes
+/// no step and answers with zero velocity and [`Fault::BadObservation`].
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Observation {
     /// The host's clock, milliseconds since the start of the session.
     pub time_ms: u32,
-    /// Odometry.
+    /// Pose from odometry.
     pub pose: Pose,
     /// Measured velocity.
     pub velocity: Twist,
-    /// One scan per laser of [`Start::lasers`], in that order.
+    /// One scan per laser of [`Start::lasers`], in the same order, with one range per beam.
     pub scans: Vec<Scan, MAX_SCANS>,
 }

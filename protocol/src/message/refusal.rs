@@ -1,12 +1,12 @@
-//! Why a request is refused.
+//! Reasons for which the device refuses a request.
 
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 #[cfg(doc)]
-use super::{Laser, MAX_BEAMS, NO_RETURN_MM, Start, Terrain};
+use super::{Laser, MAX_BEAMS, NO_RETURN_MM, Start, UnevenGround};
 
-/// A parameter of [`Start`].
+/// A parameter of [`Start`], with its accepted range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Parameter {
     /// [`Start::lasers`]: one or two.
@@ -15,43 +15,44 @@ pub enum Parameter {
     Beams,
     /// [`Laser::range_limit_mm`]: 1 to [`NO_RETURN_MM`] − 1.
     RangeLimit,
-    /// [`Laser::first_bearing`] and [`Laser::bearing_step`]: within one turn, the step positive.
+    /// [`Laser::first_bearing`] and [`Laser::bearing_step`]: within one turn, with a positive step.
     Bearing,
-    /// [`Laser::pitch`]: the first laser is level, the second looks down by less than 90°.
+    /// [`Laser::pitch`]: the first laser is level within 0.05 rad; the second looks down by 0° to
+    /// less than 90°.
     Pitch,
     /// [`Laser::x`], [`Laser::y`] and [`Laser::z`]: at most 2 m from the centre, above the ground.
     Mount,
-    /// [`Start::robot_radius_mm`]: 50 to 2000.
+    /// [`Start::robot_radius_mm`]: 50 to 600.
     Radius,
     /// [`Start::max_linear`]: positive.
     MaxLinear,
     /// [`Start::max_angular`]: positive.
     MaxAngular,
-    /// [`Start::linear_accel`]: from the greatest speed to rest in 3 s at the most.
+    /// [`Start::linear_accel`]: stops the robot from its maximum speed within 3 s.
     LinearAccel,
-    /// [`Start::angular_accel`]: from the greatest turn rate to rest in 3 s at the most.
+    /// [`Start::angular_accel`]: stops the robot from its maximum turn rate within 3 s.
     AngularAccel,
     /// [`Start::period_ms`]: 100 to 400.
     Period,
-    /// [`Terrain::least`] and [`Terrain::most`]: from −2 to 0 and from 0 to 2, because beyond 2 the field diverges.
+    /// [`UnevenGround::least`]: −2 to 0. [`UnevenGround::most`]: 0 to 2. Beyond 2 the field
+    /// diverges.
     Preference,
-    /// Another of [`Terrain`]'s: a scale below 0, a height or slope of 0, a slope above 45°, or without a tilted laser.
-    Terrain,
+    /// The rest of [`UnevenGround`]: scales at least 0; [`UnevenGround::hole`] negative; other
+    /// heights and slopes positive; slopes at most 45°; two lasers.
+    UnevenGround,
 }
 
-/// Why a request was refused.
+/// Why the device refused a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Refusal {
-    /// No hello since the device booted.
+    /// The host sent no hello since the device booted.
     NotGreeted,
     /// No session is running.
     NotStarted,
-    /// An older sequence number than the last one answered.
+    /// The sequence number is older than the last one answered.
     OutOfOrder,
-    /// The box's shape does not fit the device's slots.
+    /// The shape of the map's box does not fit the device's tile slots.
     BadBox,
-    /// A laser or limit out of range.
+    /// A parameter is out of its range.
     BadParameter(Parameter),
-    /// That strategy is not in this image.
-    UnknownStrategy,
 }

@@ -1,4 +1,4 @@
-//! What a session is begun with, and what else may be done to it.
+//! The parameters of a session, and the requests that change its state.
 //!
 //! Units: metres, radians, seconds.
 
@@ -9,126 +9,132 @@ use serde::{Deserialize, Serialize};
 
 use super::MAX_SCANS;
 #[cfg(doc)]
-use super::{MAX_BEAMS, Status};
+use super::{Identity, MAX_BEAMS, Status};
 
-/// Where a laser sits and how it sweeps.
+/// Mounting and sweep of a laser.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Laser {
     /// Metres ahead of the robot's centre.
     pub x: I4F12,
-    /// Metres to its left.
+    /// Metres to the left of the robot's centre.
     pub y: I4F12,
-    /// Metres above the ground under it.
+    /// Metres above the ground.
     pub z: I4F12,
     /// Radians; positive looks down.
     pub pitch: I4F12,
-    /// Radians, bearing of the first beam (negative is to the right).
+    /// Bearing of the first beam, radians; negative is to the right.
     pub first_bearing: I16F16,
-    /// Radians from one beam to the next.
+    /// Angle from one beam to the next, radians.
     pub bearing_step: I16F16,
-    /// Beams in a sweep, at most [`MAX_BEAMS`].
+    /// Number of beams in a sweep, at most [`MAX_BEAMS`].
     pub beams: u16,
-    /// Nothing farther than this is reported.
+    /// Range limit, millimetres: the laser reports nothing beyond it.
     pub range_limit_mm: u16,
 }
 
-/// Which strategy plans.
+/// The strategy that plans.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Strategy {
-    /// Nearest unexplored centre cell.
+    /// Drive to the nearest unexplored centre cell.
     #[default]
     Frontier,
-    /// The same, closing loops on the way.
+    /// Drive to the nearest unexplored centre cell, and close loops on the way.
     Ouroboros,
-    /// Rails by the time of their visit, and a patrol on them.
+    /// Follow rails by the time of their last visit, and patrol on them.
     Tdbvp {
-        /// How long to patrol when all is explored, seconds. The status stays [`Status::Exploring`] meanwhile.
+        /// Duration of the patrol after everything is explored, seconds. The status stays
+        /// [`Status::Exploring`] until it ends.
         patrol_s: u16,
     },
 }
 
-/// Which preferences shape the field on uneven ground.
+/// The preferences that shape the field on uneven ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Preference {
-    /// None.
+    /// No preference.
     Off,
-    /// Ground at the robot's own height.
+    /// Prefer ground at the robot's own height.
     Height,
-    /// The whole window, against a field that grows flat.
+    /// One preference for the whole window; it grows as the field becomes flat.
     Global,
-    /// Both.
+    /// Both preferences.
     #[default]
     Both,
 }
 
 /// Parameters of uneven ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
-pub struct Terrain {
-    /// Which preferences are used.
+pub struct UnevenGround {
+    /// The preferences in use.
     pub preference: Preference,
-    /// What stands higher than this over the ground around it is an obstacle, metres.
+    /// Height above the surrounding ground from which a cell is an obstacle, metres.
     pub obstacle: I4F12,
-    /// What the level laser meets nearer than this over ground not yet measured is an obstacle, metres.
+    /// Distance within which a return of the level laser over unmeasured ground is an obstacle,
+    /// metres.
     pub near: I4F12,
-    /// Ground lower than this under what is beside it is a negative obstacle, metres; negative.
+    /// Height below the neighbouring ground from which ground is a negative obstacle, metres;
+    /// negative.
     pub hole: I4F12,
-    /// Least preference, from −2 to 0.
+    /// Least preference, −2 to 0.
     pub least: I4F12,
-    /// Greatest preference, from 0 to 2.
+    /// Greatest preference, 0 to 2.
     pub most: I4F12,
-    /// Preference lost a metre of height, at least 0.
+    /// Preference lost per metre of height, at least 0.
     pub height_scale: I4F12,
-    /// Preference gained an e-th part of the field's steepness, at least 0.
+    /// Scale of the global preference, at least 0: the preference gained each time that the field's
+    /// steepness falls by a factor e.
     pub global_scale: I16F16,
-    /// Steepest slope that may be driven on, radians.
+    /// Steepest slope that the robot may drive up or down, radians.
     pub climb: I4F12,
-    /// Steepest slope that may be driven across, radians; as large as `climb`, there is no such limit.
+    /// Steepest slope that the robot may drive across, radians. A value equal to `climb` sets no
+    /// limit.
     pub roll: I4F12,
-    /// Highest edge that may be driven over, metres.
+    /// Highest edge that the robot may drive over, metres.
     pub step: I4F12,
 }
 
-/// The session's parameters.
+/// The parameters of a session.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Start {
-    /// Which strategy plans.
+    /// The strategy that plans.
     pub strategy: Strategy,
-    /// The map's box in tiles of 3.2 m, across (an even number) and up, both at least 4; their product is at most the device's tile
-    /// slots.
+    /// Size of the map's box in tiles of 3.2 m, across and up. Both are at least 4 and the number
+    /// across is even. Their product is at most [`Identity::tile_slots`].
     pub box_tiles: (u8, u8),
     /// The laser scanners.
     pub lasers: Vec<Laser, MAX_SCANS>,
-    /// Radius that the planner keeps clear, millimetres.
+    /// Radius around the robot's centre that the planner keeps clear, millimetres: 50 to 600.
     pub robot_radius_mm: u16,
-    /// Greatest speed, metres a second.
+    /// Maximum speed, metres per second.
     pub max_linear: I4F12,
-    /// Greatest turn rate, radians a second.
+    /// Maximum turn rate, radians per second.
     pub max_angular: I4F12,
-    /// Acceleration and braking that the robot can be relied on for, metres a second squared.
+    /// Acceleration and braking that the robot always reaches, metres per second squared.
     pub linear_accel: I4F12,
-    /// The same of its turn rate, radians a second squared.
+    /// Angular acceleration and braking that the robot always reaches, radians per second squared.
     pub angular_accel: I4F12,
-    /// Time from one observation to the next, milliseconds; a command is driven for so long.
+    /// Time from one observation to the next, milliseconds: 100 to 400. The robot drives a command
+    /// for this long.
     pub period_ms: u16,
-    /// How to go about uneven ground: heights are measured, holes and edges kept off, level ground preferred. Nothing on flat
-    /// ground, where the lasers see only what stands.
-    pub terrain: Option<Terrain>,
+    /// Parameters of uneven ground: the planner measures heights, avoids holes and edges, and
+    /// prefers level ground. `None` means flat ground, where lasers see only what stands on it.
+    pub uneven_ground: Option<UnevenGround>,
 }
 
-/// What the host wants of the session.
+/// A change of the session's state.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 #[allow(
     clippy::large_enum_variant,
     reason = "no heap to box into; one lives at a time"
 )]
 pub enum Control {
-    /// Forget the map and begin.
+    /// Forget the map and start a new session.
     Start(Start),
-    /// Hold still until resumed.
+    /// Stand still until resumed.
     Pause,
-    /// Go on after a pause.
+    /// Continue after a pause or an emergency stop.
     Resume,
-    /// End the session; the map stays readable.
+    /// End the session. The map stays readable.
     Stop,
     /// Reboot the device.
     Reset,

@@ -1,32 +1,30 @@
-//! What the wire tests share: receivers fed at once, and strategies for arbitrary messages.
-#![allow(dead_code, reason = "each test file uses its part")]
+//! Helpers that the wire tests share: frames, and receivers that take all bytes at once.
+#![allow(dead_code, reason = "each test file uses only a part")]
 
+pub(crate) mod arbitrary;
+
+use fieldline_protocol::check::{Kind, sum};
 use fieldline_protocol::frame::{
     MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, Tally, encode_reply, encode_request,
 };
-use fieldline_protocol::message::{
-    Cause, Command, Control, Cost, Counters, Crash, Fault, FieldRow, Finish, Frontier, Identity,
-    Laser, Loops, MAX_BEAMS, Observation, Parameter, Pose, Preference, Refusal, Reply, Request,
-    Residue, Road, Scan, Stages, Start, Status, Strategy as Plan, Terrain, Tile, Twist,
-};
+use fieldline_protocol::message::{MAX_BEAMS, Observation, Pose, Reply, Request, Scan, Twist};
 use fixed::types::{I4F12, I16F16};
-use proptest::prelude::*;
 
-/// The frame of a request.
+/// Returns the frame of a request.
 pub(crate) fn request_frame(sequence: u16, request: &Request) -> Vec<u8> {
     let mut out = [0; MAX_REQUEST_FRAME];
     let length = encode_request(sequence, request, &mut out).expect("every request fits");
     out[..length].to_vec()
 }
 
-/// The frame of a reply.
+/// Returns the frame of a reply.
 pub(crate) fn reply_frame(sequence: u16, reply: &Reply) -> Vec<u8> {
     let mut out = [0; MAX_REPLY_FRAME];
     let length = encode_reply(sequence, reply, &mut out).expect("every reply fits");
     out[..length].to_vec()
 }
 
-/// The requests that a device hears in `bytes`, and its counters.
+/// Returns the requests that a device decodes from `bytes`, and its counters.
 pub(crate) fn requests(bytes: &[u8]) -> (Vec<(u16, Request)>, Tally) {
     let mut receiver = Receiver::<MAX_REQUEST_FRAME>::new(Side::Device);
     let mut heard = Vec::new();
@@ -40,7 +38,7 @@ pub(crate) fn requests(bytes: &[u8]) -> (Vec<(u16, Request)>, Tally) {
     (heard, receiver.tally())
 }
 
-/// The replies that a host hears in `bytes`, and its counters.
+/// Returns the replies that a host decodes from `bytes`, and its counters.
 pub(crate) fn replies(bytes: &[u8]) -> (Vec<(u16, Reply)>, Tally) {
     let mut receiver = Receiver::<MAX_REPLY_FRAME>::new(Side::Host);
     let mut heard = Vec::new();
@@ -54,7 +52,8 @@ pub(crate) fn replies(bytes: &[u8]) -> (Vec<(u16, Reply)>, Tally) {
     (heard, receiver.tally())
 }
 
-/// An observation with two full scans of `range_mm` and everything else at the far end of its type.
+/// Returns an observation with two full scans of `range_mm`; every other field has the value with
+/// the most bytes.
 pub(crate) fn largest_observation(range_mm: u16) -> Observation {
     let far = I16F16::MIN;
     let scan = Scan {
@@ -78,166 +77,7 @@ pub(crate) fn largest_observation(range_mm: u16) -> Observation {
     }
 }
 
-fn long() -> impl Strategy<Value = I16F16> {
-    any::<i32>().prop_map(I16F16::from_bits)
-}
-
-fn short() -> impl Strategy<Value = I4F12> {
-    any::<i16>().prop_map(I4F12::from_bits)
-}
-
-fn list<T: core::fmt::Debug, const N: usize>(
-    item: impl Strategy<Value = T>,
-) -> impl Strategy<Value = heapless::Vec<T, N>> {
-    prop::collection::vec(item, 0..=N).prop_map(|items| items.into_iter().collect())
-}
-
-fn text<const N: usize>() -> impl Strategy<Value = heapless::String<N>> {
-    "[ -~é]{0,12}".prop_map(|text| {
-        let mut short = heapless::String::new();
-        for letter in text.chars() {
-            let _ = short.push(letter);
-        }
-        short
-    })
-}
-
-fn laser() -> impl Strategy<Value = Laser> {
-    (
-        short(),
-        short(),
-        short(),
-        short(),
-        long(),
-        long(),
-        any::<(u16, u16)>(),
-    )
-        .prop_map(
-            |(x, y, z, pitch, first_bearing, bearing_step, (beams, range_limit_mm))| Laser {
-                x,
-                y,
-                z,
-                pitch,
-                first_bearing,
-                bearing_step,
-                beams,
-                range_limit_mm,
-            },
-        )
-}
-
-fn terrain() -> impl Strategy<Value = Terrain> {
-    let preference = prop_oneof![
-        Just(Preference::Off),
-        Just(Preference::Height),
-        Just(Preference::Global),
-        Just(Preference::Both),
-    ];
-    let heights = [short(), short(), short(), short()];
-    let preferences = [short(), short(), short(), short(), short()];
-    (preference, heights, preferences, long()).prop_map(
-        |(preference, [obstacle, near, hole, step], preferences, global_scale)| {
-            let [least, most, height_scale, climb, roll] = preferences;
-            Terrain {
-                preference,
-                obstacle,
-                near,
-                hole,
-                least,
-                most,
-                height_scale,
-                global_scale,
-                climb,
-                roll,
-                step,
-            }
-        },
-    )
-}
-
-fn start() -> impl Strategy<Value = Start> {
-    let strategy = prop_oneof![
-        Just(Plan::Frontier),
-        Just(Plan::Ouroboros),
-        any::<u16>().prop_map(|patrol_s| Plan::Tdbvp { patrol_s }),
-    ];
-    (
-        (strategy, any::<(u8, u8)>(), prop::option::of(terrain())),
-        list(laser()),
-        any::<u16>(),
-        any::<u16>(),
-        [short(), short(), short(), short()],
-    )
-        .prop_map(
-            |((strategy, box_tiles, terrain), lasers, robot_radius_mm, period_ms, limits)| {
-                let [max_linear, max_angular, linear_accel, angular_accel] = limits;
-                Start {
-                    strategy,
-                    box_tiles,
-                    lasers,
-                    robot_radius_mm,
-                    max_linear,
-                    max_angular,
-                    linear_accel,
-                    angular_accel,
-                    period_ms,
-                    terrain,
-                }
-            },
-        )
-}
-
-fn control() -> impl Strategy<Value = Control> {
-    prop_oneof![
-        start().prop_map(Control::Start),
-        Just(Control::Pause),
-        Just(Control::Resume),
-        Just(Control::Stop),
-        Just(Control::Reset),
-    ]
-}
-
-fn twist() -> impl Strategy<Value = Twist> {
-    (short(), short()).prop_map(|(linear, angular)| Twist { linear, angular })
-}
-
-fn pose() -> impl Strategy<Value = Pose> {
-    (long(), long(), long(), long(), long(), long()).prop_map(|(x, y, z, roll, pitch, yaw)| Pose {
-        x,
-        y,
-        z,
-        roll,
-        pitch,
-        yaw,
-    })
-}
-
-fn observation() -> impl Strategy<Value = Observation> {
-    let scan = list(any::<u16>()).prop_map(|ranges_mm| Scan { ranges_mm });
-    (any::<u32>(), pose(), twist(), list(scan)).prop_map(|(time_ms, pose, velocity, scans)| {
-        Observation {
-            time_ms,
-            pose,
-            velocity,
-            scans,
-        }
-    })
-}
-
-/// Any request but a hello of another version.
-pub(crate) fn request() -> impl Strategy<Value = Request> {
-    prop_oneof![
-        any::<u32>().prop_map(hello),
-        control().prop_map(Request::Control),
-        observation().prop_map(Request::Observation),
-        any::<(i16, i16)>().prop_map(|(x, y)| Request::Tile { x, y }),
-        any::<u8>().prop_map(|row| Request::FieldRow { row }),
-        Just(Request::Frontiers),
-        any::<u8>().prop_map(|from| Request::Road { from }),
-    ]
-}
-
-/// Our hello.
+/// Returns a hello of this version and schema.
 pub(crate) fn hello(nonce: u32) -> Request {
     Request::Hello {
         version: fieldline_protocol::VERSION,
@@ -246,205 +86,10 @@ pub(crate) fn hello(nonce: u32) -> Request {
     }
 }
 
-fn status() -> impl Strategy<Value = Status> {
-    let finish = prop::sample::select(vec![Finish::Explored, Finish::BoxedIn, Finish::Stopped]);
-    let fault = prop::sample::select(vec![
-        Fault::StartBlocked,
-        Fault::MapFull,
-        Fault::OutOfBox,
-        Fault::BadObservation,
-        Fault::Stuck,
-    ]);
-    prop_oneof![
-        Just(Status::Idle),
-        Just(Status::Exploring),
-        Just(Status::Paused),
-        Just(Status::EmergencyStop),
-        finish.prop_map(Status::Finished),
-        fault.prop_map(Status::Fault),
-    ]
-}
-
-fn crash() -> impl Strategy<Value = Crash> {
-    let cause = prop::sample::select(vec![
-        Cause::Panic,
-        Cause::Fault,
-        Cause::StackOverflow,
-        Cause::Watchdog,
-    ]);
-    (cause, any::<u32>(), text()).prop_map(|(cause, at, file)| Crash { cause, at, file })
-}
-
-fn identity() -> impl Strategy<Value = Identity> {
-    (
-        text(),
-        any::<(u32, u16, u16, u16, u16)>(),
-        prop::option::of(crash()),
-        counters(),
-    )
-        .prop_map(
-            |(build, (boots, tile_slots, tile_pool, max_frame, stale_ms), crash, counters)| {
-                Identity {
-                    version: fieldline_protocol::VERSION,
-                    schema: fieldline_protocol::SCHEMA,
-                    build,
-                    boots,
-                    tile_slots,
-                    tile_pool,
-                    max_frame,
-                    stale_ms,
-                    crash,
-                    counters,
-                }
-            },
-        )
-}
-
-fn counters() -> impl Strategy<Value = Counters> {
-    any::<(u32, u32, u32, u32, u32)>().prop_map(
-        |(received, crc_errors, dropped, duplicates, stale_stops)| Counters {
-            received,
-            crc_errors,
-            dropped,
-            duplicates,
-            stale_stops,
-        },
-    )
-}
-
-fn stages() -> impl Strategy<Value = Stages> {
-    any::<[u32; 7]>().prop_map(
-        |[session, sense, topology, plan, window, solve, drive]| Stages {
-            session,
-            sense,
-            topology,
-            plan,
-            window,
-            solve,
-            drive,
-        },
-    )
-}
-
-fn loops() -> impl Strategy<Value = Loops> {
-    any::<(bool, u16, u16)>().prop_map(|(closing, closed, given_up)| Loops {
-        closing,
-        closed,
-        given_up,
-    })
-}
-
-fn command() -> impl Strategy<Value = Command> {
-    (
-        twist(),
-        status(),
-        (long(), loops()),
-        counters(),
-        stages(),
-        any::<(u32, u32, u16, bool)>(),
-    )
-        .prop_map(
-            |(velocity, status, (heading, loops), counters, stages, cost)| Command {
-                velocity,
-                status,
-                heading,
-                loops,
-                counters,
-                cost: Cost {
-                    instructions: cost.0,
-                    stages,
-                    stack_bytes: cost.1,
-                    cycles: cost.2,
-                    budget_exhausted: cost.3,
-                },
-            },
-        )
-}
-
-fn tile() -> impl Strategy<Value = Tile> {
-    let known = any::<(i16, i16, u16, [u8; 4])>();
-    (known, list(any::<u8>()), list(any::<u8>())).prop_map(
-        |((x, y, marks, dates), cells, skeleton)| Tile {
-            x,
-            y,
-            cells,
-            skeleton,
-            marks,
-            dates,
-        },
-    )
-}
-
-fn field_row() -> impl Strategy<Value = FieldRow> {
-    let place = any::<(u8, i16, i16, u8)>();
-    (place, list(prop::num::f32::NORMAL), list(any::<u8>())).prop_map(
-        |((row, origin_x, origin_y, scale), q, cells)| FieldRow {
-            row,
-            origin_x,
-            origin_y,
-            scale,
-            q,
-            cells,
-        },
-    )
-}
-
-fn frontier() -> impl Strategy<Value = Frontier> {
-    let reason = prop::sample::select(vec![
-        Residue::Unreachable,
-        Residue::Unobservable,
-        Residue::OutOfBounds,
-        Residue::NoProgress,
-    ]);
-    (any::<(i16, i16, u16)>(), reason).prop_map(|((x, y, cells), reason)| Frontier {
-        x,
-        y,
-        cells,
-        reason,
-    })
-}
-
-fn road() -> impl Strategy<Value = Road> {
-    type Place = (i16, i16);
-    let ends = any::<(Option<Place>, Option<[Place; 2]>, u8)>();
-    (ends, list(any::<Place>())).prop_map(|((tractor, shield, length), cells)| Road {
-        tractor,
-        shield,
-        length,
-        cells,
-    })
-}
-
-fn refusal() -> impl Strategy<Value = Refusal> {
-    prop::sample::select(vec![
-        Refusal::NotGreeted,
-        Refusal::NotStarted,
-        Refusal::OutOfOrder,
-        Refusal::BadBox,
-        Refusal::BadParameter(Parameter::Beams),
-        Refusal::BadParameter(Parameter::MaxAngular),
-        Refusal::BadParameter(Parameter::LinearAccel),
-        Refusal::BadParameter(Parameter::AngularAccel),
-        Refusal::BadParameter(Parameter::Period),
-        Refusal::UnknownStrategy,
-    ])
-}
-
-/// Any reply.
-pub(crate) fn reply() -> impl Strategy<Value = Reply> {
-    prop_oneof![
-        identity().prop_map(Reply::Hello),
-        Just(Reply::Incompatible {
-            version: fieldline_protocol::VERSION,
-            schema: fieldline_protocol::SCHEMA,
-        }),
-        status().prop_map(Reply::Control),
-        command().prop_map(Reply::Command),
-        prop::option::of(tile()).prop_map(Reply::Tile),
-        prop::option::of(field_row()).prop_map(Reply::FieldRow),
-        list(frontier()).prop_map(Reply::Frontiers),
-        refusal().prop_map(Reply::Refused),
-        crash().prop_map(Reply::Crash),
-        road().prop_map(Reply::Road),
-    ]
+/// Returns a frame with a correct checksum around any body, stuffed by another crate.
+pub(crate) fn checked_frame(kind: Kind, sequence: u16, body: &[u8]) -> Vec<u8> {
+    let mut content = [&sequence.to_le_bytes()[..], body].concat();
+    let check = sum(&content) ^ kind.key();
+    content.extend(&check.to_le_bytes()[..3]);
+    [cobs::encode_vec(&content), vec![0]].concat()
 }

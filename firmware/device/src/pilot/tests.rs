@@ -1,4 +1,4 @@
-//! The session's state, and what the other tests of this crate share.
+//! States of a session, and helpers for the other tests of this crate.
 
 use std::boxed::Box;
 
@@ -10,7 +10,7 @@ use fixed::types::{I4F12, I16F16};
 
 use super::{Memory, Pilot};
 
-/// The 3-AT with a level and a tilted laser of 181 beams over 180°.
+/// Returns a session of the 3-AT with a level and a tilted laser of 181 beams over 180°.
 pub(crate) fn start() -> Start {
     let level = Laser {
         x: I4F12::lit("0.1"),
@@ -36,11 +36,11 @@ pub(crate) fn start() -> Start {
         linear_accel: I4F12::lit("0.3"),
         angular_accel: I4F12::lit("1.745"),
         period_ms: 200,
-        terrain: None,
+        uneven_ground: None,
     }
 }
 
-/// A matching observation in the middle of nothing.
+/// Returns an observation that matches [`start`], with 4 m of free space all around.
 pub(crate) fn observation(time_ms: u32) -> Observation {
     let scan = Scan {
         ranges_mm: [4000; 181].into_iter().collect(),
@@ -52,6 +52,7 @@ pub(crate) fn observation(time_ms: u32) -> Observation {
     }
 }
 
+/// The memory of a small planner.
 pub(crate) struct Bench {
     state: Box<State<4, 400>>,
     workspace: Box<Workspace>,
@@ -93,7 +94,7 @@ fn nothing_happens_before_a_start() {
 }
 
 #[test]
-fn a_refused_start_leaves_the_session_as_it_was() {
+fn a_refused_start_changes_nothing() {
     let (mut pilot, mut bench) = started();
     let bad = Start {
         box_tiles: (0, 1),
@@ -105,7 +106,7 @@ fn a_refused_start_leaves_the_session_as_it_was() {
 }
 
 #[test]
-fn pause_holds_and_resume_goes_on() {
+fn a_pause_holds_until_resume() {
     let (mut pilot, mut bench) = started();
     let paused = pilot.control(&mut bench.memory(), &Control::Pause);
     assert_eq!(paused, Ok(Status::Paused));
@@ -160,14 +161,14 @@ fn the_emergency_stop_holds_until_released_and_resumed() {
     assert_eq!(
         pilot.status(),
         Status::EmergencyStop,
-        "released is not resumed"
+        "a release does not resume"
     );
     let resumed = pilot.control(&mut bench.memory(), &Control::Resume);
     assert_eq!(resumed, Ok(Status::Exploring));
 }
 
 #[test]
-fn a_wrong_observation_is_a_fault_that_passes() {
+fn a_wrong_observation_is_a_fault_until_the_next() {
     let (mut pilot, mut bench) = started();
     let mut wrong = observation(100);
     wrong.scans[1].ranges_mm.pop();

@@ -1,14 +1,14 @@
-//! The rules of the conversation, each as a script of what is said and heard.
+//! The rules of the conversation, each as a script of requests and replies.
 
 use std::vec;
 use std::vec::Vec;
 
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::frame::{
-    MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_request,
+    MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_body, encode_request,
 };
 use fieldline_protocol::message::{
-    Command, Control, Counters, Crash, Refusal, Reply, Request, Stages, Status, Twist,
+    Command, Control, Counters, Crash, Fault, Refusal, Reply, Request, Stages, Status, Twist,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 
@@ -17,7 +17,7 @@ use crate::meter::Meter;
 use crate::pilot::tests::{Bench, observation, start};
 use crate::signal::Signal;
 
-/// Counts the steps that it measured, and a thousand whenever it is asked.
+/// A meter that counts its steps. Its count grows by a thousand with each call.
 #[derive(Default)]
 struct Steps(u32, u32);
 
@@ -35,7 +35,7 @@ impl Meter for Steps {
     }
 }
 
-/// A host that talks in frames to a device.
+/// A host and a device that exchange frames.
 struct Talk {
     session: Session,
     bench: Bench,
@@ -56,7 +56,7 @@ impl Talk {
         }
     }
 
-    /// Greeted and started, with sequence numbers up to 1 used.
+    /// Returns a started session. The sequence numbers 0 and 1 are used.
     fn started() -> Self {
         let mut talk = Self::booted(Boot::default());
         talk.hear();
@@ -125,7 +125,7 @@ fn refused(sequence: u16, refusal: Refusal) -> Vec<(u16, Reply)> {
 }
 
 #[test]
-fn a_booted_device_says_who_it_is() {
+fn a_booted_device_sends_its_identity() {
     let crash = Crash {
         at: 12,
         ..Crash::default()
@@ -151,7 +151,7 @@ fn a_booted_device_says_who_it_is() {
 }
 
 #[test]
-fn nothing_before_a_hello() {
+fn every_request_before_a_hello_is_refused() {
     let mut talk = Talk::booted(Boot::default());
     talk.hear();
     assert_eq!(talk.session.signal(), Signal::Waiting);
@@ -166,7 +166,7 @@ fn nothing_before_a_hello() {
 }
 
 #[test]
-fn another_protocol_is_turned_away_until_a_right_hello() {
+fn another_protocol_is_refused_until_a_matching_hello() {
     let mut talk = Talk::started();
     for (version, schema) in [(VERSION + 1, SCHEMA), (VERSION, SCHEMA ^ 1)] {
         let foreign = Request::Hello {
@@ -193,7 +193,7 @@ fn another_protocol_is_turned_away_until_a_right_hello() {
 }
 
 #[test]
-fn an_observation_is_answered_with_a_command_and_its_cost() {
+fn an_observation_gets_a_command_with_its_cost() {
     let mut talk = Talk::started();
     let command = talk.observe(2);
     assert_eq!(talk.steps.0, 1);
@@ -213,7 +213,52 @@ fn an_observation_is_answered_with_a_command_and_its_cost() {
     };
     assert_eq!(command.counters, counters);
     let next = talk.observe(3);
-    assert_eq!(next.cost.stages.session, 3000, "with the reply before it");
+    assert_eq!(
+        next.cost.stages.session, 3000,
+        "includes the reply before it"
+    );
+}
+
+#[test]
+fn a_wrong_observation_stops_the_robot_for_one_step() {
+    let mut talk = Talk::started();
+    let mut wrong = observation(200);
+    wrong.scans[1].ranges_mm.pop();
+    let heard = talk.say(2, &Request::Observation(wrong));
+    let [(2, Reply::Command(command))] = heard.as_slice() else {
+        panic!("{heard:?}");
+    };
+    assert_eq!(command.status, Status::Fault(Fault::BadObservation));
+    assert_eq!(command.velocity, Twist::default());
+    assert_eq!(command.cost.stages.sense, 0, "no step");
+    let mut missing = observation(300);
+    missing.scans.pop();
+    let heard = talk.say(3, &Request::Observation(missing));
+    assert!(
+        matches!(heard.as_slice(), [(3, Reply::Command(command))]
+            if command.status == Status::Fault(Fault::BadObservation)),
+        "{heard:?}"
+    );
+    let command = talk.observe(4);
+    assert_ne!(command.status, Status::Fault(Fault::BadObservation));
+    assert_eq!(command.cost.stages.sense, 1000);
+}
+
+/// The schema hash covers the strategies, so a host of this schema cannot send another one. Its bytes are
+/// dropped like any other malformed body.
+#[test]
+fn an_unknown_strategy_starts_no_session() {
+    let mut talk = Talk::booted(Boot::default());
+    talk.hear();
+    talk.say(0, &hello(7));
+    let unknown_strategy = [1, 0, 3, 20, 20, 0, 0, 0, 0, 0, 0, 0, 0];
+    let mut out = [0; MAX_REQUEST_FRAME];
+    let length = encode_body(Kind::Request, 1, &unknown_strategy, &mut out).unwrap();
+    talk.feed(&out[..length]);
+    assert_eq!(talk.hear(), []);
+    assert_eq!(talk.session.counters().dropped, 1);
+    let observation = Request::Observation(observation(0));
+    assert_eq!(talk.say(1, &observation), refused(1, Refusal::NotStarted));
 }
 
 #[test]
@@ -223,23 +268,23 @@ fn a_repeated_number_gets_the_same_reply_and_no_step() {
     talk.feed(&request);
     let first = talk.bytes();
     talk.feed(&request);
-    assert_eq!(talk.bytes(), first, "bit for bit, counters and all");
+    assert_eq!(talk.bytes(), first, "bit for bit, with the same counters");
     assert_eq!(talk.steps.0, 1);
-    // Even if the bytes of the request differ: the number decides.
+    // The number decides, even if the bytes of the request differ.
     talk.feed(&frame(2, &Request::Frontiers));
     assert_eq!(talk.bytes(), first);
     assert_eq!(talk.session.counters().duplicates, 2);
 }
 
 #[test]
-fn an_older_number_is_refused_and_steps_nothing() {
+fn an_older_number_is_refused_without_a_step() {
     let mut talk = Talk::started();
     talk.observe(2);
     talk.observe(3);
     let late = talk.say(2, &Request::Observation(observation(200)));
     assert_eq!(late, refused(2, Refusal::OutOfOrder));
     assert_eq!(talk.steps.0, 2);
-    // The last reply is still there to be repeated.
+    // The last reply is still stored.
     let repeated = talk.observe(3);
     assert_eq!((talk.steps.0, repeated.counters.duplicates), (2, 0));
     assert_eq!(talk.session.counters().duplicates, 1);
@@ -247,7 +292,7 @@ fn an_older_number_is_refused_and_steps_nothing() {
 }
 
 #[test]
-fn numbers_wrap() {
+fn sequence_numbers_wrap() {
     let mut talk = Talk::started();
     for sequence in [0x7000, 0xe000, 0xffff, 0, 1] {
         talk.observe(sequence);
@@ -256,7 +301,7 @@ fn numbers_wrap() {
 }
 
 #[test]
-fn a_late_hello_does_not_disturb_the_numbers_but_a_new_host_does() {
+fn only_a_new_nonce_restarts_the_numbers() {
     let mut talk = Talk::started();
     talk.observe(500);
     assert!(matches!(
@@ -273,7 +318,7 @@ fn a_late_hello_does_not_disturb_the_numbers_but_a_new_host_does() {
 }
 
 #[test]
-fn refusals_are_kept_and_repeated_as_well() {
+fn refusals_are_stored_and_repeated() {
     let mut talk = Talk::booted(Boot::default());
     talk.hear();
     talk.say(0, &hello(7));
@@ -285,7 +330,7 @@ fn refusals_are_kept_and_repeated_as_well() {
 }
 
 #[test]
-fn noise_costs_counters_and_nothing_else() {
+fn noise_only_changes_counters() {
     let mut talk = Talk::started();
     let mut broken = frame(2, &Request::Frontiers);
     broken[3] ^= 0x10;
@@ -297,7 +342,7 @@ fn noise_costs_counters_and_nothing_else() {
 }
 
 #[test]
-fn silence_is_a_stale_stop_once_and_an_observation_ends_it() {
+fn silence_is_one_stale_stop_until_an_observation() {
     let mut talk = Talk::started();
     talk.session.tick(500);
     assert!(!talk.session.is_stale());
@@ -315,7 +360,7 @@ fn silence_is_a_stale_stop_once_and_an_observation_ends_it() {
 }
 
 #[test]
-fn the_clock_wraps_without_a_stop() {
+fn a_wrapping_clock_causes_no_stop() {
     let mut talk = Talk::started();
     talk.session.tick(u32::MAX - 100);
     talk.observe(2);
@@ -334,7 +379,7 @@ fn only_a_driving_session_can_be_stale() {
 }
 
 #[test]
-fn the_emergency_stop_stands_until_resumed() {
+fn the_emergency_stop_holds_until_resumed() {
     let mut talk = Talk::started();
     talk.session.set_emergency_stop(true);
     let command = talk.observe(2);
@@ -350,7 +395,7 @@ fn the_emergency_stop_stands_until_resumed() {
 }
 
 #[test]
-fn a_reset_is_acknowledged_and_wanted() {
+fn a_reset_is_answered_and_requested() {
     let mut talk = Talk::started();
     assert!(!talk.session.wants_reset());
     let reply = talk.say(2, &Request::Control(Control::Reset));
@@ -359,7 +404,7 @@ fn a_reset_is_acknowledged_and_wanted() {
 }
 
 #[test]
-fn logs_go_between_replies_and_never_instead_of_one() {
+fn a_log_never_displaces_a_reply() {
     let mut talk = Talk::started();
     let log: Vec<u8> = (0..=255).collect();
     let mut sent = vec![];
@@ -392,7 +437,7 @@ fn logs_go_between_replies_and_never_instead_of_one() {
 }
 
 #[test]
-fn a_host_that_does_not_read_loses_whole_replies_only() {
+fn a_slow_host_loses_only_whole_replies() {
     let mut talk = Talk::started();
     for sequence in 2..200 {
         talk.feed(&frame(sequence, &Request::Tile { x: 90, y: 90 }));
@@ -403,7 +448,7 @@ fn a_host_that_does_not_read_loses_whole_replies_only() {
     let expected: Vec<u16> = (2..).take(numbers.len()).collect();
     assert_eq!(numbers, expected);
     assert_eq!(talk.host.tally().crc_errors + talk.host.tally().dropped, 0);
-    // The last one was dropped but kept.
+    // The last one was dropped but stored.
     assert_eq!(
         talk.say(199, &Request::Frontiers),
         [(199, Reply::Tile(None))]

@@ -1,0 +1,181 @@
+//! Bytes of every request.
+
+use fieldline_protocol::check::Kind;
+use fieldline_protocol::message::{
+    Control, INVALID_MM, Laser, NO_RETURN_MM, Observation, Pose, Preference, Request, Scan, Start,
+    Strategy, Twist, UnevenGround,
+};
+use fixed::types::{I4F12, I16F16};
+
+use super::common::{hello, requests};
+use super::{frame, long, request_is, schema, short};
+
+#[test]
+fn request_hello() {
+    request_is(hello(300), &[&[0, 1][..], &schema(), &[0xac, 2]].concat());
+}
+
+#[test]
+fn request_control_start_on_uneven_ground() {
+    let uneven_ground = UnevenGround {
+        preference: Preference::Global,
+        obstacle: short(0.25),
+        near: short(1.5),
+        hole: short(-0.5),
+        least: short(-0.5),
+        most: short(2.0),
+        height_scale: short(2.0),
+        global_scale: long(0.25),
+        climb: short(0.5),
+        roll: short(0.25),
+        step: short(0.0625),
+    };
+    request_is(
+        Request::Control(Control::Start(Start {
+            uneven_ground: Some(uneven_ground),
+            ..Start::default()
+        })),
+        &[
+            1, 0, // Control, Start
+            0, // frontier
+            0, 0, // box
+            0, // no lasers
+            0, 0, 0, 0, 0, 0, // radius, speeds, accelerations, period
+            1, 2, // uneven ground: some, global
+            0x80, 0x10, // obstacle 0.25 m = 1024/4096
+            0x80, 0x60, // near 1.5 m = 6144/4096
+            0xff, 0x1f, // hole -0.5 m = -2048/4096, zigzag 4095
+            0xff, 0x1f, // least -0.5
+            0x80, 0x80, 0x01, // most 2 = 8192/4096
+            0x80, 0x80, 0x01, // height scale 2
+            0x80, 0x80, 0x02, // global scale 1/4 = 16384/65536
+            0x80, 0x20, // climb 0.5 rad = 2048/4096
+            0x80, 0x10, // roll 0.25 rad = 1024/4096
+            0x80, 0x04, // step 1/16 m = 256/4096
+        ],
+    );
+}
+
+#[test]
+fn strategies_have_fixed_numbers() {
+    for (strategy, number) in [(Strategy::Frontier, 0), (Strategy::Ouroboros, 1)] {
+        assert_eq!(postcard::to_allocvec(&strategy).unwrap(), [number]);
+    }
+    let strategy = Strategy::Tdbvp { patrol_s: 1800 };
+    assert_eq!(postcard::to_allocvec(&strategy).unwrap(), [2, 0x88, 14]);
+}
+
+#[test]
+fn request_control_start() {
+    let laser = Laser {
+        x: short(0.5),
+        y: short(-0.25),
+        z: short(1.0),
+        pitch: short(0.0),
+        first_bearing: long(-1.5),
+        bearing_step: long(0.015_625),
+        beams: 181,
+        range_limit_mm: 12_000,
+    };
+    request_is(
+        Request::Control(Control::Start(Start {
+            strategy: Strategy::Frontier,
+            box_tiles: (20, 12),
+            lasers: [laser].into_iter().collect(),
+            robot_radius_mm: 300,
+            max_linear: short(0.75),
+            max_angular: short(2.5),
+            linear_accel: short(0.25),
+            angular_accel: short(1.75),
+            period_ms: 200,
+            uneven_ground: None,
+        })),
+        &[
+            1, 0, // Control, Start
+            0, 20, 12, // Frontier, box
+            1,  // one laser
+            0x80, 0x20, // x 0.5 m = 2048/4096, zigzag 4096
+            0xff, 0x0f, // y −0.25 m = −1024/4096, zigzag 2047
+            0x80, 0x40, // z 1 m
+            0,    // pitch
+            0xff, 0xff, 0x0b, // first bearing −1.5 rad = −98304/65536, zigzag 196607
+            0x80, 0x10, // step 1/64 rad = 1024/65536
+            0xb5, 0x01, // 181 beams
+            0xe0, 0x5d, // 12000 mm
+            0xac, 0x02, // radius 300 mm
+            0x80, 0x30, // 0.75 m/s
+            0x80, 0xa0, 0x01, // 2.5 rad/s
+            0x80, 0x10, // 0.25 m/s² = 1024/4096
+            0x80, 0x70, // 1.75 rad/s² = 7168/4096
+            0xc8, 0x01, // 200 ms
+            0,    // flat ground
+        ],
+    );
+}
+
+#[test]
+fn request_control_without_parameters() {
+    request_is(Request::Control(Control::Pause), &[1, 1]);
+    request_is(Request::Control(Control::Resume), &[1, 2]);
+    request_is(Request::Control(Control::Stop), &[1, 3]);
+    request_is(Request::Control(Control::Reset), &[1, 4]);
+}
+
+#[test]
+fn request_observation() {
+    request_is(
+        Request::Observation(Observation {
+            time_ms: 100,
+            pose: Pose {
+                x: long(1.0),
+                y: long(-1.0),
+                z: long(0.0),
+                roll: long(0.5),
+                pitch: I16F16::DELTA,
+                yaw: -I16F16::DELTA,
+            },
+            velocity: Twist {
+                linear: short(0.5),
+                angular: -I4F12::DELTA,
+            },
+            scans: [
+                Scan {
+                    ranges_mm: [INVALID_MM, 127, 128, NO_RETURN_MM].into_iter().collect(),
+                },
+                Scan::default(),
+            ]
+            .into_iter()
+            .collect(),
+        }),
+        &[
+            2, 100, // Observation, time
+            0x80, 0x80, 0x08, // x 1 m = 65536, zigzag 131072
+            0xff, 0xff, 0x07, // y −1 m
+            0,    // z
+            0x80, 0x80, 0x04, // roll 0.5 rad
+            2, 1, // smallest pitch and yaw
+            0x80, 0x20, 1, // velocity
+            2, // two scans
+            4, 0, 127, 0x80, 0x01, 0xff, 0x7f, // four ranges
+            0,    // no ranges
+        ],
+    );
+}
+
+#[test]
+fn request_readouts() {
+    request_is(Request::Tile { x: -1, y: 64 }, &[3, 1, 0x80, 0x01]);
+    request_is(Request::FieldRow { row: 60 }, &[4, 60]);
+    request_is(Request::Frontiers, &[5]);
+    request_is(Request::Path { from: 32 }, &[6, 32]);
+}
+
+/// A schema without the strategy's number cannot decode the start, so the device drops it.
+#[test]
+fn an_unknown_strategy_is_not_a_request() {
+    let mut body =
+        postcard::to_allocvec(&Request::Control(Control::Start(Start::default()))).unwrap();
+    assert_eq!(requests(&frame(Kind::Request, 1, &body)).0.len(), 1);
+    body[2] = 3;
+    assert_eq!(requests(&frame(Kind::Request, 1, &body)).0, []);
+}
