@@ -1,5 +1,7 @@
-//! Worlds without loops of corridors, to the published sizes [Ouroboros, IV: C, rooms along corridors that close no loop; D, a
-//! square with small obstacles, as of trees]. The paper gives their sizes and says what they are; the rest is drawn here.
+//! Two worlds without loops of corridors, of published sizes [Jorge15, IV]: C has rooms along
+//! corridors that close no loop, D is a square with small round obstacles like trees.
+//!
+//! The paper gives their sizes and describes them; this file chooses the rest.
 
 use super::super::canvas::{Canvas, hash};
 use super::super::occupancy::{Class, Occupancy};
@@ -7,7 +9,7 @@ use super::super::occupancy::{Class, Occupancy};
 /// Thickness of the outer wall, metres.
 const WALL_M: f64 = 0.2;
 
-/// Rooms of C, inside corners.
+/// Rooms of C, by their inner corners.
 const ROOMS: [[f64; 4]; 11] = [
     [0.0, 0.0, 4.8, 5.7],
     [5.1, 0.0, 10.2, 5.7],
@@ -21,13 +23,13 @@ const ROOMS: [[f64; 4]; 11] = [
     [12.8, 16.0, 17.6, 25.0],
     [17.9, 16.0, 23.0, 25.0],
 ];
-/// Corridors of C, 2 m wide: one all the way up, one to either side of it.
+/// Corridors of C, 2 m wide: one along the whole height, one to each side of it.
 const CORRIDORS: [[f64; 4]; 3] = [
     [10.5, 0.0, 12.5, 25.0],
     [0.0, 6.0, 10.6, 8.0],
     [12.4, 13.7, 23.0, 15.7],
 ];
-/// Doors of C, 1 m wide and more than a wall deep: one for each room.
+/// Doors of C, 1 m wide and deeper than a wall: one for each room.
 const DOORS: [[f64; 4]; 11] = [
     [2.0, 5.6, 3.0, 6.1],
     [7.2, 5.6, 8.2, 6.1],
@@ -53,9 +55,9 @@ pub(super) fn c() -> Occupancy {
 
 /// Inner side of D, metres.
 const SIDE_M: f64 = 20.0;
-/// Least way between two trees, and between a tree and a wall, metres.
+/// Least gap between two trees, and between a tree and a wall, metres.
 const GAP_M: f64 = 1.4;
-/// Places tried; most are refused for want of room.
+/// Number of places that are tried; most have no room.
 const TRIALS: u32 = 400;
 
 /// Draws Ouroboros D.
