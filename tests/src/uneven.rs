@@ -5,7 +5,7 @@
 
 use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::link::direct::Direct;
-use host_sim::metrics::{Table as Truth, crossings};
+use host_sim::metrics::{MapScore as Truth, crossings};
 use host_sim::report::Report;
 use host_sim::trial::Record;
 use host_sim::trial::mission::{Mission, TERRAIN};

@@ -26,7 +26,7 @@ use fieldline_tests::uneven::Tour;
 use fieldline_tests::watched::Watched;
 use fieldline_tests::{full, golden, worlds};
 use host_sim::link::direct::Direct;
-use host_sim::metrics::{GroundTruth, Truly};
+use host_sim::metrics::{GroundTruth, TrueClass};
 use host_sim::report::{MapCell, Report};
 use host_sim::trial::{Record, Step};
 use host_sim::world::World;
@@ -133,10 +133,10 @@ fn rim(ground: &GroundTruth, [x0, y0, x1, y1]: [f64; 4]) -> Vec<[i32; 2]> {
     let class = |x: i32, y: i32| ground.class(Cell { x, y });
     let is_rim = |[x, y]: &[i32; 2]| {
         let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
-        class(*x, *y) == Truly::Negative
+        class(*x, *y) == TrueClass::Negative
             && around
                 .map(|(x, y)| class(x, y))
-                .any(|class| class == Truly::Traversable)
+                .any(|class| class == TrueClass::Traversable)
     };
     let around = [x0 - 0.2, y0 - 0.2, x1 + 0.2, y1 + 0.2];
     cells(around).filter(is_rim).collect()

@@ -1,57 +1,59 @@
-//! How much of what could be known is known.
+//! Coverage: the share of the visible map cells that the map knows.
 //!
-//! The denominator is honest: the map cells of 10 cm that a disc of the robot's radius, driven wherever it can get from the
-//! start ([`CellSet::reach`]), could have seen. A cell counts if its centre is free and
+//! The denominator is the map cells of 10 cm that a robot could see from everywhere that its disc
+//! can reach from the start ([`CellSet::reach`]). A cell counts if its centre is free and
 //! - lies in a reached cell, or
-//! - one of [`DIRECTIONS`] level rays from it meets a reached cell within the laser's range before anything solid.
+//! - one of [`DIRECTIONS`] level rays from it hits a reached cell within the laser's range, before
+//!   anything solid.
 //!
-//! On uneven ground the denominator is what the robot covers from wherever it can get within its limits
+//! On uneven ground the denominator is the ground that the robot covers within its limits
 //! ([`Footing`]).
 //!
-//! The numerator counts only cells of the denominator, so that a map smeared beyond the walls earns nothing. Once
-//! known, a cell stays counted until [`Coverage::recount`].
+//! The numerator counts only cells of the denominator, so a map smeared beyond the walls gains
+//! nothing. A cell that was known once stays counted.
 //!
 //! [`CellSet::reach`]: super::CellSet::reach
 
 use fieldline_planner::geometry::Cell;
 
+use super::cell_area::CellArea;
 use super::footing::Footing;
-use super::frame::Frame;
 use super::reach::CellSet;
-use crate::world::{GridCell, Start, Walk, World};
+use crate::world::{GridCell, GridTraversal, Start, World};
 
 /// Side of a map cell, metres; `fieldline_planner::geometry::CELL_M` in double precision.
 pub const MAP_CELL_M: f64 = 0.1;
-/// Rays cast from a cell before it is called invisible.
+/// Number of rays from a cell before it counts as invisible.
 pub const DIRECTIONS: u32 = 360;
-/// Coprime to [`DIRECTIONS`] and near its golden section: consecutive rays go far apart.
+/// Step between consecutive rays. It is coprime to [`DIRECTIONS`] and near its golden section, so
+/// consecutive rays point far apart.
 const STRIDE: u32 = 223;
 
-/// What the true world has in a map cell.
+/// Content of a map cell in the true world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Truth {
     /// Nothing solid anywhere in it.
     Free,
-    /// Solid in part: an edge of something.
+    /// Partly solid: an edge of something.
     Edge,
-    /// Solid throughout, or outside of the world.
+    /// Wholly solid, or outside of the world.
     Solid,
 }
 
-/// The measure of an exploration.
+/// Coverage of an exploration.
 #[derive(Clone, Debug)]
 pub struct Coverage {
-    /// Cells that can be seen, those already known first.
+    /// Visible cells; the known ones come first.
     cells: Vec<Cell>,
     known: usize,
     seen_at_s: [Option<f64>; 2],
 }
 
-/// Fractions whose times are kept: T90 and T99.
+/// Fractions whose times are recorded: T90 and T99.
 const MILESTONES: [f64; 2] = [0.90, 0.99];
 
 impl Coverage {
-    /// Finds everything that a disc of `radius_m`, driven from `start`, could have seen within `range_m`.
+    /// Finds the cells that a disc of `radius_m` from `start` can see within `range_m`.
     #[must_use]
     pub fn new(world: &World, start: Start, radius_m: f64, range_m: f64) -> Self {
         let reach = CellSet::reach(world, start, radius_m);
@@ -61,7 +63,7 @@ impl Coverage {
             .filter(|cell| {
                 let [x, y] = centre_m(*cell);
                 let place = grid.cell_at(x, y);
-                // A line of sight is free all along, so it cannot leave the free cells around the start.
+                // A line of sight is free, so it stays in the free cells around the start.
                 reach.contains(place)
                     || (free.contains(place) && visible(world, &reach, [x, y], range_m))
             })
@@ -73,12 +75,12 @@ impl Coverage {
         }
     }
 
-    /// What a robot on uneven ground covers from wherever it can get.
+    /// The cells that a robot on uneven ground covers.
     #[must_use]
     pub fn on(footing: &Footing) -> Self {
-        let frame = *footing.frame();
-        let cells = (0..frame.len())
-            .map(|index| frame.cell(index))
+        let area = *footing.area();
+        let cells = (0..area.len())
+            .map(|index| area.cell(index))
             .filter(|cell| footing.covers(*cell));
         Self {
             cells: cells.collect(),
@@ -87,7 +89,8 @@ impl Coverage {
         }
     }
 
-    /// Asks about the cells not known so far, at a simulated time in seconds, and returns the fraction.
+    /// Tests the cells that are not known so far, at a simulated time in seconds, and returns the
+    /// fraction.
     pub fn update(&mut self, time_s: f64, is_known: impl Fn(Cell) -> bool) -> f64 {
         for index in self.known..self.cells.len() {
             if is_known(self.cells[index]) {
@@ -104,13 +107,7 @@ impl Coverage {
         fraction
     }
 
-    /// Asks about every cell anew, the known ones too, and returns the fraction.
-    pub fn recount(&mut self, time_s: f64, is_known: impl Fn(Cell) -> bool) -> f64 {
-        self.known = 0;
-        self.update(time_s, is_known)
-    }
-
-    /// Known cells over cells that can be seen; 1 where there are none.
+    /// Known cells over visible cells; 1 if there are none.
     #[must_use]
     pub fn fraction(&self) -> f64 {
         if self.cells.is_empty() {
@@ -120,37 +117,37 @@ impl Coverage {
         }
     }
 
-    /// Area known of what can be seen, m².
+    /// Known area, m².
     #[must_use]
     pub fn known_m2(&self) -> f64 {
         self.known as f64 * MAP_CELL_M * MAP_CELL_M
     }
 
-    /// Area that can be seen, m².
+    /// Visible area, m².
     #[must_use]
     pub fn reachable_m2(&self) -> f64 {
         self.cells.len() as f64 * MAP_CELL_M * MAP_CELL_M
     }
 
-    /// When 90 % were known, simulated seconds.
+    /// Simulated time at which 90 % were known, seconds.
     #[must_use]
     pub fn t90_s(&self) -> Option<f64> {
         self.seen_at_s[0]
     }
 
-    /// When 99 % were known, simulated seconds.
+    /// Simulated time at which 99 % were known, seconds.
     #[must_use]
     pub fn t99_s(&self) -> Option<f64> {
         self.seen_at_s[1]
     }
 
-    /// Cells that can be seen but are not known.
+    /// Visible cells that are not known.
     #[must_use]
     pub fn missing(&self) -> &[Cell] {
         &self.cells[self.known..]
     }
 
-    /// All cells that can be seen, in no particular order.
+    /// All visible cells, in no particular order.
     #[must_use]
     pub fn cells(&self) -> &[Cell] {
         &self.cells
@@ -159,14 +156,14 @@ impl Coverage {
 
 /// The map cells that lie at least partly in the world, row by row.
 pub fn map_cells(world: &World) -> impl Iterator<Item = Cell> + use<> {
-    let frame = Frame::of(world);
-    (0..frame.len()).map(move |index| frame.cell(index))
+    let area = CellArea::of(world);
+    (0..area.len()).map(move |index| area.cell(index))
 }
 
-/// What the true world has in a map cell.
+/// Content of a map cell in the true world.
 #[must_use]
 pub fn truth(world: &World, cell: Cell) -> Truth {
-    // A border that is shared with the next cell, give or take rounding, does not count.
+    // The border that a cell shares with the next one does not count; rounding must not add it.
     let slack_m = 1e-6;
     let [x, y] = centre_m(cell);
     let half = 0.5 * MAP_CELL_M - slack_m;
@@ -195,18 +192,18 @@ pub(super) fn centre_m(cell: Cell) -> [f64; 2] {
     [cell.x, cell.y].map(|k| (f64::from(k) + 0.5) * MAP_CELL_M)
 }
 
-/// Does some ray from a point meet a reached cell before anything solid?
+/// Returns true if some ray from a point hits a reached cell before anything solid.
 fn visible(world: &World, reach: &CellSet, from_m: [f64; 2], range_m: f64) -> bool {
     let step = core::f64::consts::TAU / f64::from(DIRECTIONS);
     (0..DIRECTIONS).any(|k| {
         let bearing = f64::from(k * STRIDE % DIRECTIONS) * step;
         let direction = [libm::cos(bearing), libm::sin(bearing)];
-        meets(world, reach, (from_m, direction), range_m)
+        sees(world, reach, (from_m, direction), range_m)
     })
 }
 
-/// Does this ray?
-fn meets(
+/// Returns true if this ray hits a reached cell before anything solid.
+fn sees(
     world: &World,
     reach: &CellSet,
     (from_m, direction): ([f64; 2], [f64; 2]),
@@ -215,9 +212,9 @@ fn meets(
     let grid = world.occupancy();
     let origin_m = grid.origin_m();
     let start = [0, 1].map(|k| (from_m[k] - origin_m[k]) / grid.resolution_m());
-    let mut walk = Walk::new(start, direction.map(|d| d / grid.resolution_m()));
-    while walk.entered_m <= range_m {
-        let [i, j] = walk.cell;
+    let mut traversal = GridTraversal::new(start, direction.map(|d| d / grid.resolution_m()));
+    while traversal.entered_m <= range_m {
+        let [i, j] = traversal.cell;
         let cell = GridCell { i, j };
         if grid.is_solid(cell) {
             return false;
@@ -225,7 +222,7 @@ fn meets(
         if reach.contains(cell) {
             return true;
         }
-        walk.advance();
+        traversal.advance();
     }
     false
 }
@@ -233,19 +230,19 @@ fn meets(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::{Class, Occupancy, Ray};
+    use crate::world::{Class, Occupancy, Ray, place};
     use std::collections::BTreeSet;
 
     const RANGE_M: f64 = 12.0;
 
-    /// Map cells seen, of a world whose corner lies at the origin, with a margin of one cell.
+    /// Seen map cells of a world whose corner is the origin, with a margin of one cell.
     struct Seen {
         columns: i32,
         cells: Vec<bool>,
     }
 
     impl Seen {
-        /// What perfect beams see from every eighth cell of reach in both directions.
+        /// Casts perfect beams from every eighth reached cell along both axes.
         fn from_everywhere(world: &World, start: Start) -> Self {
             let [columns, rows] = world.size_m().map(|m| (m / MAP_CELL_M) as i32 + 3);
             let mut seen = Self {
@@ -307,7 +304,8 @@ mod tests {
             let mut coverage = Coverage::new(&world, start, 0.3, RANGE_M);
             let fraction = coverage.update(1.0, |cell| seen.contains(cell));
             assert!(fraction > 0.995, "{name}: {fraction}");
-            // What is seen and free is in the denominator, but for cells whose centre hides behind an edge.
+            // Seen free cells are in the denominator, except for those whose centre is behind an
+            // edge.
             let cells: BTreeSet<_> = coverage.cells().iter().map(|c| (c.x, c.y)).collect();
             let beyond = map_cells(&world)
                 .filter(|cell| seen.contains(*cell) && truth(&world, *cell) == Truth::Free)
@@ -318,21 +316,25 @@ mod tests {
     }
 
     #[test]
-    fn a_room_seen_through_a_gap_counts_as_far_as_it_is_seen() {
+    fn a_room_behind_a_gap_counts_as_far_as_it_is_visible() {
         let world = World::builtin("unreachable-room").expect("built in");
         let coverage = Coverage::new(&world, world.starts()[0], 0.3, RANGE_M);
-        let counts = |x0: i32, x1: i32| {
-            let inside = |c: &&Cell| (x0..x1).contains(&c.x) && (54..102).contains(&c.y);
+        let count = |room: &str| {
+            let room = place("unreachable-room", room).expect("a room");
+            let [x0, y0, x1, y1] = room.extent_m.map(|m| (m / MAP_CELL_M).round() as i32);
+            let inside = |c: &&Cell| (x0..x1).contains(&c.x) && (y0..y1).contains(&c.y);
             coverage.cells().iter().filter(inside).count()
         };
-        // 42 × 48 cells each: nothing of the sealed room, most of the one behind the gap, all of the open one.
-        assert_eq!(counts(2, 44), 0);
-        assert!((1500..2016).contains(&counts(46, 88)), "{}", counts(46, 88));
-        assert_eq!(counts(90, 132), 2016);
+        // Of 42 × 48 cells each: none of the sealed room, most of the room behind the gap, all of
+        // the open room.
+        assert_eq!(count("sealed room"), 0);
+        let behind = count("room behind the gap");
+        assert!((1500..2016).contains(&behind), "{behind}");
+        assert_eq!(count("room with a door"), 2016);
     }
 
     #[test]
-    fn milestones_are_kept_and_a_recount_forgets() {
+    fn milestones_are_kept_and_areas_add_up() {
         let row = ".".repeat(20);
         let world = World::picture("room", 0.1, &[row.as_str(); 20]);
         let start = Start {
@@ -340,7 +342,8 @@ mod tests {
             y_m: 1.0,
             yaw_rad: 0.0,
         };
-        let mut coverage = Coverage::new(&world, start, 0.3, RANGE_M);
+        let unseen = Coverage::new(&world, start, 0.3, RANGE_M);
+        let mut coverage = unseen.clone();
         assert!((coverage.reachable_m2() - 4.0).abs() < 1e-9);
         assert_eq!(coverage.update(1.0, |cell| cell.y < 10), 0.5);
         assert_eq!((coverage.t90_s(), coverage.t99_s()), (None, None));
@@ -348,17 +351,18 @@ mod tests {
         assert_eq!(coverage.update(3.0, |_| true), 1.0);
         assert_eq!((coverage.t90_s(), coverage.t99_s()), (Some(2.0), Some(3.0)));
         assert!(coverage.missing().is_empty());
-        assert_eq!(coverage.recount(4.0, |cell| cell.x < 10), 0.5);
+        let mut coverage = unseen;
+        assert_eq!(coverage.update(4.0, |cell| cell.x < 10), 0.5);
         assert!((coverage.known_m2() - 2.0).abs() < 1e-9);
         assert_eq!(coverage.missing().len(), 200);
     }
 
     #[test]
-    fn truth_of_cells_that_do_not_match_the_worlds_grid() {
+    fn cells_off_the_worlds_grid_have_their_true_content() {
         let mut grid = Occupancy::filled(4, 1, 0.075, [0.0, 0.0], Class::Free);
         grid.set(GridCell { i: 3, j: 0 }, Class::Wall);
         let world = World::flat("strip", grid, Vec::new());
-        // Columns end at 0.075, 0.15, 0.225 (wall from there) and 0.3; above 0.075 everything is outside.
+        // Columns end at 0.075, 0.15, 0.225 (then wall) and 0.3 m; all above 0.075 m is outside.
         let truths = [0, 1, 2, 3].map(|x| truth(&world, Cell { x, y: 0 }));
         assert_eq!(
             truths,

@@ -1,12 +1,13 @@
-//! How often a path goes from one storey of the ground to the other.
+//! Number of times that a path crosses a slope from one height level to the other.
 //!
-//! A storey is whatever lies below the first height, or above the second; between them lies the slope. Somebody is in the storey that he was
-//! in last, so that who turns back half way has not crossed. Metres.
+//! The lower level is below the first height, the upper level above the second; the slope lies
+//! between. On the slope a robot still counts to the level that it left, so turning back half way
+//! is no crossing. Metres.
 
-/// Changes of storey along a path of ground heights; the first storey that it comes to is no change.
+/// Changes of level along a path of ground heights; the first level that it reaches is no change.
 #[must_use]
 pub fn crossings(heights_m: impl IntoIterator<Item = f64>, [low_m, high_m]: [f64; 2]) -> u32 {
-    let (mut upstairs, mut changes) = (None, 0);
+    let (mut upper, mut changes) = (None, 0);
     for height_m in heights_m {
         let now = if height_m < low_m {
             Some(false)
@@ -15,8 +16,8 @@ pub fn crossings(heights_m: impl IntoIterator<Item = f64>, [low_m, high_m]: [f64
         } else {
             continue;
         };
-        changes += u32::from(upstairs.is_some() && upstairs != now);
-        upstairs = now;
+        changes += u32::from(upper.is_some() && upper != now);
+        upper = now;
     }
     changes
 }
@@ -26,13 +27,13 @@ mod tests {
     use super::crossings;
 
     #[test]
-    fn who_turns_back_on_the_slope_has_not_crossed() {
+    fn turning_back_on_the_slope_is_no_crossing() {
         let count = |heights_m: &[f64]| crossings(heights_m.iter().copied(), [0.2, 1.6]);
         assert_eq!(count(&[]), 0);
         assert_eq!(count(&[0.0, 0.1, 1.5, 0.3, 0.0]), 0);
         assert_eq!(count(&[0.0, 0.8, 1.7, 1.5, 1.8]), 1);
         assert_eq!(count(&[1.8, 0.1, 0.9, 1.7, 0.9, 0.0]), 3);
-        // Where it begins on the slope, the storey that it comes to first counts as its own.
+        // If the path begins on the slope, the first level that it reaches counts as its start.
         assert_eq!(count(&[0.9, 1.8, 0.9]), 0);
         assert_eq!(count(&[0.9, 1.8, 0.0]), 1);
     }

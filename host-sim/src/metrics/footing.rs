@@ -1,127 +1,125 @@
-//! Where a robot can stand and go on uneven ground, within its limits: positions, and the ground it covers from them.
+//! Positions that a robot can reach on uneven ground within its limits, and the ground it covers.
 //!
-//! A state is a map cell of 10 cm and one of [`HEADINGS`] headings. It is *sound* if no wall comes nearer than the radius to the
-//! cell's centre, the stance there is within the slopes for that heading, nothing touches belly or bumpers, and no edge beyond the limits lies
-//! within a wheel's radius before or behind a wheel. From a sound state the robot goes forwards or backwards to the next cell
-//! along its heading, or turns to the next heading, where the state there is sound and no wheel goes up or down
-//! by more than its limit on the way. An edge that could be gone down but not up again is not used. So a slope that may be climbed but not crossed is reached where there is room to take it head-on.
+//! A state is a map cell of 10 cm and one of [`HEADINGS`] headings. It is *sound* if
+//! - no wall is nearer to the cell's centre than the radius,
+//! - the stance there is within the slopes for that heading,
+//! - nothing touches belly or bumpers, and
+//! - no edge beyond the limits lies within a wheel's radius before or behind a wheel.
 //!
-//! *Covered* ground: cells within the radius of a position that was reached, which are gentle themselves. Departs from the measure of flat
-//! worlds, which counts what can be seen from there: over drops and slopes two planar lasers see what lies in their planes by
-//! chance only. Metres, radians.
+//! From a sound state the robot drives forwards or backwards to the next cell along its heading, or
+//! turns to the next heading. The next state must be sound too, and no wheel may go up or down by
+//! more than its limit on the way. An edge that the robot can go down and not up again is not used.
+//! So a slope that it can climb and cannot cross is reached where there is room to take it head-on.
+//!
+//! *Covered* ground is gentle cells within the radius of a reached position. In a flat world
+//! coverage counts what the lasers can see instead. On drops and slopes that would be chance: two
+//! planar lasers see only what lies in their planes. Metres, radians.
 
 use fieldline_planner::geometry::Cell;
 
+use super::cell_area::CellArea;
 use super::coverage::{MAP_CELL_M, centre_m};
-use super::frame::Frame;
 use super::gentle::{is_gentle, level};
-use super::reach::START_SLACK_M;
+use super::reach::is_open;
 use crate::robot::{
     Limits, Pose, fall_along_m, ground_m, is_aground, resting, rise_along_m, wheels,
 };
 use crate::world::{Start, World};
 
-/// Headings of a state, all around.
+/// Number of headings of a state.
 pub const HEADINGS: usize = 16;
-/// Cells to the next one along each heading of the first quarter.
+/// Offset to the next cell along each heading of the first quarter, cells.
 const STEPS: [[i32; 2]; 4] = [[1, 0], [2, 1], [1, 1], [1, 2]];
-/// What was reached and covered.
+
+/// The states that a robot reaches, and the cells that it covers.
 #[derive(Clone, Debug)]
 pub struct Footing {
-    frame: Frame,
-    /// Headings in which each cell was reached, one bit each.
+    area: CellArea,
+    /// Headings in which each cell is reached, one bit per heading.
     reached: Vec<u16>,
     covered: Vec<bool>,
 }
 
 impl Footing {
-    /// Everything from a start.
+    /// Searches all states from a start.
     #[must_use]
     pub fn new(world: &World, start: Start, radius_m: f64, limits: &Limits) -> Self {
-        let frame = Frame::of(world);
-        let mut flood = Flood::new(world, start, (radius_m, limits), frame);
-        flood.run();
-        let reached = flood.reached;
-        let covered = covered(world, &frame, &reached, (radius_m, limits));
+        let area = CellArea::of(world);
+        let mut search = Search::new(world, start, (radius_m, limits), area);
+        search.run();
+        let reached = search.reached;
+        let covered = covered(world, &area, &reached, (radius_m, limits));
         Self {
-            frame,
+            area,
             reached,
             covered,
         }
     }
 
-    /// The cells that this is about.
+    /// The map cells of the world.
     #[must_use]
-    pub fn frame(&self) -> &Frame {
-        &self.frame
+    pub fn area(&self) -> &CellArea {
+        &self.area
     }
 
-    /// Can the robot's centre get to a cell?
+    /// Returns true if the robot's centre reaches a cell.
     #[must_use]
     pub fn reaches(&self, cell: Cell) -> bool {
-        self.frame
+        self.area
             .index(cell)
             .is_some_and(|index| self.reached[index] != 0)
     }
 
-    /// Can it in one of the headings, counted counter-clockwise from east?
-    #[must_use]
-    pub fn reaches_heading(&self, cell: Cell, heading: usize) -> bool {
-        let index = self.frame.index(cell);
-        index.is_some_and(|index| self.reached[index] >> (heading % HEADINGS) & 1 == 1)
-    }
-
-    /// Is a cell covered?
+    /// Returns true if the robot covers a cell.
     #[must_use]
     pub fn covers(&self, cell: Cell) -> bool {
-        self.frame
+        self.area
             .index(cell)
             .is_some_and(|index| self.covered[index])
     }
 }
 
-/// The search.
-struct Flood<'w> {
+/// The search over states.
+struct Search<'w> {
     world: &'w World,
     limits: &'w Limits,
-    frame: Frame,
+    area: CellArea,
     start: Start,
-    /// No wall is too near.
+    /// True for each cell that is far enough from walls.
     open: Vec<bool>,
-    /// So level all around that every heading is sound if the cell is open.
+    /// True for each cell whose ground is so level all around that every heading is sound if the
+    /// cell is open.
     level: Vec<bool>,
     reached: Vec<u16>,
-    /// States whose soundness is known, and those that are sound.
+    /// States whose soundness was computed.
     asked: Vec<u16>,
+    /// States that are sound, of those in `asked`.
     sound: Vec<u16>,
     waiting: Vec<(usize, usize)>,
 }
 
-impl<'w> Flood<'w> {
+impl<'w> Search<'w> {
     fn new(
         world: &'w World,
         start: Start,
         (radius_m, limits): (f64, &'w Limits),
-        frame: Frame,
+        area: CellArea,
     ) -> Self {
-        let open = (0..frame.len()).map(|index| {
-            let [x, y] = centre_m(frame.cell(index));
-            let place = world.occupancy().cell_at(x, y);
-            let (dx, dy) = (x - start.x_m, y - start.y_m);
-            !world.occupancy().is_solid(place)
-                && (world.distance().from_centre_m(place) >= radius_m - 1e-9
-                    || dx * dx + dy * dy <= START_SLACK_M * START_SLACK_M)
+        let open = (0..area.len()).map(|index| {
+            let [x, y] = centre_m(area.cell(index));
+            let cell = world.occupancy().cell_at(x, y);
+            is_open(world, start, radius_m, (cell, [x, y]))
         });
         Self {
             world,
             limits,
-            frame,
+            area,
             start,
             open: open.collect(),
-            level: level(world, &frame, limits),
-            reached: vec![0; frame.len()],
-            asked: vec![0; frame.len()],
-            sound: vec![0; frame.len()],
+            level: level(world, &area, limits),
+            reached: vec![0; area.len()],
+            asked: vec![0; area.len()],
+            sound: vec![0; area.len()],
             waiting: Vec::new(),
         }
     }
@@ -138,7 +136,7 @@ impl<'w> Flood<'w> {
         }
     }
 
-    /// Where the robot is put down counts as sound, in all headings that are so and in its own.
+    /// Enters the start in its own heading, which counts as sound.
     fn begin(&mut self) {
         let cell = |m: f64| (m / MAP_CELL_M).floor() as i32;
         let start = Cell {
@@ -148,7 +146,7 @@ impl<'w> Flood<'w> {
         let step = core::f64::consts::TAU / HEADINGS as f64;
         let own = (self.start.yaw_rad / step).round() as i64;
         let own = own.rem_euclid(HEADINGS as i64) as usize;
-        if let Some(index) = self.frame.index(start) {
+        if let Some(index) = self.area.index(start) {
             self.enter(index, own);
         }
     }
@@ -164,7 +162,7 @@ impl<'w> Flood<'w> {
         if self.reached[index] >> to & 1 == 1 || !self.is_sound(index, to) {
             return;
         }
-        let centre = centre_m(self.frame.cell(index));
+        let centre = centre_m(self.area.cell(index));
         if self.level[index] || self.passes(&pose(centre, from), &pose(centre, to)) {
             self.enter(index, to);
         }
@@ -172,18 +170,14 @@ impl<'w> Flood<'w> {
 
     fn drive(&mut self, index: usize, heading: usize, sign: i32) {
         let [dx, dy] = step_along(heading);
-        let here = self.frame.cell(index);
-        let there = Cell {
-            x: here.x + sign * dx,
-            y: here.y + sign * dy,
-        };
-        let Some(next) = self.frame.index(there) else {
+        let here = self.area.cell(index);
+        let Some(next) = self.area.beside(here, [sign * dx, sign * dy]) else {
             return;
         };
         if self.reached[next] >> heading & 1 == 1 || !self.is_sound(next, heading) {
             return;
         }
-        let (a, b) = (centre_m(here), centre_m(there));
+        let (a, b) = (centre_m(here), centre_m(self.area.cell(next)));
         let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
         let long = dx.abs() + dy.abs() > 2;
         let poses = [a, middle, b].map(|centre| pose(centre, heading));
@@ -202,7 +196,7 @@ impl<'w> Flood<'w> {
         }
         if self.asked[index] >> heading & 1 == 0 {
             self.asked[index] |= 1 << heading;
-            let pose = pose(centre_m(self.frame.cell(index)), heading);
+            let pose = pose(centre_m(self.area.cell(index)), heading);
             if self.is_sound_at(&pose) {
                 self.sound[index] |= 1 << heading;
             }
@@ -210,7 +204,7 @@ impl<'w> Flood<'w> {
         self.sound[index] >> heading & 1 == 1
     }
 
-    /// Everything but the walls.
+    /// Checks everything except the walls.
     fn is_sound_at(&self, planar: &Pose) -> bool {
         let wheels = wheels(planar);
         let Some(heights_m) = ground_m(self.world, &wheels) else {
@@ -234,7 +228,7 @@ impl<'w> Flood<'w> {
         !edges && !is_aground(self.world, &stance, self.limits)
     }
 
-    /// No wheel goes up or down too much from one pose to the other.
+    /// Returns true if no wheel goes up or down too much from one pose to the other.
     fn passes(&self, from: &Pose, to: &Pose) -> bool {
         let heights = [from, to].map(|pose| ground_m(self.world, &wheels(pose)));
         let [Some(from_m), Some(to_m)] = heights else {
@@ -255,7 +249,7 @@ fn pose([x_m, y_m]: [f64; 2], heading: usize) -> Pose {
     }
 }
 
-/// Cells to the next one along a heading.
+/// Offset to the next cell along a heading, cells.
 fn step_along(heading: usize) -> [i32; 2] {
     let [mut dx, mut dy] = STEPS[heading % 4];
     for _ in 0..heading / 4 {
@@ -264,10 +258,10 @@ fn step_along(heading: usize) -> [i32; 2] {
     [dx, dy]
 }
 
-/// Gentle cells within the radius of a reached one.
+/// Gentle cells within the radius of a reached cell.
 fn covered(
     world: &World,
-    frame: &Frame,
+    area: &CellArea,
     reached: &[u16],
     (radius_m, limits): (f64, &Limits),
 ) -> Vec<bool> {
@@ -276,21 +270,17 @@ fn covered(
         .flat_map(|y| (-cells..=cells).map(move |x| [x, y]))
         .filter(|[x, y]| f64::from(x * x + y * y).sqrt() * MAP_CELL_M <= radius_m + 1e-9)
         .collect();
-    let mut near = vec![false; frame.len()];
-    for index in (0..frame.len()).filter(|index| reached[*index] != 0) {
-        let cell = frame.cell(index);
-        for [dx, dy] in &offsets {
-            let beside = Cell {
-                x: cell.x + dx,
-                y: cell.y + dy,
-            };
-            if let Some(beside) = frame.index(beside) {
+    let mut near = vec![false; area.len()];
+    for index in (0..area.len()).filter(|index| reached[*index] != 0) {
+        let cell = area.cell(index);
+        for offset in &offsets {
+            if let Some(beside) = area.beside(cell, *offset) {
                 near[beside] = true;
             }
         }
     }
-    (0..frame.len())
-        .map(|index| near[index] && is_gentle(world, frame.cell(index), limits))
+    (0..area.len())
+        .map(|index| near[index] && is_gentle(world, area.cell(index), limits))
         .collect()
 }
 

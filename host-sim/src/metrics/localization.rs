@@ -1,4 +1,5 @@
-//! How far the odometry is from the truth: mean and greatest planar error, metres, over all observations.
+//! Error of the odometry: mean and greatest planar distance from the truth over all observations,
+//! metres.
 
 /// The error so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -9,14 +10,14 @@ pub struct Localization {
 }
 
 impl Localization {
-    /// Takes in one error, metres.
+    /// Adds one error, metres.
     pub fn add(&mut self, error_m: f64) {
         self.sum_m += error_m;
         self.max_m = self.max_m.max(error_m);
         self.count += 1;
     }
 
-    /// Mean error, metres; 0 before the first.
+    /// Mean error, metres; 0 before the first observation.
     #[must_use]
     pub fn mean_error_m(&self) -> f64 {
         self.sum_m / self.count.max(1) as f64

@@ -1,38 +1,40 @@
-//! Loops closed: how many of the world's loops the robot went all the way round, judged on its true path.
+//! Closed loops: how many of the world's loops the robot drove all the way round, on its true path.
 //!
-//! A loop goes round an *island*: a piece of what the robot's centre cannot get to (8-connected, so that no way leads through) that
-//! does not touch the world's border. It is worth counting if the box around the island is [`LEAST_M`] around. The loop is closed
-//! when the path's angle about a cell of the island, turns counted, has spanned
+//! A loop goes round an *island*: an 8-connected set of cells that the robot's centre cannot reach,
+//! and that does not touch the world's border. It counts if the perimeter of the island's bounding
+//! box is at least [`LEAST_M`]. The loop is closed if the angle of the path about a cell of the
+//! island, full turns included, has spanned
 //!
 //! ```text
 //! max φ − min φ ≥ 0.97 · 2π
 //! ```
 //!
-//! Between the two extremes lies a way round the island by which the robot came back to where it was, but for the last 3 %: it
-//! knows a place when it is 1 m away. The island is in one piece and the path never enters it, so any of its cells serves; the one
-//! nearest to its middle is taken.
+//! Between the two extremes the robot went round the island and came back, except for the last 3 %:
+//! the planner recognises a place from 1 m away. The island is connected and the path never enters
+//! it, so any of its cells serves; the one nearest to the middle is used.
 
 use core::f64::consts::TAU;
 
 use super::CellSet;
 use crate::world::{GridCell, World};
 
-/// Least way round an island's box for its loop to count, metres.
+/// Least perimeter of an island's bounding box for its loop to count, metres.
 pub const LEAST_M: f64 = 10.0;
 /// Share of a turn that closes a loop.
 const CLOSED: f64 = 0.97;
 
-/// Loops of a world, and how many of them a path closed.
+/// Loops of a world, and those that a path closed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Loops {
-    /// Islands of the world.
+    /// Number of loops of the world.
     pub of: u32,
-    /// Those that the robot went round.
+    /// Number of loops that the robot closed.
     pub closed: u32,
 }
 
 impl Loops {
-    /// The loops of `world` whose floor `reach` is, and those that the path of points x, y closes.
+    /// Counts the loops of `world` around islands in `reach`, and those that a path of points x, y
+    /// closes.
     #[must_use]
     pub fn judge(world: &World, reach: &CellSet, path: &[[f64; 2]]) -> Self {
         let islands = islands(world, reach);
@@ -44,7 +46,7 @@ impl Loops {
     }
 }
 
-/// Whether a path goes round a point.
+/// Returns true if a path goes round a point.
 fn is_round([x0, y0]: [f64; 2], path: &[[f64; 2]]) -> bool {
     let mut bearings = path.iter().map(|[x, y]| (y - y0).atan2(x - x0));
     let Some(mut last) = bearings.next() else {
@@ -60,7 +62,7 @@ fn is_round([x0, y0]: [f64; 2], path: &[[f64; 2]]) -> bool {
     most - least >= CLOSED * TAU
 }
 
-/// A cell of each island whose loop counts.
+/// One cell of each island whose loop counts.
 fn islands(world: &World, reach: &CellSet) -> Vec<[f64; 2]> {
     let grid = world.occupancy();
     let (width, height) = (grid.width() as i64, grid.height() as i64);
@@ -91,7 +93,7 @@ fn islands(world: &World, reach: &CellSet) -> Vec<[f64; 2]> {
     islands
 }
 
-/// The piece of what cannot be reached that a cell is in, if it was not seen before.
+/// The unreachable cells that are connected with a cell; empty if they were seen before.
 fn piece(world: &World, reach: &CellSet, from: GridCell, seen: &mut [bool]) -> Vec<GridCell> {
     let grid = world.occupancy();
     let mut piece = Vec::new();
@@ -138,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_is_closed_by_going_all_the_way_round() {
+    fn a_ring_is_closed_by_driving_all_the_way_round() {
         let round = [
             [3.0, 1.1],
             [19.3, 1.1],
@@ -151,11 +153,11 @@ mod tests {
         let mut short = round[..4].to_vec();
         short.push([1.1, 4.0]);
         assert_eq!(judged("loop", &short), (0, 1), "a corner is missing");
-        // There and back again, to every corner.
+        // To every corner and back again.
         let mut back = round[..4].to_vec();
         back.extend(round[..4].iter().rev());
         assert_eq!(judged("loop", &back), (0, 1));
-        // Half of it one way, back, and the other half the other way.
+        // One half in one direction, back, and the other half in the other direction.
         let halves = [[10.0, 1.1], [19.3, 1.1], [19.3, 15.3], [10.0, 15.3]];
         let mut halves = halves.to_vec();
         halves.extend([

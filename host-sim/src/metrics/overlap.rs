@@ -1,14 +1,17 @@
-//! How much of the way was driven twice.
+//! Share of the path that was driven twice.
 //!
-//! `overlap` = the share of the path's length that ran within 0.5 m of a place where the robot had been at least 3 m of path
-//! earlier. 0 is a way that never comes back, 1 would be driving in one's own tracks from the first metre. The path is
-//! sampled every 5 cm; the samples lie in buckets of 0.5 m, so that only nine are looked at.
+//! `overlap` is the share of the path's length within 0.5 m of a point that the robot passed at
+//! least 3 m of path earlier. 0 is a path that never comes back; 1 would be a path on its own
+//! tracks from the first metre. The path is sampled every 5 cm. The samples are stored in buckets
+//! of 0.5 m, so a test needs only nine of them.
 
 use std::collections::BTreeMap;
 
-/// Nearer than this to an earlier place is there again, metres.
+use crate::robot::distance_m;
+
+/// Greatest distance from an earlier point that counts as driven again, metres.
 pub const NEAR_M: f64 = 0.5;
-/// Places less than this far back along the path are not earlier, metres.
+/// Least distance along the path to an earlier point, metres.
 pub const EARLIER_M: f64 = 3.0;
 /// Length of path between two samples, metres.
 const SAMPLE_M: f64 = 0.05;
@@ -25,11 +28,10 @@ pub struct Overlap {
 }
 
 impl Overlap {
-    /// Takes in where the robot is, metres.
+    /// Adds the robot's position, metres.
     pub fn add(&mut self, x_m: f64, y_m: f64) {
-        let [last_x, last_y] = *self.last.get_or_insert([x_m, y_m]);
-        let (dx, dy) = (x_m - last_x, y_m - last_y);
-        self.pending_m += (dx * dx + dy * dy).sqrt();
+        let last = *self.last.get_or_insert([x_m, y_m]);
+        self.pending_m += distance_m(last, [x_m, y_m]);
         self.last = Some([x_m, y_m]);
         if self.pending_m < SAMPLE_M {
             return;
@@ -45,7 +47,7 @@ impl Overlap {
             .push([x_m, y_m, self.length_m]);
     }
 
-    /// The share of the path driven again, 0 to 1; 0 before the first metres.
+    /// Share of the path that was driven again, 0 to 1; 0 before the first sample.
     #[must_use]
     pub fn fraction(&self) -> f64 {
         if self.length_m > 0.0 {
@@ -90,10 +92,10 @@ mod tests {
     }
 
     #[test]
-    fn a_straight_way_has_none_and_the_way_back_is_counted() {
+    fn a_straight_path_has_none_and_the_way_back_counts() {
         assert_eq!(drive(&[[0.0, 0.0], [20.0, 0.0]]), 0.0);
-        // There and back over 20 m: the first 1.25 m back are near a place less than 3 m of path ago
-        // (2 s − 0.5 < 3, give or take a sample), the rest is driven again.
+        // 20 m and back: the first 1.25 m back are near points less than 3 m of path earlier
+        // (2 s − 0.5 < 3, ± one sample), the rest is driven again.
         let back = drive(&[[0.0, 0.0], [20.0, 0.0], [0.0, 0.0]]);
         assert!((back - 18.75 / 40.0).abs() < 0.003, "{back}");
         // Parallel tracks 0.6 m apart never meet.

@@ -1,17 +1,19 @@
-//! A patrol: how long ago the rails were last visited, judged on the true path.
+//! Ages of the rails on a patrol: the time since each was last visited, on the true path.
 //!
-//! A rail is a centre cell of the map at the end, visited whenever the robot's centre is within 1 m of it. Its *age* is the
-//! time since its last visit, in the exploration or on patrol; since the start, if there was none. Ages are taken in every step of the patrol.
+//! A rail is a centre cell of the last map. The robot visits it whenever the robot's centre is
+//! within 1 m of it. Its *age* is the time since its last visit, in the exploration or on patrol,
+//! or since the start if there was none. Every step of the patrol counts the ages of all rails.
 //!
-//! Spurs no longer than 1.5 m are left out: one that ends in a corner or at a dent of a wall comes and goes with the noise of the map,
-//! and may be there at the end for the first time.
+//! Spurs of up to 1.5 m are left out: a spur into a corner or a dent of a wall comes and goes with
+//! the noise of the map, and may exist only in the last map.
 
 use std::collections::BTreeSet;
 
-/// A rail this near to the robot is visited, metres.
+/// Distance at which the robot visits a rail, metres.
 const VISIT_M: f64 = 1.0;
 
-/// From the middle of a corridor of 2 m into the corner where it turns, and a little, metres.
+/// Greatest length of a spur, metres: from the middle of a corridor of 2 m into the corner where it
+/// turns is a little less.
 const SPUR_M: f64 = 1.5;
 /// Side of a centre cell, metres.
 const CENTRE_CELL_M: f64 = 0.2;
@@ -19,14 +21,15 @@ const CENTRE_CELL_M: f64 = 0.2;
 /// Ages of the rails on a patrol.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patrol {
-    /// Of any rail in any step, seconds.
+    /// Greatest age of any rail in any step, seconds.
     pub oldest_rail_s: f64,
-    /// Of all rails in all steps, seconds.
+    /// Mean age of all rails in all steps, seconds.
     pub mean_age_s: f64,
 }
 
 impl Patrol {
-    /// The patrol of the last `patrol_s` seconds of a path of time, x and y; `None` without steps in it or without rails.
+    /// Measures the last `patrol_s` seconds of a path of time, x and y; `None` if they have no
+    /// steps or there are no rails.
     #[must_use]
     pub fn judge(rails: &[[f64; 2]], path: &[[f64; 3]], patrol_s: f64) -> Option<Self> {
         let begins_s = path.last()?[0] - patrol_s;
@@ -50,7 +53,7 @@ impl Patrol {
     }
 }
 
-/// The rails without their spurs: what leads from an end to where the way parts, if that is within 1.5 m.
+/// The rails without their spurs. A spur leads from an end to the next fork, within 1.5 m.
 #[must_use]
 pub fn without_spurs(rails: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let cells: BTreeSet<[i32; 2]> = rails.iter().map(cell_of).collect();
@@ -83,7 +86,7 @@ fn cell_of(rail: &[f64; 2]) -> [i32; 2] {
     rail.map(|at| (at / CENTRE_CELL_M).floor() as i32)
 }
 
-/// Whether a cell, and those beside it, lie no farther from an end than a spur is long.
+/// Returns true if a cell and its neighbours are within a spur's length of an end.
 fn is_near(end: [i32; 2], cell: [i32; 2]) -> bool {
     let [dx, dy] = [0, 1].map(|k| f64::from(end[k] - cell[k]) * CENTRE_CELL_M);
     dx.hypot(dy) + CENTRE_CELL_M <= SPUR_M
@@ -93,7 +96,7 @@ fn is_near(end: [i32; 2], cell: [i32; 2]) -> bool {
 mod tests {
     use super::{CENTRE_CELL_M, Patrol, without_spurs};
 
-    /// The centre cells of a picture that are marked so.
+    /// The centre cells of a picture that have one of the marks.
     fn marked(picture: &str, marks: &str) -> Vec<[f64; 2]> {
         let rows = picture.split_whitespace().enumerate();
         let cells = rows.flat_map(|(y, row)| {
@@ -123,7 +126,7 @@ mod tests {
         assert_eq!(marked(picture, "s").len(), 6);
     }
 
-    /// To and fro on 10 m at 1 m/s for so many seconds.
+    /// A path to and fro over 10 m at 1 m/s, for this many seconds.
     fn path(seconds: u32) -> Vec<[f64; 3]> {
         let at = |t: f64| 10.0 - (t % 20.0 - 10.0).abs();
         let times = (0..=10 * seconds).map(|k| f64::from(k) / 10.0);
@@ -131,10 +134,10 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_goes_to_and_fro_comes_to_the_ends_once_a_round() {
+    fn a_path_to_and_fro_visits_each_end_once_per_round() {
         let rails: Vec<[f64; 2]> = (0..=10).map(|x| [f64::from(x), 0.0]).collect();
         let patrol = Patrol::judge(&rails, &path(200), 100.0).unwrap();
-        // Gone from 1 m before the end, and back again: 20 s less twice 1 m.
+        // It leaves the end's circle of 1 m and comes back: 20 s less twice 1 m.
         assert!((patrol.oldest_rail_s - 18.0).abs() < 0.2, "{patrol:?}");
         assert!((2.0..9.0).contains(&patrol.mean_age_s), "{patrol:?}");
         let far = Patrol::judge(&[[5.0, 9.0]], &path(200), 100.0).unwrap();

@@ -1,12 +1,13 @@
-//! Where the robot can get: cells of the world whose centre a disc can be driven to from the start.
+//! The cells of a flat world that a disc can reach from the start.
 //!
-//! A cell is open if no solid cell comes closer to its centre than the radius, exactly; open cells with a common edge are
-//! connected. The start and the free cells within [`START_SLACK_M`] of it count as open: a robot whose rectangle fits
-//! where the disc does not quite must not make the whole world unreachable.
+//! A cell is open if no solid cell is closer to its centre than the radius, exactly. Open cells
+//! with a common edge are connected. The start and the free cells within [`START_SLACK_M`] of it
+//! count as open: a robot's rectangle may fit where its disc does not, and then the whole world
+//! would count as unreachable.
 
 use crate::world::{GridCell, Start, World};
 
-/// How far around the start free cells count as open, metres.
+/// Distance from the start within which free cells count as open, metres.
 pub const START_SLACK_M: f64 = 0.10;
 
 /// A set of cells of the world's own grid.
@@ -19,7 +20,8 @@ pub struct CellSet {
 }
 
 impl CellSet {
-    /// Everything connected, by common edges, with the start through cells that satisfy `open`.
+    /// The cells that are connected with the start, by common edges, through cells that satisfy
+    /// `open`.
     #[must_use]
     pub fn flood(world: &World, start: Start, open: impl Fn(GridCell) -> bool) -> Self {
         let grid = world.occupancy();
@@ -49,43 +51,34 @@ impl CellSet {
     pub fn reach(world: &World, start: Start, radius_m: f64) -> Self {
         let grid = world.occupancy();
         Self::flood(world, start, |cell| {
-            if grid.is_solid(cell) {
-                return false;
-            }
-            let [x, y] = grid.centre(cell);
-            let (dx, dy) = (x - start.x_m, y - start.y_m);
-            // A rounding error must not close a door that fits exactly.
-            world.distance().from_centre_m(cell) >= radius_m - 1e-9
-                || dx * dx + dy * dy <= START_SLACK_M * START_SLACK_M
+            is_open(world, start, radius_m, (cell, grid.centre(cell)))
         })
     }
 
-    /// The free cells in one piece with the start.
+    /// The free cells that are connected with the start.
     #[must_use]
     pub fn free(world: &World, start: Start) -> Self {
         let grid = world.occupancy();
         Self::flood(world, start, |cell| !grid.is_solid(cell))
     }
 
-    /// Is a cell in the set?
+    /// Returns true if a cell is in the set.
     #[must_use]
     pub fn contains(&self, cell: GridCell) -> bool {
         self.index(cell).is_some_and(|index| self.members[index])
     }
 
-    /// Cells in the set.
+    /// Number of cells in the set.
     #[must_use]
     pub fn count(&self) -> usize {
         self.count
     }
 
     fn index(&self, cell: GridCell) -> Option<usize> {
-        let i = usize::try_from(cell.i).ok().filter(|i| *i < self.width)?;
-        let j = usize::try_from(cell.j).ok().filter(|j| *j < self.height)?;
-        Some(j * self.width + i)
+        cell.index([self.width, self.height])
     }
 
-    /// Adds a cell; says whether it was new. Outside of the world nothing can be added.
+    /// Adds a cell and returns true if it is new. Cells outside of the world are not added.
     fn insert(&mut self, cell: GridCell) -> bool {
         match self.index(cell) {
             Some(index) if !self.members[index] => {
@@ -98,12 +91,27 @@ impl CellSet {
     }
 }
 
+/// Returns true if the disc's centre can be at a point of a cell: the cell is free, and solid cells
+/// are at least the radius away or the start is near.
+pub(super) fn is_open(
+    world: &World,
+    start: Start,
+    radius_m: f64,
+    (cell, [x, y]): (GridCell, [f64; 2]),
+) -> bool {
+    let (dx, dy) = (x - start.x_m, y - start.y_m);
+    // A rounding error must not close a door that fits exactly.
+    !world.occupancy().is_solid(cell)
+        && (world.distance().from_centre_m(cell) >= radius_m - 1e-9
+            || dx * dx + dy * dy <= START_SLACK_M * START_SLACK_M)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::world::{Class, Occupancy};
 
-    /// Two rooms of 2 × 2 m, with a gap of `gap` cells of 5 cm between them.
+    /// Two rooms of 2 × 2 m with a gap between them, `gap` cells of 5 cm wide.
     fn two_rooms(gap: i64) -> World {
         let mut grid = Occupancy::filled(84, 40, 0.05, [0.0, 0.0], Class::Free);
         for j in (0..40).filter(|j| !(20..20 + gap).contains(j)) {
@@ -123,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_disc_passes_a_gap_as_wide_as_itself_and_no_narrower() {
+    fn a_disc_passes_a_gap_of_its_diameter_and_no_narrower_one() {
         let other_room = GridCell { i: 70, j: 20 };
         for (gap, radius_m, passes) in [(13, 0.3, true), (13, 0.325, true), (12, 0.3, false)] {
             let reach = CellSet::reach(&two_rooms(gap), at(1.0, 1.0), radius_m);
@@ -147,10 +155,10 @@ mod tests {
     }
 
     #[test]
-    fn a_start_a_little_too_close_to_a_wall_still_counts() {
+    fn a_start_slightly_too_close_to_a_wall_counts_as_open() {
         let reach = CellSet::reach(&two_rooms(0), at(0.26, 1.0), 0.3);
         assert!(reach.count() > 28 * 28 && reach.contains(GridCell { i: 20, j: 20 }));
-        // Too close by more: the start's own neighbourhood and no more.
+        // Much too close: only the cells around the start.
         let stuck = CellSet::reach(&two_rooms(0), at(0.15, 1.0), 0.3);
         assert!(stuck.count() < 20, "{}", stuck.count());
     }

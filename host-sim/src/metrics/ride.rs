@@ -1,6 +1,6 @@
-//! How the ground was driven over: the steepest attitudes, and how long beyond the limits.
+//! The ride: the steepest attitudes of the robot, and its time beyond the limits.
 //!
-//! Only what the true stance says counts, at every substep. Radians, seconds.
+//! Computed from the true stance in every substep. Radians, seconds.
 
 use crate::robot::{Limits, Pose};
 
@@ -16,7 +16,7 @@ pub struct Ride {
 }
 
 impl Ride {
-    /// Takes in an attitude that was kept for some seconds.
+    /// Adds an attitude that lasted for some seconds.
     pub fn add(&mut self, pose: &Pose, limits: &Limits, seconds: f64) {
         self.max_climb_rad = self.max_climb_rad.max(pose.pitch_rad.abs());
         self.max_side_rad = self.max_side_rad.max(pose.roll_rad.abs());
@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keeps_the_steepest_and_counts_what_is_beyond() {
+    fn it_keeps_the_steepest_and_the_time_beyond_the_limits() {
         let mut ride = Ride::default();
         for (pitch_deg, roll_deg) in [(-18.0, 3.0), (21.0, 0.0), (2.0, -16.0), (0.0, 0.0_f64)] {
             let pose = Pose {

@@ -1,18 +1,18 @@
-//! What went wrong, judged by the true footprint on the true world.
+//! Collisions, falls and clearance of the true footprint in the true world.
 
 use crate::robot::FARTHEST_M;
 
-/// Counts of a run.
+/// Safety counts of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Safety {
-    /// Contacts with something solid; one lasts until the robot got clear by a centimetre.
+    /// Contacts with something solid; a contact lasts until the robot is 1 cm clear.
     pub collisions: u32,
     /// Falls into holes.
     pub falls: u32,
-    /// Times the robot tipped over.
+    /// Number of times that the robot tipped over.
     pub tips: u32,
-    /// Least distance between the footprint's outline and anything solid, metres: 0 after a collision, and at
-    /// most [`FARTHEST_M`].
+    /// Least distance between the footprint's outline and anything solid, metres: 0 after a
+    /// collision, and at most [`FARTHEST_M`].
     pub min_clearance_m: f64,
 }
 

@@ -10,7 +10,7 @@ use fieldline_planner::geometry::Cell;
 use super::canvas::Canvas;
 use super::palette::{self, Rgb};
 use super::{Extent, Frame};
-use crate::metrics::{GroundTruth, Truly, Truth, truth};
+use crate::metrics::{GroundTruth, TrueClass, Truth, truth};
 use crate::report::grid_map::CELL_M;
 use crate::world::World;
 
@@ -43,7 +43,7 @@ impl<'a> Ground<'a> {
 
     /// The map cells that it is drawn on.
     pub(super) fn extent(&self) -> Extent {
-        let frame = self.truth.frame();
+        let frame = self.truth.area();
         Extent {
             x: frame.x,
             y: frame.y,
@@ -71,7 +71,7 @@ impl<'a> Ground<'a> {
     /// The colour of a cell; `None` outside of the world.
     fn colour(&self, x: i32, y: i32) -> Option<Rgb> {
         let cell = Cell { x, y };
-        self.truth.frame().index(cell)?;
+        self.truth.area().index(cell)?;
         if truth(self.world, cell) != Truth::Free {
             return Some(palette::OBSTACLE);
         }
@@ -80,11 +80,11 @@ impl<'a> Ground<'a> {
         };
         let bare = self.lit(height_m, x, y);
         Some(match self.truth.class(cell) {
-            Truly::Traversable => bare,
-            Truly::Obstacle => palette::STEEP_UP,
-            Truly::Negative => palette::NEGATIVE,
-            Truly::Either => palette::STEEP_BOTH,
-            Truly::Unjudged => greyed(bare),
+            TrueClass::Traversable => bare,
+            TrueClass::Obstacle => palette::STEEP_UP,
+            TrueClass::Negative => palette::NEGATIVE,
+            TrueClass::Either => palette::STEEP_BOTH,
+            TrueClass::Unjudged => greyed(bare),
         })
     }
 

@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::metrics::{Ride, Score, Table};
+use crate::metrics::{MapScore, Ride, Score};
 
 /// The ground, and how it was driven over.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -82,8 +82,8 @@ impl From<Score> for ClassScore {
     }
 }
 
-impl From<&Table> for Classes {
-    fn from(table: &Table) -> Self {
+impl From<&MapScore> for Classes {
+    fn from(table: &MapScore) -> Self {
         Self {
             traversable: table.traversable.into(),
             obstacle: table.obstacle.into(),

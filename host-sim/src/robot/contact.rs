@@ -1,31 +1,34 @@
-//! Whether the true ground lets a motion be: edges that stop a wheel, ground that the belly hits, drops, and slopes that tip the robot.
+//! Decides if the true ground lets the robot move: edges, ground under the belly, drops, slopes.
 //!
-//! - *Blocked*: within a wheel's radius ahead of where it goes, the ground is higher than its contact by more than the limit for
-//!   edges; or under the belly it stands higher over the plane of the contacts than the belly does, or before a bumper
-//!   that leads higher than an edge may be.
-//! - *Fallen*: a wheel has no ground; or the ground went down under it faster than a robot could stand on, by more than
-//!   the limit for drops, or by half of that with the belly on the rim. Each wheel's contact is carried along for that: it sinks with the ground, but never more steeply than
-//!   the greatest climb,
+//! - *Blocked*, by an edge: within one wheel radius ahead of a wheel, the ground is higher than
+//!   the wheel's contact by more than `step_m`.
+//! - *Blocked*, by the belly: the ground under the belly is higher than the belly, or the ground
+//!   at the leading bumper is higher than an edge may be. Both heights count from the plane of
+//!   the contacts.
+//! - *Fallen*: a wheel has no ground. Or the ground under a wheel went down faster than a slope
+//!   may, by more than `drop_m`, or by half of `drop_m` while the belly touches the rim.
+//!   Each wheel keeps a carried height, which sinks at most as steeply as the greatest climb:
 //!   ```text
-//!   carried ← max(ground, carried − way · tan(climb))        fallen if carried − ground > drop
+//!   carried ← max(ground, carried − distance · tan(climb))     fallen if carried − ground > drop
 //!   ```
-//!   so that a slope of any length is no drop, and a drop is one wherever its rim lies between two samples.
+//!   So a slope of any length is no drop, and a drop is found wherever its rim lies between two
+//!   samples.
 //! - *Tipped*: pitch or roll of the stance is beyond the limits.
 //!
-//! Nothing here knows the planner's map. Metres, radians.
+//! This module does not know the planner's map. Metres, radians.
 
 use super::limits::{Limits, SLACK};
-use super::pose::Pose;
+use super::pose::{Pose, distance_m};
 use super::stance::{ground_m, resting, wheels};
 use crate::world::World;
 
 /// Radius of a wheel, metres.
 const WHEEL_RADIUS_M: f64 = 0.111;
-/// Height of the belly over the contacts, metres.
+/// Height of the belly over the plane of the contacts, metres.
 const BELLY_M: f64 = 0.08;
-/// Where the ground ahead of a wheel is looked at, as shares of its radius.
+/// Where the ground ahead of a wheel is sampled, as shares of the wheel's radius.
 const AHEAD: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
-/// Points of the belly: along the heading and to the left, metres.
+/// Sampled points of the belly: along the heading and to the left, metres.
 const BELLY: [[f64; 2]; 9] = [
     [0.13, 0.1],
     [0.13, 0.0],
@@ -37,41 +40,42 @@ const BELLY: [[f64; 2]; 9] = [
     [-0.13, 0.0],
     [-0.13, -0.1],
 ];
-/// How far ahead of the centre the bumpers are, metres.
+/// Distance of the bumpers from the centre along the heading, metres.
 const BUMPER_M: f64 = 0.25;
-/// Where the bumpers are looked at, metres to the left.
+/// Sampled points of a bumper, metres to the left.
 const SIDEWAYS: [f64; 3] = [0.1, 0.0, -0.1];
 
-/// What a motion comes to.
+/// Why a motion failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mishap {
-    /// Ground is in the way; the robot stays where it is.
+    /// The ground is in the way; the robot stays where it is.
     Blocked,
-    /// The ground is gone from under a wheel.
+    /// A wheel has lost the ground.
     Fallen,
-    /// Too steep to stand on.
+    /// The ground is too steep to stand on.
     Tipped,
 }
 
-/// The contacts of the four wheels.
+/// Contacts of the four wheels with the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contacts {
-    /// The heights that the wheels were carried to.
+    /// Carried height of each wheel, metres.
     carried_m: [f64; 4],
 }
 
 impl Contacts {
-    /// Of a robot put down at a pose; `None` over a hole.
+    /// Contacts of a robot that is put down at a pose; `None` over a hole.
     #[must_use]
     pub fn at(world: &World, pose: &Pose) -> Option<Self> {
         let carried_m = ground_m(world, &wheels(pose))?;
         Some(Self { carried_m })
     }
 
-    /// Moves the wheels from a stance to a planar pose near by, a centimetre or so, and returns the stance there.
+    /// Moves the wheels from a stance to a planar pose about a centimetre away and returns the
+    /// stance there.
     ///
     /// # Errors
-    /// [`Mishap`]. A blocked motion changes nothing.
+    /// [`Mishap`]. After an error the contacts are as before.
     pub fn go(
         &mut self,
         world: &World,
@@ -100,7 +104,7 @@ impl Contacts {
             return Err(Mishap::Fallen);
         }
         if touches(world, from, &stance, limits) {
-            // What comes down on its belly with a wheel in the air hangs there: nothing came in its way.
+            // On its belly with a wheel in the air the robot has fallen: nothing blocked it.
             let hangs = dropped_m > 0.5 * limits.drop_m;
             return Err(if hangs {
                 Mishap::Fallen
@@ -116,12 +120,7 @@ impl Contacts {
     }
 }
 
-fn distance_m(a: [f64; 2], b: [f64; 2]) -> f64 {
-    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
-    (dx * dx + dy * dy).sqrt()
-}
-
-/// How much higher than its contact the ground is within a wheel's radius along its way; holes are not in the way.
+/// Rise of the ground over the contact within one wheel radius along the motion; holes count as 0.
 fn rise_ahead_m(world: &World, from: [f64; 2], to: [f64; 2], contact_m: f64) -> f64 {
     let way_m = distance_m(from, to);
     if way_m == 0.0 {
@@ -131,14 +130,15 @@ fn rise_ahead_m(world: &World, from: [f64; 2], to: [f64; 2], contact_m: f64) -> 
     rise_along_m(world, to, along, contact_m)
 }
 
-/// How much higher than `contact_m` the ground is within a wheel's radius of a point, along a unit vector.
+/// Rise of the ground over `contact_m` within one wheel radius of a point, along a unit vector.
 pub(crate) fn rise_along_m(world: &World, point: [f64; 2], along: [f64; 2], contact_m: f64) -> f64 {
     look_along(world, point, along)
         .map(|height_m| height_m - contact_m)
         .fold(0.0, f64::max)
 }
 
-/// How much lower than `contact_m` the ground is within a wheel's radius of a point, along a unit vector; endless at a hole.
+/// Fall of the ground below `contact_m` within one wheel radius of a point, along a unit vector;
+/// infinite at a hole.
 pub(crate) fn fall_along_m(world: &World, point: [f64; 2], along: [f64; 2], contact_m: f64) -> f64 {
     let looked = look_along(world, point, along);
     let (count, fall_m) = looked.fold((0, 0.0_f64), |(count, fall_m), height_m| {
@@ -151,7 +151,7 @@ pub(crate) fn fall_along_m(world: &World, point: [f64; 2], along: [f64; 2], cont
     }
 }
 
-/// The ground within a wheel's radius of a point, along a unit vector, where there is any.
+/// Ground heights within one wheel radius of a point, along a unit vector; holes are left out.
 fn look_along(world: &World, [x, y]: [f64; 2], along: [f64; 2]) -> impl Iterator<Item = f64> + '_ {
     AHEAD.into_iter().filter_map(move |share| {
         let reach_m = share * WHEEL_RADIUS_M;
@@ -159,7 +159,7 @@ fn look_along(world: &World, [x, y]: [f64; 2], along: [f64; 2]) -> impl Iterator
     })
 }
 
-/// Does ground that came nearer touch the belly or the bumper that leads?
+/// Returns true if ground that came nearer touches the belly or the leading bumper.
 fn touches(world: &World, from: &Pose, to: &Pose, limits: &Limits) -> bool {
     let (cos, sin) = (libm::cos(to.yaw_rad), libm::sin(to.yaw_rad));
     let way_m = (to.x_m - from.x_m) * cos + (to.y_m - from.y_m) * sin;
@@ -174,7 +174,7 @@ fn touches(world: &World, from: &Pose, to: &Pose, limits: &Limits) -> bool {
         || bumpers[..leading].iter().any(|point| meets(*point, edge_m))
 }
 
-/// Does the ground touch the belly or a bumper of a robot that stands like this?
+/// Returns true if the ground touches the belly or a bumper of a robot in this stance.
 pub(crate) fn is_aground(world: &World, stance: &Pose, limits: &Limits) -> bool {
     let bumpers = [BUMPER_M, -BUMPER_M]
         .into_iter()
@@ -185,17 +185,13 @@ pub(crate) fn is_aground(world: &World, stance: &Pose, limits: &Limits) -> bool 
         || bumpers.into_iter().any(|point| meets(point, edge_m))
 }
 
-/// How high the ground stands over the plane of the contacts at a point of the robot; −∞ over a hole.
+/// Height of the ground over the plane of the contacts at a point of the robot; −∞ over a hole.
 fn over_plane_m(world: &World, stance: &Pose, [ahead, left]: [f64; 2]) -> f64 {
-    let (cos, sin) = (libm::cos(stance.yaw_rad), libm::sin(stance.yaw_rad));
-    let place = [
-        stance.x_m + ahead * cos - left * sin,
-        stance.y_m + ahead * sin + left * cos,
-    ];
+    let [x_m, y_m] = stance.planar_frame().to_world([ahead, left]);
     let plane_m =
         stance.z_m - ahead * libm::tan(stance.pitch_rad) + left * libm::tan(stance.roll_rad);
     world
-        .ground_m(place[0], place[1])
+        .ground_m(x_m, y_m)
         .map_or(f64::NEG_INFINITY, |ground_m| ground_m - plane_m)
 }
 
@@ -205,7 +201,7 @@ mod tests {
     use crate::robot::stand;
     use crate::world::{Class, Elevation, Occupancy};
 
-    /// 8 × 4 m of ground that depends on x, sampled every 2 cm.
+    /// Ground of 8 × 4 m whose height depends on x, sampled every 2 cm.
     fn ground(height_m: impl Fn(f64) -> f64) -> World {
         let size = [400, 200];
         let elevation = Elevation::from_fn(size, 0.02, [0.0, 0.0], |x, _| height_m(x));
@@ -213,7 +209,7 @@ mod tests {
         World::uneven("ground", floor, elevation, Vec::new())
     }
 
-    /// Drives from x = 1 or, `down`, from x = 7 back, and says where and how it ended.
+    /// Drives from x = 1 m, or back from x = 7 m if `down`; returns the last x and the result.
     fn drive(world: &World, yaw_rad: f64, down: bool) -> (f64, Result<(), Mishap>) {
         let flat = Pose {
             x_m: if down { 7.0 } else { 1.0 },
@@ -238,14 +234,15 @@ mod tests {
     }
 
     #[test]
-    fn kerbs_up_to_the_limit_are_climbed_and_higher_ones_stop_the_wheels() {
+    fn kerbs_up_to_the_limit_are_climbed_and_higher_ones_block() {
         for height_m in [0.02, 0.05, 0.10] {
             assert_eq!(drive(&kerb(height_m), 0.0, false).1, Ok(()), "{height_m}");
         }
         for height_m in [0.12, 0.2, 0.4, 2.0] {
             let (x_m, end) = drive(&kerb(height_m), 0.0, false);
             assert_eq!(end, Err(Mishap::Blocked), "{height_m}");
-            // The front axle is 0.134 m ahead, the kerb's ramp begins at 3.99, and a wheel looks 0.111 m ahead.
+            // The front axle is 0.134 m ahead, the kerb's ramp begins at 3.99 m, and a wheel is
+            // sampled 0.111 m ahead.
             assert!((3.70..3.78).contains(&x_m), "{height_m}: {x_m}");
         }
     }
@@ -263,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fall_does_not_depend_on_how_finely_the_ground_is_sampled() {
+    fn a_fall_does_not_depend_on_the_sampling_of_the_ground() {
         for resolution in [0.02, 0.05, 0.1, 0.2] {
             let cells = |metres: f64| (metres / resolution).round() as usize;
             let size = [cells(8.0), cells(4.0)];
@@ -288,7 +285,7 @@ mod tests {
     fn long_slopes_are_no_drops_and_steep_ones_tip() {
         let slope = |degrees: f64| {
             let grade = degrees.to_radians().tan();
-            // Half a metre of transition, so that no bumper meets the foot.
+            // Half a metre of transition, so that no bumper touches the foot of the slope.
             ground(move |x| {
                 let t = x - 3.0;
                 grade
@@ -306,14 +303,14 @@ mod tests {
             assert_eq!(drive(&slope(degrees), 0.0, true).1, Ok(()), "{degrees}");
         }
         assert_eq!(drive(&slope(33.0), 0.0, false).1, Err(Mishap::Tipped));
-        // Across, the limit is 25°.
+        // Across the slope the limit is 25°.
         let across = core::f64::consts::FRAC_PI_2;
         assert_eq!(drive(&slope(24.0), across, false).1, Ok(()));
         assert_eq!(drive(&slope(27.0), across, false).1, Err(Mishap::Tipped));
     }
 
     #[test]
-    fn a_stone_between_the_wheels_is_passed_over_or_met_by_its_height() {
+    fn a_low_stone_passes_under_the_belly_and_a_high_one_blocks() {
         let stone = |height_m: f64| {
             let size = [400, 200];
             let elevation = Elevation::from_fn(size, 0.02, [0.0, 0.0], |x, y| {
@@ -333,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn after_a_kerb_stopped_it_the_robot_can_leave_it() {
+    fn a_robot_stopped_by_a_kerb_can_back_away() {
         let world = kerb(0.3);
         let flat = Pose {
             x_m: 3.7,
@@ -352,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hole_is_no_edge_until_a_wheel_is_over_it() {
+    fn a_hole_is_a_fall_once_a_wheel_is_over_it_and_never_blocks() {
         let world = ground(|x| if x > 4.0 { f64::NAN } else { 0.0 });
         let (x_m, end) = drive(&world, 0.0, false);
         assert_eq!(end, Err(Mishap::Fallen));

@@ -1,36 +1,39 @@
-//! The skid-steer drive: speed limits, acceleration limits, wheels.
+//! The skid-steer drive: wheels, speed limits and acceleration limits.
 //!
-//! A skid-steer robot turns about an instantaneous centre whose sides lie farther out than its wheels, because they slip: it
-//! behaves like a differential drive of a wider *effective track* B [Mandow07],
+//! The wheels of a skid-steer robot slip when it turns. It behaves like a differential drive with
+//! a wider *effective track* B [Mandow07],
 //!
 //! ```text
 //! v = (v_right + v_left) / 2        ω = (v_right − v_left) / B
 //! ```
 //!
-//! For the 3-AT the maker's own parameter file gives B: `DiffConvFactor` 0.0034 rad/mm of `p3at-sh.p` is 2/B, so
-//! B = 0.588 m, 1.5 times the 0.39 m between its wheels. The centre of rotation is the centre of the footprint. Slip that
-//! varies is an error of the odometry ([`super::odometry`]), not of the motion.
+//! The maker's parameter file of the 3-AT, `p3at-sh.p`, gives B: `DiffConvFactor` 0.0034 rad/mm is
+//! 2/B, so B = 0.588 m, 1.5 times the 0.39 m between the wheels. The centre of rotation is the
+//! centre of the footprint. Slip that varies is an error of the odometry ([`super::odometry`]),
+//! not of the motion.
 //!
-//! Limits: 0.7 m/s and 140°/s from the data sheet; 0.3 m/s² and 100°/s² are the firmware's factory accelerations as we
-//! know them; braking is set to 0.6 m/s², which the firmware lets its client choose. No side runs faster than 0.75 m/s:
-//! driving and turning together share it, both scaled alike, so that the arc stays the one asked for.
+//! Limits: 0.7 m/s and 140°/s are from the data sheet. 0.3 m/s² and 100°/s² are the firmware's
+//! factory accelerations, as far as we know. Braking is 0.6 m/s², a value that the firmware lets
+//! its client choose. No side runs faster than 0.75 m/s: the limit scales both speeds by the same
+//! factor, so the robot keeps the commanded arc.
 //!
-//! [Mandow07]: A. Mandow et al., "Experimental kinematics for wheeled skid-steer mobile robots", IROS 2007.
+//! [Mandow07]: A. Mandow et al., "Experimental kinematics for wheeled skid-steer mobile robots",
+//! IROS 2007.
 
 use super::pose::Velocity;
 
-/// What the drive can do.
+/// Limits of the drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveLimits {
     /// Greatest speed, m/s. Default: 0.7.
     pub linear_mps: f64,
     /// Greatest turn rate, rad/s. Default: 140°/s.
     pub angular_radps: f64,
-    /// Speeding up, m/s². Default: 0.3.
+    /// Acceleration, m/s². Default: 0.3.
     pub acceleration_mps2: f64,
     /// Braking, m/s². Default: 0.6.
     pub braking_mps2: f64,
-    /// Change of turn rate, rad/s². Default: 100°/s².
+    /// Angular acceleration and braking, rad/s². Default: 100°/s².
     pub angular_radps2: f64,
     /// Greatest speed of either side, m/s. Default: 0.75.
     pub side_mps: f64,
@@ -52,7 +55,7 @@ impl Default for DriveLimits {
     }
 }
 
-/// The drive's state.
+/// State of the drive.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Drive {
     limits: DriveLimits,
@@ -70,7 +73,7 @@ impl Drive {
         }
     }
 
-    /// What to go for from now on; limited to what the drive can do.
+    /// Sets the target velocity, limited to what the drive can do.
     pub fn command(&mut self, target: Velocity) {
         let limits = &self.limits;
         let linear = target
@@ -87,20 +90,14 @@ impl Drive {
         };
     }
 
-    /// The present velocity.
+    /// The current velocity.
     #[must_use]
     pub fn velocity(&self) -> Velocity {
         self.velocity
     }
 
-    /// What it goes for.
-    #[must_use]
-    pub fn target(&self) -> Velocity {
-        self.target
-    }
-
-    /// Runs the wheels towards the target for `seconds` and returns the new velocity. Only `share` of the full speed can be
-    /// had, 0 to 1: less than 1 uphill.
+    /// Runs the wheels towards the target for `seconds` and returns the new velocity. `share`, 0 to
+    /// 1, scales the greatest speed: it is less than 1 uphill.
     pub fn advance(&mut self, seconds: f64, share: f64) -> Velocity {
         let limits = &self.limits;
         let most_mps = limits.linear_mps * share;
@@ -121,13 +118,14 @@ impl Drive {
         self.velocity
     }
 
-    /// Something solid stopped the robot.
+    /// Stops at once: something solid is in the way.
     pub fn halt(&mut self) {
         self.velocity = Velocity::default();
     }
 }
 
-/// One step of `from` towards `to`: by at most `rise` away from zero, `fall` towards zero, and never through zero.
+/// One step of `from` towards `to`: at most `rise` away from zero, at most `fall` towards zero,
+/// and never through zero.
 fn approach(from: f64, to: f64, rise: f64, fall: f64) -> f64 {
     if from * to < 0.0 {
         return from.signum() * (from.abs() - fall).max(0.0);
@@ -171,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn uphill_it_slows_down_by_braking_and_then_keeps_the_share() {
+    fn uphill_it_brakes_to_its_share_of_the_speed_and_keeps_it() {
         let mut drive = Drive::new(DriveLimits::default());
         run(&mut drive, 0.7, 0.0, 4.0);
         drive.advance(0.1, 0.5);
@@ -180,11 +178,11 @@ mod tests {
             drive.advance(0.1, 0.5);
         }
         assert_eq!(drive.velocity().linear_mps, 0.35);
-        assert_eq!(drive.target().linear_mps, 0.7);
+        assert_eq!(drive.target.linear_mps, 0.7);
     }
 
     #[test]
-    fn sides_share_their_speed_and_keep_the_arc() {
+    fn the_limit_of_a_side_scales_both_speeds_and_keeps_the_arc() {
         let mut drive = Drive::new(DriveLimits::default());
         let velocity = run(&mut drive, 0.7, 2.0, 10.0);
         let outer = velocity.linear_mps + 0.294 * velocity.angular_radps;

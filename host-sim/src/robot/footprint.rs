@@ -1,16 +1,17 @@
-//! The ground that the robot covers: a rectangle, judged exactly against the solid cells of the world.
+//! The ground that the robot covers: a rectangle, tested exactly against the world's solid cells.
 //!
-//! Two convex shapes that do not overlap are nearest at a corner of one of them, so the gap between the rectangle and a
-//! cell is the least over the eight corners. They overlap unless one of their four edge directions separates them.
-//! The distance field only spares the work where nothing can be near.
+//! The nearest points of two convex shapes that do not overlap include a corner of one of them,
+//! so the gap between the rectangle and a cell is the least over the eight corners. The shapes
+//! overlap unless one of their four edge directions separates them. The distance field only skips
+//! the test where nothing can be near.
 //!
-//! A robot that leans covers other ground than one that stands upright: the shadow of its box, with the bottom corners drawn in
-//! and the top corners pushed out. Walls are taken as higher than the robot. Metres.
+//! The rectangle of a leaning robot is the shadow of its box: the bottom corners move in and the
+//! top corners move out. Walls count as higher than the robot. Metres.
 
-use super::pose::Pose;
+use super::pose::{PlanarFrame, Pose};
 use crate::world::{GridCell, World};
 
-/// Clearance is not measured beyond this, metres.
+/// Greatest clearance that is measured, metres.
 pub const FARTHEST_M: f64 = 1.0;
 
 /// A rectangle around the robot's centre.
@@ -20,17 +21,15 @@ pub struct Footprint {
     pub half_length_m: f64,
     /// Half its width, metres.
     pub half_width_m: f64,
-    /// How high the body stands on that rectangle, metres.
+    /// Height of the body over that rectangle, metres.
     pub height_m: f64,
 }
 
-/// The rectangle at a pose: its centre, cosine and sine of the heading.
+/// The rectangle at a pose, with its centre as the origin of its frame.
 #[derive(Clone, Copy)]
 struct Placed {
     half: [f64; 2],
-    centre: [f64; 2],
-    cos: f64,
-    sin: f64,
+    frame: PlanarFrame,
 }
 
 impl Footprint {
@@ -47,7 +46,7 @@ impl Footprint {
         (self.half_length_m * self.half_length_m + self.half_width_m * self.half_width_m).sqrt()
     }
 
-    /// Does the footprint overlap a solid cell?
+    /// Returns true if the footprint overlaps a solid cell.
     #[must_use]
     pub fn overlaps(&self, world: &World, pose: &Pose) -> bool {
         let reach_m = self.reach_m(pose);
@@ -59,8 +58,8 @@ impl Footprint {
         solid_cells(world, pose, reach_m).any(|square| placed.overlaps(square))
     }
 
-    /// Metres between the footprint's outline and the nearest solid cell: 0 where they overlap, and at most
-    /// [`FARTHEST_M`].
+    /// Metres between the footprint's outline and the nearest solid cell: 0 if they overlap, and at
+    /// most [`FARTHEST_M`].
     #[must_use]
     pub fn clearance_m(&self, world: &World, pose: &Pose) -> f64 {
         let placed = self.place(pose);
@@ -74,7 +73,7 @@ impl Footprint {
         nearest_m
     }
 
-    /// A lower bound of [`Self::clearance_m`] that costs one look-up.
+    /// A lower bound of [`Self::clearance_m`] for the cost of one look-up.
     #[must_use]
     pub fn clearance_bound_m(&self, world: &World, pose: &Pose) -> f64 {
         let cell = world.occupancy().cell_at(pose.x_m, pose.y_m);
@@ -91,7 +90,8 @@ impl Footprint {
         (a * a + b * b).sqrt()
     }
 
-    /// From where to where the shadow of the leaning box reaches, along the heading and across it, metres.
+    /// Extent of the leaning box's shadow along the heading and across it, `[least, greatest]`,
+    /// metres.
     ///
     /// A corner (±a, ±b, 0 or h) of the box lies, with `Ry(pitch) Rx(roll)`, at
     /// `x = ±a cos p ± b sin p sin r + h sin p cos r` and `y = ±b cos r − h sin r`.
@@ -110,36 +110,22 @@ impl Footprint {
 
     fn place(&self, pose: &Pose) -> Placed {
         let [[x0, x1], [y0, y1]] = self.shadow(pose);
-        let (cos, sin) = (libm::cos(pose.yaw_rad), libm::sin(pose.yaw_rad));
         let (x, y) = (0.5 * (x0 + x1), 0.5 * (y0 + y1));
         Placed {
             half: [0.5 * (x1 - x0), 0.5 * (y1 - y0)],
-            centre: [pose.x_m + x * cos - y * sin, pose.y_m + x * sin + y * cos],
-            cos,
-            sin,
+            frame: pose.planar_frame().shifted([x, y]),
         }
     }
 }
 
 impl Placed {
-    /// A world point in the robot's frame.
-    fn inside(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let (dx, dy) = (x - self.centre[0], y - self.centre[1]);
-        [dx * self.cos + dy * self.sin, dy * self.cos - dx * self.sin]
-    }
-
     /// The rectangle's corners in the world.
     fn corners(&self) -> [[f64; 2]; 4] {
         let [a, b] = self.half;
-        [[a, b], [-a, b], [-a, -b], [a, -b]].map(|[x, y]| {
-            [
-                self.centre[0] + x * self.cos - y * self.sin,
-                self.centre[1] + x * self.sin + y * self.cos,
-            ]
-        })
+        [[a, b], [-a, b], [-a, -b], [a, -b]].map(|corner| self.frame.to_world(corner))
     }
 
-    /// No edge direction of either shape separates them.
+    /// Returns true if no edge direction of either shape separates them.
     fn overlaps(&self, [x0, y0, x1, y1]: [f64; 4]) -> bool {
         let spread = |values: [f64; 4]| {
             values
@@ -157,7 +143,7 @@ impl Placed {
         if high <= y0 || low >= y1 {
             return false;
         }
-        let square = square_corners([x0, y0, x1, y1]).map(|c| self.inside(c));
+        let square = square_corners([x0, y0, x1, y1]).map(|c| self.frame.to_local(c));
         (0..2).all(|axis| {
             let (low, high) = spread(square.map(|c| c[axis]));
             high > -self.half[axis] && low < self.half[axis]
@@ -168,8 +154,8 @@ impl Placed {
     fn gap_m(&self, square: [f64; 4]) -> f64 {
         let [x0, y0, x1, y1] = square;
         let [a, b] = self.half;
-        let to_rectangle =
-            square_corners(square).map(|corner| point_to_box(self.inside(corner), [-a, -b, a, b]));
+        let to_rectangle = square_corners(square)
+            .map(|corner| point_to_box(self.frame.to_local(corner), [-a, -b, a, b]));
         let to_square = self.corners().map(|c| point_to_box(c, [x0, y0, x1, y1]));
         to_rectangle
             .into_iter()
@@ -188,7 +174,7 @@ fn point_to_box([x, y]: [f64; 2], [x0, y0, x1, y1]: [f64; 4]) -> f64 {
     (dx * dx + dy * dy).sqrt()
 }
 
-/// The solid cells, as [x0, y0, x1, y1], that come within `reach_m` of a point along both axes.
+/// Solid cells, as [x0, y0, x1, y1], that come within `reach_m` of a pose along both axes.
 fn solid_cells(world: &World, pose: &Pose, reach_m: f64) -> impl Iterator<Item = [f64; 4]> {
     let grid = world.occupancy();
     let low = grid.cell_at(pose.x_m - reach_m, pose.y_m - reach_m);
@@ -233,7 +219,7 @@ mod tests {
         }
     }
 
-    /// Least distance between points spread over both outlines and insides, 0.02 m apart.
+    /// Least distance between points spread over the outlines and insides of both, 0.02 m apart.
     fn sampled_m(world: &World, pose: &Pose) -> f64 {
         let placed = ROBOT.place(pose);
         let mut nearest = FARTHEST_M;
@@ -244,10 +230,7 @@ mod tests {
                         f64::from(a) / 13.0 * placed.half[0],
                         f64::from(b) / 13.0 * placed.half[1],
                     );
-                    let point = [
-                        pose.x_m + x * placed.cos - y * placed.sin,
-                        pose.y_m + x * placed.sin + y * placed.cos,
-                    ];
+                    let point = placed.frame.to_world([x, y]);
                     nearest = nearest.min(point_to_box(point, square));
                 }
             }
@@ -298,7 +281,7 @@ mod tests {
         assert!((clearance - (0.3 - 0.2485)).abs() < 1e-9, "{clearance}");
         assert!(ROBOT.overlaps(&world, &upright(1.5, 1.0, 0.6)));
         assert!(!ROBOT.overlaps(&world, &upright(1.5, 1.0, 0.1)));
-        // Leaning to its right by 20° its deck sticks out by 0.277 sin 20° and its side draws in.
+        // At a lean of 20° to the right the deck extends by 0.277 sin 20° and the side moves in.
         let leaning = Pose {
             roll_rad: 20.0_f64.to_radians(),
             ..upright(1.5, 1.0, 0.0)
@@ -313,7 +296,7 @@ mod tests {
         assert!((clearance - (0.34 - out)).abs() < 1e-9, "{clearance}");
     }
 
-    /// Every corner of the box, turned by the whole attitude, lies in the shadow, and some corner touches each of its sides.
+    /// Every corner of the rotated box lies in the shadow, and a corner touches each of its sides.
     #[test]
     fn the_shadow_is_the_box_seen_from_above() {
         let mut rng = ChaCha8Rng::seed_from_u64(32);

@@ -1,10 +1,12 @@
-//! The two laser scanners: where they sit, how they sweep, how they err.
+//! The two laser scanners: their mounts, their beams and their errors.
 //!
-//! A beam at bearing b leaves along `(cos b, sin b, 0)`, turned by the mount's pitch and then by the robot's attitude. The
-//! simulated geometry is the announced one: mount and bearings are first rounded to the wire's fixed-point numbers.
+//! A beam at bearing b leaves along `(cos b, sin b, 0)`, turned by the mount's pitch and then by
+//! the robot's attitude. Mount and bearings are first rounded to the wire's fixed-point numbers,
+//! so the simulated geometry is the announced one.
 //!
-//! Error of a range r: `r + σ·N(0,1)`, rounded to millimetres; with a small probability nothing comes back (dark or
-//! shiny surfaces), with a smaller one something does from nearer than the wall (dust, an edge hit by half).
+//! A measured range is `r + σ·N(0,1)`, rounded to millimetres. With a small probability no return
+//! comes (dark or shiny surfaces); with a smaller one a return comes from nearer than the wall
+//! (dust, an edge hit by half of the beam).
 
 use fieldline_protocol::message::{self, INVALID_MM, MAX_BEAMS, NO_RETURN_MM, Scan};
 use fixed::types::{I4F12, I16F16};
@@ -13,7 +15,7 @@ use super::noise::{Noise, Source};
 use super::pose::Pose;
 use crate::world::{Ray, World};
 
-/// How lasers err.
+/// Errors of a laser.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaserNoise {
     /// Standard deviation of a range, metres. Default: 0.01.
@@ -35,7 +37,7 @@ impl Default for LaserNoise {
 }
 
 impl LaserNoise {
-    /// Perfect lasers but for the rounding to millimetres.
+    /// No errors except the rounding to millimetres.
     pub const NONE: Self = Self {
         sigma_m: 0.0,
         lost: 0.0,
@@ -43,7 +45,7 @@ impl LaserNoise {
     };
 }
 
-/// Nothing is reported from nearer, metres: the laser's own housing.
+/// Least range that is reported, metres: anything nearer is the laser's own housing.
 const NEAREST_M: f64 = 0.02;
 
 /// The level scanner: 0.10 m ahead of the centre, 0.40 m up.
@@ -58,7 +60,7 @@ pub fn tilted() -> message::Laser {
     mount(0.15, 0.45, 20.0)
 }
 
-/// 181 beams from −90° to +90°, 12 m.
+/// A scanner with 181 beams from −90° to +90° and a range of 12 m.
 fn mount(x_m: f64, z_m: f64, down_deg: f64) -> message::Laser {
     message::Laser {
         x: I4F12::from_num(x_m),
@@ -72,12 +74,12 @@ fn mount(x_m: f64, z_m: f64, down_deg: f64) -> message::Laser {
     }
 }
 
-/// One scanner at work.
+/// One scanner.
 #[derive(Clone, Debug)]
 pub struct LaserScanner {
-    /// Where the beams leave, in the robot's frame, metres.
+    /// Origin of the beams in the robot's frame, metres.
     position_m: [f64; 3],
-    /// Where they go, in the robot's frame.
+    /// Directions of the beams in the robot's frame.
     directions: Vec<[f64; 3]>,
     limit_m: f64,
     errors: LaserNoise,
@@ -86,7 +88,8 @@ pub struct LaserScanner {
 }
 
 impl LaserScanner {
-    /// A scanner as announced by `laser`, erring as `errors` says, with `sources` of noise for ranges and faults.
+    /// A scanner as announced by `laser`, with `errors`, and with noise `sources` for ranges and
+    /// faults.
     #[must_use]
     pub fn new(
         laser: &message::Laser,
@@ -113,7 +116,7 @@ impl LaserScanner {
         }
     }
 
-    /// One sweep from a pose.
+    /// Measures one sweep from a pose.
     pub fn scan(&mut self, world: &World, pose: &Pose) -> Scan {
         let axes = pose.axes();
         let rotate = |v: &[f64; 3]| {
@@ -133,15 +136,15 @@ impl LaserScanner {
             };
             let hit = world.cast(&ray, self.limit_m);
             let code = self.measure(hit.map(|hit| hit.range_m));
-            // The vector holds MAX_BEAMS, and there are no more directions.
+            // The vector holds MAX_BEAMS, and there are no more directions than that.
             let _ = scan.ranges_mm.push(code);
         }
         scan
     }
 
-    /// What the scanner makes of a true range.
+    /// Returns the range code that the scanner reports for a true range.
     fn measure(&mut self, range_m: Option<f64>) -> u16 {
-        // All draws happen for every beam, so that no beam shifts the next.
+        // Every beam makes all draws, so that no beam shifts the draws of the next.
         let error_m = self.errors.sigma_m * self.range.normal();
         let (fate, place) = (self.fault.uniform(), self.fault.uniform());
         let reach_m = range_m.unwrap_or(self.limit_m);
@@ -162,7 +165,7 @@ impl LaserScanner {
     }
 }
 
-/// A range in millimetres, kept clear of the two codes.
+/// A range in millimetres, kept between the two codes.
 fn code(range_m: f64) -> u16 {
     let millimetres = (range_m.max(NEAREST_M) * 1000.0).round() as u16;
     millimetres.clamp(INVALID_MM + 1, NO_RETURN_MM - 1)
@@ -181,7 +184,7 @@ mod tests {
         )
     }
 
-    /// 6 × 6 m with its walls at 0 and 6.
+    /// A room of 6 × 6 m with its walls at 0 and 6.
     fn room() -> World {
         let row = ".".repeat(12);
         World::picture("room", 0.5, &[row.as_str(); 12])
@@ -224,12 +227,12 @@ mod tests {
             scan.ranges_mm[90],
             (height / pitch.sin() * 1000.0).round() as u16
         );
-        // Straight to the side its beams stay level and meet the wall.
+        // Straight to the side its beams are level and hit the wall.
         assert_eq!(scan.ranges_mm[180], 3000);
     }
 
     #[test]
-    fn nothing_within_the_limit_is_the_code() {
+    fn a_beam_without_a_hit_within_the_limit_gives_the_code() {
         let wide = World::builtin("empty-hall").expect("built in");
         let pose = Pose {
             x_m: 15.0,
@@ -241,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn noise_has_its_rates_and_its_spread() {
+    fn noise_has_the_stated_rates_and_spread() {
         let errors = LaserNoise {
             sigma_m: 0.02,
             lost: 0.05,
@@ -276,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn a_change_of_one_rate_leaves_the_other_draws_alone() {
+    fn a_change_of_one_rate_leaves_the_other_draws_as_they_were() {
         let quiet = LaserNoise {
             lost: 0.0,
             false_return: 0.0,

@@ -1,21 +1,24 @@
-//! What ground a robot may use, and what ground it does not survive.
+//! Limits of the ground: what a robot may use, and what it does not survive.
 //!
-//! Four numbers say it: the slope along the heading, the slope across it, the highest edge that a wheel climbs, and the
-//! deepest edge that it goes down. There are two such sets. Within the *working* limits the robot is at home: they decide
-//! what counts as reachable and as traversable. Beyond the *failing* limits it is stopped by an edge, falls down one, or tips
-//! over. Between the two it drives on, and the time that it spends there is reported.
+//! A set has four numbers: the slope along the heading, the slope across it, the highest edge that
+//! a wheel climbs, and the deepest edge that it goes down. There are two sets. The *working*
+//! limits decide what counts as reachable and as traversable. Beyond the *failing* limits an edge
+//! stops the robot, or it falls, or it tips over. Between the two it drives on, and the report
+//! says for how long.
 //!
-//! Working: a climb of 20° (the data sheet of the 3-AT says a grade of 35 %, 19.3°), 15° to the side, edges of 0.07 m.
-//! Failing: the data sheet's step of 0.10 m; 30° and 25°, which leaves a wheel base of 0.268 m and a track of 0.394 m
-//! some of their static margin (34° and 45° with the centre of mass 0.2 m up) for what is not simulated, bumps and braking;
-//! and a drop of 0.15 m, over which the wheel base stands at 29°.
+//! Working: a climb of 20° (the data sheet of the 3-AT gives a grade of 35 %, 19.3°), 15° to the
+//! side, edges of 0.07 m. Failing: a step of 0.10 m, from the data sheet; 30° and 25°; a drop of
+//! 0.15 m, at which the wheelbase leans by 29°. With a wheelbase of 0.268 m, a track of 0.394 m
+//! and the centre of mass 0.2 m up, the static margins are 34° and 45°; the rest is for bumps and
+//! braking, which are not simulated.
 //!
-//! Angles in radians, lengths in metres; in the text form degrees and metres: `climb=20,side=15,step=0.07,drop=0.07`.
+//! Angles in radians, lengths in metres. The text form has degrees and metres:
+//! `climb=20,side=15,step=0.07,drop=0.07`.
 
 use core::fmt;
 use core::str::FromStr;
 
-/// Bounds of the ground under a robot.
+/// Limits of the ground under a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Greatest slope along the heading, up or down, radians.
@@ -29,7 +32,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// What the robot may use: 20°, 15°, 0.07 m, 0.07 m.
+    /// Ground that the robot may use: 20°, 15°, 0.07 m, 0.07 m.
     pub const WORKING: Self = Self {
         climb_rad: 20.0 * DEGREE,
         side_rad: 15.0 * DEGREE,
@@ -37,7 +40,7 @@ impl Limits {
         drop_m: 0.07,
     };
 
-    /// What it does not survive: 30°, 25°, 0.10 m, 0.15 m.
+    /// Ground that the robot just survives: 30°, 25°, 0.10 m, 0.15 m.
     pub const FAILING: Self = Self {
         climb_rad: 30.0 * DEGREE,
         side_rad: 25.0 * DEGREE,
@@ -45,14 +48,14 @@ impl Limits {
         drop_m: 0.15,
     };
 
-    /// Is an attitude within the slopes?
+    /// Returns true if an attitude is within the slopes.
     #[must_use]
     pub fn holds_attitude(&self, pitch_rad: f64, roll_rad: f64) -> bool {
-        // The angles of a slope exactly at the limit are off by a rounding error.
+        // The angles on a slope exactly at the limit have a rounding error.
         pitch_rad.abs() <= self.climb_rad + SLACK && roll_rad.abs() <= self.side_rad + SLACK
     }
 
-    /// Is every bound of `self` at most that of `other`?
+    /// Returns true if every limit of `self` is at most that of `other`.
     #[must_use]
     pub fn is_within(&self, other: &Self) -> bool {
         let pairs = self.numbers().into_iter().zip(other.numbers());
@@ -65,10 +68,10 @@ impl Limits {
 }
 
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
-/// Rounding errors of heights and angles that break no limit; metres or radians.
+/// Rounding errors of heights and angles that do not break a limit; metres or radians.
 pub(super) const SLACK: f64 = 1e-6;
 
-/// Why a text gives no limits.
+/// Why a text is not a set of limits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LimitsError(String);
 
@@ -82,10 +85,11 @@ impl fmt::Display for LimitsError {
 impl core::error::Error for LimitsError {}
 
 impl Limits {
-    /// These limits with those changed that a text names.
+    /// Returns these limits with the changes that a text names.
     ///
     /// # Errors
-    /// [`LimitsError`] for an unknown name, a text that is no number, an angle beyond 60° or a length beyond 1 m.
+    /// [`LimitsError`] for an unknown name, a value that is no number, an angle beyond 60° or a
+    /// length beyond 1 m.
     pub fn changed(mut self, text: &str) -> Result<Self, LimitsError> {
         for part in text.split(',').map(str::trim) {
             let Some((name, number)) = part.split_once('=') else {
@@ -111,7 +115,7 @@ impl Limits {
 
 impl fmt::Display for Limits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // A hundredth of a degree is enough; the sum with 0 makes −0 a 0.
+        // A hundredth of a degree is precise enough; adding 0 turns −0 into 0.
         let degrees = |rad: f64| (rad / DEGREE * 100.0).round() / 100.0 + 0.0;
         write!(
             f,
@@ -142,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_named() {
+    fn a_bad_limit_is_named() {
         for (text, word) in [
             ("", "''"),
             ("climb", "'climb'"),
@@ -161,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn what_works_does_not_fail() {
+    fn the_working_limits_are_within_the_failing_ones() {
         assert!(Limits::WORKING.is_within(&Limits::FAILING));
         assert!(!Limits::FAILING.is_within(&Limits::WORKING));
         let [climb, side] = [Limits::WORKING.climb_rad, Limits::WORKING.side_rad];

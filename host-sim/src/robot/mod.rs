@@ -1,4 +1,4 @@
-//! The Pioneer 3-AT: its footprint, its wheels on the ground, its drive, its lasers and its odometry.
+//! The Pioneer 3-AT: footprint, wheels on the ground, drive, lasers and odometry.
 
 mod contact;
 mod drive;
@@ -19,10 +19,11 @@ pub use laser::{LaserNoise, LaserScanner};
 pub use limits::{Limits, LimitsError};
 pub use noise::{Noise, Source};
 pub use odometry::{Odometry, OdometryModel, OdometryNoise};
+pub(crate) use pose::distance_m;
 pub use pose::{Pose, Velocity, wrap};
 pub use stance::stand;
 pub(crate) use stance::{ground_m, resting, wheels};
 pub use traction::{Shift, Traction};
 
-/// Radius of the disc that the planner is told to keep clear and that coverage is judged by, metres.
+/// Radius of the robot's disc, metres: the planner keeps it clear, and coverage counts with it.
 pub const RADIUS_M: f64 = 0.30;

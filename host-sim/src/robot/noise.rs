@@ -1,13 +1,14 @@
 //! Seeded randomness: one independent stream for every source of noise.
 //!
-//! Every source draws from its own `ChaCha8` stream, so that a change to one does not shift the others, and a fixed number of
-//! draws for every sample, so that a change of a standard deviation does not either. Only sums, products, square roots
-//! and `libm` are used: the same seed gives the same bits on every machine.
+//! Every source draws from its own `ChaCha8` stream, so a change to one source does not shift the
+//! others. Every sample takes a fixed number of draws, so a change of a standard deviation does
+//! not shift them either. Only sums, products, square roots and `libm` are used: the same seed
+//! gives the same bits on every machine.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// What is noisy; the discriminant is the stream.
+/// Sources of noise; the discriminant is the number of the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Source {
@@ -19,7 +20,7 @@ pub enum Source {
     TiltedRange = 3,
     /// Lost and false returns of the tilted laser.
     TiltedFault = 4,
-    /// The odometry's scale errors, drawn once a run.
+    /// The odometry's scale errors, drawn once per run.
     OdometryScale = 5,
     /// The odometry's random walk.
     OdometryWalk = 6,
@@ -74,7 +75,7 @@ mod tests {
         let samples: Vec<f64> = (0..count).map(|_| noise.normal()).collect();
         let mean = samples.iter().sum::<f64>() / f64::from(count);
         let variance = samples.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / f64::from(count);
-        // One standard deviation in 68.27 % of the cases; bounds are five standard errors.
+        // One standard deviation holds 68.27 % of the samples; the bounds are five standard errors.
         let within = samples.iter().filter(|s| s.abs() < 1.0).count() as f64 / f64::from(count);
         assert!(mean.abs() < 0.0112, "{mean}");
         assert!((variance - 1.0).abs() < 0.0159, "{variance}");

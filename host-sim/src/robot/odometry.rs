@@ -1,38 +1,41 @@
-//! What the robot believes of its own motion.
+//! The robot's own estimate of its motion.
 //!
-//! *Truth* is the exact pose. *Noisy* integrates its own pose from increments that err in two ways: a scale error
-//! of distance and of turn, drawn once a run (tyre pressure, the slip of this floor), and a random walk,
+//! *Truth* is the exact pose. *Noisy* integrates its own pose from increments with two errors: a
+//! scale error of distance and of turn, drawn once per run (tyre pressure, the slip of this
+//! floor), and a random walk,
 //!
 //! ```text
 //! turn′    = turn    (1 + s_turn)    + N(0, α₁|turn| + α₂|distance|)
 //! distance′ = distance (1 + s_distance) + N(0, α₃|distance| + α₄|turn|)
 //! ```
 //!
-//! Departs from [Thrun05, table 5.6], whose variances grow with the squares: those depend on how often one samples,
-//! while these add up to the same over the same path however it is cut.
+//! Departs from [Thrun05, table 5.6]: there the variances grow with the squares, so they depend on
+//! the sampling rate. Here they are linear, so the sum over a path does not depend on how the path
+//! is cut.
 //!
-//! Wheels count what they turn, not what they slip. The way is tilted by the pitch, which an inertial unit averages over a
-//! period: `z′ −= distance′ sin(pitch)`, seen from above `distance′ cos(pitch)`; and z takes a random walk of its own. What the unit
-//! says of roll and pitch at one instant has white noise.
+//! Wheels count their turning, not their slip. The distance is tilted by the pitch, which an
+//! inertial unit averages over a period: `z′ −= distance′ sin(pitch)`, and `distance′ cos(pitch)`
+//! seen from above. z has a random walk of its own. The unit's roll and pitch at one instant have
+//! white noise.
 //!
-//! The frame starts at the robot's start pose in the world, so that truth and world coincide. Metres, radians. On the level the
-//! heights are nothing but that walk.
+//! The frame starts at the robot's start pose in the world, so truth and world coincide. On level
+//! ground the height is only that random walk. Metres, radians.
 //!
 //! [Thrun05]: S. Thrun, W. Burgard, D. Fox, "Probabilistic Robotics", 2005.
 
 use super::noise::{Noise, Source};
 use super::pose::{Pose, Velocity};
 
-/// How odometry errs.
+/// Errors of the odometry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OdometryNoise {
-    /// α₁: variance of the turn per turn, rad²/rad. Default: 4.4e-4 (3° a full turn).
+    /// α₁: variance of the turn per turn, rad²/rad. Default: 4.4e-4 (3° per full turn).
     pub turn_by_turn: f64,
     /// α₂: variance of the turn per distance, rad²/m. Default: 1.2e-4 (2° over 10 m).
     pub turn_by_distance: f64,
     /// α₃: variance of the distance per distance, m²/m. Default: 2.5e-4 (5 cm over 10 m).
     pub distance_by_distance: f64,
-    /// α₄: variance of the distance per turn, m²/rad. Default: 1.4e-4 (3 cm a full turn).
+    /// α₄: variance of the distance per turn, m²/rad. Default: 1.4e-4 (3 cm per full turn).
     pub distance_by_turn: f64,
     /// α₅: variance of the height per distance, m²/m. Default: 1e-4 (3 cm over 10 m).
     pub height_by_distance: f64,
@@ -59,19 +62,20 @@ impl Default for OdometryNoise {
     }
 }
 
-/// Which odometry a robot has.
+/// The model of a robot's odometry.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OdometryModel {
     /// The exact pose.
     #[default]
     Truth,
-    /// The exact position and heading; roll and pitch with white noise of this standard deviation, radians.
+    /// The exact position and heading; roll and pitch have white noise of this standard deviation,
+    /// radians.
     Tilting(f64),
     /// Wheel encoders and an inertial unit.
     Noisy(OdometryNoise),
 }
 
-/// The odometry's state.
+/// State of the odometry.
 #[derive(Clone, Debug)]
 pub struct Odometry {
     model: OdometryModel,
@@ -84,7 +88,7 @@ pub struct Odometry {
 }
 
 impl Odometry {
-    /// Begins at the true start pose.
+    /// Starts at the true start pose.
     #[must_use]
     pub fn new(model: OdometryModel, start: Pose, seed: u64) -> Self {
         let mut scale = Noise::new(seed, Source::OdometryScale);
@@ -106,30 +110,31 @@ impl Odometry {
         }
     }
 
-    /// Where the robot believes to be.
+    /// The estimated pose.
     #[must_use]
     pub fn pose(&self) -> &Pose {
         &self.pose
     }
 
-    /// How fast it believes to go.
+    /// The estimated velocity.
     #[must_use]
     pub fn velocity(&self) -> Velocity {
         self.velocity
     }
 
-    /// Takes in the motion of one period: the true pose now, the way the wheels went and turned, the true velocity.
+    /// Adds the motion of one period: the true pose at its end, the distance and turn of the
+    /// wheels, and the true velocity.
     pub fn advance(&mut self, truth: &Pose, forward_m: f64, turn_rad: f64, velocity: Velocity) {
         self.velocity = velocity;
         match self.model {
             OdometryModel::Truth => self.pose = *truth,
             OdometryModel::Tilting(sigma_rad) => {
                 self.pose = *truth;
-                self.feel(truth, sigma_rad);
+                self.sense_attitude(truth, sigma_rad);
             }
             OdometryModel::Noisy(noise) => {
                 self.reckon(&noise, truth, forward_m, turn_rad);
-                self.feel(truth, noise.attitude_rad);
+                self.sense_attitude(truth, noise.attitude_rad);
             }
         }
     }
@@ -152,8 +157,8 @@ impl Odometry {
         self.pose.z_m = height_m;
     }
 
-    /// What the inertial unit says of the attitude.
-    fn feel(&mut self, truth: &Pose, sigma_rad: f64) {
+    /// Takes roll and pitch from the inertial unit.
+    fn sense_attitude(&mut self, truth: &Pose, sigma_rad: f64) {
         self.pose.roll_rad = truth.roll_rad + sigma_rad * self.inertial.normal();
         self.pose.pitch_rad = truth.pitch_rad + sigma_rad * self.inertial.normal();
     }
@@ -163,7 +168,7 @@ impl Odometry {
 mod tests {
     use super::*;
 
-    /// The error of the believed pose after `periods` steps that each go `forward_m` and turn `turn_rad`.
+    /// Errors of the estimated pose after `periods` steps, each of `forward_m` and `turn_rad`.
     fn errors(noise: OdometryNoise, periods: u32, forward_m: f64, turn_rad: f64) -> Vec<[f64; 2]> {
         (0..400)
             .map(|seed| {
@@ -193,13 +198,14 @@ mod tests {
     }
 
     #[test]
-    fn spread_is_the_stated_one_however_the_way_is_cut() {
+    fn the_spread_is_as_stated_however_the_path_is_cut() {
         let walk = OdometryNoise {
             distance_scale: 0.0,
             turn_scale: 0.0,
             ..OdometryNoise::default()
         };
-        // 10 m straight: 2° of heading and 5 cm of distance; 15 % is four standard errors of 400 runs.
+        // 10 m straight: 2° of heading and 5 cm of distance; 15 % is four standard errors of 400
+        // runs.
         for (periods, forward_m) in [(100, 0.1), (20, 0.5)] {
             let errors = errors(walk, periods, forward_m, 0.0);
             let heading = deviation(&errors, 1).to_degrees();
@@ -212,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slope_is_reckoned_as_way_and_height() {
+    fn on_a_slope_the_distance_splits_into_plan_and_height() {
         let exact = OdometryNoise {
             turn_by_turn: 0.0,
             turn_by_distance: 0.0,
@@ -237,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_way_of_ten_metres_drifts_by_three_centimetres_in_height() {
+    fn over_ten_level_metres_the_height_drifts_by_3_cm() {
         let heights: Vec<[f64; 2]> = (0..400)
             .map(|seed| {
                 let noise = OdometryNoise::default();
@@ -254,7 +260,7 @@ mod tests {
     }
 
     #[test]
-    fn tilting_is_the_truth_but_for_the_attitude() {
+    fn tilting_is_the_truth_except_for_roll_and_pitch() {
         let sigma = 0.02;
         let mut odometry = Odometry::new(OdometryModel::Tilting(sigma), Pose::default(), 3);
         let truth = Pose {

@@ -1,7 +1,7 @@
-//! Where the robot really is and how it moves, in double precision; the wire's fixed-point types are made here.
+//! True poses and velocities in double precision, and their conversion to the wire's fixed point.
 //!
-//! Attitude is yaw, then pitch, then roll: `R = Rz(yaw) Ry(pitch) Rx(roll)`; positive pitch is nose down. Metres,
-//! radians, seconds.
+//! Attitude is yaw, then pitch, then roll: `R = Rz(yaw) Ry(pitch) Rx(roll)`; positive pitch is
+//! nose down. Metres, radians, seconds.
 
 use fieldline_protocol::message;
 use fixed::types::{I4F12, I16F16};
@@ -26,13 +26,13 @@ pub struct Pose {
 /// A planar velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Velocity {
-    /// Metres a second, forward.
+    /// Forward speed, metres a second.
     pub linear_mps: f64,
-    /// Radians a second, counter-clockwise.
+    /// Turn rate, radians a second, counter-clockwise.
     pub angular_radps: f64,
 }
 
-/// An angle in [−π, π).
+/// Wraps an angle into [−π, π).
 #[must_use]
 pub fn wrap(angle_rad: f64) -> f64 {
     use core::f64::consts::{PI, TAU};
@@ -40,15 +40,61 @@ pub fn wrap(angle_rad: f64) -> f64 {
     (angle_rad - turns * TAU).clamp(-PI, PI)
 }
 
+/// Distance between two points of the plane, metres.
+pub(crate) fn distance_m(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (dx, dy) = (b[0] - a[0], b[1] - a[1]);
+    (dx * dx + dy * dy).sqrt()
+}
+
+/// A frame in the plane of the world: its origin, and cosine and sine of its heading.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlanarFrame {
+    origin_m: [f64; 2],
+    cos: f64,
+    sin: f64,
+}
+
+impl PlanarFrame {
+    /// Converts a point `[ahead, left]` of this frame to the world.
+    pub(crate) fn to_world(self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [
+            self.origin_m[0] + x * self.cos - y * self.sin,
+            self.origin_m[1] + x * self.sin + y * self.cos,
+        ]
+    }
+
+    /// This frame with its origin moved to a point `[ahead, left]`.
+    pub(crate) fn shifted(self, point: [f64; 2]) -> Self {
+        Self {
+            origin_m: self.to_world(point),
+            ..self
+        }
+    }
+
+    /// Converts a point of the world to this frame.
+    pub(crate) fn to_local(self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let (dx, dy) = (x - self.origin_m[0], y - self.origin_m[1]);
+        [dx * self.cos + dy * self.sin, dy * self.cos - dx * self.sin]
+    }
+}
+
 impl Pose {
     /// Planar distance to another pose, metres.
     #[must_use]
     pub fn distance_m(&self, other: &Self) -> f64 {
-        let (dx, dy) = (other.x_m - self.x_m, other.y_m - self.y_m);
-        (dx * dx + dy * dy).sqrt()
+        distance_m([self.x_m, self.y_m], [other.x_m, other.y_m])
     }
 
-    /// After driving at a constant velocity for `seconds`: the exact arc.
+    /// The robot's frame, seen from above.
+    pub(crate) fn planar_frame(&self) -> PlanarFrame {
+        PlanarFrame {
+            origin_m: [self.x_m, self.y_m],
+            cos: libm::cos(self.yaw_rad),
+            sin: libm::sin(self.yaw_rad),
+        }
+    }
+
+    /// The pose after `seconds` at a constant velocity: the exact arc.
     #[must_use]
     pub fn driven(&self, velocity: Velocity, seconds: f64) -> Self {
         self.moved(
@@ -57,7 +103,8 @@ impl Pose {
         )
     }
 
-    /// After an arc of `forward_m` that turns by `turn_rad`: its chord lies at half the turn.
+    /// The pose after an arc of `forward_m` that turns by `turn_rad`: its chord lies at half the
+    /// turn.
     #[must_use]
     pub fn moved(&self, forward_m: f64, turn_rad: f64) -> Self {
         let half = 0.5 * turn_rad;
@@ -75,7 +122,7 @@ impl Pose {
         }
     }
 
-    /// Columns: the robot's forward, left and up axes in the world.
+    /// The robot's forward, left and up axes in the world: the columns of R.
     #[must_use]
     pub fn axes(&self) -> [[f64; 3]; 3] {
         let (cr, sr) = (libm::cos(self.roll_rad), libm::sin(self.roll_rad));
@@ -88,7 +135,7 @@ impl Pose {
         ]
     }
 
-    /// On the wire; saturates.
+    /// Converts to the wire's type; saturates.
     #[must_use]
     pub fn to_wire(&self) -> message::Pose {
         message::Pose {
@@ -103,7 +150,7 @@ impl Pose {
 }
 
 impl Velocity {
-    /// On the wire; saturates.
+    /// Converts to the wire's type; saturates.
     #[must_use]
     pub fn to_wire(self) -> message::Twist {
         message::Twist {
@@ -166,7 +213,7 @@ mod tests {
             yaw_rad,
             ..Pose::default()
         };
-        // Nose down: forward points below the horizon. Yaw left: forward points to +y.
+        // Nose down: forward points below the horizon. Yaw to the left: forward points to +y.
         let [forward, ..] = pose(0.0, 0.3, 0.0).axes();
         assert!(forward[2] < 0.0 && forward[0] > 0.0);
         let [forward, left, up] = pose(0.0, 0.0, FRAC_PI_2).axes();

@@ -1,30 +1,33 @@
-//! How the robot stands: height, roll and pitch from the ground under its four wheels.
+//! The stance of the robot: height, roll and pitch from the ground under its four wheels.
 //!
 //! ```text
-//! z = mean of the four     pitch = atan((rear − front) / wheelbase)     roll = atan((left − right) / track)
+//! z     = mean of the four
+//! pitch = atan((rear − front) / wheelbase)
+//! roll  = atan((left − right) / track)
 //! ```
 //!
-//! with the means of the two wheels at each end and side. It is the plane of least squares through the four contacts: a chassis on
-//! four stiff wheels touches with three of them at the most. A wheel touches at the point under its axle; that it is round,
-//! and rides over an edge a little earlier, is left out. Over a hole there is no stance. Metres, radians.
+//! with the means of the two wheels at each end and side. This is the least-squares plane through
+//! the four contacts: a chassis on four stiff wheels touches with at most three of them. A wheel
+//! touches at the point under its axle; a real wheel is round and meets an edge a little earlier.
+//! Over a hole there is no stance. Metres, radians.
 
 use super::pose::Pose;
 use crate::world::World;
 
-/// Between the axles of the 3-AT, metres.
+/// Distance between the axles of the 3-AT, metres.
 const WHEELBASE_M: f64 = 0.268;
-/// Between the wheels of an axle, metres.
+/// Distance between the wheels of an axle, metres.
 const TRACK_M: f64 = 0.394;
-/// Where the wheels touch, as shares of half the wheel base (ahead) and of half the track (left).
+/// Wheel contacts, as shares of half the wheelbase (ahead) and of half the track (left).
 const WHEELS: [[f64; 2]; 4] = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
 
-/// Where the four wheels touch the ground: front left, front right, rear left, rear right.
+/// Contact points of the four wheels: front left, front right, rear left, rear right.
 #[must_use]
 pub(crate) fn wheels(pose: &Pose) -> [[f64; 2]; 4] {
-    let (cos, sin) = (libm::cos(pose.yaw_rad), libm::sin(pose.yaw_rad));
+    let frame = pose.planar_frame();
     WHEELS.map(|[ahead, left]| {
         let (x, y) = (0.5 * WHEELBASE_M * ahead, 0.5 * TRACK_M * left);
-        [pose.x_m + x * cos - y * sin, pose.y_m + x * sin + y * cos]
+        frame.to_world([x, y])
     })
 }
 
@@ -38,7 +41,7 @@ pub(crate) fn ground_m(world: &World, wheels: &[[f64; 2]; 4]) -> Option<[f64; 4]
     Some(heights_m)
 }
 
-/// The same planar pose, standing on the ground; `None` if a wheel has none under it.
+/// The stance at a planar pose; `None` if a wheel has no ground under it.
 #[must_use]
 pub fn stand(world: &World, pose: &Pose) -> Option<Pose> {
     if world.elevation().is_none() {
@@ -52,7 +55,7 @@ pub fn stand(world: &World, pose: &Pose) -> Option<Pose> {
     Some(resting(pose, ground_m(world, &wheels(pose))?))
 }
 
-/// The same planar pose, resting on ground of these heights under its wheels.
+/// The stance at a planar pose on ground of these heights under the wheels.
 #[must_use]
 pub(crate) fn resting(pose: &Pose, heights_m: [f64; 4]) -> Pose {
     let [front_left, front_right, rear_left, rear_right] = heights_m;
@@ -71,7 +74,7 @@ mod tests {
     use super::*;
     use crate::world::{Class, Elevation, Occupancy};
 
-    /// Ground that rises by 0.2 m a metre along x, 8 × 4 m, with a hole from x = 6.
+    /// Ground of 8 × 4 m that rises along x by 0.2 m per metre, with a hole from x = 6 m.
     fn slope() -> World {
         let ground = Elevation::from_fn([80, 40], 0.1, [0.0, 0.0], |x, _| {
             if x > 6.0 { f64::NAN } else { 0.2 * (x - 0.05) }
@@ -90,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn uphill_lifts_the_nose_and_across_leans() {
+    fn uphill_lifts_the_nose_and_across_the_slope_the_robot_leans() {
         let world = slope();
         let angle = 0.2_f64.atan();
         let up = stand(&world, &at(3.0, 0.0)).expect("ground");

@@ -1,18 +1,19 @@
-//! How far the ground lets the wheels carry the robot: slopes slow it, make it slip, and let it drift downhill.
+//! Traction: slopes slow the robot, make its wheels slip, and let it drift downhill.
 //!
-//! With `g` the tangent of a slope's angle, the share of their way that the wheels slip is
+//! With `g` the tangent of a slope's angle, the wheels slip over this share of their distance:
 //!
 //! ```text
-//! s(g) = κ g / (μ − g)          0 on the level, 1 near the angle at which rubber slides on soil
+//! s(g) = κ g / (μ − g)     0 on level ground, 1 near the angle at which rubber slides on soil
 //! ```
 //!
-//! the usual shape of slip over demanded traction (*ours*: κ = 0.05 and μ = 0.65 are plausible for tyres on firm soil, and are
-//! parameters). Uphill the robot goes 1 − s of what its wheels turn, downhill 1 + s. Across a slope it slides
-//! downhill by s of the way that its wheels rub over the ground, in driving or in turning. Uphill the motors have less to spare: the
-//! greatest speed falls linearly to nothing at the grade on which they stall.
+//! This is the usual shape of slip over demanded traction. κ = 0.05 and μ = 0.65 are our choice:
+//! plausible for tyres on firm soil, and parameters. Uphill the robot moves 1 − s of what its
+//! wheels turn, downhill 1 + s. Across a slope it slides downhill by s of the distance that its
+//! wheels rub over the ground, in driving or in turning. Uphill the motors have less power left:
+//! the greatest speed falls linearly to zero at the grade on which they stall.
 //!
-//! Distances along the slope shorten by the cosine of the pitch when seen from above. On the level all of this is exactly
-//! nothing. Metres, radians, seconds.
+//! Seen from above, distances along a slope shorten by the cosine of the pitch. On level ground
+//! every term is exactly zero. Metres, radians, seconds.
 
 use super::pose::{Pose, Velocity};
 
@@ -21,7 +22,7 @@ use super::pose::{Pose, Velocity};
 pub struct Traction {
     /// μ: tangent of the angle at which the wheels slide. Default: 0.65.
     pub friction: f64,
-    /// κ: slip for little demand. Default: 0.05.
+    /// κ: slip at little demand. Default: 0.05.
     pub creep: f64,
     /// Tangent of the angle at which the motors stall. Default: 1.
     pub stall_grade: f64,
@@ -37,26 +38,26 @@ impl Default for Traction {
     }
 }
 
-/// The least share of the full speed that is left to the motors.
+/// Least share of the full speed that is left to the motors.
 const LEAST_SPEED: f64 = 0.1;
-/// Half the way between the wheels of an axle, metres: how far from the centre they rub in a turn.
+/// Half the track, metres: distance from the centre at which the wheels rub in a turn.
 const RUB_M: f64 = 0.197;
 
-/// A motion seen from above.
+/// A motion, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {
     /// Along the heading, metres.
     pub forward_m: f64,
-    /// Aside to the left, metres.
+    /// To the left, metres.
     pub left_m: f64,
     /// Counter-clockwise, radians.
     pub turn_rad: f64,
-    /// Along the heading and the slope, metres: what is driven.
+    /// Distance driven along the heading and the slope, metres.
     pub driven_m: f64,
 }
 
 impl Traction {
-    /// The share of their way that wheels slip on a grade of either sign, 0 to 1.
+    /// The share of their distance that wheels slip on a grade of either sign, 0 to 1.
     #[must_use]
     pub fn slip(&self, grade: f64) -> f64 {
         let demand = grade.abs();
@@ -66,14 +67,14 @@ impl Traction {
         (self.creep * demand / (self.friction - demand)).min(1.0)
     }
 
-    /// The share of its full speed that the robot has, going `forwards` or backwards with this attitude.
+    /// The share of its full speed that the robot has in this attitude, forwards or backwards.
     #[must_use]
     pub fn speed_share(&self, pose: &Pose, forwards: bool) -> f64 {
         let uphill = climb(pose, forwards).max(0.0);
         (1.0 - uphill / self.stall_grade).max(LEAST_SPEED)
     }
 
-    /// What becomes of a wheel speed kept for `seconds` on the slope where the robot stands.
+    /// The motion of wheels that keep a speed for `seconds` on the slope where the robot stands.
     #[must_use]
     pub fn shift(&self, pose: &Pose, wheels: Velocity, seconds: f64) -> Shift {
         let (forward_m, turn_rad) = (wheels.linear_mps * seconds, wheels.angular_radps * seconds);
@@ -96,14 +97,14 @@ impl Traction {
     }
 }
 
-/// Tangent of the slope that the robot goes up; negative downhill.
+/// Tangent of the slope that the robot drives up; negative downhill.
 fn climb(pose: &Pose, forwards: bool) -> f64 {
     let nose_up = -libm::tan(pose.pitch_rad);
     if forwards { nose_up } else { -nose_up }
 }
 
 impl Shift {
-    /// Where it leads: the arc, and the drift aside from it. Height and attitude stay as they were.
+    /// The pose after this motion: the arc, then the drift aside. Height and attitude stay.
     #[must_use]
     pub fn applied(&self, pose: &Pose) -> Pose {
         let moved = pose.moved(self.forward_m, self.turn_rad);
@@ -145,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn the_level_changes_no_bit() {
+    fn level_ground_changes_no_bit() {
         for velocity in [driving(0.37), driving(-0.11), driving(0.0)] {
             let shift = GRIP.shift(&tilted(0.0, 0.0), velocity, 0.01);
             let pose = tilted(0.0, 0.0);
@@ -166,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn uphill_is_slower_than_downhill_whichever_way_the_robot_looks() {
+    fn uphill_is_slower_than_downhill_forwards_and_backwards() {
         let forward = |pitch_deg, speed| {
             let shift = GRIP.shift(&tilted(pitch_deg, 0.0), driving(speed), 1.0);
             shift.forward_m.abs()
@@ -184,7 +185,7 @@ mod tests {
 
     #[test]
     fn across_a_slope_the_robot_drifts_downhill() {
-        // The left side is higher: it drifts to the right.
+        // The left side is higher: the robot drifts to the right.
         let shift = GRIP.shift(&tilted(0.0, 12.0), driving(0.4), 1.0);
         assert!(shift.left_m < -0.005 && shift.left_m > -0.02, "{shift:?}");
         let pose = tilted(0.0, 12.0);

@@ -1,11 +1,11 @@
-//! Drawing of floor plans: a grid that is filled with rectangles, discs and seeded scatter, in metres.
+//! Floor plans: a grid that is filled with rectangles, discs and seeded scatter, in metres.
 //!
-//! A cell takes a shape's class if its centre lies inside the shape. The same calls give the same cells everywhere: only
-//! sums, products and comparisons are used.
+//! A cell takes a shape's class if its centre lies inside the shape. Only sums, products and
+//! comparisons are used: the same calls give the same cells on every machine.
 
 use super::occupancy::{Class, GridCell, Occupancy};
 
-/// A number that looks random, of two numbers: multiply, shift and mix.
+/// Pseudo-random number from two numbers: multiply, shift and mix.
 pub(super) fn hash(a: u32, b: u32) -> u32 {
     let mut value = a
         .wrapping_mul(0x9e37_79b1)
@@ -19,12 +19,13 @@ pub(super) fn hash(a: u32, b: u32) -> u32 {
     value ^ value >> 16
 }
 
-/// Smooth noise in [−1, 1] over the plane, with features of about 1 m and half as much of about 0.4 m.
+/// Smooth noise in [−1, 1] over the plane, with features of about 1 m, and of 0.4 m at half the
+/// height.
 pub(super) fn roughness(x_m: f64, y_m: f64) -> f64 {
     (value_noise(x_m, y_m) + 0.5 * value_noise(2.5 * x_m + 17.0, 2.5 * y_m + 31.0)) / 1.5
 }
 
-/// Random values on the whole numbers, smoothly joined.
+/// Random values on the whole numbers, joined smoothly.
 fn value_noise(x: f64, y: f64) -> f64 {
     let (i, j) = (x.floor(), y.floor());
     let smooth = |t: f64| t * t * (3.0 - 2.0 * t);
@@ -44,10 +45,10 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    /// Cells of 5 cm.
+    /// Side of a cell, metres.
     const RESOLUTION_M: f64 = 0.05;
 
-    /// A plan of `width_m` × `height_m` with its lower left corner at the frame's origin, all of one class.
+    /// A plan of `width_m` × `height_m` in one class; its lower left corner is the frame's origin.
     pub(super) fn new(width_m: f64, height_m: f64, class: Class) -> Self {
         let cells = |m: f64| (m / Self::RESOLUTION_M).round() as usize;
         Self {
@@ -74,29 +75,29 @@ impl Canvas {
         }
     }
 
-    /// A rectangle from (x0, y0) to (x1, y1).
+    /// Fills the rectangle from (x0, y0) to (x1, y1).
     pub(super) fn rect(&mut self, class: Class, [x0, y0, x1, y1]: [f64; 4]) {
         self.fill(class, |x, y| x > x0 && x < x1 && y > y0 && y < y1);
     }
 
-    /// Free floor.
+    /// Clears a rectangle of free floor.
     pub(super) fn floor(&mut self, corners: [f64; 4]) {
         self.rect(Class::Free, corners);
     }
 
-    /// A wall, a cupboard, a desk.
+    /// Puts up a rectangular wall, cupboard or desk.
     pub(super) fn block(&mut self, corners: [f64; 4]) {
         self.rect(Class::Wall, corners);
     }
 
-    /// A round pillar, a chair, a plant.
+    /// Fills a disc: a pillar, a chair, a plant.
     pub(super) fn disc(&mut self, class: Class, [cx, cy]: [f64; 2], radius: f64) {
         self.fill(class, |x, y| {
             (x - cx) * (x - cx) + (y - cy) * (y - cy) < radius * radius
         });
     }
 
-    /// A wall all around the plan.
+    /// Puts a wall all around the plan.
     pub(super) fn border(&mut self, thickness: f64) {
         let [width, height] =
             [self.grid.width(), self.grid.height()].map(|cells| cells as f64 * Self::RESOLUTION_M);
@@ -105,7 +106,7 @@ impl Canvas {
         });
     }
 
-    /// The plan.
+    /// The finished plan.
     pub(super) fn finish(self) -> Occupancy {
         self.grid
     }

@@ -1,14 +1,15 @@
-//! The exact distance from every cell's centre to the nearest solid cell, as a square.
+//! The exact squared distance from every cell's centre to the nearest solid cell.
 //!
-//! With whole offsets (u, v) between two cells the gap from the centre of one to the square of the other is
-//! `½ √(H(u) + H(v))` cell sides, `H(u) = max(2|u| − 1, 0)²`, so the squared field is an integer and exact. Columns
-//! first, then rows by the lower envelope of the shifted copies of H: [Meijster00] with this metric in place of u². Each
-//! copy overtakes its left neighbour once, for H is convex; where, is found by bisection.
+//! For two cells at offsets (u, v), whole numbers, the gap from the centre of one to the square of
+//! the other is `½ √(H(u) + H(v))` cell sides with `H(u) = max(2|u| − 1, 0)²`. So the squared
+//! field is an integer and exact. The transform runs over the columns and then over the rows, by
+//! the lower envelope of the shifted copies of H: [Meijster00] with this metric instead of u².
+//! H is convex, so each copy overtakes its left neighbour once; bisection finds the place.
 //!
-//! Outside of the grid everything is solid, so the field is also the distance to the border.
+//! Everything outside of the grid is solid, so the field is also the distance to the border.
 //!
-//! [Meijster00]: A. Meijster, J. B. T. M. Roerdink, W. H. Hesselink, "A general algorithm for computing distance
-//! transforms in linear time", 2000.
+//! [Meijster00]: A. Meijster, J. B. T. M. Roerdink, W. H. Hesselink, "A general algorithm for
+//! computing distance transforms in linear time", 2000.
 
 use super::occupancy::{GridCell, Occupancy};
 
@@ -29,7 +30,7 @@ fn gap(offset: i64) -> i64 {
 }
 
 impl DistanceField {
-    /// Measures a grid.
+    /// Computes the distances of a grid.
     #[must_use]
     pub fn new(grid: &Occupancy) -> Self {
         let (width, height) = (grid.width(), grid.height());
@@ -53,23 +54,20 @@ impl DistanceField {
         self.half_cells(cell) * 0.5 * self.resolution_m
     }
 
-    /// A lower bound, in metres, of the distance from any point of a cell to the nearest solid cell.
+    /// A lower bound, in metres, of the distance from any point of a cell to the nearest solid
+    /// cell.
     #[must_use]
     pub fn from_anywhere_m(&self, cell: GridCell) -> f64 {
         (self.half_cells(cell) - core::f64::consts::SQRT_2).max(0.0) * 0.5 * self.resolution_m
     }
 
     fn half_cells(&self, cell: GridCell) -> f64 {
-        let column = usize::try_from(cell.i).ok().filter(|i| *i < self.width);
-        let row = usize::try_from(cell.j).ok().filter(|j| *j < self.height);
-        match (column, row) {
-            (Some(i), Some(j)) => f64::from(self.squared[j * self.width + i]).sqrt(),
-            _ => 0.0,
-        }
+        let index = cell.index([self.width, self.height]);
+        index.map_or(0.0, |index| f64::from(self.squared[index]).sqrt())
     }
 }
 
-/// Cells from each cell to the nearest solid one in its column, the border counting as solid.
+/// Cells from each cell to the nearest solid one in its column; the border counts as solid.
 fn column_distances(grid: &Occupancy) -> Vec<u32> {
     let (width, height) = (grid.width(), grid.height());
     let mut nearest = vec![0_u32; width * height];
@@ -92,7 +90,7 @@ fn column_distances(grid: &Occupancy) -> Vec<u32> {
     nearest
 }
 
-/// Lower envelope of one row: the columns that are nearest somewhere, and from where on.
+/// Lower envelope of one row: the columns that are nearest somewhere, and where each begins.
 #[derive(Default)]
 struct Envelope {
     /// (column, squared gap within the column, first cell where it is nearest).
@@ -103,7 +101,7 @@ impl Envelope {
     fn row(&mut self, distances: &[u32], squared: &mut Vec<u32>) {
         let width = distances.len() as i64;
         self.parts.clear();
-        // The two columns of solid cells just outside.
+        // The first of the two columns of solid cells just outside.
         self.push(-1, 0, width);
         for (column, distance) in distances.iter().enumerate() {
             self.push(column as i64, gap(i64::from(*distance)), width);
@@ -127,7 +125,7 @@ impl Envelope {
                 continue;
             }
             if nearer(width - 1) {
-                // Not nearer at `low`, nearer at `high`.
+                // The new column is nearer at `high` and not at `low`.
                 let (mut low, mut high) = (start, width - 1);
                 while high - low > 1 {
                     let middle = low + (high - low) / 2;
@@ -152,7 +150,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
-    /// The definition, cell by cell.
+    /// The definition, computed cell by cell.
     fn brute(grid: &Occupancy, cell: GridCell) -> f64 {
         let (width, height) = (grid.width() as i64, grid.height() as i64);
         let mut best = i64::MAX;
@@ -167,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn equals_the_definition_on_random_grids() {
+    fn it_equals_the_definition_on_random_grids() {
         let mut rng = ChaCha8Rng::seed_from_u64(7);
         for round in 0..60 {
             let (width, height) = (1 + rng.next_u32() % 37, 1 + rng.next_u32() % 23);
@@ -189,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bound_from_anywhere_is_below_the_distance_from_every_corner() {
+    fn the_bound_is_below_the_distance_from_every_corner() {
         let mut grid = Occupancy::filled(9, 9, 0.1, [0.0, 0.0], Class::Free);
         grid.set(GridCell { i: 4, j: 4 }, Class::Unknown);
         let field = DistanceField::new(&grid);

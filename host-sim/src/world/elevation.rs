@@ -1,11 +1,12 @@
-//! The height of the ground: samples on a grid, bilinear in between.
+//! The height of the ground: samples on a grid, bilinear between them.
 //!
-//! Sample (i, j) sits at the centre of its pixel. A grey value v is the height
-//! `z_min + v / v_max (z_max − z_min)`; where 0 or the greatest value means "no surface", the remaining values span the
-//! same range. A transparent pixel has no surface either. A patch between four samples is ground only if all four have a
-//! surface. Metres.
+//! Sample (i, j) lies at the centre of its pixel. A grey value v is the height
+//! `z_min + v / v_max (z_max − z_min)`. If 0 or the greatest value means "no surface", the
+//! remaining values span the same range. A transparent pixel has no surface either. A patch
+//! between four samples is ground only if all four have a surface. Metres.
 //!
-//! For rays, patches are grouped into blocks of [`BLOCK`] × [`BLOCK`] whose highest point is kept.
+//! For rays, patches are grouped into blocks of [`BLOCK`] × [`BLOCK`], and the highest point of
+//! each block is stored.
 
 use super::image::Image;
 use super::occupancy::{Class, GridCell, Occupancy};
@@ -28,7 +29,7 @@ pub struct Elevation {
     stride: usize,
 }
 
-/// How grey values become heights.
+/// The conversion from grey values to heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeightScale {
     /// Height of the least value, metres.
@@ -80,8 +81,8 @@ impl Elevation {
         )
     }
 
-    /// Ground that is a function of x and y, sampled at the centre of every pixel; NaN is a hole. `size` is columns and
-    /// rows.
+    /// Ground from a function of x and y, sampled at the centre of every pixel; NaN is a hole.
+    /// `size` is columns and rows.
     #[must_use]
     pub fn from_fn(
         size: [usize; 2],
@@ -109,7 +110,7 @@ impl Elevation {
             origin_m,
             heights_m,
             ceilings_m: Vec::new(),
-            // There is one patch more than samples along each axis.
+            // Along each axis there is one patch more than samples.
             stride: (width + 1).div_ceil(BLOCK),
         };
         let rows = (height + 1).div_ceil(BLOCK);
@@ -119,20 +120,21 @@ impl Elevation {
         elevation
     }
 
-    /// The highest corner of a block's patches.
+    /// Height of the highest corner of a block's patches.
     fn highest(&self, column: usize, row: usize) -> f64 {
         let first = [column, row].map(|block| (block * BLOCK) as i64 - 1);
         let mut highest_m = f64::NEG_INFINITY;
         for j in first[1]..first[1] + BLOCK as i64 {
             for i in first[0]..first[0] + BLOCK as i64 {
-                // The maximum with a NaN is the other number.
+                // `f64::max` of a number and NaN is the number.
                 highest_m = self.patch(i, j).into_iter().fold(highest_m, f64::max);
             }
         }
         highest_m
     }
 
-    /// The highest point of a block of patches; block (0, 0) begins with patch (−1, −1). −∞ outside.
+    /// Height of the highest point of a block of patches; −∞ outside. Block (0, 0) begins with
+    /// patch (−1, −1).
     #[inline(always)]
     pub(super) fn ceiling_m(&self, [column, row]: [i64; 2]) -> f64 {
         let inside = (0..self.stride as i64).contains(&column) && row >= 0;
@@ -177,7 +179,7 @@ impl Elevation {
         (0.0..=self.width as f64).contains(&u) && (0.0..=self.height as f64).contains(&v)
     }
 
-    /// A map of the same frame on which nothing stands.
+    /// A map of the same frame that is free everywhere.
     #[must_use]
     pub fn floor(&self) -> Occupancy {
         let (width, height) = (self.width, self.height);
@@ -208,8 +210,8 @@ impl Elevation {
         self.origin_m
     }
 
-    /// Height of the ground at a point, metres; `None` over a hole or outside of the image. In the outermost half
-    /// pixel the border's height continues level.
+    /// Height of the ground at a point, metres; `None` over a hole or outside of the image. In the
+    /// outermost half pixel the border's height continues level.
     #[must_use]
     pub fn ground_m(&self, x_m: f64, y_m: f64) -> Option<f64> {
         let u = (x_m - self.origin_m[0]) / self.resolution_m;
@@ -224,8 +226,8 @@ impl Elevation {
         (!height.is_nan()).then_some(height)
     }
 
-    /// Heights at the corners of the patch between samples (i, j) and (i+1, j+1): least y first, least x first.
-    /// Samples beyond the border repeat the border's.
+    /// Heights at the corners of the patch between samples (i, j) and (i+1, j+1): least y first,
+    /// then least x first. Samples beyond the border repeat the border's.
     pub(super) fn patch(&self, i: i64, j: i64) -> [f64; 4] {
         let column = |i: i64| i.clamp(0, self.width as i64 - 1) as usize;
         let row = |j: i64| j.clamp(0, self.height as i64 - 1) as usize * self.width;

@@ -1,24 +1,24 @@
-//! What can be wrong with a world, each said in one line that names the file, the thing and the remedy.
+//! Errors of a world, each in one line that names the file, the fault and the remedy.
 
 use core::fmt;
 
 use super::builtin;
 
-/// Why a world could not be had.
+/// Why a world cannot be opened.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WorldError {
     /// The world file is missing or unreadable; also an unknown built-in name.
     Unreadable {
         /// File or name as given.
         file: String,
-        /// What the system said.
+        /// The system's message.
         reason: String,
     },
     /// Not YAML, or not one document of it.
     Syntax {
         /// The world file.
         file: String,
-        /// Line, column and what was found.
+        /// Line, column and the parser's message.
         reason: String,
     },
     /// A key that is unknown or missing, or whose value is impossible.
@@ -27,25 +27,25 @@ pub enum WorldError {
         file: String,
         /// The key, with the tables it lies in; empty for the whole document.
         key: String,
-        /// What is wrong and what would be right.
+        /// The fault and the remedy.
         reason: String,
     },
     /// An image that is missing, damaged or of the wrong kind.
     Image {
         /// The world file.
         file: String,
-        /// The image, as resolved.
+        /// The path of the image, relative to the world file.
         image: String,
-        /// What is wrong and what would be right.
+        /// The fault and the remedy.
         reason: String,
     },
     /// A start pose in which the robot does not fit.
     Start {
         /// The world file or built-in name.
         file: String,
-        /// Which of `robots`, from 0.
+        /// The index in `robots`, from 0.
         index: usize,
-        /// What is in the way and what would be right.
+        /// The fault and the remedy.
         reason: String,
     },
 }
@@ -55,12 +55,13 @@ impl fmt::Display for WorldError {
         match self {
             Self::Unreadable { file, .. } if file.is_empty() => write!(
                 f,
-                "a world without a name; give a world file or a built-in world: {}",
+                "the world has no name; give a world file or a built-in world: {}",
                 builtin::names().join(", ")
             ),
             Self::Unreadable { file, reason } => write!(
                 f,
-                "{file}: cannot read this world ({reason}); give a world file or a built-in world: {}",
+                "{file}: cannot read this world ({reason}); \
+                 give a world file or a built-in world: {}",
                 builtin::names().join(", ")
             ),
             Self::Syntax { file, reason } => {

@@ -1,4 +1,4 @@
-//! World files: YAML in the ROS `map_server` convention with a few keys more.
+//! World files: YAML in the ROS `map_server` convention with a few more keys.
 //!
 //! | key | meaning | default |
 //! | --- | --- | --- |
@@ -13,7 +13,7 @@
 //! | `elevation` | `{image, z_min, z_max, no_data, bits, resolution, origin}`, see [`super::heights`] | flat |
 //! | `robots` | list of `[x, y, yaw]` | the origin of the frame if a robot fits there, else the widest place |
 //!
-//! Any other key is an error: a key misspelt would otherwise be a setting ignored.
+//! Any other key is an error, so that a misspelt key is not a setting that is silently ignored.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -41,10 +41,11 @@ const KEYS: [&str; 10] = [
 
 /// Greatest side of a world, metres.
 const LARGEST_M: f64 = 1_000.0;
-/// Greatest distance of a world's corner from the frame's axes, metres: frontiers are sent as cells of 0.1 m in 16 bits.
+/// Greatest distance of a world's corner from the frame's axes, metres: the wire has frontiers as
+/// cells of 0.1 m in 16 bits.
 const FARTHEST_M: f64 = 3_000.0;
 
-/// Reads, checks and builds.
+/// Reads a world file, checks it and builds the world.
 pub(super) fn load(path: &Path) -> Result<World, WorldError> {
     let file = path.display().to_string();
     let text = fs::read_to_string(path).map_err(|e| WorldError::Unreadable {
@@ -58,7 +59,7 @@ pub(super) fn load(path: &Path) -> Result<World, WorldError> {
     Loader { path, file }.build(&document)
 }
 
-/// The file being read, for paths and messages.
+/// The file that is read, for paths and messages.
 struct Loader<'a> {
     path: &'a Path,
     file: String,
@@ -99,7 +100,8 @@ impl Loader<'_> {
         Ok(world)
     }
 
-    /// A world that neither the wire's cells nor this machine's memory can hold is a resolution or an origin misread.
+    /// Refuses a world that the wire's cells or the memory cannot hold: its resolution or origin is
+    /// wrong.
     fn check_extent(&self, plan: &Occupancy, keys: &Table<'_>) -> Result<(), WorldError> {
         let sides = [plan.width(), plan.height()].map(|cells| cells as f64 * plan.resolution_m());
         if sides.iter().any(|side| *side > LARGEST_M) {
@@ -159,7 +161,7 @@ impl Loader<'_> {
         }
     }
 
-    /// A path relative to the file.
+    /// A path relative to the world file.
     fn beside(&self, name: &str) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(name)
     }
@@ -173,7 +175,7 @@ impl Loader<'_> {
     }
 }
 
-/// What the file says, checked but for the images.
+/// The values of the file, checked except for the images.
 struct Plan<'a> {
     image: Option<&'a str>,
     resolution_m: f64,
@@ -209,23 +211,27 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// A length above 0, if the key is there.
+/// A length above 0 m, if the key is present.
 pub(super) fn length(keys: &Table<'_>, key: &str) -> Result<Option<f64>, BadKey> {
     match keys.number(key)? {
-        Some(metres) if !(metres.is_finite() && metres > 0.0) => {
-            Err(keys.bad(key, &format!("{metres} is not a length above 0 m")))
-        }
+        Some(metres) if !(metres.is_finite() && metres > 0.0) => Err(keys.bad(
+            key,
+            &format!("{metres} is not a length above 0 m; give metres"),
+        )),
         other => Ok(other),
     }
 }
 
-/// The origin under `origin`, if the key is there: x and y, without a turn.
+/// x and y of `origin`, if the key is present; its yaw must be 0.
 pub(super) fn origin(keys: &Table<'_>) -> Result<Option<[f64; 2]>, BadKey> {
     let Some(node) = keys.node("origin") else {
         return Ok(None);
     };
     let Some(numbers) = node.numbers(2..=3) else {
-        return Err(keys.bad("origin", &format!("{node} is not [x, y, yaw]")));
+        return Err(keys.bad(
+            "origin",
+            &format!("{node} is not [x, y, yaw]; give metres and radians"),
+        ));
     };
     match numbers.get(2) {
         Some(yaw) if *yaw != 0.0 => {
@@ -241,10 +247,13 @@ fn thresholds(keys: &Table<'_>) -> Result<Thresholds, BadKey> {
     let free = keys.number("free_thresh")?.unwrap_or(0.196);
     let occupied = keys.number("occupied_thresh")?.unwrap_or(0.65);
     if !(0.0 < free && free < 1.0) {
-        return Err(keys.bad("free_thresh", &format!("{free} is not between 0 and 1")));
+        let reason = format!("{free} is not between 0 and 1; the usual value is 0.196");
+        return Err(keys.bad("free_thresh", &reason));
     }
     if !(free < occupied && occupied < 1.0) {
-        let reason = format!("{occupied} is not between free_thresh ({free}) and 1");
+        let reason = format!(
+            "{occupied} is not between free_thresh ({free}) and 1; the usual value is 0.65"
+        );
         return Err(keys.bad("occupied_thresh", &reason));
     }
     Ok(Thresholds {
@@ -259,7 +268,7 @@ fn starts(keys: &Table<'_>) -> Result<Option<Vec<Start>>, BadKey> {
         None => return Ok(None),
         Some(Node::List(list)) if !list.is_empty() => list,
         Some(other) => {
-            let reason = format!("{other} is not a list of [x, y, yaw], at least one");
+            let reason = format!("{other} is not a list of [x, y, yaw]; give at least one start");
             return Err(keys.bad("robots", &reason));
         }
     };
@@ -267,7 +276,8 @@ fn starts(keys: &Table<'_>) -> Result<Option<Vec<Start>>, BadKey> {
     for (index, node) in list.iter().enumerate() {
         let Some(numbers) = node.numbers(2..=3) else {
             let key = format!("robots[{index}]");
-            return Err(keys.bad(&key, &format!("{node} is not [x, y, yaw]")));
+            let reason = format!("{node} is not [x, y, yaw]; give metres and radians");
+            return Err(keys.bad(&key, &reason));
         };
         starts.push(Start {
             x_m: numbers[0],
@@ -284,9 +294,12 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
-    const WHOLE: &str = "image: walls.png  # a plan\nresolution: 0.05\norigin: [-12.0, -8.0, 0.0]\nnegate: 0\n\
-        occupied_thresh: 0.65\nfree_thresh: 0.196\nwall_height: 1.5\n\
-        elevation: {image: heights.png, z_min: -2.0, z_max: 3.0, no_data: 0}\nrobots: [[0.0, 0.0, 0.0]]\n";
+    const WHOLE: &str = concat!(
+        "image: walls.png  # a plan\nresolution: 0.05\norigin: [-12.0, -8.0, 0.0]\nnegate: 0\n",
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\nwall_height: 1.5\n",
+        "elevation: {image: heights.png, z_min: -2.0, z_max: 3.0, no_data: 0}\n",
+        "robots: [[0.0, 0.0, 0.0]]\n",
+    );
 
     fn read(text: &str) -> Result<(), String> {
         let document = yaml::parse(text)?;

@@ -1,21 +1,22 @@
-//! Where a ray meets the ground.
+//! The hit of a ray on the ground.
 //!
-//! The ground is the plane z = 0, or the bilinear patches of an [`Elevation`]. Along a ray the height over a patch is
-//! a parabola in t, whose first root is taken exactly:
+//! The ground is the plane z = 0, or the bilinear patches of an [`Elevation`]. Along a ray the
+//! height over a patch is a parabola in t, and its first root is computed exactly:
 //!
 //! ```text
 //! z(t) − ground(t) = a + b t + c t²
 //! ```
 //!
-//! Two walks are nested: one over blocks of patches, which passes over every block that the ray stays above as a whole, and within the
-//! others one over the patches. Over a hole (no surface) a ray passes; where it leaves the hole's far side below the
-//! rim, it has met the hole's wall. Units: metres; the direction is a unit vector.
+//! Two traversals are nested. The outer one goes over blocks of patches and skips every block
+//! that the ray stays above. The inner one goes over the patches of a block. Over a hole (no
+//! surface) a ray passes; if it leaves the hole on the far side below the rim, it has hit the
+//! hole's wall. Metres; the direction is a unit vector.
 
 use super::elevation::{BLOCK, Elevation};
 use super::ray::{Hit, Ray, Surface};
-use super::walk::Walk;
+use super::traversal::GridTraversal;
 
-/// Where a ray meets the plane z = 0.
+/// The hit on the plane z = 0.
 pub(super) fn plane(ray: &Ray) -> Option<Hit> {
     let range_m = if ray.origin_m[2] <= 0.0 {
         0.0
@@ -30,18 +31,18 @@ pub(super) fn plane(ray: &Ray) -> Option<Hit> {
     })
 }
 
-/// Where a ray meets the ground of an elevation, within `limit_m`.
+/// The hit on the ground of an elevation, within `limit_m`.
 pub(super) fn ground(elevation: &Elevation, ray: &Ray, limit_m: f64) -> Option<Hit> {
     let (resolution_m, origin_m) = (elevation.resolution_m(), elevation.origin_m());
-    // Patches lie between the samples, which sit at the centres of the pixels: the first one begins half a pixel before
-    // the image, and is number −1.
+    // Patches lie between the samples, and samples lie at the centres of the pixels. So the first
+    // patch begins half a pixel before the image and has the number −1.
     let start = [0, 1].map(|k| (ray.origin_m[k] - origin_m[k]) / resolution_m - 0.5);
     let speed = [0, 1].map(|k| ray.direction[k] / resolution_m);
     let size = [elevation.width() as f64, elevation.height() as f64];
     let (enter_m, leave_m) = within(start.map(|s| s + 0.5), speed, size);
     let limit_m = leave_m.min(limit_m);
     let side = BLOCK as f64;
-    let mut blocks = Walk::new(
+    let mut blocks = GridTraversal::new(
         start.map(|s| (s + 1.0) / side),
         speed.map(|cells_per_m| cells_per_m / side),
     );
@@ -67,31 +68,32 @@ pub(super) fn ground(elevation: &Elevation, ray: &Ray, limit_m: f64) -> Option<H
     None
 }
 
-/// The first t in a span at which a ray is on or below the ground, patch by patch.
+/// The first t in a span at which a ray is on or below the ground, searched patch by patch.
 fn in_block(
     elevation: &Elevation,
     ray: &Ray,
     (start, speed): ([f64; 2], [f64; 2]),
     (from_m, to_m): (f64, f64),
 ) -> Option<f64> {
-    let mut walk = Walk::new(start, speed);
+    let mut traversal = GridTraversal::new(start, speed);
     if from_m > 0.0 {
-        walk.jump(from_m);
+        traversal.jump(from_m);
     }
-    while walk.entered_m <= to_m {
-        let corners = elevation.patch(walk.cell[0], walk.cell[1]);
-        let left_m = walk.left_m().min(to_m);
-        let place = [0, 1].map(|k| start[k] - walk.cell[k] as f64);
-        let met = patch(corners, ray, (place, speed), (walk.entered_m, left_m));
+    while traversal.entered_m <= to_m {
+        let corners = elevation.patch(traversal.cell[0], traversal.cell[1]);
+        let left_m = traversal.left_m().min(to_m);
+        let place = [0, 1].map(|k| start[k] - traversal.cell[k] as f64);
+        let met = patch(corners, ray, (place, speed), (traversal.entered_m, left_m));
         if met.is_some() || left_m >= to_m {
             return met;
         }
-        walk.advance();
+        traversal.advance();
     }
     None
 }
 
-/// From where to where a line is within the box [0, size]; the end lies before the beginning where it never is.
+/// The span of t in which a line is within the box [0, size]; the end lies before the beginning
+/// if it never is.
 fn within(start: [f64; 2], speed: [f64; 2], size: [f64; 2]) -> (f64, f64) {
     let mut inside = (0.0_f64, f64::INFINITY);
     for axis in 0..2 {
@@ -145,7 +147,7 @@ fn first_root(a: f64, b: f64, c: f64, from: f64) -> Option<f64> {
     if discriminant < 0.0 {
         return None;
     }
-    // The stable pair of roots: no difference of nearly equal numbers.
+    // The stable formula for both roots: it has no difference of nearly equal numbers.
     let q = -0.5 * (b + discriminant.sqrt().copysign(b));
     let roots = [q / c, if q == 0.0 { q / c } else { a / q }];
     roots
@@ -160,14 +162,6 @@ mod tests {
     use crate::world::{HeightScale, Image};
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
-
-    fn ray(origin_m: [f64; 3], direction: [f64; 3]) -> Ray {
-        let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
-        Ray {
-            origin_m,
-            direction: direction.map(|d| d / length),
-        }
-    }
 
     /// Rough hills with a hole.
     fn hills() -> Elevation {
@@ -192,14 +186,14 @@ mod tests {
     }
 
     #[test]
-    fn the_ground_is_met_where_a_fine_march_meets_it() {
+    fn the_hit_is_where_a_march_in_small_steps_finds_it() {
         let elevation = hills();
         let mut rng = ChaCha8Rng::seed_from_u64(11);
         let mut uniform =
             |low: f64, high: f64| low + (high - low) * f64::from(rng.next_u32()) / 4_294_967_295.0;
         let mut met = 0;
         for _ in 0..3000 {
-            let beam = ray(
+            let beam = Ray::towards(
                 [uniform(-1.5, 6.5), uniform(1.5, 7.5), 1.0],
                 [uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-1.0, 0.0)],
             );
@@ -213,7 +207,7 @@ mod tests {
                 .map(|k| f64::from(k) * step_m)
                 .find(|t| below(*t));
             match (ground(&elevation, &beam, 10.0), marched) {
-                // The march may step over the very tip of a hill, never the other way round.
+                // The march may step over the very tip of a hill, the exact hit never does.
                 (Some(hit), Some(t)) => {
                     assert!(hit.range_m <= t + 1e-9, "{beam:?} {hit:?} {t}");
                     if t - hit.range_m > step_m {
@@ -230,14 +224,14 @@ mod tests {
     }
 
     #[test]
-    fn passing_over_blocks_changes_no_hit() {
+    fn skipping_blocks_changes_no_hit() {
         let elevation = hills();
         let mut rng = ChaCha8Rng::seed_from_u64(12);
         let mut uniform =
             |low: f64, high: f64| low + (high - low) * f64::from(rng.next_u32()) / 4_294_967_295.0;
         let mut met = 0;
         for _ in 0..5000 {
-            let beam = ray(
+            let beam = Ray::towards(
                 [uniform(-3.0, 8.0), uniform(0.0, 9.0), uniform(0.2, 1.5)],
                 [uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-0.5, 0.2)],
             );

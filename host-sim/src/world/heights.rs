@@ -1,4 +1,4 @@
-//! The `elevation` of a world file: its keys, its image, and what of the two must fit together.
+//! The `elevation` key of a world file: its own keys, its image, and checks of both together.
 //!
 //! | key | meaning | default |
 //! | --- | --- | --- |
@@ -8,8 +8,9 @@
 //! | `bits` | 8 or 16: refuse an image of any other depth | whatever the image has |
 //! | `resolution`, `origin` | as for the map | the map's |
 //!
-//! What cannot be meant is refused: an image of the map's frame but not of its size, another depth than was claimed, a
-//! `no_data` that the image cannot hold, no surface anywhere. What can be meant but may surprise is noted.
+//! Refused: an image in the map's frame of another size, another depth than `bits` says, a
+//! `no_data` that the image cannot hold, no surface anywhere. Legal values that may surprise
+//! become notes.
 
 use super::elevation::{Elevation, HeightScale};
 use super::file::{length, origin};
@@ -27,18 +28,18 @@ const KEYS: [&str; 7] = [
     "resolution",
     "origin",
 ];
-/// Steps between grey values that a wheel feels are noted from here on, metres.
+/// Steps between grey values above this are noted, metres: a wheel feels them.
 const COARSE_M: f64 = 0.02;
 
-/// What the file says of the ground.
+/// Values of the `elevation` key.
 pub(super) struct Heights<'a> {
-    /// The image as written.
+    /// Path of the image, as written.
     pub(super) image: &'a str,
     scale: HeightScale,
     bits: Option<u32>,
     resolution_m: f64,
     origin_m: [f64; 2],
-    /// It has a resolution or an origin of its own, so that its size says nothing.
+    /// True if it has its own resolution or origin; then its size need not be the map's.
     placed: bool,
 }
 
@@ -53,7 +54,7 @@ impl<'a> Heights<'a> {
         let z_min_m = keys.required("z_min", keys.number("z_min")?, "-2.0")?;
         let z_max_m = keys.required("z_max", keys.number("z_max")?, "3.0")?;
         if !(z_min_m.is_finite() && z_max_m.is_finite() && z_min_m < z_max_m) {
-            let reason = format!("{z_max_m} is not above z_min ({z_min_m})");
+            let reason = format!("{z_max_m} is not above z_min ({z_min_m}); swap or correct them");
             return Err(keys.bad("z_max", &reason));
         }
         let scale = HeightScale {
@@ -72,7 +73,7 @@ impl<'a> Heights<'a> {
         })
     }
 
-    /// The ground, or what about the image cannot be meant.
+    /// Builds the ground, or says why the image cannot be used.
     pub(super) fn build(
         &self,
         image: &Image,
@@ -86,7 +87,9 @@ impl<'a> Heights<'a> {
             let (width, height) = (walls.width(), walls.height());
             if (image.width, image.height) != (width, height) {
                 return Err(format!(
-                    "{} x {} pixels of heights, but the map has {width} x {height}; give elevation a resolution and an origin of its own, or images of one size",
+                    "{} x {} pixels of heights, but the map has {width} x {height}; \
+                     give elevation a resolution and an origin of its own, \
+                     or images of one size",
                     image.width, image.height
                 ));
             }
@@ -102,18 +105,20 @@ impl<'a> Heights<'a> {
         let (bits, full) = (depth(image), image.full);
         if let Some(claimed) = self.bits.filter(|claimed| *claimed != bits) {
             return Err(format!(
-                "{bits}-bit grey (values up to {full}), but elevation.bits says {claimed}; save it with {claimed} bits, or correct bits"
+                "{bits}-bit grey (values up to {full}), but elevation.bits says {claimed}; \
+                 save it with {claimed} bits, or correct bits"
             ));
         }
         match self.scale.no_data {
             Some(value) if value > full => Err(format!(
-                "values go up to {full} ({bits} bits), so none can be no_data ({value}); save it with 16 bits, or correct no_data"
+                "values go up to {full} ({bits} bits), so none can be no_data ({value}); \
+                 save it with 16 bits, or correct no_data"
             )),
             _ => Ok(()),
         }
     }
 
-    /// What may surprise about the ground.
+    /// Notes on what may surprise about the ground.
     pub(super) fn notes(
         &self,
         image: &Image,
@@ -124,7 +129,8 @@ impl<'a> Heights<'a> {
         let step_m = (self.scale.z_max_m - self.scale.z_min_m) / f64::from(image.full.max(1));
         if step_m > COARSE_M {
             notes.push(format!(
-                "its heights come in steps of {step_m:.3} m ({} bits over {:.2} m): slopes become stairs; 16 bits would be smooth",
+                "its heights come in steps of {step_m:.3} m ({} bits over {:.2} m): \
+                 slopes become stairs; 16 bits would be smooth",
                 depth(image),
                 self.scale.z_max_m - self.scale.z_min_m
             ));
@@ -139,7 +145,8 @@ impl<'a> Heights<'a> {
         let bare = walls.map_or(0.0, |walls| ground.uncovered(walls));
         if bare > 0.0 {
             notes.push(format!(
-                "it does not cover the map: {:.1} % of the free floor lie beyond it, without ground",
+                "it does not cover the map: \
+                 {:.1} % of the free floor lie beyond it, without ground",
                 bare * 100.0
             ));
         }
@@ -147,7 +154,7 @@ impl<'a> Heights<'a> {
     }
 }
 
-/// 8 or 16.
+/// Bits per sample: 8 or 16.
 fn depth(image: &Image) -> u32 {
     if image.full > 255 { 16 } else { 8 }
 }
@@ -159,7 +166,8 @@ fn no_data(keys: &Table<'_>) -> Result<Option<u32>, BadKey> {
             Ok(Some(value as u32))
         }
         Some(value) => {
-            let reason = format!("{value} is not a grey value from 0 to 65535");
+            let reason =
+                format!("{value} is not a grey value; give a whole number from 0 to 65535");
             Err(keys.bad("no_data", &reason))
         }
     }
@@ -170,6 +178,9 @@ fn bits(keys: &Table<'_>) -> Result<Option<u32>, BadKey> {
         None => Ok(None),
         Some(8.0) => Ok(Some(8)),
         Some(16.0) => Ok(Some(16)),
-        Some(other) => Err(keys.bad("bits", &format!("{other} is neither 8 nor 16"))),
+        Some(other) => Err(keys.bad(
+            "bits",
+            &format!("{other} is neither 8 nor 16; give one of them"),
+        )),
     }
 }

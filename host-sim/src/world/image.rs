@@ -1,7 +1,7 @@
-//! Grey images as numbers: PGM or PNG in, one sample a pixel out, first row at the top.
+//! Grey images as numbers: from a PGM or PNG file to one sample per pixel, top row first.
 //!
-//! A sample is the sum of the pixel's colour channels, so that nothing is lost by averaging; `sample / full` is the
-//! shade, 0 black to 1 white.
+//! A sample is the sum of the pixel's colour channels, so averaging loses nothing.
+//! `sample / full` is the shade, from 0 (black) to 1 (white).
 
 use core::fmt;
 use std::fs;
@@ -9,7 +9,7 @@ use std::path::Path;
 
 use super::{pgm, png_file};
 
-/// Pixels an image may have at the most: a map of 200 × 200 m at 2.5 cm.
+/// Most pixels of an image: a map of 200 × 200 m at 2.5 cm.
 pub const MAX_PIXELS: usize = 64_000_000;
 
 /// A decoded image.
@@ -21,15 +21,15 @@ pub struct Image {
     pub height: usize,
     /// Sum of the colour channels of each pixel, row by row from the top.
     pub samples: Vec<u32>,
-    /// The sample of a white pixel.
+    /// Sample of a white pixel.
     pub full: u32,
-    /// Colour channels that were summed: 1 for grey, 3 for colour.
+    /// Number of colour channels in the sum: 1 for grey, 3 for colour.
     pub channels: u32,
-    /// Which pixels are not fully opaque; empty where the image has no alpha.
+    /// True for each pixel that is not fully opaque; empty if the image has no alpha.
     pub transparent: Vec<bool>,
 }
 
-/// Why an image could not be had.
+/// Why an image cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ImageError {
     /// Missing or unreadable.
@@ -43,7 +43,7 @@ pub enum ImageError {
         /// Pixels there are.
         found: usize,
     },
-    /// The header claims samples of 16 bits, and there are as many bytes as pixels.
+    /// The header claims samples of 16 bits, but there are only as many bytes as pixels.
     OneByteSamples,
     /// The file ends before its pixels, or before its trailer.
     EndsEarly,
@@ -69,14 +69,18 @@ impl fmt::Display for ImageError {
             Self::Unreadable(reason) => {
                 write!(f, "{reason}; paths are relative to the world file")
             }
-            Self::UnknownFormat => write!(f, "neither PGM (P2, P5) nor PNG; convert it"),
+            Self::UnknownFormat => {
+                write!(f, "neither PGM (P2, P5) nor PNG; convert it to one of them")
+            }
             Self::Truncated { expected, found } => write!(
                 f,
                 "truncated, {found} of {expected} pixels; copy the whole file"
             ),
             Self::OneByteSamples => write!(
                 f,
-                "its header claims samples of 16 bits (a greatest value above 255), but it holds one byte a pixel; set the greatest value to 255, or save it with 16 bits"
+                "its header claims samples of 16 bits (a greatest value above 255), \
+                 but it holds one byte a pixel; \
+                 set the greatest value to 255, or save it with 16 bits"
             ),
             Self::EndsEarly => write!(f, "truncated; copy the whole file"),
             Self::Surplus { expected } => write!(
@@ -86,7 +90,7 @@ impl fmt::Display for ImageError {
             Self::Malformed(reason) => write!(f, "damaged, {reason}; save the image anew"),
             Self::Size { width, height } => write!(
                 f,
-                "{width} x {height} pixels; between 1 and {MAX_PIXELS} pixels are possible"
+                "{width} x {height} pixels; save it with 1 to {MAX_PIXELS} pixels"
             ),
         }
     }
@@ -95,7 +99,7 @@ impl fmt::Display for ImageError {
 impl core::error::Error for ImageError {}
 
 impl Image {
-    /// Reads a PGM or PNG file, told apart by its first bytes.
+    /// Reads a PGM or PNG file; its first bytes tell the format.
     ///
     /// # Errors
     /// As [`ImageError`].
@@ -118,7 +122,7 @@ impl Image {
         }
     }
 
-    /// Checks that the size is one we handle, and returns the number of pixels.
+    /// Checks that the size is supported, and returns the number of pixels.
     ///
     /// # Errors
     /// [`ImageError::Size`].
@@ -129,7 +133,7 @@ impl Image {
             .ok_or(ImageError::Size { width, height })
     }
 
-    /// Is this pixel (counted from the top left) less than opaque?
+    /// Returns true if this pixel (counted from the top left) is not fully opaque.
     #[must_use]
     pub fn is_transparent(&self, index: usize) -> bool {
         self.transparent.get(index).copied().unwrap_or(false)
@@ -153,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn damaged_images_are_refused_or_read_and_never_worse() {
+    fn a_damaged_image_is_refused_or_read() {
         let mut rng = ChaCha8Rng::seed_from_u64(12);
         let whole: [&[u8]; 3] = [
             b"P5 5 4 255\n01234567890123456789",

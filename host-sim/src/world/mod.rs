@@ -1,8 +1,9 @@
-//! The world a robot explores: what stands where, how high the ground lies, and where a robot may start.
+//! The world that a robot explores: walls, heights of the ground, and start poses.
 //!
-//! A world comes from a YAML file in the ROS `map_server` convention ([`World::load`]), from the collection drawn here
-//! ([`World::builtin`]), or from rows of characters in a test ([`World::picture`]). It is immutable and exact: collisions,
-//! coverage and ranges are judged on it, never on what a planner believes.
+//! A world comes from a YAML file in the ROS `map_server` convention ([`World::load`]), from the
+//! built-in collection ([`World::builtin`]), or in a test from rows of characters
+//! ([`World::picture`]). It is immutable and exact. Collisions, coverage and ranges are computed
+//! from it, never from the planner's map.
 //!
 //! Frame: x east, y north, z up, metres, angles counter-clockwise in radians.
 
@@ -20,26 +21,26 @@ mod pgm;
 mod png_file;
 mod ray;
 mod starts;
-mod walk;
+mod traversal;
 mod yaml;
 
 use std::path::Path;
 
-pub use builtin::{Builtin, builtins};
+pub use builtin::{Builtin, Place, builtins, place, places};
 pub use distance::DistanceField;
 pub use elevation::{Elevation, HeightScale};
 pub use error::WorldError;
 pub use image::{Image, ImageError, MAX_PIXELS};
 pub use occupancy::{Class, GridCell, Occupancy, Thresholds};
 pub use ray::{Hit, Ray, Surface};
-pub(crate) use walk::Walk;
+pub(crate) use traversal::GridTraversal;
 
 use crate::robot::{Footprint, Pose, stand, wrap};
 
-/// Height of walls where a world file says nothing, metres.
+/// Height of the walls if a world file does not give it, metres.
 pub const WALL_HEIGHT_M: f64 = 1.5;
 
-/// Where a robot may start.
+/// A start pose of a robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Start {
     /// Metres.
@@ -77,7 +78,7 @@ pub struct World {
 }
 
 impl World {
-    /// A built-in world by name, or else a world file by path.
+    /// Opens a built-in world by name, or else a world file by path.
     ///
     /// # Errors
     /// As [`WorldError`].
@@ -85,7 +86,7 @@ impl World {
         Self::builtin(name_or_path).map_or_else(|| Self::load(Path::new(name_or_path)), Ok)
     }
 
-    /// A world file.
+    /// Loads a world file.
     ///
     /// # Errors
     /// As [`WorldError`].
@@ -93,14 +94,14 @@ impl World {
         file::load(path)
     }
 
-    /// A built-in world; [`builtins`] lists them.
+    /// Draws a built-in world; [`builtins`] lists them.
     #[must_use]
     pub fn builtin(name: &str) -> Option<Self> {
         builtin::draw(name)
     }
 
-    /// A flat world from rows of characters, greatest y first: `#` wall, `?` unknown, anything else free. The corner of
-    /// least x and y lies at the origin, and there are no starts.
+    /// A flat world from rows of characters, greatest y first: `#` wall, `?` unknown, anything else
+    /// free. The corner of least x and y is the origin, and there are no starts.
     #[must_use]
     pub fn picture(name: &str, resolution_m: f64, rows: &[&str]) -> Self {
         let width = rows.iter().map(|row| row.len()).max().unwrap_or(0);
@@ -125,7 +126,7 @@ impl World {
         Self::new(name, occupancy, None, WALL_HEIGHT_M, starts)
     }
 
-    /// A world of hills. The starts are not checked.
+    /// A world with uneven ground. The starts are not checked.
     #[must_use]
     pub fn uneven(
         name: &str,
@@ -156,37 +157,37 @@ impl World {
         }
     }
 
-    /// The built-in name, or the file's without its extension.
+    /// The built-in name, or the file's name without its extension.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Where robots may start; never empty for a world file or a built-in world.
+    /// Start poses; never empty for a world file or a built-in world.
     #[must_use]
     pub fn starts(&self) -> &[Start] {
         &self.starts
     }
 
-    /// What may surprise about a world file, each in one line; empty where all is as usual.
+    /// Notes on what may surprise in a world file, one line each.
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// What stands where.
+    /// Free, wall and unknown cells.
     #[must_use]
     pub fn occupancy(&self) -> &Occupancy {
         &self.occupancy
     }
 
-    /// How far everything is from the nearest solid cell.
+    /// Distances to the nearest solid cell.
     #[must_use]
     pub fn distance(&self) -> &DistanceField {
         &self.distance
     }
 
-    /// The ground's heights; `None` where all of it lies at 0.
+    /// The ground's heights; `None` if all of the ground is at 0.
     #[must_use]
     pub fn elevation(&self) -> Option<&Elevation> {
         self.elevation.as_ref()
@@ -205,7 +206,7 @@ impl World {
         [grid.width(), grid.height()].map(|cells| cells as f64 * grid.resolution_m())
     }
 
-    /// Is a point wall, unknown or outside?
+    /// Returns true if a point is wall, unknown or outside.
     #[must_use]
     pub fn is_solid(&self, x_m: f64, y_m: f64) -> bool {
         self.occupancy.is_solid(self.occupancy.cell_at(x_m, y_m))
@@ -220,7 +221,7 @@ impl World {
         }
     }
 
-    /// What a ray meets first within `limit_m`, if anything.
+    /// The first hit of a ray within `limit_m`, if any.
     #[must_use]
     pub fn cast(&self, ray: &Ray, limit_m: f64) -> Option<Hit> {
         let ground = match &self.elevation {
@@ -233,7 +234,8 @@ impl World {
             .or(ground)
     }
 
-    /// How high the wall on a cell stands; endless outside of the map, and over a hole as if its ground were at 0.
+    /// Height of the top of the wall on a cell; infinite outside of the map. Over a hole it counts
+    /// from 0.
     fn wall_top_m(&self, cell: GridCell) -> f64 {
         if self.occupancy.index(cell).is_none() {
             return f64::INFINITY;
@@ -242,8 +244,8 @@ impl World {
         self.ground_m(x_m, y_m).unwrap_or(0.0) + self.wall_height_m
     }
 
-    /// Metres between a footprint at a pose and the nearest solid cell: 0 where they overlap, and
-    /// at most [`crate::robot::FARTHEST_M`].
+    /// Metres between a footprint at a pose and the nearest solid cell: 0 if they overlap, and at
+    /// most [`crate::robot::FARTHEST_M`].
     #[must_use]
     pub fn clearance_m(&self, footprint: &Footprint, start: Start) -> f64 {
         let planar = start.pose();

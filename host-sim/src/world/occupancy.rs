@@ -1,18 +1,19 @@
-//! What stands where: a grid of cells that are free, wall or unknown.
+//! A grid of cells that are free, wall or unknown.
 //!
-//! Cell (i, j) covers [i, i+1) × [j, j+1) times the resolution, counted from the origin; row 0 is the least y.
-//! Unknown cells and everything outside count as solid: a robot cannot be judged on what the map does not say.
+//! Cell (i, j) covers [i, i+1) × [j, j+1) times the resolution, counted from the origin; row 0 is
+//! the least y. Unknown cells and everything outside count as solid: the map does not say that a
+//! robot can be there.
 
 use super::image::Image;
 
-/// What a cell of the world holds.
+/// Content of a cell of the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
-    /// Nothing: a robot may stand here and a laser sees through.
+    /// Nothing: a robot may stand here, and a laser beam passes.
     Free,
     /// A wall.
     Wall,
-    /// The map does not say; solid.
+    /// Not known to the map; solid.
     Unknown,
 }
 
@@ -25,18 +26,28 @@ pub struct GridCell {
     pub j: i64,
 }
 
-/// Shades between which a pixel is unknown, in the `map_server` convention.
+impl GridCell {
+    /// Index of this cell in a grid of `[columns, rows]`, row by row; `None` outside.
+    #[must_use]
+    pub(crate) fn index(self, [width, height]: [usize; 2]) -> Option<usize> {
+        let i = usize::try_from(self.i).ok().filter(|i| *i < width)?;
+        let j = usize::try_from(self.j).ok().filter(|j| *j < height)?;
+        Some(j * width + i)
+    }
+}
+
+/// Thresholds of a pixel's occupancy, in the `map_server` convention; unknown lies between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thresholds {
-    /// Darker than this is wall: occupancy above it.
+    /// A pixel with more occupancy is wall.
     pub occupied: f64,
-    /// Lighter than this is free: occupancy below it.
+    /// A pixel with less occupancy is free.
     pub free: f64,
-    /// White is occupied.
+    /// True if white is occupied.
     pub negate: bool,
 }
 
-/// The grid.
+/// A grid of classes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Occupancy {
     width: usize,
@@ -49,7 +60,8 @@ pub struct Occupancy {
 impl Occupancy {
     /// A grid of one class.
     ///
-    /// `width` and `height` in cells, `resolution_m` the side of a cell, `origin_m` the corner of least x and y.
+    /// `width` and `height` are in cells, `resolution_m` is the side of a cell, and `origin_m` is
+    /// the corner of least x and y.
     #[must_use]
     pub fn filled(
         width: usize,
@@ -67,7 +79,8 @@ impl Occupancy {
         }
     }
 
-    /// Reads an image: `occupancy = 1 − shade` (or the shade itself where negated), compared with the thresholds.
+    /// Reads an image: `occupancy = 1 − shade` (or the shade if negated), compared with the
+    /// thresholds.
     #[must_use]
     pub fn from_image(
         image: &Image,
@@ -131,34 +144,32 @@ impl Occupancy {
         ]
     }
 
-    /// Where a cell is stored, or `None` outside.
+    /// Index of a cell in [`Self::classes`], or `None` outside.
     #[must_use]
     pub fn index(&self, cell: GridCell) -> Option<usize> {
-        let i = usize::try_from(cell.i).ok().filter(|i| *i < self.width)?;
-        let j = usize::try_from(cell.j).ok().filter(|j| *j < self.height)?;
-        Some(j * self.width + i)
+        cell.index([self.width, self.height])
     }
 
-    /// What a cell holds; unknown outside.
+    /// Class of a cell; unknown outside.
     #[must_use]
     pub fn class(&self, cell: GridCell) -> Class {
         self.index(cell)
             .map_or(Class::Unknown, |index| self.classes[index])
     }
 
-    /// Is a cell wall, unknown or outside?
+    /// Returns true if a cell is wall, unknown or outside.
     #[must_use]
     pub fn is_solid(&self, cell: GridCell) -> bool {
         self.class(cell) != Class::Free
     }
 
-    /// All cells, row by row from the least y.
+    /// Classes of all cells, row by row from the least y.
     #[must_use]
     pub fn classes(&self) -> &[Class] {
         &self.classes
     }
 
-    /// Changes a cell; outside nothing happens.
+    /// Changes a cell; does nothing outside.
     pub fn set(&mut self, cell: GridCell, class: Class) {
         if let Some(index) = self.index(cell) {
             self.classes[index] = class;

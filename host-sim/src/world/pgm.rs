@@ -1,7 +1,7 @@
 //! Portable grey maps, plain (P2) and raw (P5), of 8 or 16 bits.
 //!
-//! `P5 <width> <height> <maxval><one white space><samples>`; `#` starts a comment up to the end of the line; raw
-//! samples are one byte where maxval < 256, else two, high byte first.
+//! `P5 <width> <height> <maxval><one white space><samples>`; `#` starts a comment up to the end of
+//! the line. Raw samples have one byte if maxval < 256, else two, high byte first.
 
 use super::image::{Image, ImageError};
 
@@ -38,7 +38,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
     })
 }
 
-/// The bytes and how far they were read.
+/// The bytes, and the position of the reader in them.
 struct Reader<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -63,7 +63,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A decimal number, or `None` where something else or nothing follows.
+    /// Reads a decimal number; `None` if something else or nothing follows.
     fn digits(&mut self) -> Option<usize> {
         self.skip_blanks();
         let start = self.at;
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn reads_plain_and_raw_of_both_widths_with_comments() {
+    fn it_reads_plain_and_raw_of_both_widths_with_comments() {
         assert_eq!(
             samples(b"P2 # x\n3 1 # y\n9\n0 # z\n4\n9\n"),
             Ok(vec![0, 4, 9])
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn one_byte_samples_under_a_header_of_two_are_told() {
+    fn one_byte_samples_under_a_header_of_two_bytes_are_named() {
         for bytes in [
             &b"P5 3 1 65535\n\x01\x02\x03"[..],
             b"P5 3 1 1000\n\x01\x02\x03\n",
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn every_error_is_named() {
         use ImageError::{Malformed, Size, Surplus, Truncated};
         assert_eq!(
             samples(b"P5 2 2 255\n\x01\x02\x03"),

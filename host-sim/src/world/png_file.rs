@@ -1,8 +1,8 @@
-//! PNG of any colour type and depth, as sums of its colour channels.
+//! PNG files of any colour type and depth, as sums of their colour channels.
 //!
-//! `map_server` averages the channels of a pixel, and so does [`Image`] by keeping sum and count. Departs from
-//! `map_server`, which also averages the alpha channel in: that turns an opaque unknown grey (205) into free space.
-//! Here alpha says only whether the map knows the pixel.
+//! `map_server` averages the channels of a pixel, and so does [`Image`], which has their sum and
+//! number. Departs from `map_server`, which also averages the alpha channel in and so turns an
+//! opaque unknown grey (205) into free space. Here alpha says only if the map knows the pixel.
 
 use png::{BitDepth, ColorType, Decoder, DecodingError, Transformations};
 use std::io::Cursor;
@@ -21,7 +21,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
         .ok_or(ImageError::Size { width, height })?;
     let mut data = vec![0; size];
     let frame = reader.next_frame(&mut data).map_err(|e| explain(&e))?;
-    // The trailer is read too: a file cut after its last row is still a truncated file.
+    // The trailer is read too: a file that ends after its last row is still truncated.
     reader.finish().map_err(|e| explain(&e))?;
     let (channels, alpha) = match frame.color_type {
         ColorType::Grayscale => (1, false),
@@ -57,7 +57,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
     Ok(image)
 }
 
-/// Our words for the decoder's; a file that ends early is told apart from one that is damaged.
+/// Converts the decoder's error; a file that ends early has an error of its own.
 fn explain(error: &DecodingError) -> ImageError {
     match error {
         DecodingError::IoError(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => {

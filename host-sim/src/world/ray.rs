@@ -1,25 +1,38 @@
-//! What a ray meets first: a wall, its top, or the ground; here the walls, in [`super::ground_ray`] the ground.
+//! The first hit of a ray: a wall, its top, or the ground. This file has the walls,
+//! [`super::ground_ray`] has the ground.
 //!
-//! Walls are columns over the solid cells, `wall_height` above the ground at the cell's centre, and endless outside of the
-//! map. They are found by a [`Walk`] through the grid that jumps over the empty disc around it, which the distance
-//! field knows.
+//! Walls are columns over the solid cells. They stand `wall_height` above the ground at the cell's
+//! centre, and they are infinitely high outside of the map. A [`GridTraversal`] finds them; it
+//! jumps over the empty disc around it, which the distance field knows.
 //!
-//! Units: metres; the direction is a unit vector.
+//! Metres; the direction is a unit vector.
 
 use super::distance::DistanceField;
 use super::occupancy::{GridCell, Occupancy};
-use super::walk::Walk;
+use super::traversal::GridTraversal;
 
 /// A half line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it begins: x, y, z in metres.
+    /// Its start: x, y, z in metres.
     pub origin_m: [f64; 3],
-    /// Where it goes: a unit vector.
+    /// Its direction: a unit vector.
     pub direction: [f64; 3],
 }
 
-/// What was met.
+#[cfg(test)]
+impl Ray {
+    /// A ray along a direction of any length.
+    pub(super) fn towards(origin_m: [f64; 3], direction: [f64; 3]) -> Self {
+        let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+        Self {
+            origin_m,
+            direction: direction.map(|d| d / length),
+        }
+    }
+}
+
+/// The kind of surface that a ray hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
     /// The side of a wall.
@@ -30,21 +43,21 @@ pub enum Surface {
     Ground,
 }
 
-/// Where a ray ended.
+/// The end of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Metres along the ray.
     pub range_m: f64,
-    /// What was met.
+    /// The surface at its end.
     pub surface: Surface,
 }
 
 /// Code of a solid cell in [`Walls::free_cells`].
 const SOLID: u8 = u8::MAX;
-/// Free cells around from which on a jump is cheaper than steps.
+/// Number of free cells around from which a jump is cheaper than single steps.
 const JUMP_CELLS: u8 = 3;
 
-/// The walls, prepared for rays: a grid with a solid border of one cell.
+/// The walls in a form for rays: a grid with a solid border of one cell.
 #[derive(Clone, Debug)]
 pub(super) struct Walls {
     stride: i64,
@@ -80,7 +93,7 @@ impl Walls {
         }
     }
 
-    /// The first wall within `limit_m`. `top_m` tells how high the wall on a cell stands.
+    /// The first wall within `limit_m`. `top_m` gives the height of the wall's top on a cell.
     pub(super) fn cast(
         &self,
         ray: &Ray,
@@ -91,19 +104,19 @@ impl Walls {
         let speed = [0, 1].map(|k| ray.direction[k] / self.resolution_m);
         let cells_per_m = (speed[0] * speed[0] + speed[1] * speed[1]).sqrt();
         let m_per_cell = 1.0 / cells_per_m.max(1e-9);
-        let mut walk = Walk::new(start, speed);
-        while walk.entered_m <= limit_m {
-            let free = self.free_cells(walk.cell);
+        let mut traversal = GridTraversal::new(start, speed);
+        while traversal.entered_m <= limit_m {
+            let free = self.free_cells(traversal.cell);
             if free == SOLID {
-                let hit = self.column(ray, &walk, &top_m);
+                let hit = self.column(ray, &traversal, &top_m);
                 if let Some(hit) = hit {
                     return (hit.range_m <= limit_m).then_some(hit);
                 }
-                walk.advance();
+                traversal.advance();
             } else if free >= JUMP_CELLS {
-                walk.jump(walk.entered_m + f64::from(free) * m_per_cell);
+                traversal.jump(traversal.entered_m + f64::from(free) * m_per_cell);
             } else {
-                walk.advance();
+                traversal.advance();
             }
         }
         None
@@ -118,21 +131,26 @@ impl Walls {
         }
     }
 
-    /// Where the ray meets the column over the walk's cell, if it does not pass above.
-    fn column(&self, ray: &Ray, walk: &Walk, top_m: impl Fn(GridCell) -> f64) -> Option<Hit> {
+    /// The hit on the column over the current cell, if the ray does not pass above it.
+    fn column(
+        &self,
+        ray: &Ray,
+        traversal: &GridTraversal,
+        top_m: impl Fn(GridCell) -> f64,
+    ) -> Option<Hit> {
         let top_m = top_m(GridCell {
-            i: walk.cell[0] - 1,
-            j: walk.cell[1] - 1,
+            i: traversal.cell[0] - 1,
+            j: traversal.cell[1] - 1,
         });
         let height_m = |at_m: f64| ray.origin_m[2] + ray.direction[2] * at_m;
-        if height_m(walk.entered_m) <= top_m {
+        if height_m(traversal.entered_m) <= top_m {
             return Some(Hit {
-                range_m: walk.entered_m,
+                range_m: traversal.entered_m,
                 surface: Surface::Wall,
             });
         }
         let fall_m = (top_m - ray.origin_m[2]) / ray.direction[2];
-        (ray.direction[2] < 0.0 && fall_m < walk.left_m()).then_some(Hit {
+        (ray.direction[2] < 0.0 && fall_m < traversal.left_m()).then_some(Hit {
             range_m: fall_m,
             surface: Surface::Top,
         })
@@ -146,26 +164,18 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
-    fn ray(origin_m: [f64; 3], direction: [f64; 3]) -> Ray {
-        let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
-        Ray {
-            origin_m,
-            direction: direction.map(|d| d / length),
-        }
-    }
-
     #[test]
-    fn rays_meet_sides_tops_and_ground_and_the_border() {
+    fn rays_hit_sides_tops_ground_and_the_border() {
         // A wall of 0.5 m at x in [1, 1.5), 1.5 m high, in a world of 3 × 0.5 m.
         let world = World::picture("wall", 0.5, &["..#..."]);
         let met = |origin, direction| {
-            let hit = world.cast(&ray(origin, direction), 12.0);
+            let hit = world.cast(&Ray::towards(origin, direction), 12.0);
             hit.map(|hit| ((hit.range_m * 1e9).round() / 1e9, hit.surface))
         };
         let (start, high) = ([0.25, 0.25, 0.4], [0.25, 0.25, 2.0]);
         assert_eq!(met(start, [1.0, 0.0, 0.0]), Some((0.75, Surface::Wall)));
         assert_eq!(met(start, [-1.0, 0.0, 0.0]), Some((0.25, Surface::Wall)));
-        // Over the wall, and on to the border, which is endlessly high.
+        // Over the wall, and on to the border, which is infinitely high.
         assert_eq!(met(high, [1.0, 0.0, 0.0]), Some((2.75, Surface::Wall)));
         assert_eq!(met(high, [0.0, 0.0, 1.0]), None);
         assert_eq!(met(start, [0.0, 0.0, -1.0]), Some((0.4, Surface::Ground)));
@@ -174,7 +184,7 @@ mod tests {
         let top = met(high, [1.0, 0.0, -0.5]).expect("meets the top");
         assert_eq!(top.1, Surface::Top);
         assert!((top.0 - slant).abs() < 1e-9, "{top:?}");
-        // From within something solid nothing is seen.
+        // From inside of something solid the range is 0.
         assert_eq!(
             met([1.2, 0.2, 0.4], [1.0, 0.0, 0.0]),
             Some((0.0, Surface::Wall))
@@ -186,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_jump_crosses_the_wall_at_the_same_bits_as_steps() {
+    fn a_jump_and_steps_hit_the_wall_at_the_same_bits() {
         let mut rng = ChaCha8Rng::seed_from_u64(4);
         let mut grid = Occupancy::filled(90, 70, 0.05, [-1.3, 2.2], crate::world::Class::Free);
         for _ in 0..12 {
@@ -205,7 +215,7 @@ mod tests {
         }
         for k in 0..20_000 {
             let bearing = f64::from(k) * 0.001;
-            let beam = ray([0.7, 3.9, 0.4], [bearing.cos(), bearing.sin(), 0.0]);
+            let beam = Ray::towards([0.7, 3.9, 0.4], [bearing.cos(), bearing.sin(), 0.0]);
             let [a, b] = [&jumping, &stepping].map(|walls| walls.cast(&beam, 12.0, |_| 1.5));
             assert_eq!(a, b, "bearing {bearing}");
         }

@@ -1,17 +1,18 @@
-//! Where a robot can be put down: free of walls, on ground that it can stand on.
+//! Checks of start poses, and the choice of a start where a world file has none.
 
 use super::distance::DistanceField;
 use super::occupancy::{Class, GridCell};
 use super::{Start, World, WorldError};
 use crate::robot::{Footprint, Limits, Pose, stand};
 
-/// Headings tried, all around.
+/// Number of headings that are tried, all around.
 const HEADINGS: u32 = 8;
-/// Distance over which the slope of a place is taken, metres.
+/// Distance over which a slope is measured, metres.
 const SLOPE_M: f64 = 0.1;
 
 impl World {
-    /// The origin of the frame if the robot is at home there, else the place with most room around it.
+    /// The origin of the frame if the robot stands there within its working limits, else the place
+    /// with the most room around it.
     pub(super) fn default_start(&self) -> Start {
         let origin = Start::default();
         if self.check_start("", 0, origin).is_ok() && self.is_easy(origin.x_m, origin.y_m) {
@@ -21,7 +22,7 @@ impl World {
         }
     }
 
-    /// Does the robot fit at a start, and is there ground under all of its wheels?
+    /// Checks that the robot fits at a start and has ground under all of its wheels.
     pub(crate) fn check_start(
         &self,
         file: &str,
@@ -46,13 +47,13 @@ impl World {
         Err(self.bad_start(file, index, &reason))
     }
 
-    /// The error of a start, with the best place there is as its remedy.
+    /// The error of a start, with the best place of the world as its remedy.
     pub(crate) fn bad_start(&self, file: &str, index: usize, reason: &str) -> WorldError {
         let best = self.widest_place();
         let remedy = if self.is_solid(best.x_m, best.y_m) {
-            "nothing is free anywhere, check negate and the thresholds".to_owned()
+            "no place in the world is free; check negate and the thresholds".to_owned()
         } else {
-            format!("most room is at ({:.2}, {:.2})", best.x_m, best.y_m)
+            format!("the most room is at ({:.2}, {:.2})", best.x_m, best.y_m)
         };
         WorldError::Start {
             file: file.to_owned(),
@@ -61,7 +62,8 @@ impl World {
         }
     }
 
-    /// The cell with most room around it on easy ground, facing along x; on any ground if none of it is easy.
+    /// The cell with the most room around it on easy ground, facing along x; on any ground if there
+    /// is no easy ground.
     fn widest_place(&self) -> Start {
         let barriers = self.elevation.is_some().then(|| self.barriers());
         let room = barriers.as_ref().unwrap_or(&self.distance);
@@ -78,8 +80,8 @@ impl World {
         }
     }
 
-    /// Distances from everything that a robot should not start beside: what is solid, holes, and ground too steep to be
-    /// crossed in any direction.
+    /// Distances to everything that a robot should not start beside: solid cells, holes, and ground
+    /// that is too steep to cross in every direction.
     fn barriers(&self) -> DistanceField {
         let mut plan = self.occupancy.clone();
         for j in 0..plan.height() as i64 {
@@ -94,13 +96,13 @@ impl World {
         DistanceField::new(&plan)
     }
 
-    /// Is there ground, and no slope beyond the working limit to the side?
+    /// Returns true if there is ground whose slope is within the working limit to the side.
     fn is_even(&self, x_m: f64, y_m: f64) -> bool {
         let Some(here_m) = self.ground_m(x_m, y_m) else {
             return false;
         };
         let steepest = libm::tan(Limits::WORKING.side_rad);
-        // Beyond the border the ground is taken as level.
+        // Beyond the border the ground counts as level.
         [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]
             .into_iter()
             .filter_map(|[x, y]| self.ground_m(x_m + SLOPE_M * x, y_m + SLOPE_M * y))
@@ -126,7 +128,7 @@ impl World {
         best
     }
 
-    /// Is the robot within its working limits here, whichever way it looks?
+    /// Returns true if the robot is within its working limits here in every heading.
     fn is_easy(&self, x_m: f64, y_m: f64) -> bool {
         self.elevation.is_none()
             || (0..HEADINGS).all(|k| {

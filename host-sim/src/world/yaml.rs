@@ -1,6 +1,6 @@
-//! YAML as a tree of plain values, and typed look-ups that name the key when they fail.
+//! YAML as a tree of plain values, and typed look-ups whose errors name the key.
 //!
-//! The parser knows YAML; which keys there are, and of which type, is said here in our own words.
+//! The parser knows the YAML syntax; this module checks the keys and their types.
 
 use core::fmt;
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
@@ -16,16 +16,16 @@ pub(super) enum Node {
     Table(Vec<(String, Self)>),
 }
 
-/// What is wrong with a key's value, or with the keys themselves.
+/// A fault in a key or in its value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct BadKey {
-    /// The key, with the tables it lies in.
+    /// The key, with the tables it lies in, as in `elevation.bits`.
     pub(super) key: String,
-    /// What is wrong and what would be right.
+    /// The fault and the remedy.
     pub(super) reason: String,
 }
 
-/// Keys and values, and the key that led here.
+/// The keys and values of one table, and the key of the table.
 pub(super) struct Table<'a> {
     path: &'a str,
     entries: &'a [(String, Node)],
@@ -42,7 +42,7 @@ pub(super) fn parse(text: &str) -> Result<Node, String> {
 }
 
 impl<'a> Table<'a> {
-    /// The table under a key (empty for the whole document), all of whose keys must be `known`.
+    /// The table under a key (empty for the whole document); every key in it must be in `known`.
     pub(super) fn new(path: &'a str, node: &'a Node, known: &[&str]) -> Result<Self, BadKey> {
         let Node::Table(entries) = node else {
             return Err(BadKey {
@@ -76,7 +76,7 @@ impl<'a> Table<'a> {
         match self.node(key) {
             None => Ok(None),
             Some(Node::Number(number)) => Ok(Some(*number)),
-            Some(other) => Err(self.bad(key, &format!("{other} is not a number"))),
+            Some(other) => Err(self.bad(key, &format!("{other} is not a number; give one"))),
         }
     }
 
@@ -84,11 +84,11 @@ impl<'a> Table<'a> {
         match self.node(key) {
             None => Ok(None),
             Some(Node::Text(text)) => Ok(Some(text)),
-            Some(other) => Err(self.bad(key, &format!("{other} is not a text"))),
+            Some(other) => Err(self.bad(key, &format!("{other} is not a text; give one"))),
         }
     }
 
-    /// 0 or 1, or a word for it.
+    /// 0 or 1, or `true` or `false`.
     pub(super) fn flag(&self, key: &str) -> Result<Option<bool>, BadKey> {
         match self.node(key) {
             None => Ok(None),
@@ -96,11 +96,11 @@ impl<'a> Table<'a> {
             Some(Node::Number(number)) if *number == 0.0 || *number == 1.0 => {
                 Ok(Some(*number == 1.0))
             }
-            Some(other) => Err(self.bad(key, &format!("{other} is not 0 or 1"))),
+            Some(other) => Err(self.bad(key, &format!("{other} is not 0 or 1; give one of them"))),
         }
     }
 
-    /// A value that must be there.
+    /// Returns the value of a required key, or an error with an example.
     pub(super) fn required<T>(
         &self,
         key: &str,
@@ -125,7 +125,7 @@ impl<'a> Table<'a> {
 }
 
 impl Node {
-    /// A list of finite numbers, of one of the lengths in `lengths`.
+    /// A list of finite numbers whose length is in `lengths`.
     pub(super) fn numbers(&self, lengths: core::ops::RangeInclusive<usize>) -> Option<Vec<f64>> {
         let Self::List(list) = self else {
             return None;

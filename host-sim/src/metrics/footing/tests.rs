@@ -1,9 +1,17 @@
-//! What is reached and covered of small made grounds.
+//! Reached and covered cells of small synthetic grounds.
 
 use super::*;
 use crate::world::{Class, Elevation, GridCell, Occupancy};
 
-/// 10 × 6 m of ground, sampled every 5 cm, with a start at (1, 3) looking east.
+impl Footing {
+    /// Returns true if the robot reaches a cell in a heading, counted counter-clockwise from east.
+    pub(crate) fn reaches_heading(&self, cell: Cell, heading: usize) -> bool {
+        let index = self.area.index(cell);
+        index.is_some_and(|index| self.reached[index] >> (heading % HEADINGS) & 1 == 1)
+    }
+}
+
+/// Ground of 10 × 6 m, sampled every 5 cm, with a start at (1, 3) that faces east.
 fn world(height_m: impl Fn(f64, f64) -> f64) -> (World, Start) {
     let size = [200, 120];
     let elevation = Elevation::from_fn(size, 0.05, [0.0, 0.0], height_m);
@@ -29,7 +37,7 @@ fn cell(x_m: f64, y_m: f64) -> Cell {
     }
 }
 
-/// A plane that rises eastwards from x = 3 to x = 7 and is level on both sides, rounded over half a metre.
+/// A plane that rises eastwards from x = 3 to x = 7 m, level on both sides, rounded over 0.5 m.
 fn ramp(degrees: f64) -> impl Fn(f64, f64) -> f64 {
     let grade = degrees.to_radians().tan();
     let soft = |t: f64| {
@@ -45,11 +53,11 @@ fn ramp(degrees: f64) -> impl Fn(f64, f64) -> f64 {
 }
 
 #[test]
-fn level_ground_is_reached_up_to_the_radius_and_covered_whole() {
+fn level_ground_is_reached_up_to_the_radius_and_covered() {
     let footing = footing(|_, _| 0.4, &Limits::WORKING);
     // Centres from 0.35 to 9.65 m and from 0.35 to 5.65 m.
-    let reached = (0..footing.frame().len())
-        .filter(|index| footing.reaches(footing.frame().cell(*index)))
+    let reached = (0..footing.area().len())
+        .filter(|index| footing.reaches(footing.area().cell(*index)))
         .count();
     assert_eq!(reached, 94 * 54);
     assert!(footing.covers(cell(0.15, 3.0)) && footing.covers(cell(5.0, 0.05)));
@@ -57,7 +65,7 @@ fn level_ground_is_reached_up_to_the_radius_and_covered_whole() {
 }
 
 #[test]
-fn a_slope_that_can_be_climbed_but_not_crossed_is_taken_head_on() {
+fn a_slope_too_steep_to_cross_is_climbed_head_on() {
     let gentle = footing(ramp(12.0), &Limits::WORKING);
     assert!((0..HEADINGS).all(|k| gentle.reaches_heading(cell(5.0, 3.0), k)));
     let steep = footing(ramp(18.0), &Limits::WORKING);
@@ -65,7 +73,8 @@ fn a_slope_that_can_be_climbed_but_not_crossed_is_taken_head_on() {
     let headings: Vec<usize> = (0..HEADINGS)
         .filter(|k| steep.reaches_heading(cell(5.0, 3.0), *k))
         .collect();
-    // A slope of 18° crossed at an angle φ rolls by atan(tan 18° sin φ): 12.9° at 45°, 16.7° at 67.5°.
+    // A slope of 18° crossed at an angle φ rolls by atan(tan 18° sin φ): 12.9° at 45°, 16.7° at
+    // 67.5°.
     assert_eq!(headings, [0, 1, 2, 6, 7, 8, 9, 10, 14, 15]);
     let closed = footing(ramp(23.0), &Limits::WORKING);
     assert!(!closed.reaches(cell(5.0, 3.0)) && !closed.reaches(cell(9.0, 3.0)));
@@ -85,7 +94,7 @@ fn an_edge_is_crossed_where_it_is_low_enough() {
 }
 
 #[test]
-fn no_wheel_comes_nearer_to_a_hole_than_its_radius_and_its_rim_is_not_gentle() {
+fn wheels_stay_a_radius_off_a_hole_and_its_rim_is_not_gentle() {
     let hole = |x: f64, y: f64| {
         if (x - 5.0).abs() < 1.0 && (y - 3.0).abs() < 1.0 {
             f64::NAN
@@ -104,7 +113,7 @@ fn no_wheel_comes_nearer_to_a_hole_than_its_radius_and_its_rim_is_not_gentle() {
 }
 
 #[test]
-fn walls_keep_their_distance_as_on_the_flat() {
+fn walls_keep_their_distance_as_on_flat_ground() {
     let (world, start) = world(|_, _| 0.0);
     let mut grid = world.occupancy().clone();
     // A wall with a gap of 0.7 m in its middle.

@@ -1,11 +1,11 @@
 //! A cave of 22 × 18 m: chambers and passages with rough walls, and islands to go around.
 //!
-//! Everything is a disc or a thick line whose border is pushed in and out by smooth noise.
+//! Everything is a disc or a thick line whose border smooth noise moves in and out.
 
 use super::super::canvas::{Canvas, roughness};
 use super::super::occupancy::{Class, Occupancy};
 
-/// How far walls are pushed in and out, metres.
+/// How far the noise moves the walls in and out, metres.
 const ROUGH_M: f64 = 0.45;
 
 /// Draws it.
@@ -51,7 +51,7 @@ pub(super) fn plan() -> Occupancy {
     plan.finish()
 }
 
-/// Is a point within `reach` of a line, give or take the roughness?
+/// Returns true if a point is within `reach` of a line, with the noise added.
 fn near([px, py]: [f64; 2], [x0, y0]: [f64; 2], [x1, y1]: [f64; 2], reach: f64) -> bool {
     let (dx, dy) = (x1 - x0, y1 - y0);
     let length2 = (dx * dx + dy * dy).max(1e-9);

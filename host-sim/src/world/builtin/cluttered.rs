@@ -1,4 +1,4 @@
-//! A room of 15 × 15 m in which small boxes and posts stand scattered, never closer than 0.9 m to each other.
+//! A room of 15 × 15 m with scattered small boxes and posts, at least 0.9 m from each other.
 
 use super::super::canvas::{Canvas, hash};
 use super::super::occupancy::{Class, Occupancy};
@@ -7,11 +7,11 @@ use super::super::occupancy::{Class, Occupancy};
 const SIDE_M: f64 = 15.0;
 /// Thickness of its walls, metres.
 const WALL_M: f64 = 0.2;
-/// Least way between two obstacles, and between an obstacle and a wall, metres.
+/// Least gap between two obstacles, and between an obstacle and a wall, metres.
 const GAP_M: f64 = 0.9;
-/// Places tried; most are refused for want of room.
+/// Number of places that are tried; most have no room.
 const TRIALS: u32 = 900;
-/// Kept empty for the starts: centre and radius.
+/// Clearings around the starts: centre and radius.
 const CLEARINGS: [[f64; 3]; 2] = [[1.0, 1.0, 0.6], [7.5, 7.5, 0.6]];
 
 /// Draws it.

@@ -1,4 +1,4 @@
-//! Two halls: one mostly open, one empty and larger than the lasers see.
+//! Two halls: one mostly open, one empty and larger than the range of the lasers.
 
 use super::super::canvas::Canvas;
 use super::super::occupancy::{Class, Occupancy};
@@ -14,7 +14,7 @@ pub(super) fn plan() -> Occupancy {
     plan.finish()
 }
 
-/// 30 × 30 m of nothing.
+/// 30 × 30 m without any obstacle.
 pub(super) fn empty() -> Occupancy {
     let mut plan = Canvas::new(30.4, 30.4, Class::Wall);
     plan.floor([0.2, 0.2, 30.2, 30.2]);

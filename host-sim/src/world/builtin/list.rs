@@ -1,67 +1,80 @@
-//! The list of the built-in worlds: names, descriptions, starts (x m, y m, yaw rad).
+//! The list of the built-in worlds: names, descriptions, named places, and starts (x m, y m,
+//! yaw rad).
 
 use super::Plan::{Flat, Uneven};
-use super::{Builtin, cases, cave, cluttered, hall, loops, office, places, poses, ring, uneven};
+use super::{
+    Builtin, cases, cave, cluttered, hall, loops, office, poses, ring, rooms_and_trees, uneven,
+};
 
 /// Every built-in world.
 pub(super) const BUILTINS: [Builtin; 25] = [
     Builtin {
         name: "office",
         description: "nine furnished rooms with doors of 0.8 to 0.9 m along a corridor, 24 x 14 m",
+        places: &office::PLACES,
         plan: Flat(office::plan),
         starts: &[[12.0, 7.0, 0.0], [2.4, 9.4, 0.0], [21.0, 4.4, 3.0]],
     },
     Builtin {
         name: "cave",
         description: "rough chambers and passages around islands of rock, 22 x 18 m",
+        places: &[],
         plan: Flat(cave::plan),
         starts: &[[4.0, 4.2, 0.8], [17.6, 11.4, -2.0]],
     },
     Builtin {
         name: "loop",
         description: "a corridor that closes a ring of 64 m, with niches and a dead end",
+        places: &[],
         plan: Flat(ring::plan),
         starts: &[[3.0, 1.3, 0.0], [19.2, 8.0, 1.6]],
     },
     Builtin {
         name: "cluttered",
         description: "one room of 15 x 15 m full of small obstacles",
+        places: &[],
         plan: Flat(cluttered::plan),
         starts: &[[1.0, 1.0, 0.8], [7.5, 7.5, 0.0]],
     },
     Builtin {
         name: "hall",
-        description: "a hall of 24 x 24 m, open but for a few pillars",
+        description: "a hall of 24 x 24 m, open except for a few pillars",
+        places: &[],
         plan: Flat(hall::plan),
         starts: &[[3.0, 3.0, 0.0], [12.0, 14.0, 1.5]],
     },
     Builtin {
         name: "empty-hall",
-        description: "an empty hall of 30 x 30 m, larger than the lasers see",
+        description: "an empty hall of 30 x 30 m, larger than the range of the lasers",
+        places: &[],
         plan: Flat(hall::empty),
         starts: &[[15.0, 15.0, 0.0], [2.0, 2.0, 0.8]],
     },
     Builtin {
         name: "narrow-doors",
         description: "five rooms behind doors of 0.65, 0.70, 0.75, 0.80 and 0.90 m",
+        places: &cases::DOORS,
         plan: Flat(cases::narrow_doors),
         starts: &[[1.2, 1.4, 0.0], [16.6, 4.6, -1.6]],
     },
     Builtin {
         name: "unreachable-room",
-        description: "one room without a door, one behind a gap of 0.4 m that only the lasers pass",
+        description: "one room without a door, one behind a gap of 0.4 m that only beams pass",
+        places: &cases::ROOMS,
         plan: Flat(cases::unreachable_room),
         starts: &[[2.0, 2.0, 0.0]],
     },
     Builtin {
         name: "boxed-in",
         description: "the robot starts in a closet of 1 x 1 m that has no door",
+        places: &cases::CLOSET,
         plan: Flat(cases::boxed_in),
         starts: &[[3.0, 3.0, 0.0]],
     },
     Builtin {
         name: "slope",
-        description: "two storeys of level ground and one big slope of 17 degrees between them, 30 x 24 m",
+        description: "two levels of ground and one big slope of 17 degrees between them, 30 x 24 m",
+        places: &[],
         plan: Uneven(uneven::slope::draw),
         starts: &[
             [5.0, 6.0, 0.5],
@@ -79,6 +92,7 @@ pub(super) const BUILTINS: [Builtin; 25] = [
     Builtin {
         name: "holes",
         description: "uneven ground with a slope in a corner and two large holes, 26 x 26 m",
+        places: &uneven::holes::PLACES,
         plan: Uneven(uneven::holes::draw),
         starts: &[
             [13.0, 13.5, 0.0],
@@ -95,7 +109,8 @@ pub(super) const BUILTINS: [Builtin; 25] = [
     },
     Builtin {
         name: "building",
-        description: "uneven ground around a building with one entrance, seen whole from before it, 26 x 24 m",
+        description: "uneven ground and a building visible whole from its entrance, 26 x 24 m",
+        places: &uneven::building::PLACES,
         plan: Uneven(uneven::building::draw),
         starts: &[
             [5.0, 3.0, 0.5],
@@ -112,7 +127,8 @@ pub(super) const BUILTINS: [Builtin; 25] = [
     },
     Builtin {
         name: "cliff",
-        description: "low ground and a plateau with a cliff and a ramp between, a steep hill and a hole, 28 x 24 m",
+        description: "low ground and a plateau, a cliff, a ramp, a hill and a hole, 28 x 24 m",
+        places: &uneven::cliff::PLACES,
         plan: Uneven(uneven::cliff::draw),
         starts: &[
             [8.5, 8.0, 0.5],
@@ -130,72 +146,84 @@ pub(super) const BUILTINS: [Builtin; 25] = [
     Builtin {
         name: "spiral",
         description: "a road that winds up a hill of 4.5 m, with drops on one side, 26 x 26 m",
+        places: &[],
         plan: Uneven(uneven::spiral::draw),
         starts: &[[23.5, 2.5, 2.4], [13.0, 13.0, 0.0]],
     },
     Builtin {
         name: "kerbs",
-        description: "islands in a street with kerbs of 5, 10, 20 and 40 cm, ramps onto the higher two, 24 x 12 m",
+        description: "islands with kerbs of 5, 10, 20 and 40 cm, and two ramps, 24 x 12 m",
+        places: &uneven::kerbs::PLACES,
         plan: Uneven(uneven::kerbs::draw),
         starts: &[[1.5, 2.0, 0.0], [22.8, 10.2, -2.4], [14.6, 7.0, 1.6]],
     },
     Builtin {
         name: "waves",
         description: "gentle waves with a relief of 1 m, all of it easy, 30 x 30 m",
+        places: &[],
         plan: Uneven(uneven::waves::draw),
         starts: &[[15.0, 12.0, 0.0], [2.0, 2.0, 0.8], [27.5, 27.0, -2.4]],
     },
     Builtin {
         name: "pass",
         description: "a ridge of 2.4 m across the world and one pass over it, 26 x 20 m",
+        places: &uneven::pass::PLACES,
         plan: Uneven(uneven::pass::draw),
         starts: &[[3.0, 11.5, 0.0], [23.5, 8.0, 3.1], [6.5, 18.5, -1.6]],
     },
     Builtin {
         name: "causeway",
-        description: "a bridge of ground, 2.4 m wide, between a drop of 3 m and one without a floor, 26 x 14 m",
+        description: "a causeway 2.4 m wide between drops of 3 m and without a floor, 26 x 14 m",
+        places: &uneven::causeway::PLACES,
         plan: Uneven(uneven::causeway::draw),
         starts: &[[4.5, 5.5, 0.0], [23.0, 8.0, 3.1]],
     },
     Builtin {
         name: "ouroboros-a",
         description: "four adjacent loops of corridors, 44, 46, 58 and 78 m",
+        places: &[],
         plan: Flat(loops::a),
         starts: &poses::A,
     },
     Builtin {
         name: "ouroboros-b",
         description: "three adjacent loops of corridors in a row, 72 m each",
+        places: &[],
         plan: Flat(loops::b),
         starts: &poses::B,
     },
     Builtin {
         name: "ouroboros-c",
         description: "rooms along corridors that close no loop, 23 x 25 m",
-        plan: Flat(places::c),
+        places: &[],
+        plan: Flat(rooms_and_trees::c),
         starts: &poses::C,
     },
     Builtin {
         name: "ouroboros-d",
-        description: "a square of 20 x 20 m with small round obstacles, as of trees",
-        plan: Flat(places::d),
+        description: "a square of 20 x 20 m with small round obstacles like trees",
+        places: &[],
+        plan: Flat(rooms_and_trees::d),
         starts: &poses::D,
     },
     Builtin {
         name: "tdbvp-adjacent",
         description: "three loops of corridors, each beside both others, 72 m each",
+        places: &[],
         plan: Flat(loops::adjacent),
         starts: &poses::ADJACENT,
     },
     Builtin {
         name: "tdbvp-nested",
-        description: "a loop of corridors of 88 m, and one of 48 m within its block",
+        description: "a loop of corridors of 88 m, and one of 48 m inside of its block",
+        places: &[],
         plan: Flat(loops::nested),
         starts: &poses::NESTED,
     },
     Builtin {
         name: "tdbvp-floor",
         description: "a floor of 72 x 13 m with loops of 90 m and 60 m and halls at both ends",
+        places: &[],
         plan: Flat(loops::floor_72),
         starts: &poses::FLOOR,
     },

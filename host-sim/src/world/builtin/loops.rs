@@ -1,7 +1,9 @@
-//! Worlds of corridors 2 m wide that close loops, to the published sizes [Ouroboros, IV: A, B; Maffei et al. 2014: adjacent loops,
-//! nested loops, floor]. The papers give the loops' lengths and not their places; those are drawn here.
+//! Worlds of corridors 2 m wide that close loops, of published sizes: A and B [Jorge15, IV], and
+//! adjacent loops, nested loops and a floor [Maffei14]. The papers give the lengths of the loops;
+//! this file chooses their places.
 //!
-//! A loop goes round a block in the middle of its corridor: a block of w × h metres makes one of 2 (w + h) + 8 m.
+//! A loop runs along the middle of the corridor around a block: a block of w × h metres makes a
+//! loop of 2 (w + h) + 8 m.
 
 use super::super::canvas::Canvas;
 use super::super::occupancy::{Class, Occupancy};
@@ -11,7 +13,7 @@ const CORRIDOR_M: f64 = 2.0;
 /// Thickness of the outer wall, metres.
 const WALL_M: f64 = 0.2;
 
-/// A block's lower left corner, counted from the inside of the outer wall, and its sides.
+/// A block: its lower left corner, counted from the inside of the outer wall, and its sides.
 type Block = [f64; 4];
 
 /// Four adjacent loops of 44, 46, 58 and 78 m.
@@ -36,7 +38,7 @@ const ADJACENT: [Block; 3] = [
     [13.0, 16.0, 20.0, 12.0],
 ];
 
-/// The block of a loop of 88 m, and within it the one of a loop of 48 m.
+/// The block of a loop of 88 m, and inside of it the block of a loop of 48 m.
 const NESTED: [Block; 2] = [[2.0, 2.0, 24.0, 16.0], [7.0, 7.0, 14.0, 6.0]];
 
 /// Blocks of loops of 90 m and 60 m along a floor.
@@ -57,7 +59,7 @@ pub(super) fn adjacent() -> Occupancy {
     blocks([46.0, 30.0], &ADJACENT).finish()
 }
 
-/// Draws the nested loops: a way leads through the block of the outer one to the inner one.
+/// Draws the nested loops: a passage through the block of the outer loop leads to the inner one.
 pub(super) fn nested() -> Occupancy {
     let mut plan = blocks([28.0, 20.0], &NESTED[..1]);
     ring(&mut plan, NESTED[1]);
@@ -65,7 +67,7 @@ pub(super) fn nested() -> Occupancy {
     plan.finish()
 }
 
-/// Draws the floor: at both ends a hall with doors to the corridors.
+/// Draws the floor: at both ends it has a hall with doors to the corridors.
 pub(super) fn floor_72() -> Occupancy {
     let mut plan = blocks([72.0, 13.0], &FLOOR);
     floor(&mut plan, [0.0, 2.0, 7.0, 11.0]);
@@ -77,7 +79,7 @@ pub(super) fn floor_72() -> Occupancy {
     plan.finish()
 }
 
-/// A plan with so much inside, all wall but the corridors around blocks.
+/// A plan of this inner size: all wall, except for the corridors around the blocks.
 fn blocks([width, height]: [f64; 2], blocks: &[Block]) -> Canvas {
     let around = 2.0 * WALL_M;
     let mut plan = Canvas::new(width + around, height + around, Class::Wall);
@@ -120,9 +122,10 @@ mod tests {
         assert_eq!(FLOOR.each_ref().map(length), [90, 60]);
     }
 
-    /// Corridors are as wide between blocks as along the outer wall, so loops that are beside each other share one.
+    /// A corridor between blocks is as wide as one along the outer wall, so two loops side by side
+    /// share it.
     #[test]
-    fn blocks_are_a_corridor_apart() {
+    fn blocks_are_one_corridor_apart() {
         for blocks in [&A[..], &B, &ADJACENT, &FLOOR] {
             for (k, one) in blocks.iter().enumerate() {
                 for other in &blocks[k + 1..] {

@@ -1,8 +1,8 @@
-//! The worlds that come with the simulator, drawn here: five places to explore, four cases to get wrong, uneven ground, and
-//! loops and places of published sizes.
+//! The built-in worlds: six floors to explore, three hard cases, nine worlds with uneven ground,
+//! and seven worlds of published sizes.
 //!
-//! All have cells of 5 cm, walls at least 0.2 m thick, and their lower left corner at the origin. A drawing is a
-//! function of nothing: it is the same everywhere and always.
+//! All have cells of 5 cm, walls at least 0.2 m thick, and their lower left corner at the origin. A
+//! drawing has no parameters: it is the same on every machine.
 
 mod cases;
 mod cave;
@@ -14,29 +14,33 @@ mod office;
 mod places;
 mod poses;
 mod ring;
+mod rooms_and_trees;
 mod uneven;
 
 use super::occupancy::Occupancy;
 use super::{Start, World};
 use list::BUILTINS;
+pub use places::{Place, place, places};
 
 /// A built-in world.
 #[derive(Clone, Copy, Debug)]
 pub struct Builtin {
     /// Its name on the command line.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// Its description, in one line.
     pub description: &'static str,
+    /// Its named places: doors, holes, islands, entrances.
+    pub places: &'static [Place],
     plan: Plan,
     starts: &'static [[f64; 3]],
 }
 
-/// How a world is drawn.
+/// The drawing of a world.
 #[derive(Clone, Copy, Debug)]
 enum Plan {
     /// Walls on a level floor.
     Flat(fn() -> Occupancy),
-    /// Walls on ground.
+    /// Walls on uneven ground.
     Uneven(fn() -> uneven::Drawing),
 }
 
@@ -46,12 +50,12 @@ pub fn builtins() -> &'static [Builtin] {
     &BUILTINS
 }
 
-/// Their names.
+/// Names of the built-in worlds.
 pub(super) fn names() -> Vec<&'static str> {
     BUILTINS.iter().map(|world| world.name).collect()
 }
 
-/// Draws one.
+/// Draws a world by name.
 pub(super) fn draw(name: &str) -> Option<World> {
     let world = BUILTINS.iter().find(|world| world.name == name)?;
     let starts = world.starts.iter().map(|[x_m, y_m, yaw_rad]| Start {

@@ -1,4 +1,5 @@
-//! Where the robot starts in the published worlds: fifteen poses each, drawn once at random; in corridors along or across them.
+//! Start poses in the worlds of published sizes: fifteen each, chosen once at random. In a corridor
+//! they face along it or across it.
 //!
 //! x and y in metres, yaw in radians.
 

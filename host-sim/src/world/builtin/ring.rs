@@ -14,7 +14,7 @@ pub(super) fn plan() -> Occupancy {
     plan.floor([17.0, 10.0, 18.6, 11.6]);
     plan.floor([1.8, 8.0, 7.0, 9.4]);
     plan.floor([5.6, 6.0, 7.0, 9.4]);
-    // Things that stand in the way.
+    // Obstacles in the corridor.
     plan.block([13.0, 0.2, 14.2, 0.6]);
     plan.block([0.2, 11.0, 0.6, 12.4]);
     plan.disc(Class::Wall, [19.3, 5.4], 0.15);

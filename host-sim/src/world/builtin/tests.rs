@@ -1,4 +1,4 @@
-//! Drawings stay as they are, and are as their descriptions say.
+//! The built-in worlds do not change, and they are as their descriptions say.
 
 use super::*;
 use crate::metrics::{CellSet, Coverage};
@@ -23,8 +23,9 @@ fn the_robot_fits_at_every_start_and_can_turn_there() {
 }
 
 #[test]
-fn drawings_stay_as_they_are() {
-    // A change of a drawing changes every result on it: free cells, and a sum that depends on their places.
+fn drawings_do_not_change() {
+    // A changed drawing changes every result on it. Compared are the number of free cells and a sum
+    // that depends on their places.
     let fingerprint = |world: &World| {
         let classes = world.occupancy().classes().iter();
         classes.fold((0, 0_u32), |(free, sum), class| {
@@ -64,8 +65,8 @@ fn drawings_stay_as_they_are() {
 }
 
 #[test]
-fn ground_stays_as_it_is() {
-    // Millimetres of all samples, mixed by their places; −1 m more for a hole.
+fn heights_do_not_change() {
+    // The millimetres of all samples, mixed by their places; a hole counts as −9 m.
     let print = |world: &World| {
         let ground = world.elevation()?;
         let [width, height] = [ground.width(), ground.height()];
@@ -100,7 +101,7 @@ fn ground_stays_as_it_is() {
     assert_eq!(prints, expected);
 }
 
-/// Share of the free floor around the first start that the robot's disc could see.
+/// The share of the free floor around the first start that the robot's lasers can see.
 fn visible_share(name: &str) -> f64 {
     let world = World::builtin(name).expect("listed");
     let start = world.starts()[0];
@@ -109,7 +110,7 @@ fn visible_share(name: &str) -> f64 {
 }
 
 #[test]
-fn every_room_is_as_open_as_the_description_says() {
+fn rooms_are_as_open_as_the_descriptions_say() {
     for name in [
         "office",
         "cave",
@@ -128,7 +129,7 @@ fn every_room_is_as_open_as_the_description_says() {
 }
 
 #[test]
-fn starts_of_a_world_lie_in_one_piece() {
+fn all_starts_of_a_world_are_connected() {
     for builtin in builtins() {
         let world = World::builtin(builtin.name).expect("listed");
         if world.elevation().is_some() {
@@ -143,11 +144,12 @@ fn starts_of_a_world_lie_in_one_piece() {
 }
 
 #[test]
-fn doors_are_as_wide_as_they_say() {
+fn doors_are_as_wide_as_their_names_say() {
     let world = World::builtin("narrow-doors").expect("listed");
     let grid = world.occupancy();
     // Along the middle of the wall with the doors.
-    let j = grid.cell_at(0.0, 2.7).j;
+    let doors = places("narrow-doors");
+    let j = grid.cell_at(0.0, doors[0].point_m[1]).j;
     let mut widths = vec![0];
     for i in 0..grid.width() as i64 {
         if grid.is_solid(super::super::GridCell { i, j }) {
@@ -158,4 +160,54 @@ fn doors_are_as_wide_as_they_say() {
     }
     widths.retain(|cells| *cells > 0);
     assert_eq!(widths, [13, 14, 15, 16, 18]);
+    let named = doors.iter().map(|door| {
+        let [x0, _, x1, _] = door.extent_m;
+        ((x1 - x0) / 0.05).round() as i32
+    });
+    assert!(named.eq(widths), "{doors:?}");
+}
+
+#[test]
+fn places_lie_in_their_world_and_have_names_of_their_own() {
+    for builtin in builtins() {
+        let world = World::builtin(builtin.name).expect("listed");
+        let [width, height] = world.size_m();
+        for (k, one) in builtin.places.iter().enumerate() {
+            let [x0, y0, x1, y1] = one.extent_m;
+            assert!(x0 >= 0.0 && x1 <= width && x0 < x1, "{one:?}");
+            assert!(y0 >= 0.0 && y1 <= height && y0 < y1, "{one:?}");
+            let [x, y] = one.point_m;
+            assert!(x >= x0 && x <= x1 && y >= y0 && y <= y1, "{one:?}");
+            assert_eq!(place(builtin.name, one.name), Some(one));
+            assert!(
+                builtin.places[..k]
+                    .iter()
+                    .all(|other| other.name != one.name)
+            );
+        }
+    }
+    assert!(places("no such world").is_empty());
+}
+
+/// Doors and gaps are free, holes and drops lie below the ground west of them, islands above it.
+#[test]
+fn places_are_what_their_names_say() {
+    for builtin in builtins() {
+        let world = World::builtin(builtin.name).expect("listed");
+        for place in builtin.places {
+            let [x, y] = place.point_m;
+            let rise_m = world.ground_m(x, y).map(|ground_m| {
+                let beside_m = world.ground_m(place.extent_m[0] - 0.5, y);
+                ground_m - beside_m.expect("ground beside it")
+            });
+            let name = place.name;
+            if name.contains("door") || name.contains("gap") || name.contains("entrance") {
+                assert!(!world.is_solid(x, y), "{}: {name}", builtin.name);
+            } else if name.contains("hole") || name.contains("drop") {
+                assert!(rise_m.is_none_or(|m| m < -0.9), "{}: {name}", builtin.name);
+            } else if name.contains("island") || name.contains("hill") {
+                assert!(rise_m.is_some_and(|m| m > 0.04), "{}: {name}", builtin.name);
+            }
+        }
+    }
 }

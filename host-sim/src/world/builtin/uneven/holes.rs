@@ -1,16 +1,20 @@
 //! Scenario 2: uneven ground, a slope in a corner, and two large holes with sheer sides.
 //!
-//! The holes are 1.6 m deep, in the north-east and in the south-west; the slope of 0.27 (15°) leads to a shelf 1.3 m up in the
-//! south-east. 26 × 26 m.
+//! The holes are 1.6 m deep, in the north-east and in the south-west. The slope of 0.27 (15°) in
+//! the south-east leads to a shelf 1.3 m up. 26 × 26 m.
 
+use super::super::places::Place;
 use super::{Drawing, bumps, plan, raised, ramp, within};
 
 /// Depth of the holes, metres.
 const DEPTH_M: f64 = 1.6;
 /// Height of the shelf, metres.
 const SHELF_M: f64 = 1.3;
-/// South-west and north-east corners of the holes, metres.
-const HOLES: [[f64; 4]; 2] = [[16.4, 16.8, 22.2, 21.6], [3.8, 4.4, 8.4, 8.0]];
+/// The two holes.
+pub(crate) const PLACES: [Place; 2] = [
+    Place::area("north-east hole", [16.4, 16.8, 22.2, 21.6]),
+    Place::area("south-west hole", [3.8, 4.4, 8.4, 8.0]),
+];
 
 /// Draws it.
 pub(crate) fn draw() -> Drawing {
@@ -30,8 +34,9 @@ pub(crate) fn draw() -> Drawing {
         [2.0, 14.6, 2.6, 15.8],
     ];
     raised(plan([26.0, 26.0], &trees, &blocks), |x, y| {
-        let hole = HOLES.iter().map(|hole| within([x, y], *hole)).sum::<f64>();
-        // Distance from the corner's diagonal, growing towards the corner.
+        let holes = PLACES.iter().map(|hole| within([x, y], hole.extent_m));
+        let hole = holes.sum::<f64>();
+        // Distance from the corner's diagonal; it grows towards the corner.
         let inwards = (x - y - 11.0) * core::f64::consts::FRAC_1_SQRT_2;
         bumps(x, y, 0.12) + SHELF_M * ramp(inwards, 5.8, 1.0) - DEPTH_M * hole
     })

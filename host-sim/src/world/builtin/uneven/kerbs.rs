@@ -1,26 +1,40 @@
 //! A kerb course: four islands in a street, with kerbs of 5, 10, 20 and 40 cm.
 //!
-//! The first kerb is within the working limits, the second is what the robot can take at the most, the others are not to be driven over.
-//! Ramps of 0.125 and 0.17 lead onto the two highest islands from the south, so that their kerbs are met from above as
-//! well. 24 × 12 m.
+//! The first kerb is within the working limits, the second is the highest that the robot can take,
+//! and the others are too high. Ramps of 0.125 and 0.17 lead onto the two highest islands from the
+//! south, so the robot meets their kerbs from above as well. 24 × 12 m.
 
+use super::super::places::Place;
 use super::{Drawing, plan, raised, within};
 
 /// Left edge and height of each island, metres.
 const ISLANDS: [[f64; 2]; 4] = [[2.4, 0.05], [7.6, 0.10], [12.8, 0.20], [18.0, 0.40]];
 /// Size of an island, metres.
 const ISLAND_M: [f64; 2] = [3.6, 4.6];
-/// Where islands begin, metres north.
+/// Southern edge of the islands, metres.
 const SOUTH_M: f64 = 4.6;
 /// Width of a ramp, metres.
 const RAMP_M: f64 = 1.8;
 
+/// An island, from west to east.
+const fn island(name: &'static str, [west, _]: [f64; 2]) -> Place {
+    let east = west + ISLAND_M[0];
+    Place::area(name, [west, SOUTH_M, east, SOUTH_M + ISLAND_M[1]])
+}
+
+/// The islands.
+pub(crate) const PLACES: [Place; 4] = [
+    island("island of 5 cm", ISLANDS[0]),
+    island("island of 10 cm", ISLANDS[1]),
+    island("island of 20 cm", ISLANDS[2]),
+    island("island of 40 cm", ISLANDS[3]),
+];
+
 /// Draws it.
 pub(crate) fn draw() -> Drawing {
     raised(plan([24.0, 12.0], &[], &[]), |x, y| {
-        let island = |[west, height_m]: [f64; 2]| {
-            let east = west + ISLAND_M[0];
-            let top = height_m * within([x, y], [west, SOUTH_M, east, SOUTH_M + ISLAND_M[1]]);
+        let island = |(place, [west, height_m]): (Place, [f64; 2])| {
+            let top = height_m * within([x, y], place.extent_m);
             let length_m = match height_m {
                 0.20 => 1.6,
                 0.40 => 2.4,
@@ -35,6 +49,6 @@ pub(crate) fn draw() -> Drawing {
             let on_ramp = f64::from(u8::from(y < SOUTH_M));
             top + height_m * up * aside * on_ramp
         };
-        ISLANDS.into_iter().map(island).sum()
+        PLACES.into_iter().zip(ISLANDS).map(island).sum()
     })
 }

@@ -1,10 +1,10 @@
-//! Uneven worlds: the four scenarios of [Maffei-Terrain, fig. 4], drawn from their descriptions, and five courses.
+//! Worlds with uneven ground: the four scenarios of [Maffei20, fig. 4], drawn from their
+//! descriptions, and five courses.
 //!
-//! The ground is a function of x and y, sampled every 5 cm at the centres of the plan's cells; a sheer face is therefore
-//! 5 cm wide. Only sums, products, comparisons, square roots and `libm` are used: the same bits everywhere. What is meant to be
-//! driven on stays within [`crate::robot::Limits::WORKING`]; what is not lies well beyond.
-//!
-//! [Maffei-Terrain]: "Exploration of 3D terrains using potential fields with elevation-based local distortions".
+//! The ground is a function of x and y, sampled every 5 cm at the centres of the plan's cells; so a
+//! sheer face is 5 cm wide. Only sums, products, comparisons, square roots and `libm` are used: the
+//! same bits on every machine. Ground for driving stays within
+//! [`crate::robot::Limits::WORKING`]; other ground is far beyond these limits.
 
 pub(super) mod building;
 pub(super) mod causeway;
@@ -20,13 +20,14 @@ use super::super::canvas::{Canvas, roughness};
 use super::super::elevation::Elevation;
 use super::super::occupancy::{Class, Occupancy};
 
-/// What stands on the ground, and the ground.
+/// A plan and its ground.
 pub(super) type Drawing = (Occupancy, Elevation);
 
 /// Thickness of the fence around a world, metres.
 const FENCE_M: f64 = 0.2;
 
-/// A plan of this size with a fence around it, and things on it: trees as centre and radius, blocks by their corners.
+/// A plan of this size with a fence around it, trees given by centre and radius, and blocks given
+/// by their corners.
 fn plan(size_m: [f64; 2], trees: &[[f64; 3]], blocks: &[[f64; 4]]) -> Canvas {
     let mut plan = Canvas::new(size_m[0], size_m[1], Class::Free);
     for [x, y, radius] in trees {
@@ -39,7 +40,7 @@ fn plan(size_m: [f64; 2], trees: &[[f64; 3]], blocks: &[[f64; 4]]) -> Canvas {
     plan
 }
 
-/// The plan on ground of this height.
+/// Puts a plan on ground of this height.
 fn raised(plan: Canvas, height_m: impl Fn(f64, f64) -> f64) -> Drawing {
     let plan = plan.finish();
     let size = [plan.width(), plan.height()];
@@ -47,15 +48,15 @@ fn raised(plan: Canvas, height_m: impl Fn(f64, f64) -> f64) -> Drawing {
     (plan, ground)
 }
 
-/// Gentle unevenness of up to `height_m` either way: features of about 4 m, slopes of about `30 height_m` degrees.
+/// Bumps of up to ± `height_m`: features of about 4 m, slopes of about `30 height_m` degrees.
 fn bumps(x: f64, y: f64, height_m: f64) -> f64 {
     height_m * roughness(0.25 * x, 0.25 * y)
 }
 
-/// From 0 to 1 while t goes from 0 to `length`: straight, with both ends rounded over `soft`; the grade in between is
-/// `1 / (length − soft)`.
+/// A ramp from 0 to 1 for t from 0 to `length`: straight, with both ends rounded over `soft`. The
+/// grade between is `1 / (length − soft)`.
 fn ramp(t: f64, length: f64, soft: f64) -> f64 {
-    // The integral of a grade that grows to one over `soft`.
+    // Integral of a grade that grows to 1 over `soft`.
     let foot = |t: f64| {
         if t <= 0.0 {
             0.0

@@ -1,11 +1,12 @@
-//! Scenario 1: almost level ground in two storeys, with one big slope that crosses all of it, and things that stand about.
+//! Scenario 1: almost level ground at two heights, one big slope across the whole world, and
+//! scattered trees and blocks.
 //!
-//! The west lies 1.8 m higher. The slope between is 7 m long and as steep as 0.30 (16.7°): it can be climbed, but not
-//! crossed sideways within the working limits. 30 × 24 m.
+//! The west lies 1.8 m higher. The slope between is 7 m long with a grade of up to 0.30 (16.7°).
+//! Within the working limits a robot can climb it and cannot cross it sideways. 30 × 24 m.
 
 use super::{Drawing, bumps, plan, raised, ramp};
 
-/// The upper storey over the lower, metres.
+/// Height of the upper level over the lower one, metres.
 const RISE_M: f64 = 1.8;
 
 /// Draws it.
@@ -34,7 +35,7 @@ pub(crate) fn draw() -> Drawing {
         [19.8, 9.8, 20.9, 10.7],
     ];
     raised(plan([30.0, 24.0], &trees, &blocks), |x, y| {
-        // The slope runs a little askew, so that it is nobody's axis.
+        // The slope is turned a little, so that it lies along no axis of the grid.
         let along = x + 0.18 * (y - 12.0) - 11.2;
         // Its grade is along a direction that leans by 0.18.
         let stretch = (1.0_f64 + 0.18 * 0.18).sqrt();

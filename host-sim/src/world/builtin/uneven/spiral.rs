@@ -1,25 +1,26 @@
-//! A spiral ramp: a road 2.2 m wide that winds up a hill in two and a quarter turns to a flat top 4.5 m up.
+//! A spiral ramp: a road 2.2 m wide that winds up a hill in two and a quarter turns to a flat top
+//! 4.5 m up.
 //!
-//! In polar coordinates around the middle, with turns u counted inwards from the outer edge,
+//! In polar coordinates around the middle, with u the number of turns inwards from the outer edge,
 //!
 //! ```text
 //! u = (R − r) / pitch − θ / 2π      height of the road of turn n:  rise (n + θ / 2π)
 //! ```
 //!
-//! On its outer side the road falls, on its inner side it rises, by 2 m within 1 m. Its grade is 0.03 at the foot and 0.09 at the top.
-//! 26 × 26 m.
+//! Beside the road the ground falls on the outer side and rises on the inner side, by 2 m within
+//! 1 m. The grade of the road is 0.03 at the foot and 0.09 at the top. 26 × 26 m.
 
 use super::{Drawing, bumps, plan, raised};
 
-/// Where the road begins, metres from the middle.
+/// Distance of the road's beginning from the middle, metres.
 const RADIUS_M: f64 = 11.0;
-/// From one turn to the next, metres.
+/// Distance from one turn to the next, metres.
 const PITCH_M: f64 = 3.2;
 /// Share of the pitch that is road.
 const ROAD: f64 = 2.2 / 3.2;
-/// Height gained in a turn, metres.
+/// Height gained per turn, metres.
 const RISE_M: f64 = 2.0;
-/// Turns up to the top.
+/// Number of turns up to the top.
 const TURNS: f64 = 2.25;
 
 /// Draws it.
@@ -31,7 +32,7 @@ pub(crate) fn draw() -> Drawing {
         let turns = (RADIUS_M - (dx * dx + dy * dy).sqrt()) / PITCH_M - angle;
         let turn = turns.floor();
         let road = |turn: f64| RISE_M * (turn + angle).clamp(0.0, TURNS);
-        // Within a band the road comes first, then the face up to the next turn.
+        // Within a turn's band the road comes first, then the face up to the next turn.
         let face = ((turns - turn - ROAD) / (1.0 - ROAD)).max(0.0);
         road(turn) + face * (road(turn + 1.0) - road(turn)) + bumps(x, y, 0.02)
     })

@@ -1,35 +1,37 @@
-//! Uneven worlds are what their descriptions say: to a robot within its limits, and to one that drives at an edge regardless.
+//! Uneven worlds are as their descriptions say, for a robot within its limits and for one that
+//! drives over every edge.
 
 use super::*;
 use crate::metrics::{Footing, HEADINGS};
 use crate::robot::{Limits, RADIUS_M};
 use crate::sim::{Loss, SimConfig, Simulator};
-use crate::world::{GridCell, Start, World};
+use crate::world::{GridCell, Place, Start, World, place, places};
 use core::f64::consts::{FRAC_PI_2, PI};
 use fieldline_planner::geometry::Cell;
 use fieldline_protocol::message::Twist;
 use fixed::types::I4F12;
 
-/// What a world is for.
+/// What a robot can reach in a world.
 struct Intent {
     name: &'static str,
-    /// Per cent of the map's cells that a robot covers; the rest are walls, faces, holes, and what cannot be got to.
+    /// Per cent of the map's cells that a robot covers; the rest are walls, faces, holes, and
+    /// ground out of reach.
     share: u32,
-    /// Places to get to in every heading, metres.
+    /// Points that are reached in every heading, metres.
     open: &'static [[f64; 2]],
-    /// Places that are not to be got to.
+    /// Points that are not reached, metres.
     barred: &'static [[f64; 2]],
 }
 
 const INTENTS: [Intent; 9] = [
-    // Both storeys; not a tree.
+    // Both levels; not a tree.
     Intent {
         name: "slope",
         share: 96,
         open: &[[5.0, 10.0], [25.0, 12.0], [2.0, 23.0], [28.0, 1.0]],
         barred: &[[6.1, 9.4]],
     },
-    // All around the holes and up on the shelf; not in the holes.
+    // The ground around the holes, and the shelf; not the holes.
     Intent {
         name: "holes",
         share: 89,
@@ -42,14 +44,14 @@ const INTENTS: [Intent; 9] = [
         ],
         barred: &[[19.0, 19.0], [16.8, 17.2], [6.0, 6.0], [8.2, 4.6]],
     },
-    // The room, all of its corners but those in the door's funnel.
+    // The room with its corners, except for those beside the entrance.
     Intent {
         name: "building",
         share: 93,
         open: &[[13.5, 11.0], [13.5, 15.0], [12.0, 16.5], [15.0, 16.5]],
         barred: &[[11.2, 12.6], [15.8, 12.6]],
     },
-    // The foot of the cliff and its rim, by the ramp; not the hill, not the hole.
+    // The foot of the cliff, and its rim by the ramp; not the hill, not the hole.
     Intent {
         name: "cliff",
         share: 91,
@@ -63,7 +65,8 @@ const INTENTS: [Intent; 9] = [
         open: &[[13.0, 13.0], [4.6, 13.6], [7.9, 13.6]],
         barred: &[[6.3, 13.6], [13.0, 3.6]],
     },
-    // The islands of 5, 20 and 40 cm, the last two by their ramps; not that of 10 cm, and no kerb above 5 cm.
+    // The islands of 5, 20 and 40 cm, the last two by their ramps; not the island of 10 cm, and no
+    // kerb above 5 cm.
     Intent {
         name: "kerbs",
         share: 86,
@@ -106,6 +109,11 @@ const INTENTS: [Intent; 9] = [
     },
 ];
 
+/// A place that a world must have.
+fn known(world: &str, name: &str) -> &'static Place {
+    place(world, name).unwrap_or_else(|| panic!("{world} has no {name}"))
+}
+
 fn cell([x, y]: [f64; 2]) -> Cell {
     let [x, y] = [x, y].map(|m| (m / 0.1).floor() as i32);
     Cell { x, y }
@@ -120,7 +128,7 @@ fn reaches_all_headings(footing: &Footing, place: [f64; 2]) -> bool {
 }
 
 #[test]
-fn a_robot_within_its_limits_gets_where_it_is_meant_to_and_nowhere_else() {
+fn a_robot_within_its_limits_reaches_the_open_points_only() {
     for intent in INTENTS {
         let name = intent.name;
         let world = World::builtin(name).expect("listed");
@@ -135,15 +143,15 @@ fn a_robot_within_its_limits_gets_where_it_is_meant_to_and_nowhere_else() {
         for place in intent.barred {
             assert!(!footing.reaches(cell(*place)), "{name}: {place:?}");
         }
-        let frame = footing.frame();
-        let covered = (0..frame.len()).filter(|k| footing.covers(frame.cell(*k)));
-        let share = covered.count() as f64 / frame.len() as f64;
+        let area = footing.area();
+        let covered = (0..area.len()).filter(|k| footing.covers(area.cell(*k)));
+        let share = covered.count() as f64 / area.len() as f64;
         assert_eq!((share * 100.0).round() as u32, intent.share, "{name}");
     }
 }
 
 #[test]
-fn the_scenarios_of_the_paper_have_ten_starts() {
+fn the_four_scenarios_have_ten_starts() {
     for name in ["slope", "holes", "building", "cliff"] {
         let world = World::builtin(name).expect("listed");
         assert_eq!(world.starts().len(), 10, "{name}");
@@ -152,9 +160,9 @@ fn the_scenarios_of_the_paper_have_ten_starts() {
 }
 
 #[test]
-fn the_slope_is_taken_head_on_and_not_sideways() {
+fn the_slope_is_climbed_head_on_and_not_crossed_sideways() {
     let footing = footing(&World::builtin("slope").expect("listed"));
-    // Half way up: east, west; north, south.
+    // Half way up: east and west; north and south.
     let middle = cell([14.75, 12.0]);
     assert!(footing.reaches_heading(middle, 0) && footing.reaches_heading(middle, 8));
     assert!(!footing.reaches_heading(middle, 4) && !footing.reaches_heading(middle, 12));
@@ -162,10 +170,11 @@ fn the_slope_is_taken_head_on_and_not_sideways() {
 
 #[test]
 fn the_pass_and_the_causeway_are_the_only_ways_across() {
-    for (name, [x, y0, y1], far) in [
-        ("pass", [13.0, 3.0, 9.0], [22.0, 8.0]),
-        ("causeway", [13.0, 5.5, 9.0], [22.0, 8.0]),
-    ] {
+    for (name, far) in [("pass", [22.0, 8.0]), ("causeway", [22.0, 8.0])] {
+        // A wall across the place and 1.5 m to both sides of it.
+        let crossing = known(name, name);
+        let (x, [_, y0, _, y1]) = (crossing.point_m[0], crossing.extent_m);
+        let (y0, y1) = (y0 - 1.5, y1 + 1.5);
         let world = World::builtin(name).expect("listed");
         let mut plan = world.occupancy().clone();
         let (low, high) = (plan.cell_at(x, y0), plan.cell_at(x, y1));
@@ -179,16 +188,16 @@ fn the_pass_and_the_causeway_are_the_only_ways_across() {
     }
 }
 
-/// The steepest ground that is covered is as steep as the description says, degrees over 0.4 m.
+/// The steepest covered ground is as steep as the description says, in degrees over 0.4 m.
 #[test]
-fn slopes_are_as_steep_as_they_say() {
+fn slopes_are_as_steep_as_the_descriptions_say() {
     for (name, degrees) in [("slope", 18), ("waves", 13)] {
         let world = World::builtin(name).expect("listed");
         let footing = footing(&world);
-        let frame = footing.frame();
-        let grade = (0..frame.len())
-            .filter(|k| footing.covers(frame.cell(*k)))
-            .map(|k| slope_deg(&world, frame.cell(k)))
+        let area = footing.area();
+        let grade = (0..area.len())
+            .filter(|k| footing.covers(area.cell(*k)))
+            .map(|k| slope_deg(&world, area.cell(k)))
             .fold(0.0, f64::max);
         assert_eq!(grade.round() as u32, degrees, "{name}");
     }
@@ -200,7 +209,7 @@ fn slopes_are_as_steep_as_they_say() {
     assert!((0.98..=1.0).contains(&(high - low)), "{}", high - low);
 }
 
-/// The slope over 0.4 m around a cell, degrees; 0 where a part of that has no ground.
+/// The slope over 0.4 m around a cell, degrees; 0 if a part of that has no ground.
 fn slope_deg(world: &World, cell: Cell) -> f64 {
     let [x, y] = [cell.x, cell.y].map(|k| (f64::from(k) + 0.5) * 0.1);
     let grade = |dx: f64, dy: f64| {
@@ -213,7 +222,8 @@ fn slope_deg(world: &World, cell: Cell) -> f64 {
     }
 }
 
-/// Drives at 0.3 m/s for `seconds` from a start: where it then is, its collisions, and its loss.
+/// Drives at 0.3 m/s for `seconds` from a start; returns the last position, the collisions and the
+/// loss.
 fn drive(name: &str, start: [f64; 3], seconds: u32) -> ([f64; 2], u32, Option<Loss>) {
     let world = World::builtin(name).expect("listed");
     let [x_m, y_m, yaw_rad] = start;
@@ -236,10 +246,11 @@ fn drive(name: &str, start: [f64; 3], seconds: u32) -> ([f64; 2], u32, Option<Lo
 }
 
 #[test]
-fn kerbs_stop_the_robot_from_below_and_fell_it_from_above() {
+fn kerbs_block_from_below_and_are_falls_from_above() {
     // Eastwards at the middle of each island, from 1.2 m before its kerb.
-    for (west, climbed) in [(2.4, true), (7.6, true), (12.8, false), (18.0, false)] {
-        let ([x, _], collisions, loss) = drive("kerbs", [west - 1.2, 7.0, 0.0], 8);
+    for (island, climbed) in places("kerbs").iter().zip([true, true, false, false]) {
+        let (west, y) = (island.extent_m[0], island.point_m[1]);
+        let ([x, _], collisions, loss) = drive("kerbs", [west - 1.2, y, 0.0], 8);
         assert_eq!(loss, None, "{west}");
         if climbed {
             assert!(x > west + 0.7 && collisions == 0, "{west}: {x}");
@@ -248,31 +259,35 @@ fn kerbs_stop_the_robot_from_below_and_fell_it_from_above() {
         }
     }
     // Westwards off each island.
-    for (west, fell) in [(2.4, false), (7.6, false), (12.8, true), (18.0, true)] {
-        let ([x, _], _, loss) = drive("kerbs", [west + 1.0, 7.0, PI], 7);
+    for (island, fell) in places("kerbs").iter().zip([false, false, true, true]) {
+        let (west, y) = (island.extent_m[0], island.point_m[1]);
+        let ([x, _], _, loss) = drive("kerbs", [west + 1.0, y, PI], 7);
         assert_eq!(loss, fell.then_some(Loss::Fell), "{west}");
         assert!(fell || x < west - 0.5, "{west}: {x}");
     }
 }
 
 #[test]
-fn who_drives_on_over_a_rim_falls_and_against_a_cliff_stands() {
+fn a_rim_is_a_fall_and_a_cliff_blocks() {
+    let hole = known("holes", "north-east hole");
+    let [x, y] = known("causeway", "causeway").point_m;
+    let cliff_m = known("cliff", "cliff").point_m[0];
     for (name, start) in [
-        ("holes", [14.0, 19.0, 0.0]),
-        ("cliff", [19.4, 13.5, PI]),
-        ("causeway", [13.0, 7.2, FRAC_PI_2]),
-        ("causeway", [13.0, 7.2, -FRAC_PI_2]),
+        ("holes", [hole.extent_m[0] - 2.4, hole.point_m[1], 0.0]),
+        ("cliff", [cliff_m + 2.9, 13.5, PI]),
+        ("causeway", [x, y, FRAC_PI_2]),
+        ("causeway", [x, y, -FRAC_PI_2]),
     ] {
         let (place, _, loss) = drive(name, start, 14);
         assert_eq!(loss, Some(Loss::Fell), "{name}: {place:?}");
     }
-    let ([x, _], collisions, loss) = drive("cliff", [14.0, 13.5, 0.0], 14);
+    let ([x, _], collisions, loss) = drive("cliff", [cliff_m - 2.5, 13.5, 0.0], 14);
     assert_eq!((collisions, loss), (1, None));
     assert!((15.0..16.7).contains(&x), "{x}");
 }
 
 #[test]
-fn a_ramp_is_level_at_both_ends_and_never_steeper_than_it_says() {
+fn a_ramp_is_level_at_both_ends_and_keeps_its_grade() {
     let at = |k: i32| ramp(0.01 * f64::from(k), 6.0, 1.0);
     assert_eq!((at(-5), at(0)), (0.0, 0.0));
     assert!((at(600) - 1.0).abs() < 1e-12 && (at(700) - 1.0).abs() < 1e-12);
@@ -285,7 +300,7 @@ fn a_ramp_is_level_at_both_ends_and_never_steeper_than_it_says() {
 }
 
 #[test]
-fn bumps_keep_their_height_and_their_slopes() {
+fn bumps_keep_their_height_and_their_slope() {
     let mut most = 0.0_f64;
     for k in 0..4000 {
         let (x, y) = (0.37 * f64::from(k % 70), 0.41 * f64::from(k / 70));

@@ -1,6 +1,8 @@
-//! A field of gentle waves: two swells that cross, 1 m from the lowest to the highest point, nowhere steeper than 12.8°.
+//! A field of gentle waves: two swells that cross, 1 m from the lowest to the highest point,
+//! nowhere steeper than 12.8°.
 //!
-//! All of it can be driven on in any direction, though much lies more than 0.6 m below its neighbourhood's crests. 30 × 30 m.
+//! A robot can drive everywhere in every direction, although much of the ground lies more than 0.6
+//! m below the crests around it. 30 × 30 m.
 
 use super::{Drawing, plan, raised};
 use core::f64::consts::TAU;

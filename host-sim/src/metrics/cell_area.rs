@@ -1,6 +1,6 @@
-//! The map cells of a world as a rectangle: the only place where they are counted through.
+//! The map cells of a world as a rectangle, and the index of each.
 //!
-//! Cells of [`MAP_CELL_M`], row by row from the least y.
+//! Cells have a side of [`MAP_CELL_M`]; indices run row by row from the least y.
 
 use fieldline_planner::geometry::Cell;
 
@@ -9,7 +9,7 @@ use crate::world::World;
 
 /// A rectangle of map cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Frame {
+pub struct CellArea {
     /// Column of the first cell.
     pub x: i32,
     /// Row of the first cell.
@@ -20,14 +20,14 @@ pub struct Frame {
     pub height: usize,
 }
 
-impl Frame {
+impl CellArea {
     /// The cells that lie at least partly in a world.
     #[must_use]
     pub fn of(world: &World) -> Self {
         let [x0, y0] = world.occupancy().origin_m();
         let [width, height] = world.size_m();
         let first = |m: f64| (m / MAP_CELL_M).floor() as i32;
-        // A world that ends with a cell, give or take rounding, does not reach into the next.
+        // A world that ends with a cell, except for rounding, does not reach into the next cell.
         let last = |m: f64| (m / MAP_CELL_M - 1e-6).ceil() as i32;
         let count = |low: f64, size: f64| usize::try_from(last(low + size) - first(low));
         Self {
@@ -38,7 +38,7 @@ impl Frame {
         }
     }
 
-    /// Where a cell is stored, if it is in the frame.
+    /// Index of a cell; `None` outside.
     #[must_use]
     pub fn index(&self, cell: Cell) -> Option<usize> {
         let x = usize::try_from(cell.x - self.x).ok()?;
@@ -46,7 +46,22 @@ impl Frame {
         (x < self.width && y < self.height).then_some(y * self.width + x)
     }
 
-    /// The cell that is stored at an index.
+    /// Index of the cell at an offset from another cell; `None` outside.
+    pub(super) fn beside(&self, cell: Cell, [dx, dy]: [i32; 2]) -> Option<usize> {
+        self.index(Cell {
+            x: cell.x + dx,
+            y: cell.y + dy,
+        })
+    }
+
+    /// Indices of the cells within a square of `cells` cells around one, itself included.
+    pub(super) fn around(&self, cell: Cell, cells: i32) -> impl Iterator<Item = usize> + '_ {
+        (-cells..=cells)
+            .flat_map(move |dy| (-cells..=cells).map(move |dx| [dx, dy]))
+            .filter_map(move |offset| self.beside(cell, offset))
+    }
+
+    /// The cell at an index.
     #[must_use]
     pub fn cell(&self, index: usize) -> Cell {
         Cell {
@@ -55,13 +70,13 @@ impl Frame {
         }
     }
 
-    /// Cells in it.
+    /// Number of cells.
     #[must_use]
     pub fn len(&self) -> usize {
         self.width * self.height
     }
 
-    /// Whether it holds nothing.
+    /// Returns true if it has no cells.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -74,19 +89,16 @@ mod tests {
     use crate::world::{Class, Occupancy};
 
     #[test]
-    fn cells_and_indices_are_each_others_inverse() {
+    fn a_cells_index_gives_the_cell() {
         let grid = Occupancy::filled(30, 10, 0.05, [-0.75, 0.1], Class::Free);
-        let frame = Frame::of(&World::flat("strip", grid, Vec::new()));
+        let area = CellArea::of(&World::flat("strip", grid, Vec::new()));
         // x from −0.75 to 0.75 touches cells −8 to 7; y from 0.1 to 0.6 fills cells 1 to 5.
-        assert_eq!(
-            (frame.x, frame.y, frame.width, frame.height),
-            (-8, 1, 16, 5)
-        );
-        assert_eq!((frame.len(), frame.is_empty()), (80, false));
-        for index in 0..frame.len() {
-            assert_eq!(frame.index(frame.cell(index)), Some(index));
+        assert_eq!((area.x, area.y, area.width, area.height), (-8, 1, 16, 5));
+        assert_eq!((area.len(), area.is_empty()), (80, false));
+        for index in 0..area.len() {
+            assert_eq!(area.index(area.cell(index)), Some(index));
         }
-        assert_eq!(frame.index(Cell { x: 8, y: 1 }), None);
-        assert_eq!(frame.index(Cell { x: 0, y: 0 }), None);
+        assert_eq!(area.index(Cell { x: 8, y: 1 }), None);
+        assert_eq!(area.index(Cell { x: 0, y: 0 }), None);
     }
 }

@@ -1,31 +1,33 @@
-//! A straight line through square cells, one cell at a time [Amanatides87].
+//! Grid traversal: a straight line through square cells, one cell at a time [Amanatides87].
 //!
-//! `start` and `speed` are in cells and cells a metre of ray; every crossing is computed as `(edge − start) / speed`
-//! from the line itself, never summed up, so a walk that jumped over cells crosses the rest at the same bits.
+//! `start` is in cells and `speed` in cells per metre of ray. Every crossing is computed as
+//! `(edge − start) / speed` from the line itself, never as a sum. So after a jump over cells, the
+//! traversal crosses the rest at the same bits.
 //!
-//! [Amanatides87]: J. Amanatides, A. Woo, "A fast voxel traversal algorithm for ray tracing", Eurographics 1987.
+//! [Amanatides87]: J. Amanatides, A. Woo, "A fast voxel traversal algorithm for ray tracing",
+//! Eurographics 1987.
 
-/// Slower than this (cells a metre) along an axis counts as parallel to the other.
+/// Cells per metre; a slower ray along an axis counts as parallel to the other axis.
 const PARALLEL: f64 = 1e-12;
 
-/// Where the walk is.
+/// A traversal at one of its cells.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Walk {
+pub(crate) struct GridTraversal {
     start: [f64; 2],
     speed: [f64; 2],
     inverse: [f64; 2],
-    /// The present cell.
+    /// The current cell.
     pub(crate) cell: [i64; 2],
-    /// Metres along the ray where it was entered.
+    /// Metres along the ray at which the ray entered the cell.
     pub(crate) entered_m: f64,
-    /// Metres along the ray to the next crossing, by axis.
+    /// Metres along the ray at the next crossing of each axis.
     next_m: [f64; 2],
 }
 
-impl Walk {
-    /// Begins at `start` (cells), going `speed` cells a metre.
+impl GridTraversal {
+    /// Begins at `start`, in cells, with `speed` in cells per metre.
     pub(crate) fn new(start: [f64; 2], speed: [f64; 2]) -> Self {
-        let mut walk = Self {
+        let mut traversal = Self {
             start,
             speed,
             inverse: speed.map(|s| 1.0 / s),
@@ -33,8 +35,8 @@ impl Walk {
             entered_m: 0.0,
             next_m: [0.0; 2],
         };
-        walk.next_m = [walk.crossing(0), walk.crossing(1)];
-        walk
+        traversal.next_m = [traversal.crossing(0), traversal.crossing(1)];
+        traversal
     }
 
     #[inline(always)]
@@ -46,13 +48,13 @@ impl Walk {
         (edge as f64 - self.start[axis]) * self.inverse[axis]
     }
 
-    /// Metres along the ray where the present cell is left.
+    /// Metres along the ray at which the ray leaves the current cell.
     #[inline(always)]
     pub(crate) fn left_m(&self) -> f64 {
         self.next_m[0].min(self.next_m[1])
     }
 
-    /// Goes on to the next cell; through a corner, across x first.
+    /// Moves to the next cell; through a corner it crosses x first.
     #[inline(always)]
     pub(crate) fn advance(&mut self) {
         let axis = usize::from(self.next_m[1] < self.next_m[0]);
@@ -61,7 +63,7 @@ impl Walk {
         self.next_m[axis] = self.crossing(axis);
     }
 
-    /// Goes on to the cell at `at_m` metres along the ray.
+    /// Moves to the cell at `at_m` metres along the ray.
     #[inline(always)]
     pub(crate) fn jump(&mut self, at_m: f64) {
         self.entered_m = at_m;
