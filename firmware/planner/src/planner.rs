@@ -163,7 +163,7 @@ fn sense<const TILES: usize, const SLOTS: usize>(
     match &mut state.ground {
         GroundModel::Flat(near) => {
             for (laser, ranges_mm) in level_scans(config, input) {
-                near.update(&input.pose, laser, ranges_mm);
+                near.update(&config.robot, &input.pose, laser, ranges_mm);
             }
         }
         GroundModel::Uneven(storeys) => {

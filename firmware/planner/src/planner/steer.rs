@@ -44,7 +44,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         .ground
         .as_ref()
         .filter(|_| whiles_stood(state, input.time_ms) < WHILES_AT_A_LOSS)
-        .and_then(|terrain| Incline::new(terrain, &heights, &input.pose));
+        .and_then(|terrain| Incline::new(&config.robot, terrain, &heights, &input.pose));
     let bias = Hysteresis {
         before: state.wedge,
         goal: wedge_of_goal(state, input.pose.z_m),
@@ -61,7 +61,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     let here = headed(Place::default());
     state.wedge = here.and_then(|(_, wedge)| wedge);
     let here = here.map(|(heading, _)| heading);
-    let surround = surround(state, &input.pose, incline.clone());
+    let surround = surround(config, state, &input.pose, incline.clone());
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
             let (x, y) = local_grid::position((origin, scale), ahead(&input.pose, place));
@@ -107,11 +107,12 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
 
 /// What stands around the robot, or what it keeps off.
 fn surround<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
     state: &State<TILES, SLOTS>,
     pose: &Pose,
     incline: Option<Incline>,
 ) -> CollisionChecker {
-    let mut surround = CollisionChecker::empty().on(incline);
+    let mut surround = CollisionChecker::empty(&config.robot).on(incline);
     match &state.ground {
         GroundModel::Flat(near) => {
             surround.see(pose, near.points());
@@ -135,7 +136,7 @@ pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
     if !is_at_a_loss(state, Twist::default(), input.time_ms) {
         return Twist::default();
     }
-    let surround = surround(state, &input.pose, None);
+    let surround = surround(config, state, &input.pose, None);
     let wish = state.drive.look_around(config, &surround, input.velocity);
     within_limits(config, wish)
 }
