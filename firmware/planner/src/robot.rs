@@ -1,15 +1,61 @@
-//! The robot: its hull, and where its lasers sit.
+//! The robot: the shape of its hull, and where its lasers sit.
 //!
 //! Units: metres, radians; ranges in millimetres.
 
-/// Half the 3-AT's length, metres.
-pub const HALF_LENGTH_M: f32 = 0.254;
-/// Half the 3-AT's width over its wheels, metres.
-pub const HALF_WIDTH_M: f32 = 0.2485;
-/// The 3-AT's height, metres.
-pub const HEIGHT_M: f32 = 0.277;
-/// Half the robot's diagonal, metres.
-pub const HALF_DIAGONAL_M: f32 = 0.355;
+/// The robot's hull: a box that stands on a rectangle around the robot's centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RobotShape {
+    /// Half the length, metres.
+    pub half_length_m: f32,
+    /// Half the width over the wheels, metres.
+    pub half_width_m: f32,
+    /// Height of the top above the ground, metres.
+    pub height_m: f32,
+    /// Distance from the centre to a corner of the rectangle, metres.
+    pub half_diagonal_m: f32,
+}
+
+impl RobotShape {
+    /// A Pioneer 3-AT: 0.508 m × 0.497 m, 0.277 m high.
+    pub const PIONEER_3AT: Self = Self {
+        half_length_m: 0.254,
+        half_width_m: 0.2485,
+        height_m: 0.277,
+        half_diagonal_m: 0.355,
+    };
+
+    /// A rectangular robot.
+    #[must_use]
+    pub const fn rectangle(length_m: f32, width_m: f32, height_m: f32) -> Self {
+        let (half_length_m, half_width_m) = (0.5 * length_m, 0.5 * width_m);
+        Self {
+            half_length_m,
+            half_width_m,
+            height_m,
+            half_diagonal_m: hypotenuse(half_length_m, half_width_m),
+        }
+    }
+
+    /// A round robot. Its hull is the square around the circle.
+    #[must_use]
+    pub const fn round(diameter_m: f32, height_m: f32) -> Self {
+        Self::rectangle(diameter_m, diameter_m, height_m)
+    }
+}
+
+/// √(a² + b²) by Newton's iteration, which can run at compile time; 0 where both are 0.
+const fn hypotenuse(a: f32, b: f32) -> f32 {
+    let square = a * a + b * b;
+    // The sum of the sides is at most √2 times the root, so four iterations are exact to f32.
+    let mut root = a.abs() + b.abs();
+    let mut left = 4;
+    while left > 0 && root > 0.0 {
+        root = 0.5 * (root + square / root);
+        left -= 1;
+    }
+    root
+}
+
 /// A laser tilted less than this is level, radians.
 const LEVEL_RAD: f32 = 0.05;
 
@@ -38,4 +84,32 @@ pub struct LaserMount {
 #[must_use]
 pub fn is_level(laser: &LaserMount) -> bool {
     laser.pitch_rad.abs() < LEVEL_RAD
+}
+
+#[cfg(test)]
+mod tests {
+    use super::RobotShape;
+
+    #[test]
+    fn a_rectangle_has_the_diagonal_of_its_sides() {
+        let shape = RobotShape::rectangle(0.6, 0.8, 0.3);
+        assert!((shape.half_diagonal_m - 0.5).abs() < 1e-6, "{shape:?}");
+        assert_eq!((shape.half_length_m, shape.half_width_m), (0.3, 0.4));
+        assert_eq!(RobotShape::rectangle(0.0, 0.0, 0.0).half_diagonal_m, 0.0);
+    }
+
+    #[test]
+    fn the_pioneer_is_a_rectangle_within_half_a_millimetre() {
+        let pioneer = RobotShape::PIONEER_3AT;
+        let same = RobotShape::rectangle(0.508, 0.497, 0.277);
+        assert_eq!(pioneer.half_length_m, same.half_length_m);
+        assert_eq!(pioneer.half_width_m, same.half_width_m);
+        assert!((pioneer.half_diagonal_m - same.half_diagonal_m).abs() < 5e-4);
+    }
+
+    #[test]
+    fn a_round_robot_is_the_square_around_it() {
+        let round = RobotShape::round(0.4, 0.3);
+        assert_eq!(round, RobotShape::rectangle(0.4, 0.4, 0.3));
+    }
 }

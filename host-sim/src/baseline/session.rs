@@ -242,7 +242,8 @@ impl<P: Plan> Session<P> {
         }
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             if is_level(laser) {
-                self.near.update(&input.pose, laser, ranges_mm);
+                self.near
+                    .update(&config.robot, &input.pose, laser, ranges_mm);
             }
         }
     }
@@ -263,9 +264,9 @@ impl<P: Plan> Session<P> {
     /// What is near: by the level beams, or on uneven ground, where they end on slopes, by the map.
     fn surround(&self, config: &Config, pose: &Pose) -> CollisionChecker {
         if config.ground.is_none() {
-            return CollisionChecker::new(pose, self.near.points());
+            return CollisionChecker::new(&config.robot, pose, self.near.points());
         }
-        let mut surround = CollisionChecker::empty();
+        let mut surround = CollisionChecker::empty(&config.robot);
         surround.keep_off(pose, obstacle_points::rims(self.map.tiles(), pose.point()));
         surround
     }

@@ -10,7 +10,7 @@ pub use solver::{Method, SolverConfig};
 
 use heapless::Vec;
 
-use crate::robot::LaserMount;
+use crate::robot::{LaserMount, RobotShape};
 
 /// What plans.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,6 +34,8 @@ pub struct Config {
     pub strategy: Strategy,
     /// Which loops are worth closing, where the strategy closes loops.
     pub loops: LoopLimits,
+    /// The robot's hull. Default: a Pioneer 3-AT.
+    pub robot: RobotShape,
     /// The laser scanners; the first one is level.
     pub lasers: Vec<LaserMount, 2>,
     /// The map's box in tiles of 3.2 m, across and up.
@@ -69,6 +71,7 @@ impl Config {
         Self {
             strategy: Strategy::Frontier,
             loops: LoopLimits::default(),
+            robot: RobotShape::PIONEER_3AT,
             lasers,
             box_tiles: (20, 20),
             robot_radius_m: 0.30,

@@ -17,7 +17,7 @@ use crate::drive::incline::Incline;
 use crate::geometry::{CELL_M, Point, Pose, Twist};
 use crate::map::obstacle_points::MOST_POINTS;
 use crate::math;
-use crate::robot::{HALF_DIAGONAL_M, HALF_LENGTH_M, HALF_WIDTH_M, HEIGHT_M};
+use crate::robot::RobotShape;
 
 /// A place of the robot is checked every so many metres that any part of it moved.
 const CHECK_EVERY_M: f32 = 0.05;
@@ -71,6 +71,7 @@ struct Threat {
 #[derive(Debug)]
 pub struct CollisionChecker {
     threats: Vec<Threat, { MOST_POINTS + MOST_CELLS }>,
+    robot: RobotShape,
     hull: Hull,
     /// How the ground inclines, where that bounds the headings.
     incline: Option<Incline>,
@@ -87,22 +88,24 @@ struct Hull {
 
 impl Hull {
     /// On the level.
-    const LEVEL: Self = Self {
-        front: HALF_LENGTH_M,
-        back: HALF_LENGTH_M,
-        left: HALF_WIDTH_M,
-        right: HALF_WIDTH_M,
-    };
+    const fn level(robot: &RobotShape) -> Self {
+        Self {
+            front: robot.half_length_m,
+            back: robot.half_length_m,
+            left: robot.half_width_m,
+            right: robot.half_width_m,
+        }
+    }
 
     /// Where it leans its top reaches out over what is downhill.
-    fn leaning(pose: &Pose) -> Self {
-        let reach = |angle: f32| HEIGHT_M * math::sin_cos(angle).0;
+    fn leaning(robot: &RobotShape, pose: &Pose) -> Self {
+        let reach = |angle: f32| robot.height_m * math::sin_cos(angle).0;
         let (nose, right) = (reach(pose.pitch_rad), reach(pose.roll_rad));
         Self {
-            front: HALF_LENGTH_M + nose.max(0.0),
-            back: HALF_LENGTH_M + (-nose).max(0.0),
-            left: HALF_WIDTH_M + (-right).max(0.0),
-            right: HALF_WIDTH_M + right.max(0.0),
+            front: robot.half_length_m + nose.max(0.0),
+            back: robot.half_length_m + (-nose).max(0.0),
+            left: robot.half_width_m + (-right).max(0.0),
+            right: robot.half_width_m + right.max(0.0),
         }
     }
 
@@ -144,18 +147,19 @@ fn towards(from: f32, to: f32, most: f32) -> f32 {
 impl CollisionChecker {
     /// The points as seen from `pose`.
     #[must_use]
-    pub fn new(pose: &Pose, points: &[Point]) -> Self {
-        let mut surround = Self::empty();
+    pub fn new(robot: &RobotShape, pose: &Pose, points: &[Point]) -> Self {
+        let mut surround = Self::empty(robot);
         surround.see(pose, points);
         surround
     }
 
     /// Nothing around.
     #[must_use]
-    pub const fn empty() -> Self {
+    pub const fn empty(robot: &RobotShape) -> Self {
         Self {
             threats: Vec::new(),
-            hull: Hull::LEVEL,
+            robot: *robot,
+            hull: Hull::level(robot),
             incline: None,
         }
     }
@@ -216,7 +220,7 @@ impl CollisionChecker {
     /// touched; and by so much more as is said of each, metres.
     pub fn keep_off(&mut self, pose: &Pose, cells: impl Iterator<Item = (Point, f32)>) {
         let frame = Frame::of(pose);
-        self.hull = Hull::leaning(pose);
+        self.hull = Hull::leaning(&self.robot, pose);
         self.threats.clear();
         for (cell, more_m) in cells {
             let at = frame.within(cell);
@@ -274,7 +278,7 @@ impl CollisionChecker {
     /// Whether an arc of `length_m` that turns by `turn_rad` is clear, from a place on.
     #[must_use]
     pub fn is_arc_clear(&self, from: Place, length_m: f32, turn_rad: f32, margin_m: f32) -> bool {
-        let moved = length_m.abs() + turn_rad.abs() * HALF_DIAGONAL_M;
+        let moved = length_m.abs() + turn_rad.abs() * self.robot.half_diagonal_m;
         let parts = Self::places_on(moved);
         let (length, turn) = (length_m / parts as f32, turn_rad / parts as f32);
         let mut place = from;
@@ -305,7 +309,7 @@ impl CollisionChecker {
             let (length, turn) = (0.5 * (v + v_next) * TICK_S, 0.5 * (w + w_next) * TICK_S);
             place = place.after(length, turn);
             (v, w) = (v_next, w_next);
-            since_m += length.abs() + turn.abs() * HALF_DIAGONAL_M;
+            since_m += length.abs() + turn.abs() * self.robot.half_diagonal_m;
             let stopped = left_s <= 1e-3 && v.abs() < 1e-3 && w.abs() < 1e-3;
             if stopped || since_m > CHECK_EVERY_M {
                 since_m = 0.0;
@@ -325,6 +329,8 @@ impl CollisionChecker {
 mod tests {
     use super::*;
 
+    const ROBOT: RobotShape = RobotShape::PIONEER_3AT;
+
     fn config() -> Config {
         Config::pioneer_3at(Vec::new())
     }
@@ -336,7 +342,7 @@ mod tests {
                 y_m: k as f32 * 0.05,
             })
             .collect();
-        CollisionChecker::new(&Pose::default(), &points)
+        CollisionChecker::new(&ROBOT, &Pose::default(), &points)
     }
 
     #[test]
@@ -346,7 +352,7 @@ mod tests {
             angular_radps: 0.0,
         };
         // 0.14 m in the period and 0.7²/(2·0.3) = 0.82 m of braking.
-        let needs = HALF_LENGTH_M + 0.14 + 0.82 + 0.06;
+        let needs = ROBOT.half_length_m + 0.14 + 0.82 + 0.06;
         assert!(wall_ahead(needs + 0.03).admits(full, full, &config(), 0.06));
         assert!(!wall_ahead(needs - 0.03).admits(full, full, &config(), 0.06));
     }
@@ -361,7 +367,7 @@ mod tests {
 
     #[test]
     fn a_point_too_near_may_be_left_but_not_approached() {
-        let near = wall_ahead(HALF_LENGTH_M + 0.01);
+        let near = wall_ahead(ROBOT.half_length_m + 0.01);
         assert!(near.is_arc_clear(Place::default(), -0.1, 0.0, 0.05));
         assert!(!near.is_arc_clear(Place::default(), 0.1, 0.0, 0.05));
     }
@@ -378,18 +384,18 @@ mod tests {
     /// A wall right behind, 0.1 m from the hull: met only in its left half, in the map whole.
     #[test]
     fn what_the_map_knows_behind_the_robot_stops_it_where_no_point_does() {
-        let back = -HALF_LENGTH_M - 0.1;
+        let back = -ROBOT.half_length_m - 0.1;
         let wall = |y: i32| Point {
             x_m: back,
             y_m: 0.1 * y as f32,
         };
         let half: std::vec::Vec<Point> = (1..4).map(wall).collect();
-        let mut surround = CollisionChecker::new(&Pose::default(), &half);
+        let mut surround = CollisionChecker::new(&ROBOT, &Pose::default(), &half);
         surround.remember(&Pose::default(), (-3..4).map(wall));
         assert_eq!(surround.points(), 3 + 4, "cells with a point are left out");
         assert!(surround.is_arc_clear(Place::default(), -0.08, 0.0, 0.0));
         assert!(!surround.is_arc_clear(Place::default(), -0.15, 0.0, 0.0));
-        let mut right = CollisionChecker::empty();
+        let mut right = CollisionChecker::empty(&ROBOT);
         right.remember(&Pose::default(), (-3..0).map(wall));
         assert!(!right.is_arc_clear(Place::default(), -0.15, 0.0, 0.0));
     }
@@ -397,7 +403,7 @@ mod tests {
     /// Ahead the laser sees for itself, and a cell that the robot stands on is none.
     #[test]
     fn cells_in_view_or_under_the_robot_are_not_remembered() {
-        let mut surround = CollisionChecker::empty();
+        let mut surround = CollisionChecker::empty(&ROBOT);
         let at = |x_m, y_m| Point { x_m, y_m };
         let cells = [at(0.4, 0.0), at(0.15, 0.3), at(0.0, 0.2), at(-0.2, 0.0)];
         surround.remember(&Pose::default(), cells.into_iter());

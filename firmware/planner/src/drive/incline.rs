@@ -10,14 +10,15 @@ use crate::drive::side_slope::{Hysteresis, Slope, SlopeDirection};
 use crate::geometry::{Point, Pose};
 use crate::ground::Heights;
 use crate::math;
+use crate::robot::RobotShape;
 
 /// From one place to the next, metres.
 const STEP_M: f32 = 0.3;
 /// Places to each side of the robot.
 const REACH: i32 = 2;
 const SIDE: usize = 2 * REACH as usize + 1;
-/// So far ahead the robot turns to what comes, metres: half its length and the way in which it brakes from half its speed.
-const AHEAD_M: f32 = 0.45;
+/// So far ahead of its front the robot turns to what comes, metres: the way in which it brakes from half its speed.
+const BEFORE_M: f32 = 0.196;
 /// The part of the limit that a measured lean may take: on ground of 15° a slope is measured to about half a degree, and a robot that turns on the
 /// spot there leans by all of it.
 const SURE: f32 = 0.95;
@@ -27,6 +28,8 @@ const SURE: f32 = 0.95;
 pub struct Incline {
     slopes: [[Slope; SIDE]; SIDE],
     most: f32,
+    /// How far ahead of its centre the robot turns to what comes, metres.
+    ahead_m: f32,
     /// A robot that leans more than that already may go on to lean as much.
     now: f32,
 }
@@ -34,7 +37,12 @@ pub struct Incline {
 impl Incline {
     /// As seen from `pose`; `None` where everything that may be climbed may be crossed.
     #[must_use]
-    pub fn new(terrain: &UnevenGround, heights: &Heights<'_>, pose: &Pose) -> Option<Self> {
+    pub fn new(
+        robot: &RobotShape,
+        terrain: &UnevenGround,
+        heights: &Heights<'_>,
+        pose: &Pose,
+    ) -> Option<Self> {
         let most = terrain.most_lean()?;
         let (sin, cos) = math::sin_cos(pose.yaw_rad);
         let slope = |row: usize, column: usize| {
@@ -51,6 +59,7 @@ impl Incline {
         let mut incline = Self {
             slopes,
             most,
+            ahead_m: robot.half_length_m + BEFORE_M,
             now: 0.0,
         };
         incline.now = incline.lean(Place::default(), (0.0, 1.0));
@@ -97,7 +106,7 @@ impl Incline {
             yaw_rad: wanted_rad,
             ..place
         }
-        .after(AHEAD_M, 0.0);
+        .after(self.ahead_m, 0.0);
         let (towards_rad, coming) = self.at(ahead).heading(wanted_rad, self.most, bias);
         let (here_rad, wedge) = self.at(place).heading(towards_rad, self.most, bias);
         (here_rad, wedge.or(coming))
@@ -133,7 +142,7 @@ mod tests {
             yaw_rad,
             ..Pose::default()
         };
-        Incline::new(&TERRAIN, &window.read(), &pose).expect("a limit")
+        Incline::new(&RobotShape::PIONEER_3AT, &TERRAIN, &window.read(), &pose).expect("a limit")
     }
 
     fn facing(yaw_rad: f32) -> (f32, f32) {
@@ -194,7 +203,13 @@ mod tests {
     fn ground_that_was_not_measured_is_level() {
         let (heights, marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
         let heights = Heights::new(&heights, &marks, Cell::default());
-        let incline = Incline::new(&TERRAIN, &heights, &Pose::default()).expect("a limit");
+        let incline = Incline::new(
+            &RobotShape::PIONEER_3AT,
+            &TERRAIN,
+            &heights,
+            &Pose::default(),
+        )
+        .expect("a limit");
         assert!(!incline.is_steep());
         assert!(incline.admits(Place::default(), facing(1.0)));
     }

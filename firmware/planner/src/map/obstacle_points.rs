@@ -23,8 +23,7 @@ use crate::input::{has_company, informative_range_mm};
 use crate::map::integrate::{level_beams, sensor_point};
 use crate::map::{Class, Tiles};
 use crate::math;
-use crate::robot::LaserMount;
-use crate::robot::{HALF_LENGTH_M, HALF_WIDTH_M};
+use crate::robot::{LaserMount, RobotShape};
 
 /// Points kept at the most.
 pub const MOST_POINTS: usize = 256;
@@ -78,8 +77,14 @@ impl ObstaclePoints {
     }
 
     /// Enter the level laser's scan, taken at `pose`.
-    pub fn update(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
-        self.forget(pose, laser, ranges_mm);
+    pub fn update(
+        &mut self,
+        robot: &RobotShape,
+        pose: &Pose,
+        laser: &LaserMount,
+        ranges_mm: &[u16],
+    ) {
+        self.forget(robot, pose, laser, ranges_mm);
         for beam in level_beams(pose, laser, ranges_mm).filter(|beam| beam.hit) {
             let end = beam.end();
             if within_reach(pose, end) && has_company(ranges_mm, beam.number) {
@@ -88,13 +93,13 @@ impl ObstaclePoints {
         }
     }
 
-    fn forget(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
+    fn forget(&mut self, robot: &RobotShape, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
         let from = sensor_point(pose, laser);
         let mut index = 0;
         while let (Some(&point), Some(&returns)) = (self.points.get(index), self.returns.get(index))
         {
             let stays = within_reach(pose, point)
-                && !is_inside(pose, point)
+                && !is_inside(robot, pose, point)
                 && match sight(pose, laser, ranges_mm, from, point) {
                     Sight::At => true,
                     Sight::Through => false,
@@ -205,11 +210,11 @@ fn within_reach(pose: &Pose, point: Point) -> bool {
 }
 
 /// Whether the robot's rectangle covers a point, by more than the error of one.
-fn is_inside(pose: &Pose, point: Point) -> bool {
+fn is_inside(robot: &RobotShape, pose: &Pose, point: Point) -> bool {
     let (sin, cos) = math::sin_cos(pose.yaw_rad);
     let (dx, dy) = (point.x_m - pose.x_m, point.y_m - pose.y_m);
     let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
-    along.abs() < HALF_LENGTH_M - INSIDE_M && across.abs() < HALF_WIDTH_M - INSIDE_M
+    along.abs() < robot.half_length_m - INSIDE_M && across.abs() < robot.half_width_m - INSIDE_M
 }
 
 /// What a scan says of the place of a point.
@@ -258,6 +263,8 @@ mod tests {
     use crate::drive::CollisionChecker;
     use crate::input::{INVALID_MM, NO_RETURN_MM};
 
+    const ROBOT: RobotShape = RobotShape::PIONEER_3AT;
+
     fn laser() -> LaserMount {
         LaserMount {
             x_m: 0.0,
@@ -276,7 +283,7 @@ mod tests {
         let mut near = ObstaclePoints::new();
         let mut scan = [NO_RETURN_MM; 181];
         scan[90] = 500;
-        near.update(&Pose::default(), &laser(), &scan);
+        near.update(&ROBOT, &Pose::default(), &laser(), &scan);
         assert!(near.points().is_empty());
     }
 
@@ -293,15 +300,15 @@ mod tests {
     fn a_point_is_remembered_behind_the_robot_and_forgotten_when_seen_through() {
         let mut near = ObstaclePoints::new();
         let here = Pose::default();
-        near.update(&here, &laser(), &thing(0, 800));
+        near.update(&ROBOT, &here, &laser(), &thing(0, 800));
         assert!(!near.points().is_empty());
         let turned = Pose {
             yaw_rad: math::PI,
             ..here
         };
-        near.update(&turned, &laser(), &[NO_RETURN_MM; 181]);
+        near.update(&ROBOT, &turned, &laser(), &[NO_RETURN_MM; 181]);
         assert!(!near.points().is_empty(), "out of view");
-        near.update(&here, &laser(), &[NO_RETURN_MM; 181]);
+        near.update(&ROBOT, &here, &laser(), &[NO_RETURN_MM; 181]);
         assert!(near.points().is_empty(), "seen through");
     }
 
@@ -309,15 +316,15 @@ mod tests {
     fn a_hidden_point_stays_and_a_far_one_goes() {
         let mut near = ObstaclePoints::new();
         let here = Pose::default();
-        near.update(&here, &laser(), &thing(0, 1000));
+        near.update(&ROBOT, &here, &laser(), &thing(0, 1000));
         let count = near.points().len();
-        near.update(&here, &laser(), &thing(0, 500));
+        near.update(&ROBOT, &here, &laser(), &thing(0, 500));
         assert!(
             near.points().len() > count,
             "hidden behind the nearer thing"
         );
         let away = Pose { x_m: -2.0, ..here };
-        near.update(&away, &laser(), &[INVALID_MM; 181]);
+        near.update(&ROBOT, &away, &laser(), &[INVALID_MM; 181]);
         assert!(near.points().is_empty());
     }
 
@@ -329,7 +336,7 @@ mod tests {
                 yaw_rad: k as f32 * 0.7,
                 ..Pose::default()
             };
-            near.update(&pose, &laser(), &[400 + (k % 7) as u16 * 100; 181]);
+            near.update(&ROBOT, &pose, &laser(), &[400 + (k % 7) as u16 * 100; 181]);
             assert!(near.points().len() <= MOST_POINTS);
         }
     }
@@ -347,7 +354,7 @@ mod tests {
             y_m: 0.05,
             ..Pose::default()
         };
-        let mut surround = CollisionChecker::empty();
+        let mut surround = CollisionChecker::empty(&ROBOT);
         surround.keep_off(&pose, rims(&tiles, pose.point()));
         surround.clearance_m()
     }
@@ -358,7 +365,10 @@ mod tests {
         let [stands_m, gone_m, unknown_m] =
             [Class::Obstacle, Class::Negative, Class::Unknown].map(room_before);
         // To the near side of the cell right ahead.
-        assert!((gone_m - (0.55 - HALF_LENGTH_M)).abs() < 1e-4, "{gone_m}");
+        assert!(
+            (gone_m - (0.55 - ROBOT.half_length_m)).abs() < 1e-4,
+            "{gone_m}"
+        );
         assert_eq!(unknown_m, gone_m);
         assert!((gone_m - stands_m - 0.03).abs() < 1e-4, "{stands_m}");
     }

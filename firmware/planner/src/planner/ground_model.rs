@@ -24,6 +24,7 @@ use crate::map::obstacle_points::ObstaclePoints;
 use crate::map::{Map, Tiles, obstacle_points};
 use crate::path::height_levels::{HeightLevels, LevelCost};
 use crate::roadmap::configuration_space::Footprint;
+use crate::robot::RobotShape;
 
 use crate::planner::level_scans;
 
@@ -77,7 +78,7 @@ impl<const TILES: usize> GroundModel<TILES> {
         match self {
             Self::Flat(points) => {
                 for (laser, ranges_mm) in level_scans(config, input) {
-                    points.update(&input.pose, laser, ranges_mm);
+                    points.update(&config.robot, &input.pose, laser, ranges_mm);
                 }
             }
             Self::Uneven(levels) => {
@@ -123,11 +124,12 @@ impl<const TILES: usize> GroundModel<TILES> {
     /// What the hull must not touch around the robot.
     pub(super) fn collision_checker<const SLOTS: usize>(
         &self,
+        robot: &RobotShape,
         tiles: &Tiles<TILES, SLOTS>,
         pose: &Pose,
         incline: Option<Incline>,
     ) -> CollisionChecker {
-        let mut checker = CollisionChecker::empty().on(incline);
+        let mut checker = CollisionChecker::empty(robot).on(incline);
         match self {
             Self::Flat(points) => {
                 checker.see(pose, points.points());

@@ -43,7 +43,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         .ground
         .as_ref()
         .filter(|_| standing_periods(state, input.time_ms) < STALLED_PERIODS)
-        .and_then(|ground| Incline::new(ground, &heights, &input.pose));
+        .and_then(|ground| Incline::new(&config.robot, ground, &heights, &input.pose));
     let goal = state.strategy.frontier.path().goal();
     let tiles = state.map.tiles();
     let hysteresis = Hysteresis {
@@ -62,9 +62,10 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     let here = headed(Place::default());
     state.slope_direction = here.and_then(|(_, direction)| direction);
     let here = here.map(|(heading, _)| heading);
-    let checker = state
-        .ground
-        .collision_checker(tiles, &input.pose, incline.clone());
+    let checker =
+        state
+            .ground
+            .collision_checker(&config.robot, tiles, &input.pose, incline.clone());
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
             let (x, y) = local_grid::position((origin, scale), ahead(&input.pose, place));
@@ -117,9 +118,10 @@ pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
     if !is_stalled(state, Twist::default(), input.time_ms) {
         return Twist::default();
     }
-    let checker = state
-        .ground
-        .collision_checker(state.map.tiles(), &input.pose, None);
+    let checker =
+        state
+            .ground
+            .collision_checker(&config.robot, state.map.tiles(), &input.pose, None);
     let wish = state.drive.look_around(config, &checker, input.velocity);
     within_limits(config, wish)
 }

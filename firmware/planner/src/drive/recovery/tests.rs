@@ -3,6 +3,7 @@
 use crate::drive::CollisionChecker;
 use crate::drive::recovery::*;
 use crate::geometry::{Point, Pose};
+use crate::robot::RobotShape;
 
 /// Points of walls given as segments, 2 cm apart.
 fn walls(segments: &[[f32; 4]]) -> std::vec::Vec<Point> {
@@ -27,7 +28,7 @@ const BUDGET: Budget = Budget {
 
 fn search(points: &[Point], pose: Pose, heading: f32) -> Option<(Plan, CollisionChecker)> {
     let mut scratch = std::vec![0; SCRATCH_WORDS];
-    let surround = CollisionChecker::new(&pose, points);
+    let surround = CollisionChecker::new(&RobotShape::PIONEER_3AT, &pose, points);
     let heading_at = |_: Place| Some(math::wrap(heading - pose.yaw_rad));
     let ground = Ground {
         surround: &surround,
