@@ -36,7 +36,13 @@ pub mod robot;
 pub mod status;
 pub mod strategy;
 
-pub use config::Config;
-pub use input::Input;
+pub use config::{
+    Config, ConfigBuilder, ConfigError, LoopLimits, Method, Parameter, PreferenceMode,
+    SolverConfig, Strategy, UnevenGround,
+};
+pub use geometry::{Cell, Point, Pose, Twist};
+pub use input::{INVALID_MM, Input, NO_RETURN_MM};
 pub use planner::{Output, State, Workspace, step};
 pub use profiling::{Stage, StageTimer};
+pub use robot::{LaserMount, MAX_BEAMS, RobotShape};
+pub use status::{Fault, Finish, Frontier, Residue, Status};

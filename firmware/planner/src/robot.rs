@@ -2,6 +2,8 @@
 //!
 //! Units: metres, radians; ranges in millimetres.
 
+use crate::math::PI;
+
 /// The robot's hull: a box that stands on a rectangle around the robot's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotShape {
@@ -13,7 +15,12 @@ pub struct RobotShape {
     pub height_m: f32,
     /// Distance from the centre to a corner of the rectangle, metres.
     pub half_diagonal_m: f32,
+    /// Radius of the disc that paths are planned for, metres: half the width and a margin.
+    pub planning_radius_m: f32,
 }
+
+/// The margin of the planning radius over half the width, metres: half a map cell.
+const PLANNING_MARGIN_M: f32 = 0.05;
 
 impl RobotShape {
     /// A Pioneer 3-AT: 0.508 m × 0.497 m, 0.277 m high.
@@ -22,6 +29,7 @@ impl RobotShape {
         half_width_m: 0.2485,
         height_m: 0.277,
         half_diagonal_m: 0.355,
+        planning_radius_m: 0.30,
     };
 
     /// A rectangular robot.
@@ -33,6 +41,7 @@ impl RobotShape {
             half_width_m,
             height_m,
             half_diagonal_m: hypotenuse(half_length_m, half_width_m),
+            planning_radius_m: half_width_m + PLANNING_MARGIN_M,
         }
     }
 
@@ -56,10 +65,10 @@ const fn hypotenuse(a: f32, b: f32) -> f32 {
     root
 }
 
-/// A laser tilted less than this is level, radians.
-const LEVEL_RAD: f32 = 0.05;
+/// Beams of a scan at most.
+pub const MAX_BEAMS: u16 = 181;
 
-/// Where a laser sits and how it sweeps.
+/// The place of a laser on the robot, and its sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaserMount {
     /// Metres ahead of the robot's centre.
@@ -80,10 +89,36 @@ pub struct LaserMount {
     pub range_limit_mm: u16,
 }
 
-/// Whether the laser sweeps the level plane.
+impl LaserMount {
+    /// A laser with less pitch than this is level, radians.
+    pub const LEVEL_RAD: f32 = 0.05;
+
+    /// A level scanner on the robot's axis: 181 beams over 180° ahead, 12 m.
+    #[must_use]
+    pub const fn level(x_m: f32, z_m: f32) -> Self {
+        Self::tilted(x_m, z_m, 0.0)
+    }
+
+    /// A scanner on the robot's axis that looks down by `pitch_rad`: 181 beams over 180°, 12 m.
+    #[must_use]
+    pub const fn tilted(x_m: f32, z_m: f32, pitch_rad: f32) -> Self {
+        Self {
+            x_m,
+            y_m: 0.0,
+            z_m,
+            pitch_rad,
+            first_bearing_rad: -0.5 * PI,
+            bearing_step_rad: PI / 180.0,
+            beams: MAX_BEAMS,
+            range_limit_mm: 12_000,
+        }
+    }
+}
+
+/// Returns true if the laser sweeps the level plane.
 #[must_use]
 pub fn is_level(laser: &LaserMount) -> bool {
-    laser.pitch_rad.abs() < LEVEL_RAD
+    laser.pitch_rad.abs() < LaserMount::LEVEL_RAD
 }
 
 #[cfg(test)]

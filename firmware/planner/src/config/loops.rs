@@ -22,17 +22,20 @@ pub struct LoopLimits {
 
 impl Default for LoopLimits {
     fn default() -> Self {
-        Self {
-            least_m: 20.0,
-            most_m: 120.0,
-            most_per_frontier: 10.0,
-            detour: 2.0,
-            slack_m: 20.0,
-        }
+        Self::DEFAULT
     }
 }
 
 impl LoopLimits {
+    /// The defaults of all limits.
+    pub const DEFAULT: Self = Self {
+        least_m: 20.0,
+        most_m: 120.0,
+        most_per_frontier: 10.0,
+        detour: 2.0,
+        slack_m: 20.0,
+    };
+
     /// Whether a loop of this expected length is too long, with so much frontier left.
     #[must_use]
     pub fn is_too_long(&self, loop_m: f32, frontier_m: f32) -> bool {

@@ -1,9 +1,17 @@
-//! The planner's parameters, with meaning, range and default.
+//! The parameters of a session, with meaning, range and default.
+//!
+//! A [`Config`] is built by [`Config::builder`], which checks every range.
+//!
+//! Units: as the names say.
 
+mod builder;
+mod error;
 mod ground;
 mod loops;
 mod solver;
 
+pub use builder::ConfigBuilder;
+pub use error::{ConfigError, Parameter};
 pub use ground::{KERNEL_CELLS, PreferenceMode, UnevenGround};
 pub use loops::LoopLimits;
 pub use solver::{Method, SolverConfig};
@@ -12,27 +20,38 @@ use heapless::Vec;
 
 use crate::robot::{LaserMount, RobotShape};
 
-/// What plans.
+/// What the session does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Strategy {
-    /// Go to the nearest unexplored centre cell; see [`crate::strategy::frontier`].
+    /// Go to the nearest frontier along the skeleton.
     #[default]
     Frontier,
-    /// Close loops on the way; see [`crate::strategy::ouroboros`].
+    /// Close loops on the way [Jorge15].
     Ouroboros,
-    /// Follow rails by the time of their visit, and patrol on them; see [`crate::strategy::tdbvp`].
+    /// Follow rails by the time of their last visit, and patrol on them [Maffei14].
     Tdbvp {
-        /// How long to patrol when all is explored, seconds.
+        /// How long to patrol once all is explored, seconds.
         patrol_s: u16,
     },
 }
 
 /// Everything that stays the same during a session.
+///
+/// ```
+/// use fieldline_planner::{Config, LaserMount, RobotShape, Strategy};
+///
+/// let config = Config::builder(RobotShape::PIONEER_3AT)
+///     .laser(LaserMount::level(0.10, 0.40))
+///     .strategy(Strategy::Ouroboros)
+///     .period_s(0.2)
+///     .build()?;
+/// # Ok::<(), fieldline_planner::ConfigError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Config {
-    /// What plans. Default: the frontier.
+    /// What the session does. Default: the frontier.
     pub strategy: Strategy,
-    /// Which loops are worth closing, where the strategy closes loops.
+    /// Which loops are worth closing, for the strategy that closes loops.
     pub loops: LoopLimits,
     /// The robot's hull. Default: a Pioneer 3-AT.
     pub robot: RobotShape,
@@ -40,10 +59,9 @@ pub struct Config {
     pub lasers: Vec<LaserMount, 2>,
     /// The map's box in tiles of 3.2 m, across and up.
     pub box_tiles: (u8, u8),
-    /// Radius that the robot needs, metres. Default: 0.30.
+    /// Radius of the disc that paths are planned for, metres.
     pub robot_radius_m: f32,
-    /// Radius in the second chance, metres: half the robot's width less what a cell may be in
-    /// error. Default: 0.22.
+    /// Radius at the second chance, metres: half the robot's width less the error of a cell.
     pub tight_radius_m: f32,
     /// Greatest speed, metres a second. Default: 0.7 (Pioneer 3-AT).
     pub max_linear_mps: f32,
@@ -57,25 +75,34 @@ pub struct Config {
     pub period_s: f32,
     /// The window's solver.
     pub solver: SolverConfig,
-    /// Topological work in a step, thinning words. Default: 6,000.
+    /// Thinning words a step. Default: 6,000.
     pub topology_units: u32,
-    /// How to go about uneven ground; on flat ground, where lasers see only what stands, `None`.
-    /// Default: `None`.
+    /// Parameters of uneven ground; `None` on flat ground, where lasers only see obstacles.
     pub ground: Option<UnevenGround>,
 }
 
 impl Config {
-    /// A Pioneer 3-AT with the given lasers, in the largest square box of the default image.
+    /// The greatest planning radius, metres: the configuration space grows obstacles by 6 cells at
+    /// most.
+    pub const MAX_RADIUS_M: f32 = 0.6;
+
+    /// Begin with the defaults for a robot.
     #[must_use]
-    pub fn pioneer_3at(lasers: Vec<LaserMount, 2>) -> Self {
+    pub const fn builder(robot: RobotShape) -> ConfigBuilder {
+        ConfigBuilder::new(robot)
+    }
+
+    /// The defaults for a robot with these lasers, in the largest square box of the default image.
+    const fn new(robot: RobotShape, lasers: Vec<LaserMount, 2>) -> Self {
+        let radius_m = robot.planning_radius_m;
         Self {
             strategy: Strategy::Frontier,
-            loops: LoopLimits::default(),
-            robot: RobotShape::PIONEER_3AT,
+            loops: LoopLimits::DEFAULT,
+            robot,
             lasers,
             box_tiles: (20, 20),
-            robot_radius_m: 0.30,
-            tight_radius_m: 0.22,
+            robot_radius_m: radius_m,
+            tight_radius_m: tight_radius_m(radius_m),
             max_linear_mps: 0.7,
             max_angular_radps: 2.44,
             linear_accel_mps2: 0.3,
@@ -83,10 +110,29 @@ impl Config {
             period_s: 0.2,
             solver: SolverConfig {
                 max_cycles: 3,
-                ..SolverConfig::default()
+                ..SolverConfig::DEFAULT
             },
             topology_units: 6_000,
             ground: None,
         }
     }
+
+    /// A Pioneer 3-AT with the given lasers, unchecked.
+    #[must_use]
+    pub const fn pioneer_3at(lasers: Vec<LaserMount, 2>) -> Self {
+        Self::new(RobotShape::PIONEER_3AT, lasers)
+    }
+
+    const fn set_radius_m(&mut self, radius_m: f32) {
+        self.robot_radius_m = radius_m;
+        self.tight_radius_m = tight_radius_m(radius_m);
+    }
+}
+
+/// The radius at the second chance. The 3-AT's is 0.22 m of 0.30; another robot's is in proportion.
+const fn tight_radius_m(radius_m: f32) -> f32 {
+    if radius_m == 0.30 {
+        return 0.22;
+    }
+    radius_m * (0.22 / 0.30)
 }

@@ -27,12 +27,17 @@ pub struct SolverConfig {
     pub method: Method,
 }
 
+impl SolverConfig {
+    /// The defaults of all parameters.
+    pub const DEFAULT: Self = Self {
+        max_cycles: 12,
+        tolerance: 0.05,
+        method: Method::Auto,
+    };
+}
+
 impl Default for SolverConfig {
     fn default() -> Self {
-        Self {
-            max_cycles: 12,
-            tolerance: 0.05,
-            method: Method::Auto,
-        }
+        Self::DEFAULT
     }
 }

@@ -1,0 +1,431 @@
+//! Building a configuration: defaults, one method a parameter, and the one place that checks
+//! ranges.
+//!
+//! Units: as the names say.
+
+use heapless::Vec;
+
+use crate::config::{
+    Config, ConfigError, LoopLimits, Parameter, SolverConfig, Strategy, UnevenGround,
+};
+use crate::geometry::CELL_M;
+use crate::input::NO_RETURN_MM;
+use crate::math::PI;
+use crate::robot::{LaserMount, MAX_BEAMS, RobotShape, is_level};
+
+/// The least value of a quantity that must be positive. It is below the wire's resolution of 2⁻¹².
+const POSITIVE: f32 = 1e-4;
+/// The greatest value of a quantity that has no limit of its own.
+const ANY: f32 = 1e6;
+/// Planning radii, metres: half a map cell, and the most that the configuration space can grow
+/// obstacles by.
+const RADII_M: (f32, f32) = (0.5 * CELL_M, Config::MAX_RADIUS_M);
+/// Periods of a step, seconds. The device calls a command stale after 500 ms, so one retry must
+/// fit.
+const PERIODS_S: (f32, f32) = (0.1, 0.4);
+/// Time in which the robot must come to rest from its greatest speed, seconds: the drive looks four
+/// seconds ahead, one period and the braking after it.
+const REST_S: f32 = 3.0;
+/// Distance of a laser from the robot's centre, metres.
+const MOUNT_M: f32 = 2.0;
+/// One turn, rounded up, radians.
+const TURN_RAD: f32 = 2.0 * PI + 1e-4;
+/// A tilted laser looks down by less than a right angle, radians.
+const PITCHES_RAD: (f32, f32) = (0.0, 0.5 * PI - 3e-4);
+/// Steepest slope, a tangent: 45°.
+const STEEPEST: f32 = 1.0002;
+/// Strongest preference: beyond it the relaxation diverges [Maffei20, III-C].
+const STRONGEST: f32 = 2.0;
+
+/// Builds a [`Config`]; made by [`Config::builder`].
+#[derive(Clone, Debug)]
+pub struct ConfigBuilder {
+    config: Config,
+    /// Lasers that were given, including those that did not fit.
+    lasers: u8,
+}
+
+impl ConfigBuilder {
+    /// The defaults for a robot.
+    pub(super) const fn new(robot: RobotShape) -> Self {
+        Self {
+            config: Config::new(robot, Vec::new()),
+            lasers: 0,
+        }
+    }
+
+    /// Add a laser: one or two. The first one is level; on uneven ground the second one looks down.
+    #[must_use]
+    pub fn laser(mut self, laser: LaserMount) -> Self {
+        // A third one does not fit; `build` refuses it by the count.
+        let _ = self.config.lasers.push(laser);
+        self.lasers = self.lasers.saturating_add(1);
+        self
+    }
+
+    /// Set the strategy. Default: [`Strategy::Frontier`].
+    #[must_use]
+    pub const fn strategy(mut self, strategy: Strategy) -> Self {
+        self.config.strategy = strategy;
+        self
+    }
+
+    /// Set which loops are worth closing, for [`Strategy::Ouroboros`].
+    #[must_use]
+    pub const fn loops(mut self, loops: LoopLimits) -> Self {
+        self.config.loops = loops;
+        self
+    }
+
+    /// Measure heights and avoid slopes, edges and holes. Needs two lasers. Default: flat ground.
+    #[must_use]
+    pub const fn uneven_ground(mut self, ground: UnevenGround) -> Self {
+        self.config.ground = Some(ground);
+        self
+    }
+
+    /// Set the map's box in tiles of 3.2 m, across and up. Default: 20 × 20, which is 64 × 64 m.
+    #[must_use]
+    pub const fn box_tiles(mut self, across: u8, up: u8) -> Self {
+        self.config.box_tiles = (across, up);
+        self
+    }
+
+    /// Set the radius of the disc that paths are planned for, metres: 0.05 to 0.6. Default:
+    /// [`RobotShape::planning_radius_m`].
+    #[must_use]
+    pub fn radius_m(mut self, radius_m: f32) -> Self {
+        self.config.set_radius_m(radius_m);
+        self
+    }
+
+    /// Set the greatest speeds, metres and radians a second. Default: 0.7 m/s and 2.44 rad/s.
+    #[must_use]
+    pub const fn max_speed(mut self, linear_mps: f32, angular_radps: f32) -> Self {
+        self.config.max_linear_mps = linear_mps;
+        self.config.max_angular_radps = angular_radps;
+        self
+    }
+
+    /// Set the accelerations, metres and radians a second squared. They must stop the robot from
+    /// its greatest speed within 3 s. Default: 0.3 m/s² and 1.75 rad/s².
+    #[must_use]
+    pub const fn acceleration(mut self, linear_mps2: f32, angular_radps2: f32) -> Self {
+        self.config.linear_accel_mps2 = linear_mps2;
+        self.config.angular_accel_radps2 = angular_radps2;
+        self
+    }
+
+    /// Set the time from one step to the next, seconds: 0.1 to 0.4. Default: 0.2.
+    #[must_use]
+    pub const fn period_s(mut self, period_s: f32) -> Self {
+        self.config.period_s = period_s;
+        self
+    }
+
+    /// Set the window's solver. Default: 3 multigrid cycles a step.
+    #[must_use]
+    pub const fn solver(mut self, solver: SolverConfig) -> Self {
+        self.config.solver = solver;
+        self
+    }
+
+    /// Check every parameter.
+    ///
+    /// On uneven ground the greatest speed becomes at most one map cell a period, so that two
+    /// sweeps of the tilted laser leave no gap.
+    ///
+    /// # Errors
+    /// The first parameter that is out of its range.
+    pub fn build(mut self) -> Result<Config, ConfigError> {
+        let config = &self.config;
+        check(Parameter::Lasers, f32::from(self.lasers), (1.0, 2.0))?;
+        for (number, laser) in config.lasers.iter().enumerate() {
+            check_laser(laser, number == 0)?;
+        }
+        check_motion(config)?;
+        check_shape(&config.robot)?;
+        check(Parameter::Radius, config.robot_radius_m, RADII_M)?;
+        check(Parameter::Period, config.period_s, PERIODS_S)?;
+        check_loops(&config.loops)?;
+        check(Parameter::Solver, config.solver.tolerance, (POSITIVE, 1.0))?;
+        let cycles = f32::from(config.solver.max_cycles);
+        check(Parameter::Solver, cycles, (1.0, ANY))?;
+        if let Some(ground) = &config.ground {
+            check_ground(ground)?;
+            check(Parameter::Lasers, f32::from(self.lasers), (2.0, 2.0))?;
+            let cell_mps = CELL_M / config.period_s;
+            self.config.max_linear_mps = config.max_linear_mps.min(cell_mps);
+        }
+        Ok(self.config)
+    }
+}
+
+/// Refuse a value outside its range, and what is not a number.
+fn check(parameter: Parameter, value: f32, (least, most): (f32, f32)) -> Result<(), ConfigError> {
+    if value >= least && value <= most {
+        return Ok(());
+    }
+    Err(ConfigError {
+        parameter,
+        value,
+        least,
+        most,
+    })
+}
+
+fn check_motion(config: &Config) -> Result<(), ConfigError> {
+    let (linear, angular) = (config.max_linear_mps, config.max_angular_radps);
+    check(Parameter::MaxLinear, linear, (POSITIVE, ANY))?;
+    check(Parameter::MaxAngular, angular, (POSITIVE, ANY))?;
+    let accel = config.linear_accel_mps2;
+    check(Parameter::LinearAccel, accel * REST_S, (linear, ANY))
+        .map_err(|error| per_rest(error, accel))?;
+    let accel = config.angular_accel_radps2;
+    check(Parameter::AngularAccel, accel * REST_S, (angular, ANY))
+        .map_err(|error| per_rest(error, accel))
+}
+
+/// The error of an acceleration whose effect over [`REST_S`] was checked.
+fn per_rest(error: ConfigError, value: f32) -> ConfigError {
+    ConfigError {
+        value,
+        least: error.least / REST_S,
+        ..error
+    }
+}
+
+fn check_shape(robot: &RobotShape) -> Result<(), ConfigError> {
+    check(Parameter::HalfLength, robot.half_length_m, (POSITIVE, 2.0))?;
+    check(Parameter::HalfWidth, robot.half_width_m, (POSITIVE, 2.0))?;
+    check(Parameter::Height, robot.height_m, (0.0, 2.0))
+}
+
+fn check_laser(laser: &LaserMount, is_first: bool) -> Result<(), ConfigError> {
+    let beams = f32::from(laser.beams);
+    check(Parameter::Beams, beams, (1.0, f32::from(MAX_BEAMS)))?;
+    let range = f32::from(laser.range_limit_mm);
+    check(
+        Parameter::RangeLimit,
+        range,
+        (1.0, f32::from(NO_RETURN_MM - 1)),
+    )?;
+    let first = laser.first_bearing_rad;
+    check(Parameter::FirstBearing, first, (-TURN_RAD, TURN_RAD))?;
+    let step = laser.bearing_step_rad;
+    check(Parameter::BearingStep, step, (1e-6, TURN_RAD))?;
+    check(Parameter::Sweep, step * (beams - 1.0), (0.0, TURN_RAD))?;
+    if !is_first {
+        check(Parameter::Pitch, laser.pitch_rad, PITCHES_RAD)?;
+    } else if !is_level(laser) {
+        let level = LaserMount::LEVEL_RAD;
+        check(Parameter::Pitch, f32::NAN, (-level, level)).map_err(|error| ConfigError {
+            value: laser.pitch_rad,
+            ..error
+        })?;
+    }
+    check(Parameter::Mount, laser.x_m, (-MOUNT_M, MOUNT_M))?;
+    check(Parameter::Mount, laser.y_m, (-MOUNT_M, MOUNT_M))?;
+    check(Parameter::LaserHeight, laser.z_m, (POSITIVE, MOUNT_M))
+}
+
+fn check_loops(loops: &LoopLimits) -> Result<(), ConfigError> {
+    let values = [
+        loops.least_m,
+        loops.most_m,
+        loops.most_per_frontier,
+        loops.detour,
+        loops.slack_m,
+    ];
+    let mut values = values.into_iter();
+    values.try_for_each(|value| check(Parameter::LoopLimits, value, (0.0, ANY)))
+}
+
+fn check_ground(ground: &UnevenGround) -> Result<(), ConfigError> {
+    let (least, most) = (ground.least_preference, ground.most_preference);
+    check(Parameter::LeastPreference, least, (-STRONGEST, 0.0))?;
+    check(Parameter::MostPreference, most, (0.0, STRONGEST))?;
+    let ranges = [
+        (ground.height_scale, (0.0, ANY)),
+        (ground.global_scale, (0.0, ANY)),
+        (ground.obstacle_m, (POSITIVE, ANY)),
+        (ground.near_m, (POSITIVE, ANY)),
+        (ground.hole_m, (-ANY, -POSITIVE)),
+        (ground.step_m, (POSITIVE, ANY)),
+        (ground.climb, (POSITIVE, STEEPEST)),
+        (ground.roll, (POSITIVE, STEEPEST)),
+    ];
+    let mut ranges = ranges.into_iter();
+    ranges.try_for_each(|(value, range)| check(Parameter::UnevenGround, value, range))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::{ConfigBuilder, PERIODS_S, RADII_M};
+    use crate::config::{Config, LoopLimits, Parameter, SolverConfig, UnevenGround};
+    use crate::robot::{LaserMount, RobotShape};
+
+    fn flat() -> ConfigBuilder {
+        Config::builder(RobotShape::PIONEER_3AT).laser(LaserMount::level(0.1, 0.4))
+    }
+
+    fn uneven(ground: UnevenGround) -> ConfigBuilder {
+        flat()
+            .laser(LaserMount::tilted(0.15, 0.45, 0.349))
+            .uneven_ground(ground)
+    }
+
+    /// The parameter that a builder's `build` refuses.
+    fn refused(builder: ConfigBuilder) -> Option<Parameter> {
+        builder.build().err().map(|error| error.parameter)
+    }
+
+    #[test]
+    fn the_defaults_are_the_pioneer() {
+        let built = flat().build().expect("the defaults are valid");
+        let lasers = built.lasers.clone();
+        let pioneer = Config::pioneer_3at(lasers);
+        assert_eq!(std::format!("{built:?}"), std::format!("{pioneer:?}"));
+    }
+
+    #[test]
+    fn lasers_are_counted_and_checked() {
+        let none = Config::builder(RobotShape::PIONEER_3AT);
+        assert_eq!(refused(none), Some(Parameter::Lasers));
+        let level = || LaserMount::level(0.1, 0.4);
+        assert_eq!(
+            refused(flat().laser(level()).laser(level())),
+            Some(Parameter::Lasers)
+        );
+        let with = |laser: LaserMount| refused(flat().laser(laser));
+        assert_eq!(
+            with(LaserMount {
+                beams: 0,
+                ..level()
+            }),
+            Some(Parameter::Beams)
+        );
+        assert_eq!(
+            with(LaserMount {
+                beams: 182,
+                ..level()
+            }),
+            Some(Parameter::Beams)
+        );
+        let range_limit_mm = 16_383;
+        let far = LaserMount {
+            range_limit_mm,
+            ..level()
+        };
+        assert_eq!(with(far), Some(Parameter::RangeLimit));
+        let wide = LaserMount {
+            bearing_step_rad: 0.05,
+            ..level()
+        };
+        assert_eq!(with(wide), Some(Parameter::Sweep));
+        let high = LaserMount {
+            z_m: 2.1,
+            ..level()
+        };
+        assert_eq!(with(high), Some(Parameter::LaserHeight));
+        let up = LaserMount {
+            pitch_rad: -0.01,
+            ..level()
+        };
+        assert_eq!(with(up), Some(Parameter::Pitch));
+        let tilted =
+            Config::builder(RobotShape::PIONEER_3AT).laser(LaserMount::tilted(0.15, 0.45, 0.349));
+        assert_eq!(refused(tilted), Some(Parameter::Pitch));
+    }
+
+    #[test]
+    fn motion_must_stop_within_three_seconds() {
+        assert_eq!(refused(flat().acceleration(0.234, 0.814)), None);
+        let slow = flat().acceleration(0.2, 1.75);
+        let error = slow.build().expect_err("0.7 m/s takes 3.5 s");
+        assert_eq!(error.parameter, Parameter::LinearAccel);
+        assert!((error.least - 0.7 / 3.0).abs() < 1e-6, "{error}");
+        assert_eq!(
+            refused(flat().acceleration(0.3, 0.8)),
+            Some(Parameter::AngularAccel)
+        );
+        assert_eq!(
+            refused(flat().max_speed(0.0, 1.0)),
+            Some(Parameter::MaxLinear)
+        );
+        assert_eq!(
+            refused(flat().max_speed(0.5, f32::NAN)),
+            Some(Parameter::MaxAngular)
+        );
+    }
+
+    #[test]
+    fn radius_period_and_hull_have_limits() {
+        for (radius_m, expected) in [
+            (RADII_M.0 - 0.001, Some(Parameter::Radius)),
+            (RADII_M.0, None),
+            (RADII_M.1, None),
+            (RADII_M.1 + 0.001, Some(Parameter::Radius)),
+            (f32::INFINITY, Some(Parameter::Radius)),
+        ] {
+            assert_eq!(refused(flat().radius_m(radius_m)), expected, "{radius_m}");
+        }
+        assert_eq!(
+            refused(flat().period_s(PERIODS_S.1 + 0.01)),
+            Some(Parameter::Period)
+        );
+        let flat_hull = RobotShape::rectangle(0.5, 0.0, 0.3);
+        let builder = Config::builder(flat_hull).laser(LaserMount::level(0.1, 0.4));
+        assert_eq!(refused(builder), Some(Parameter::HalfWidth));
+    }
+
+    #[test]
+    fn uneven_ground_needs_two_lasers_and_a_slow_robot() {
+        let table = UnevenGround::TABLE_I;
+        assert_eq!(
+            refused(flat().uneven_ground(table)),
+            Some(Parameter::Lasers)
+        );
+        let config = uneven(table).build().expect("valid");
+        assert_eq!(config.max_linear_mps, 0.1 / 0.2);
+        let strong = UnevenGround {
+            least_preference: -2.1,
+            ..table
+        };
+        assert_eq!(refused(uneven(strong)), Some(Parameter::LeastPreference));
+        let steep = UnevenGround {
+            climb: 1.1,
+            ..table
+        };
+        assert_eq!(refused(uneven(steep)), Some(Parameter::UnevenGround));
+    }
+
+    #[test]
+    fn loops_and_solver_have_limits() {
+        let backwards = LoopLimits {
+            least_m: -1.0,
+            ..LoopLimits::default()
+        };
+        assert_eq!(
+            refused(flat().loops(backwards)),
+            Some(Parameter::LoopLimits)
+        );
+        let never = SolverConfig {
+            max_cycles: 0,
+            ..SolverConfig::default()
+        };
+        let error = flat()
+            .solver(never)
+            .build()
+            .expect_err("no cycle, no field");
+        assert_eq!(error.parameter, Parameter::Solver);
+        assert!(
+            error
+                .to_string()
+                .starts_with("parameter of the solver is 0;"),
+            "{error}"
+        );
+    }
+}
