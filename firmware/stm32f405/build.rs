@@ -1,4 +1,5 @@
-//! Linker arguments of the image, from here rather than from RUSTFLAGS so that no environment can lose them.
+//! Linker arguments of the image. They are here and not in RUSTFLAGS, so that no environment can
+//! lose them.
 
 use std::path::PathBuf;
 use std::{env, fs, io};

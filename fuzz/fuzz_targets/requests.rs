@@ -1,4 +1,5 @@
-//! Any bytes into the device's receiver: no panic, no wedge.
+//! Any bytes into the device's receiver: it never panics, and it always decodes the next good
+//! frame.
 #![no_main]
 
 use fieldline_protocol::check::Kind;
@@ -15,7 +16,7 @@ fuzz_target!(|data: &[u8]| {
     let sealed = [Kind::Greeting, Kind::Request].map(|kind| sealed::frame(kind, 9, data));
     for byte in data.iter().chain(&sealed[0]).chain(&sealed[1]) {
         if let Some(Ok(request)) = receiver.push(*byte).map(|frame| frame.request()) {
-            // What was understood can be said again.
+            // A decoded request can be encoded again.
             assert!(encode_request(1, &request, &mut out).is_ok());
         }
     }
@@ -25,5 +26,5 @@ fuzz_target!(|data: &[u8]| {
         .iter()
         .filter(|byte| receiver.push(**byte).is_some())
         .count();
-    assert_eq!(heard, 1, "wedged");
+    assert_eq!(heard, 1, "the receiver missed a good frame");
 });

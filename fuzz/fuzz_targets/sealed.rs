@@ -1,18 +1,12 @@
-//! A frame with a right checksum around any body, stuffed the simple way.
+//! A frame with a correct checksum around any body.
 
-use fieldline_protocol::check::{Kind, sum};
-use fieldline_protocol::cobs::Stuffer;
+use fieldline_protocol::check::Kind;
+use fieldline_protocol::frame::{encode_body, overhead};
 
+/// Returns the frame of `body`, which need not be a message.
 pub fn frame(kind: Kind, sequence: u16, body: &[u8]) -> Vec<u8> {
-    let mut content = [&sequence.to_le_bytes()[..], body].concat();
-    let check = sum(&content) ^ kind.key();
-    content.extend(&check.to_le_bytes()[..3]);
-    let mut out = vec![0; content.len() + content.len() / 254 + 3];
-    let mut stuffer = Stuffer::new(&mut out);
-    for byte in content {
-        stuffer.push(byte).expect("there is room");
-    }
-    let length = stuffer.finish().expect("there is room");
+    let mut out = vec![0; body.len() + overhead(body.len())];
+    let length = encode_body(kind, sequence, body, &mut out).expect("the frame fits");
     out.truncate(length);
     out
 }

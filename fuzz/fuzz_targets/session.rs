@@ -1,4 +1,4 @@
-//! Any requests to a whole device: no panic, and it still answers.
+//! Any requests to a whole device: it never panics, and it still answers a hello.
 #![no_main]
 
 use std::cell::RefCell;
@@ -52,7 +52,8 @@ fuzz_target!(|data: &[u8]| {
             answered
         };
         feed(&mut session, &request(0, &hello));
-        // Bodies separated by a byte that is rare in varints, each sealed, with a number of its own.
+        // Split the input into bodies at a byte that is rare in varints. Send each body in a
+        // checked frame with its own sequence number.
         for (step, body) in data.split(|byte| *byte == 0xfe).enumerate() {
             feed(
                 &mut session,
@@ -62,6 +63,9 @@ fuzz_target!(|data: &[u8]| {
         }
         feed(&mut session, data);
         feed(&mut session, &[0]);
-        assert!(feed(&mut session, &request(40_000, &hello)) > 0, "wedged");
+        assert!(
+            feed(&mut session, &request(40_000, &hello)) > 0,
+            "the session does not answer"
+        );
     });
 });

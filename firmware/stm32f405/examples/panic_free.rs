@@ -1,7 +1,8 @@
 //! Proof by linking: no panic is reachable from a received byte.
 //!
-//! The panic handler calls a function that does not exist, so if a single panicking branch is left in the whole receive path (framing, stuffing,
-//! checksum, postcard decoding of every request) or in the sending of a command, the linker refuses this program:
+//! The panic handler calls a function that does not exist. If one panicking branch is left in the
+//! receive path (framing, stuffing, checksum, decoding of every request) or in the encoding of a
+//! command, the linker refuses this program:
 //!
 //! ```text
 //! cargo build --package fieldline-stm32f405 --profile firmware --target thumbv7em-none-eabihf --example panic_free
@@ -10,7 +11,7 @@
 
 #[cfg(target_os = "none")]
 mod proof {
-    //! Bytes of any value in, and the path they take.
+    //! The receive path, with bytes of any value.
 
     use core::panic::PanicInfo;
     use core::ptr::{with_exposed_provenance, with_exposed_provenance_mut};
@@ -22,7 +23,7 @@ mod proof {
     use fieldline_protocol::message::{Command, Refusal, Reply, Request};
     use stm32f4 as _;
 
-    /// USART1's data register: a value that the compiler cannot know.
+    /// Address of USART1's data register. The compiler cannot know its value.
     const DATA: usize = 0x4001_1004;
 
     #[panic_handler]
@@ -39,7 +40,7 @@ mod proof {
         static mut RECEIVER: Receiver<MAX_REQUEST_FRAME> = Receiver::new(Side::Device);
         let mut out = [0; MAX_REPLY_FRAME];
         loop {
-            // SAFETY: the register exists on the chip; this program proves by linking and is not run.
+            // SAFETY: the register exists on the chip. This program is only linked and never run.
             let byte = unsafe { with_exposed_provenance::<u32>(DATA).read_volatile() } as u8;
             let Some(frame) = RECEIVER.push(byte) else {
                 continue;
@@ -58,7 +59,7 @@ mod proof {
         }
     }
 
-    /// Uses every field, so that none of the decoding is optimised away.
+    /// Uses every field, so that the compiler cannot remove any decoding.
     fn answer(request: &Request) -> Reply {
         let mut command = Command::default();
         if let Request::Observation(observation) = request {
@@ -78,8 +79,8 @@ mod proof {
     }
 }
 
-/// Says what this is for.
+/// Prints the purpose of this program.
 #[cfg(not(target_os = "none"))]
 fn main() {
-    println!("This proves something by linking for thumbv7em-none-eabihf; see its first lines.");
+    println!("This program is a proof by linking for thumbv7em-none-eabihf; see its first lines.");
 }

@@ -5,11 +5,12 @@
 //! | PA9, PA10 | USART1, transmit and receive |
 //! | PB0 | emergency stop: a normally closed contact to ground; pulled up, high is pressed |
 //! | PC12 | status LED, lit when low (as on the Olimex STM32-H405) |
-//! | TIM2 | free running: instructions in QEMU, half-cycles (84 MHz) on silicon |
-//! | `SysTick` | milliseconds, on silicon only: in QEMU time stands still while the host thinks |
+//! | TIM2 | runs freely: instructions in QEMU, half-cycles (84 MHz) on silicon |
+//! | `SysTick` | milliseconds, on silicon only: in QEMU time stands still while the host computes |
 //! | IWDG | one second, on silicon only: QEMU has none |
 //!
-//! QEMU models no clock tree: there HSIRDY reads 0, on silicon it is 1 before the first instruction. That tells the two apart.
+//! QEMU models no clock tree: there HSIRDY reads 0. On silicon it is 1 before the first
+//! instruction. The program uses this to detect QEMU.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -25,23 +26,25 @@ use stm32f4::stm32f405::{FLASH, GPIOB, GPIOC, IWDG, Interrupt, Peripherals, RCC,
 use super::uart::Uart;
 use super::{crash, logger};
 
-/// The internal oscillator: what the chip runs on without a clock tree or crystal.
+/// Frequency of the internal oscillator, which the chip uses without a crystal.
 const HSI_HZ: u32 = 16_000_000;
-/// From the 8 MHz crystal by the PLL.
+/// Frequency from the 8 MHz crystal through the PLL.
 const PLL_HZ: u32 = 168_000_000;
-/// Tries before an oscillator is given up: some milliseconds.
-const PATIENCE: u32 = 100_000;
+/// Number of polls before an oscillator counts as failed: some milliseconds.
+const MAX_CLOCK_POLLS: u32 = 100_000;
+/// Period of `SysTick`, milliseconds.
 const TICK_MS: u32 = 10;
 
+/// Time since the boot, milliseconds; 0 in the emulator.
 static MILLISECONDS: AtomicU32 = AtomicU32::new(0);
 
-/// What is left of the chip once everything is set up.
+/// The peripherals that the main loop uses.
 pub(crate) struct Board {
     timer: TIM2,
     watchdog: Option<IWDG>,
     emulated: bool,
     by_watchdog: bool,
-    /// Which crash is due.
+    /// Number of boots, which selects the crash.
     #[cfg(feature = "crash-test")]
     pub(crate) boots: u32,
 }
@@ -53,10 +56,10 @@ pub(crate) struct EmergencyStop(GPIOB);
 pub(crate) struct Led(GPIOC);
 
 impl Board {
-    /// Sets up the chip. Called once, first thing.
+    /// Sets up the chip. The entry point calls this once, before everything else.
     pub(crate) fn take() -> (Self, Uart, EmergencyStop, Led) {
-        // SAFETY: the entry point calls this once and nothing else owns peripherals; interrupts touch USART1 only
-        // to read its data register, and SysTick not at all.
+        // SAFETY: the entry point calls this once and nothing else owns peripherals. Interrupts use
+        // USART1 only to read its data register, and do not use SysTick.
         let (core, chip) = unsafe { (cortex_m::Peripherals::steal(), Peripherals::steal()) };
         let (mut scb, mut systick) = (core.SCB, core.SYST);
         scb.enable(Exception::BusFault);
@@ -75,12 +78,12 @@ impl Board {
         chip.GPIOA
             .moder()
             .modify(|_, w| w.moder9().alternate().moder10().alternate());
-        // An unplugged line is an idle line.
+        // Pulled up, so that an unplugged line is an idle line.
         chip.GPIOA.pupdr().modify(|_, w| w.pupdr10().pull_up());
         chip.GPIOA
             .afrh()
             .modify(|_, w| w.afrh9().af7().afrh10().af7());
-        // APB2 runs at half the core's clock on the PLL, and at all of it otherwise.
+        // APB2 runs at half the core's clock with the PLL, and at the full clock without it.
         let bus_hz = if hz == PLL_HZ { hz / 2 } else { hz };
         let uart = Uart::new(chip.USART1, bus_hz);
 
@@ -110,19 +113,20 @@ impl Board {
         (board, uart, emergency_stop, led)
     }
 
-    /// Whether the watchdog caused the last reset.
+    /// Returns true if the watchdog caused the last reset.
     pub(crate) const fn reset_by_watchdog(&self) -> bool {
         self.by_watchdog
     }
 
-    /// The main loop comes round.
+    /// Restarts the watchdog. The main loop calls this in every turn.
     pub(crate) fn feed_watchdog(&self) {
         if let Some(watchdog) = &self.watchdog {
             watchdog.kr().write(|w| w.key().feed());
         }
     }
 
-    /// Sleeps until an interrupt, unless there is work. An interrupt between the look and the sleep still wakes: it stays pending.
+    /// Sleeps until an interrupt, unless there is work. An interrupt between the check and the
+    /// sleep still wakes the core, because it stays pending.
     pub(crate) fn sleep_unless(&self, work: impl FnOnce() -> bool) {
         cortex_m::interrupt::free(|_| {
             if !work() {
@@ -132,24 +136,26 @@ impl Board {
     }
 }
 
-/// 168 MHz from the 8 MHz crystal if it comes up, or else the internal oscillator's 16 MHz. Gives the core's clock.
+/// Starts the PLL on the 8 MHz crystal: 168 MHz. If that fails, the core stays on the internal
+/// oscillator: 16 MHz. Returns the core's clock in hertz.
 fn start_clocks(rcc: &RCC, flash: &FLASH) -> u32 {
-    let comes = |ready: &dyn Fn() -> bool| (0..PATIENCE).any(|_| ready());
+    let becomes_ready = |ready: &dyn Fn() -> bool| (0..MAX_CLOCK_POLLS).any(|_| ready());
     rcc.cr().modify(|_, w| w.hseon().set_bit());
-    if !comes(&|| rcc.cr().read().hserdy().bit_is_set()) {
+    if !becomes_ready(&|| rcc.cr().read().hserdy().bit_is_set()) {
         return HSI_HZ;
     }
-    // 8 MHz / 8 × 336 / 2 = 168 MHz; / 7 = 48 MHz for what needs it.
+    // 8 MHz / 8 × 336 / 2 = 168 MHz, and / 7 = 48 MHz for peripherals that need it.
     rcc.pllcfgr().write(|w| {
-        // SAFETY: the factors keep the PLL within its limits (input 1 MHz, oscillator 336 MHz; RM0090, 7.3.2).
+        // SAFETY: the factors keep the PLL within its limits: input 1 MHz, oscillator 336 MHz
+        // (RM0090, 7.3.2).
         unsafe { w.pllm().bits(8).plln().bits(336).pllq().bits(7) };
         w.pllsrc().hse().pllp().div2()
     });
     rcc.cr().modify(|_, w| w.pllon().set_bit());
-    if !comes(&|| rcc.cr().read().pllrdy().bit_is_set()) {
+    if !becomes_ready(&|| rcc.cr().read().pllrdy().bit_is_set()) {
         return HSI_HZ;
     }
-    // Five wait states at 168 MHz and 3.3 V (RM0090, table 10), hidden by prefetch and caches.
+    // Five wait states at 168 MHz and 3.3 V (RM0090, table 10). Prefetch and caches hide them.
     flash.acr().write(|w| {
         w.latency().ws5();
         w.prften().set_bit().icen().set_bit().dcen().set_bit()
@@ -157,7 +163,7 @@ fn start_clocks(rcc: &RCC, flash: &FLASH) -> u32 {
     rcc.cfgr()
         .modify(|_, w| w.hpre().div1().ppre1().div4().ppre2().div2());
     rcc.cfgr().modify(|_, w| w.sw().pll());
-    if comes(&|| rcc.cfgr().read().sws().is_pll()) {
+    if becomes_ready(&|| rcc.cfgr().read().sws().is_pll()) {
         PLL_HZ
     } else {
         HSI_HZ
@@ -184,7 +190,8 @@ fn set_up_pins(gpiob: GPIOB, gpioc: GPIOC) -> (EmergencyStop, Led) {
     (EmergencyStop(gpiob), Led(gpioc))
 }
 
-/// One second of the 32 kHz oscillator, which is anything from 17 to 47 kHz: 0.7 to 1.9 s.
+/// Starts the watchdog with one second of its 32 kHz oscillator. The oscillator has 17 to 47 kHz,
+/// so the time is 0.7 to 1.9 s.
 fn start_watchdog(watchdog: IWDG) -> IWDG {
     watchdog.kr().write(|w| w.key().start());
     watchdog.kr().write(|w| w.key().unlock());
@@ -203,11 +210,12 @@ fn SysTick() {
 impl Meter for Board {
     fn start(&mut self) {
         if self.emulated {
-            // A byte's interrupt would be counted in. In QEMU a byte waits; on silicon it would be lost.
+            // The interrupt of a received byte would add to the count. In QEMU the byte waits; on
+            // silicon it would be lost.
             NVIC::mask(Interrupt::USART1);
         }
         #[cfg(feature = "crash-test")]
-        crash::rehearse(self.boots);
+        crash::crash_on_third_step(self.boots);
     }
 
     fn stop(&mut self) {
@@ -226,7 +234,7 @@ impl Meter for Board {
 }
 
 impl port::Board for Board {
-    /// In the emulator it is always now.
+    /// Returns the time since the boot; always 0 in the emulator.
     fn now_ms(&mut self) -> u32 {
         MILLISECONDS.load(Ordering::Relaxed)
     }
@@ -255,7 +263,7 @@ impl ErrorType for Led {
 }
 
 impl OutputPin for Led {
-    /// Lit: the LED hangs between the supply and the pin.
+    /// Lights the LED, which is connected between the supply and the pin.
     fn set_high(&mut self) -> Result<(), Self::Error> {
         self.0.bsrr().write(|w| w.br12().reset());
         Ok(())
@@ -267,7 +275,7 @@ impl OutputPin for Led {
     }
 }
 
-/// Starts the program over.
+/// Resets the chip.
 pub(crate) fn reset() -> ! {
     SCB::sys_reset()
 }

@@ -1,6 +1,7 @@
-//! defmt's bytes into a ring, which the session drains into log frames.
+//! defmt's bytes into a ring. The session takes them out and sends them in log frames.
 //!
-//! A message that does not fit is lost as a whole, so the stream stays decodable. Interrupts are off while a message is written.
+//! A message that does not fit is lost as a whole, so the stream stays decodable. Interrupts are
+//! off while a message is written.
 
 use core::cell::UnsafeCell;
 
@@ -12,16 +13,17 @@ static LOG: Ring<512> = Ring::new();
 #[defmt::global_logger]
 struct Logger;
 
-/// What a message needs while it is written.
+/// State of the message that is being written.
 struct Writing {
     encoder: defmt::Encoder,
     restore: RestoreState,
+    /// True if all bytes of the message fit into the ring so far.
     whole: bool,
 }
 
 struct Shared(UnsafeCell<Writing>);
 
-// SAFETY: used only between acquire and release, in a critical section of a single core.
+// SAFETY: it is used only between acquire and release, in a critical section of a single core.
 unsafe impl Sync for Shared {}
 
 static WRITING: Shared = Shared(UnsafeCell::new(Writing {
@@ -41,13 +43,13 @@ impl Writing {
     }
 }
 
-// SAFETY: acquire enters a critical section and release leaves it, so messages are written one at a time; defmt calls them
-// in that order, and a log statement within a log statement does not occur.
+// SAFETY: acquire enters a critical section and release leaves it, so messages are written one at a
+// time. defmt calls them in this order, and no log statement contains another.
 unsafe impl defmt::Logger for Logger {
     fn acquire() {
-        // SAFETY: released in `release`, in reverse order.
+        // SAFETY: `release` releases it, in reverse order.
         let restore = unsafe { critical_section::acquire() };
-        // SAFETY: in the critical section, see above.
+        // SAFETY: inside the critical section, see above.
         let writing = unsafe { &mut *WRITING.0.get() };
         writing.restore = restore;
         writing.whole = true;
@@ -57,7 +59,7 @@ unsafe impl defmt::Logger for Logger {
     unsafe fn flush() {}
 
     unsafe fn release() {
-        // SAFETY: still in the critical section.
+        // SAFETY: still inside the critical section.
         let writing = unsafe { &mut *WRITING.0.get() };
         writing.with_ring(|encoder, put| encoder.end_frame(put));
         if writing.whole {
@@ -66,18 +68,18 @@ unsafe impl defmt::Logger for Logger {
             LOG.discard();
         }
         let restore = writing.restore;
-        // SAFETY: the state that `acquire` got.
+        // SAFETY: this is the state that `acquire` returned.
         unsafe { critical_section::release(restore) };
     }
 
     unsafe fn write(bytes: &[u8]) {
-        // SAFETY: still in the critical section.
+        // SAFETY: still inside the critical section.
         let writing = unsafe { &mut *WRITING.0.get() };
         writing.with_ring(|encoder, put| encoder.write(bytes, put));
     }
 }
 
-/// Moves log bytes to `out` and gives how many.
+/// Moves log bytes to `out` and returns how many.
 pub(crate) fn take(out: &mut [u8]) -> usize {
     LOG.take(out)
 }

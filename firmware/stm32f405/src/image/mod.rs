@@ -1,19 +1,19 @@
-//! The program: the planner and its conversation on a chip, the same bytes on silicon and in QEMU.
+//! The program: a planner and its session on a chip. The same bytes run on silicon and in QEMU.
 //!
-//! | file | what |
+//! | file | contents |
 //! | --- | --- |
-//! | `board.rs` | clocks, pins, timers, watchdog: set up once |
+//! | `board.rs` | clocks, pins, timers, watchdog |
 //! | `uart.rs` | USART1 as a byte stream |
-//! | `logger.rs` | defmt into a ring, drained into the link |
-//! | `workspace.rs` | where the planner's scratch lies |
-//! | `kept.rs` | what survives a reboot |
+//! | `logger.rs` | defmt's bytes into a ring |
+//! | `workspace.rs` | the memory of the planner's workspace |
+//! | `boot_record.rs` | boots and last crash, kept over a reboot |
 //! | `crash.rs` | panics and faults: report, reboot |
 //!
-//! This is the only code of the project that is unsafe; each block says why it is sound.
+//! This is the only unsafe code of the project. Each block says why it is sound.
 
 mod board;
+mod boot_record;
 mod crash;
-mod kept;
 mod logger;
 mod uart;
 mod workspace;
@@ -30,8 +30,8 @@ fn main() -> ! {
     static mut SESSION: Session = Session::new();
 
     let (mut board, serial, emergency_stop, led) = Board::take();
-    let workspace = workspace::place();
-    let boot = kept::boot(board.reset_by_watchdog());
+    let workspace = workspace::init();
+    let boot = boot_record::boot(board.reset_by_watchdog());
     #[cfg(feature = "crash-test")]
     {
         board.boots = boot.boots;
@@ -55,7 +55,7 @@ fn main() -> ! {
                 port.serial.drain();
                 crash::reboot();
             }
-            // The line counts its errors itself; a frame is lost and the host asks again.
+            // The line counts its errors. A frame is lost, and the host repeats its request.
             Err(_) => {}
         }
     }

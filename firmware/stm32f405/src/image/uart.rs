@@ -1,8 +1,9 @@
-//! USART1 as a byte stream: received by interrupt into a ring, sent by polling.
+//! USART1 as a byte stream: an interrupt receives into a ring, and sending polls.
 //!
-//! Polling, because QEMU 7.2 raises no interrupt for an empty transmitter, and because a reply is short: 300 bytes take 7 ms, in
-//! which nothing else is due (the host waits for it). The ring holds two of the longest requests, and only one is ever
-//! under way unless the host lost patience.
+//! Sending polls for two reasons: QEMU 7.2 raises no interrupt for an empty transmitter, and a
+//! reply is short. 300 bytes take 7 ms, and nothing else is due meanwhile because the host waits
+//! for them. The ring holds two of the longest requests. More than one is under way only if the
+//! host repeats one too early.
 
 use core::convert::Infallible;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -17,17 +18,18 @@ use stm32f4::stm32f405::{Interrupt, USART1, interrupt};
 const RING_BYTES: usize = 2 * MAX_REQUEST_FRAME + 16;
 
 static RECEIVED: Ring<RING_BYTES> = Ring::new();
-/// Overruns and framing errors, for whoever looks with a debugger; the frame is then wrong and counted as such.
+/// Number of overruns and framing errors, visible in a debugger. The receiver counts the damaged
+/// frame.
 static ERRORS: AtomicU32 = AtomicU32::new(0);
 
 /// The serial line.
 pub(crate) struct Uart(USART1);
 
 impl Uart {
-    /// Starts listening at [`BAUD`], 8N1, on a bus of `bus_hz`.
+    /// Starts the line at [`BAUD`], 8N1, on a bus of `bus_hz`.
     pub(crate) fn new(usart: USART1, bus_hz: u32) -> Self {
         let divider = ((bus_hz + BAUD / 2) / BAUD) as u16;
-        // SAFETY: any divider from 16 on is valid (RM0090, 30.3.4); 16 MHz / 460 800 is 35.
+        // SAFETY: any divider of at least 16 is valid (RM0090, 30.3.4). 16 MHz / 460 800 is 35.
         usart.brr().write(|w| unsafe { w.bits(divider) });
         usart.cr1().write(|w| {
             w.ue()
@@ -43,14 +45,14 @@ impl Uart {
         Self(usart)
     }
 
-    /// Whether nothing was received that was not read.
+    /// Returns true if every received byte was read.
     pub(crate) fn is_idle(&self) -> bool {
         RECEIVED.is_empty()
     }
 
-    /// Waits until the last byte is on the line.
+    /// Waits until the last byte is sent.
     pub(crate) fn drain(&self) {
-        // Bounded: a byte takes 22 µs, and a transmitter that never ends must not keep us from rebooting.
+        // Bounded: a byte takes 22 µs, and a dead transmitter must not prevent the reboot.
         (0..1_000_000).any(|_| self.0.sr().read().tc().bit_is_set());
     }
 
@@ -60,15 +62,17 @@ impl Uart {
     }
 }
 
-/// Lets received bytes interrupt.
+/// Enables the interrupt for received bytes.
 pub(crate) fn listen() {
-    // SAFETY: the interrupt shares only the ring, whose one producer it is.
+    // SAFETY: the interrupt shares only the ring, and is its only producer.
     unsafe { NVIC::unmask(Interrupt::USART1) };
 }
 
-/// Sends from a crashed program: no interrupt, no owner, and an end even if the transmitter is dead.
-pub(crate) fn send_last_words(bytes: &[u8]) {
-    // SAFETY: interrupts are off and nothing runs after a crash, so nobody else uses the port.
+/// Sends bytes from a crashed program: without interrupts, and for a limited time even if the
+/// transmitter is dead.
+pub(crate) fn send_after_crash(bytes: &[u8]) {
+    // SAFETY: interrupts are off and nothing else runs after a crash, so nothing else uses the
+    // port.
     let uart = Uart(unsafe { USART1::steal() });
     for byte in bytes {
         if !(0..100_000).any(|_| uart.0.sr().read().txe().bit_is_set()) {
@@ -81,7 +85,8 @@ pub(crate) fn send_last_words(bytes: &[u8]) {
 
 #[interrupt]
 fn USART1() {
-    // SAFETY: this interrupt alone reads the data register; reading status and data is what clears the interrupt.
+    // SAFETY: only this interrupt reads the data register. Reading status and data clears the
+    // interrupt.
     let usart = unsafe { USART1::steal() };
     let status = usart.sr().read();
     if status.ore().bit_is_set() || status.fe().bit_is_set() {
@@ -106,7 +111,7 @@ impl ReadReady for Uart {
 }
 
 impl Read for Uart {
-    /// Sleeps until there is a byte.
+    /// Sleeps until a byte arrives.
     fn read(&mut self, out: &mut [u8]) -> Result<usize, Infallible> {
         while !out.is_empty() && RECEIVED.is_empty() {
             cortex_m::interrupt::free(|_| {

@@ -1,7 +1,9 @@
-//! What survives a reboot, in memory that the start-up code leaves alone: how often we booted, and what we crashed of.
+//! The boot record: number of boots and last crash, in memory that the start-up code does not
+//! clear.
 //!
-//! After power-on the memory holds anything; a checksum over the words tells. Access is volatile: to the compiler the
-//! words are never initialised, and it would be right to forget them.
+//! After power-on the memory holds arbitrary words. A checksum over the words detects this. Access
+//! is volatile, because the compiler never sees the words initialised and could otherwise remove
+//! it.
 
 use core::mem::MaybeUninit;
 use core::ptr;
@@ -14,23 +16,25 @@ const WORDS: usize = 5 + FILE_WORDS;
 /// Seed of the checksum.
 const SEED: u32 = 0xf1e1_d11e;
 
-/// checksum, boots, cause + 1 or 0, line or address, length of the name, the name.
-#[unsafe(link_section = ".uninit.KEPT")]
-static mut KEPT: MaybeUninit<[u32; WORDS]> = MaybeUninit::uninit();
+/// The record: checksum, boots, cause + 1 or 0, line or address, length of the name, the name.
+#[unsafe(link_section = ".uninit.BOOT_RECORD")]
+static mut BOOT_RECORD: MaybeUninit<[u32; WORDS]> = MaybeUninit::uninit();
 
+/// Returns the record, or `None` if its checksum is wrong.
 fn read() -> Option<[u32; WORDS]> {
-    let kept = ptr::addr_of!(KEPT).cast::<[u32; WORDS]>();
-    // SAFETY: only the main program before its loop, and a crash after which nothing else runs, come here: no two at once. The memory
-    // exists, and every pattern of bits is a number.
-    let words = unsafe { kept.read_volatile() };
+    let record = ptr::addr_of!(BOOT_RECORD).cast::<[u32; WORDS]>();
+    // SAFETY: only the main program before its loop, and a crash after which nothing else runs,
+    // access the record, so no two accesses overlap. The memory exists, and every bit pattern is a
+    // valid number.
+    let words = unsafe { record.read_volatile() };
     (words[0] == checksum(&words)).then_some(words)
 }
 
 fn write(mut words: [u32; WORDS]) {
     words[0] = checksum(&words);
-    let kept = ptr::addr_of_mut!(KEPT).cast::<[u32; WORDS]>();
+    let record = ptr::addr_of_mut!(BOOT_RECORD).cast::<[u32; WORDS]>();
     // SAFETY: as in `read`.
-    unsafe { kept.write_volatile(words) };
+    unsafe { record.write_volatile(words) };
 }
 
 fn checksum(words: &[u32; WORDS]) -> u32 {
@@ -39,7 +43,7 @@ fn checksum(words: &[u32; WORDS]) -> u32 {
         .fold(SEED, |sum, word| (sum ^ word).wrapping_mul(0x0100_0193))
 }
 
-/// Counts this boot, and tells what ended the last one.
+/// Counts this boot, and returns the count with the crash that ended the last one.
 pub(crate) fn boot(by_watchdog: bool) -> Boot {
     let words = read().unwrap_or([0; WORDS]);
     let mut next = [0; WORDS];
@@ -63,8 +67,8 @@ pub(crate) fn boot(by_watchdog: bool) -> Boot {
     }
 }
 
-/// Keeps a crash for the next boot to tell.
-pub(crate) fn keep(crash: &Crash) {
+/// Stores a crash for the next boot.
+pub(crate) fn store(crash: &Crash) {
     let mut words = read().unwrap_or([0; WORDS]);
     words[2] = match crash.cause {
         Cause::Panic => 1,
@@ -75,8 +79,8 @@ pub(crate) fn keep(crash: &Crash) {
     words[3] = crash.at;
     words[4] = crash.file.len() as u32;
     let mut bytes = [0; CRASH_FILE_BYTES];
-    for (place, byte) in bytes.iter_mut().zip(crash.file.bytes()) {
-        *place = byte;
+    for (slot, byte) in bytes.iter_mut().zip(crash.file.bytes()) {
+        *slot = byte;
     }
     for (word, four) in words[5..].iter_mut().zip(bytes.chunks_exact(4)) {
         *word = u32::from_le_bytes([four[0], four[1], four[2], four[3]]);
@@ -97,7 +101,7 @@ fn file(words: &[u32; WORDS]) -> heapless::String<CRASH_FILE_BYTES> {
     let mut file = heapless::String::new();
     let bytes = words[5..].iter().flat_map(|word| word.to_le_bytes());
     for byte in bytes.take(words[4] as usize) {
-        // File names are ASCII; anything else shows as a question mark.
+        // File names are ASCII. Any other byte becomes a question mark.
         let letter = if byte.is_ascii_graphic() {
             char::from(byte)
         } else {
