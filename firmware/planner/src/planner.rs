@@ -169,7 +169,7 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         GroundModel::Uneven(storeys) => {
             state.preferences.stand(&input.pose);
             storeys.note(&state.map.heights(), state.map.tiles());
-            state.map.fold(storeys);
+            state.map.compact(storeys);
         }
     }
 }

@@ -45,7 +45,7 @@ fn keep_off_rims<const TILES: usize, const SLOTS: usize>(
     view: &mut LocalGrid,
 ) {
     if let GroundModel::Uneven(_) = state.ground {
-        let rims = obstacle_points::rim_cells(state.map.tiles(), robot);
+        let rims = obstacle_points::border_cells(state.map.tiles(), robot);
         view.keep_off(robot.cell(), rims, disc);
     }
 }

@@ -53,7 +53,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         return false;
     };
     if let Some(terrain) = &config.ground {
-        give_up_ground(terrain, state, &input.pose);
+        resolve_gaps(terrain, state, &input.pose);
     }
     let robot = input.pose.point().cell();
     match outlook {
@@ -74,20 +74,20 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
 }
 
 /// Decide what to make of ground that was never measured though the robot stood by it.
-fn give_up_ground<const TILES: usize, const SLOTS: usize>(
+fn resolve_gaps<const TILES: usize, const SLOTS: usize>(
     terrain: &UnevenGround,
     state: &mut State<TILES, SLOTS>,
     pose: &Pose,
 ) {
     while let Some(cell) = state.strategy.frontier.take_unobserved() {
-        state.map.give_up_ground(terrain, cell);
+        state.map.resolve_gaps(terrain, cell);
     }
     if state.strategy.frontier.take_stop() {
         let front = Place {
             x_m: FRONT_M,
             ..Place::default()
         };
-        if state.map.trust_ground(terrain, ahead(pose, front).cell()) {
+        if state.map.free_gaps(terrain, ahead(pose, front).cell()) {
             state.strategy.frontier.lift_bar();
         }
     }

@@ -119,7 +119,7 @@ fn surround<const TILES: usize, const SLOTS: usize>(
             surround.remember(pose, cells);
         }
         GroundModel::Uneven(_) => {
-            let rims = obstacle_points::rims(state.map.tiles(), pose.point());
+            let rims = obstacle_points::inflated_border_cells(state.map.tiles(), pose.point());
             surround.keep_off(pose, rims);
         }
     }
@@ -291,7 +291,7 @@ mod tests {
         state.reset(&config);
         state
             .map
-            .lay_ground(Cell::default(), |cell| Some(0.03 * cell.y as f32));
+            .set_ground_heights(Cell::default(), |cell| Some(0.03 * cell.y as f32));
         let mut workspace = Box::<Workspace>::default();
         let half = SIDE as i32 / 2;
         workspace.window_at = Some((Cell { x: -half, y: -half }, 1));
