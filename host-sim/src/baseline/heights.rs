@@ -60,10 +60,10 @@ mod tests {
         let mut grid = HeightGrid::default();
         let (here, far) = (Cell { x: -5, y: 7 }, Cell { x: 300, y: 7 });
         let mut elevation = Elevation::new(&mut bytes, &mut marks, &mut origin);
-        elevation.tread(here, 0.5);
+        elevation.mark_wheel_contact(here, 0.5);
         grid.keep(&elevation.read());
         elevation.follow(far);
-        elevation.tread(far, -1.0);
+        elevation.mark_wheel_contact(far, -1.0);
         grid.keep(&elevation.read());
         assert_eq!(elevation.read().height_m(here), None);
         assert_eq!(
@@ -72,7 +72,7 @@ mod tests {
         );
         assert_eq!(grid.height_m(Cell { x: -4, y: 7 }), None);
         elevation.follow(here);
-        elevation.tread(here, 0.25);
+        elevation.mark_wheel_contact(here, 0.25);
         grid.keep(&elevation.read());
         assert_eq!(grid.height_m(here), Some(0.25));
     }

@@ -212,16 +212,16 @@ impl<P: Plan> Session<P> {
             }
         }
         if let Some(terrain) = &config.ground {
-            self.give_up_ground(terrain);
+            self.resolve_gaps(terrain);
         }
     }
 
     /// Ground that stays out of view where a goal was given up is settled, as the planner settles it.
-    fn give_up_ground(&mut self, terrain: &UnevenGround) {
+    fn resolve_gaps(&mut self, terrain: &UnevenGround) {
         let dropped = self.plan.dropped();
         let new = dropped.iter().skip(self.given_up);
         for frontier in new.filter(|frontier| frontier.reason == Residue::Unobservable) {
-            self.map.give_up_ground(terrain, frontier.cell);
+            self.map.resolve_gaps(terrain, frontier.cell);
         }
         self.given_up = dropped.len();
     }
@@ -237,7 +237,7 @@ impl<P: Plan> Session<P> {
         self.map.observe(config, input);
         if config.ground.is_some() {
             self.heights.keep(&self.map.heights());
-            self.map.fold(&mut ());
+            self.map.compact(&mut ());
             return;
         }
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
@@ -267,7 +267,10 @@ impl<P: Plan> Session<P> {
             return CollisionChecker::new(&config.robot, pose, self.near.points());
         }
         let mut surround = CollisionChecker::empty(&config.robot);
-        surround.keep_off(pose, obstacle_points::rims(self.map.tiles(), pose.point()));
+        surround.keep_off(
+            pose,
+            obstacle_points::inflated_border_cells(self.map.tiles(), pose.point()),
+        );
         surround
     }
 

@@ -56,7 +56,7 @@ impl Mirror {
         self.pose = input.pose;
         self.map.observe(&self.config, &input);
         if self.config.ground.is_some() {
-            self.map.fold(&mut ());
+            self.map.compact(&mut ());
         }
     }
 

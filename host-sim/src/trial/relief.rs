@@ -124,7 +124,7 @@ mod tests {
         let mut origin = Cell { x: 8, y: -32 };
         let mut elevation = Elevation::new(&mut bytes, &mut marks, &mut origin);
         for (x, height_m) in [(20, 0.5), (21, 0.4), (22, 2.0)] {
-            elevation.tread(Cell { x, y: 3 }, height_m);
+            elevation.mark_wheel_contact(Cell { x, y: 3 }, height_m);
         }
         // The robot stands in column 40 of the window.
         let (window, terrain) = (window(), UnevenGround::TABLE_I);

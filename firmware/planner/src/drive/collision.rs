@@ -15,7 +15,7 @@ use heapless::Vec;
 use crate::config::Config;
 use crate::drive::incline::Incline;
 use crate::geometry::{CELL_M, Point, Pose, Twist};
-use crate::map::obstacle_points::MOST_POINTS;
+use crate::map::obstacle_points::MAX_POINTS;
 use crate::math;
 use crate::robot::RobotShape;
 
@@ -70,8 +70,8 @@ struct Threat {
 /// What stands around the robot, in its frame.
 #[derive(Debug)]
 pub struct CollisionChecker {
-    threats: Vec<Threat, { MOST_POINTS + MOST_CELLS }>,
     robot: RobotShape,
+    threats: Vec<Threat, { MAX_POINTS + MOST_CELLS }>,
     hull: Hull,
     /// How the ground inclines, where that bounds the headings.
     incline: Option<Incline>,

@@ -23,7 +23,7 @@ pub enum Adjacency {
 
 /// Where a flood ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Met {
+pub struct FloodHit {
     /// The target cell that was met; the lowest row, then the lowest column, of those at the same number of steps.
     pub site: Site,
     /// Steps from the nearest seed to it.
@@ -79,7 +79,7 @@ pub fn flood<const N: usize>(
     seeds: &mut [u64; N],
     targets: &[u64; N],
     adjacency: Adjacency,
-) -> Option<Met> {
+) -> Option<FloodHit> {
     for (seed, mask) in seeds.iter_mut().zip(mask) {
         *seed &= mask;
     }
@@ -89,7 +89,7 @@ pub fn flood<const N: usize>(
     let mut steps = 0;
     while !changed.is_empty() {
         if let Some(site) = first_common(seeds, targets, changed.clone()) {
-            return Some(Met { site, steps });
+            return Some(FloodHit { site, steps });
         }
         let wider = changed.start.saturating_sub(1)..(changed.end + 1).min(N);
         changed = if eight {
@@ -188,7 +188,7 @@ mod tests {
     use std::vec;
     use std::vec::Vec;
 
-    use super::{Adjacency, Met, dilate, flood, halve_or};
+    use super::{Adjacency, FloodHit, dilate, flood, halve_or};
     use crate::grid::Site;
 
     /// A xorshift generator.
@@ -282,7 +282,7 @@ mod tests {
             .filter(|i| targets[i / 64] >> (i % 64) & 1 == 1)
             .filter_map(|i| Some((steps[i]?, i)))
             .min();
-        let expected = nearest.map(|(steps, i)| Met {
+        let expected = nearest.map(|(steps, i)| FloodHit {
             site: Site {
                 x: (i % 64) as u16,
                 y: (i / 64) as u16,

@@ -38,7 +38,7 @@ impl Class {
 pub struct Row {
     pub(crate) low: u64,
     pub(crate) high: u64,
-    pub(crate) trail: u64,
+    pub(crate) visited: u64,
 }
 
 impl Row {
@@ -62,8 +62,8 @@ impl Row {
 
     /// Cells on or beside the robot's way so far.
     #[must_use]
-    pub const fn trail(self) -> u64 {
-        self.trail
+    pub const fn visited(self) -> u64 {
+        self.visited
     }
 
     /// Cells never measured.

@@ -1,8 +1,8 @@
-//! AttitudeFilter: the attitude as it is believed, and how far a beam may be trusted with it.
+//! AttitudeFilter: the attitude as it is filtered, and how far a beam may be trusted with it.
 //!
 //! ```text
 //! g      slope of the robot's plane in the world: turning on the spot does not change it
-//! j      ← j + (|g − 2 g' + g''| − j) / n,    n = min(steps so far, MOST_STEPS)      g', g'': one and two steps ago
+//! j      ← j + (|g − 2 g' + g''| − j) / n,    n = min(steps so far, MAX_STEPS)      g', g'': one and two steps ago
 //! sigma  = j / (√6 √(2/π))              what noise from step to step gives; motion does not, it is smooth
 //! ĝ      ← ĝ + GAIN (g − ĝ)             while |g − ĝ| < MOTION sigma, else ĝ ← g
 //! reach  = ERROR_M / (√(GAIN / (2 − GAIN)) sigma)
@@ -10,7 +10,7 @@
 //!
 //! An error of the attitude tilts a whole sweep: of 1° it lifts the ground 3 m to the side by 5 cm, and two sweeps that meet there make an
 //! edge that is none. A mean over many sweeps would cure that, but a robot that drives on has one or two over a cell. So the attitude is
-//! smoothed, and no height is measured farther off than errors of it stay small; the robot looks again from nearer. Below `CALM` the
+//! smoothed, and no height is measured farther off than errors of it stay small; the robot looks again from nearer. Below `EXACT_SIGMA` the
 //! attitude is taken as it comes: an inertial unit without noise changes nothing. Not in [Maffei20], which measures attitude without
 //! error. Units: tangents, metres, radians.
 
@@ -24,27 +24,27 @@ const GAIN: f32 = 0.5;
 const SMOOTHED: f32 = 0.577;
 /// Mean of |g − 2 g' + g''| over the standard deviation of g, √6 √(2/π).
 const MEAN_SECOND: f32 = 1.954;
-/// Steps in the mean at the most.
-const MOST_STEPS: u8 = 100;
+/// RiseLimits in the mean at the most.
+const MAX_STEPS: u8 = 100;
 /// Deviation below which there is none: 0.15°.
-const CALM: f32 = 0.0026;
+const EXACT_SIGMA: f32 = 0.0026;
 /// What the attitude may lift the end of a beam by, metres.
 const ERROR_M: f32 = 0.03;
 /// Two deviations of a difference of two heights that each err by [`ERROR_M`], metres.
 const SLACK_M: f32 = 2.0 * core::f32::consts::SQRT_2 * ERROR_M;
 /// A difference of more deviations of a single slope than this is motion. That is 4.3 of the difference's own, √(1 + SMOOTHED²): at three, one
-/// step in fifty would be taken for motion, and these steps, believed as they come, would be just those that err most.
+/// step in fifty would be taken for motion, and these steps, filtered as they come, would be just those that err most.
 const MOTION: f32 = 5.0;
 
 /// The filter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AttitudeFilter {
-    /// The believed slope, along x and y.
+    /// The filtered slope, along x and y.
     slope: [f32; 2],
     /// The slopes one and two steps ago.
     last: [[f32; 2]; 2],
     /// Mean second difference.
-    jitter: f32,
+    noise: f32,
     steps: u8,
 }
 
@@ -55,36 +55,44 @@ impl AttitudeFilter {
         Self {
             slope: [0.0; 2],
             last: [[0.0; 2]; 2],
-            jitter: 0.0,
+            noise: 0.0,
             steps: 0,
         }
     }
 
-    /// The attitude of this step; the pose as it is believed.
-    pub fn note(&mut self, pose: &Pose) -> Pose {
+    /// The attitude of this step; the pose as it is filtered.
+    pub fn update(&mut self, pose: &Pose) -> Pose {
         let attitude = Attitude::of(pose);
         let slope = [attitude.rise(1.0, 0.0), attitude.rise(0.0, 1.0)];
-        self.listen(slope);
+        self.estimate_noise(slope);
         let sigma = self.sigma();
         let off = [slope[0] - self.slope[0], slope[1] - self.slope[1]];
         let is_motion = off.iter().any(|off| off.abs() > MOTION * sigma);
-        let gain = if sigma < CALM || is_motion { 1.0 } else { GAIN };
-        for (believed, off) in self.slope.iter_mut().zip(off) {
-            *believed += gain * off;
+        let gain = if sigma < EXACT_SIGMA || is_motion {
+            1.0
+        } else {
+            GAIN
+        };
+        for (filtered, off) in self.slope.iter_mut().zip(off) {
+            *filtered += gain * off;
         }
-        if gain < 1.0 { self.lean(pose) } else { *pose }
+        if gain < 1.0 {
+            self.with_filtered_slope(pose)
+        } else {
+            *pose
+        }
     }
 
     /// Whether the attitude is as good as without noise.
     #[must_use]
-    pub fn is_calm(&self) -> bool {
-        self.sigma() < CALM
+    pub fn is_exact(&self) -> bool {
+        self.sigma() < EXACT_SIGMA
     }
 
     /// How far from the robot a height may be measured, metres.
     #[must_use]
     pub fn reach_m(&self) -> f32 {
-        if self.is_calm() {
+        if self.is_exact() {
             f32::INFINITY
         } else {
             ERROR_M / (SMOOTHED * self.sigma())
@@ -94,18 +102,18 @@ impl AttitudeFilter {
     /// What two heights may differ by for the attitude alone, metres: two deviations, at the reach.
     #[must_use]
     pub fn slack_m(&self) -> f32 {
-        if self.is_calm() { 0.0 } else { SLACK_M }
+        if self.is_exact() { 0.0 } else { SLACK_M }
     }
 
     /// Standard deviation of a single slope.
     fn sigma(&self) -> f32 {
-        self.jitter / MEAN_SECOND
+        self.noise / MEAN_SECOND
     }
 
-    fn listen(&mut self, slope: [f32; 2]) {
+    fn estimate_noise(&mut self, slope: [f32; 2]) {
         let [one, two] = self.last;
         self.last = [slope, one];
-        self.steps = self.steps.saturating_add(1).min(MOST_STEPS + 2);
+        self.steps = self.steps.saturating_add(1).min(MAX_STEPS + 2);
         // The first two steps have no second difference.
         let Some(count) = self.steps.checked_sub(2).filter(|&count| count > 0) else {
             return;
@@ -115,11 +123,11 @@ impl AttitudeFilter {
             _ => 0.0,
         };
         let mean = 0.5 * (second(0) + second(1));
-        self.jitter += (mean - self.jitter) / f32::from(count);
+        self.noise += (mean - self.noise) / f32::from(count);
     }
 
-    /// The pose with the believed slope.
-    fn lean(&self, pose: &Pose) -> Pose {
+    /// The pose with the filtered slope.
+    fn with_filtered_slope(&self, pose: &Pose) -> Pose {
         let (sin, cos) = math::sin_cos(pose.yaw_rad);
         let [x, y] = self.slope;
         let (ahead, left) = (x * cos + y * sin, y * cos - x * sin);
@@ -135,7 +143,7 @@ impl AttitudeFilter {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::{AttitudeFilter, CALM, ERROR_M, SMOOTHED};
+    use super::{AttitudeFilter, ERROR_M, EXACT_SIGMA, SMOOTHED};
     use crate::geometry::Pose;
     use crate::ground::ray::Attitude;
 
@@ -175,23 +183,23 @@ pub(super) mod tests {
 
     #[test]
     fn without_noise_the_attitude_is_taken_bit_by_bit() {
-        let mut tilt = AttitudeFilter::new();
+        let mut filter = AttitudeFilter::new();
         for step in 0..500 {
             let pose = on_a_slope(step);
-            assert_eq!(tilt.note(&pose), pose);
-            assert_eq!(tilt.reach_m(), f32::INFINITY);
+            assert_eq!(filter.update(&pose), pose);
+            assert_eq!(filter.reach_m(), f32::INFINITY);
         }
     }
 
     #[test]
     fn noise_is_estimated_and_half_of_its_variance_goes() {
         let sigma = 1.0_f32.to_radians();
-        let (mut tilt, mut seed) = (AttitudeFilter::new(), 5);
+        let (mut filter, mut seed) = (AttitudeFilter::new(), 5);
         let (mut before, mut after, mut count) = (0.0, 0.0, 0.0);
         for step in 0..2_000 {
             let truth = on_a_slope(step);
             let pose = noisy(truth, sigma, &mut seed);
-            let believed = tilt.note(&pose);
+            let filtered = filter.update(&pose);
             if step > 100 {
                 // The error 3 m to the robot's left.
                 let rise = |pose: &Pose| {
@@ -199,9 +207,9 @@ pub(super) mod tests {
                     Attitude::of(pose).rise(left.0, left.1)
                 };
                 before += (rise(&pose) - rise(&truth)).powi(2);
-                after += (rise(&believed) - rise(&truth)).powi(2);
+                after += (rise(&filtered) - rise(&truth)).powi(2);
                 count += 1.0;
-                let ratio = tilt.reach_m() / (ERROR_M / (SMOOTHED * sigma));
+                let ratio = filter.reach_m() / (ERROR_M / (SMOOTHED * sigma));
                 assert!((0.7..1.3).contains(&ratio), "{ratio}");
             }
         }
@@ -214,12 +222,12 @@ pub(super) mod tests {
     #[test]
     fn the_worst_of_many_attitudes_is_not_believed() {
         let sigma = 1.0_f32.to_radians();
-        let (mut tilt, mut seed) = (AttitudeFilter::new(), 11);
+        let (mut filter, mut seed) = (AttitudeFilter::new(), 11);
         let mut worst = 0.0_f32;
         for step in 0..5_000 {
-            let believed = tilt.note(&noisy(Pose::default(), sigma, &mut seed));
+            let filtered = filter.update(&noisy(Pose::default(), sigma, &mut seed));
             if step > 100 {
-                worst = worst.max(believed.roll_rad.abs().max(believed.pitch_rad.abs()));
+                worst = worst.max(filtered.roll_rad.abs().max(filtered.pitch_rad.abs()));
             }
         }
         // Of 10,000 numbers that are normal the largest is of about 3.9 deviations.
@@ -229,15 +237,15 @@ pub(super) mod tests {
     #[test]
     fn a_kerb_is_followed_at_once() {
         let sigma = 0.5_f32.to_radians();
-        let (mut tilt, mut seed) = (AttitudeFilter::new(), 9);
+        let (mut filter, mut seed) = (AttitudeFilter::new(), 9);
         for _ in 0..200 {
-            tilt.note(&noisy(Pose::default(), sigma, &mut seed));
+            filter.update(&noisy(Pose::default(), sigma, &mut seed));
         }
         let up = Pose {
             pitch_rad: -0.15,
             ..Pose::default()
         };
-        assert_eq!(tilt.note(&up), up);
-        assert!(tilt.reach_m() < ERROR_M / (SMOOTHED * CALM));
+        assert_eq!(filter.update(&up), up);
+        assert!(filter.reach_m() < ERROR_M / (SMOOTHED * EXACT_SIGMA));
     }
 }

@@ -19,7 +19,7 @@ use crate::config::UnevenGround;
 use crate::geometry::{CELL_M, Cell};
 use crate::grid::Row;
 use crate::ground::elevation::{Ground, Heights, WINDOW_SIDE};
-use crate::ground::{low_confidence as glimpse, steepness as falls};
+use crate::ground::{low_confidence, steepness};
 
 /// What a mean may be off beside its neighbour, metres.
 const NOISE_M: f32 = 0.015;
@@ -28,35 +28,35 @@ const BRIDGES: [(i32, i32); 6] = [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 1)
 /// How far to either side ground is looked for over a brow, cells.
 const REACH: i32 = 10;
 /// In how many of four directions it must be found: over the corner of a hole it is in one.
-const WAYS: i32 = 3;
+const MIN_DIRECTIONS: i32 = 3;
 /// What leads over a gap higher than an edge that may be driven over blends in: its grade lies between those on both sides, to within this. A kerb
 /// in a gap lies between level ground and level ground.
 const BLEND: f32 = 0.1;
 /// Measured cells among the eight around that it takes to free an obstacle of the map.
-const WELL_KNOWN: u32 = 6;
+const MIN_MEASURED_AROUND: u32 = 6;
 
 /// How ground leads over a gap, by how sure the attitude is in which its sides were measured.
-struct Brow {
+struct GapLimits {
     /// It is no steeper than this part of the climb.
     gentle: f32,
     /// How far from the gap the grades on both sides are measured, cells, the best first.
     grades: &'static [i32],
     /// Whether the first height of a cell, which may be a false return, may forbid it.
-    heeds_first: bool,
+    heeds_single: bool,
 }
 
-impl Brow {
+impl GapLimits {
     /// Of heights that are right: over a long way their noise tells least.
-    const CALM: Self = Self {
+    const EXACT: Self = Self {
         gentle: 1.0,
         grades: &[8, 7, 6, 5, 4, 3],
-        heeds_first: false,
+        heeds_single: false,
     };
     /// Of an attitude that errs: what is far was measured in another one, and a rim casts a shadow as steep as the tilted beams.
-    const SHAKEN: Self = Self {
+    const NOISY: Self = Self {
         gentle: 0.75,
         grades: &[3, 4, 2],
-        heeds_first: true,
+        heeds_single: true,
     };
     /// The farthest of the latter, cells.
     const FARTHEST: f32 = 4.0;
@@ -64,7 +64,7 @@ impl Brow {
 
 /// How much higher a cell may lie than one near it, in steps of a height.
 #[derive(Clone, Copy, Debug)]
-pub struct Steps {
+pub struct RiseLimits {
     pub(super) one: i32,
     pub(super) two: i32,
     pub(super) two_corner: i32,
@@ -76,13 +76,13 @@ pub struct Steps {
     climb: f32,
 }
 
-impl Steps {
+impl RiseLimits {
     /// What a robot's limits allow.
     #[must_use]
-    pub fn new(terrain: &UnevenGround) -> Self {
+    pub fn new(ground: &UnevenGround) -> Self {
         let steps = |metres: f32| i32::from(I7F9::saturating_from_num(metres).to_bits());
-        let rise = |cells: f32| terrain.climb * cells * CELL_M;
-        let edge = terrain.step_m + NOISE_M;
+        let rise = |cells: f32| ground.climb * cells * CELL_M;
+        let edge = ground.step_m + NOISE_M;
         Self {
             one: steps(0.25 * rise(1.0) + edge),
             two: steps(0.5 * rise(2.0) + edge),
@@ -90,7 +90,7 @@ impl Steps {
             four: steps(rise(4.0) + NOISE_M),
             half: steps(0.3 * rise(4.0)),
             bridge: steps(0.7 * rise(4.0)),
-            climb: terrain.climb,
+            climb: ground.climb,
         }
     }
 }
@@ -108,30 +108,30 @@ pub struct Classes {
 
 /// Classify row `y` of the window, which the map holds as `known`.
 #[must_use]
-pub fn row(heights: &Heights<'_>, steps: &Steps, y: i32, known: Row) -> Classes {
+pub fn row(heights: &Heights<'_>, limits: &RiseLimits, y: i32, known: Row) -> Classes {
     let mut classes = Classes::default();
     let origin = heights.origin();
     for k in 0..WINDOW_SIDE {
         let cell = Cell { x: origin.x + k, y };
         let bit = 1_u64 << k;
         let bits = |dx: i32, dy: i32| at(heights, cell, dx, dy);
-        if heights.is_standing(cell) {
+        if heights.is_obstacle(cell) {
             classes.obstacle |= bit;
         } else if let Some(height) = bits(0, 0) {
-            if let Some(fall) = falls::too_high(steps, height, bits) {
-                if falls::is_sure(heights, cell, fall) {
+            if let Some(fall) = steepness::steepness(limits, height, bits) {
+                if steepness::is_confirmed(heights, cell, fall) {
                     classes.obstacle |= bit;
                 }
-            } else if known.obstacle() & bit == 0 || is_well_known(bits) {
+            } else if known.obstacle() & bit == 0 || is_well_measured(bits) {
                 classes.free |= bit;
             }
-        } else if heights.is_sunken(cell) {
+        } else if heights.is_drop(cell) {
             // What is but presumed to be gone is, unless ground was measured there before the window came by again.
-            if !heights.is_presumed(cell) || known.free() & bit == 0 {
+            if !heights.is_inferred_drop(cell) || known.free() & bit == 0 {
                 classes.negative |= bit;
             }
         } else if known.unknown() & bit != 0
-            && (is_bridged(steps, bits) || glimpse::is_enough(heights, steps.climb, cell))
+            && (bridges(limits, bits) || low_confidence::is_usable(heights, limits.climb, cell))
         {
             classes.free |= bit;
         }
@@ -151,61 +151,62 @@ fn at(heights: &Heights<'_>, cell: Cell, dx: i32, dy: i32) -> Option<i32> {
 }
 
 /// Whether most cells around are measured.
-fn is_well_known(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
+fn is_well_measured(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
     let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
     let known = around.filter(|&(dx, dy)| bits(dx, dy).is_some()).count() as u32;
     // The cell itself is one of them.
-    known > WELL_KNOWN
+    known > MIN_MEASURED_AROUND
 }
 
 /// Whether the nearest measured cells on both sides of a cell that was never measured lead over it, no more steeply than may be climbed, in
 /// three of the four directions at least and in all in which there are two, and nothing between them is gone; what is but held to be gone
 /// tells nothing. Two heights may differ by `slack_m` for errors of the attitude alone.
 #[must_use]
-pub fn leads_over(heights: &Heights<'_>, terrain: &UnevenGround, cell: Cell, slack_m: f32) -> bool {
-    let brow = if slack_m > 0.0 {
-        Brow::SHAKEN
+pub fn spans_gap(heights: &Heights<'_>, ground: &UnevenGround, cell: Cell, slack_m: f32) -> bool {
+    let limits = if slack_m > 0.0 {
+        GapLimits::NOISY
     } else {
-        Brow::CALM
+        GapLimits::EXACT
     };
-    let ground = |cell: Cell| {
+    let lookup = |cell: Cell| {
         heights
             .ground(cell)
-            .filter(|ground| *ground != Ground::Doubtful)
+            .filter(|ground| *ground != Ground::Uncertain)
     };
-    let mut ways = 0;
+    let mut directions = 0;
     for (dx, dy, cells) in [(1, 0, 1.0), (1, 1, 1.41), (0, 1, 1.0), (-1, 1, 1.41)] {
         let on = |cells: i32| Cell {
             x: cell.x + cells * dx,
             y: cell.y + cells * dy,
         };
-        let reach = |way: i32| (1..=REACH).find_map(|far| Some((far, ground(on(way * far))?)));
+        let reach = |way: i32| (1..=REACH).find_map(|far| Some((far, lookup(on(way * far))?)));
         let (Some((there, high)), Some((here, low))) = (reach(1), reach(-1)) else {
             continue;
         };
-        let (Ground::At(high), Ground::At(low)) = (high, low) else {
+        let (Ground::Measured(high), Ground::Measured(low)) = (high, low) else {
             return false;
         };
         let step_m = cells * CELL_M;
         let (rise_m, way_m) = (high - low, (there + here) as f32 * step_m);
-        let most_m = brow.gentle * terrain.climb * way_m + slack_m;
-        let blend = BLEND + slack_m / (Brow::FARTHEST * step_m);
+        let most_m = limits.gentle * ground.climb * way_m + slack_m;
+        let blend = BLEND + slack_m / (GapLimits::FARTHEST * step_m);
         let blends = || {
             let grade = rise_m / way_m;
-            let beyond = grade_on(heights, &on, (there, 1), brow.grades, step_m);
-            let before = grade_on(heights, &on, (-here, -1), brow.grades, step_m);
+            let beyond = grade_on(heights, &on, (there, 1), limits.grades, step_m);
+            let before = grade_on(heights, &on, (-here, -1), limits.grades, step_m);
             beyond
                 .zip(before)
                 .is_some_and(|(a, b)| (a.min(b) - blend..=a.max(b) + blend).contains(&grade))
         };
-        if rise_m.abs() <= most_m && (rise_m.abs() <= terrain.step_m + slack_m || blends()) {
-            ways += 1;
-        } else if brow.heeds_first || (heights.count(on(there)) > 1 && heights.count(on(-here)) > 1)
+        if rise_m.abs() <= most_m && (rise_m.abs() <= ground.step_m + slack_m || blends()) {
+            directions += 1;
+        } else if limits.heeds_single
+            || (heights.count(on(there)) > 1 && heights.count(on(-here)) > 1)
         {
             return false;
         }
     }
-    ways >= WAYS
+    directions >= MIN_DIRECTIONS
 }
 
 /// The grade of the ground beside a gap, from its cell at `from` outwards to the first measured one of those so many cells away; positive where
@@ -226,14 +227,15 @@ fn grade_on(
 
 /// Whether a cell of the window is led over by measured cells on both sides, at most four apart.
 #[must_use]
-pub fn is_between(heights: &Heights<'_>, steps: &Steps, cell: Cell) -> bool {
-    is_bridged(steps, |dx, dy| at(heights, cell, dx, dy))
+pub fn is_bridged(heights: &Heights<'_>, limits: &RiseLimits, cell: Cell) -> bool {
+    bridges(limits, |dx, dy| at(heights, cell, dx, dy))
 }
 
 /// Whether measured cells on both sides, at most four apart, lead over a cell.
-fn is_bridged(steps: &Steps, bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
+fn bridges(limits: &RiseLimits, bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
     let leads = |a: Option<i32>, b: Option<i32>| {
-        a.zip(b).is_some_and(|(a, b)| (a - b).abs() <= steps.bridge)
+        a.zip(b)
+            .is_some_and(|(a, b)| (a - b).abs() <= limits.bridge)
     };
     BRIDGES.into_iter().any(|(there, here)| {
         leads(bits(there, 0), bits(-here, 0)) || leads(bits(0, there), bits(0, -here))

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!      room             beams between the jambs J all end on something that stands
-//!   ___J     J___       |J J| at most DOORWAY_M, both near and standing
+//!   ___J     J___       |J J| at most MAX_DOORWAY_M, both near and standing
 //!        \ /            then what they cross is floor, and what they end on is wall
 //!       robot
 //! ```
@@ -25,19 +25,19 @@ use crate::math;
 use crate::robot::LaserMount;
 
 /// Widest doorway, metres.
-const DOORWAY_M: f32 = 2.0;
+const MAX_DOORWAY_M: f32 = 2.0;
 /// Narrowest one, metres: through a gap there is too little to be seen.
-const GAP_M: f32 = 0.6;
+const MIN_DOORWAY_M: f32 = 0.6;
 /// A jamb ends a beam nearer than the beam beside it, by this, millimetres.
-const NEARER_MM: u16 = 100;
+const JAMB_STEP_MM: u16 = 100;
 /// Everything through the doorway ends behind its threshold by this, metres.
 const RECESS_M: f32 = 0.08;
 /// And something by this: less is a niche.
-const DEPTH_M: f32 = 1.0;
+const MIN_DEPTH_M: f32 = 1.0;
 /// Jambs are nearer than this, millimetres: in the window of heights.
-const NEAR_MM: u16 = 3_000;
-/// The robot leans less than this, a tangent.
-const LEVEL: f32 = 0.05;
+const MAX_JAMB_MM: u16 = 3_000;
+/// The robot is_tilted less than this, a tangent.
+const MAX_TILT: f32 = 0.05;
 /// What stands begins at a beam's end and is marked so much behind, metres.
 const BEHIND_M: f32 = 0.03;
 /// Ends of beams side by side belong to one wall if they are nearer to each other than this, metres.
@@ -54,36 +54,36 @@ pub enum Part {
     Wall,
 }
 
-/// A look with the level laser.
+/// A view with the level laser.
 #[derive(Debug)]
-pub struct Look<'a> {
+pub struct DoorwayView<'a> {
     attitude: Attitude,
     mount: Mount<'a>,
     /// Height of the ground that the robot stands on, metres.
     ground_m: f32,
-    terrain: &'a UnevenGround,
+    ground: &'a UnevenGround,
     laser: &'a LaserMount,
     ranges_mm: &'a [u16],
 }
 
-impl<'a> Look<'a> {
-    /// A look from a pose; `None` if the robot leans.
+impl<'a> DoorwayView<'a> {
+    /// A view from a pose; `None` if the robot is_tilted.
     #[must_use]
     pub fn new(
         pose: &Pose,
-        terrain: &'a UnevenGround,
+        ground: &'a UnevenGround,
         laser: &'a LaserMount,
         ranges_mm: &'a [u16],
     ) -> Option<Self> {
         let attitude = Attitude::of(pose);
-        let leans = [(1.0, 0.0), (0.0, 1.0)]
+        let is_tilted = [(1.0, 0.0), (0.0, 1.0)]
             .into_iter()
-            .any(|(x, y)| attitude.rise(x, y).abs() > LEVEL);
-        (!leans).then(|| Self {
+            .any(|(x, y)| attitude.rise(x, y).abs() > MAX_TILT);
+        (!is_tilted).then(|| Self {
             attitude,
             mount: Mount::new(&attitude, laser),
             ground_m: pose.z_m,
-            terrain,
+            ground,
             laser,
             ranges_mm,
         })
@@ -101,7 +101,7 @@ impl<'a> Look<'a> {
 
     /// The beams through the first doorway whose one jamb is a beam or one behind it.
     #[must_use]
-    pub fn doorway(&self, heights: &Heights<'_>, from: usize) -> Option<Range<usize>> {
+    pub fn next_doorway(&self, heights: &Heights<'_>, from: usize) -> Option<Range<usize>> {
         let last = self.ranges_mm.len();
         (from..last)
             .filter(|&left| self.is_jamb(left, left + 1))
@@ -118,7 +118,7 @@ impl<'a> Look<'a> {
     /// Whether a beam ends near, and nearer than the one beside it.
     fn is_jamb(&self, jamb: usize, beside: usize) -> bool {
         match (self.range(jamb), self.range(beside)) {
-            (Some(jamb), Some(beside)) => jamb < NEAR_MM && beside > jamb + NEARER_MM,
+            (Some(jamb), Some(beside)) => jamb < MAX_JAMB_MM && beside > jamb + JAMB_STEP_MM,
             _ => false,
         }
     }
@@ -131,8 +131,8 @@ impl<'a> Look<'a> {
         let [from, to] = [&a, &b].map(|ray| ray.at(ray.length_m));
         let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
         let width_m = math::sqrt(dx * dx + dy * dy);
-        let stands = |ray: &Ray| heights.is_standing(wall(ray));
-        if !(GAP_M..=DOORWAY_M).contains(&width_m) || !stands(&a) || !stands(&b) {
+        let stands = |ray: &Ray| heights.is_obstacle(wall(ray));
+        if !(MIN_DOORWAY_M..=MAX_DOORWAY_M).contains(&width_m) || !stands(&a) || !stands(&b) {
             return false;
         }
         // How far behind the threshold a point lies. Bearings grow counter-clockwise, so the second jamb is the left one.
@@ -144,28 +144,28 @@ impl<'a> Look<'a> {
                 let depth_m = behind_m(ray.at(ray.length_m));
                 deepest_m = deepest_m.max(depth_m);
                 let over_m = ray.height_m(ray.length_m) - self.ground_m;
-                depth_m > RECESS_M && over_m > self.terrain.obstacle_m
+                depth_m > RECESS_M && over_m > self.ground.obstacle_m
             })
         });
-        all && deepest_m > DEPTH_M
+        all && deepest_m > MIN_DEPTH_M
     }
 
     /// The cell that a beam ends in.
     #[must_use]
-    pub fn end(&self, number: usize) -> Option<Cell> {
+    pub fn end_cell(&self, number: usize) -> Option<Cell> {
         self.ray(number).map(|ray| wall(&ray))
     }
 
     /// Tell of what a beam sees, and of the space between it and the one before: they are farther apart than cells are wide, most of all
     /// where a wall runs along them. A cell may be told of more than once, and as both.
-    pub fn tell(&self, number: usize, mut found: impl FnMut(Cell, Part)) {
+    pub fn for_each_cell(&self, number: usize, mut found: impl FnMut(Cell, Part)) {
         let Some(ray) = self.ray(number) else {
             return;
         };
         if let Some(before) = number.checked_sub(1).and_then(|before| self.ray(before)) {
-            tell_between(&before, &ray, &mut found);
+            cells_between(&before, &ray, &mut found);
         }
-        tell_ray(&ray, 0.0, &mut found);
+        cells_of_ray(&ray, 0.0, &mut found);
     }
 }
 
@@ -174,7 +174,7 @@ fn wall(ray: &Ray) -> Cell {
 }
 
 /// Beams between two side by side, if these end on one wall: to points on the line between their ends.
-fn tell_between(one: &Ray, other: &Ray, found: &mut impl FnMut(Cell, Part)) {
+fn cells_between(one: &Ray, other: &Ray, found: &mut impl FnMut(Cell, Part)) {
     let [from, to] = [one, other].map(|ray| ray.at(ray.length_m));
     let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
     let apart_m = math::sqrt(dx * dx + dy * dy);
@@ -204,13 +204,13 @@ fn tell_between(one: &Ray, other: &Ray, found: &mut impl FnMut(Cell, Part)) {
                 length_m,
                 ..*one
             };
-            tell_ray(&ray, from_m, found);
+            cells_of_ray(&ray, from_m, found);
         }
     }
 }
 
 /// A beam from a length on.
-fn tell_ray(ray: &Ray, from_m: f32, found: &mut impl FnMut(Cell, Part)) {
+fn cells_of_ray(ray: &Ray, from_m: f32, found: &mut impl FnMut(Cell, Part)) {
     let wall = wall(ray);
     let mut s_m = from_m;
     while s_m < ray.length_m {
@@ -229,7 +229,7 @@ mod tests {
     use std::collections::BTreeMap;
     use std::vec::Vec;
 
-    use super::{Look, Part};
+    use super::{DoorwayView, Part};
     use crate::config::UnevenGround;
     use crate::geometry::{Cell, Point, Pose};
     use crate::ground::elevation::{Elevation, WINDOW_CELLS};
@@ -292,7 +292,7 @@ mod tests {
     }
 
     /// What is told of the cells, with walls before floor.
-    fn told(plan: &[&str; 7], pose: Pose, ranges_mm: &[u16]) -> BTreeMap<(i32, i32), Part> {
+    fn seen(plan: &[&str; 7], pose: Pose, ranges_mm: &[u16]) -> BTreeMap<(i32, i32), Part> {
         let (mut heights, mut marks) = (std::vec![0; 2 * WINDOW_CELLS], std::vec![0; WINDOW_CELLS]);
         let mut origin = Cell::default();
         let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
@@ -300,21 +300,21 @@ mod tests {
         for cell in (0..70).flat_map(|y| (0..80).map(move |x| Cell { x, y })) {
             let Point { x_m, y_m } = cell.centre();
             if stands(plan, x_m, y_m) {
-                (0..2).for_each(|_| window.stand(cell));
+                (0..2).for_each(|_| window.mark_obstacle(cell));
             }
         }
-        let (terrain, laser) = (UnevenGround::TABLE_I, Box::new(laser()));
+        let (ground, laser) = (UnevenGround::TABLE_I, Box::new(laser()));
         assert!(is_level(&laser));
         let mut cells = BTreeMap::new();
-        if let Some(look) = Look::new(&pose, &terrain, &laser, ranges_mm) {
+        if let Some(view) = DoorwayView::new(&pose, &ground, &laser, ranges_mm) {
             let mut from = 0;
-            while let Some(beams) = look.doorway(&window.read(), from) {
+            while let Some(beams) = view.next_doorway(&window.read(), from) {
                 from = beams.end;
                 for number in beams {
-                    look.tell(number, |Cell { x, y }, part| {
-                        let told = cells.entry((x, y)).or_insert(part);
+                    view.for_each_cell(number, |Cell { x, y }, part| {
+                        let cell = cells.entry((x, y)).or_insert(part);
                         if part == Part::Wall {
-                            *told = part;
+                            *cell = part;
                         }
                     });
                 }
@@ -325,7 +325,7 @@ mod tests {
 
     #[test]
     fn a_room_is_known_from_before_its_door() {
-        let cells = told(&ROOM, POSE, &scan(&ROOM));
+        let cells = seen(&ROOM, POSE, &scan(&ROOM));
         let (mut floor, mut wall) = (0, 0);
         for (&(x, y), part) in &cells {
             let (x_m, y_m) = (0.1 * x as f32 + 0.05, 0.1 * y as f32 + 0.05);
@@ -362,7 +362,7 @@ mod tests {
     #[test]
     fn what_is_no_room_says_nothing() {
         let silent = |plan: &[&str; 7], pose: Pose, ranges_mm: &[u16]| {
-            assert!(told(plan, pose, ranges_mm).is_empty());
+            assert!(seen(plan, pose, ranges_mm).is_empty());
         };
         // Nothing behind the gap.
         let mut open = ROOM;
@@ -377,13 +377,13 @@ mod tests {
         let mut shut = ROOM;
         shut[4] = "################";
         silent(&shut, POSE, &scan(&shut));
-        // A robot that leans: its level beams end on the ground, or over the walls.
-        let leans = Pose {
+        // A robot that is_tilted: its level beams end on the ground, or over the walls.
+        let is_tilted = Pose {
             pitch_rad: 0.06,
             ..POSE
         };
-        silent(&ROOM, leans, &scan(&ROOM));
-        // One that leans less, whose beams come down so far that they may end on the floor.
+        silent(&ROOM, is_tilted, &scan(&ROOM));
+        // One that is_tilted less, whose beams come down so far that they may end on the floor.
         let stoops = Pose {
             pitch_rad: 0.045,
             ..POSE

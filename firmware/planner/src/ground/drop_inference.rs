@@ -1,7 +1,7 @@
 //! Suspicions: ground that is held to be gone because the robot came near without measuring it.
 //!
 //! ```text
-//! held to be gone:  suspected, or on a rim;  within SETTLED_M of the robot;  nothing leads over it
+//! held to be gone:  suspected, or on a rim;  within NEAR_M of the robot;  nothing leads over it
 //! on a rim:         nothing was ever met in it, and of the eight cells around one is gone and one is measured
 //! ```
 //!
@@ -19,17 +19,22 @@
 
 use crate::config::UnevenGround;
 use crate::geometry::{CELL_M, Cell};
-use crate::ground::classify::{Steps, is_between, leads_over};
+use crate::ground::classify::{RiseLimits, is_bridged, spans_gap};
 use crate::ground::elevation::Elevation;
 use crate::math;
 
 /// Ground nearer to the robot than this that was never measured will not be, metres: the steep beams met level ground farther off, and would
 /// have met a slope.
-const SETTLED_M: f32 = 0.9;
+const NEAR_M: f32 = 0.9;
 
 /// Settle what is suspected around the robot at `middle`. Two heights may differ by `slack_m` for errors of the attitude alone.
-pub fn settle(elevation: &mut Elevation<'_>, terrain: &UnevenGround, middle: Cell, slack_m: f32) {
-    let reach = math::floor(SETTLED_M / CELL_M);
+pub fn infer_drops(
+    elevation: &mut Elevation<'_>,
+    ground: &UnevenGround,
+    middle: Cell,
+    slack_m: f32,
+) {
+    let reach = math::floor(NEAR_M / CELL_M);
     let side = 2 * reach + 1;
     let near = |k: i32| Cell {
         x: middle.x - reach + k % side,
@@ -38,24 +43,24 @@ pub fn settle(elevation: &mut Elevation<'_>, terrain: &UnevenGround, middle: Cel
     let all = 0..side * side;
     for cell in all.clone().map(near) {
         let heights = elevation.read();
-        if heights.is_suspect(cell) && !leads_over(&heights, terrain, cell, slack_m) {
+        if heights.is_possible_drop(cell) && !spans_gap(&heights, ground, cell, slack_m) {
             // Errors of the attitude raise suspicions on ground that was measured well before.
             if slack_m > 0.0 {
-                elevation.presume(cell);
+                elevation.infer_drop(cell);
             } else {
-                elevation.believe(cell);
+                elevation.confirm_drop(cell);
             }
         }
     }
-    let steps = Steps::new(terrain);
+    let limits = RiseLimits::new(ground);
     // There and back, so that it goes on along a rim both ways.
     for cell in all.clone().chain(all.rev()).map(near) {
         let heights = elevation.read();
-        if heights.is_on_a_rim(cell)
-            && !is_between(&heights, &steps, cell)
-            && !leads_over(&heights, terrain, cell, slack_m)
+        if heights.is_on_rim(cell)
+            && !is_bridged(&heights, &limits, cell)
+            && !spans_gap(&heights, ground, cell, slack_m)
         {
-            elevation.presume(cell);
+            elevation.infer_drop(cell);
         }
     }
 }
@@ -65,17 +70,17 @@ mod tests {
     use std::string::String;
     use std::vec;
 
-    use super::settle;
+    use super::infer_drops;
     use crate::config::UnevenGround;
     use crate::geometry::Cell;
     use crate::grid::Row;
-    use crate::ground::classify::{self, Steps};
+    use crate::ground::classify::{self, RiseLimits};
     use crate::ground::elevation::{Elevation, Heights, WINDOW_CELLS};
     use crate::map::{Class, Tiles};
 
     /// What two steps make of rows from the north, the robot in the middle of them: `.` measured at 0, `v` seen to be gone, `s` suspected,
     /// anything else never met.
-    fn settled(rows: &[&str]) -> String {
+    fn after_inference(rows: &[&str]) -> String {
         let mut heights = vec![0; 2 * WINDOW_CELLS];
         let mut marks = vec![0; WINDOW_CELLS];
         let mut origin = Cell::default();
@@ -91,18 +96,18 @@ mod tests {
             let cell = place((r, k));
             match rows[r as usize].as_bytes()[k as usize] {
                 b'.' => window.measure(cell, 0.0),
-                b'v' => window.sink(cell),
-                b's' => window.suspect(cell),
+                b'v' => window.mark_drop(cell),
+                b's' => window.mark_possible_drop(cell),
                 _ => {}
             }
         }
         for _ in 0..2 {
-            settle(&mut window, &UnevenGround::TABLE_I, Cell::default(), 0.0);
+            infer_drops(&mut window, &UnevenGround::TABLE_I, Cell::default(), 0.0);
         }
         let drawn = |heights: &Heights<'_>, cell: Cell| match () {
-            () if heights.is_sunken(cell) => 'v',
+            () if heights.is_drop(cell) => 'v',
             () if heights.count(cell) > 0 => '.',
-            () if heights.is_suspect(cell) => 's',
+            () if heights.is_possible_drop(cell) => 's',
             () => ' ',
         };
         let heights = window.read();
@@ -115,7 +120,7 @@ mod tests {
 
     #[test]
     fn a_rim_goes_on_around_the_corner_along_measured_ground() {
-        let seen = settled(&[
+        let seen = after_inference(&[
             "........       ",
             "........       ",
             "........       ",
@@ -161,7 +166,7 @@ mod tests {
         let mut expected = rows;
         expected[1..3].fill("              v");
         assert_eq!(
-            settled(&rows),
+            after_inference(&rows),
             expected.map(|row| std::format!("{row}\n")).concat()
         );
     }
@@ -169,7 +174,7 @@ mod tests {
     /// A suspicion that is settled says nothing of the next one, which ground on all sides leads over.
     #[test]
     fn one_suspicion_does_not_settle_another() {
-        let seen = settled(&[
+        let seen = after_inference(&[
             "...............",
             "...............",
             "...............",
@@ -191,13 +196,13 @@ mod tests {
         let mut origin = Cell::default();
         let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
         window.follow(Cell { x: 32, y: 32 });
-        window.presume(Cell { x: 3, y: 9 });
-        window.sink(Cell { x: 5, y: 9 });
-        window.suspect(Cell { x: 7, y: 9 });
-        window.believe(Cell { x: 7, y: 9 });
+        window.infer_drop(Cell { x: 3, y: 9 });
+        window.mark_drop(Cell { x: 5, y: 9 });
+        window.mark_possible_drop(Cell { x: 7, y: 9 });
+        window.confirm_drop(Cell { x: 7, y: 9 });
         classify::row(
             &window.read(),
-            &Steps::new(&UnevenGround::TABLE_I),
+            &RiseLimits::new(&UnevenGround::TABLE_I),
             9,
             known,
         )
@@ -207,8 +212,8 @@ mod tests {
     /// A robot that comes again, or backs, has nothing in the window but the strip that it stands on; but what was free from the other side, a
     /// hole's wall or the foot of a kerb, is gone from this one.
     #[test]
-    fn what_is_presumed_to_be_gone_is_not_where_ground_was_measured_before_and_what_a_beam_told_is()
-    {
+    fn what_is_inferred_drop_to_be_gone_is_not_where_ground_was_measured_before_and_what_a_beam_told_is()
+     {
         let (presumed, told) = (1 << 3, 1 << 5 | 1 << 7);
         for (class, expected) in [
             (Class::Unknown, presumed | told),
@@ -236,15 +241,15 @@ mod tests {
             window.measure(Cell { x, y }, 0.0);
         }
         let behind = Cell { x: 1, y: 0 };
-        window.suspect(behind);
-        settle(
+        window.mark_possible_drop(behind);
+        infer_drops(
             &mut window,
             &UnevenGround::TABLE_I,
             Cell::default(),
             slack_m,
         );
         let heights = window.read();
-        (heights.is_sunken(behind), heights.is_presumed(behind))
+        (heights.is_drop(behind), heights.is_inferred_drop(behind))
     }
 
     #[test]

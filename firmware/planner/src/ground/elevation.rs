@@ -1,7 +1,7 @@
 //! The elevation window: 64 × 64 cells around the robot, each with the running mean of the heights measured in it.
 //!
 //! ```text
-//! h ← h + (z − h) / n,    n = min(measurements so far, MOST_COUNT)          [Maffei20, III-B]
+//! h ← h + (z − h) / n,    n = min(measurements so far, MAX_COUNT)          [Maffei20, III-B]
 //! ```
 //!
 //! A height is an [`I7F9`]: ±64 m around the start in steps of 2 mm. Beside it lies a byte of marks: how often the cell was
@@ -19,14 +19,14 @@ use fixed::types::I7F9;
 
 use crate::geometry::Cell;
 use crate::ground::heights::{
-    COUNT, ONE_STANDING, PRESUMED, STANDING, SUNKEN, SUSPECT, is_glimpse, slot,
+    COUNT, DROP, INFERRED_DROP, POSSIBLE_DROP, SCORE, SCORE_STEP, is_low_confidence, slot,
 };
 pub use crate::ground::heights::{Ground, Heights, WINDOW_CELLS, WINDOW_SIDE, metres};
 
 /// Measurements that a mean remembers.
-const MOST_COUNT: u8 = 15;
+const MAX_COUNT: u8 = 15;
 /// What is farther off a mean, in steps of a height, may be false: 0.15 m.
-const OUTLIER: i32 = I7F9::lit("0.15").to_bits() as i32;
+const OUTLIER_STEPS: i32 = I7F9::lit("0.15").to_bits() as i32;
 
 /// The window.
 #[derive(Debug)]
@@ -109,27 +109,27 @@ impl<'a> Elevation<'a> {
     /// counts for less, until it gives way, and where there was but one before, the lower one stays. Then the ground is not gone, and what stands there stands less surely. Outside the
     /// window nothing happens.
     pub fn measure(&mut self, cell: Cell, height_m: f32) {
-        self.forget_glimpse(cell);
+        self.discard_low_confidence(cell);
         self.average(cell, height_m);
     }
 
     /// Ground was met in a cell from too far off to measure it: into the mean of such, if it was never measured.
-    pub fn glimpse(&mut self, cell: Cell, height_m: f32) {
+    pub fn measure_low_confidence(&mut self, cell: Cell, height_m: f32) {
         if self.read().count(cell) > 0 {
             return;
         }
         self.average(cell, height_m);
         if let Some(mark) = self.mark_mut(cell) {
-            *mark |= SUNKEN;
+            *mark |= DROP;
         }
     }
 
     /// What was but glimpsed gives way.
-    fn forget_glimpse(&mut self, cell: Cell) {
+    fn discard_low_confidence(&mut self, cell: Cell) {
         if let Some(mark) = self.mark_mut(cell)
-            && is_glimpse(*mark)
+            && is_low_confidence(*mark)
         {
-            *mark &= STANDING;
+            *mark &= SCORE;
         }
     }
 
@@ -142,7 +142,7 @@ impl<'a> Elevation<'a> {
         else {
             return;
         };
-        let count = (*mark & COUNT).saturating_add(1).min(MOST_COUNT);
+        let count = (*mark & COUNT).saturating_add(1).min(MAX_COUNT);
         let height = I7F9::saturating_from_num(if height_m.is_nan() { 0.0 } else { height_m });
         let mean = i32::from(if count == 1 {
             height.to_bits()
@@ -151,7 +151,7 @@ impl<'a> Elevation<'a> {
         });
         let off = i32::from(height.to_bits()) - mean;
         let n = i32::from(count);
-        if off.abs() > OUTLIER {
+        if off.abs() > OUTLIER_STEPS {
             *mark = *mark & !COUNT | count.saturating_sub(2).max(1);
             if count == 2 && off < 0 {
                 *stored = height.to_le_bytes();
@@ -161,47 +161,47 @@ impl<'a> Elevation<'a> {
         // Rounded to nearest, so that a mean does not creep downwards.
         let mean = mean + (2 * off + n).div_euclid(2 * n);
         *stored = I7F9::from_bits(mean as i16).to_le_bytes();
-        let standing = (*mark & STANDING).saturating_sub(ONE_STANDING) & STANDING;
+        let standing = (*mark & SCORE).saturating_sub(SCORE_STEP) & SCORE;
         *mark = standing | count;
     }
 
     /// Something was met that stands in a cell.
-    pub fn stand(&mut self, cell: Cell) {
-        self.forget_glimpse(cell);
+    pub fn mark_obstacle(&mut self, cell: Cell) {
+        self.discard_low_confidence(cell);
         if let Some(mark) = self.mark_mut(cell) {
-            let standing = (*mark & STANDING).saturating_add(2 * ONE_STANDING);
-            *mark = *mark & COUNT | standing.min(STANDING);
+            let standing = (*mark & SCORE).saturating_add(2 * SCORE_STEP);
+            *mark = *mark & COUNT | standing.min(SCORE);
         }
     }
 
     /// The ground of a cell that was never measured was seen to be gone.
-    pub fn sink(&mut self, cell: Cell) {
-        self.doubt(cell, SUNKEN, [0; 2]);
+    pub fn mark_drop(&mut self, cell: Cell) {
+        self.mark_unmeasured(cell, DROP, [0; 2]);
     }
 
     /// The ground of a cell that was never measured may be gone.
-    pub fn suspect(&mut self, cell: Cell) {
-        if !self.read().is_sunken(cell) {
-            self.doubt(cell, 0, SUSPECT);
+    pub fn mark_possible_drop(&mut self, cell: Cell) {
+        if !self.read().is_drop(cell) {
+            self.mark_unmeasured(cell, 0, POSSIBLE_DROP);
         }
     }
 
     /// Ground that was suspected to be gone is held to be.
-    pub fn believe(&mut self, cell: Cell) {
-        if !self.read().is_sunken(cell) {
-            self.doubt(cell, SUNKEN, SUSPECT);
+    pub fn confirm_drop(&mut self, cell: Cell) {
+        if !self.read().is_drop(cell) {
+            self.mark_unmeasured(cell, DROP, POSSIBLE_DROP);
         }
     }
 
     /// Ground that lies beside what is gone, or was suspected in an attitude that errs, is held to be gone where the map knows of none.
-    pub fn presume(&mut self, cell: Cell) {
-        if !self.read().is_sunken(cell) {
-            self.doubt(cell, SUNKEN, PRESUMED);
+    pub fn infer_drop(&mut self, cell: Cell) {
+        if !self.read().is_drop(cell) {
+            self.mark_unmeasured(cell, DROP, INFERRED_DROP);
         }
     }
 
     /// What is said of a cell where no ground was ever met.
-    fn doubt(&mut self, cell: Cell, mark: u8, stored: [u8; 2]) {
+    fn mark_unmeasured(&mut self, cell: Cell, mark: u8, stored: [u8; 2]) {
         if let Some(slot) = slot(*self.origin, cell)
             && let (Some(of_cell), Some(height)) =
                 (self.marks.get_mut(slot), self.heights.get_mut(slot))
@@ -213,8 +213,8 @@ impl<'a> Elevation<'a> {
     }
 
     /// The robot stands on a cell.
-    pub fn tread(&mut self, cell: Cell, height_m: f32) {
-        self.forget_glimpse(cell);
+    pub fn mark_wheel_contact(&mut self, cell: Cell, height_m: f32) {
+        self.discard_low_confidence(cell);
         if let Some(mark) = self.mark_mut(cell) {
             *mark &= COUNT;
         }

@@ -13,21 +13,21 @@ pub const WINDOW_CELLS: usize = (WINDOW_SIDE * WINDOW_SIDE) as usize;
 /// Bits of the count.
 pub(super) const COUNT: u8 = 0x0f;
 /// Bits of what stands.
-pub(super) const STANDING: u8 = 0x70;
+pub(super) const SCORE: u8 = 0x70;
 /// One hit of something that stands.
-pub(super) const ONE_STANDING: u8 = 0x10;
+pub(super) const SCORE_STEP: u8 = 0x10;
 /// The ground seems to be gone; with a count, the height is but glimpsed.
-pub(super) const SUNKEN: u8 = 0x80;
+pub(super) const DROP: u8 = 0x80;
 /// Hits from which on something stands there: fewer are false returns.
-const SURE: u8 = 3;
+const OBSTACLE_FROM_STEPS: u8 = 3;
 
 /// What is known of the ground of a cell, if anything is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ground {
     /// Measured, metres.
-    At(f32),
+    Measured(f32),
     /// Never measured, and held to be gone.
-    Doubtful,
+    Uncertain,
     /// Seen to be gone, or something stands on it.
     Blocked,
 }
@@ -43,14 +43,18 @@ pub struct Heights<'a> {
 
 /// Whether a mark is of a height that is but glimpsed.
 #[inline(always)]
-pub(super) const fn is_glimpse(mark: u8) -> bool {
-    mark & SUNKEN != 0 && mark & COUNT != 0
+pub(super) const fn is_low_confidence(mark: u8) -> bool {
+    mark & DROP != 0 && mark & COUNT != 0
 }
 
 /// How often a cell of this mark was measured.
 #[inline(always)]
 const fn measured(mark: u8) -> u8 {
-    if is_glimpse(mark) { 0 } else { mark & COUNT }
+    if is_low_confidence(mark) {
+        0
+    } else {
+        mark & COUNT
+    }
 }
 
 /// Where a cell of the window at `origin` is stored; `None` outside of it.
@@ -108,8 +112,8 @@ impl<'a> Heights<'a> {
 
     /// The mean height of a cell that was glimpsed and never measured, metres.
     #[must_use]
-    pub fn glimpse_m(&self, cell: Cell) -> Option<f32> {
-        let slot = slot(self.origin, cell).filter(|&slot| is_glimpse(self.mark(slot)))?;
+    pub fn low_confidence_m(&self, cell: Cell) -> Option<f32> {
+        let slot = slot(self.origin, cell).filter(|&slot| is_low_confidence(self.mark(slot)))?;
         Some(metres(I7F9::from_le_bytes(*self.heights.get(slot)?)))
     }
 
@@ -123,16 +127,16 @@ impl<'a> Heights<'a> {
             return None;
         }
         let stored = *self.heights.get(slot)?;
-        if mark & STANDING >= SURE * ONE_STANDING {
+        if mark & SCORE >= OBSTACLE_FROM_STEPS * SCORE_STEP {
             Some(Ground::Blocked)
-        } else if mark & (COUNT | SUNKEN) == SUNKEN {
-            Some(if stored == SUSPECT || stored == PRESUMED {
-                Ground::Doubtful
+        } else if mark & (COUNT | DROP) == DROP {
+            Some(if stored == POSSIBLE_DROP || stored == INFERRED_DROP {
+                Ground::Uncertain
             } else {
                 Ground::Blocked
             })
         } else {
-            (measured(mark) > 0).then(|| Ground::At(metres(I7F9::from_le_bytes(stored))))
+            (measured(mark) > 0).then(|| Ground::Measured(metres(I7F9::from_le_bytes(stored))))
         }
     }
 
@@ -144,20 +148,20 @@ impl<'a> Heights<'a> {
 
     /// Whether something stands in a cell.
     #[must_use]
-    pub fn is_standing(&self, cell: Cell) -> bool {
+    pub fn is_obstacle(&self, cell: Cell) -> bool {
         slot(self.origin, cell)
-            .is_some_and(|slot| self.mark(slot) & STANDING >= SURE * ONE_STANDING)
+            .is_some_and(|slot| self.mark(slot) & SCORE >= OBSTACLE_FROM_STEPS * SCORE_STEP)
     }
 
     /// Whether the ground of a cell seems to be gone.
     #[must_use]
-    pub fn is_sunken(&self, cell: Cell) -> bool {
-        slot(self.origin, cell).is_some_and(|slot| self.mark(slot) & (COUNT | SUNKEN) == SUNKEN)
+    pub fn is_drop(&self, cell: Cell) -> bool {
+        slot(self.origin, cell).is_some_and(|slot| self.mark(slot) & (COUNT | DROP) == DROP)
     }
 
     /// Whether nothing was ever met in a cell, and of the eight around one seems to be gone and one is measured.
     #[must_use]
-    pub fn is_on_a_rim(&self, cell: Cell) -> bool {
+    pub fn is_on_rim(&self, cell: Cell) -> bool {
         let around = || {
             (-1..=1)
                 .flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)))
@@ -167,32 +171,32 @@ impl<'a> Heights<'a> {
                 })
         };
         slot(self.origin, cell).is_some_and(|slot| self.mark(slot) == 0)
-            && around().any(|near| self.is_sunken(near))
+            && around().any(|near| self.is_drop(near))
             && around().any(|near| self.count(near) > 0)
     }
 
     /// Whether the ground of a cell is but presumed to be gone: it lies on a rim, or was suspected in an attitude that errs.
     #[must_use]
-    pub fn is_presumed(&self, cell: Cell) -> bool {
+    pub fn is_inferred_drop(&self, cell: Cell) -> bool {
         slot(self.origin, cell).is_some_and(|slot| {
-            self.mark(slot) & (COUNT | SUNKEN) == SUNKEN
-                && self.heights.get(slot) == Some(&PRESUMED)
+            self.mark(slot) & (COUNT | DROP) == DROP
+                && self.heights.get(slot) == Some(&INFERRED_DROP)
         })
     }
 
     /// Whether the ground of a cell never measured is suspected to be gone, and not yet believed to be.
     #[must_use]
-    pub fn is_suspect(&self, cell: Cell) -> bool {
+    pub fn is_possible_drop(&self, cell: Cell) -> bool {
         slot(self.origin, cell).is_some_and(|slot| {
-            self.mark(slot) & (COUNT | SUNKEN) == 0 && self.heights.get(slot) == Some(&SUSPECT)
+            self.mark(slot) & (COUNT | DROP) == 0 && self.heights.get(slot) == Some(&POSSIBLE_DROP)
         })
     }
 }
 
 /// What the height of a cell never measured says if its ground is suspected to be gone, or but held to be for that.
-pub(super) const SUSPECT: [u8; 2] = [1, 0];
+pub(super) const POSSIBLE_DROP: [u8; 2] = [1, 0];
 /// And if it is but presumed to be gone; nothing else is ever stored there.
-pub(super) const PRESUMED: [u8; 2] = [2, 0];
+pub(super) const INFERRED_DROP: [u8; 2] = [2, 0];
 
 /// A stored height in metres.
 #[inline(always)]

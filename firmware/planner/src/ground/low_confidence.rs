@@ -1,7 +1,7 @@
 //! Glimpses: ground met from farther off than the attitude lets heights be measured.
 //!
 //! ```text
-//! enough:  |z − h| ≤ SLACK_M + GENTLE climb d        h measured nearest on the way to the robot, d away over ground, d ≤ NEAR
+//! enough:  |z − h| ≤ TOLERANCE_M + CLIMB_SHARE climb d        h measured nearest on the way to the robot, d away over ground, d ≤ MAX_CELLS
 //! ```
 //!
 //! Over the brow of a slope tilted beams meet the ground far off only, until the robot itself tilts; of an attitude that is not sure nothing
@@ -15,16 +15,16 @@ use crate::ground::elevation::{Heights, WINDOW_SIDE};
 
 /// From farther off than this to either side of the robot glimpses are not enough, cells: tilted beams meet level ground beyond, and
 /// measure it.
-const NEAR: i32 = 9;
+const MAX_CELLS: i32 = 9;
 /// What a mean of glimpses errs by, metres.
-const SLACK_M: f32 = 0.10;
+const TOLERANCE_M: f32 = 0.10;
 /// The part of the climb by which ground may rise or fall on the way to a glimpse.
-const GENTLE: f32 = 0.75;
+const CLIMB_SHARE: f32 = 0.75;
 
 /// Whether a cell that was only glimpsed is as good as measured to the robot in the window's middle, which climbs so much.
 #[must_use]
-pub fn is_enough(heights: &Heights<'_>, climb: f32, cell: Cell) -> bool {
-    let Some(glimpse_m) = heights.glimpse_m(cell) else {
+pub fn is_usable(heights: &Heights<'_>, climb: f32, cell: Cell) -> bool {
+    let Some(low_confidence_m) = heights.low_confidence_m(cell) else {
         return false;
     };
     let origin = heights.origin();
@@ -33,7 +33,7 @@ pub fn is_enough(heights: &Heights<'_>, climb: f32, cell: Cell) -> bool {
         origin.y + WINDOW_SIDE / 2 - cell.y,
     );
     let way = dx.abs().max(dy.abs());
-    if way > NEAR {
+    if way > MAX_CELLS {
         return false;
     }
     let far_m = crate::math::sqrt((dx * dx + dy * dy) as f32) * CELL_M;
@@ -42,12 +42,12 @@ pub fn is_enough(heights: &Heights<'_>, climb: f32, cell: Cell) -> bool {
             x: cell.x + nearest(k * dx, way),
             y: cell.y + nearest(k * dy, way),
         };
-        if heights.is_standing(on) || heights.is_sunken(on) {
+        if heights.is_obstacle(on) || heights.is_drop(on) {
             return false;
         }
         if let Some(height_m) = heights.height_m(on) {
             let d_m = far_m * k as f32 / way as f32;
-            return (glimpse_m - height_m).abs() <= SLACK_M + GENTLE * climb * d_m;
+            return (low_confidence_m - height_m).abs() <= TOLERANCE_M + CLIMB_SHARE * climb * d_m;
         }
     }
     false
@@ -63,7 +63,7 @@ mod tests {
     use std::boxed::Box;
     use std::vec;
 
-    use super::is_enough;
+    use super::is_usable;
     use crate::geometry::Cell;
     use crate::ground::elevation::{Elevation, WINDOW_CELLS};
 
@@ -72,7 +72,7 @@ mod tests {
     const CELL: Cell = Cell { x: 6, y: 2 };
 
     /// Level ground measured as far as column 3, and a glimpse three cells on.
-    fn is_enough_at(glimpse_m: f32, before: impl Fn(&mut Elevation<'_>)) -> bool {
+    fn is_usable_at(low_confidence_m: f32, before: impl Fn(&mut Elevation<'_>)) -> bool {
         let mut heights: Box<[u8]> = vec![0; 2 * WINDOW_CELLS].into();
         let mut marks: Box<[u8]> = vec![0; WINDOW_CELLS].into();
         let mut origin = Cell::default();
@@ -83,39 +83,43 @@ mod tests {
                 window.measure(Cell { x, y }, 0.0);
             }
         }
-        window.glimpse(CELL, glimpse_m);
+        window.measure_low_confidence(CELL, low_confidence_m);
         before(&mut window);
-        is_enough(&window.read(), CLIMB, CELL)
+        is_usable(&window.read(), CLIMB, CELL)
     }
 
     #[test]
     fn what_a_gentle_slope_leads_to_is_enough() {
         // 0.10 + 0.75 · 0.36 · 0.316
-        for (glimpse_m, enough) in [
+        for (low_confidence_m, enough) in [
             (0.0, true),
             (-0.17, true),
             (0.17, true),
             (-0.20, false),
             (0.20, false),
         ] {
-            assert_eq!(is_enough_at(glimpse_m, |_| ()), enough, "{glimpse_m}");
+            assert_eq!(
+                is_usable_at(low_confidence_m, |_| ()),
+                enough,
+                "{low_confidence_m}"
+            );
         }
     }
 
     #[test]
     fn what_is_gone_or_stands_on_the_way_is_not_led_over() {
         let between = Cell { x: 4, y: 1 };
-        assert!(!is_enough_at(0.0, |window| window.sink(between)));
-        assert!(!is_enough_at(0.0, |window| {
-            window.stand(between);
-            window.stand(between);
+        assert!(!is_usable_at(0.0, |window| window.mark_drop(between)));
+        assert!(!is_usable_at(0.0, |window| {
+            window.mark_obstacle(between);
+            window.mark_obstacle(between);
         }));
     }
 
     #[test]
     fn measured_ground_and_ground_far_off_are_no_matter_of_glimpses() {
-        assert!(!is_enough_at(0.0, |window| window.measure(CELL, 0.0)));
-        assert!(!is_enough_at(0.0, |window| {
+        assert!(!is_usable_at(0.0, |window| window.measure(CELL, 0.0)));
+        assert!(!is_usable_at(0.0, |window| {
             window.follow(Cell { x: -4, y: 0 });
         }));
     }

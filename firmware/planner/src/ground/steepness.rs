@@ -14,7 +14,7 @@
 //! heights in steps of [`fixed::types::I7F9`].
 
 use crate::geometry::Cell;
-use crate::ground::classify::Steps;
+use crate::ground::classify::RiseLimits;
 use crate::ground::elevation::Heights;
 
 /// Beside a cell, to all sides.
@@ -26,7 +26,7 @@ const CORNERS: [(i32, i32); 4] = [(2, 2), (-2, 2), (-2, -2), (2, -2)];
 
 /// How a cell lies too high.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fall {
+pub enum Steepness {
     /// Over a cell beside it.
     Edge,
     /// On a slope too steep to be climbed.
@@ -35,41 +35,41 @@ pub enum Fall {
 
 /// How a cell of this height lies too high over those near it, if it does; `near` tells the heights of the measured ones.
 #[inline(always)]
-pub fn too_high(
-    steps: &Steps,
+pub fn steepness(
+    limits: &RiseLimits,
     height: i32,
     near: impl Fn(i32, i32) -> Option<i32>,
-) -> Option<Fall> {
+) -> Option<Steepness> {
     let fall = |(dx, dy): (i32, i32)| near(dx, dy).map(|low| height - low);
     let is_edge = |fall: Option<i32>, most: i32| fall.is_some_and(|fall| fall > most);
     let two = TWO.map(fall);
     let is_smeared = |near: Option<i32>, (dx, dy): (i32, i32)| {
         let far = || fall((2 * dx, 2 * dy));
-        near.filter(|&near| near > steps.half)
+        near.filter(|&near| near > limits.half)
             .and_then(|near| Some((near, far()?)))
-            .is_some_and(|(near, far)| far > steps.four && far - near > steps.half)
+            .is_some_and(|(near, far)| far > limits.four && far - near > limits.half)
     };
     if ONE
         .into_iter()
-        .any(|beside| is_edge(fall(beside), steps.one))
-        || two.into_iter().any(|fall| is_edge(fall, steps.two))
+        .any(|beside| is_edge(fall(beside), limits.one))
+        || two.into_iter().any(|fall| is_edge(fall, limits.two))
         || CORNERS
             .into_iter()
-            .any(|corner| is_edge(fall(corner), steps.two_corner))
+            .any(|corner| is_edge(fall(corner), limits.two_corner))
         || two
             .into_iter()
             .zip(TWO)
             .any(|(near, way)| is_smeared(near, way))
     {
-        Some(Fall::Edge)
+        Some(Steepness::Edge)
     } else {
-        is_too_steep(steps, two).then_some(Fall::Slope)
+        is_too_steep(limits, two).then_some(Steepness::Slope)
     }
 }
 
 /// Whether the ground falls more steeply than may be climbed, where it falls by so much to the cells [`TWO`] away.
 #[inline(always)]
-fn is_too_steep(steps: &Steps, [east, north, west, south]: [Option<i32>; 4]) -> bool {
+fn is_too_steep(limits: &RiseLimits, [east, north, west, south]: [Option<i32>; 4]) -> bool {
     // By how much it falls from the cell, and to it. What is more than enough needs no square.
     let halves = |there: Option<i32>, here: Option<i32>| {
         let (there, here) = there.zip(here).unwrap_or_default();
@@ -77,19 +77,19 @@ fn is_too_steep(steps: &Steps, [east, north, west, south]: [Option<i32>; 4]) -> 
         if down < 0 || up < 0 {
             return (0, 0);
         }
-        (down.min(steps.four + 1), up.min(steps.four + 1))
+        (down.min(limits.four + 1), up.min(limits.four + 1))
     };
     let ((down_x, up_x), (down_y, up_y)) = (halves(east, west), halves(north, south));
     let is_longer = |x: i32, y: i32, than: i32| x * x + y * y > than * than;
-    is_longer(down_x + up_x, down_y + up_y, steps.four)
-        && is_longer(down_x, down_y, steps.half)
-        && is_longer(up_x, up_y, steps.half)
+    is_longer(down_x + up_x, down_y + up_y, limits.four)
+        && is_longer(down_x, down_y, limits.half)
+        && is_longer(up_x, up_y, limits.half)
 }
 
 /// Whether what a fall was told from was measured more than once: once may be a false return, and of an attitude that was off.
 #[inline(never)]
 #[must_use]
-pub fn is_sure(heights: &Heights<'_>, cell: Cell, fall: Fall) -> bool {
+pub fn is_confirmed(heights: &Heights<'_>, cell: Cell, steepness: Steepness) -> bool {
     let count = |(dx, dy): (i32, i32)| {
         heights.count(Cell {
             x: cell.x + dx,
@@ -97,7 +97,7 @@ pub fn is_sure(heights: &Heights<'_>, cell: Cell, fall: Fall) -> bool {
         })
     };
     let is_measured_once = |away: (i32, i32)| count(away) == 1;
-    count((0, 0)) > 1 && (fall == Fall::Edge || !TWO.into_iter().any(is_measured_once))
+    count((0, 0)) > 1 && (steepness == Steepness::Edge || !TWO.into_iter().any(is_measured_once))
 }
 
 #[cfg(test)]
@@ -106,7 +106,7 @@ mod tests {
     use crate::geometry::{Cell, Point};
     use crate::grid::Row;
     use crate::ground::attitude_filter::tests::normal;
-    use crate::ground::classify::{Classes, Steps, row};
+    use crate::ground::classify::{Classes, RiseLimits, row};
     use crate::ground::elevation::{Elevation, WINDOW_CELLS};
 
     /// Rows and columns that have ground to all sides.
@@ -134,8 +134,8 @@ mod tests {
                 }
             }
         }
-        let steps = Steps::new(&UnevenGround::TABLE_I);
-        core::array::from_fn(|k| row(&window.read(), &steps, k as i32 - 32, Row::default()))
+        let limits = RiseLimits::new(&UnevenGround::TABLE_I);
+        core::array::from_fn(|k| row(&window.read(), &limits, k as i32 - 32, Row::default()))
     }
 
     /// Obstacles among the cells that have ground to all sides.
@@ -231,11 +231,11 @@ mod tests {
             window.measure(Cell { x, y }, height_m);
             window.measure(Cell { x, y }, height_m);
         }
-        let steps = Steps::new(&UnevenGround {
+        let limits = RiseLimits::new(&UnevenGround {
             step_m: 9.0,
             ..UnevenGround::TABLE_I
         });
-        let of = |y: i32| row(&window.read(), &steps, y, Row::default());
+        let of = |y: i32| row(&window.read(), &limits, y, Row::default());
         assert_eq!(of(0).obstacle, 0);
         // Four cells to the lower side are measured of the fifth cell from the left on, and two to both sides of the third.
         assert_eq!(of(1).obstacle, u64::MAX << 2);

@@ -202,13 +202,13 @@ fn a_corner_is_not_led_over_and_a_gap_is() {
             window.measure(cell, 0.0);
         }
         let asked = Cell { x: 2, y: 2 };
-        let leads = classify::leads_over(&window.read(), &UnevenGround::TABLE_I, asked, 0.0);
+        let leads = classify::spans_gap(&window.read(), &UnevenGround::TABLE_I, asked, 0.0);
         assert_eq!(leads, expected, "corner: {corner}");
     }
 }
 
 /// Ground by the column, with a gap of eight cells that was never measured; whether the gap is led over in its middle.
-fn leads_over_gap(slack_m: f32, height_m: impl Fn(f32) -> f32) -> bool {
+fn spans_gap(slack_m: f32, height_m: impl Fn(f32) -> f32) -> bool {
     let mut heights = std::vec![0; 2 * WINDOW_CELLS];
     let mut marks = std::vec![0; WINDOW_CELLS];
     let mut origin = Cell::default();
@@ -219,13 +219,13 @@ fn leads_over_gap(slack_m: f32, height_m: impl Fn(f32) -> f32) -> bool {
         window.measure(cell, height_m(cell.centre().x_m));
     }
     let asked = Cell { x: 4, y: 2 };
-    classify::leads_over(&window.read(), &UnevenGround::TABLE_I, asked, slack_m)
+    classify::spans_gap(&window.read(), &UnevenGround::TABLE_I, asked, slack_m)
 }
 
 /// From above both look alike across the gap, a fifth of a metre down; beside it they do not.
 #[test]
 fn a_brow_is_led_over_and_a_kerb_in_a_gap_is_not() {
-    let leads = |height_m: fn(f32) -> f32| leads_over_gap(0.0, height_m);
+    let leads = |height_m: fn(f32) -> f32| spans_gap(0.0, height_m);
     assert!(leads(|x| -0.15 * x * x.max(0.0)), "a brow");
     assert!(leads(|x| -0.2 * x), "a slope");
     assert!(!leads(|x| if x > 0.4 { -0.2 } else { 0.0 }));
@@ -233,14 +233,14 @@ fn a_brow_is_led_over_and_a_kerb_in_a_gap_is_not() {
     let steep = |x: f32| -0.33 * x;
     assert!(leads(steep), "a slope that may be climbed");
     assert!(
-        !leads_over_gap(0.001, steep),
+        !spans_gap(0.001, steep),
         "as steep as a shadow, and an attitude that errs"
     );
 }
 
 /// Whether the middle of a gap of eight by eight cells in level ground is led over, of which one cell beside the gap was first measured half a
 /// metre too high, and then `again` times.
-fn leads_over_beside_a_false_height(slack_m: f32, again: u32) -> bool {
+fn spans_beside_a_false_height(slack_m: f32, again: u32) -> bool {
     let mut heights = std::vec![0; 2 * WINDOW_CELLS];
     let mut marks = std::vec![0; WINDOW_CELLS];
     let mut origin = Cell::default();
@@ -259,15 +259,15 @@ fn leads_over_beside_a_false_height(slack_m: f32, again: u32) -> bool {
         window.measure(wrong, 0.5);
     }
     let asked = Cell { x: 4, y: 4 };
-    classify::leads_over(&window.read(), &UnevenGround::TABLE_I, asked, slack_m)
+    classify::spans_gap(&window.read(), &UnevenGround::TABLE_I, asked, slack_m)
 }
 
 #[test]
 fn one_height_beside_a_gap_may_be_a_false_return_and_forbids_nothing() {
-    assert!(leads_over_beside_a_false_height(0.0, 0));
-    assert!(!leads_over_beside_a_false_height(0.0, 1));
+    assert!(spans_beside_a_false_height(0.0, 0));
+    assert!(!spans_beside_a_false_height(0.0, 1));
     assert!(
-        !leads_over_beside_a_false_height(0.05, 0),
+        !spans_beside_a_false_height(0.05, 0),
         "an attitude that errs"
     );
 }
@@ -284,9 +284,9 @@ fn errors_of_the_attitude_do_not_make_ground_be_gone() {
     };
     let slope = |x: f32| -0.2 * x + lift_m(x);
     let steep = |x: f32| if x > 0.4 { -0.5 } else { 0.0 };
-    assert!(!leads_over_gap(0.0, slope));
-    assert!(leads_over_gap(0.085, slope));
-    assert!(!leads_over_gap(0.085, steep), "a drop of half a metre");
+    assert!(!spans_gap(0.0, slope));
+    assert!(spans_gap(0.085, slope));
+    assert!(!spans_gap(0.085, steep), "a drop of half a metre");
 }
 
 #[test]

@@ -10,7 +10,7 @@
 //! pages run short, every tile away from the robot is *folded* as far as it can be, and *unfolded* before the robot's window comes to it.
 //! Reading sees no difference. A folded tile is not written, except that free stays free.
 //!
-//! Spare pages and spare halves are two lists: the first word of each holds the next one's number, plus 1. Two halves of a page that are
+//! FreeList pages and spare halves are two lists: the first word of each holds the next one's number, plus 1. Two halves of a page that are
 //! both spare become a page again.
 //!
 //! Invariant: every page given out so far is in the directory once, or spare once, or two halves each of which is.
@@ -18,16 +18,16 @@
 use crate::geometry::Cell;
 use crate::map::tiles::{NoRoom, Plane, TILE_ROWS, TILE_SIDE, Tiles};
 
-/// The entry of a tile that is all free; its low byte is what its lodger left.
-const ALL: u16 = 0x8000;
+/// The entry of a tile that is all free; its low byte is what its side_table left.
+const ALL_FREE_FLAG: u16 = 0x8000;
 /// The entry of a tile in half a page.
-const HALF: u16 = 0x4000;
-/// With fewer pages than this tiles are folded: the window comes to nine at a time, and [`KEPT_BACK`] are no one's.
-const LOW: usize = 24;
+const HALF_FLAG: u16 = 0x4000;
+/// With fewer pages than this tiles are compact: the window comes to nine at a time, and [`RESERVED_PAGES`] are no one's.
+const LOW_PAGES: usize = 24;
 /// Once there are folded tiles, so many pages are kept back for those that the robot comes to.
-const KEPT_BACK: usize = 10;
+const RESERVED_PAGES: usize = 10;
 /// Cells around the window in which tiles are unfolded: the window is there in a step or two.
-const AHEAD: i32 = 2;
+const EXPAND_MARGIN: i32 = 2;
 /// A plane of ones.
 pub(super) static ONES: Plane = [u32::MAX; TILE_ROWS];
 /// A plane of zeros.
@@ -37,12 +37,12 @@ pub(super) static ZEROS: Plane = [0; TILE_ROWS];
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Entry {
     /// Never touched.
-    Nothing,
+    Untouched,
     /// Stored in this page.
     Page(usize),
     /// Stored in this half: of page `h / 2`.
     Half(usize),
-    /// All free; with a byte of the lodger's.
+    /// All free; with a byte of the side_table's.
     AllFree(i8),
 }
 
@@ -50,12 +50,12 @@ impl Entry {
     /// As stored.
     #[inline(always)]
     pub(super) const fn of(word: u16) -> Self {
-        if word & ALL != 0 {
+        if word & ALL_FREE_FLAG != 0 {
             Self::AllFree(word as i8)
-        } else if word & HALF != 0 {
-            Self::Half((word & !HALF) as usize)
+        } else if word & HALF_FLAG != 0 {
+            Self::Half((word & !HALF_FLAG) as usize)
         } else if word == 0 {
-            Self::Nothing
+            Self::Untouched
         } else {
             Self::Page(word as usize - 1)
         }
@@ -63,10 +63,10 @@ impl Entry {
 
     pub(super) const fn word(self) -> u16 {
         match self {
-            Self::Nothing => 0,
+            Self::Untouched => 0,
             Self::Page(page) => page as u16 + 1,
-            Self::Half(half) => HALF | half as u16,
-            Self::AllFree(kept) => ALL | kept as u8 as u16,
+            Self::Half(half) => HALF_FLAG | half as u16,
+            Self::AllFree(kept) => ALL_FREE_FLAG | kept as u8 as u16,
         }
     }
 }
@@ -74,33 +74,33 @@ impl Entry {
 /// Whoever has something by the page of a tile, and a byte of it by what a tile is folded into.
 pub trait SideTable {
     /// The page is given up: the byte to keep.
-    fn leave_page(&mut self, page: usize) -> i8;
+    fn release_page(&mut self, page: usize) -> i8;
     /// The tile is in a page again.
-    fn enter_page(&mut self, page: usize, kept: i8);
+    fn restore_page(&mut self, page: usize, kept: i8);
     /// The tile is in this half of a page now.
-    fn enter_half(&mut self, half: usize, kept: i8);
+    fn store_half(&mut self, half: usize, kept: i8);
     /// The half is given up: what was kept.
-    fn leave_half(&mut self, half: usize) -> i8;
+    fn release_half(&mut self, half: usize) -> i8;
 }
 
 /// Nobody.
 impl SideTable for () {
-    fn leave_page(&mut self, _: usize) -> i8 {
+    fn release_page(&mut self, _: usize) -> i8 {
         0
     }
 
-    fn enter_page(&mut self, _: usize, _: i8) {}
+    fn restore_page(&mut self, _: usize, _: i8) {}
 
-    fn enter_half(&mut self, _: usize, _: i8) {}
+    fn store_half(&mut self, _: usize, _: i8) {}
 
-    fn leave_half(&mut self, _: usize) -> i8 {
+    fn release_half(&mut self, _: usize) -> i8 {
         0
     }
 }
 
 /// What is spare, and how much is folded.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Spare {
+pub(super) struct FreeList {
     /// Pages given out so far, one after the other.
     pub(super) given: u16,
     /// Pages on the list.
@@ -110,17 +110,17 @@ pub(super) struct Spare {
     /// The first half on its list, plus 1.
     half: u16,
     /// Tiles that are folded.
-    folded: u16,
+    compact: u16,
 }
 
-impl Spare {
+impl FreeList {
     /// Nothing was given out.
-    pub(super) const NONE: Self = Self {
+    pub(super) const EMPTY: Self = Self {
         given: 0,
         pages: 0,
         page: 0,
         half: 0,
-        folded: 0,
+        compact: 0,
     };
 
     /// Pages that something lies in.
@@ -131,29 +131,33 @@ impl Spare {
 
 impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Pages that nothing lies in.
-    fn spare_pages(&self) -> usize {
-        self.capacity().saturating_sub(self.spare.used())
+    fn free_pages(&self) -> usize {
+        self.capacity().saturating_sub(self.free.used())
     }
 
     /// Whether a tile never touched may have a page.
     pub(super) fn has_page(&self) -> bool {
-        let kept_back = if self.spare.folded > 0 { KEPT_BACK } else { 0 };
-        self.spare_pages() > kept_back
+        let kept_back = if self.free.compact > 0 {
+            RESERVED_PAGES
+        } else {
+            0
+        };
+        self.free_pages() > kept_back
     }
 
     /// A page of any content.
     pub(super) fn take_page(&mut self) -> Result<usize, NoRoom> {
-        if let Some(page) = self.spare.page.checked_sub(1) {
+        if let Some(page) = self.free.page.checked_sub(1) {
             let page = usize::from(page);
-            self.spare.page = self.next(2 * page);
-            self.spare.pages -= 1;
+            self.free.page = self.next(2 * page);
+            self.free.pages -= 1;
             return Ok(page);
         }
-        let page = usize::from(self.spare.given);
+        let page = usize::from(self.free.given);
         if page >= self.capacity() {
             return Err(NoRoom::Pool);
         }
-        self.spare.given += 1;
+        self.free.given += 1;
         Ok(page)
     }
 
@@ -176,55 +180,55 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     fn return_page(&mut self, page: usize) {
-        self.set_next(2 * page, self.spare.page);
-        self.spare.page = page as u16 + 1;
-        self.spare.pages += 1;
+        self.set_next(2 * page, self.free.page);
+        self.free.page = page as u16 + 1;
+        self.free.pages += 1;
     }
 
     /// The half is spare; if the page's other one is too, the page is.
     fn return_half(&mut self, half: usize) {
         let other = (half ^ 1) as u16 + 1;
         let mut before = None;
-        let mut at = self.spare.half;
+        let mut at = self.free.half;
         while let Some(here) = at.checked_sub(1) {
             let next = self.next(here.into());
             if at == other {
                 match before {
                     Some(before) => self.set_next(before, next),
-                    None => self.spare.half = next,
+                    None => self.free.half = next,
                 }
                 return self.return_page(half / 2);
             }
             (before, at) = (Some(usize::from(here)), next);
         }
-        self.set_next(half, self.spare.half);
-        self.spare.half = half as u16 + 1;
+        self.set_next(half, self.free.half);
+        self.free.half = half as u16 + 1;
     }
 
     /// Unfold the tiles around the square of `side` cells at `window`, and if pages run short fold all others.
-    pub(super) fn fold(&mut self, window: Cell, side: i32, lodger: &mut impl SideTable) {
-        let is_short = self.spare_pages() < LOW;
-        let Some(extent) = self.extent().filter(|_| is_short || self.spare.folded > 0) else {
+    pub(super) fn compact(&mut self, window: Cell, side: i32, side_table: &mut impl SideTable) {
+        let is_short = self.free_pages() < LOW_PAGES;
+        let Some(extent) = self.extent().filter(|_| is_short || self.free.compact > 0) else {
             return;
         };
         let is_near = |tile: i32, from: i32| {
             let least = tile * TILE_SIDE;
-            least + TILE_SIDE > from - AHEAD && least < from + side + AHEAD
+            least + TILE_SIDE > from - EXPAND_MARGIN && least < from + side + EXPAND_MARGIN
         };
         for y in extent.least.1..=extent.greatest.1 {
             for x in extent.least.0..=extent.greatest.0 {
                 let slot = self.slot(x, y);
                 if is_near(x, window.x) && is_near(y, window.y) {
                     // Where there is no room it stays as it is, and is tried again.
-                    let _ = self.unfold_tile(slot, lodger);
+                    let _ = self.expand_tile(slot, side_table);
                 } else if is_short {
-                    self.fold_tile(slot, lodger);
+                    self.compact_tile(slot, side_table);
                 }
             }
         }
     }
 
-    fn fold_tile(&mut self, slot: usize, lodger: &mut impl SideTable) {
+    fn compact_tile(&mut self, slot: usize, side_table: &mut impl SideTable) {
         let Entry::Page(page) = Entry::of(self.directory.get(slot).copied().unwrap_or(0)) else {
             return;
         };
@@ -234,27 +238,27 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         if high != ZEROS {
             return;
         }
-        let kept = lodger.leave_page(page);
+        let kept = side_table.release_page(page);
         let entry = if low == ONES {
             self.return_page(page);
             Entry::AllFree(kept)
         } else {
             let half = self.move_low(page, low);
-            lodger.enter_half(half, kept);
+            side_table.store_half(half, kept);
             Entry::Half(half)
         };
-        self.spare.folded += 1;
+        self.free.compact += 1;
         self.enter(slot, entry);
     }
 
     /// The low plane of a page into a spare half, or where it is if there is none; the rest of the page is spare.
     fn move_low(&mut self, page: usize, low: Plane) -> usize {
-        let Some(half) = self.spare.half.checked_sub(1) else {
+        let Some(half) = self.free.half.checked_sub(1) else {
             self.return_half(2 * page + 1);
             return 2 * page;
         };
         let half = usize::from(half);
-        self.spare.half = self.next(half);
+        self.free.half = self.next(half);
         if let Some(plane) = self.plane_mut(half) {
             *plane = low;
         }
@@ -262,25 +266,25 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         half
     }
 
-    fn unfold_tile(&mut self, slot: usize, lodger: &mut impl SideTable) -> Result<(), NoRoom> {
+    fn expand_tile(&mut self, slot: usize, side_table: &mut impl SideTable) -> Result<(), NoRoom> {
         let entry = Entry::of(self.directory.get(slot).copied().unwrap_or(0));
         let (low, kept) = match entry {
-            Entry::Nothing | Entry::Page(_) => return Ok(()),
+            Entry::Untouched | Entry::Page(_) => return Ok(()),
             Entry::AllFree(kept) => (ONES, kept),
             Entry::Half(half) => (self.plane_mut(half).map_or(ZEROS, |low| *low), 0),
         };
         let page = self.take_page()?;
         let kept = if let Entry::Half(half) = entry {
             self.return_half(half);
-            lodger.leave_half(half)
+            side_table.release_half(half)
         } else {
             kept
         };
         if let Some(cells) = self.pool.get_mut(page) {
             *cells = [low, ZEROS];
         }
-        lodger.enter_page(page, kept);
-        self.spare.folded -= 1;
+        side_table.restore_page(page, kept);
+        self.free.compact -= 1;
         self.enter(slot, Entry::Page(page));
         Ok(())
     }
@@ -292,7 +296,7 @@ mod tests {
     use std::collections::BTreeMap;
     use std::vec::Vec;
 
-    use super::{Entry, KEPT_BACK, LOW, NoRoom, SideTable, Tiles};
+    use super::{Entry, LOW_PAGES, NoRoom, RESERVED_PAGES, SideTable, Tiles};
     use crate::geometry::Cell;
     use crate::map::Class;
 
@@ -308,22 +312,22 @@ mod tests {
     }
 
     impl SideTable for Guest {
-        fn leave_page(&mut self, page: usize) -> i8 {
+        fn release_page(&mut self, page: usize) -> i8 {
             self.pages.remove(&page).unwrap()
         }
 
-        fn enter_page(&mut self, page: usize, kept: i8) {
+        fn restore_page(&mut self, page: usize, kept: i8) {
             assert_eq!(self.pages.insert(page, kept), None);
             assert!(!self.halves.contains_key(&(2 * page)));
             assert!(!self.halves.contains_key(&(2 * page + 1)));
         }
 
-        fn enter_half(&mut self, half: usize, kept: i8) {
+        fn store_half(&mut self, half: usize, kept: i8) {
             assert_eq!(self.halves.insert(half, kept), None);
             assert!(!self.pages.contains_key(&(half / 2)));
         }
 
-        fn leave_half(&mut self, half: usize) -> i8 {
+        fn release_half(&mut self, half: usize) -> i8 {
             self.halves.remove(&half).unwrap()
         }
     }
@@ -358,8 +362,8 @@ mod tests {
         let mut tiles = small();
         for tile in 0..200 {
             free(&mut tiles, tile).unwrap();
-            tiles.fold(corner(tile), 32, &mut ());
-            assert!(tiles.used() <= TILES - LOW + 9, "{}", tiles.used());
+            tiles.compact(corner(tile), 32, &mut ());
+            assert!(tiles.used() <= TILES - LOW_PAGES + 9, "{}", tiles.used());
         }
         for tile in 0..200 {
             assert!(cells(tile).all(|cell| tiles.class(cell) == Class::Free));
@@ -374,15 +378,15 @@ mod tests {
     fn a_folded_tile_is_written_once_the_window_is_there() {
         let mut tiles = small();
         (0..30).for_each(|tile| free(&mut tiles, tile).unwrap());
-        tiles.fold(FAR, 64, &mut ());
+        tiles.compact(FAR, 64, &mut ());
         assert_eq!(tiles.used(), 0);
         let (wall, edits) = (corner(3), tiles.edits());
         assert_eq!(tiles.set(wall, Class::Free), Ok(()));
         assert_eq!(tiles.set(wall, Class::Obstacle), Err(NoRoom::Pool));
         assert_eq!((tiles.class(wall), tiles.edits()), (Class::Free, edits));
-        tiles.fold(wall, 8, &mut ());
+        tiles.compact(wall, 8, &mut ());
         assert_eq!(tiles.set(wall, Class::Obstacle), Ok(()));
-        tiles.fold(FAR, 64, &mut ());
+        tiles.compact(FAR, 64, &mut ());
         let standing = cells(3).filter(|&cell| tiles.class(cell) != Class::Free);
         assert_eq!(standing.collect::<Vec<_>>(), [wall]);
     }
@@ -391,11 +395,11 @@ mod tests {
     fn pages_are_kept_back_for_folded_tiles() {
         let mut tiles = small();
         (0..30).for_each(|tile| free(&mut tiles, tile).unwrap());
-        tiles.fold(FAR, 64, &mut ());
+        tiles.compact(FAR, 64, &mut ());
         let news = (100..160).filter(|&tile| tiles.set(corner(tile), Class::Obstacle).is_ok());
-        assert_eq!(news.count(), TILES - KEPT_BACK);
+        assert_eq!(news.count(), TILES - RESERVED_PAGES);
         assert_eq!(tiles.room(19, 19), Err(NoRoom::Pool));
-        tiles.fold(corner(24), 32, &mut ());
+        tiles.compact(corner(24), 32, &mut ());
         let around = [4, 24, 25, 23].map(|tile| tiles.set(corner(tile), Class::Negative));
         assert_eq!(around, [Ok(()); 4]);
     }
@@ -414,7 +418,7 @@ mod tests {
         let (mut halves, mut written) = (0, 0);
         for _ in 0..4_000 {
             let tile = random(60);
-            tiles.fold(corner(tile), 1, &mut guest);
+            tiles.compact(corner(tile), 1, &mut guest);
             for _ in 0..40 {
                 let cell = cells(tile).nth(random(1024) as usize).unwrap();
                 let class = match random(800) {
@@ -425,10 +429,10 @@ mod tests {
                 if tiles.set(cell, class).is_ok() {
                     twin.insert((cell.x, cell.y), class);
                     written += 1;
-                    if was == Entry::Nothing
+                    if was == Entry::Untouched
                         && let Entry::Page(page) = tiles.entry(cell.x / 32, cell.y / 32)
                     {
-                        guest.enter_page(page, tile as i8);
+                        guest.restore_page(page, tile as i8);
                     }
                 }
             }
@@ -441,7 +445,7 @@ mod tests {
         }
         for tile in 0..60 {
             let kept = match tiles.entry(corner(tile).x / 32, corner(tile).y / 32) {
-                Entry::Nothing => continue,
+                Entry::Untouched => continue,
                 Entry::Page(page) => guest.pages[&page],
                 Entry::Half(half) => guest.halves[&half],
                 Entry::AllFree(kept) => kept,

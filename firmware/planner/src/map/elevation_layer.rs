@@ -8,8 +8,8 @@ use crate::config::Config;
 use crate::config::UnevenGround;
 use crate::geometry::Cell;
 use crate::grid::bits::ones64;
-use crate::ground::classify::{self, Steps};
-use crate::ground::doorway_view::{Look, Part};
+use crate::ground::classify::{self, RiseLimits};
+use crate::ground::doorway_view::{DoorwayView, Part};
 use crate::ground::elevation::{WINDOW_CELLS, WINDOW_SIDE};
 use crate::ground::survey::Survey;
 use crate::ground::{Elevation, Heights};
@@ -22,21 +22,21 @@ use crate::robot::is_level;
 const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::Cells>();
 
 /// Rows this near to the robot are classified in every step, others in every second one: farther off than it drives until it has stopped.
-const AT_ONCE: i32 = 12;
+const NEAR_ROWS: i32 = 12;
 /// Of the beams into a room whose walls are known, every so many-th is looked at in a step.
-const TURNS: usize = 5;
-/// Cells told of in a step before what else is seen through doorways waits for the next one: a whole room at once is too much for a step.
-const MOST_TOLD: u32 = 5_000;
+const BEAM_PHASES: usize = 5;
+/// Cells written of in a step before what else is seen through doorways waits for the next one: a whole room at once is too much for a step.
+const MAX_DOORWAY_CELLS: u32 = 5_000;
 /// About a step, milliseconds.
 const STEP_MS: u32 = 200;
 /// Cells around a goal that are given up with it.
-const GIVEN_UP: i32 = 3;
+const RESOLVE_CELLS: i32 = 3;
 /// Cells around the place before a robot that cannot go on where it trusts the ground: behind a brow no less is out of its view.
-const TRUSTED: i32 = 5;
+const FREE_GAP_CELLS: i32 = 5;
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// From here on the window of heights lies where the counts were.
-    pub(super) fn make_room_for_heights(&mut self) {
+    pub(super) fn lend_memory_to_elevation(&mut self) {
         self.tiles.lend(MARK_TILES);
     }
 
@@ -47,9 +47,14 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 
     /// Scans and pose into the window, and the window into the map.
-    pub(super) fn survey(&mut self, config: &Config, terrain: &UnevenGround, input: &Input<'_>) {
+    pub(super) fn update_elevation(
+        &mut self,
+        config: &Config,
+        ground: &UnevenGround,
+        input: &Input<'_>,
+    ) {
         let input = &Input {
-            pose: self.tilt.note(&input.pose),
+            pose: self.attitude.update(&input.pose),
             ..*input
         };
         let mut elevation = Elevation::new(
@@ -57,46 +62,46 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             self.tiles.lent_bytes_mut(),
             &mut self.window,
         );
-        Survey::new(&mut elevation, terrain, input)
-            .believing(&self.tilt)
-            .run(config, input, !self.surveyed);
-        self.surveyed = true;
-        if self.tilt.is_calm() {
-            self.look_into_rooms(config, terrain, input);
+        Survey::new(&mut elevation, ground, input)
+            .with_attitude(&self.attitude)
+            .run(config, input, !self.has_surveyed);
+        self.has_surveyed = true;
+        if self.attitude.is_exact() {
+            self.view_doorways(config, ground, input);
         }
-        let steps = Steps::new(terrain);
-        self.odd = !self.odd;
+        let limits = RiseLimits::new(ground);
+        self.odd_rows = !self.odd_rows;
         let middle = self.window.y + WINDOW_SIDE / 2;
         for y in self.window.y..self.window.y + WINDOW_SIDE {
             // Twice the work would be too much for a step, and what is far can wait for one.
-            if (y - middle).abs() <= AT_ONCE || (y & 1 == 1) == self.odd {
-                self.classify(&steps, y);
+            if (y - middle).abs() <= NEAR_ROWS || (y & 1 == 1) == self.odd_rows {
+                self.classify(&limits, y);
             }
         }
     }
 
     /// What is seen through doorways, where nothing is known yet.
-    fn look_into_rooms(&mut self, config: &Config, terrain: &UnevenGround, input: &Input<'_>) {
-        let turn = (input.time_ms / STEP_MS) as usize % TURNS;
-        let mut told = 0;
+    fn view_doorways(&mut self, config: &Config, ground: &UnevenGround, input: &Input<'_>) {
+        let phase = (input.time_ms / STEP_MS) as usize % BEAM_PHASES;
+        let mut written = 0;
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
-            let look = Look::new(&input.pose, terrain, laser, ranges_mm);
-            let Some(look) = look.filter(|_| is_level(laser)) else {
+            let view = DoorwayView::new(&input.pose, ground, laser, ranges_mm);
+            let Some(view) = view.filter(|_| is_level(laser)) else {
                 continue;
             };
             let mut from = 0;
-            while let Some(beams) = look.doorway(&self.heights(), from) {
+            while let Some(beams) = view.next_doorway(&self.heights(), from) {
                 from = beams.end;
                 // Where a wall is known already, what lies before it mostly is: then a few beams a step will do.
                 let is_due = |tiles: &Tiles<TILES, SLOTS>, number: usize| {
                     let is_new = |end: Cell| tiles.class(end) == Class::Unknown;
-                    number % TURNS == turn || look.end(number).is_some_and(is_new)
+                    number % BEAM_PHASES == phase || view.end_cell(number).is_some_and(is_new)
                 };
                 for number in beams {
-                    if told < MOST_TOLD && is_due(&self.tiles, number) {
-                        look.tell(number, |cell, part| {
-                            told += 1;
-                            self.suppose(cell, part);
+                    if written < MAX_DOORWAY_CELLS && is_due(&self.tiles, number) {
+                        view.for_each_cell(number, |cell, part| {
+                            written += 1;
+                            self.set_if_unknown(cell, part);
                         });
                     }
                 }
@@ -105,7 +110,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 
     /// What is seen through a doorway counts where nothing else is known.
-    fn suppose(&mut self, cell: Cell, part: Part) {
+    fn set_if_unknown(&mut self, cell: Cell, part: Part) {
         if self.tiles.class(cell) == Class::Unknown {
             let class = match part {
                 Part::Floor => Class::Free,
@@ -117,56 +122,55 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 
     /// Make room in the pool if it runs short ([`super::folding`]), after every survey.
-    pub fn fold(&mut self, lodger: &mut impl SideTable) {
-        self.tiles.fold(self.window, WINDOW_SIDE, lodger);
+    pub fn compact(&mut self, side_table: &mut impl SideTable) {
+        self.tiles.compact(self.window, WINDOW_SIDE, side_table);
     }
 
     /// The robot stood by a cell, and neither it nor what is around it was measured. Behind a brow ground stays out of view: where what is
     /// measured on both sides leads over it, it is taken for free, and else for gone.
-    pub fn give_up_ground(&mut self, terrain: &UnevenGround, goal: Cell) {
-        self.lead_over(terrain, (goal, GIVEN_UP), Some(Class::Negative));
+    pub fn resolve_gaps(&mut self, ground: &UnevenGround, goal: Cell) {
+        self.fill_gaps(ground, (goal, RESOLVE_CELLS), Some(Class::Negative));
     }
 
     /// The robot cannot go on for ground around a cell that was never measured: what leads over it is taken for free. Whether
     /// there was any.
-    pub fn trust_ground(&mut self, terrain: &UnevenGround, ahead: Cell) -> bool {
-        self.lead_over(terrain, (ahead, TRUSTED), None)
+    pub fn free_gaps(&mut self, ground: &UnevenGround, ahead: Cell) -> bool {
+        self.fill_gaps(ground, (ahead, FREE_GAP_CELLS), None)
     }
 
     /// Take ground around a cell that was never measured for free where it is led over, and else for `gone`; whether any is free now.
-    fn lead_over(
+    fn fill_gaps(
         &mut self,
-        terrain: &UnevenGround,
+        ground: &UnevenGround,
         (middle, reach): (Cell, i32),
         gone: Option<Class>,
     ) -> bool {
         let mut any = false;
         // With an attitude that is not sure a rim beside it may have gone unnoticed: trusted, ground at two holes let the robot fall.
-        let is_sure = self.tilt.is_calm();
+        let is_sure = self.attitude.is_exact();
         for y in middle.y - reach..=middle.y + reach + 1 {
             for x in middle.x - reach..=middle.x + reach + 1 {
                 let cell = Cell { x, y };
                 if self.tiles.class(cell) != Class::Unknown {
                     continue;
                 }
-                let leads_over =
-                    is_sure && classify::leads_over(&self.heights(), terrain, cell, 0.0);
+                let spans_gap = is_sure && classify::spans_gap(&self.heights(), ground, cell, 0.0);
                 // What was glimpsed is there.
-                let gone = gone.filter(|_| self.heights().glimpse_m(cell).is_none());
-                let class = if leads_over { Some(Class::Free) } else { gone };
+                let gone = gone.filter(|_| self.heights().low_confidence_m(cell).is_none());
+                let class = if spans_gap { Some(Class::Free) } else { gone };
                 if let Some(class) = class {
                     // Where there is no room nothing is known in any case.
-                    any |= self.tiles.set(cell, class).is_ok() && leads_over;
+                    any |= self.tiles.set(cell, class).is_ok() && spans_gap;
                 }
             }
         }
         any
     }
 
-    fn classify(&mut self, steps: &Steps, y: i32) {
+    fn classify(&mut self, limits: &RiseLimits, y: i32) {
         let x = self.window.x;
         let known = self.tiles.row(x, y);
-        let classes = classify::row(&self.heights(), steps, y, known);
+        let classes = classify::row(&self.heights(), limits, y, known);
         let changed = [
             (
                 Class::Obstacle,
@@ -191,7 +195,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 #[cfg(test)]
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Measure the ground around a cell, where it has a height, metres.
-    pub(crate) fn lay_ground(&mut self, middle: Cell, height_m: impl Fn(Cell) -> Option<f32>) {
+    pub(crate) fn set_ground_heights(
+        &mut self,
+        middle: Cell,
+        height_m: impl Fn(Cell) -> Option<f32>,
+    ) {
         let mut elevation = Elevation::new(
             self.evidence.bytes_mut(),
             self.tiles.lent_bytes_mut(),
@@ -215,7 +223,7 @@ mod tests {
     use std::boxed::Box;
     use std::vec::Vec;
 
-    use super::{Class, Config, Steps, TRUSTED, UnevenGround};
+    use super::{Class, Config, FREE_GAP_CELLS, RiseLimits, UnevenGround};
     use crate::geometry::Cell;
     use crate::map::Map;
 
@@ -230,10 +238,10 @@ mod tests {
         };
         let mut map = Box::new(Map::new());
         map.begin(&config);
-        map.lay_ground(Cell { x: 32, y: 32 }, |cell| {
+        map.set_ground_heights(Cell { x: 32, y: 32 }, |cell| {
             (!DITCH.contains(&cell.x)).then_some(if cell.x > 33 { far_side_m } else { 0.0 })
         });
-        (0..64).for_each(|y| map.classify(&Steps::new(&UnevenGround::TABLE_I), y));
+        (0..64).for_each(|y| map.classify(&RiseLimits::new(&UnevenGround::TABLE_I), y));
         map
     }
 
@@ -251,11 +259,11 @@ mod tests {
     fn ground_is_trusted_half_a_metre_around_the_place_that_stops_the_robot_and_no_farther() {
         let mut map = with_a_ditch(0.0);
         let ahead = Cell { x: 31, y: 30 };
-        assert!(map.trust_ground(&UnevenGround::TABLE_I, ahead));
-        let rows: Vec<i32> = (30 - TRUSTED..=31 + TRUSTED).collect();
+        assert!(map.free_gaps(&UnevenGround::TABLE_I, ahead));
+        let rows: Vec<i32> = (30 - FREE_GAP_CELLS..=31 + FREE_GAP_CELLS).collect();
         assert_eq!(free_rows(&map), rows);
         assert!(
-            !map.trust_ground(&UnevenGround::TABLE_I, ahead),
+            !map.free_gaps(&UnevenGround::TABLE_I, ahead),
             "there was any"
         );
     }
@@ -264,9 +272,9 @@ mod tests {
     fn ground_that_lies_higher_behind_a_gap_is_not_trusted_but_given_up() {
         let mut map = with_a_ditch(0.2);
         let ahead = Cell { x: 31, y: 30 };
-        assert!(!map.trust_ground(&UnevenGround::TABLE_I, ahead));
+        assert!(!map.free_gaps(&UnevenGround::TABLE_I, ahead));
         assert_eq!(map.tiles().class(ahead), Class::Unknown);
-        map.give_up_ground(&UnevenGround::TABLE_I, ahead);
+        map.resolve_gaps(&UnevenGround::TABLE_I, ahead);
         assert_eq!(map.tiles().class(ahead), Class::Negative);
     }
 }

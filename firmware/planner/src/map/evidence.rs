@@ -17,9 +17,9 @@ pub const EVIDENCE_SIDE: i32 = 128;
 const STRIDE: i32 = 16;
 
 const HIT: u8 = 3;
-const OBSTACLE_FROM: u8 = 10;
-const FREE_UPTO: u8 = 7;
-const MOST: u8 = 15;
+const OBSTACLE_MIN: u8 = 10;
+const FREE_MAX: u8 = 7;
+const MAX_COUNT: u8 = 15;
 
 /// The rolling window of counts.
 #[derive(Debug, PartialEq, Eq)]
@@ -133,15 +133,15 @@ impl Evidence {
         let count = change(count);
         *pair = *pair & !(15 << shift) | count << shift;
         match count {
-            OBSTACLE_FROM.. => Class::Obstacle,
-            ..=FREE_UPTO => Class::Free,
+            OBSTACLE_MIN.. => Class::Obstacle,
+            ..=FREE_MAX => Class::Free,
             _ => class,
         }
     }
 
     /// A beam ended in this cell, whose class was `class`; returns its class now.
     pub fn hit(&mut self, cell: Cell, class: Class) -> Class {
-        self.update(cell, class, |count| (count + HIT).min(MOST))
+        self.update(cell, class, |count| (count + HIT).min(MAX_COUNT))
     }
 
     /// A beam went through this cell, whose class was `class`; returns its class now.

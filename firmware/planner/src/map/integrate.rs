@@ -1,7 +1,7 @@
 //! A scan into the map: every beam frees the cells it went through and marks the cell it ended in.
 //!
 //! The level laser carries occupancy: its beams run in the plane. The tilted laser marks what stands higher than
-//! `STEP_M` above the robot's ground, and frees nothing, because its beams run above the cells they cross.
+//! `MIN_OBSTACLE_M` above the robot's ground, and frees nothing, because its beams run above the cells they cross.
 //! Cells are visited by Amanatides–Woo traversal.
 //!
 //! Robustness, each rule with its reason:
@@ -17,7 +17,7 @@ use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::grid::Class;
 use crate::input::informative_range_mm;
 use crate::input::{INVALID_MM, NO_RETURN_MM};
-use crate::map::tiles::{NoRoom, Page};
+use crate::map::tiles::{NoRoom, TileMut};
 use crate::map::traversal::Traversal;
 use crate::map::{Evidence, Map};
 use crate::math;
@@ -26,7 +26,7 @@ use crate::robot::is_level;
 
 /// An obstacle's least height above the robot's ground for the tilted laser, metres: above the 3-AT's ground clearance
 /// and three sigma of an attitude error of 1° at the tilted beam's reach.
-pub const STEP_M: f32 = 0.15;
+pub const MIN_OBSTACLE_M: f32 = 0.15;
 /// Length before a beam's end in which it does not erode obstacles, metres.
 const GUARD_M: f32 = 0.35;
 
@@ -62,7 +62,7 @@ impl Beam {
     }
 
     /// Free cells are passed again and again; every fourth beam is witness enough.
-    const fn is_witness(&self) -> bool {
+    const fn is_counted(&self) -> bool {
         self.number & 3 == 0
     }
 }
@@ -134,7 +134,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                 }
             }
         } else {
-            self.mark_standing(pose, laser, ranges_mm);
+            self.mark_tilted_hits(pose, laser, ranges_mm);
         }
     }
 
@@ -163,26 +163,26 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         if length_m <= 0.0 {
             return;
         }
-        let mut walk = Traversal::new(start, beam.direction, length_m, beam.hit);
+        let mut traversal = Traversal::new(start, beam.direction, length_m, beam.hit);
         let mut goes_on = true;
-        while goes_on && !walk.is_over() {
-            let tile = walk.tile();
+        while goes_on && !traversal.is_over() {
+            let tile = traversal.tile();
             goes_on = match self.tiles.open(tile) {
-                Ok(page) => {
-                    let passing = Passing {
+                Ok(cells) => {
+                    let pass = TilePass {
                         evidence: &mut self.evidence,
-                        page,
+                        cells,
                         tile,
                         guard_from_m: length_m - GUARD_M,
                         stops_at_obstacle: !beam.hit,
                     };
-                    if beam.is_witness() {
-                        passing.through::<true>(&mut walk)
+                    if beam.is_counted() {
+                        pass.run::<true>(&mut traversal)
                     } else {
-                        passing.through::<false>(&mut walk)
+                        pass.run::<false>(&mut traversal)
                     }
                 }
-                Err(no_room) => self.note(no_room),
+                Err(no_room) => self.record_failure(no_room),
             };
         }
     }
@@ -202,12 +202,12 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Store, remembering what there was no room for.
     fn store(&mut self, cell: Cell, class: Class) {
         if let Err(no_room) = self.tiles.set(cell, class) {
-            self.note(no_room);
+            self.record_failure(no_room);
         }
     }
 
     /// Remember what there was no room for; false, because there was none.
-    fn note(&mut self, no_room: NoRoom) -> bool {
+    fn record_failure(&mut self, no_room: NoRoom) -> bool {
         match no_room {
             NoRoom::Box => self.out_of_box = true,
             NoRoom::Pool => self.pool_full = true,
@@ -215,7 +215,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         false
     }
 
-    fn mark_standing(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
+    fn mark_tilted_hits(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
         let from = sensor_point(pose, laser);
         let (sin_tilt, cos_tilt) = math::sin_cos(laser.pitch_rad + pose.pitch_rad);
         let (sin_roll, _) = math::sin_cos(pose.roll_rad);
@@ -229,7 +229,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             let range_m = f32::from(range) * 1e-3;
             let (ahead, left) = (range_m * cos * cos_tilt, range_m * sin);
             let height = laser.z_m - range_m * cos * sin_tilt + left * sin_roll;
-            if height > STEP_M {
+            if height > MIN_OBSTACLE_M {
                 let end = Point {
                     x_m: from.x_m + ahead * cos_yaw - left * sin_yaw,
                     y_m: from.y_m + ahead * sin_yaw + left * cos_yaw,
@@ -241,9 +241,9 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 }
 
 /// A beam that goes through a tile.
-struct Passing<'a> {
+struct TilePass<'a> {
     evidence: &'a mut Evidence,
-    page: Page<'a>,
+    cells: TileMut<'a>,
     tile: (i32, i32),
     /// From here on it does not erode obstacles.
     guard_from_m: f32,
@@ -251,15 +251,15 @@ struct Passing<'a> {
     stops_at_obstacle: bool,
 }
 
-impl Passing<'_> {
+impl TilePass<'_> {
     /// Free the cells of the tile; whether the beam goes on in the next.
     #[inline(never)]
-    fn through<const WITNESS: bool>(mut self, walk: &mut Traversal) -> bool {
-        walk.cross(|row, bit, leaves_m| {
-            if !self.page.is_free(row, bit) {
+    fn run<const COUNTS: bool>(mut self, traversal: &mut Traversal) -> bool {
+        traversal.cross_tile(|row, bit, leaves_m| {
+            if !self.cells.is_free(row, bit) {
                 return self.pass(row, bit, leaves_m);
             }
-            if WITNESS {
+            if COUNTS {
                 let cell = Traversal::cell(self.tile, row, bit);
                 if self.evidence.covers(cell) {
                     self.evidence.pass_free(cell);
@@ -272,7 +272,7 @@ impl Passing<'_> {
     /// Note that the beam went through a cell not known to be free; whether it goes on.
     #[inline(never)]
     fn pass(&mut self, row: usize, bit: u32, leaves_m: f32) -> bool {
-        let class = self.page.class(row, bit);
+        let class = self.cells.class(row, bit);
         if !class.is_open() && !self.stops_at_obstacle && leaves_m > self.guard_from_m {
             return true;
         }
@@ -285,7 +285,7 @@ impl Passing<'_> {
             class
         };
         if now != class {
-            self.page.set(row, bit, now);
+            self.cells.set(row, bit, now);
         }
         class.is_open() || !self.stops_at_obstacle
     }
@@ -314,15 +314,15 @@ mod tests {
     /// The slow twin of [`Map::free_along`]: cell by cell through the map's front door.
     fn free_slowly(map: &mut Plan, beam: &Beam) {
         let (start, length_m) = (beam.at(beam.free_from_m), beam.length_m - beam.free_from_m);
-        let mut walk = Traversal::new(start, beam.direction, length_m, beam.hit);
+        let mut traversal = Traversal::new(start, beam.direction, length_m, beam.hit);
         let mut goes_on = length_m > 0.0;
-        while goes_on && !walk.is_over() {
-            let tile = walk.tile();
-            goes_on = walk.cross(|row, bit, leaves_m| {
+        while goes_on && !traversal.is_over() {
+            let tile = traversal.tile();
+            goes_on = traversal.cross_tile(|row, bit, leaves_m| {
                 let cell = Traversal::cell(tile, row, bit);
                 let class = map.class(cell);
                 let kept = match class {
-                    Class::Free => !beam.is_witness(),
+                    Class::Free => !beam.is_counted(),
                     Class::Unknown => false,
                     _ => beam.hit && leaves_m > length_m - GUARD_M,
                 };
@@ -363,7 +363,7 @@ mod tests {
     #[test]
     fn going_by_tiles_is_going_by_cells() {
         let mut seed = 7;
-        // The small box is too small for the walk: what there is no room for must not differ either.
+        // The small box is too small for the traversal: what there is no room for must not differ either.
         for side in [6, 12] {
             let (mut fast, mut slow) = (Plan::new(), Plan::new());
             for map in [&mut fast, &mut slow] {

@@ -9,8 +9,8 @@ pub mod evidence;
 mod extent;
 pub mod integrate;
 pub mod obstacle_points;
-mod page;
 pub mod rows;
+mod tile;
 pub mod tiles;
 mod traversal;
 
@@ -25,7 +25,7 @@ use crate::ground::AttitudeFilter;
 use crate::input::Input;
 
 /// A robot that moved more cells than this between two observations was carried.
-const LONGEST_STRIDE: i32 = 10;
+const MAX_STEP_CELLS: i32 = 10;
 /// The robot stands where it is, so this much around it is free, metres.
 const FOOTPRINT_M: f32 = 0.25;
 
@@ -35,13 +35,13 @@ pub struct Map<const TILES: usize, const SLOTS: usize> {
     pub(crate) tiles: Tiles<TILES, SLOTS>,
     evidence: Evidence,
     /// Where the robot was at the last observation.
-    last_visit: Option<Cell>,
+    last_cell: Option<Cell>,
     /// The least cell of the elevation window, once there is one.
     window: Cell,
-    surveyed: bool,
+    has_surveyed: bool,
     /// Which of the rows far off were classified.
-    odd: bool,
-    tilt: AttitudeFilter,
+    odd_rows: bool,
+    attitude: AttitudeFilter,
     out_of_box: bool,
     pool_full: bool,
 }
@@ -53,11 +53,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         Self {
             tiles: Tiles::new(),
             evidence: Evidence::new(),
-            last_visit: None,
+            last_cell: None,
             window: Cell { x: 0, y: 0 },
-            surveyed: false,
-            odd: false,
-            tilt: AttitudeFilter::new(),
+            has_surveyed: false,
+            odd_rows: false,
+            attitude: AttitudeFilter::new(),
             out_of_box: false,
             pool_full: false,
         }
@@ -67,7 +67,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     pub fn begin(&mut self, config: &Config) {
         self.reset(config.box_tiles.0, config.box_tiles.1);
         if config.ground.is_some() {
-            self.make_room_for_heights();
+            self.lend_memory_to_elevation();
         }
     }
 
@@ -75,10 +75,10 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     pub fn reset(&mut self, width: u8, height: u8) {
         self.tiles.reset(width, height);
         self.evidence.reset(Cell::default());
-        self.last_visit = None;
-        self.surveyed = false;
-        self.odd = false;
-        self.tilt = AttitudeFilter::new();
+        self.last_cell = None;
+        self.has_surveyed = false;
+        self.odd_rows = false;
+        self.attitude = AttitudeFilter::new();
         self.out_of_box = false;
         self.pool_full = false;
     }
@@ -86,27 +86,27 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Enter everything that an input says of the space.
     pub fn observe(&mut self, config: &Config, input: &Input<'_>) {
         let robot = input.pose.point();
-        if let Some(terrain) = &config.ground {
+        if let Some(ground) = &config.ground {
             self.free_footprint(robot, FOOTPRINT_M);
-            self.leave_trail(robot.cell());
-            self.survey(config, terrain, input);
+            self.record_visit(robot.cell());
+            self.update_elevation(config, ground, input);
             return;
         }
         self.evidence.follow(robot.cell());
         self.free_footprint(robot, FOOTPRINT_M);
-        self.leave_trail(robot.cell());
+        self.record_visit(robot.cell());
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             self.integrate(&input.pose, laser, ranges_mm);
         }
     }
 
     /// Mark the way from the last cell, with no diagonal steps, so that the trail is connected by sides.
-    fn leave_trail(&mut self, to: Cell) {
-        let from = self.last_visit.unwrap_or(to);
-        self.last_visit = Some(to);
+    fn record_visit(&mut self, to: Cell) {
+        let from = self.last_cell.unwrap_or(to);
+        self.last_cell = Some(to);
         let steps = (to.x - from.x).abs().max((to.y - from.y).abs());
-        if steps > LONGEST_STRIDE {
-            self.tiles.note_visit(to);
+        if steps > MAX_STEP_CELLS {
+            self.tiles.mark_visited(to);
             return;
         }
         let mut before = from;
@@ -116,11 +116,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                 x: part(from.x, to.x),
                 y: part(from.y, to.y),
             };
-            self.tiles.note_visit(Cell {
+            self.tiles.mark_visited(Cell {
                 x: here.x,
                 y: before.y,
             });
-            self.tiles.note_visit(here);
+            self.tiles.mark_visited(here);
             before = here;
         }
     }

@@ -4,14 +4,14 @@
 //! have left the field of view. A point is the mean of the returns that fell on it,
 //!
 //! ```text
-//! p ← p + (r − p) / n,    n = min(returns so far, MOST_RETURNS)
+//! p ← p + (r − p) / n,    n = min(returns so far, MAX_RETURNS)
 //! ```
 //!
 //! because of many single returns of a wall the nearest, which is the one that would count, is two or three sigma too near. It
 //! goes when a beam passes through its place, when the robot stands on it, and when it leaves the view with one return only:
 //! a false one, which nothing could disprove any more. Behind the robot, where it only turns and backs out, less is kept.
 //!
-//! Invariant: at most [`MOST_POINTS`] points, the farthest give way; as many counts as points.
+//! Invariant: at most [`MAX_POINTS`] points, the farthest give way; as many counts as points.
 //! Units: metres, odometry frame.
 
 use heapless::Vec;
@@ -26,7 +26,7 @@ use crate::math;
 use crate::robot::{LaserMount, RobotShape};
 
 /// Points kept at the most.
-pub const MOST_POINTS: usize = 256;
+pub const MAX_POINTS: usize = 256;
 /// Distance from the robot's centre within which points ahead are kept, metres: half the robot and its braking distance.
 pub const REACH_M: f32 = 1.2;
 /// The same to the sides and behind, metres: half its diagonal and the longest leg backwards.
@@ -35,7 +35,7 @@ const REACH_BEHIND_M: f32 = 0.8;
 /// a third of it.
 const SAME_M: f32 = 0.025;
 /// Returns in a mean at the most; later ones count as much as the last of these.
-const MOST_RETURNS: u8 = 8;
+const MAX_RETURNS: u8 = 8;
 /// A beam that ends this far behind a point went through its place, metres: five sigma of a range.
 const THROUGH_M: f32 = 0.05;
 /// A point this far inside the robot's rectangle is none, metres: the robot stands there.
@@ -44,9 +44,9 @@ const INSIDE_M: f32 = 0.01;
 /// What stands around the robot.
 #[derive(Debug, Default)]
 pub struct ObstaclePoints {
-    points: Vec<Point, MOST_POINTS>,
+    points: Vec<Point, MAX_POINTS>,
     /// Returns of each point.
-    returns: Vec<u8, MOST_POINTS>,
+    returns: Vec<u8, MAX_POINTS>,
 }
 
 fn distance2(a: Point, b: Point) -> f32 {
@@ -84,26 +84,32 @@ impl ObstaclePoints {
         laser: &LaserMount,
         ranges_mm: &[u16],
     ) {
-        self.forget(robot, pose, laser, ranges_mm);
+        self.remove_stale(robot, pose, laser, ranges_mm);
         for beam in level_beams(pose, laser, ranges_mm).filter(|beam| beam.hit) {
             let end = beam.end();
             if within_reach(pose, end) && has_company(ranges_mm, beam.number) {
-                self.enter(pose.point(), end);
+                self.add_return(pose.point(), end);
             }
         }
     }
 
-    fn forget(&mut self, robot: &RobotShape, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
+    fn remove_stale(
+        &mut self,
+        robot: &RobotShape,
+        pose: &Pose,
+        laser: &LaserMount,
+        ranges_mm: &[u16],
+    ) {
         let from = sensor_point(pose, laser);
         let mut index = 0;
         while let (Some(&point), Some(&returns)) = (self.points.get(index), self.returns.get(index))
         {
             let stays = within_reach(pose, point)
                 && !is_inside(robot, pose, point)
-                && match sight(pose, laser, ranges_mm, from, point) {
-                    Sight::At => true,
-                    Sight::Through => false,
-                    Sight::None => returns > 1,
+                && match visibility(pose, laser, ranges_mm, from, point) {
+                    Visibility::Hit => true,
+                    Visibility::Through => false,
+                    Visibility::Unseen => returns > 1,
                 };
             if stays {
                 index += 1;
@@ -115,14 +121,14 @@ impl ObstaclePoints {
     }
 
     /// A return: of a point that is there, or a new point.
-    fn enter(&mut self, centre: Point, end: Point) {
+    fn add_return(&mut self, centre: Point, end: Point) {
         let near = |&&mut point: &&mut Point| {
             (point.x_m - end.x_m).abs() < SAME_M && distance2(point, end) < SAME_M * SAME_M
         };
         let known = self.points.iter_mut().zip(&mut self.returns);
         let mut known = known.filter(|(point, _)| near(point));
         if let Some((point, returns)) = known.next() {
-            *returns = (*returns + 1).min(MOST_RETURNS);
+            *returns = (*returns + 1).min(MAX_RETURNS);
             let part = 1.0 / f32::from(*returns);
             point.x_m += part * (end.x_m - point.x_m);
             point.y_m += part * (end.y_m - point.y_m);
@@ -167,7 +173,7 @@ pub fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
 
 /// The middles of the cells around the robot that it must not touch on uneven ground, as far as they border on free cells:
 /// obstacles of either sign, and ground never measured.
-pub fn rim_cells<const TILES: usize, const SLOTS: usize>(
+pub fn border_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
 ) -> impl Iterator<Item = Point> + '_ {
@@ -180,11 +186,11 @@ pub fn rim_cells<const TILES: usize, const SLOTS: usize>(
 }
 
 /// The same, each with how far before its cell what is there may begin, metres: as far as beams' ends are marked behind, where something stands.
-pub fn rims<const TILES: usize, const SLOTS: usize>(
+pub fn inflated_border_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
 ) -> impl Iterator<Item = (Point, f32)> + '_ {
-    rim_cells(tiles, robot).map(|at| match tiles.class(at.cell()) {
+    border_cells(tiles, robot).map(|at| match tiles.class(at.cell()) {
         Class::Obstacle => (at, BEHIND_M),
         _ => (at, 0.0),
     })
@@ -218,22 +224,28 @@ fn is_inside(robot: &RobotShape, pose: &Pose, point: Point) -> bool {
 }
 
 /// What a scan says of the place of a point.
-enum Sight {
+enum Visibility {
     /// A beam ended there.
-    At,
+    Hit,
     /// A beam went through.
     Through,
     /// Nothing: it is out of view, or hidden behind something nearer.
-    None,
+    Unseen,
 }
 
 /// Judged by the two beams that pass the point on either side: at a corner one meets it, or nothing, and the other goes by.
-fn sight(pose: &Pose, laser: &LaserMount, ranges_mm: &[u16], from: Point, point: Point) -> Sight {
+fn visibility(
+    pose: &Pose,
+    laser: &LaserMount,
+    ranges_mm: &[u16],
+    from: Point,
+    point: Point,
+) -> Visibility {
     let (dx, dy) = (point.x_m - from.x_m, point.y_m - from.y_m);
     let bearing = math::wrap(math::atan2(dy, dx) - pose.yaw_rad - laser.first_bearing_rad);
     let right = math::floor(bearing / laser.bearing_step_rad);
     if right < 0 || right + 1 >= ranges_mm.len() as i32 {
-        return Sight::None;
+        return Visibility::Unseen;
     }
     let distance = math::sqrt(dx * dx + dy * dy);
     let beyond = |index: usize| {
@@ -246,14 +258,14 @@ fn sight(pose: &Pose, laser: &LaserMount, ranges_mm: &[u16], from: Point, point:
         .flatten()
         .any(|beyond| beyond.abs() <= THROUGH_M)
     {
-        Sight::At
+        Visibility::Hit
     } else if beyond
         .iter()
         .all(|beyond| beyond.is_some_and(|beyond| beyond > THROUGH_M))
     {
-        Sight::Through
+        Visibility::Through
     } else {
-        Sight::None
+        Visibility::Unseen
     }
 }
 
@@ -280,11 +292,11 @@ mod tests {
 
     #[test]
     fn a_lone_false_return_is_not_kept() {
-        let mut near = ObstaclePoints::new();
+        let mut obstacles = ObstaclePoints::new();
         let mut scan = [NO_RETURN_MM; 181];
         scan[90] = 500;
-        near.update(&ROBOT, &Pose::default(), &laser(), &scan);
-        assert!(near.points().is_empty());
+        obstacles.update(&ROBOT, &Pose::default(), &laser(), &scan);
+        assert!(obstacles.points().is_empty());
     }
 
     /// A scan that sees one thing, 4 beams wide, at a bearing (degrees) and range; nothing else.
@@ -298,46 +310,46 @@ mod tests {
 
     #[test]
     fn a_point_is_remembered_behind_the_robot_and_forgotten_when_seen_through() {
-        let mut near = ObstaclePoints::new();
+        let mut obstacles = ObstaclePoints::new();
         let here = Pose::default();
-        near.update(&ROBOT, &here, &laser(), &thing(0, 800));
-        assert!(!near.points().is_empty());
+        obstacles.update(&ROBOT, &here, &laser(), &thing(0, 800));
+        assert!(!obstacles.points().is_empty());
         let turned = Pose {
             yaw_rad: math::PI,
             ..here
         };
-        near.update(&ROBOT, &turned, &laser(), &[NO_RETURN_MM; 181]);
-        assert!(!near.points().is_empty(), "out of view");
-        near.update(&ROBOT, &here, &laser(), &[NO_RETURN_MM; 181]);
-        assert!(near.points().is_empty(), "seen through");
+        obstacles.update(&ROBOT, &turned, &laser(), &[NO_RETURN_MM; 181]);
+        assert!(!obstacles.points().is_empty(), "out of view");
+        obstacles.update(&ROBOT, &here, &laser(), &[NO_RETURN_MM; 181]);
+        assert!(obstacles.points().is_empty(), "seen through");
     }
 
     #[test]
     fn a_hidden_point_stays_and_a_far_one_goes() {
-        let mut near = ObstaclePoints::new();
+        let mut obstacles = ObstaclePoints::new();
         let here = Pose::default();
-        near.update(&ROBOT, &here, &laser(), &thing(0, 1000));
-        let count = near.points().len();
-        near.update(&ROBOT, &here, &laser(), &thing(0, 500));
+        obstacles.update(&ROBOT, &here, &laser(), &thing(0, 1000));
+        let count = obstacles.points().len();
+        obstacles.update(&ROBOT, &here, &laser(), &thing(0, 500));
         assert!(
-            near.points().len() > count,
+            obstacles.points().len() > count,
             "hidden behind the nearer thing"
         );
         let away = Pose { x_m: -2.0, ..here };
-        near.update(&ROBOT, &away, &laser(), &[INVALID_MM; 181]);
-        assert!(near.points().is_empty());
+        obstacles.update(&ROBOT, &away, &laser(), &[INVALID_MM; 181]);
+        assert!(obstacles.points().is_empty());
     }
 
     #[test]
     fn a_wall_is_thinned_and_the_store_never_overflows() {
-        let mut near = ObstaclePoints::new();
+        let mut obstacles = ObstaclePoints::new();
         for k in 0..400 {
             let pose = Pose {
                 yaw_rad: k as f32 * 0.7,
                 ..Pose::default()
             };
-            near.update(&ROBOT, &pose, &laser(), &[400 + (k % 7) as u16 * 100; 181]);
-            assert!(near.points().len() <= MOST_POINTS);
+            obstacles.update(&ROBOT, &pose, &laser(), &[400 + (k % 7) as u16 * 100; 181]);
+            assert!(obstacles.points().len() <= MAX_POINTS);
         }
     }
 
@@ -354,9 +366,9 @@ mod tests {
             y_m: 0.05,
             ..Pose::default()
         };
-        let mut surround = CollisionChecker::empty(&ROBOT);
-        surround.keep_off(&pose, rims(&tiles, pose.point()));
-        surround.clearance_m()
+        let mut checker = CollisionChecker::empty(&ROBOT);
+        checker.keep_off(&pose, inflated_border_cells(&tiles, pose.point()));
+        checker.clearance_m()
     }
 
     /// What stands begins where beams end, and its cell is that of so much behind.

@@ -6,7 +6,7 @@
 
 use crate::grid::Row;
 use crate::map::compaction::ZEROS;
-use crate::map::tiles::{Plane, TILE_ROWS, Tiles, Trail};
+use crate::map::tiles::{Plane, TILE_ROWS, Tiles, Visited};
 
 /// Columns to the left of a [`Line`]'s own that its halo begins.
 pub const HALO: i32 = 16;
@@ -19,7 +19,7 @@ pub struct Line {
     /// Cells never measured.
     pub unknown: u32,
     /// Cells on or beside the robot's way so far.
-    pub trail: u32,
+    pub visited: u32,
 }
 
 impl Line {
@@ -35,7 +35,7 @@ impl Line {
 pub(super) struct Column<'a> {
     pub(super) low: &'a Plane,
     pub(super) high: &'a Plane,
-    pub(super) trail: &'a Trail,
+    pub(super) visited: &'a Visited,
 }
 
 impl Column<'_> {
@@ -43,7 +43,7 @@ impl Column<'_> {
     const EMPTY: Self = Self {
         low: &ZEROS,
         high: &ZEROS,
-        trail: &[0; TILE_ROWS / 2],
+        visited: &[0; TILE_ROWS / 2],
     };
 
     /// Low and high bits of a row.
@@ -56,7 +56,7 @@ impl Column<'_> {
     #[inline(always)]
     fn blocks(&self, row: usize) -> u16 {
         let row = row % TILE_ROWS / 2;
-        self.trail.get(row).copied().unwrap_or_default()
+        self.visited.get(row).copied().unwrap_or_default()
     }
 }
 
@@ -82,15 +82,15 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
 
     /// Look up the tiles of a row; its number in them, and by how much their columns are shifted.
     #[inline(always)]
-    fn turn_to(&mut self, y: i32) -> (usize, u32) {
+    fn tile_row(&mut self, y: i32) -> (usize, u32) {
         if y >> 5 != self.tile_y {
-            self.turn_page(y >> 5);
+            self.look_up_tiles(y >> 5);
         }
         ((y & 31) as usize, (self.x & 31) as u32)
     }
 
     #[inline(never)]
-    fn turn_page(&mut self, tile_y: i32) {
+    fn look_up_tiles(&mut self, tile_y: i32) {
         self.tile_y = tile_y;
         for (k, column) in (0..).zip(&mut self.columns) {
             let found = self.tiles.column((self.x >> 5) + k, tile_y);
@@ -100,20 +100,20 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
 
     /// The 64 cells of row `y`.
     pub fn row(&mut self, y: i32) -> Row {
-        let (row, shift) = self.turn_to(y);
+        let (row, shift) = self.tile_row(y);
         let [first, second, third] = self.columns.map(|column| column.classes(row));
-        let trail = self.columns.map(|column| twice(column.blocks(row)));
+        let visited = self.columns.map(|column| twice(column.blocks(row)));
         Row {
             low: join(first[0], second[0], third[0], shift),
             high: join(first[1], second[1], third[1], shift),
-            trail: join(trail[0], trail[1], trail[2], shift),
+            visited: join(visited[0], visited[1], visited[2], shift),
         }
     }
 
     /// The 32 cells of row `y` that begin [`HALO`] columns to the right of the reader.
     #[inline(always)]
     pub fn line(&mut self, y: i32) -> Line {
-        let (row, shift) = self.turn_to(y);
+        let (row, shift) = self.tile_row(y);
         let [first, second, third] = self.columns.map(|column| column.classes(row));
         let around = join(first[1], second[1], third[1], shift);
         // The cells begin in the first tile or in the second, and end in the next.
@@ -125,7 +125,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
             (cut(second[0], third[0], from - 32), [middle, right])
         };
         let [one, other] = pair.map(|column| column.blocks(row));
-        let trail = if one | other == 0 {
+        let visited = if one | other == 0 {
             0
         } else {
             cut(twice(one), twice(other), from % 32)
@@ -133,7 +133,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
         Line {
             around,
             unknown: !(low | (around >> HALO) as u32),
-            trail,
+            visited,
         }
     }
 }
@@ -180,7 +180,7 @@ mod tests {
             let class = [Class::Free, Class::Obstacle][(seed >> 5 & 1) as usize];
             tiles.set(cell, class).unwrap();
             if seed >> 27 == 0 {
-                tiles.note_visit(cell);
+                tiles.mark_visited(cell);
             }
         }
         for x in -20..90 {
@@ -191,7 +191,7 @@ mod tests {
                 assert_eq!(line.around, row.obstacle());
                 assert_eq!(line.obstacle(), middle(row.obstacle()));
                 assert_eq!(line.unknown, middle(row.unknown()));
-                assert_eq!(line.trail, middle(row.trail()));
+                assert_eq!(line.visited, middle(row.visited()));
             }
         }
     }

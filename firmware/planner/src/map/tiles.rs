@@ -12,15 +12,15 @@
 
 use crate::geometry::Cell;
 use crate::grid::{Class, Row};
-use crate::map::compaction::{Entry, ONES, Spare, ZEROS};
+use crate::map::compaction::{Entry, FreeList, ONES, ZEROS};
 pub use crate::map::extent::{Extent, NoRoom};
-pub(super) use crate::map::page::{Cells, Page, Plane};
 use crate::map::rows::{Column, RowReader};
+pub(super) use crate::map::tile::{Cells, Plane, TileMut};
 
 /// Cells along a tile's side.
 pub const TILE_SIDE: i32 = 32;
 pub(super) const TILE_ROWS: usize = TILE_SIDE as usize;
-pub(super) type Trail = [u16; TILE_ROWS / 2];
+pub(super) type Visited = [u16; TILE_ROWS / 2];
 
 /// The tile pool and its directory. `TILES` tiles in the pool, `SLOTS` places in the box.
 #[derive(Debug)]
@@ -29,8 +29,8 @@ pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     /// An [`Entry`] for the tile in a slot.
     pub(super) directory: [u16; SLOTS],
     /// Where the robot has been in the tile of a slot: a row of 2 × 2-cell blocks each.
-    trail: [Trail; SLOTS],
-    pub(super) spare: Spare,
+    visited: [Visited; SLOTS],
+    pub(super) free: FreeList,
     /// Tiles at the pool's end that are lent to something else.
     lent: u16,
     width: i32,
@@ -47,8 +47,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         Self {
             pool: [[ZEROS; 2]; TILES],
             directory: [0; SLOTS],
-            trail: [[0; TILE_SIDE as usize / 2]; SLOTS],
-            spare: Spare::NONE,
+            visited: [[0; TILE_SIDE as usize / 2]; SLOTS],
+            free: FreeList::EMPTY,
             lent: 0,
             width: 0,
             height: 0,
@@ -70,8 +70,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Forget everything; the box becomes `width` × `height` tiles. A box that does not [`fit`](Self::fits) holds nothing.
     pub fn reset(&mut self, width: u8, height: u8) {
         self.directory.fill(0);
-        self.trail.as_flattened_mut().fill(0);
-        self.spare = Spare::NONE;
+        self.visited.as_flattened_mut().fill(0);
+        self.free = FreeList::EMPTY;
         self.lent = 0;
         let fits = Self::fits(width, height);
         self.width = if fits { i32::from(width) } else { 0 };
@@ -121,13 +121,13 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Whether anything was ever stored in this tile.
     #[must_use]
     pub fn is_touched(&self, tile_x: i32, tile_y: i32) -> bool {
-        self.entry(tile_x, tile_y) != Entry::Nothing
+        self.entry(tile_x, tile_y) != Entry::Untouched
     }
 
     /// Pages of the pool in use.
     #[must_use]
     pub const fn used(&self) -> usize {
-        self.spare.used()
+        self.free.used()
     }
 
     /// A number that changes whenever any cell does.
@@ -152,7 +152,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// What the directory says of a tile.
     pub(crate) fn entry(&self, tile_x: i32, tile_y: i32) -> Entry {
         if !self.in_extent(tile_x, tile_y) {
-            return Entry::Nothing;
+            return Entry::Untouched;
         }
         let word = self.directory.get(self.slot(tile_x, tile_y));
         Entry::of(word.copied().unwrap_or(0))
@@ -167,7 +167,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Low and high plane of what the directory says, if it says anything.
     fn planes(&self, entry: Entry) -> Option<[&Plane; 2]> {
         match entry {
-            Entry::Nothing => None,
+            Entry::Untouched => None,
             Entry::Page(page) => self.pool.get(page).map(|[low, high]| [low, high]),
             Entry::Half(half) => Some([self.pool.get(half / 2)?.get(half % 2)?, &ZEROS]),
             Entry::AllFree(_) => Some([&ONES, &ZEROS]),
@@ -216,7 +216,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         let slot = self.slot(tile_x, tile_y);
         match Entry::of(*self.directory.get(slot).ok_or(NoRoom::Box)?) {
             Entry::Page(page) => Ok(page),
-            Entry::Nothing if self.has_page() => {
+            Entry::Untouched if self.has_page() => {
                 let page = self.take_page()?;
                 *self.pool.get_mut(page).ok_or(NoRoom::Pool)? = [ZEROS; 2];
                 self.enter(slot, Entry::Page(page));
@@ -253,13 +253,13 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// The robot's centre has been in this cell.
-    pub fn note_visit(&mut self, cell: Cell) {
+    pub fn mark_visited(&mut self, cell: Cell) {
         if !self.in_extent(cell.x >> 5, cell.y >> 5) {
             return;
         }
         let slot = self.slot(cell.x >> 5, cell.y >> 5);
         let row = self
-            .trail
+            .visited
             .get_mut(slot)
             .and_then(|rows| rows.get_mut((cell.y & 31) as usize / 2));
         if let Some(row) = row {
@@ -289,7 +289,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         Some(Column {
             low,
             high,
-            trail: self.trail.get(slot)?,
+            visited: self.visited.get(slot)?,
         })
     }
 
@@ -297,9 +297,9 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     ///
     /// # Errors
     /// [`NoRoom`] where the box or the pool cannot hold it; the map is then unchanged.
-    pub(super) fn open(&mut self, (tile_x, tile_y): (i32, i32)) -> Result<Page<'_>, NoRoom> {
+    pub(super) fn open(&mut self, (tile_x, tile_y): (i32, i32)) -> Result<TileMut<'_>, NoRoom> {
         let index = self.touch(tile_x, tile_y)?;
-        Ok(Page {
+        Ok(TileMut {
             cells: self.pool.get_mut(index).ok_or(NoRoom::Pool)?,
             edits: &mut self.edits,
         })

@@ -94,7 +94,7 @@ impl Traversal {
     /// Visit the cells in the present tile, each by row and bit and with the length at which the beam leaves it, and come to the next
     /// tile; false when the beam has ended or the visitor says so.
     #[inline(always)]
-    pub(super) fn cross(&mut self, mut visit: impl FnMut(usize, u32, f32) -> bool) -> bool {
+    pub(super) fn cross_tile(&mut self, mut visit: impl FnMut(usize, u32, f32) -> bool) -> bool {
         let Self {
             mut row,
             mut bit,
@@ -134,12 +134,12 @@ impl Traversal {
             }
         }
         (self.row, self.bit, self.next) = (row, bit, (next_x, next_y));
-        self.turn_page();
+        self.enter_next_tile();
         true
     }
 
     /// Go over to the tile that holds the present cell.
-    fn turn_page(&mut self) {
+    fn enter_next_tile(&mut self) {
         if self.bit == 0 {
             self.tile.0 += if self.up == 1 { 1 } else { -1 };
             self.bit = if self.up == 1 {
@@ -163,11 +163,11 @@ mod tests {
     use crate::math;
 
     fn cells(start: Point, direction: (f32, f32), length_m: f32, excludes_end: bool) -> Vec<Cell> {
-        let mut walk = Traversal::new(start, direction, length_m, excludes_end);
+        let mut traversal = Traversal::new(start, direction, length_m, excludes_end);
         let mut cells = Vec::new();
         loop {
-            let tile = walk.tile();
-            let goes_on = walk.cross(|row, bit, _| {
+            let tile = traversal.tile();
+            let goes_on = traversal.cross_tile(|row, bit, _| {
                 cells.push(Traversal::cell(tile, row, bit));
                 true
             });

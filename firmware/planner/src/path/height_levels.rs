@@ -128,7 +128,7 @@ impl<const TILES: usize> HeightLevels<TILES> {
         cell: Cell,
     ) -> Option<f32> {
         let stored = match tiles.entry(cell.x.div_euclid(TILE_SIDE), cell.y.div_euclid(TILE_SIDE)) {
-            Entry::Nothing => return None,
+            Entry::Untouched => return None,
             Entry::Page(page) => *self.blocks.get(page)?.get(place(cell))?,
             Entry::Half(half) => *self.blocks.get(half / 2)?.get(half % 2)?,
             Entry::AllFree(kept) => kept,
@@ -137,9 +137,9 @@ impl<const TILES: usize> HeightLevels<TILES> {
     }
 }
 
-/// A folded tile keeps the mean of its heights, in one of the first two places by its half of a page.
+/// A compact tile keeps the mean of its heights, in one of the first two places by its half of a page.
 impl<const TILES: usize> SideTable for HeightLevels<TILES> {
-    fn leave_page(&mut self, page: usize) -> i8 {
+    fn release_page(&mut self, page: usize) -> i8 {
         let Some(blocks) = self.blocks.get_mut(page) else {
             return NONE;
         };
@@ -151,19 +151,19 @@ impl<const TILES: usize> SideTable for HeightLevels<TILES> {
         if count > 0 { (sum / count) as i8 } else { NONE }
     }
 
-    fn enter_page(&mut self, page: usize, kept: i8) {
+    fn restore_page(&mut self, page: usize, kept: i8) {
         if let Some(blocks) = self.blocks.get_mut(page) {
             blocks.fill(kept);
         }
     }
 
-    fn enter_half(&mut self, half: usize, kept: i8) {
+    fn store_half(&mut self, half: usize, kept: i8) {
         if let Some(stored) = self.half_mut(half) {
             *stored = kept;
         }
     }
 
-    fn leave_half(&mut self, half: usize) -> i8 {
+    fn release_half(&mut self, half: usize) -> i8 {
         self.half_mut(half)
             .map_or(NONE, |stored| core::mem::replace(stored, NONE))
     }

@@ -84,7 +84,7 @@ impl<const TILES: usize> GroundModel<TILES> {
             Self::Uneven(levels) => {
                 preferences.stand(&input.pose);
                 levels.note(&map.heights(), map.tiles());
-                map.fold(levels);
+                map.compact(levels);
             }
         }
     }
@@ -116,7 +116,7 @@ impl<const TILES: usize> GroundModel<TILES> {
         grid: &mut LocalGrid,
     ) {
         if self.is_uneven() {
-            let rims = obstacle_points::rim_cells(tiles, robot);
+            let rims = obstacle_points::border_cells(tiles, robot);
             grid.keep_off(robot.cell(), rims, footprint);
         }
     }
@@ -137,7 +137,7 @@ impl<const TILES: usize> GroundModel<TILES> {
                 checker.remember(pose, cells);
             }
             Self::Uneven(_) => {
-                let rims = obstacle_points::rims(tiles, pose.point());
+                let rims = obstacle_points::inflated_border_cells(tiles, pose.point());
                 checker.keep_off(pose, rims);
             }
         }

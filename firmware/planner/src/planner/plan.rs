@@ -79,14 +79,14 @@ fn resolve_unmeasured<const TILES: usize, const SLOTS: usize>(
     pose: &Pose,
 ) {
     while let Some(cell) = state.strategy.frontier.take_unobserved() {
-        state.map.give_up_ground(ground, cell);
+        state.map.resolve_gaps(ground, cell);
     }
     if state.strategy.frontier.take_stop() {
         let front = Point {
             x_m: FRONT_M,
             y_m: 0.0,
         };
-        if state.map.trust_ground(ground, pose.to_map(front).cell()) {
+        if state.map.free_gaps(ground, pose.to_map(front).cell()) {
             state.strategy.frontier.lift_bar();
         }
     }

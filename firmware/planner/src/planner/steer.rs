@@ -259,7 +259,7 @@ mod tests {
         state.reset(&config);
         state
             .map
-            .lay_ground(Cell::default(), |cell| Some(0.03 * cell.y as f32));
+            .set_ground_heights(Cell::default(), |cell| Some(0.03 * cell.y as f32));
         let mut workspace = Box::<Workspace>::default();
         let half = SIDE as i32 / 2;
         workspace.window_at = Some((Cell { x: -half, y: -half }, 1));

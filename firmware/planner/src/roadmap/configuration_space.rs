@@ -128,7 +128,7 @@ pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
         visit(
             row,
             Strip {
-                passable: !blocked | (here.trail & !here.obstacle()),
+                passable: !blocked | (here.visited & !here.obstacle()),
                 unknown: here.unknown,
                 obstacle: here.obstacle(),
             },
@@ -143,7 +143,7 @@ pub fn is_passable<const TILES: usize, const SLOTS: usize>(
     cell: crate::geometry::Cell,
 ) -> bool {
     let stands = |cell| matches!(tiles.class(cell), Class::Obstacle | Class::Negative);
-    if tiles.row(cell.x, cell.y).trail() & 1 == 1 {
+    if tiles.row(cell.x, cell.y).visited() & 1 == 1 {
         return !stands(cell);
     }
     (-disc.reach..=disc.reach).all(|dy| {

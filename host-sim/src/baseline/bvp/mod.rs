@@ -345,7 +345,7 @@ mod tests {
         let mut elevation = Elevation::new(&mut bytes, &mut marks, &mut origin);
         for (x, y) in (0..17).flat_map(|x| (0..13).map(move |y| (x, y))) {
             let height_m = if y < 4 { -0.6 } else { 0.0 };
-            elevation.tread(Cell { x, y }, height_m);
+            elevation.mark_wheel_contact(Cell { x, y }, height_m);
         }
         let mut heights = HeightGrid::default();
         heights.keep(&elevation.read());

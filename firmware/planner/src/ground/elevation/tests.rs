@@ -96,76 +96,79 @@ fn what_leaves_the_window_is_forgotten_and_the_rest_stays() {
 #[test]
 fn a_suspicion_ends_with_a_height_and_with_the_window() {
     let mut bench = around_zero();
-    bench.window().suspect(CELL);
-    assert!(bench.read().is_suspect(CELL) && !bench.read().is_sunken(CELL));
+    bench.window().mark_possible_drop(CELL);
+    assert!(bench.read().is_possible_drop(CELL) && !bench.read().is_drop(CELL));
     assert_eq!(bench.read().height_m(CELL), None);
     bench.window().measure(CELL, 0.25);
-    bench.window().suspect(CELL);
-    assert!(!bench.read().is_suspect(CELL));
+    bench.window().mark_possible_drop(CELL);
+    assert!(!bench.read().is_possible_drop(CELL));
     assert_eq!(bench.read().height_m(CELL), Some(0.25));
     let other = Cell { x: -30, y: 2 };
-    bench.window().suspect(other);
+    bench.window().mark_possible_drop(other);
     bench.window().follow(Cell { x: 9, y: 0 });
     bench.window().follow(Cell { x: 0, y: 0 });
-    assert!(!bench.read().is_suspect(other));
-    bench.window().suspect(other);
-    bench.window().sink(other);
-    assert!(!bench.read().is_suspect(other), "it is sure now");
+    assert!(!bench.read().is_possible_drop(other));
+    bench.window().mark_possible_drop(other);
+    bench.window().mark_drop(other);
+    assert!(!bench.read().is_possible_drop(other), "it is sure now");
 }
 
 #[test]
 fn a_glimpse_denies_that_ground_is_gone_and_is_no_height() {
     let mut bench = around_zero();
-    bench.window().sink(CELL);
-    bench.window().glimpse(CELL, -0.5);
-    bench.window().glimpse(CELL, -0.4);
-    bench.window().sink(CELL);
-    bench.window().suspect(CELL);
-    assert!(!bench.read().is_sunken(CELL) && !bench.read().is_suspect(CELL));
-    let glimpse_m = bench.read().glimpse_m(CELL).expect("glimpsed");
-    assert!((glimpse_m + 0.45).abs() < 0.002, "{glimpse_m}");
+    bench.window().mark_drop(CELL);
+    bench.window().measure_low_confidence(CELL, -0.5);
+    bench.window().measure_low_confidence(CELL, -0.4);
+    bench.window().mark_drop(CELL);
+    bench.window().mark_possible_drop(CELL);
+    assert!(!bench.read().is_drop(CELL) && !bench.read().is_possible_drop(CELL));
+    let low_confidence_m = bench.read().low_confidence_m(CELL).expect("glimpsed");
+    assert!(
+        (low_confidence_m + 0.45).abs() < 0.002,
+        "{low_confidence_m}"
+    );
     assert_eq!(bench.read().height_m(CELL), None);
     assert_eq!(bench.read().count(CELL), 0);
     // The first measured height counts alone, and later glimpses not at all.
     bench.window().measure(CELL, 0.25);
-    bench.window().glimpse(CELL, 0.5);
+    bench.window().measure_low_confidence(CELL, 0.5);
     assert_eq!(bench.read().height_m(CELL), Some(0.25));
     assert_eq!(bench.read().count(CELL), 1);
-    assert_eq!(bench.read().glimpse_m(CELL), None);
+    assert_eq!(bench.read().low_confidence_m(CELL), None);
 }
 
 #[test]
 fn what_stands_or_is_stood_on_was_not_glimpsed() {
     let mut bench = around_zero();
-    bench.window().glimpse(CELL, 0.0);
-    bench.window().stand(CELL);
-    bench.window().stand(CELL);
-    assert!(bench.read().is_standing(CELL));
+    bench.window().measure_low_confidence(CELL, 0.0);
+    bench.window().mark_obstacle(CELL);
+    bench.window().mark_obstacle(CELL);
+    assert!(bench.read().is_obstacle(CELL));
     assert_eq!(bench.read().height_m(CELL), None);
-    bench.window().glimpse(CELL, 0.0);
-    bench.window().tread(CELL, 0.125);
+    bench.window().measure_low_confidence(CELL, 0.0);
+    bench.window().mark_wheel_contact(CELL, 0.125);
     assert_eq!(bench.read().height_m(CELL), Some(0.125));
-    assert!(!bench.read().is_standing(CELL));
+    assert!(!bench.read().is_obstacle(CELL));
 }
 
 #[test]
 fn marks_come_and_go() {
     let mut bench = around_zero();
-    bench.window().sink(CELL);
-    assert!(bench.read().is_sunken(CELL));
+    bench.window().mark_drop(CELL);
+    assert!(bench.read().is_drop(CELL));
     // Measured ground is not gone, and cannot be said to be.
     bench.window().measure(CELL, 0.0);
-    bench.window().sink(CELL);
-    assert!(!bench.read().is_sunken(CELL));
-    bench.window().stand(CELL);
+    bench.window().mark_drop(CELL);
+    assert!(!bench.read().is_drop(CELL));
+    bench.window().mark_obstacle(CELL);
     assert!(
-        !bench.read().is_standing(CELL),
+        !bench.read().is_obstacle(CELL),
         "once may be a false return"
     );
-    bench.window().stand(CELL);
-    assert!(bench.read().is_standing(CELL));
+    bench.window().mark_obstacle(CELL);
+    assert!(bench.read().is_obstacle(CELL));
     for _ in 0..2 {
         bench.window().measure(CELL, 0.0);
     }
-    assert!(!bench.read().is_standing(CELL));
+    assert!(!bench.read().is_obstacle(CELL));
 }

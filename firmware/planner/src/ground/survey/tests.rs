@@ -58,7 +58,7 @@ fn before_wall(walled: bool, z_m: f32) -> (f32, u8) {
         for _ in 0..2 {
             match (x < WALL, walled) {
                 (true, _) => window.measure(Cell { x, y }, 0.0),
-                (false, true) => window.stand(Cell { x, y }),
+                (false, true) => window.mark_obstacle(Cell { x, y }),
                 (false, false) => {}
             }
         }
@@ -66,7 +66,7 @@ fn before_wall(walled: bool, z_m: f32) -> (f32, u8) {
     let (from_z_m, length_m) = (0.45, 0.1 * WALL as f32 - 0.01 - 0.15);
     let ray = ahead(from_z_m, (z_m - from_z_m) / length_m, length_m);
     let mut survey = Survey::new(&mut window, &UnevenGround::TABLE_I, &AT_REST);
-    survey.judge(&ray, (false, true));
+    survey.process_return(&ray, (false, true));
     let heights = window.read();
     let height_m = heights.height_m(BEFORE).expect("it was measured");
     (height_m, heights.count(BEFORE))
@@ -107,9 +107,9 @@ fn behind_an_edge(over_m: f32, gap_m: f32, slack_m: f32) -> (bool, bool) {
     let ray = ahead(over_m - slope * last_m, slope, last_m + gap_m);
     let mut survey = Survey::new(&mut window, &UnevenGround::TABLE_I, &AT_REST);
     survey.slack_m = slack_m;
-    survey.judge(&ray, (false, true));
+    survey.process_return(&ray, (false, true));
     let (heights, behind) = (window.read(), Cell { x: WALL, y: 0 });
-    (heights.is_sunken(behind), heights.is_suspect(behind))
+    (heights.is_drop(behind), heights.is_possible_drop(behind))
 }
 
 #[test]

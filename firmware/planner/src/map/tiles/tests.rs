@@ -102,16 +102,16 @@ fn a_full_pool_refuses_and_keeps_what_it_has() {
 }
 
 #[test]
-fn the_trail_covers_blocks_of_two_by_two() {
+fn the_visited_layer_covers_blocks_of_two_by_two() {
     let mut tiles = small();
     for (x, y) in [(-3, 9), (31, 9), (32, 40)] {
         tiles.set(Cell { x, y }, Class::Free).unwrap();
-        tiles.note_visit(Cell { x, y });
+        tiles.mark_visited(Cell { x, y });
     }
-    assert_eq!(tiles.row(-10, 8).trail(), 0b11 << 6 | 0b11 << 40);
-    assert_eq!(tiles.row(-10, 9).trail(), tiles.row(-10, 8).trail());
-    assert_eq!(tiles.row(30, 41).trail(), 0b11 << 2);
-    assert_eq!(tiles.row(-10, 10).trail(), 0);
+    assert_eq!(tiles.row(-10, 8).visited(), 0b11 << 6 | 0b11 << 40);
+    assert_eq!(tiles.row(-10, 9).visited(), tiles.row(-10, 8).visited());
+    assert_eq!(tiles.row(30, 41).visited(), 0b11 << 2);
+    assert_eq!(tiles.row(-10, 10).visited(), 0);
 }
 
 #[test]

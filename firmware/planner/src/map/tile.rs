@@ -10,13 +10,13 @@ pub(super) type Cells = [Plane; 2];
 
 /// A tile that a beam goes through. Rows count from 0 to 31, columns are bits.
 #[derive(Debug)]
-pub(super) struct Page<'a> {
+pub(super) struct TileMut<'a> {
     pub(super) cells: &'a mut Cells,
     /// Changes of any cell of the map so far; wraps.
     pub(super) edits: &'a mut u32,
 }
 
-impl Page<'_> {
+impl TileMut<'_> {
     /// Whether a cell is known to be traversable.
     #[inline(always)]
     pub(super) fn is_free(&self, row: usize, bit: u32) -> bool {
