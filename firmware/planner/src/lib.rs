@@ -42,7 +42,10 @@ pub use config::{
 };
 pub use geometry::{Cell, Point, Pose, Twist};
 pub use input::{INVALID_MM, Input, NO_RETURN_MM};
-pub use planner::{Output, State, Workspace, step};
+pub use planner::{
+    BoxTooLarge, Capacity, CellKind, F405, FieldRow, Memory, Output, Planner, State, Workspace,
+    step,
+};
 pub use profiling::{Stage, StageTimer};
 pub use robot::{LaserMount, MAX_BEAMS, RobotShape};
 pub use status::{Fault, Finish, Frontier, Residue, Status};

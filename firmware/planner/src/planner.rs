@@ -17,12 +17,14 @@
 mod charge;
 mod ending;
 mod ground_model;
+mod memory;
 mod plan;
 mod prefer;
 mod state;
 mod steer;
 mod workspace;
 
+pub use memory::{BoxTooLarge, Capacity, F405, Memory, Planner};
 pub use state::State;
 pub use workspace::{CellKind, FieldRow, Workspace};
 

@@ -1,14 +1,28 @@
-//! What the planner says of itself: exploring, finished and why, or at fault and why.
+//! The planner's account of itself: exploring, finished with a reason, or at fault with a reason.
+//!
+//! Every type has a `Display` in plain words for a log or a screen.
+
+use core::fmt;
+
+use crate::geometry::Cell;
 
 /// What the planner is doing.
+///
+/// ```
+/// use fieldline_planner::{Fault, Finish, Status};
+///
+/// assert_eq!(Status::Exploring.to_string(), "exploring");
+/// assert_eq!(Status::Finished(Finish::Explored).to_string(), "finished: explored");
+/// assert_eq!(Status::Fault(Fault::MapFull).to_string(), "fault: the map is full");
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Status {
-    /// Driving to unexplored space.
+    /// It drives to unexplored space.
     #[default]
     Exploring,
-    /// Done, and why.
+    /// It is done.
     Finished(Finish),
-    /// Cannot go on, and why.
+    /// It cannot go on.
     Fault(Fault),
 }
 
@@ -17,45 +31,105 @@ pub enum Status {
 pub enum Finish {
     /// No reachable frontier is left.
     Explored,
-    /// The robot has no free way out of where it stands.
+    /// Less than one square metre is free around the robot.
     BoxedIn,
 }
 
 /// Why the planner cannot go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// The start pose lies in an obstacle.
+    /// The robot started inside an obstacle.
     StartBlocked,
-    /// A way leads on, and every tile of the map's pool is in use.
+    /// A frontier is reachable, and every tile of the map's pool is in use.
     MapFull,
-    /// A way leads out of the map's box.
+    /// A reachable frontier lies beyond the map's box.
     OutOfBox,
     /// An observation did not match the session's lasers.
     BadObservation,
-    /// The robot did not move for too long although commanded.
+    /// The robot did not move for too long, although it was commanded to.
     Stuck,
 }
 
 /// Why a frontier was left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Residue {
-    /// No way for this radius.
+    /// No path for the robot's radius leads there.
     Unreachable,
-    /// Reached, and still not seen.
+    /// The robot was there and could not see it.
     Unobservable,
-    /// Beyond the map's box.
+    /// It lies beyond the map's box.
     OutOfBounds,
-    /// The robot could not get there.
+    /// The robot came no nearer to it.
     NoProgress,
 }
 
-/// A frontier left over.
+/// A residual frontier: cells that border on the unexplored and were left.
+///
+/// ```
+/// use fieldline_planner::{Cell, Frontier, Residue};
+///
+/// let left = Frontier { cell: Cell { x: 12, y: -3 }, cells: 4, reason: Residue::Unreachable };
+/// assert_eq!(left.to_string(), "4 cells at (1.2, -0.3) m: unreachable");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frontier {
-    /// A cell of it.
-    pub cell: crate::geometry::Cell,
-    /// Cells in it.
+    /// One of its cells.
+    pub cell: Cell,
+    /// The number of its cells.
     pub cells: u16,
     /// Why it was left.
     pub reason: Residue,
+}
+
+impl fmt::Display for Status {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Exploring => f.write_str("exploring"),
+            Self::Finished(finish) => write!(f, "finished: {finish}"),
+            Self::Fault(fault) => write!(f, "fault: {fault}"),
+        }
+    }
+}
+
+impl fmt::Display for Finish {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Explored => "explored",
+            Self::BoxedIn => "boxed in",
+        })
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::StartBlocked => "the robot started inside an obstacle",
+            Self::MapFull => "the map is full",
+            Self::OutOfBox => "a way leads out of the map's box",
+            Self::BadObservation => "an observation did not match the lasers",
+            Self::Stuck => "the robot is stuck",
+        })
+    }
+}
+
+impl fmt::Display for Residue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Unreachable => "unreachable",
+            Self::Unobservable => "unobservable",
+            Self::OutOfBounds => "out of bounds",
+            Self::NoProgress => "no progress",
+        })
+    }
+}
+
+impl fmt::Display for Frontier {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let corner = self.cell.corner();
+        write!(
+            f,
+            "{} cells at ({:.1}, {:.1}) m: {}",
+            self.cells, corner.x_m, corner.y_m, self.reason
+        )
+    }
 }

@@ -1,0 +1,264 @@
+//! [`Planner`]: configuration and memory in one value, for programs whose memory is one piece.
+//!
+//! A chip with split memory, as the STM32F405, holds [`State`] and [`Workspace`] itself and calls
+//! [`step`]. Both ways give the same bits.
+
+use core::fmt;
+
+use crate::config::Config;
+use crate::geometry::Cell;
+use crate::input::Input;
+use crate::planner::{Output, State, Workspace, step};
+use crate::profiling::StageTimer;
+use crate::status::{Frontier, Status};
+
+/// The capacity of a planner: `TILES` map tiles of 3.2 × 3.2 m in the pool, and a box of `SLOTS`
+/// tile places that they may lie in.
+#[derive(Clone, Copy, Debug)]
+pub struct Capacity<const TILES: usize, const SLOTS: usize>;
+
+/// The capacity of the image for an STM32F405: 1,556 m² of touched tiles in a box of 4,096 m².
+pub type F405 = Capacity<152, 400>;
+
+/// A capacity that a [`Planner`] can have. Only [`Capacity`] implements it.
+pub trait Memory: sealed::Memory {}
+
+impl<const TILES: usize, const SLOTS: usize> Memory for Capacity<TILES, SLOTS> {}
+
+/// The map's box has more tile places than the capacity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoxTooLarge {
+    /// The box in tiles, across and up.
+    pub box_tiles: (u8, u8),
+    /// Tile places of the capacity.
+    pub slots: usize,
+}
+
+impl fmt::Display for BoxTooLarge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (across, up) = self.box_tiles;
+        write!(
+            f,
+            "a box of {across} x {up} tiles does not fit {} tile places; both sides must be at \
+             least 4 tiles, and the number across even",
+            self.slots
+        )
+    }
+}
+
+impl core::error::Error for BoxTooLarge {}
+
+/// A planner with its configuration and memory.
+///
+/// ```
+/// use fieldline_planner::{Config, F405, Input, LaserMount, Planner, RobotShape, Status};
+/// use fieldline_planner::{Pose, Twist};
+///
+/// let config = Config::builder(RobotShape::PIONEER_3AT)
+///     .laser(LaserMount::level(0.10, 0.40))
+///     .build()?;
+/// let mut planner = Box::new(Planner::<F405>::new(&config)?);
+/// // A wall 2 m away on all sides.
+/// let ranges_mm = [2_000; 181];
+/// let output = planner.step(&Input {
+///     time_ms: 0,
+///     pose: Pose::default(),
+///     velocity: Twist::default(),
+///     scans: [&ranges_mm, &[]],
+/// });
+/// assert_eq!(output.status, Status::Exploring);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Planner<M: Memory> {
+    config: Config,
+    state: M::State,
+    workspace: Workspace,
+}
+
+impl<M: Memory> Planner<M> {
+    /// A planner at the beginning of a session.
+    ///
+    /// # Errors
+    /// [`BoxTooLarge`] if the configuration's box does not fit the capacity.
+    pub fn new(config: &Config) -> Result<Self, BoxTooLarge> {
+        let mut planner = Self {
+            config: config.clone(),
+            state: sealed::Planning::empty(),
+            workspace: Workspace::new(),
+        };
+        planner.restart(config)?;
+        Ok(planner)
+    }
+
+    /// Forget everything and begin a session with another configuration.
+    ///
+    /// # Errors
+    /// [`BoxTooLarge`] if the configuration's box does not fit the capacity; the session goes on
+    /// then.
+    pub fn restart(&mut self, config: &Config) -> Result<(), BoxTooLarge> {
+        sealed::Planning::reset(&mut self.state, config)?;
+        self.config = config.clone();
+        Ok(())
+    }
+
+    /// One step: from scans and odometry to a velocity.
+    pub fn step(&mut self, input: &Input<'_>) -> Output {
+        self.step_timed(input, &mut ())
+    }
+
+    /// One step; `timer` learns the end of each stage.
+    pub fn step_timed(&mut self, input: &Input<'_>, timer: &mut impl StageTimer) -> Output {
+        sealed::Planning::step(
+            &mut self.state,
+            &self.config,
+            &mut self.workspace,
+            *input,
+            timer,
+        )
+    }
+
+    /// The configuration.
+    pub const fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// The status after the last step.
+    pub fn status(&self) -> Status {
+        sealed::Planning::status(&self.state)
+    }
+
+    /// The path to the current goal: coarse cells of 20 cm, each named by the least of its four map
+    /// cells, the robot's end first.
+    pub fn path(&self) -> &[Cell] {
+        sealed::Planning::path(&self.state)
+    }
+
+    /// The residual frontiers, each with its reason.
+    pub fn frontiers(&self) -> &[Frontier] {
+        sealed::Planning::frontiers(&self.state)
+    }
+
+    /// The 32 × 32 cells of the map tile in this column and row, two bits each, least x and y
+    /// first: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle. `None` if nothing in it was ever
+    /// measured.
+    pub fn tile(&self, column: i16, row: i16) -> Option<[u8; 256]> {
+        sealed::Planning::tile(&self.state, column, row)
+    }
+
+    /// The scratch memory, which holds the last step's field.
+    pub const fn workspace(&self) -> &Workspace {
+        &self.workspace
+    }
+}
+
+/// Erases the two numbers of a [`Capacity`].
+mod sealed {
+    use core::fmt::Debug;
+
+    use super::{
+        BoxTooLarge, Capacity, Cell, Config, Frontier, Input, Output, StageTimer, State, Status,
+        Workspace, step,
+    };
+    use crate::map::Tiles;
+
+    /// A capacity.
+    pub trait Memory {
+        /// Its state.
+        type State: Planning + Debug;
+    }
+
+    impl<const TILES: usize, const SLOTS: usize> Memory for Capacity<TILES, SLOTS> {
+        type State = State<TILES, SLOTS>;
+    }
+
+    /// A [`State`] of any capacity.
+    pub trait Planning {
+        fn empty() -> Self;
+        fn reset(&mut self, config: &Config) -> Result<(), BoxTooLarge>;
+        fn step(
+            &mut self,
+            config: &Config,
+            workspace: &mut Workspace,
+            input: Input<'_>,
+            timer: &mut impl StageTimer,
+        ) -> Output;
+        fn status(&self) -> Status;
+        fn path(&self) -> &[Cell];
+        fn frontiers(&self) -> &[Frontier];
+        fn tile(&self, column: i16, row: i16) -> Option<[u8; 256]>;
+    }
+
+    impl<const TILES: usize, const SLOTS: usize> Planning for State<TILES, SLOTS> {
+        fn empty() -> Self {
+            Self::new()
+        }
+
+        fn reset(&mut self, config: &Config) -> Result<(), BoxTooLarge> {
+            let (across, up) = config.box_tiles;
+            if !Tiles::<TILES, SLOTS>::fits(across, up) {
+                return Err(BoxTooLarge {
+                    box_tiles: config.box_tiles,
+                    slots: SLOTS,
+                });
+            }
+            Self::reset(self, config);
+            Ok(())
+        }
+
+        fn step(
+            &mut self,
+            config: &Config,
+            workspace: &mut Workspace,
+            input: Input<'_>,
+            timer: &mut impl StageTimer,
+        ) -> Output {
+            step(config, self, workspace, input, timer)
+        }
+
+        fn status(&self) -> Status {
+            Self::status(self)
+        }
+
+        fn path(&self) -> &[Cell] {
+            Self::path(self).cells()
+        }
+
+        fn frontiers(&self) -> &[Frontier] {
+            Self::frontiers(self)
+        }
+
+        fn tile(&self, column: i16, row: i16) -> Option<[u8; 256]> {
+            Self::tile(self, column, row)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::boxed::Box;
+    use std::string::ToString;
+
+    use super::{F405, Planner};
+    use crate::config::Config;
+    use crate::robot::{LaserMount, RobotShape};
+
+    fn config(across: u8, up: u8) -> Config {
+        Config::builder(RobotShape::PIONEER_3AT)
+            .laser(LaserMount::level(0.1, 0.4))
+            .box_tiles(across, up)
+            .build()
+            .expect("valid")
+    }
+
+    #[test]
+    fn a_box_that_does_not_fit_is_refused_and_the_session_goes_on() {
+        let error = Planner::<F405>::new(&config(40, 20)).expect_err("800 places");
+        assert!(error.to_string().contains("40 x 20 tiles does not fit 400"));
+        let mut planner = Box::new(Planner::<F405>::new(&config(20, 20)).expect("400 places"));
+        planner.restart(&config(3, 20)).expect_err("too narrow");
+        assert_eq!(planner.config().box_tiles, (20, 20));
+        planner.restart(&config(40, 10)).expect("400 places");
+        assert_eq!(planner.config().box_tiles, (40, 10));
+    }
+}
