@@ -109,7 +109,7 @@ pub enum Reply {
     },
     /// The session has a new state.
     Control(Status),
-    /// What the robot must drive.
+    /// The command for the robot: its velocity, with status and cost.
     Command(Command),
     /// A map tile; `None` if nothing in it was ever seen.
     Tile(Option<Tile>),

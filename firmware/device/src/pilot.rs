@@ -3,15 +3,15 @@
 //! ```text
 //!          Start            Pause             planner
 //!  Idle ─────────► Exploring ─────► Paused    Exploring ─────► Finished / Fault
-//!                     ▲   ◄─────              any ──Stop──► Finished(Stopped)
-//!                     │   Resume              any ──input──► EmergencyStop ──┐
-//!                     └───────────── Resume, with the input released ◄───────┘
+//!                         ◄─────              any ──Stop──► Finished(Stopped)
+//!                         Resume              any ──input──► EmergencyStop
 //! ```
 //!
 //! Only in Exploring does an observation step the planner, and only then may a command move the
 //! robot. The emergency stop is latched: releasing the input does not end it, and neither does a
 //! new observation. Only Resume or Start from the host ends it, and only when the input is
-//! released. A resumed session has the state that it had before the stop.
+//! released. After Resume the session explores, also if it was paused before the stop. A session
+//! that had ended stays ended.
 //!
 //! A pilot used directly is a link without bytes. The session calls the same functions, so both
 //! give the same commands.
@@ -162,7 +162,7 @@ impl Pilot {
         Ok(())
     }
 
-    /// Makes one step. `laps` is told about each stage of the step.
+    /// Makes one step. `laps` receives the end of each stage.
     ///
     /// An observation whose scans do not match the session's lasers makes no step. Its answer has
     /// zero velocity and [`Fault::BadObservation`]. The session continues with the next correct

@@ -11,7 +11,7 @@ use crate::meter::Meter;
 use crate::pilot::Memory;
 use crate::session::Session;
 
-/// What the port needs from a board beside its pins and its serial line.
+/// The functions that the port needs from a board, beside its pins and its serial line.
 pub trait Board: Meter {
     /// Returns the time from any origin, milliseconds, wrapping.
     fn now_ms(&mut self) -> u32;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::Identity;
 use super::Twist;
 
-/// What the planner does.
+/// State of the planner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Status {
     /// There is no session yet.
@@ -87,7 +87,7 @@ pub struct Stages {
     pub drive: u32,
 }
 
-/// What one step cost.
+/// Cost of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Cost {
     /// Instructions of the whole step: exact in the emulator, timer ticks on silicon, 0 on a host.
@@ -118,7 +118,7 @@ pub struct Loops {
 pub struct Command {
     /// Velocity that the robot must drive.
     pub velocity: Twist,
-    /// What the planner does.
+    /// State of the planner.
     pub status: Status,
     /// Heading of the robot that the field asks for, radians; it has a meaning only while
     /// exploring.

@@ -10,7 +10,7 @@ pub const BUILD_BYTES: usize = 24;
 /// Maximum length of a source file's name in a crash report, bytes.
 pub const CRASH_FILE_BYTES: usize = 32;
 
-/// What ended the program before the last reboot.
+/// Cause of a crash.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Cause {
     /// A panic; [`Crash::at`] is the source line.
@@ -27,7 +27,7 @@ pub enum Cause {
 /// A crash: the program stopped, sends no further command, and reboots.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Crash {
-    /// What ended the program.
+    /// Cause of the crash.
     pub cause: Cause,
     /// Source line or program counter.
     pub at: u32,

@@ -1,4 +1,4 @@
-//! What the robot measured.
+//! Measurements of the robot.
 //!
 //! Units: metres, radians, seconds; ranges in millimetres.
 
@@ -53,7 +53,7 @@ pub struct Scan {
     pub ranges_mm: Vec<u16, MAX_BEAMS>,
 }
 
-/// What the robot sensed at one instant.
+/// Measurements of the robot at one instant.
 ///
 /// The scans must match the session's lasers in number and length. If they do not, the device makes
 /// no step and answers with zero velocity and [`Fault::BadObservation`].

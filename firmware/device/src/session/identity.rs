@@ -6,7 +6,7 @@ use fieldline_protocol::{SCHEMA, VERSION};
 
 use crate::STALE_MS;
 
-/// What the board knows about its last boot.
+/// A board's knowledge of its last boot.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Boot {
     /// Number of boots since power-on.

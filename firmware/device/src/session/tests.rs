@@ -1,128 +1,21 @@
 //! The rules of the conversation, each as a script of requests and replies.
 
+mod talk;
+
 use std::vec;
 use std::vec::Vec;
 
 use fieldline_protocol::check::Kind;
-use fieldline_protocol::frame::{
-    MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_body, encode_request,
-};
+use fieldline_protocol::frame::{MAX_REQUEST_FRAME, encode_body};
 use fieldline_protocol::message::{
-    Command, Control, Counters, Crash, Fault, Refusal, Reply, Request, Stages, Status, Twist,
+    Control, Counters, Crash, Fault, Refusal, Reply, Request, Stages, Status, Twist,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 
-use super::{Boot, Session};
-use crate::meter::Meter;
-use crate::pilot::tests::{Bench, observation, start};
+use super::Boot;
+use crate::pilot::tests::{observation, start};
 use crate::signal::Signal;
-
-/// A meter that counts its steps. Its count grows by a thousand with each call.
-#[derive(Default)]
-struct Steps(u32, u32);
-
-impl Meter for Steps {
-    fn start(&mut self) {
-        self.0 += 1;
-    }
-    fn stop(&mut self) {}
-    fn count(&mut self) -> u32 {
-        self.1 += 1000;
-        self.1
-    }
-    fn stack_bytes(&self) -> u32 {
-        77
-    }
-}
-
-/// A host and a device that exchange frames.
-struct Talk {
-    session: Session,
-    bench: Bench,
-    steps: Steps,
-    host: Receiver<MAX_REPLY_FRAME>,
-}
-
-impl Talk {
-    fn booted(boot: Boot) -> Self {
-        let mut session = Session::new();
-        assert!(session.pending().is_empty());
-        session.boot(boot, 192, 400);
-        Self {
-            session,
-            bench: Bench::new(),
-            steps: Steps::default(),
-            host: Receiver::new(Side::Host),
-        }
-    }
-
-    /// Returns a started session. The sequence numbers 0 and 1 are used.
-    fn started() -> Self {
-        let mut talk = Self::booted(Boot::default());
-        talk.hear();
-        talk.say(0, &hello(7));
-        let started = talk.say(1, &Request::Control(Control::Start(start())));
-        assert_eq!(started, [(1, Reply::Control(Status::Exploring))]);
-        talk
-    }
-
-    fn feed(&mut self, bytes: &[u8]) {
-        let mut memory = self.bench.memory();
-        for byte in bytes {
-            self.session.receive(*byte, &mut memory, &mut self.steps);
-        }
-    }
-
-    fn bytes(&mut self) -> Vec<u8> {
-        let mut bytes = vec![];
-        while !self.session.pending().is_empty() {
-            bytes.extend_from_slice(self.session.pending());
-            self.session.sent(self.session.pending().len());
-        }
-        bytes
-    }
-
-    fn hear(&mut self) -> Vec<(u16, Reply)> {
-        let mut heard = vec![];
-        for byte in self.bytes() {
-            if let Some(frame) = self.host.push(byte) {
-                heard.push((frame.sequence, frame.reply().unwrap()));
-            }
-        }
-        heard
-    }
-
-    fn say(&mut self, sequence: u16, request: &Request) -> Vec<(u16, Reply)> {
-        self.feed(&frame(sequence, request));
-        self.hear()
-    }
-
-    fn observe(&mut self, sequence: u16) -> Command {
-        let observation = Request::Observation(observation(u32::from(sequence) * 100));
-        match self.say(sequence, &observation).as_slice() {
-            [(heard, Reply::Command(command))] if *heard == sequence => *command,
-            other => panic!("{other:?}"),
-        }
-    }
-}
-
-fn frame(sequence: u16, request: &Request) -> Vec<u8> {
-    let mut out = [0; MAX_REQUEST_FRAME];
-    let length = encode_request(sequence, request, &mut out).unwrap();
-    out[..length].to_vec()
-}
-
-fn hello(nonce: u32) -> Request {
-    Request::Hello {
-        version: VERSION,
-        schema: SCHEMA,
-        nonce,
-    }
-}
-
-fn refused(sequence: u16, refusal: Refusal) -> Vec<(u16, Reply)> {
-    vec![(sequence, Reply::Refused(refusal))]
-}
+use talk::{Talk, frame, hello, refused};
 
 #[test]
 fn a_booted_device_sends_its_identity() {
