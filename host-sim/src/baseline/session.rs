@@ -28,7 +28,7 @@ use fieldline_planner::status::{self, Residue};
 use fieldline_planner::terrain::Terrain;
 use fieldline_protocol::message::{
     Command, Control, Cost, Fault, FieldRow, Finish, Frontier, Identity, MAX_FRONTIERS,
-    Observation, Refusal, Start, Status, TILE_DATES, TILE_SKELETON_BYTES, Tile,
+    Observation, Refusal, Road, Start, Status, TILE_DATES, TILE_SKELETON_BYTES, Tile,
 };
 
 use super::chart::Chart;
@@ -418,6 +418,14 @@ impl<P: Plan> Link for Session<P> {
             .take(MAX_FRONTIERS)
             .map(convert::wire_frontier)
             .collect())
+    }
+
+    fn road(&mut self, _: u8) -> Result<Road, LinkError> {
+        Ok(Road::default())
+    }
+
+    fn take_log(&mut self) -> Vec<u8> {
+        Vec::new()
     }
 
     /// Every call counts as a frame sent and one received.

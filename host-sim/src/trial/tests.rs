@@ -1,8 +1,8 @@
 //! Runs with a scripted device and a point robot: every ending, and what the record then holds.
 
 use fieldline_protocol::message::{
-    Command, Control, Fault, FieldRow, Finish, Frontier, Identity, Observation, Residue, Start,
-    Status, Tile, Twist,
+    Command, Control, Fault, FieldRow, Finish, Frontier, Identity, Observation, Residue, Road,
+    Start, Status, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -105,6 +105,12 @@ impl Link for Script {
             cells: 4,
             reason: Residue::Unreachable,
         }])
+    }
+    fn road(&mut self, _: u8) -> Result<Road, LinkError> {
+        Ok(Road::default())
+    }
+    fn take_log(&mut self) -> Vec<u8> {
+        Vec::new()
     }
     fn stats(&self) -> LinkStats {
         LinkStats {

@@ -1,21 +1,21 @@
-//! A line that breaks on purpose: between a host's end and any other line, a decorator.
+//! Fault injection: a decorator that adds faults to any line.
 //!
-//! Faults are drawn frame by frame, in each direction, from a seeded generator, and act on bytes:
+//! A seeded generator draws the faults for each frame, in each direction. They act on bytes:
 //!
-//! | fault | what happens to a frame, with its probability |
+//! | fault | effect on a frame, with probability P |
 //! | --- | --- |
-//! | `drop=P` | one byte, a run of bytes, or all of it is lost |
-//! | `duplicate=P` | one byte, or all of it, comes twice |
+//! | `drop=P` | one byte, a run of bytes, or the whole frame is lost |
+//! | `duplicate=P` | one byte, or the whole frame, comes twice |
 //! | `corrupt=P` | one to three bytes change, maybe to or from a delimiter |
-//! | `truncate=P` | the rest from some byte on is lost, the delimiter too |
-//! | `delay=P` | it comes up to 300 ms later, maybe behind others |
-//! | `reset@N` | before the host's N-th frame the device is told to reboot |
-//! | `silent@N` | from the host's N-th frame on nothing passes, either way |
+//! | `truncate=P` | the frame is cut at some byte; the delimiter is lost too |
+//! | `delay=P` | the frame comes up to 300 ms later, maybe after others |
+//! | `reset@N` | before the host's N-th frame the device receives a reset |
+//! | `silent@N` | from the host's N-th frame on nothing passes in either direction |
 //!
-//! Time is that of the line underneath: on a loopback nothing waits.
+//! Time is the time of the inner line: on a loopback nothing waits.
 
-use core::fmt;
-use core::str::FromStr;
+mod spec;
+
 use core::time::Duration;
 use std::collections::VecDeque;
 
@@ -24,125 +24,15 @@ use fieldline_protocol::message::{Control, Request};
 
 use super::LinkError;
 use super::line::Line;
+pub use spec::{Faults, FaultsError};
 
 /// Longest delay of a frame.
 const MAX_DELAY: Duration = Duration::from_millis(300);
 
-/// Which faults, how often.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Faults {
-    /// Probability that a frame loses bytes.
-    pub drop: f64,
-    /// Probability that bytes of a frame are doubled.
-    pub duplicate: f64,
-    /// Probability that bytes of a frame change.
-    pub corrupt: f64,
-    /// Probability that a frame is cut off.
-    pub truncate: f64,
-    /// Probability that a frame is late.
-    pub delay: f64,
-    /// The device reboots before this frame of the host, counted from 1.
-    pub reset_at: Option<u64>,
-    /// The line is dead from this frame of the host on.
-    pub silent_at: Option<u64>,
-}
-
-/// Why a fault specification was not understood.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum FaultsError {
-    /// No fault at all.
-    Nothing,
-    /// A word that is no fault.
-    Unknown(String),
-    /// A fault that was named before.
-    Twice(String),
-    /// Not a probability.
-    BadProbability(String),
-    /// Not a frame's number.
-    BadCount(String),
-}
-
-impl fmt::Display for FaultsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const KNOWN: &str = "use drop=P, duplicate=P, corrupt=P, truncate=P, delay=P, reset@N, silent@N, separated by commas";
-        match self {
-            Self::Nothing => write!(f, "no fault is named; {KNOWN}"),
-            Self::Unknown(word) => write!(f, "unknown fault '{word}'; {KNOWN}"),
-            Self::Twice(name) => write!(f, "'{name}' is given twice; keep one"),
-            Self::BadProbability(word) => {
-                write!(f, "bad probability in '{word}'; it must be 0 to 0.5")
-            }
-            Self::BadCount(word) => {
-                write!(
-                    f,
-                    "bad frame number in '{word}'; it must be a whole number from 1 on"
-                )
-            }
-        }
-    }
-}
-
-impl core::error::Error for FaultsError {}
-
-impl FromStr for Faults {
-    type Err = FaultsError;
-
-    fn from_str(text: &str) -> Result<Self, FaultsError> {
-        let mut faults = Self::default();
-        let mut named = Vec::new();
-        let words = text.split(',').map(str::trim);
-        for word in words.filter(|word| !word.is_empty()) {
-            faults.read(word)?;
-            let name = word.split(['=', '@']).next().unwrap_or(word).trim();
-            if named.contains(&name) {
-                return Err(FaultsError::Twice(name.into()));
-            }
-            named.push(name);
-        }
-        if named.is_empty() {
-            return Err(FaultsError::Nothing);
-        }
-        Ok(faults)
-    }
-}
-
-impl Faults {
-    fn read(&mut self, word: &str) -> Result<(), FaultsError> {
-        if let Some((name, count)) = word.split_once('@') {
-            let place = match name.trim() {
-                "reset" => &mut self.reset_at,
-                "silent" => &mut self.silent_at,
-                _ => return Err(FaultsError::Unknown(word.into())),
-            };
-            let count: Option<u64> = count.trim().parse().ok();
-            *place = Some(
-                count
-                    .filter(|count| *count > 0)
-                    .ok_or_else(|| FaultsError::BadCount(word.into()))?,
-            );
-            return Ok(());
-        }
-        let (name, value) = word
-            .split_once('=')
-            .ok_or_else(|| FaultsError::Unknown(word.into()))?;
-        let place = match name.trim() {
-            "drop" => &mut self.drop,
-            "duplicate" => &mut self.duplicate,
-            "corrupt" => &mut self.corrupt,
-            "truncate" => &mut self.truncate,
-            "delay" => &mut self.delay,
-            _ => return Err(FaultsError::Unknown(word.into())),
-        };
-        let value: Option<f64> = value.trim().parse().ok();
-        let possible = |value: &f64| (0.0..=0.5).contains(value);
-        *place = value
-            .filter(possible)
-            .ok_or_else(|| FaultsError::BadProbability(word.into()))?;
-        Ok(())
-    }
-}
-
-/// `SplitMix64` [Steele, Lea and Flood, 2014].
+/// The generator `SplitMix64` [Steele14].
+///
+/// [Steele14]: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators",
+/// OOPSLA 2014.
 #[derive(Clone, Copy, Debug)]
 struct Dice(u64);
 
@@ -165,7 +55,7 @@ impl Dice {
     }
 }
 
-/// One direction: frames that are late, soonest first among equals.
+/// Delayed frames of one direction, in the order of their due times.
 #[derive(Debug, Default)]
 struct Late(VecDeque<(Duration, Vec<u8>)>);
 
@@ -188,7 +78,7 @@ impl Late {
     }
 }
 
-/// How often each fault was made.
+/// Number of faults made so far, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Made {
     /// Frames that lost bytes.
@@ -197,9 +87,9 @@ pub struct Made {
     pub duplicated: u64,
     /// Frames with bytes changed.
     pub corrupted: u64,
-    /// Frames cut off.
+    /// Frames that were cut.
     pub truncated: u64,
-    /// Frames late.
+    /// Delayed frames.
     pub delayed: u64,
 }
 
@@ -212,15 +102,15 @@ pub struct Faulty<L> {
     sent: u64,
     to_device: Late,
     to_host: Late,
-    /// The frame of the device that is not complete yet.
+    /// The device's frame that is not complete yet.
     partial: Vec<u8>,
-    /// Overhears the host, for the number of a reset.
+    /// Sequence number of the host's last frame; a reset takes the next one.
     overheard: u16,
     made: Made,
 }
 
 impl<L: Line> Faulty<L> {
-    /// `line`, broken by `faults` drawn from `seed`.
+    /// Adds `faults`, drawn from `seed`, to `line`.
     pub fn new(line: L, faults: Faults, seed: u64) -> Self {
         Self {
             line,
@@ -235,7 +125,7 @@ impl<L: Line> Faulty<L> {
         }
     }
 
-    /// The line underneath.
+    /// The inner line.
     pub const fn line(&self) -> &L {
         &self.line
     }
@@ -249,50 +139,25 @@ impl<L: Line> Faulty<L> {
         self.faults.silent_at.is_some_and(|at| self.sent >= at)
     }
 
-    /// What becomes of a frame: its bytes, and how late they are.
+    /// Applies the faults to a frame: returns its bytes and their delay.
     fn mangle(&mut self, frame: &[u8]) -> (Vec<u8>, Duration) {
-        let Faults {
-            drop,
-            duplicate,
-            corrupt,
-            truncate,
-            delay,
-            ..
-        } = self.faults;
+        let faults = self.faults;
         let mut bytes = frame.to_vec();
-        if self.dice.chance(truncate) {
+        if self.dice.chance(faults.truncate) {
             self.made.truncated += 1;
             bytes.truncate(self.dice.below(bytes.len()));
         }
-        if self.dice.chance(corrupt) && !bytes.is_empty() {
-            self.made.corrupted += 1;
-            for _ in 0..=self.dice.below(3) {
-                let at = self.dice.below(bytes.len());
-                bytes[at] ^= 1 + self.dice.below(255) as u8;
-            }
+        if self.dice.chance(faults.corrupt) && !bytes.is_empty() {
+            self.corrupt(&mut bytes);
         }
-        if self.dice.chance(drop) && !bytes.is_empty() {
-            self.made.dropped += 1;
-            let at = self.dice.below(bytes.len());
-            let run = match self.dice.below(3) {
-                0 => 1,
-                1 => 1 + self.dice.below(bytes.len() - at),
-                _ => bytes.len(),
-            };
-            let from = if run == bytes.len() { 0 } else { at };
-            bytes.drain(from..from + run);
+        if self.dice.chance(faults.drop) && !bytes.is_empty() {
+            self.lose(&mut bytes);
         }
-        if self.dice.chance(duplicate) && !bytes.is_empty() {
-            self.made.duplicated += 1;
-            if self.dice.below(2) == 0 {
-                bytes.extend_from_within(..);
-            } else {
-                let at = self.dice.below(bytes.len());
-                bytes.insert(at, bytes[at]);
-            }
+        if self.dice.chance(faults.duplicate) && !bytes.is_empty() {
+            self.duplicate(&mut bytes);
         }
         let mut late = Duration::ZERO;
-        if self.dice.chance(delay) {
+        if self.dice.chance(faults.delay) {
             self.made.delayed += 1;
             late =
                 Duration::from_millis(1 + self.dice.below(MAX_DELAY.as_millis() as usize) as u64);
@@ -300,7 +165,40 @@ impl<L: Line> Faulty<L> {
         (bytes, late)
     }
 
-    /// Tells the device to reboot, with a number that it must take for new.
+    /// Changes one to three bytes.
+    fn corrupt(&mut self, bytes: &mut [u8]) {
+        self.made.corrupted += 1;
+        for _ in 0..=self.dice.below(3) {
+            let at = self.dice.below(bytes.len());
+            bytes[at] ^= 1 + self.dice.below(255) as u8;
+        }
+    }
+
+    /// Removes one byte, a run of bytes, or all bytes.
+    fn lose(&mut self, bytes: &mut Vec<u8>) {
+        self.made.dropped += 1;
+        let at = self.dice.below(bytes.len());
+        let run = match self.dice.below(3) {
+            0 => 1,
+            1 => 1 + self.dice.below(bytes.len() - at),
+            _ => bytes.len(),
+        };
+        let from = if run == bytes.len() { 0 } else { at };
+        bytes.drain(from..from + run);
+    }
+
+    /// Doubles one byte or all bytes.
+    fn duplicate(&mut self, bytes: &mut Vec<u8>) {
+        self.made.duplicated += 1;
+        if self.dice.below(2) == 0 {
+            bytes.extend_from_within(..);
+        } else {
+            let at = self.dice.below(bytes.len());
+            bytes.insert(at, bytes[at]);
+        }
+    }
+
+    /// Tells the device to reboot, with a sequence number that is new to it.
     fn reset_device(&mut self) -> Result<(), LinkError> {
         let mut frame = [0; MAX_REQUEST_FRAME];
         let sequence = self.overheard.wrapping_add(1);
@@ -316,7 +214,7 @@ impl<L: Line> Faulty<L> {
         Ok(())
     }
 
-    /// Mangles what the device said, frame by frame.
+    /// Applies the faults to the device's bytes, frame by frame.
     fn hear(&mut self, bytes: &[u8]) {
         for byte in bytes {
             self.partial.push(*byte);
@@ -376,57 +274,5 @@ impl<L: Line> Line for Faulty<L> {
 
     fn now(&self) -> Duration {
         self.line.now()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Faults, FaultsError};
-
-    #[test]
-    fn a_specification_is_read() {
-        let faults: Faults =
-            "drop=0.02, duplicate=0.01,corrupt=0.5,truncate=0,delay=0.05,reset@120,silent@200"
-                .parse()
-                .unwrap();
-        assert_eq!(
-            faults,
-            Faults {
-                drop: 0.02,
-                duplicate: 0.01,
-                corrupt: 0.5,
-                truncate: 0.0,
-                delay: 0.05,
-                reset_at: Some(120),
-                silent_at: Some(200),
-            }
-        );
-    }
-
-    #[test]
-    fn what_is_not_understood_is_named() {
-        let error = |text: &str| text.parse::<Faults>().unwrap_err();
-        assert_eq!(
-            error("drop=0.1,loss=0.1"),
-            FaultsError::Unknown("loss=0.1".into())
-        );
-        for text in ["", " , "] {
-            assert_eq!(error(text), FaultsError::Nothing);
-        }
-        for (text, name) in [
-            ("drop=0.1,drop=0.2", "drop"),
-            ("reset@3, drop=0, reset @4", "reset"),
-        ] {
-            assert_eq!(error(text), FaultsError::Twice(name.into()));
-        }
-        assert_eq!(error("drop"), FaultsError::Unknown("drop".into()));
-        assert_eq!(error("explode@3"), FaultsError::Unknown("explode@3".into()));
-        for text in ["drop=1", "drop=-0.1", "drop=", "drop=NaN", "drop=2%"] {
-            assert_eq!(error(text), FaultsError::BadProbability(text.into()));
-        }
-        for text in ["reset@0", "silent@", "reset@-1", "reset@1.5"] {
-            assert_eq!(error(text), FaultsError::BadCount(text.into()));
-        }
-        assert!(error("loss=1").to_string().contains("use drop=P"));
     }
 }
