@@ -1,10 +1,10 @@
-//! How fast whole explorations are: simulated seconds a second of processor time; planner, simulator and metrics
-//! together, by `direct`.
+//! Speed of whole explorations: simulated seconds per second of processor time, for planner,
+//! simulator and metrics together, over the direct link.
 //!
-//! `cargo bench -p host-sim --bench explore [WORLD..]` explores `office`, or the worlds named, and prints the best of a
-//! few runs of each: other work on the machine takes caches and memory away and can only slow a run down. A run is one
-//! thread, so a second of processor time is a second of one core. `--once` runs each world once, which is what
-//! `tests/profile` counts instructions of.
+//! `cargo bench -p host-sim --bench explore [WORLD..]` explores `office`, or the named worlds, and
+//! prints the best of a few runs of each: other work on the machine can only slow a run down. A run
+//! is one thread, so a second of processor time is a second of one core. `--once` runs each world
+//! once; `tests/profile` counts the instructions of that.
 
 use host_sim::link::direct::Direct;
 use host_sim::report::Report;
@@ -12,10 +12,10 @@ use host_sim::trial::mission::{Mission, explore};
 use host_sim::trial::{Flow, Progress, Watch};
 use host_sim::world::World;
 
-/// Runs of each world, of which the fastest counts.
+/// Runs of each world; the fastest counts.
 const RUNS: usize = 5;
 
-/// Nobody looks on.
+/// Watches nothing.
 struct Unseen;
 
 impl Watch for Unseen {
@@ -32,7 +32,7 @@ fn processor_s() -> f64 {
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }
 
-/// Elapsed time, where nothing better is known.
+/// Elapsed time, in place of processor time.
 #[cfg(not(unix))]
 fn processor_s() -> f64 {
     use std::sync::LazyLock;
@@ -41,7 +41,7 @@ fn processor_s() -> f64 {
     BEGAN.elapsed().as_secs_f64()
 }
 
-/// One whole run and what it took, seconds.
+/// One whole run and its processor time, seconds.
 fn run(name: &str) -> anyhow::Result<(Report, f64)> {
     let began_s = processor_s();
     let world = World::open(name)?;
@@ -49,14 +49,14 @@ fn run(name: &str) -> anyhow::Result<(Report, f64)> {
     Ok((report, processor_s() - began_s))
 }
 
-/// The fastest of some runs, which must be the same run each time.
+/// The fastest of some runs; all must have the same digest.
 fn fastest(name: &str, runs: usize) -> anyhow::Result<(Report, f64)> {
     let (report, mut least_s) = run(name)?;
     for _ in 1..runs {
         let (again, took_s) = run(name)?;
         anyhow::ensure!(
             again.digest == report.digest,
-            "{name}: the same seed gave another run"
+            "{name}: the same seed gave another run; look for a source of randomness"
         );
         least_s = least_s.min(took_s);
     }

@@ -1,7 +1,8 @@
-//! How fast the simulator is: rays a second and simulated seconds a second, on one core.
+//! Speed of the simulator: rays per second and simulated seconds per second, on one core.
 //!
-//! `cargo bench -p host-sim --bench simulator [WORLD..]` prints a table over the built-in worlds, or the ones named. Poses
-//! are spread over the whole world by a fixed sequence; the robot drives a fixed wiggle without a planner.
+//! `cargo bench -p host-sim --bench simulator [WORLD..]` prints a table of the built-in worlds, or
+//! of the named ones. A fixed sequence spreads the poses over the world. The robot drives a fixed
+//! pattern without a planner.
 
 use core::hint::black_box;
 use std::time::Instant;
@@ -10,9 +11,9 @@ use host_sim::robot::{LaserNoise, LaserScanner, Pose, Source, Velocity, laser};
 use host_sim::sim::{SimConfig, Simulator};
 use host_sim::world::{World, builtins};
 
-/// Sweeps cast for a measurement.
+/// Number of sweeps of a measurement.
 const SWEEPS: usize = 3000;
-/// Control periods simulated for a measurement.
+/// Number of control periods of a measurement.
 const PERIODS: u32 = 3000;
 
 fn main() {
@@ -65,7 +66,7 @@ fn poses(world: &World) -> Vec<Pose> {
         .collect()
 }
 
-/// Millions of rays a second, noise included.
+/// Millions of rays per second, with noise.
 fn rays(world: &World, laser: &fieldline_protocol::message::Laser) -> f64 {
     let sources = [Source::LevelRange, Source::LevelFault];
     let mut scanner = LaserScanner::new(laser, LaserNoise::default(), 1, sources);
@@ -78,7 +79,7 @@ fn rays(world: &World, laser: &fieldline_protocol::message::Laser) -> f64 {
     beams as f64 / start.elapsed().as_secs_f64() / 1e6
 }
 
-/// Simulated seconds a second: both lasers, drive, collisions, metrics.
+/// Simulated seconds per second: both lasers, drive, collisions, metrics.
 fn real_time(world: &World) -> f64 {
     let Ok(mut sim) = Simulator::new(world, SimConfig::default()) else {
         return 0.0;

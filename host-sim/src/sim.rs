@@ -1,76 +1,35 @@
-//! The robot in its world, driven step by step: observation out, command in.
+//! The simulator: a robot in its world, step by step. Observations go out, commands come in.
 //!
-//! Time is simulated and counted in whole milliseconds. One [`Simulator::drive`] is one control period, cut into
-//! substeps; in each the drive follows its target, the slope slows and shifts what becomes of it, the footprint is tried
-//! at the pose it would reach, and something solid there stops it: a wall, or ground too high to climb. Ground that is gone,
-//! or too steep, ends the drive for good. Nothing but the seed decides: same world, configuration and commands, same run, bit for bit.
+//! Time is simulated and counted in whole milliseconds. One [`Simulator::drive`] is one control
+//! period, cut into substeps. In each substep the drive follows its target, and the slope slows and
+//! shifts the motion. Then the footprint is tested at the next pose. A wall, or ground too high to
+//! climb, stops the robot there. A lost ground contact or a slope too steep ends the drive for
+//! good. The same world, configuration (with its seed) and commands give the same run, bit for bit.
+
+mod config;
 
 use fieldline_protocol::message::{Observation, Start, Strategy, Twist};
 use fixed::types::I4F12;
 
 use crate::metrics::{Localization, Overlap, Ride, Safety};
 use crate::robot::{
-    Contacts, Drive, DriveLimits, Footprint, LaserNoise, LaserScanner, Limits, Mishap, Odometry,
-    OdometryModel, Pose, RADIUS_M, Source, Traction, Velocity, laser, stand,
+    Contacts, Drive, Footprint, LaserScanner, Mishap, Odometry, Pose, RADIUS_M, Source, Velocity,
+    laser, stand,
 };
 use crate::world::{World, WorldError};
+pub use config::SimConfig;
 
-/// A contact is over once the robot is this far from everything, metres.
+/// Clearance at which a contact with a wall ends, metres.
 const CONTACT_OVER_M: f64 = 0.01;
-/// A contact with the ground is over once the robot is this far from where it began, metres.
+/// Distance from its beginning at which a contact with the ground ends, metres.
 const EDGE_OVER_M: f64 = 0.05;
 
-/// The parameters of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SimConfig {
-    /// Decides all noise. Default: 0.
-    pub seed: u64,
-    /// Which of the world's starts. Default: 0.
-    pub start: usize,
-    /// What the robot believes of its motion. Default: the truth.
-    pub odometry: OdometryModel,
-    /// How the lasers err. Default: [`LaserNoise::default`].
-    pub laser_noise: LaserNoise,
-    /// What the drive can do. Default: [`DriveLimits::default`].
-    pub limits: DriveLimits,
-    /// The ground that the robot is at home on; what is beyond is counted. Default: [`Limits::WORKING`].
-    pub working: Limits,
-    /// The ground that it does not survive. Default: [`Limits::FAILING`].
-    pub failing: Limits,
-    /// How slopes slow and shift it. Default: [`Traction::default`].
-    pub traction: Traction,
-    /// Time between observations, milliseconds. Default: 200.
-    pub period_ms: u32,
-    /// Longest substep, milliseconds. Default: 10.
-    pub substep_ms: u32,
-    /// A command older than this no longer counts, milliseconds. Default: 500.
-    pub stale_ms: u32,
-}
-
-impl Default for SimConfig {
-    fn default() -> Self {
-        Self {
-            seed: 0,
-            start: 0,
-            odometry: OdometryModel::Truth,
-            laser_noise: LaserNoise::default(),
-            limits: DriveLimits::default(),
-            working: Limits::WORKING,
-            failing: Limits::FAILING,
-            traction: Traction::default(),
-            period_ms: 200,
-            substep_ms: 10,
-            stale_ms: 500,
-        }
-    }
-}
-
-/// Why a robot cannot go on.
+/// Why the robot is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loss {
     /// A wheel lost the ground.
     Fell,
-    /// It stood too steep.
+    /// The robot tipped over.
     Tipped,
 }
 
@@ -91,7 +50,7 @@ pub struct Simulator<'w> {
     in_contact: bool,
     /// The wheels on uneven ground.
     contacts: Option<Contacts>,
-    /// Where ground last stopped the robot, if it has not left that place.
+    /// Pose at which ground stopped the robot, until it has left that place.
     stopped_at: Option<Pose>,
     loss: Option<Loss>,
     safety: Safety,
@@ -100,7 +59,7 @@ pub struct Simulator<'w> {
     overlap: Overlap,
 }
 
-/// The greatest wire quantity that promises no more than this.
+/// The greatest number of the wire that is at most `quantity`.
 fn at_most(quantity: f64) -> I4F12 {
     let least_step = f64::from(1_u32 << I4F12::FRAC_NBITS);
     I4F12::saturating_from_num((quantity * least_step).floor() / least_step)
@@ -110,26 +69,9 @@ impl<'w> Simulator<'w> {
     /// Puts the robot at its start.
     ///
     /// # Errors
-    /// [`WorldError::Start`] where the world has no such start or the robot does not fit there.
+    /// [`WorldError::Start`] if the world has no such start or the robot does not fit there.
     pub fn new(world: &'w World, config: SimConfig) -> Result<Self, WorldError> {
-        let Some(start) = world.starts().get(config.start) else {
-            return Err(WorldError::Start {
-                file: world.name().to_owned(),
-                index: config.start,
-                reason: format!("there are only {} starts", world.starts().len()),
-            });
-        };
-        world.check_start(world.name(), config.start, *start)?;
-        let planar = start.pose();
-        let pose = stand(world, &planar).unwrap_or(planar);
-        if !config.failing.holds_attitude(pose.pitch_rad, pose.roll_rad) {
-            let reason = format!(
-                "the robot would tip over, at a pitch of {:.1} and a roll of {:.1} degrees",
-                pose.pitch_rad.to_degrees(),
-                pose.roll_rad.to_degrees()
-            );
-            return Err(world.bad_start(world.name(), config.start, &reason));
-        }
+        let pose = start_pose(world, &config)?;
         let scanner =
             |laser, sources| LaserScanner::new(&laser, config.laser_noise, config.seed, sources);
         let mut simulator = Self {
@@ -161,7 +103,7 @@ impl<'w> Simulator<'w> {
         Ok(simulator)
     }
 
-    /// What the robot senses now. Draws noise: every call is another measurement.
+    /// Measures an observation. Every call draws new noise.
     pub fn observe(&mut self) -> Observation {
         self.localization
             .add(self.pose.distance_m(self.odometry.pose()));
@@ -178,7 +120,8 @@ impl<'w> Simulator<'w> {
         observation
     }
 
-    /// Drives for one period. `None` means that no command came: the last one counts until it is stale.
+    /// Drives for one period. `None` means that no command came: the last command counts until it
+    /// is stale.
     pub fn drive(&mut self, command: Option<Twist>) {
         if let Some(twist) = command {
             self.drive.command(twist.into());
@@ -208,17 +151,18 @@ impl<'w> Simulator<'w> {
             .advance(&self.pose, forward_m, turn_rad, velocity);
     }
 
-    /// Moves if nothing is in the way, and says whether it did. A robot that fell or tipped lies where it was.
+    /// Moves if nothing is in the way, and returns true if it did. A robot that fell or tipped
+    /// stays where it is.
     fn substep(&mut self, velocity: Velocity, seconds: f64) -> bool {
         if self.loss.is_some() {
             self.drive.halt();
             return false;
         }
         let shift = self.config.traction.shift(&self.pose, velocity, seconds);
-        let next = match self.attempt(&shift.applied(&self.pose)) {
+        let next = match self.try_move(&shift.applied(&self.pose)) {
             Ok(next) => next,
             Err(mishap) => {
-                self.suffer(mishap);
+                self.record(mishap);
                 return false;
             }
         };
@@ -234,18 +178,18 @@ impl<'w> Simulator<'w> {
         true
     }
 
-    /// The stance at a planar pose near by.
-    fn attempt(&mut self, next: &Pose) -> Result<Pose, Mishap> {
+    /// Returns the stance at a planar pose near by, or why the robot cannot go there.
+    fn try_move(&mut self, next: &Pose) -> Result<Pose, Mishap> {
         let walled = |pose: &Pose| self.footprint.overlaps(self.world, pose);
         if walled(next) {
-            return self.walled();
+            return self.hit_wall();
         }
         let Some(mut contacts) = self.contacts else {
             return Ok(*next);
         };
         let stance = contacts.go(self.world, &self.pose, next, &self.config.failing);
         match stance {
-            Ok(stance) if walled(&stance) => self.walled(),
+            Ok(stance) if walled(&stance) => self.hit_wall(),
             Ok(stance) => {
                 self.contacts = Some(contacts);
                 Ok(stance)
@@ -260,15 +204,15 @@ impl<'w> Simulator<'w> {
         }
     }
 
-    /// A wall is in the way.
-    fn walled(&mut self) -> Result<Pose, Mishap> {
+    /// Counts a contact with a wall.
+    fn hit_wall(&mut self) -> Result<Pose, Mishap> {
         self.safety.collisions += u32::from(!self.in_contact);
         self.in_contact = true;
         Err(Mishap::Blocked)
     }
 
-    /// Stops, and keeps account of what cannot be undone.
-    fn suffer(&mut self, mishap: Mishap) {
+    /// Stops the drive and records the mishap.
+    fn record(&mut self, mishap: Mishap) {
         self.drive.halt();
         match mishap {
             Mishap::Blocked => self.safety.min_clearance_m = 0.0,
@@ -283,7 +227,7 @@ impl<'w> Simulator<'w> {
         }
     }
 
-    /// Measures the clearance where it may be a new least, or end a contact.
+    /// Measures the clearance if it may be a new least value or end a contact.
     fn track_clearance(&mut self) {
         let needed_m = if self.in_contact {
             CONTACT_OVER_M
@@ -299,7 +243,7 @@ impl<'w> Simulator<'w> {
         self.safety.min_clearance_m = self.safety.min_clearance_m.min(clearance_m);
     }
 
-    /// The session's parameters for the planner, in a map box of `box_tiles`.
+    /// The start message for the planner, with a map box of `box_tiles`.
     #[must_use]
     pub fn start_message(&self, strategy: Strategy, box_tiles: (u8, u8)) -> Start {
         let limits = &self.config.limits;
@@ -341,25 +285,19 @@ impl<'w> Simulator<'w> {
         f64::from(self.time_ms) / 1000.0
     }
 
-    /// Where the robot really is.
+    /// The true pose.
     #[must_use]
     pub fn pose(&self) -> &Pose {
         &self.pose
     }
 
-    /// How it really moves.
+    /// The true velocity.
     #[must_use]
     pub fn velocity(&self) -> Velocity {
         self.drive.velocity()
     }
 
-    /// Where it believes to be.
-    #[must_use]
-    pub fn odometry_pose(&self) -> &Pose {
-        self.odometry.pose()
-    }
-
-    /// A pose with its height counted from the start, as odometry does.
+    /// A pose with its height counted from the start, as in the odometry.
     #[must_use]
     pub fn above_start(&self, pose: &Pose) -> Pose {
         Pose {
@@ -374,25 +312,25 @@ impl<'w> Simulator<'w> {
         self.start_z_m
     }
 
-    /// Why the robot cannot go on, if so.
+    /// Why the robot is lost, if it is.
     #[must_use]
     pub fn loss(&self) -> Option<Loss> {
         self.loss
     }
 
-    /// How the ground was driven over so far.
+    /// Attitudes of the robot so far, and its time beyond the working limits.
     #[must_use]
     pub fn ride(&self) -> Ride {
         self.ride
     }
 
-    /// Metres driven, forwards and backwards, up and down.
+    /// Path length along the ground, forwards and backwards, metres.
     #[must_use]
     pub fn path_length_m(&self) -> f64 {
         self.path_length_m
     }
 
-    /// Is the robot up against something?
+    /// Returns true if the robot is in contact with a wall or an edge.
     #[must_use]
     pub fn in_contact(&self) -> bool {
         self.in_contact || self.stopped_at.is_some()
@@ -404,7 +342,7 @@ impl<'w> Simulator<'w> {
         self.safety
     }
 
-    /// Share of the path that was driven again.
+    /// Share of the path that was driven again, 0 to 1.
     #[must_use]
     pub fn overlap(&self) -> f64 {
         self.overlap.fraction()
@@ -415,6 +353,30 @@ impl<'w> Simulator<'w> {
     pub fn localization(&self) -> Localization {
         self.localization
     }
+}
+
+/// The stance at the configured start, if the robot can stand there.
+fn start_pose(world: &World, config: &SimConfig) -> Result<Pose, WorldError> {
+    let Some(start) = world.starts().get(config.start) else {
+        let count = world.starts().len();
+        return Err(WorldError::Start {
+            file: world.name().to_owned(),
+            index: config.start,
+            reason: format!("the world has only {count} starts; give a number below {count}"),
+        });
+    };
+    world.check_start(world.name(), config.start, *start)?;
+    let planar = start.pose();
+    let pose = stand(world, &planar).unwrap_or(planar);
+    if !config.failing.holds_attitude(pose.pitch_rad, pose.roll_rad) {
+        let reason = format!(
+            "the robot would tip over, at a pitch of {:.1} and a roll of {:.1} degrees",
+            pose.pitch_rad.to_degrees(),
+            pose.roll_rad.to_degrees()
+        );
+        return Err(world.bad_start(world.name(), config.start, &reason));
+    }
+    Ok(pose)
 }
 
 #[cfg(test)]

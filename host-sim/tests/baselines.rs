@@ -1,4 +1,5 @@
-//! The baselines in whole runs: they finish, touch nothing, end with the right reason, and do the same for the same seed.
+//! Whole runs of the baselines: they finish without a collision, end with the right reason, and
+//! repeat for the same seed.
 
 use host_sim::baseline::{Bvp, GreedyFrontier, Session};
 use host_sim::link::{Link, LinkError};
@@ -9,6 +10,7 @@ use host_sim::world::World;
 
 use fieldline_protocol::message::{Control, FIELD_SIDE, Finish, Observation, Status};
 
+/// Watches nothing.
 struct Nobody;
 
 impl Watch for Nobody {
@@ -37,7 +39,7 @@ fn explore(name: &str, world: &str, seed: u64) -> (Report, Record) {
 }
 
 #[test]
-fn they_explore_rooms_behind_doors_and_touch_nothing() {
+fn they_explore_rooms_behind_doors_without_a_collision() {
     for name in BASELINES {
         let (report, record) = explore(name, "narrow-doors", 0);
         assert!(report.explored(), "{name}: {:?}", report.outcome);
@@ -53,7 +55,7 @@ fn they_explore_rooms_behind_doors_and_touch_nothing() {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_run_and_another_one_another() {
+fn the_same_seed_repeats_a_run_and_another_one_changes_it() {
     for name in BASELINES {
         let digest = |seed| explore(name, "loop", seed).0.digest;
         assert_eq!(digest(3), digest(3), "{name}");
@@ -62,7 +64,7 @@ fn the_same_seed_gives_the_same_run_and_another_one_another() {
 }
 
 #[test]
-fn a_closet_without_a_door_and_a_room_out_of_reach_end_with_their_reason() {
+fn unreachable_places_end_with_their_reason() {
     for name in BASELINES {
         let (boxed_in, _) = explore(name, "boxed-in", 1);
         assert_eq!(boxed_in.outcome.reason, "boxed-in", "{name}");
@@ -73,14 +75,14 @@ fn a_closet_without_a_door_and_a_room_out_of_reach_end_with_their_reason() {
 }
 
 #[test]
-fn the_field_of_the_full_grid_is_shown_around_the_robot() {
+fn the_record_has_the_field_around_the_robot() {
     let (_, record) = explore("bvp", "loop", 0);
     let window = record.window.expect("the last field");
     assert_eq!(window.q.len(), FIELD_SIDE * FIELD_SIDE);
     assert!(window.q.iter().all(|q| (0.0..=1.0).contains(q)));
 }
 
-/// What a session answers to requests in the wrong order, before it has seen anything.
+/// A session answers requests in the wrong order as the device does.
 #[test]
 fn a_session_follows_the_rules_of_the_device() {
     for name in BASELINES {

@@ -1,7 +1,7 @@
-//! The image in the emulator: the same commands as by call, exact costs, reboots and crashes.
+//! The image in the emulator: the same commands as a direct call, exact costs, reboots and crashes.
 //!
-//! Without QEMU or the thumb target these tests say what to install and pass; with `FIELDLINE_HIL=1` they fail instead, and
-//! with `FIELDLINE_HIL=0` they are left out.
+//! If QEMU or the thumb target is missing, these tests print what to install and pass. With
+//! `FIELDLINE_HIL=1` they fail instead, and with `FIELDLINE_HIL=0` they do nothing.
 #![cfg(unix)]
 
 mod drive;
@@ -12,14 +12,14 @@ use std::path::PathBuf;
 use drive::{Robot, digest_of, start};
 use fieldline_protocol::message::{Cause, Control, Status};
 use host_sim::link::direct::Direct;
-use host_sim::link::endpoint::{Endpoint, Patience};
+use host_sim::link::endpoint::{Endpoint, RetryPolicy};
 use host_sim::link::fault::Faulty;
 use host_sim::link::qemu::{self, PtyBoard, QemuLine};
 use host_sim::link::{Link, LinkError, image, serial};
 
 const STEPS: u32 = 60;
 
-/// The image, or `None` with a word where it cannot be had here.
+/// The image, or `None` with a printed reason if it cannot be built or run here.
 fn available(built: impl FnOnce() -> Result<PathBuf, LinkError>) -> Option<PathBuf> {
     let wanted = std::env::var("FIELDLINE_HIL").unwrap_or_default();
     if wanted == "0" {
@@ -38,8 +38,8 @@ fn available(built: impl FnOnce() -> Result<PathBuf, LinkError>) -> Option<PathB
 }
 
 fn board(image: &std::path::Path) -> Endpoint<QemuLine> {
-    let line = qemu::open_line(image).expect("it started a moment ago");
-    Endpoint::new(line, Patience::LOCKSTEP, 1)
+    let line = qemu::open_line(image).expect("it started before");
+    Endpoint::new(line, RetryPolicy::LOCKSTEP, 1)
 }
 
 #[test]
@@ -54,7 +54,10 @@ fn the_emulated_chip_gives_the_same_commands_as_a_call() {
     );
     let stats = link.stats();
     assert_eq!((stats.dropped, stats.crc_errors), (0, 0), "{stats:?}");
-    assert!(!link.take_log().is_empty(), "it logged its boot and start");
+    assert!(
+        !link.take_log().is_empty(),
+        "the log has its boot and start"
+    );
 }
 
 #[test]
@@ -77,13 +80,13 @@ fn byte_faults_to_the_emulated_chip_change_no_command() {
     };
     let faults = "drop=0.02,duplicate=0.02,corrupt=0.02,truncate=0.01,delay=0.05".parse();
     let line = Faulty::new(qemu::open_line(&image).unwrap(), faults.unwrap(), 7);
-    // Lost frames wait for real here; on a machine too loaded to answer in time the rest is repeated as well.
-    let patience = Patience {
+    // A lost frame costs wall-clock time here. On a loaded machine other frames are repeated too.
+    let policy = RetryPolicy {
         attempt: Duration::from_millis(400),
         attempts: 40,
-        ..Patience::LOCKSTEP
+        ..RetryPolicy::LOCKSTEP
     };
-    let mut link = Endpoint::new(line, patience, 1);
+    let mut link = Endpoint::new(line, policy, 1);
     assert_eq!(
         digest_of(&mut link, STEPS),
         digest_of(&mut Direct::new(), STEPS)
@@ -112,7 +115,8 @@ fn the_log_is_decoded_with_the_image() {
     );
 }
 
-/// Two runs of the same observations cost the same instructions, step by step: they are counted, not timed.
+/// Two runs of the same observations cost the same instructions in every step: the emulator counts
+/// them.
 #[test]
 fn costs_are_exact() {
     let Some(image) = available(image::image) else {
@@ -147,7 +151,8 @@ fn a_reset_reboots_the_chip_and_is_counted() {
     assert_eq!((identity.boots, identity.crash), (2, None));
 }
 
-/// The test image crashes on its third step: by a panic, a bus fault, and a stack overflow, one after the other.
+/// The test image crashes in its third step: first by a panic, then by a bus fault, then by a stack
+/// overflow.
 #[test]
 fn every_crash_is_reported_and_remembered() {
     let arguments = ["--bin", "fieldline-crash-test", "--features", "crash-test"];
@@ -160,7 +165,7 @@ fn every_crash_is_reported_and_remembered() {
         (2, Cause::Fault, "processor fault at 0x080"),
         (3, Cause::StackOverflow, "stack overflow"),
     ] {
-        let mut link = Endpoint::new(&mut line, Patience::LOCKSTEP, boots);
+        let mut link = Endpoint::new(&mut line, RetryPolicy::LOCKSTEP, boots);
         assert_eq!(link.hello().unwrap().boots, boots);
         let mut robot = Robot::new();
         let LinkError::Crashed(place) = robot.run(&mut link, 5).unwrap_err() else {
@@ -172,7 +177,7 @@ fn every_crash_is_reported_and_remembered() {
             boots > 1 || place.contains("src/image/crash.rs:"),
             "{place}"
         );
-        let mut after = Endpoint::new(&mut line, Patience::LOCKSTEP, 10 + boots);
+        let mut after = Endpoint::new(&mut line, RetryPolicy::LOCKSTEP, 10 + boots);
         let identity = after.hello().unwrap();
         assert_eq!(identity.boots, boots + 1);
         assert_eq!(identity.crash.map(|crash| crash.cause), Some(cause));
@@ -180,7 +185,7 @@ fn every_crash_is_reported_and_remembered() {
 }
 
 #[test]
-fn an_image_that_is_none_is_named() {
+fn a_missing_image_is_named() {
     let nothing = std::env::temp_dir().join("fieldline-no-image");
     let error = qemu::open_line(&nothing)
         .err()
@@ -188,7 +193,7 @@ fn an_image_that_is_none_is_named() {
     assert!(error.is_some_and(|error| error.contains("fieldline-no-image")));
 }
 
-/// A file that QEMU cannot run ends it; its last word is passed on.
+/// QEMU ends on a file that it cannot run; the error has its last line.
 #[test]
 fn an_emulator_that_ends_is_named() {
     let Some(_) = available(image::image) else {
@@ -198,7 +203,7 @@ fn an_emulator_that_ends_is_named() {
     std::fs::write(&nonsense, vec![0; 2_000_000]).unwrap();
     let opened = qemu::open_line(&nonsense);
     let error = opened.and_then(|line| {
-        Endpoint::new(line, Patience::LOCKSTEP, 1)
+        Endpoint::new(line, RetryPolicy::LOCKSTEP, 1)
             .hello()
             .map(|_| ())
     });

@@ -1,5 +1,7 @@
-//! Links without hardware: direct and loopback say the same, faults on the line change no command, and a device that resets or
-//! falls silent ends the run with a typed error within the stale limit.
+//! Links without hardware.
+//!
+//! Direct and loopback give the same commands, and faults on the line change none. A device that
+//! resets or falls silent ends the run with a typed error within the stale limit.
 
 mod drive;
 
@@ -7,21 +9,23 @@ use core::time::Duration;
 
 use drive::{Robot, digest_of, start};
 use fieldline_device::STALE_MS;
-use fieldline_protocol::message::{Control, Finish, Observation, Start, Status};
+use fieldline_protocol::message::{Control, Finish, Observation, Road, Start, Status, Strategy};
 use host_sim::link::direct::Direct;
-use host_sim::link::endpoint::{Endpoint, Patience};
+use host_sim::link::endpoint::{Endpoint, RetryPolicy};
 use host_sim::link::fault::{Faults, Faulty};
 use host_sim::link::line::Line;
 use host_sim::link::loopback::{LocalDevice, loopback};
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::link::{Link, LinkError};
+use host_sim::sim::{SimConfig, Simulator};
+use host_sim::world::World;
 
 const STEPS: u32 = 400;
 
 fn faulty(faults: &str, seed: u64) -> Endpoint<Faulty<LocalDevice>> {
     let faults: Faults = faults.parse().unwrap();
     let line = Faulty::new(LocalDevice::new(), faults, seed);
-    Endpoint::new(line, Patience::VIRTUAL, 1)
+    Endpoint::new(line, RetryPolicy::VIRTUAL, 1)
 }
 
 #[test]
@@ -57,7 +61,7 @@ fn no_byte_fault_changes_a_command() {
 }
 
 #[test]
-fn every_fault_was_made() {
+fn every_kind_of_fault_is_made() {
     let faults: Faults = "drop=0.02,duplicate=0.02,corrupt=0.02,truncate=0.02,delay=0.05"
         .parse()
         .unwrap();
@@ -68,7 +72,7 @@ fn every_fault_was_made() {
         line.receive(&mut heard, Duration::from_millis(1)).unwrap();
     }
     let made = line.made();
-    // 3000 draws each: 60 or 150 are expected, and four deviations are 31 and 48.
+    // 3000 draws each: 60 or 150 are expected; four standard deviations are 31 and 48.
     for (count, expected, margin) in [
         (made.dropped, 60, 31),
         (made.duplicated, 60, 31),
@@ -84,24 +88,25 @@ fn every_fault_was_made() {
     );
 }
 
-/// Ends in an error, with how many steps went well before and how long the last call took on the line's clock.
+/// Drives to the error: returns it, the number of steps before it, and the time of the last call on
+/// the line's clock.
 fn ending(faults: &str) -> (LinkError, u32, Duration) {
     let mut link = faulty(faults, 1);
     let mut robot = Robot::new();
-    // Every request is one frame until something goes wrong: time passes only then.
+    // Before the fault every request takes one frame and no time.
     let error = robot.run(&mut link, STEPS).unwrap_err();
     (error, robot.steps, link.now())
 }
 
 #[test]
-fn a_device_that_resets_is_told_within_the_stale_limit() {
+fn a_reset_is_reported_within_the_stale_limit() {
     let (error, steps, took) = ending("reset@120");
     assert_eq!((error, steps), (LinkError::Reset, 117));
     assert!(took.as_millis() <= u128::from(STALE_MS), "{took:?}");
 }
 
 #[test]
-fn a_device_that_falls_silent_is_told_within_the_stale_limit() {
+fn silence_is_reported_within_the_stale_limit() {
     let (error, steps, took) = ending("silent@200");
     assert_eq!((error, steps), (LinkError::Silent, 197));
     assert!(
@@ -111,7 +116,7 @@ fn a_device_that_falls_silent_is_told_within_the_stale_limit() {
 }
 
 #[test]
-fn a_reset_among_byte_faults_is_still_a_reset() {
+fn a_reset_among_byte_faults_is_reported_as_a_reset() {
     for seed in 0..8 {
         let spec = "drop=0.05,corrupt=0.05,truncate=0.05,duplicate=0.05,delay=0.1,reset@50";
         let mut link = faulty(spec, seed);
@@ -125,7 +130,7 @@ fn a_reset_among_byte_faults_is_still_a_reset() {
 #[test]
 fn a_silent_host_makes_the_device_stop() {
     let mut device = LocalDevice::new();
-    let mut link = Endpoint::new(&mut device, Patience::VIRTUAL, 1);
+    let mut link = Endpoint::new(&mut device, RetryPolicy::VIRTUAL, 1);
     Robot::new().run(&mut link, 3).unwrap();
     assert!(!device.session().is_stale());
     device.receive(&mut Vec::new(), Duration::ZERO).unwrap();
@@ -140,7 +145,7 @@ fn a_silent_host_makes_the_device_stop() {
 fn the_emergency_stop_reaches_the_host() {
     let mut device = LocalDevice::new();
     device.set_emergency_stop(true);
-    let mut link = Endpoint::new(device, Patience::VIRTUAL, 1);
+    let mut link = Endpoint::new(device, RetryPolicy::VIRTUAL, 1);
     let status = link.control(&Control::Start(start())).unwrap();
     assert_eq!(status, Status::EmergencyStop);
     let command = link.observe(&Robot::new().sense()).unwrap();
@@ -151,17 +156,17 @@ fn the_emergency_stop_reaches_the_host() {
 }
 
 #[test]
-fn logs_come_through_beside_the_replies() {
+fn logs_arrive_beside_the_replies() {
     let mut device = LocalDevice::new();
     let log: Vec<u8> = (0..100).collect();
     assert_eq!(device.log(&log), 100);
-    let mut link = Endpoint::new(device, Patience::VIRTUAL, 1);
+    let mut link = Endpoint::new(device, RetryPolicy::VIRTUAL, 1);
     link.hello().unwrap();
     assert_eq!(link.take_log(), log);
     assert!(link.take_log().is_empty());
 }
 
-/// Says something, whatever it hears.
+/// Always sends the same bytes.
 struct Parrot(Vec<u8>, Duration);
 
 impl Line for Parrot {
@@ -179,18 +184,23 @@ impl Line for Parrot {
 }
 
 #[test]
-fn a_peer_that_is_not_us_is_named_as_such() {
+fn a_peer_that_is_no_device_is_named() {
     let login = b"\r\nDebian GNU/Linux 12 tty1\r\n\0login: ".to_vec();
-    let mut link = Endpoint::new(Parrot(login, Duration::ZERO), Patience::VIRTUAL, 1);
+    let mut link = Endpoint::new(Parrot(login, Duration::ZERO), RetryPolicy::VIRTUAL, 1);
     let error = link.hello().unwrap_err();
     assert!(matches!(&error, LinkError::Incompatible(_)), "{error:?}");
-    assert!(error.to_string().contains("another baud rate"), "{error}");
+    assert!(
+        error
+            .to_string()
+            .contains("check the device, the baud rate"),
+        "{error}"
+    );
 
-    let mut nobody = Endpoint::new(Parrot(Vec::new(), Duration::ZERO), Patience::VIRTUAL, 1);
+    let mut nobody = Endpoint::new(Parrot(Vec::new(), Duration::ZERO), RetryPolicy::VIRTUAL, 1);
     assert_eq!(nobody.hello().unwrap_err(), LinkError::Silent);
 }
 
-/// Hears itself, as on a plug with its lines shorted.
+/// Receives its own bytes, like a plug with shorted lines.
 #[derive(Default)]
 struct Shorted(Vec<u8>, Duration);
 
@@ -211,12 +221,12 @@ impl Line for Shorted {
 
 #[test]
 fn an_echo_is_no_device() {
-    let mut link = Endpoint::new(Shorted::default(), Patience::VIRTUAL, 1);
+    let mut link = Endpoint::new(Shorted::default(), RetryPolicy::VIRTUAL, 1);
     let error = link.hello().unwrap_err();
     assert!(matches!(error, LinkError::Incompatible(_)), "{error:?}");
 }
 
-/// The greeting's answer of a device of another version, as bytes that never change.
+/// A device of another version answers the hello with bytes that never change.
 #[test]
 fn another_version_is_incompatible() {
     use fieldline_protocol::frame::{MAX_REPLY_FRAME, encode_reply};
@@ -227,7 +237,7 @@ fn another_version_is_incompatible() {
     };
     let length = encode_reply(1, &reply, &mut frame).unwrap();
     let answer = Parrot(frame[..length].to_vec(), Duration::ZERO);
-    let mut link = Endpoint::new(answer, Patience::VIRTUAL, 1);
+    let mut link = Endpoint::new(answer, RetryPolicy::VIRTUAL, 1);
     let LinkError::Incompatible(text) = link.hello().unwrap_err() else {
         panic!("compatible with version 9");
     };
@@ -238,7 +248,7 @@ fn another_version_is_incompatible() {
 }
 
 #[test]
-fn refusals_are_the_same_on_both_rungs() {
+fn refusals_are_the_same_on_both_links() {
     let bad = Control::Start(Start {
         robot_radius_mm: 0,
         ..start()
@@ -262,13 +272,42 @@ fn refusals_are_the_same_on_both_rungs() {
 }
 
 #[test]
-fn a_reset_at_our_word_is_no_accident() {
+fn a_requested_reset_is_no_error() {
     let mut link = loopback();
     Robot::new().run(&mut link, 2).unwrap();
     link.control(&Control::Reset).unwrap();
     let identity = link.hello().unwrap();
     assert_eq!(identity.boots, 2);
     Robot::new().run(&mut link, 2).unwrap();
+}
+
+/// The roads of every tenth step of a short drive in `office`, whole and without the first cell.
+fn roads(link: &mut dyn Link) -> Vec<[Road; 2]> {
+    let world = World::builtin("office").expect("built in");
+    let mut simulator = Simulator::new(&world, SimConfig::default()).expect("the start is free");
+    let start = simulator.start_message(Strategy::Frontier, (20, 20));
+    link.control(&Control::Start(start)).unwrap();
+    let mut roads = Vec::new();
+    for step in 0..100 {
+        let command = link.observe(&simulator.observe()).unwrap();
+        simulator.drive(Some(command.velocity));
+        if step % 10 == 9 {
+            roads.push([0, 1].map(|from| link.path(from).unwrap()));
+        }
+    }
+    roads
+}
+
+#[test]
+fn every_link_forwards_the_request_for_the_road() {
+    let direct = roads(&mut Direct::new());
+    let long: Vec<_> = direct.iter().filter(|[all, _]| all.length > 1).collect();
+    assert!(!long.is_empty(), "{direct:?}");
+    for [all, rest] in long {
+        assert_eq!(all.cells[1], rest.cells[0]);
+    }
+    assert_eq!(roads(&mut loopback()), direct);
+    assert_eq!(roads(&mut faulty("drop=0.05,corrupt=0.05", 2)), direct);
 }
 
 #[test]

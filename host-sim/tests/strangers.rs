@@ -1,5 +1,7 @@
-//! Who may be at the other end of a serial port: nobody, somebody else, a device of another schema, one that still boots. The program
-//! says which in one line, and starts nothing; on the line's own clock it takes less than five seconds.
+//! Other peers on a serial port: none, a foreign one, a device of another schema, a device that
+//! still boots.
+//!
+//! The program names the peer in one line and starts no run, within 5 s on the line's clock.
 #![cfg(unix)]
 
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -14,13 +16,13 @@ use fieldline_protocol::frame::{
 };
 use fieldline_protocol::message::{Reply, Request};
 use fieldline_protocol::{BAUD, SCHEMA, VERSION};
-use host_sim::link::endpoint::{Endpoint, Patience};
+use host_sim::link::endpoint::{Endpoint, RetryPolicy};
 use host_sim::link::line::Line;
 use host_sim::link::loopback::LocalDevice;
 use host_sim::link::{Link, LinkError, serial};
 use serialport::{SerialPort as _, TTYPort};
 
-/// Somebody at the far end of a pty: what came in, what to say.
+/// A peer at the far end of a pty: it gets the received bytes and returns its answer.
 trait Peer: Send + 'static {
     fn hear(&mut self, bytes: &[u8]) -> Vec<u8>;
 }
@@ -31,7 +33,7 @@ impl<F: FnMut(&[u8]) -> Vec<u8> + Send + 'static> Peer for F {
     }
 }
 
-/// A port with somebody at it, until this is dropped.
+/// A port with a peer; dropping this value ends the peer.
 struct Port {
     name: String,
     over: Arc<AtomicBool>,
@@ -42,7 +44,7 @@ impl Port {
     fn with(mut peer: impl Peer) -> Self {
         let (mut master, slave) = TTYPort::pair().expect("a pty");
         let name = slave.name().expect("a name");
-        // It is the program's to open.
+        // The program opens it.
         drop(slave);
         master.set_timeout(Duration::from_millis(5)).expect("a pty");
         let over = Arc::new(AtomicBool::new(false));
@@ -53,13 +55,13 @@ impl Port {
                 let count = match master.read(&mut bytes) {
                     Ok(count) => count,
                     Err(error) if error.kind() == ErrorKind::TimedOut => 0,
-                    // Nobody has opened the other end, or has closed it again.
+                    // The other end is not open.
                     Err(_) => {
                         std::thread::sleep(Duration::from_millis(5));
                         continue;
                     }
                 };
-                // A full line loses what is said on it.
+                // A full line loses these bytes.
                 let _ = master.write(&peer.hear(&bytes[..count]));
             }
         });
@@ -84,7 +86,7 @@ fn silent(_: &[u8]) -> Vec<u8> {
     Vec::new()
 }
 
-/// Bytes of every value, and so frames of every kind of nonsense.
+/// Random bytes, so also frames of random bytes.
 fn gibberish() -> impl FnMut(&[u8]) -> Vec<u8> + Send {
     let mut state = 1_u32;
     move |_| {
@@ -96,7 +98,7 @@ fn gibberish() -> impl FnMut(&[u8]) -> Vec<u8> + Send {
     }
 }
 
-/// A device built from other sources: the greeting is all that it understands of us.
+/// A device built from other sources; it understands only the hello.
 fn foreigner() -> impl FnMut(&[u8]) -> Vec<u8> + Send {
     let mut receiver = Receiver::<MAX_REQUEST_FRAME>::new(Side::Device);
     move |bytes| {
@@ -110,7 +112,7 @@ fn foreigner() -> impl FnMut(&[u8]) -> Vec<u8> + Send {
                 frame.request(),
                 Ok(Request::Hello { .. }) | Err(BodyError::Foreign { .. })
             );
-            assert!(greeted, "nothing but hellos");
+            assert!(greeted, "only hellos");
             let reply = Reply::Incompatible {
                 version: VERSION,
                 schema: SCHEMA ^ 1,
@@ -123,13 +125,13 @@ fn foreigner() -> impl FnMut(&[u8]) -> Vec<u8> + Send {
     }
 }
 
-/// A device that hears nothing of the first `deaf` greetings, and after them says its hello of the boot.
+/// A device that misses the first `deaf` hellos and then boots and sends its own hello.
 fn booting(deaf: usize) -> impl FnMut(&[u8]) -> Vec<u8> + Send {
     let mut device = None;
     let mut zeros = 0;
     move |bytes| {
         zeros += bytes.iter().filter(|byte| **byte == 0).count();
-        // A greeting asked again begins with a zero too.
+        // A repeated hello begins with a zero too.
         if zeros < 2 * deaf {
             return Vec::new();
         }
@@ -142,7 +144,7 @@ fn booting(deaf: usize) -> impl FnMut(&[u8]) -> Vec<u8> + Send {
     }
 }
 
-/// The program's exit status and last words when it is sent to explore by this port.
+/// The program's exit status and error output of an exploration over this port.
 fn explore(port: &Port) -> (i32, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let output = Command::new(env!("CARGO_BIN_EXE_host-sim"))
@@ -171,23 +173,26 @@ fn refused(peer: impl Peer, words: &[&str]) {
 }
 
 #[test]
-fn nobody_is_there() {
+fn a_silent_port_is_named() {
     refused(silent, &["does not answer", "baud rate"]);
 }
 
 #[test]
-fn somebody_else_is_there() {
-    refused(gibberish(), &["no Fieldline frame", "another baud rate"]);
+fn a_foreign_peer_is_named() {
+    refused(
+        gibberish(),
+        &["no Fieldline frame", "check the device, the baud rate"],
+    );
 }
 
 #[test]
-fn a_device_of_another_schema_is_there() {
+fn a_device_of_another_schema_is_named() {
     let foreign = format!("{:#010x}", SCHEMA ^ 1);
     refused(foreigner(), &[&foreign, "same source"]);
 }
 
 #[test]
-fn a_device_that_still_boots_is_waited_for() {
+fn the_program_waits_for_a_device_that_still_boots() {
     let port = Port::with(booting(3));
     let (status, said) = explore(&port);
     assert_eq!(status, 1, "{said}");
@@ -195,16 +200,16 @@ fn a_device_that_still_boots_is_waited_for() {
 }
 
 #[test]
-fn a_device_on_a_pty_is_met_and_its_port_is_taken() {
+fn a_device_on_a_pty_answers_and_its_port_is_locked() {
     let port = Port::with(booting(0));
     let mut link = serial::serial(&port.name, BAUD).expect("a port");
     assert_eq!(link.hello().expect("a device").boots, 1);
     let (status, said) = explore(&port);
     assert_eq!(status, 2, "{said}");
-    assert!(said.contains("somebody else has it open"), "{said}");
+    assert!(said.contains("another program has it open"), "{said}");
 }
 
-/// A line on which time passes only in waiting, with somebody at its end.
+/// A line with a peer, on which time passes only in waiting.
 struct Imagined<P> {
     peer: P,
     waiting: Vec<u8>,
@@ -227,15 +232,15 @@ impl<P: Peer> Line for Imagined<P> {
     }
 }
 
-/// What becomes of a greeting, and how long it takes, in lockstep and in real time.
+/// Results of the hello in lockstep and in real time; each must take at most 5 s.
 fn greeted(peer: impl Fn() -> Box<dyn FnMut(&[u8]) -> Vec<u8> + Send>) -> Vec<Option<LinkError>> {
-    let outcomes = [Patience::SERIAL, Patience::REAL_TIME].map(|patience| {
+    let outcomes = [RetryPolicy::SERIAL, RetryPolicy::REAL_TIME].map(|policy| {
         let line = Imagined {
             peer: peer(),
             waiting: Vec::new(),
             now: Duration::ZERO,
         };
-        let mut link = Endpoint::new(line, patience, 7);
+        let mut link = Endpoint::new(line, policy, 7);
         let outcome = link.hello().err();
         assert!(link.now() <= Duration::from_secs(5), "{:?}", link.now());
         outcome
@@ -244,7 +249,7 @@ fn greeted(peer: impl Fn() -> Box<dyn FnMut(&[u8]) -> Vec<u8> + Send>) -> Vec<Op
 }
 
 #[test]
-fn a_stranger_is_told_within_five_seconds_and_a_board_has_three_to_boot() {
+fn a_hello_fails_within_5_s_and_a_board_has_3_s_to_boot() {
     for outcome in greeted(|| Box::new(silent)) {
         assert_eq!(outcome, Some(LinkError::Silent));
     }
@@ -260,7 +265,7 @@ fn a_stranger_is_told_within_five_seconds_and_a_board_has_three_to_boot() {
             "{outcome:?}"
         );
     }
-    // Greeted every fifth of a second, it is deaf for three.
+    // With a hello every 0.2 s, it misses 3 s.
     for outcome in greeted(|| Box::new(booting(15))) {
         assert_eq!(outcome, None);
     }

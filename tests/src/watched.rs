@@ -1,11 +1,12 @@
-//! A link that is looked at after every step: whatever the look reads, it changes no command.
+//! A decorator that looks at a link after every step. It forwards every call, so it changes no
+//! command.
 
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Identity, Observation, ResidualFrontier, Status, Tile,
+    Command, Control, FieldRow, Identity, Observation, Path, ResidualFrontier, Status, Tile,
 };
 use host_sim::link::{Link, LinkError, LinkStats};
 
-/// A link, and the look taken after each of its steps.
+/// A link, and the function that looks at it after each step.
 #[derive(Debug)]
 pub struct Watched<L, F> {
     link: L,
@@ -16,7 +17,7 @@ impl<L: Link, F> Watched<L, F>
 where
     F: FnMut(&mut L, &Observation, &Command) -> Result<(), LinkError>,
 {
-    /// Before the first step.
+    /// Decorates a link.
     pub const fn new(link: L, look: F) -> Self {
         Self { link, look }
     }
@@ -52,7 +53,69 @@ where
         self.link.frontiers()
     }
 
+    fn path(&mut self, from: u8) -> Result<Path, LinkError> {
+        self.link.path(from)
+    }
+
     fn stats(&self) -> LinkStats {
         self.link.stats()
+    }
+
+    fn take_log(&mut self) -> Vec<u8> {
+        self.link.take_log()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A link that answers each request with a value of its own.
+    struct Marked;
+
+    impl Link for Marked {
+        fn hello(&mut self) -> Result<Identity, LinkError> {
+            Ok(Identity::default())
+        }
+
+        fn control(&mut self, _: &Control) -> Result<Status, LinkError> {
+            Ok(Status::Paused)
+        }
+
+        fn observe(&mut self, _: &Observation) -> Result<Command, LinkError> {
+            Ok(Command::default())
+        }
+
+        fn tile(&mut self, _: i16, _: i16) -> Result<Option<Tile>, LinkError> {
+            Ok(None)
+        }
+
+        fn field_row(&mut self, _: u8) -> Result<Option<FieldRow>, LinkError> {
+            Ok(None)
+        }
+
+        fn frontiers(&mut self) -> Result<Vec<Frontier>, LinkError> {
+            Ok(Vec::new())
+        }
+
+        fn path(&mut self, from: u8) -> Result<Path, LinkError> {
+            Err(LinkError::Refused(format!("road from {from}")))
+        }
+
+        fn stats(&self) -> LinkStats {
+            LinkStats::default()
+        }
+
+        fn take_log(&mut self) -> Vec<u8> {
+            vec![1, 2, 3]
+        }
+    }
+
+    #[test]
+    fn the_decorator_forwards_the_road_and_the_log() {
+        let mut link = Watched::new(Marked, |_, _, _| Ok(()));
+        let refused = LinkError::Refused("road from 7".into());
+        assert_eq!(link.path(7), Err(refused));
+        assert_eq!(link.take_log(), [1, 2, 3]);
     }
 }

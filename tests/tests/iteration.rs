@@ -20,7 +20,7 @@ use fieldline_tests::table::Table;
 use fieldline_tests::watched::Watched;
 use fieldline_tests::{emulator, full, golden, worlds};
 use host_sim::baseline::{Bvp, Session};
-use host_sim::link::endpoint::{Endpoint, Patience};
+use host_sim::link::endpoint::{Endpoint, RetryPolicy};
 use host_sim::link::{Link, qemu};
 use host_sim::trial::mission::{Mission, explore};
 use host_sim::trial::{Flow, Progress, Step, Watch};
@@ -133,7 +133,7 @@ fn a_step_costs_the_same_however_much_is_known() {
     let mut works: Vec<Point> = Vec::new();
     for world in WORLDS.map(worlds::builtin) {
         let line = qemu::open_line(&image).expect("it started a moment ago");
-        let mut link = Endpoint::new(line, Patience::LOCKSTEP, 1);
+        let mut link = Endpoint::new(line, RetryPolicy::LOCKSTEP, 1);
         let run = explored(&world, OUROBOROS, &mut link);
         ours.extend(
             run.iter()

@@ -12,7 +12,7 @@ use fieldline_protocol::message::{Observation, Status, Strategy, Twist};
 use fieldline_tests::costs;
 use fieldline_tests::runs::{FRONTIER, Run, in_parallel};
 use fieldline_tests::{emulator, worlds};
-use host_sim::link::endpoint::{Endpoint, Patience};
+use host_sim::link::endpoint::{Endpoint, RetryPolicy};
 use host_sim::link::fault::{Faults, Faulty};
 use host_sim::link::loopback::{LocalDevice, loopback};
 use host_sim::link::qemu::{self, PtyBoard};
@@ -70,7 +70,7 @@ fn bytes_change_nothing() {
 fn faulty(faults: &str, seed: u64) -> Endpoint<Faulty<LocalDevice>> {
     let faults: Faults = faults.parse().expect("a fault specification");
     let line = Faulty::new(LocalDevice::new(), faults, seed);
-    Endpoint::new(line, Patience::VIRTUAL, 1)
+    Endpoint::new(line, RetryPolicy::VIRTUAL, 1)
 }
 
 #[test]
@@ -138,7 +138,7 @@ fn every_world_costs_the_chip_no_more_than_it_has() {
 
 fn emulated(image: &Path) -> Endpoint<qemu::QemuLine> {
     let line = qemu::open_line(image).expect("it started a moment ago");
-    Endpoint::new(line, Patience::LOCKSTEP, 1)
+    Endpoint::new(line, RetryPolicy::LOCKSTEP, 1)
 }
 
 #[test]

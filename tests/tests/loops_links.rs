@@ -3,7 +3,7 @@
 use fieldline_tests::loops::{OUROBOROS, TDBVP};
 use fieldline_tests::runs::{Run, in_parallel};
 use fieldline_tests::{emulator, worlds};
-use host_sim::link::endpoint::{Endpoint, Patience};
+use host_sim::link::endpoint::{Endpoint, RetryPolicy};
 use host_sim::link::qemu;
 
 /// Instructions of a step at the most.
@@ -24,7 +24,7 @@ fn the_emulated_chip_closes_loops_as_the_host_does() {
         };
         let clean = run.go();
         let line = qemu::open_line(&image).expect("it started a moment ago");
-        let report = run.go_by("qemu", &mut Endpoint::new(line, Patience::LOCKSTEP, 1));
+        let report = run.go_by("qemu", &mut Endpoint::new(line, RetryPolicy::LOCKSTEP, 1));
         assert!(report.explored(), "{strategy}: {:?}", report.outcome);
         assert_eq!(
             (&report.digest, report.steps),

@@ -10,7 +10,7 @@ use fieldline_tests::runs::{explored, in_parallel};
 use fieldline_tests::uneven::Tour;
 use fieldline_tests::{costs, emulator, full, worlds};
 use host_sim::link::direct::Direct;
-use host_sim::link::endpoint::{Endpoint, Patience};
+use host_sim::link::endpoint::{Endpoint, RetryPolicy};
 use host_sim::link::qemu;
 use host_sim::report::Report;
 use host_sim::trial::mission::Mission;
@@ -28,7 +28,7 @@ fn on_both(name: &str, image: &Path) -> Report {
         link: "qemu".into(),
         ..mission
     };
-    let mut chip = Endpoint::new(line, Patience::LOCKSTEP, 1);
+    let mut chip = Endpoint::new(line, RetryPolicy::LOCKSTEP, 1);
     let (report, _) = explored(&mission, &world, &mut chip);
     let facts = |r: &Report| (r.digest.clone(), r.steps, r.outcome.clone());
     assert_eq!(facts(&report), facts(&clean), "{name}");

@@ -1,7 +1,8 @@
-//! A fingerprint of a stream of commands: equal digests, equal drives, bit for bit.
+//! Digest of a stream of commands: equal digests mean equal drives, bit for bit.
 //!
-//! FNV-1a of 128 bits over each command's raw velocity (two little-endian 16-bit numbers) and the wire's bytes of its status.
-//! Counters, costs and headings are left out: they say how, not what.
+//! FNV-1a of 128 bits over each command's raw velocity (two little-endian 16-bit numbers) and the
+//! wire's bytes of its status. Counters, costs and headings are left out: they do not move the
+//! robot.
 
 use core::fmt;
 
@@ -18,7 +19,7 @@ impl Default for Digest {
 }
 
 impl Digest {
-    /// Of no commands.
+    /// The digest of no commands.
     #[must_use]
     pub const fn new() -> Self {
         Self(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d)
@@ -29,7 +30,7 @@ impl Digest {
         let velocity = command.velocity;
         self.bytes(&velocity.linear.to_bits().to_le_bytes());
         self.bytes(&velocity.angular.to_bits().to_le_bytes());
-        // A status is two bytes at the most.
+        // A status has at most two bytes.
         let mut room = [0; 4];
         if let Ok(status) = postcard::to_slice(&command.status, &mut room) {
             self.bytes(status);
@@ -62,7 +63,7 @@ mod tests {
         digest.to_string()
     }
 
-    /// Reference values of the FNV authors.
+    /// Reference values from the authors of FNV.
     #[test]
     fn the_hash_is_fnv_1a_of_128_bits() {
         for (text, hash) in [
@@ -77,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn every_bit_of_velocity_and_status_counts_and_nothing_else() {
+    fn only_velocity_and_status_count_and_every_bit_of_them() {
         let command = Command {
             status: Status::Exploring,
             ..Command::default()

@@ -1,4 +1,4 @@
-//! The first rung: the pilot is called, no bytes.
+//! The direct link: a function call of the pilot, without bytes.
 
 use fieldline_device::session::{self, Boot};
 use fieldline_device::{Memory, Pilot, SLOTS, State, TILES};
@@ -10,7 +10,7 @@ use fieldline_protocol::message::{
 
 use super::{Link, LinkError, LinkStats};
 
-/// A pilot and its memories.
+/// A pilot and its memory.
 #[derive(Debug)]
 pub struct Direct {
     pilot: Pilot,
@@ -26,7 +26,7 @@ impl Default for Direct {
 }
 
 impl Direct {
-    /// A pilot that just woke up.
+    /// A pilot that has just booted.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -37,7 +37,7 @@ impl Direct {
         }
     }
 
-    /// Runs `act` on the pilot and its memories.
+    /// Runs `act` on the pilot and its memory.
     fn with<T>(&mut self, act: impl FnOnce(&mut Pilot, &mut Memory<'_, TILES, SLOTS>) -> T) -> T {
         self.calls += 1;
         let mut memory = Memory {
@@ -79,16 +79,21 @@ impl Link for Direct {
         Ok(self.with(|_, memory| Pilot::frontiers(memory).iter().copied().collect()))
     }
 
-    fn road(&mut self, from: u8) -> Result<Path, LinkError> {
+    fn path(&mut self, from: u8) -> Result<Path, LinkError> {
         Ok(self.with(|_, memory| Pilot::path(memory, from)))
     }
 
-    /// Every call counts as a frame sent and one received.
+    /// Every call counts as one frame sent and one received.
     fn stats(&self) -> LinkStats {
         LinkStats {
             sent: self.calls,
             received: self.calls,
             ..LinkStats::default()
         }
+    }
+
+    /// The pilot keeps no log.
+    fn take_log(&mut self) -> Vec<u8> {
+        Vec::new()
     }
 }

@@ -1,8 +1,9 @@
-//! The host's end of a conversation over any line.
+//! The host's end of a link over any line.
 //!
-//! One request is in flight. If no answer comes in time the same bytes go out again, with the same sequence number, so the device
-//! answers without stepping twice; after the last attempt the link is [`LinkError::Silent`]. Whatever else comes in between (late answers, logs, noise)
-//! is sorted out here. A device that rebooted gives itself away by its hello or by not knowing us.
+//! One request is in flight. If no answer comes in time, the endpoint sends the same bytes again
+//! with the same sequence number, so the device answers without a second step. After the last
+//! attempt the link is [`LinkError::Silent`]. The endpoint sorts out late answers, logs and noise.
+//! It detects a reboot of the device by its hello, or because the device does not know this host.
 
 use core::time::Duration;
 use std::collections::VecDeque;
@@ -20,38 +21,40 @@ use fieldline_protocol::{SCHEMA, VERSION};
 use super::line::Line;
 use super::{Link, LinkError, LinkStats};
 
-/// How long to wait, and how often.
+/// How long to wait for an answer, and how often to ask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Patience {
-    /// For an answer, before asking again.
+pub struct RetryPolicy {
+    /// Time to wait for an answer before the request is sent again.
     pub attempt: Duration,
-    /// Asked in all.
+    /// Number of times that a request is sent.
     pub attempts: u32,
-    /// For the first hello, in all: a device may still be booting, and a stranger should not keep anybody waiting.
+    /// Total time for the first hello: long enough for a device that is still booting, and short
+    /// enough for a peer that never answers.
     pub greeting: Duration,
 }
 
-impl Patience {
+impl RetryPolicy {
     /// In virtual time: twelve attempts within the device's stale limit of 500 ms.
     pub const VIRTUAL: Self = Self {
         attempt: Duration::from_millis(40),
         attempts: 12,
         greeting: Duration::from_millis(480),
     };
-    /// In lockstep, where the simulated robot stands still while we wait: a loaded machine that emulates a chip may take seconds.
+    /// In lockstep, where the simulated robot stands still during the wait: a loaded machine that
+    /// emulates a chip may take seconds.
     pub const LOCKSTEP: Self = Self {
         attempt: Duration::from_secs(3),
         attempts: 10,
         greeting: Duration::from_secs(30),
     };
-    /// In lockstep with a board, which boots within a second after its port is opened, or is none of ours.
+    /// In lockstep with a board, which boots within a second after its port is opened.
     pub const SERIAL: Self = Self {
         greeting: Duration::from_secs(4),
         ..Self::LOCKSTEP
     };
 
-    /// The greeting's time in steps of a fifth of a second at the most: a device that is still booting hears nothing, and a
-    /// repeated hello costs it nothing.
+    /// The policy of a hello: the greeting's time in attempts of at most 0.2 s. A device that is
+    /// still booting hears nothing, and a repeated hello costs it nothing.
     #[must_use]
     pub fn for_hello(self) -> Self {
         let attempt = self.attempt.min(Duration::from_millis(200));
@@ -62,7 +65,8 @@ impl Patience {
         }
     }
 
-    /// With a robot that moves while we wait: five attempts within the device's stale limit of 500 ms.
+    /// With a robot that moves during the wait: five attempts within the device's stale limit of
+    /// 500 ms.
     pub const REAL_TIME: Self = Self {
         attempt: Duration::from_millis(95),
         attempts: 5,
@@ -70,13 +74,14 @@ impl Patience {
     };
 }
 
-/// The host's end.
+/// The host's end of a link.
 ///
-/// Invariant: `sequence` is that of the last request and never 0, which is what a device says unasked.
+/// Invariant: `sequence` is the number of the last request and never 0; 0 marks a device's message
+/// that answers no request.
 #[derive(Debug)]
 pub struct Endpoint<L> {
     line: L,
-    patience: Patience,
+    policy: RetryPolicy,
     receiver: Receiver<MAX_REPLY_FRAME>,
     inbox: VecDeque<u8>,
     bytes: u64,
@@ -91,11 +96,11 @@ pub struct Endpoint<L> {
 }
 
 impl<L: Line> Endpoint<L> {
-    /// An end that has not said hello. `nonce` tells this host from the last one.
-    pub fn new(line: L, patience: Patience, nonce: u32) -> Self {
+    /// An endpoint that has not said hello. `nonce` distinguishes this host from the last one.
+    pub fn new(line: L, policy: RetryPolicy, nonce: u32) -> Self {
         Self {
             line,
-            patience,
+            policy,
             receiver: Receiver::new(Side::Host),
             inbox: VecDeque::new(),
             bytes: 0,
@@ -110,12 +115,7 @@ impl<L: Line> Endpoint<L> {
         }
     }
 
-    /// Sets how long to wait.
-    pub fn set_patience(&mut self, patience: Patience) {
-        self.patience = patience;
-    }
-
-    /// The line's clock.
+    /// Time on the line's clock.
     pub fn now(&self) -> Duration {
         self.line.now()
     }
@@ -124,21 +124,21 @@ impl<L: Line> Endpoint<L> {
         if self.boots.is_none() {
             self.hello()?;
         }
-        self.ask(request, self.patience)
+        self.ask(request, self.policy)
     }
 
     /// Sends a request until it is answered.
-    fn ask(&mut self, request: &Request, patience: Patience) -> Result<Reply, LinkError> {
+    fn ask(&mut self, request: &Request, policy: RetryPolicy) -> Result<Reply, LinkError> {
         self.sequence = self.sequence.wrapping_add(1).max(1);
         let mut frame = [0; 1 + MAX_REQUEST_FRAME];
-        // A zero first, to end whatever noise is on the line; only when asking again does it cost a byte.
+        // A zero before a repeated frame ends any noise on the line.
         let length = encode_request(self.sequence, request, &mut frame[1..])
             .map_err(|error| LinkError::Io(error.to_string()))?;
-        for attempt in 0..patience.attempts {
+        for attempt in 0..policy.attempts {
             self.stats.sent += 1;
             self.stats.retries += u64::from(attempt > 0);
             self.line.send(&frame[usize::from(attempt == 0)..=length])?;
-            if let Some(reply) = self.await_reply(patience.attempt)? {
+            if let Some(reply) = self.await_reply(policy.attempt)? {
                 return Ok(reply);
             }
         }
@@ -164,7 +164,7 @@ impl<L: Line> Endpoint<L> {
         }
     }
 
-    /// Takes a byte; gives the awaited reply.
+    /// Takes a byte; returns the awaited reply when it is complete.
     fn hear(&mut self, byte: u8) -> Result<Option<Reply>, LinkError> {
         let Some(frame) = self.receiver.push(byte) else {
             return Ok(None);
@@ -201,12 +201,12 @@ impl<L: Line> Endpoint<L> {
                 None => LinkError::Reset,
             }),
             _ if sequence == self.sequence => Ok(Some(Reply::Hello(identity))),
-            // It just booted and we have not met, or it answered an earlier hello twice.
+            // The device just booted, or it answered an earlier hello twice.
             _ => Ok(None),
         }
     }
 
-    /// A device that does not know us any more rebooted.
+    /// The error for a refusal; a device that forgot this host has rebooted.
     fn refused(&self, refusal: Refusal) -> LinkError {
         match refusal {
             Refusal::NotGreeted if self.boots.is_some() => LinkError::Reset,
@@ -218,7 +218,8 @@ impl<L: Line> Endpoint<L> {
 
 fn unexpected(what: &str) -> LinkError {
     LinkError::Incompatible(format!(
-        "the device answered {what} with another kind of reply; build both ends from the same source"
+        "the device answered {what} with another kind of reply; \
+         build both ends from the same source"
     ))
 }
 
@@ -229,12 +230,13 @@ impl<L: Line> Link for Endpoint<L> {
             schema: SCHEMA,
             nonce: self.nonce,
         };
-        let identity = match self.ask(&request, self.patience.for_hello()) {
+        let identity = match self.ask(&request, self.policy.for_hello()) {
             Ok(Reply::Hello(identity)) => identity,
             Ok(_) => return Err(unexpected("a hello")),
             Err(LinkError::Silent) if self.bytes > 0 && self.receiver.tally().received == 0 => {
                 return Err(LinkError::Incompatible(format!(
-                    "{} bytes came but no Fieldline frame: another device, another baud rate, or an image of another schema",
+                    "{} bytes came but no Fieldline frame; \
+                     check the device, the baud rate and the image's schema",
                     self.bytes
                 )));
             }
@@ -252,7 +254,7 @@ impl<L: Line> Link for Endpoint<L> {
             Reply::Control(status) => {
                 self.started |= matches!(control, Control::Start(_));
                 if matches!(control, Control::Reset) {
-                    // It reboots at our word: that is no accident, and it will not know us.
+                    // This reboot was requested, and afterwards the device does not know this host.
                     (self.boots, self.started) = (None, false);
                 }
                 Ok(status)
@@ -292,7 +294,7 @@ impl<L: Line> Link for Endpoint<L> {
         }
     }
 
-    fn road(&mut self, from: u8) -> Result<Path, LinkError> {
+    fn path(&mut self, from: u8) -> Result<Path, LinkError> {
         match self.call(&Request::Path { from })? {
             Reply::Path(path) => Ok(path),
             _ => Err(unexpected("a request for the road")),

@@ -1,4 +1,4 @@
-//! The firmware image: found where the environment says, or else built from the source tree.
+//! The firmware image: the file that the environment names, or else built from the source tree.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -6,13 +6,14 @@ use std::sync::OnceLock;
 
 use super::LinkError;
 
-/// Names an image to use instead of building one.
+/// Environment variable with the path of an image to use instead of a new build.
 pub const IMAGE_VARIABLE: &str = "FIELDLINE_IMAGE";
 
 const TARGET: &str = "thumbv7em-none-eabihf";
 const PACKAGE: &str = "fieldline-stm32f405";
 
-/// The image's ELF file: [`IMAGE_VARIABLE`]'s, or else built now (once a process), which costs nothing where it is fresh.
+/// The image's ELF file: the one in [`IMAGE_VARIABLE`], or else built once per process. The build
+/// is quick if the image is up to date.
 ///
 /// # Errors
 /// [`LinkError::Io`] naming what is missing and what to type.
@@ -29,12 +30,12 @@ fn existing(path: PathBuf) -> Result<PathBuf, LinkError> {
         return Ok(path);
     }
     Err(LinkError::Io(format!(
-        "there is no image at {}; {IMAGE_VARIABLE} must name one, or be unset to build it",
+        "there is no image at {}; set {IMAGE_VARIABLE} to one, or unset it to build one",
         path.display()
     )))
 }
 
-/// Builds the image with further arguments for cargo and gives its path.
+/// Builds the image with more arguments for cargo and returns its path.
 ///
 /// # Errors
 /// [`LinkError::Io`] naming what is missing and what to type.
@@ -42,19 +43,26 @@ pub fn build(arguments: &[&str]) -> Result<PathBuf, LinkError> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     if !root.join("firmware/stm32f405/Cargo.toml").is_file() {
         return Err(LinkError::Io(format!(
-            "there is no source tree at {} to build the image from; set {IMAGE_VARIABLE} to an ELF file",
+            "there is no source tree at {} to build the image from; \
+             set {IMAGE_VARIABLE} to an ELF file",
             root.display()
         )));
     }
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(&root)
         .args(["build", "--package", PACKAGE, "--profile", "firmware"])
-        .args(["--target", TARGET, "--message-format", "json-render-diagnostics"])
+        .args([
+            "--target",
+            TARGET,
+            "--message-format",
+            "json-render-diagnostics",
+        ])
         .args(arguments)
         .output()
         .map_err(|error| {
             LinkError::Io(format!(
-                "cannot run cargo to build the image: {error}; install Rust, or set {IMAGE_VARIABLE} to an ELF file"
+                "cannot run cargo to build the image: {error}; \
+                 install Rust, or set {IMAGE_VARIABLE} to an ELF file"
             ))
         })?;
     if !output.status.success() {
@@ -63,7 +71,7 @@ pub fn build(arguments: &[&str]) -> Result<PathBuf, LinkError> {
         ))));
     }
     executable(&String::from_utf8_lossy(&output.stdout)).ok_or_else(|| {
-        LinkError::Io("cargo built the image but did not say where; run `cargo image`".into())
+        LinkError::Io("cargo built the image and did not say where; run `cargo image`".into())
     })
 }
 
@@ -78,7 +86,7 @@ fn explain(log: &str) -> String {
     format!("building the image failed: {first}; type `cargo image` to see all of it")
 }
 
-/// The path in cargo's message `{"reason":"compiler-artifact",…,"executable":"…"}`.
+/// The last path in cargo's messages `{"reason":"compiler-artifact",…,"executable":"…"}`.
 fn executable(messages: &str) -> Option<PathBuf> {
     const KEY: &str = "\"executable\":\"";
     let line = messages.lines().rfind(|line| line.contains(KEY))?;
@@ -96,7 +104,7 @@ mod tests {
     use super::{executable, existing, explain};
 
     #[test]
-    fn the_last_executable_of_cargos_messages_is_ours() {
+    fn the_last_executable_in_cargos_messages_is_the_image() {
         let messages = concat!(
             r#"{"reason":"compiler-artifact","target":{"name":"a"},"executable":null,"fresh":true}"#,
             "\n",
@@ -112,8 +120,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missing_is_said_with_what_to_type() {
-        let missing = "error[E0463]: can't find crate for `core`\n  = note: the `thumbv7em-none-eabihf` target may not be installed";
+    fn a_missing_target_is_named_with_the_command_to_type() {
+        let missing = concat!(
+            "error[E0463]: can't find crate for `core`\n",
+            "  = note: the `thumbv7em-none-eabihf` target may not be installed",
+        );
         assert!(explain(missing).contains("rustup target add thumbv7em-none-eabihf"));
         let broken = "warning: x\nerror[E0308]: mismatched types\n --> a.rs";
         assert!(explain(broken).contains("error[E0308]: mismatched types"));

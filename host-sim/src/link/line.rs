@@ -1,22 +1,23 @@
-//! A line carries bytes both ways and knows its own time.
+//! A line: bytes in both directions, and a clock.
 
 use core::time::Duration;
 
 use super::LinkError;
 
-/// Bytes both ways. Time is the line's own: the wall's on a real one, counted on an imagined one, where nothing ever waits.
+/// Bytes in both directions. A real line has wall-clock time; a simulated one counts its time and
+/// never waits.
 pub trait Line {
-    /// Puts bytes on the line.
+    /// Sends bytes.
     ///
     /// # Errors
     /// [`LinkError::Io`].
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError>;
-    /// Adds what came to `into`, waiting at most `wait` for the first byte.
+    /// Appends the received bytes to `into`; waits at most `wait` for the first one.
     ///
     /// # Errors
     /// [`LinkError::Io`].
     fn receive(&mut self, into: &mut Vec<u8>, wait: Duration) -> Result<(), LinkError>;
-    /// Time since some beginning.
+    /// Time since a fixed moment.
     fn now(&self) -> Duration;
 }
 

@@ -1,4 +1,4 @@
-//! The device's log as text: its defmt bytes read with the tables in the image's ELF file.
+//! The device's log as text: defmt bytes, decoded with the tables in the image's ELF file.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use defmt_decoder::{DecodeError, Locations, StreamDecoder, Table};
 
 use super::LinkError;
 
-/// The tables of one image, and what is not yet a whole message.
+/// The tables of one image, and the bytes of an incomplete message.
 pub struct Decoder {
     table: Table,
     places: Locations,
@@ -22,10 +22,10 @@ impl core::fmt::Debug for Decoder {
 }
 
 impl Decoder {
-    /// The decoder of an image. It must be the very one that runs.
+    /// The decoder of an image. It must be the image that runs on the device.
     ///
     /// # Errors
-    /// [`LinkError::Io`] if the file cannot be read or is no image with a log.
+    /// [`LinkError::Io`] if the file cannot be read or is not an image with a log.
     pub fn of(image: &Path) -> Result<Self, LinkError> {
         let name = image.display();
         let io =
@@ -33,7 +33,7 @@ impl Decoder {
         let elf = std::fs::read(image).map_err(|error| io(error.to_string()))?;
         let table = Table::parse(&elf)
             .map_err(|error| io(error.to_string()))?
-            .ok_or_else(|| io("it has none; name the image's ELF file".into()))?;
+            .ok_or_else(|| io("it has none; give the image's ELF file".into()))?;
         let places = table
             .get_locations(&elf)
             .map_err(|error| io(error.to_string()))?;
@@ -44,10 +44,10 @@ impl Decoder {
         })
     }
 
-    /// The messages that `bytes` complete, one line each: level, text, place.
+    /// Returns the messages that `bytes` complete, one line each: level, text, place.
     pub fn lines(&mut self, bytes: &[u8]) -> Vec<String> {
         self.rest.extend_from_slice(bytes);
-        // Messages end with a zero; a broken one is skipped up to there.
+        // Messages end with a zero; a broken message is skipped up to it.
         let whole = self
             .rest
             .iter()
@@ -77,7 +77,7 @@ impl Decoder {
         }
     }
 
-    /// File, from the source tree's root on, and line of a message.
+    /// File, relative to the source tree's root, and line of a message.
     fn place(&self, message: u64) -> String {
         let Some(place) = self.places.get(&message) else {
             return String::new();

@@ -1,6 +1,7 @@
-//! The second rung: frames to a device in this process, in virtual time.
+//! The loopback link: frames to a device in this process, in virtual time.
 //!
-//! Time passes only while the host waits in vain, so a lost frame costs a retry and no wall time.
+//! Time passes only while the host waits without an answer, so a lost frame costs a retry and no
+//! wall-clock time.
 
 use core::time::Duration;
 
@@ -10,10 +11,10 @@ use fieldline_device::{Memory, SLOTS, Session, State, TILES};
 use fieldline_planner::Workspace;
 
 use super::LinkError;
-use super::endpoint::{Endpoint, Patience};
+use super::endpoint::{Endpoint, RetryPolicy};
 use super::line::Line;
 
-/// A whole device on the far end of a line.
+/// A whole device at the far end of a line.
 #[derive(Debug)]
 pub struct LocalDevice {
     session: Session,
@@ -31,7 +32,7 @@ impl Default for LocalDevice {
 }
 
 impl LocalDevice {
-    /// A device that just booted for the first time.
+    /// A device that has just booted for the first time.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -44,7 +45,7 @@ impl LocalDevice {
         }
     }
 
-    /// The conversation as the device sees it.
+    /// The device's session.
     #[must_use]
     pub const fn session(&self) -> &Session {
         &self.session
@@ -55,7 +56,7 @@ impl LocalDevice {
         self.session.set_emergency_stop(pressed);
     }
 
-    /// Log bytes, as a board's logger would give them.
+    /// Appends log bytes, as a board's logger does.
     pub fn log(&mut self, bytes: &[u8]) -> usize {
         self.session.log(bytes)
     }
@@ -108,11 +109,11 @@ impl Line for LocalDevice {
     }
 }
 
-/// The loopback rung.
+/// The loopback link.
 pub type Loopback = Endpoint<LocalDevice>;
 
-/// A host's end on a device of its own.
+/// Opens the host's end on a new device in this process.
 #[must_use]
 pub fn loopback() -> Loopback {
-    Endpoint::new(LocalDevice::new(), Patience::VIRTUAL, 1)
+    Endpoint::new(LocalDevice::new(), RetryPolicy::VIRTUAL, 1)
 }

@@ -1,14 +1,16 @@
-//! A link answers an observation with a command; only it differs between the rungs of a trial.
+//! A link: it sends an observation to the planner and returns the command.
 //!
-//! | rung | file | what is between |
+//! A trial is the same over every link; only the link differs:
+//!
+//! | link | file | connection |
 //! | --- | --- | --- |
-//! | direct | [`direct`] | nothing: the pilot is called |
-//! | loopback | [`loopback`] | frames, to a device in this process, in virtual time |
-//! | qemu | [`qemu`] | frames, over a socket, to the image in an emulated STM32F405 |
-//! | serial | [`serial`] | frames, over a serial port or a pty, to whatever is there |
+//! | direct | [`direct`] | a function call of the pilot |
+//! | loopback | [`loopback`] | frames to a device in this process, in virtual time |
+//! | qemu | [`qemu`] | frames over a socket to the image in an emulated STM32F405 |
+//! | serial | [`serial`] | frames over a serial port or a pty to any device |
 //!
-//! All but the first are an [`endpoint::Endpoint`] over a [`line::Line`]; [`fault`] breaks lines on purpose, and [`spec`] opens
-//! what a user named.
+//! The last three are an [`endpoint::Endpoint`] over a [`line::Line`]. [`fault`] injects faults
+//! into a line, and [`spec`] opens a link by name.
 
 use core::fmt;
 
@@ -31,16 +33,16 @@ pub mod serial;
 pub mod spec;
 pub mod stream;
 
-/// What can go wrong with a link; every variant ends a run.
+/// Errors of a link; every one ends the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkError {
-    /// Nothing answered in time, after every retry. The robot must stand by now.
+    /// No answer came in time after all retries; by then the robot has stopped.
     Silent,
-    /// The device rebooted in the middle of the run.
+    /// The device rebooted during the run.
     Reset,
-    /// The device's program crashed, and where.
+    /// The device's program crashed, at this place.
     Crashed(String),
-    /// The peer speaks another protocol or schema, or is not a Fieldline device.
+    /// The peer has another protocol or schema, or is not a Fieldline device.
     Incompatible(String),
     /// The device refused a request.
     Refused(String),
@@ -55,7 +57,7 @@ impl fmt::Display for LinkError {
                 "the device does not answer; check its power, the wiring and the baud rate",
             ),
             Self::Reset => f.write_str(
-                "the device rebooted in the middle of the run; check its supply and start again",
+                "the device rebooted during the run; check its power supply and start again",
             ),
             Self::Crashed(place) => write!(f, "the device's program crashed: {place}"),
             Self::Incompatible(why) => f.write_str(why),
@@ -67,64 +69,64 @@ impl fmt::Display for LinkError {
 
 impl core::error::Error for LinkError {}
 
-/// Counters of a link since its hello, as they stand in a report.
+/// Counters of a link since its hello, as in a report.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LinkStats {
     /// Frames sent.
     pub sent: u64,
     /// Frames received and accepted.
     pub received: u64,
-    /// Requests sent again.
+    /// Requests that were sent again.
     pub retries: u64,
-    /// Frames dropped (framing, length, format, order), both ends.
+    /// Frames that either end dropped for framing, length, format or order.
     pub dropped: u64,
-    /// Frames dropped for a bad checksum, both ends.
+    /// Frames that either end dropped for a bad checksum.
     pub crc_errors: u64,
 }
 
-/// One rung: direct call, loopback bytes, QEMU, serial port.
+/// A link: direct call, loopback bytes, QEMU, serial port.
+///
+/// No method has a default body: the compiler then finds a decorator that forgets to forward one.
 pub trait Link {
-    /// Who answers.
+    /// Asks for the device's identity.
     ///
     /// # Errors
     /// As [`LinkError`].
     fn hello(&mut self) -> Result<Identity, LinkError>;
-    /// Change the session's state.
+    /// Changes the session's state.
     ///
     /// # Errors
     /// As [`LinkError`].
     fn control(&mut self, control: &Control) -> Result<Status, LinkError>;
-    /// One step.
+    /// Makes one step: sends an observation and returns the command.
     ///
     /// # Errors
-    /// As [`LinkError`]. On [`LinkError::Silent`] as much of the robot's time as the device's stale limit may have passed.
+    /// As [`LinkError`]. On [`LinkError::Silent`], robot time of up to the device's stale limit may
+    /// have passed.
     fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError>;
-    /// One map tile.
+    /// Reads one map tile; `None` if the map does not have it.
     ///
     /// # Errors
     /// As [`LinkError`].
     fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError>;
-    /// One row of the last field.
+    /// Reads one row of the last field; `None` if there is no field.
     ///
     /// # Errors
     /// As [`LinkError`].
     fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError>;
-    /// Residual frontiers.
+    /// Reads the residual frontiers.
     ///
     /// # Errors
     /// As [`LinkError`].
     fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError>;
-    /// Where the planner is going, without the first `from` cells of the road; nothing where it does not say.
+    /// Reads the path to the planner's goal, without its first `from` cells; empty if the planner
+    /// has none.
     ///
     /// # Errors
     /// As [`LinkError`].
-    fn road(&mut self, _from: u8) -> Result<Path, LinkError> {
-        Ok(Path::default())
-    }
-    /// Counters.
+    fn path(&mut self, from: u8) -> Result<Path, LinkError>;
+    /// The counters since the hello.
     fn stats(&self) -> LinkStats;
-    /// Log bytes (defmt) of the device since the last call; empty where there is no log.
-    fn take_log(&mut self) -> Vec<u8> {
-        Vec::new()
-    }
+    /// Returns the device's log bytes (defmt) since the last call; empty if it has no log.
+    fn take_log(&mut self) -> Vec<u8>;
 }

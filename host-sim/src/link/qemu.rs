@@ -1,8 +1,10 @@
-//! The third rung: the image in an emulated STM32F405, over a socket; or on a pty, as if it were a board on a serial port.
+//! The qemu link: the image in an emulated STM32F405, over a socket, or over a pty like a board on
+//! a serial port.
 //!
-//! QEMU connects to a socket that is bound before it starts, so that not even the boot's hello is lost. Until the image has set up
-//! its UART, QEMU drops what comes for it; so the line is open once the image has spoken. `-icount
-//! shift=0,sleep=off` makes an instruction one tick of the virtual clock, which counts a step's instructions exactly.
+//! QEMU connects to a socket that is bound before QEMU starts, so the hello of the boot is not
+//! lost. QEMU drops bytes for the image until the image has set up its UART; so the line counts as
+//! open once the image has sent a byte. With `-icount shift=0,sleep=off` an instruction is one tick
+//! of the virtual clock, so the instructions of a step are counted exactly.
 
 use core::time::Duration;
 use std::io::{BufRead, BufReader, ErrorKind};
@@ -14,24 +16,24 @@ use std::time::Instant;
 use std::os::unix::net::{UnixListener, UnixStream};
 
 use super::LinkError;
-use super::endpoint::{Endpoint, Patience};
+use super::endpoint::{Endpoint, RetryPolicy};
 use super::image::image;
 use super::line::Line;
 use super::stream::{POLL, Stream, fresh_nonce};
 
 const PROGRAM: &str = "qemu-system-arm";
-/// A loaded machine takes its time to start a process.
+/// Time for the emulator to start and connect, on a loaded machine.
 const START_LIMIT: Duration = Duration::from_secs(30);
-/// The image speaks within milliseconds of the emulator's first instruction.
+/// Time for the image's first byte, which comes milliseconds after the first instruction.
 const BOOT_LIMIT: Duration = Duration::from_secs(10);
 
-/// A running emulator; it ends with this value.
+/// A running emulator; dropping this value ends it.
 #[derive(Debug)]
 struct Emulator(Child);
 
 impl Drop for Emulator {
     fn drop(&mut self) {
-        // It may have ended by itself, which is as good.
+        // It may have ended by itself; then both calls fail, and nothing is left to do.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
@@ -71,19 +73,20 @@ impl Emulator {
         child.map(Self).map_err(|error| {
             LinkError::Io(match error.kind() {
                 ErrorKind::NotFound => format!(
-                    "{PROGRAM} is not installed; type: apt-get install qemu-system-arm (or your system's package)"
+                    "{PROGRAM} is not installed; \
+                     type: apt-get install qemu-system-arm (or your system's package)"
                 ),
                 _ => format!("cannot start {PROGRAM}: {error}"),
             })
         })
     }
 
-    /// Fails if it ended, with what it said last.
+    /// Fails if the emulator has ended, with the last line of its error output.
     fn check(&mut self) -> Result<(), LinkError> {
         let ended = self
             .0
             .try_wait()
-            .map_err(|error| LinkError::Io(format!("cannot look after {PROGRAM}: {error}")))?;
+            .map_err(|error| LinkError::Io(format!("cannot watch {PROGRAM}: {error}")))?;
         let Some(status) = ended else { return Ok(()) };
         let said = self.0.stderr.take().map(BufReader::new);
         let last = said.and_then(|said| said.lines().map_while(Result::ok).last());
@@ -96,7 +99,7 @@ impl Emulator {
 
 #[cfg(unix)]
 impl Emulator {
-    /// Why the line failed: the emulator's last word, if it ended or is about to.
+    /// The reason of a failed line: the emulator's last line, if it has ended or ends within 1 s.
     fn explain(&mut self, error: LinkError) -> LinkError {
         let began = Instant::now();
         while began.elapsed() < Duration::from_secs(1) {
@@ -115,13 +118,13 @@ impl Emulator {
 pub struct QemuLine {
     stream: Stream<UnixStream>,
     emulator: Emulator,
-    /// What the image said as it booted, until it is asked for.
+    /// Bytes that the image sent at its boot, until the first receive.
     at_boot: Vec<u8>,
 }
 
 #[cfg(unix)]
 impl QemuLine {
-    /// Waits for the image's first word. One that never speaks is for whoever greets it to name.
+    /// Waits for the image's first bytes. If none come, the hello fails later and names the fault.
     fn hear_boot(&mut self) -> Result<(), LinkError> {
         let began = Instant::now();
         let mut heard = Vec::new();
@@ -170,7 +173,7 @@ pub fn open_line(image: &Path) -> Result<QemuLine, LinkError> {
         let stream = accept(&listener, &mut emulator)?;
         Ok((stream, emulator))
     });
-    // Both ends are open or there is no use for it.
+    // The socket's file is not needed once both ends are open, or if that failed.
     let _ = std::fs::remove_file(&path);
     let (stream, emulator) = stream?;
     stream
@@ -223,10 +226,10 @@ fn accept(listener: &UnixListener, emulator: &mut Emulator) -> Result<UnixStream
 #[cfg(unix)]
 pub fn qemu() -> Result<Endpoint<QemuLine>, LinkError> {
     let line = open_line(&image()?)?;
-    Ok(Endpoint::new(line, Patience::LOCKSTEP, fresh_nonce()))
+    Ok(Endpoint::new(line, RetryPolicy::LOCKSTEP, fresh_nonce()))
 }
 
-/// An emulated board on a pty, to be opened as a serial port. It ends with this value.
+/// An emulated board on a pty, to be opened as a serial port; dropping this value ends it.
 #[derive(Debug)]
 pub struct PtyBoard {
     _emulator: Emulator,

@@ -1,4 +1,4 @@
-//! The fourth rung: a serial port, or a pty that stands in for one.
+//! The serial link: a serial port, or a pty in its place.
 
 use std::io::ErrorKind as IoKind;
 
@@ -6,7 +6,7 @@ use fieldline_protocol::BAUD;
 use serialport::{ErrorKind, SerialPort};
 
 use super::LinkError;
-use super::endpoint::{Endpoint, Patience};
+use super::endpoint::{Endpoint, RetryPolicy};
 use super::stream::{POLL, Stream, fresh_nonce};
 
 /// A serial line.
@@ -21,35 +21,37 @@ pub fn open_line(device: &str, baud: u32) -> Result<SerialLine, LinkError> {
         .timeout(POLL)
         .open()
         .map_err(|error| LinkError::Io(explain(device, &error)))?;
-    // What was said before we listened is half a frame at best.
+    // Bytes from before the port was opened are at most half a frame.
     let _ = port.clear(serialport::ClearBuffer::Input);
     Ok(Stream::new(port, device))
 }
 
-/// A host's end on a serial port, in lockstep.
+/// Opens the host's end on a serial port, in lockstep.
 ///
 /// # Errors
 /// As [`open_line`].
 pub fn serial(device: &str, baud: u32) -> Result<Endpoint<SerialLine>, LinkError> {
     let line = open_line(device, baud)?;
-    Ok(Endpoint::new(line, Patience::SERIAL, fresh_nonce()))
+    Ok(Endpoint::new(line, RetryPolicy::SERIAL, fresh_nonce()))
 }
 
 fn explain(device: &str, error: &serialport::Error) -> String {
     let there = std::path::Path::new(device).exists();
     let remedy = match error.kind() {
-        // Who locked it is no device to the library.
-        ErrorKind::NoDevice if there => "somebody else has it open; end that program first".into(),
+        // The library reports a port that another program locked as no device.
+        ErrorKind::NoDevice if there => {
+            "another program has it open; end that program first".into()
+        }
         ErrorKind::NoDevice | ErrorKind::Io(IoKind::NotFound) => {
-            format!("is there no such port? {}", available())
+            format!("there may be no such port; {}", available())
         }
         ErrorKind::Io(IoKind::PermissionDenied) => {
-            "you may not open it; join its group (often dialout)".into()
+            "you may not open it; add your user to its group (often dialout)".into()
         }
         ErrorKind::InvalidInput => {
-            format!("it does not do that baud rate; the image uses {BAUD}")
+            format!("it does not support that baud rate; the image uses {BAUD}")
         }
-        _ => "check that it is a serial port and that nobody else uses it".into(),
+        _ => "check that it is a serial port and that no other program uses it".into(),
     };
     format!("cannot open serial port {device}: {error}; {remedy}")
 }
@@ -57,7 +59,7 @@ fn explain(device: &str, error: &serialport::Error) -> String {
 fn available() -> String {
     let ports = serialport::available_ports().unwrap_or_default();
     if ports.is_empty() {
-        return "none is plugged in".into();
+        return "no serial port is plugged in".into();
     }
     let names: Vec<_> = ports.into_iter().map(|port| port.port_name).collect();
     format!("there are {}", names.join(", "))
@@ -76,14 +78,14 @@ mod tests {
         };
         assert!(text.contains("/dev/tty-nowhere"), "{text}");
         assert!(
-            text.contains("none is plugged in") || text.contains("there are"),
+            text.contains("no serial port is plugged in") || text.contains("there are"),
             "{text}"
         );
         assert!(!text.contains('\n'), "{text}");
     }
 
     #[test]
-    fn a_file_is_no_port() {
+    fn a_file_is_not_a_port() {
         let error = open_line("/dev/null", 115_200).unwrap_err();
         assert!(error.to_string().contains("/dev/null"), "{error}");
     }

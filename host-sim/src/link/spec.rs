@@ -6,7 +6,7 @@ use core::str::FromStr;
 use fieldline_protocol::BAUD;
 
 use super::direct::Direct;
-use super::endpoint::{Endpoint, Patience};
+use super::endpoint::{Endpoint, RetryPolicy};
 use super::fault::{Faults, Faulty};
 #[cfg(unix)]
 use super::image::image;
@@ -17,10 +17,10 @@ use super::qemu;
 use super::stream::fresh_nonce;
 use super::{Link, LinkError, serial};
 
-/// Which rung.
+/// A link by name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum LinkSpec {
-    /// The pilot by call.
+    /// A function call of the pilot.
     Direct,
     /// Frames to a device in this process.
     #[default]
@@ -31,19 +31,19 @@ pub enum LinkSpec {
     Serial {
         /// The port.
         device: String,
-        /// Bits a second.
+        /// Baud rate, bits per second.
         baud: u32,
     },
 }
 
-/// Why a link's name was not understood.
+/// Why a link's name is invalid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LinkSpecError {
-    /// No such link.
+    /// There is no such link.
     Unknown(String),
     /// `serial:` without a port.
     NoDevice,
-    /// Not a baud rate.
+    /// The text after `@` is not a baud rate.
     BadBaud(String),
 }
 
@@ -55,12 +55,12 @@ impl fmt::Display for LinkSpecError {
                 "unknown link '{name}'; use direct, loopback, qemu or serial:DEVICE[@BAUD]"
             ),
             Self::NoDevice => f.write_str(
-                "which serial port? use serial:DEVICE[@BAUD], as in serial:/dev/ttyUSB0",
+                "the serial port is missing; use serial:DEVICE[@BAUD], as in serial:/dev/ttyUSB0",
             ),
             Self::BadBaud(baud) => {
                 write!(
                     f,
-                    "bad baud rate '{baud}'; leave it out for the image's {BAUD}"
+                    "bad baud rate '{baud}'; leave it out to use the image's {BAUD}"
                 )
             }
         }
@@ -109,14 +109,14 @@ impl fmt::Display for LinkSpec {
     }
 }
 
-/// How to open a link.
+/// Options of an opened link.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Options {
-    /// Faults to make on the line.
+    /// Faults to inject into the line.
     pub faults: Faults,
     /// Seed of the faults.
     pub seed: u64,
-    /// The robot moves while we wait for an answer.
+    /// True if the robot moves while the host waits for an answer.
     pub real_time: bool,
 }
 
@@ -124,12 +124,12 @@ impl LinkSpec {
     /// Opens the link.
     ///
     /// # Errors
-    /// As [`LinkError`]; faults on a direct link, which has no bytes to break, are [`LinkError::Io`].
+    /// As [`LinkError`]. Faults on a direct link, which has no bytes, are [`LinkError::Io`].
     pub fn open(&self, options: &Options) -> Result<Box<dyn Link>, LinkError> {
-        let patience = |lockstep: Patience| Patience {
+        let policy = |lockstep: RetryPolicy| RetryPolicy {
             greeting: lockstep.greeting,
             ..if options.real_time {
-                Patience::REAL_TIME
+                RetryPolicy::REAL_TIME
             } else {
                 lockstep
             }
@@ -137,23 +137,25 @@ impl LinkSpec {
         match self {
             Self::Direct if options.faults == Faults::default() => Ok(Box::new(Direct::new())),
             Self::Direct => Err(LinkError::Io(
-                "a direct link has no bytes to break; use --link loopback with --fault".into(),
+                "a direct link has no bytes for faults; use --link loopback with --fault".into(),
             )),
-            Self::Loopback => Ok(end(LocalDevice::new(), Patience::VIRTUAL, 1, options)),
+            Self::Loopback => Ok(end(LocalDevice::new(), RetryPolicy::VIRTUAL, 1, options)),
             #[cfg(unix)]
             Self::Qemu => {
                 let line = qemu::open_line(&image()?)?;
-                let patience = patience(Patience::LOCKSTEP);
-                Ok(end(line, patience, fresh_nonce(), options))
+                let policy = policy(RetryPolicy::LOCKSTEP);
+                Ok(end(line, policy, fresh_nonce(), options))
             }
             #[cfg(not(unix))]
             Self::Qemu => Err(LinkError::Io(
-                "the emulator is reached by a Unix socket, which this system has not; use --link serial with QEMU's -serial option".into(),
+                "this system has no Unix sockets for the emulator; \
+                 use --link serial with QEMU's -serial option"
+                    .into(),
             )),
             Self::Serial { device, baud } => {
                 let line = serial::open_line(device, *baud)?;
-                let patience = patience(Patience::SERIAL);
-                Ok(end(line, patience, fresh_nonce(), options))
+                let policy = policy(RetryPolicy::SERIAL);
+                Ok(end(line, policy, fresh_nonce(), options))
             }
         }
     }
@@ -161,15 +163,15 @@ impl LinkSpec {
 
 fn end<L: Line + 'static>(
     line: L,
-    patience: Patience,
+    policy: RetryPolicy,
     nonce: u32,
     options: &Options,
 ) -> Box<dyn Link> {
     if options.faults == Faults::default() {
-        return Box::new(Endpoint::new(line, patience, nonce));
+        return Box::new(Endpoint::new(line, policy, nonce));
     }
     let faulty = Faulty::new(line, options.faults, options.seed);
-    Box::new(Endpoint::new(faulty, patience, nonce))
+    Box::new(Endpoint::new(faulty, policy, nonce))
 }
 
 #[cfg(test)]
@@ -199,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_understood_is_named() {
+    fn an_invalid_name_is_explained() {
         let error = |text: &str| text.parse::<LinkSpec>().unwrap_err();
         assert_eq!(error("tcp"), LinkSpecError::Unknown("tcp".into()));
         assert_eq!(error(""), LinkSpecError::Unknown(String::new()));
@@ -217,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn a_direct_link_cannot_be_broken() {
+    fn a_direct_link_refuses_faults() {
         let options = Options {
             faults: Faults {
                 drop: 0.1,

@@ -1,6 +1,7 @@
-//! A line over anything that reads and writes: sockets, serial ports, ptys.
+//! A line over any stream of bytes: sockets, serial ports, ptys.
 //!
-//! The stream's own read timeout must be short ([`POLL`]): waiting is done by trying again until the deadline.
+//! The stream's own read timeout must be short ([`POLL`]): the line waits by repeated reads until
+//! the deadline.
 
 use core::time::Duration;
 use std::io::{ErrorKind, Read, Write};
@@ -12,7 +13,7 @@ use super::line::Line;
 /// Read timeout to set on a stream before it becomes a line.
 pub const POLL: Duration = Duration::from_millis(20);
 
-/// Bytes over a stream, in wall time.
+/// A line over a stream, in wall-clock time.
 #[derive(Debug)]
 pub struct Stream<S> {
     stream: S,
@@ -21,7 +22,7 @@ pub struct Stream<S> {
 }
 
 impl<S: Read + Write> Stream<S> {
-    /// A line over `stream`, which errors call `name`.
+    /// A line over `stream`; errors name it `name`.
     pub fn new(stream: S, name: impl Into<String>) -> Self {
         Self {
             stream,
@@ -31,11 +32,14 @@ impl<S: Read + Write> Stream<S> {
     }
 
     fn failed(&self, what: &str, error: &std::io::Error) -> LinkError {
-        LinkError::Io(format!("{what} {} failed: {error}", self.name))
+        LinkError::Io(format!(
+            "{what} {} failed: {error}; check the connection",
+            self.name
+        ))
     }
 }
 
-/// Not an error but a stream that has nothing now.
+/// Returns true if the stream only has no bytes at the moment.
 fn is_idle(kind: ErrorKind) -> bool {
     matches!(
         kind,
@@ -58,7 +62,7 @@ impl<S: Read + Write> Line for Stream<S> {
             match self.stream.read(&mut bytes) {
                 Ok(0) => {
                     return Err(LinkError::Io(format!(
-                        "{} closed the connection",
+                        "{} closed the connection; check that it still runs",
                         self.name
                     )));
                 }
@@ -80,7 +84,7 @@ impl<S: Read + Write> Line for Stream<S> {
     }
 }
 
-/// A number that tells this host from the last one on the same device.
+/// A number that distinguishes this host from the last one on the same device.
 #[must_use]
 pub fn fresh_nonce() -> u32 {
     let since = std::time::SystemTime::now()

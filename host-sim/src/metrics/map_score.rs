@@ -88,13 +88,14 @@ impl GroundTruth {
         let (mut cells, mut sums) = ([[0; 4]; 5], Sums::default());
         for (index, (truly, held)) in self.classes.iter().zip(&known).enumerate() {
             cells[*truly as usize][column(*held)] += 1;
-            self.judge(&known, index, &mut sums);
+            self.count_held(&known, index, &mut sums);
+            self.count_found(&known, index, &mut sums);
         }
         MapScore::with_shares(cells, sums)
     }
 
-    /// Counts one cell by its class on the map and by its true class.
-    fn judge(&self, known: &[MapCell], index: usize, sums: &mut Sums) {
+    /// Counts one cell by its class on the map: is the map right?
+    fn count_held(&self, known: &[MapCell], index: usize, sums: &mut Sums) {
         use TrueClass::{Either, Negative, Obstacle, Traversable, Unjudged};
         let cell = self.area.cell(index);
         let beside = |wanted: &[TrueClass]| self.near(cell, |k| wanted.contains(&self.classes[k]));
@@ -108,6 +109,12 @@ impl GroundTruth {
                 sums.negative.held(beside(&[Negative, Either, Unjudged]));
             }
         }
+    }
+
+    /// Counts one cell by its true class: does the map have it?
+    fn count_found(&self, known: &[MapCell], index: usize, sums: &mut Sums) {
+        use TrueClass::{Negative, Obstacle, Traversable, Unjudged};
+        let cell = self.area.cell(index);
         // Only the rim of a barrier is visible: cells beside ground that the robot covers and the
         // map knows.
         let is_rim = || {

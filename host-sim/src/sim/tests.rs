@@ -1,6 +1,7 @@
-//! The simulator as a whole: repeatable, stopped by walls and by silence, honest about its odometry.
+//! The whole simulator: repeatable runs, walls, stale commands, odometry errors.
 
 use super::*;
+use crate::robot::{OdometryModel, OdometryNoise};
 
 fn twist(linear: f64, angular: f64) -> Option<Twist> {
     let velocity = Velocity {
@@ -15,12 +16,12 @@ fn office() -> World {
 }
 
 #[test]
-fn same_seed_same_run() {
+fn the_same_seed_gives_the_same_run() {
     let world = office();
     let run = |seed| {
         let config = SimConfig {
             seed,
-            odometry: OdometryModel::Noisy(crate::robot::OdometryNoise::default()),
+            odometry: OdometryModel::Noisy(OdometryNoise::default()),
             ..SimConfig::default()
         };
         let mut sim = Simulator::new(&world, config).expect("fits");
@@ -29,7 +30,7 @@ fn same_seed_same_run() {
             seen.push(sim.observe());
             sim.drive(twist(0.4, if step % 9 < 4 { 0.7 } else { -0.6 }));
         }
-        (seen, sim.odometry_pose().x_m.to_bits())
+        (seen, sim.odometry.pose().x_m.to_bits())
     };
     assert_eq!(run(5), run(5));
     assert_ne!(run(5).0, run(6).0);
@@ -65,7 +66,7 @@ fn silence_stops_the_robot_after_the_stale_limit() {
         sim.drive(twist(0.25, 0.0));
     }
     sim.drive(None);
-    // 400 ms after the last command it still counts.
+    // The last command still counts after 400 ms.
     assert!((sim.velocity().linear_mps - 0.25).abs() < 1e-9);
     sim.drive(None);
     assert!((sim.velocity().linear_mps - 0.19).abs() < 1e-9);
@@ -77,7 +78,7 @@ fn silence_stops_the_robot_after_the_stale_limit() {
 
 #[test]
 fn a_corner_that_swings_into_a_wall_is_a_collision() {
-    // 0.6 m wide: room to drive through, none to turn.
+    // 0.6 m wide: the robot can drive through and cannot turn.
     let rows: Vec<String> = (0..32)
         .map(|j| if (10..22).contains(&j) { "." } else { "#" }.repeat(40))
         .collect();
@@ -109,7 +110,7 @@ fn a_corner_that_swings_into_a_wall_is_a_collision() {
 }
 
 #[test]
-fn odometry_errs_in_its_own_frame_and_the_error_is_measured() {
+fn the_error_of_the_odometry_is_measured() {
     let world = World::builtin("hall").expect("built in");
     let drive = |odometry| {
         let config = SimConfig {
@@ -121,11 +122,11 @@ fn odometry_errs_in_its_own_frame_and_the_error_is_measured() {
             sim.observe();
             sim.drive(twist(0.5, 0.25));
         }
-        (*sim.pose(), *sim.odometry_pose(), sim.localization())
+        (*sim.pose(), *sim.odometry.pose(), sim.localization())
     };
     let (truth, believed, errors) = drive(OdometryModel::Truth);
     assert_eq!((truth, errors.max_error_m()), (believed, 0.0));
-    let noisy = OdometryModel::Noisy(crate::robot::OdometryNoise::default());
+    let noisy = OdometryModel::Noisy(OdometryNoise::default());
     let (same_truth, believed, errors) = drive(noisy);
     assert_eq!(truth, same_truth);
     assert!(truth.distance_m(&believed) > 0.01);
@@ -134,7 +135,7 @@ fn odometry_errs_in_its_own_frame_and_the_error_is_measured() {
 }
 
 #[test]
-fn a_robot_that_drives_into_a_hole_has_fallen_once_and_for_all() {
+fn a_robot_that_drives_into_a_hole_falls_once_and_stays() {
     let image = crate::world::Image {
         width: 40,
         height: 20,
@@ -186,7 +187,8 @@ fn the_start_message_announces_what_is_simulated() {
     assert!(close(start.lasers[1].x, 0.15) && close(start.lasers[1].z, 0.45));
     assert!(close(start.lasers[1].pitch, 20.0_f64.to_radians()));
     assert!(close(start.max_linear, 0.7) && close(start.max_angular, 140.0_f64.to_radians()));
-    // Braking is better than the 0.3 m/s² of speeding up; what is promised of both is the less, rounded down.
+    // Braking is stronger than the acceleration of 0.3 m/s²; the message has the lesser of both,
+    // rounded down.
     assert_eq!(start.linear_accel, I4F12::from_bits(1228));
     assert_eq!(start.angular_accel, I4F12::from_bits(7148));
     assert_eq!(start.period_ms, 200);
@@ -202,7 +204,7 @@ fn a_start_that_does_not_exist_is_named() {
     let error = Simulator::new(&world, config).expect_err("three starts");
     assert_eq!(
         error.to_string(),
-        "office: robots[9]: there are only 3 starts"
+        "office: robots[9]: the world has only 3 starts; give a number below 3"
     );
 }
 
@@ -215,7 +217,7 @@ fn truth_starts_in_the_world_frame() {
     assert_eq!(seen.pose.y.to_num::<f64>(), 7.0);
     assert_eq!(seen.scans.len(), 2);
     assert_eq!(seen.scans[0].ranges_mm.len(), 181);
-    // Straight ahead, the tilted laser meets the ground at 0.45 m / sin 20°.
+    // Straight ahead, the tilted laser hits the ground at 0.45 m / sin 20°.
     let ground = f64::from(seen.scans[1].ranges_mm[90]) / 1000.0;
     assert!(
         (ground - 0.45 / 20.0_f64.to_radians().sin()).abs() < 0.05,

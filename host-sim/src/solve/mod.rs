@@ -1,7 +1,7 @@
 //! `host-sim solve`: one window from a text file, solved by the planner's own field module.
 //!
-//! The drawn window lies in the lower left of the planner's 61 × 61 cells; everything around it is obstacle. Headings in
-//! radians, x right, y up; q = 1 − p scaled so that a goal is 1.
+//! The drawn window lies in the lower left of the planner's 61 × 61 cells; all other cells are
+//! obstacles. Headings are in radians, x right, y up; q = 1 − p, scaled so that a goal is 1.
 
 pub mod sheet;
 
@@ -15,17 +15,19 @@ use serde::Serialize;
 
 use sheet::{Sheet, SheetCell};
 
-/// A relative change of a sweep that says nothing but rounding: half a unit in the last place of an f32.
+/// Relative change of a sweep that is only rounding: half a unit in the last place of an f32.
 const ROUNDING: f32 = 6e-8;
-/// Blocks of sweeps without a smaller change after which rounding goes round in circles, as it does under preferences.
-const PATIENCE: u32 = 40;
-/// Sweeps after which Gauss–Seidel has to do: three times what the slowest window of the tests takes.
+/// Number of blocks of sweeps without a smaller change after which the solver stops: under
+/// preferences, rounding can repeat in a cycle.
+const MOST_IDLE: u32 = 40;
+/// Greatest number of Gauss–Seidel sweeps: three times as many as the slowest window of the tests
+/// needs.
 const MOST_SWEEPS: u32 = 60_000;
 
-/// Which solver was asked for.
+/// The requested solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solver {
-    /// Multigrid, with Gauss–Seidel where it is known to be weak.
+    /// Multigrid, with Gauss–Seidel where multigrid is known to be weak.
     Multigrid,
     /// Gauss–Seidel from q = 0, as in the papers.
     GaussSeidel,
@@ -34,13 +36,13 @@ pub enum Solver {
 /// The answer, in the order of the JSON line.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Answer {
-    /// `multigrid` or `gauss-seidel`: what was asked for.
+    /// `multigrid` or `gauss-seidel`: the requested solver.
     pub solver: &'static str,
-    /// What ended it: the multigrid gives way to Gauss–Seidel under strong preferences.
+    /// The method that finished: under strong preferences multigrid hands over to Gauss–Seidel.
     pub method: &'static str,
     /// Columns of the drawn window.
     pub width: usize,
-    /// Rows of it.
+    /// Rows of the drawn window.
     pub height: usize,
     /// Multigrid cycles; `null` if there were none.
     pub cycles: Option<u32>,
@@ -48,13 +50,15 @@ pub struct Answer {
     pub sweeps: Option<u32>,
     /// `converged`, `budget` or `flat`.
     pub stop: &'static str,
-    /// What the stop rule saw last: a cycle's greatest factor less one, or a sweep's greatest relative change.
+    /// Last value of the stop rule: a cycle's greatest factor less one, or a sweep's greatest
+    /// relative change.
     pub residual: f32,
-    /// Heading of −∇p at the robot; `null` without a robot or where the field is flat.
+    /// Heading of −∇p at the robot; `null` without a robot or if the field is flat there.
     pub heading_rad: Option<f32>,
     /// Mean `|p_r − p|` around the robot; `null` without a robot.
     pub p_diff: Option<f32>,
-    /// Nothing of any goal is felt (at the robot, if there is one): there is nothing to follow.
+    /// True if no goal has any effect on the field (at the robot, if there is one), so there is no
+    /// gradient to follow.
     pub flat: bool,
 }
 
@@ -67,7 +71,7 @@ pub struct Solved {
     pub q: Vec<Vec<f64>>,
 }
 
-/// Solve a drawn window, with preferences by rows from the least y if there are any.
+/// Solves a drawn window, with optional preferences in rows from the least y.
 #[must_use]
 pub fn run(sheet: &Sheet, epsilon: Option<&[Vec<f32>]>, solver: Solver) -> Solved {
     let mut window = Box::new(Window::new());
@@ -83,7 +87,7 @@ pub fn run(sheet: &Sheet, epsilon: Option<&[Vec<f32>]>, solver: Solver) -> Solve
     let heading = sheet
         .robot
         .and_then(|(x, y)| descent::heading(&window, x, y));
-    // No way to a goal, or so far from it, or so much repelled, that nothing of it is left.
+    // There is no way to a goal, or it is so far or so much repelled that its effect rounds to 0.
     let flat_at = |(x, y)| window.q(x, y) == 0.0;
     let answer = Answer {
         solver: solver.name(),
@@ -116,7 +120,7 @@ pub fn run(sheet: &Sheet, epsilon: Option<&[Vec<f32>]>, solver: Solver) -> Solve
 }
 
 impl Solver {
-    /// Its name on the command line.
+    /// The name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -126,7 +130,7 @@ impl Solver {
     }
 }
 
-/// What [`converge`] spent and saw.
+/// Work and result of [`converge`].
 struct Effort {
     cycles: u32,
     sweeps: u32,
@@ -135,10 +139,10 @@ struct Effort {
     method: Method,
 }
 
-/// Solve until the field is right to about four digits, much farther than a heading needs.
+/// Solves until the field is right to about four digits, far more than a heading needs.
 ///
-/// Gauss–Seidel's own stop rule looks at a sweep's change, which in a slow window is far below the error; here it goes on
-/// until the change is one of rounding.
+/// The stop rule of Gauss–Seidel tests the change of a sweep, which in a slow window is far below
+/// the error. So this function continues until the change is only rounding.
 fn converge(window: &mut Window, solver: Solver) -> Effort {
     let mut config = SolverConfig {
         max_cycles: MOST_SWEEPS.min(u16::MAX.into()) as u16 / SWEEPS_PER_CYCLE,
@@ -163,7 +167,7 @@ fn converge(window: &mut Window, solver: Solver) -> Effort {
         && effort.stop == Stop::Converged
         && effort.residual > ROUNDING
         && effort.sweeps < MOST_SWEEPS
-        && idle < PATIENCE
+        && idle < MOST_IDLE
     {
         let more = solve(window, &mut scratch, &config);
         effort.sweeps += u32::from(more.sweeps);
@@ -190,7 +194,8 @@ fn boundary(sheet: &Sheet) -> ([u64; SIDE], [u64; SIDE]) {
 }
 
 impl Solved {
-    /// FIELD.csv: the drawn window's layout, nine significant digits, so that every f32 survives.
+    /// The text of FIELD.csv: the drawn window's layout, nine significant digits, so that every f32
+    /// is exact.
     #[must_use]
     pub fn csv(&self) -> String {
         let mut out = String::new();
@@ -207,13 +212,13 @@ impl Solved {
 }
 
 impl Answer {
-    /// One line of JSON, without a newline.
+    /// The answer as one line of JSON, without a newline.
     #[must_use]
     pub fn to_json_line(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// A few words for a person.
+    /// The answer as two lines of text.
     #[must_use]
     pub fn to_text(&self) -> String {
         let count = |name: &str, n: Option<u32>| n.map(|n| format!("{n} {name}"));

@@ -1,14 +1,16 @@
-//! The text files of `host-sim solve`: a window drawn in characters, and its preferences as numbers.
+//! The text files of `host-sim solve`: a window drawn in characters, and its preferences as
+//! numbers.
 //!
-//! WINDOW.txt: one character a cell, first line = greatest y; `#` obstacle, `G` goal, `.` free, `R` robot (free). EPS.csv: as
-//! many lines of as many numbers, comma-separated, within ±2. Both at most [`SIDE`] × [`SIDE`]. Every error names line and
-//! column, both from 1, and what to do.
+//! WINDOW.txt has one character per cell, and its first line is the greatest y: `#` obstacle, `G`
+//! goal, `.` free, `R` robot (free). EPS.csv has one number within ±2 per cell, separated by
+//! commas, in the same layout. Both have at most [`SIDE`] × [`SIDE`] cells. Every error names line
+//! and column, both from 1, and the remedy.
 
 use core::fmt;
 
 use fieldline_planner::field::SIDE;
 
-/// What a cell of the sheet is.
+/// Class of a drawn cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SheetCell {
     /// `#`
@@ -19,7 +21,7 @@ pub enum SheetCell {
     Free,
 }
 
-/// A window as drawn: rows from the least y.
+/// A drawn window.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sheet {
     /// Rows from the least y, all of one length.
@@ -28,12 +30,12 @@ pub struct Sheet {
     pub robot: Option<(usize, usize)>,
 }
 
-/// What is wrong with a sheet.
+/// Why a drawn window or its preferences are invalid.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SheetError {
-    /// No line at all.
+    /// The file has no cells.
     Empty,
-    /// A character that is none of ours.
+    /// A character is no cell.
     Character {
         /// From 1.
         line: usize,
@@ -42,7 +44,7 @@ pub enum SheetError {
         /// The character.
         found: char,
     },
-    /// A line of another length than the first.
+    /// A line is not as long as the first one.
     Ragged {
         /// From 1.
         line: usize,
@@ -51,26 +53,26 @@ pub enum SheetError {
         /// The first line's cells.
         expected: usize,
     },
-    /// More lines than a window has rows.
+    /// There are more lines than a window has rows.
     TooTall {
-        /// The first line too many.
+        /// The first surplus line.
         line: usize,
     },
-    /// More characters than a window has columns.
+    /// A line has more characters than a window has columns.
     TooWide {
         /// From 1.
         line: usize,
         /// Its cells.
         found: usize,
     },
-    /// A second robot.
+    /// There is a second robot.
     SecondRobot {
         /// From 1.
         line: usize,
         /// From 1.
         column: usize,
     },
-    /// A preference that is not a number.
+    /// A preference is not a number.
     Number {
         /// From 1.
         line: usize,
@@ -79,7 +81,7 @@ pub enum SheetError {
         /// The text.
         found: String,
     },
-    /// A preference that diverges.
+    /// A preference is outside of ±2, where the field diverges.
     Range {
         /// From 1.
         line: usize,
@@ -88,11 +90,11 @@ pub enum SheetError {
         /// The preference.
         found: f32,
     },
-    /// Preferences of another shape than the window.
+    /// The preferences have another number of lines than the window.
     Shape {
-        /// Lines found.
+        /// Lines of the preferences.
         lines: usize,
-        /// The window's.
+        /// Lines of the window.
         expected: usize,
     },
 }
@@ -107,7 +109,8 @@ impl fmt::Display for SheetError {
                 found,
             } => write!(
                 f,
-                "line {line}, column {column}: {found:?} is no cell: use # obstacle, G goal, . free, R robot"
+                "line {line}, column {column}: {found:?} is no cell: \
+                 use # obstacle, G goal, . free, R robot"
             ),
             Self::Ragged {
                 line,
@@ -115,7 +118,8 @@ impl fmt::Display for SheetError {
                 expected,
             } => write!(
                 f,
-                "line {line}, column {}: the line has {found} cells and the first one {expected}: make them equal",
+                "line {line}, column {}: the line has {found} cells and the first one {expected}: \
+                 make them equal",
                 found.min(expected) + 1
             ),
             Self::TooTall { line } => write!(
@@ -124,7 +128,8 @@ impl fmt::Display for SheetError {
             ),
             Self::TooWide { line, found } => write!(
                 f,
-                "line {line}, column {}: the line has {found} cells, a window at most {SIDE}: remove the rest",
+                "line {line}, column {}: the line has {found} cells, a window at most {SIDE}: \
+                 remove the rest",
                 SIDE + 1
             ),
             Self::SecondRobot { line, column } => write!(
@@ -137,7 +142,8 @@ impl fmt::Display for SheetError {
                 found,
             } => write!(
                 f,
-                "line {line}, column {column}: {found:?} is no number: write preferences as 0.25,-0.5,..."
+                "line {line}, column {column}: {found:?} is no number: \
+                 write preferences as 0.25,-0.5,..."
             ),
             Self::Range {
                 line,
@@ -145,11 +151,13 @@ impl fmt::Display for SheetError {
                 found,
             } => write!(
                 f,
-                "line {line}, column {column}: preference {found} diverges: keep it within -2 and 2"
+                "line {line}, column {column}: preference {found} diverges: \
+                 keep it within -2 and 2"
             ),
             Self::Shape { lines, expected } => write!(
                 f,
-                "{lines} lines of preferences for {expected} lines of window: give one number a cell"
+                "{lines} lines of preferences for {expected} lines of window: \
+                 give one number per cell"
             ),
         }
     }
@@ -158,7 +166,7 @@ impl fmt::Display for SheetError {
 impl core::error::Error for SheetError {}
 
 impl Sheet {
-    /// Read a drawn window.
+    /// Reads a drawn window.
     ///
     /// # Errors
     /// As [`SheetError`].
@@ -190,13 +198,13 @@ impl Sheet {
         Ok(Self { rows, robot })
     }
 
-    /// Cells of a row.
+    /// Number of columns.
     #[must_use]
     pub fn width(&self) -> usize {
         self.rows.first().map_or(0, Vec::len)
     }
 
-    /// Rows.
+    /// Number of rows.
     #[must_use]
     pub fn height(&self) -> usize {
         self.rows.len()
@@ -236,7 +244,7 @@ fn parse_line(
     Ok(row)
 }
 
-/// Read the preferences of `sheet`: rows from the least y.
+/// Reads the preferences of a drawn window, in rows from the least y.
 ///
 /// # Errors
 /// As [`SheetError`].

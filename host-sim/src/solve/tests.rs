@@ -1,4 +1,4 @@
-//! Answers about drawn windows, with the direct f64 solution as the oracle.
+//! Answers for drawn windows, compared with the direct f64 solution.
 
 use super::sheet::{Sheet, SheetCell, preferences};
 use super::{Solver, run};
@@ -7,7 +7,7 @@ use crate::trial::snapshot::WindowCell;
 
 const BOTH: [Solver; 2] = [Solver::Multigrid, Solver::GaussSeidel];
 
-/// Rooms of 61 × 61 with doors, a goal in a far corner and the robot in another.
+/// Rooms of 61 × 61 cells with doors, a goal in one corner and the robot in another.
 fn rooms() -> String {
     let mut lines = vec![vec!['.'; 61]; 61];
     for (y, line) in lines.iter_mut().enumerate() {
@@ -61,9 +61,9 @@ fn both_solvers_agree_with_the_direct_solution() {
     }
 }
 
-/// A corridor to the east: q falls by 2 − √3 a cell away from the goal.
+/// In a corridor q falls by the factor 2 − √3 per cell.
 #[test]
-fn a_corridor_by_hand() {
+fn a_corridor_has_the_solution_by_hand() {
     let sheet = Sheet::parse("R......G").unwrap();
     for solver in BOTH {
         let solved = run(&sheet, None, solver);
@@ -79,7 +79,7 @@ fn a_corridor_by_hand() {
 }
 
 #[test]
-fn up_is_the_first_line() {
+fn the_first_line_is_up() {
     let sheet = Sheet::parse(".G.\n...\n...\n...\n.R.").unwrap();
     let answer = run(&sheet, None, Solver::Multigrid).answer;
     assert!((answer.heading_rad.unwrap() - core::f32::consts::FRAC_PI_2).abs() < 1e-4);
@@ -99,7 +99,7 @@ fn a_walled_in_robot_and_a_window_without_goals_are_flat() {
     );
 }
 
-/// Attraction raises q everywhere and repulsion lowers it [Terrain, §III].
+/// Attraction raises q everywhere and repulsion lowers it [Maffei20, III].
 #[test]
 fn preferences_attract_and_repel() {
     let sheet = Sheet::parse("..........\n.R.......G\n..........").unwrap();
@@ -119,12 +119,14 @@ fn the_json_line_has_the_documented_keys_in_order() {
     let answer = run(&Sheet::parse("..R..").unwrap(), None, Solver::GaussSeidel).answer;
     assert_eq!(
         answer.to_json_line(),
-        "{\"solver\":\"gauss-seidel\",\"method\":\"multigrid\",\"width\":5,\"height\":1,\"cycles\":null,\
-         \"sweeps\":null,\"stop\":\"flat\",\"residual\":0.0,\"heading_rad\":null,\"p_diff\":0.0,\"flat\":true}"
+        "{\"solver\":\"gauss-seidel\",\"method\":\"multigrid\",\"width\":5,\"height\":1,\
+         \"cycles\":null,\"sweeps\":null,\"stop\":\"flat\",\"residual\":0.0,\
+         \"heading_rad\":null,\"p_diff\":0.0,\"flat\":true}"
     );
 }
 
-/// Walls with gaps, scatter and a few goals, by a xorshift generator.
+/// A random window: walls with gaps, scattered obstacles and a few goals, from a xorshift
+/// generator.
 fn random_window(seed: u64) -> Sheet {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     let mut next = move |below: u64| {

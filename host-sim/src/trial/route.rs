@@ -26,7 +26,7 @@ pub struct Route {
 /// # Errors
 /// As [`LinkError`].
 pub fn read(link: &mut dyn Link) -> Result<Route, LinkError> {
-    let first = link.road(0)?;
+    let first = link.path(0)?;
     let mut route = Route {
         tractor: first.tractor,
         shield: first.shield,
@@ -37,7 +37,7 @@ pub fn read(link: &mut dyn Link) -> Result<Route, LinkError> {
         if from >= first.length {
             break;
         }
-        route.road.extend(link.road(from)?.cells);
+        route.road.extend(link.path(from)?.cells);
     }
     Ok(route)
 }

@@ -1,7 +1,7 @@
 //! Runs with a scripted device and a point robot: every ending, and what the record then holds.
 
 use fieldline_protocol::message::{
-    Command, Control, Fault, FieldRow, Finish, Identity, Observation, ResidualFrontier,
+    Command, Control, Fault, FieldRow, Finish, Identity, Observation, Path, ResidualFrontier,
     ResidualReason, Start, Status, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
@@ -105,6 +105,12 @@ impl Link for Script {
             cells: 4,
             reason: ResidualReason::Unreachable,
         }])
+    }
+    fn path(&mut self, _: u8) -> Result<Path, LinkError> {
+        Ok(Path::default())
+    }
+    fn take_log(&mut self) -> Vec<u8> {
+        Vec::new()
     }
     fn stats(&self) -> LinkStats {
         LinkStats {

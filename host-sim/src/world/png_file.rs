@@ -34,7 +34,6 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
     };
     let wide = frame.bit_depth == BitDepth::Sixteen;
     let white = if wide { 65_535 } else { 255 };
-    let channel = |bytes: &[u8]| bytes.iter().fold(0, |v, byte| v << 8 | u32::from(*byte));
     let bytes_each = if wide { 2 } else { 1 };
     let pixel_bytes = bytes_each * (channels + usize::from(alpha));
     let mut image = Image {
@@ -55,6 +54,11 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
         }
     }
     Ok(image)
+}
+
+/// The value of a channel's bytes, high byte first.
+fn channel(bytes: &[u8]) -> u32 {
+    bytes.iter().fold(0, |v, byte| v << 8 | u32::from(*byte))
 }
 
 /// Converts the decoder's error; a file that ends early has an error of its own.

@@ -1,4 +1,4 @@
-//! What else the program can be asked: its worlds, and one window.
+//! The other commands: the list of worlds, and the solution of one window.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::{folder, outcome, reports};
 
 #[test]
-fn worlds_are_listed_and_their_names_work() {
+fn the_worlds_are_listed_with_their_names() {
     let folder = folder();
     let (status, stdout, stderr) = outcome(&folder, &["worlds", "--json"]);
     assert_eq!((status, stderr.as_str()), (0, ""));
@@ -28,7 +28,7 @@ fn worlds_are_listed_and_their_names_work() {
 }
 
 #[test]
-fn a_window_is_solved_into_file_and_answer() {
+fn a_window_is_solved_into_a_file_and_an_answer() {
     let folder = folder();
     fs::write(folder.path().join("w.txt"), "#####\n#R.G#\n#####\n").unwrap();
     fs::write(

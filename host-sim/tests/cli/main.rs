@@ -1,4 +1,4 @@
-//! The program as a user meets it: what it leaves behind, what it prints where, and what it says to bad input.
+//! The program on the command line: its files, its output, and its errors.
 
 mod commands;
 mod refusals;
@@ -8,7 +8,7 @@ use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The program, in a folder of its own.
+/// The program, in a folder of the test.
 fn host_sim(folder: &TempDir) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_host-sim"));
     command
@@ -21,7 +21,7 @@ fn folder() -> TempDir {
     tempfile::tempdir().expect("a folder")
 }
 
-/// What it did: exit status, standard output, standard error.
+/// Runs the program: exit status, standard output, standard error.
 fn outcome(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
     let output = host_sim(folder).args(arguments).output().expect("runs");
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).expect("text");
@@ -32,7 +32,7 @@ fn outcome(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
     )
 }
 
-/// The reports that a `--json` run printed: every line is one, or the test fails.
+/// The reports that a `--json` run printed; the test fails if a line is no report.
 fn reports(stdout: &str) -> Vec<Value> {
     let parse = |line| serde_json::from_str(line).expect("a JSON object a line");
     stdout.lines().map(parse).collect()

@@ -1,4 +1,4 @@
-//! Bad input is refused in one line that names it.
+//! Bad input is refused in one line that names the fault.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use tempfile::TempDir;
 
 use crate::{folder, outcome};
 
-/// It refused: status 2, nothing on standard output, and one line that has all these words in it.
+/// The program refuses: status 2, no standard output, and one error line with all these words.
 #[track_caller]
 fn refused(folder: &TempDir, arguments: &[&str], words: &[&str]) {
     let (status, stdout, stderr) = outcome(folder, arguments);
@@ -33,8 +33,8 @@ fn bad_worlds_are_refused_in_one_line() {
     let folder = folder();
     let world = |name: &str, more: &str| {
         let text = format!(
-            "image: walls.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\n\
-             free_thresh: 0.196\nrobots: [[2, 2, 0]]\n{more}"
+            "image: walls.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\n\
+             occupied_thresh: 0.65\nfree_thresh: 0.196\nrobots: [[2, 2, 0]]\n{more}"
         );
         fs::write(folder.path().join(name), text).unwrap();
     };
@@ -98,7 +98,7 @@ fn bad_worlds_are_refused_in_one_line() {
         &["explore", "short.yaml"],
         &["short.pgm", "truncated"],
     );
-    // The signature and a header without an end.
+    // The signature and an incomplete header.
     let png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0(\0\0\0(\x08\0\0\0\0";
     fs::write(folder.path().join("short.png"), png).unwrap();
     edit("png.yaml", "walls.pgm", "short.png");
@@ -118,7 +118,7 @@ fn bad_worlds_are_refused_in_one_line() {
             &["short.png", "truncated", "copy the whole file"],
         );
     }
-    // Numbers that are none, or none that a robot could drive in.
+    // Values that are no numbers, or impossible worlds.
     for (from, to, words) in [
         ("resolution: 0.1", "resolution: .nan", "finite"),
         ("resolution: 0.1", "resolution: -0.1", "above 0 m"),
@@ -141,7 +141,7 @@ fn bad_worlds_are_refused_in_one_line() {
             &["number.yaml", words],
         );
     }
-    // A good world before a bad one is not run.
+    // A good world before a bad one is not explored.
     refused(&folder, &["explore", "good.yaml", "key.yaml"], &["colour"]);
 }
 
@@ -213,7 +213,7 @@ fn bad_arguments_are_refused_in_one_line() {
         &["--strategy", "bvp", "--link", "qemu"],
         &["bvp", "leave --link out"],
     );
-    refused(&folder, &["explore", ""], &["without a name", "office"]);
+    refused(&folder, &["explore", ""], &["has no name", "office"]);
     explore(&["--map-shape", "500x500"], &["--map-shape", "400"]);
     fs::write(folder.path().join("file"), "").unwrap();
     explore(&["--out", "file/sub"], &["file/sub", "--out"]);

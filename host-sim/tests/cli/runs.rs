@@ -1,4 +1,4 @@
-//! Runs: what they leave behind, what they print where, and how they end.
+//! Runs: their files, their output, and their ends.
 
 use std::fs;
 use std::path::Path;
@@ -32,7 +32,7 @@ fn files(folder: &Path) -> Vec<String> {
 }
 
 #[test]
-fn without_arguments_it_explores_the_office_and_leaves_a_folder() {
+fn without_arguments_it_explores_the_office() {
     let folder = folder();
     let (status, stdout, stderr) = outcome(&folder, &[]);
     assert_eq!(status, 0, "{stdout}{stderr}");
@@ -60,7 +60,7 @@ fn without_arguments_it_explores_the_office_and_leaves_a_folder() {
 }
 
 #[test]
-fn json_is_one_report_a_line_and_nothing_else() {
+fn json_prints_one_report_per_line_and_nothing_else() {
     let folder = folder();
     let arguments = ["explore", "loop", "cave", "loop", "--json", "--out", "runs"];
     let (status, stdout, _) = outcome(&folder, &arguments);
@@ -92,12 +92,12 @@ fn json_is_one_report_a_line_and_nothing_else() {
         assert_eq!(files(&runs.join(name)), FILES);
         let file = fs::read_to_string(runs.join(name).join("report.json")).unwrap();
         let file: Value = serde_json::from_str(&file).unwrap();
-        assert_eq!(file, reports[report], "file and line say the same");
+        assert_eq!(file, reports[report], "file and line are equal");
     }
 }
 
 #[test]
-fn one_world_goes_straight_into_out_and_the_time_limit_ends_it() {
+fn one_world_goes_into_out_and_the_time_limit_ends_it() {
     let folder = folder();
     let arguments = [
         "explore",
@@ -118,12 +118,12 @@ fn one_world_goes_straight_into_out_and_the_time_limit_ends_it() {
 }
 
 #[test]
-fn snapshots_of_an_uneven_run_change_nothing_but_leave_pictures() {
+fn snapshots_of_an_uneven_run_change_no_result() {
     let folder = folder();
     let run = |more: &[&str]| {
         let arguments = ["explore", "causeway@1", "--time-limit", "13", "--json"];
         let (status, stdout, _) = outcome(&folder, &[&arguments, more].concat());
-        assert_eq!(status, 1, "the time is up");
+        assert_eq!(status, 1, "the time limit ended it");
         reports(&stdout).remove(0)
     };
     let plain = run(&["--link", "direct"]);
@@ -131,7 +131,7 @@ fn snapshots_of_an_uneven_run_change_nothing_but_leave_pictures() {
     assert_eq!(plain["terrain"]["working"]["climb_deg"], 20.0);
     assert!(plain["terrain"]["classes"]["cells"][0][1].as_u64().unwrap() > 1_000);
     let home = folder.path().join("out/causeway@1-frontier-0");
-    assert_eq!(files(&home), FILES, "no series unless asked for");
+    assert_eq!(files(&home), FILES, "no snapshots by default");
     for link in ["direct", "loopback"] {
         let taken = run(&["--link", link, "--snapshots", "3"]);
         assert_eq!(taken["digest"], plain["digest"]);
@@ -148,12 +148,12 @@ fn snapshots_of_an_uneven_run_change_nothing_but_leave_pictures() {
         });
         let mut sizes: Vec<_> = sizes.collect();
         sizes.dedup();
-        assert_eq!(sizes.len(), 1, "all of one size: they make a film");
+        assert_eq!(sizes.len(), 1, "all have one size, so they make a film");
     }
 }
 
 #[test]
-fn the_rung_and_faults_on_it_change_no_command() {
+fn the_link_and_its_faults_change_no_command() {
     let folder = folder();
     let digest = |more: &[&str]| {
         let arguments = ["explore", "cluttered", "--time-limit", "20", "--json"];
@@ -169,12 +169,12 @@ fn the_rung_and_faults_on_it_change_no_command() {
     let faults = "drop=0.02,duplicate=0.02,corrupt=0.02,truncate=0.02,delay=0.02";
     let faulty = digest(&["--link", "loopback", "--fault", faults]);
     assert_eq!(faulty.0, clean.0);
-    assert!(faulty.1.as_u64().unwrap() > 0, "the faults were felt");
+    assert!(faulty.1.as_u64().unwrap() > 0, "there were faults");
     assert_ne!(digest(&["--seed", "1"]).0, clean.0);
 }
 
 #[test]
-fn a_device_that_falls_silent_or_resets_ends_the_run_with_a_typed_fault() {
+fn silence_or_a_reset_ends_the_run_with_a_typed_fault() {
     let folder = folder();
     for (fault, reason) in [("silent@60", "link-silent"), ("reset@60", "device-reset")] {
         let arguments = ["explore", "loop", "--json", "--fault", fault];
@@ -191,7 +191,7 @@ fn a_device_that_falls_silent_or_resets_ends_the_run_with_a_typed_fault() {
 }
 
 #[test]
-fn check_field_fills_the_heading_error() {
+fn check_field_reports_the_heading_error() {
     let folder = folder();
     let arguments = [
         "explore",
@@ -214,10 +214,10 @@ fn check_field_fills_the_heading_error() {
     );
 }
 
-/// The interrupt key stops the robot, and the report is still written.
+/// The interrupt key stops the robot, and the program still writes the report.
 #[cfg(unix)]
 #[test]
-fn the_interrupt_key_ends_a_run_in_good_order() {
+fn the_interrupt_key_ends_a_run_with_a_report() {
     use std::process::{Command, Stdio};
     let folder = folder();
     let child = Command::new(env!("CARGO_BIN_EXE_host-sim"))

@@ -1,4 +1,5 @@
-//! A closed loop small enough for link tests: a robot with two lasers in a rectangular room, driven by whatever a link answers.
+//! A closed loop for link tests: a robot with two lasers in a rectangular room, driven by the
+//! commands of a link.
 
 #![allow(dead_code, reason = "each test file uses its part")]
 
@@ -9,9 +10,9 @@ use fixed::types::{I4F12, I16F16};
 use host_sim::link::digest::Digest;
 use host_sim::link::{Link, LinkError};
 
-/// Half the room, metres.
+/// Half the sides of the room, metres.
 const HALF: (f64, f64) = (4.0, 3.0);
-/// A step, seconds.
+/// Time of a step, seconds.
 const STEP_S: f64 = 0.1;
 const PITCH: f64 = 0.349;
 const LASER_Z: f64 = 0.4;
@@ -46,18 +47,18 @@ pub(crate) fn start() -> Start {
     }
 }
 
-/// Where the robot is and what it was told last.
+/// The robot's state and its last command.
 pub(crate) struct Robot {
     x: f64,
     y: f64,
     yaw: f64,
     velocity: Twist,
     time_ms: u32,
-    /// Of the commands so far.
+    /// Digest of the commands so far.
     pub(crate) digest: Digest,
-    /// How many there were.
+    /// Number of commands so far.
     pub(crate) steps: u32,
-    /// The last one.
+    /// The last command.
     pub(crate) last: Command,
 }
 
@@ -107,7 +108,7 @@ impl Robot {
         }
     }
 
-    /// What it senses now.
+    /// The current observation.
     pub(crate) fn sense(&self) -> Observation {
         let pose = Pose {
             x: I16F16::from_num(self.x),
@@ -123,7 +124,7 @@ impl Robot {
         }
     }
 
-    /// Lets a step pass without a command.
+    /// Lets one step pass without a command.
     pub(crate) fn wait(&mut self) {
         self.time_ms += 100;
     }

@@ -11,7 +11,7 @@ use fieldline_planner::geometry::Cell;
 use fieldline_protocol::message::Twist;
 use fixed::types::I4F12;
 
-/// What a robot can reach in a world.
+/// Reachable points of a world.
 struct Intent {
     name: &'static str,
     /// Per cent of the map's cells that a robot covers; the rest are walls, faces, holes, and

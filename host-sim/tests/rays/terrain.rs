@@ -1,42 +1,35 @@
-//! Rays over uneven ground against an independent implementation: parry3d's height field and cuboids.
+//! Rays over uneven ground with walls, against parry's height field and cuboids.
 //!
-//! parry's ground is of triangles and ours of bilinear patches; they are the same surface where the heights are a sum of a
-//! function of x and a function of y, since every patch is then plane. On such ground stand walls, each cell a cuboid of its own. Both
-//! must agree to a millimetre. A ray that grazes an edge may see it or not, by a rounding error; such a ray must agree
-//! after being shifted by 0.1 mm, and must be rare.
+//! parry's ground has triangles, ours has bilinear patches. If the heights are the sum of a
+//! function of x and a function of y, every patch is plane, so both are the same surface. Each wall
+//! cell is a cuboid of its own.
 
 use host_sim::robot::{LaserNoise, LaserScanner, Pose, Source, laser, stand};
 use host_sim::world::{Class, Elevation, GridCell, Occupancy, Ray, WALL_HEIGHT_M, World};
 use parry3d::math::Vector;
 use parry3d::query::RayCast;
-use parry3d::shape::{Cuboid, HeightField};
+use parry3d::shape::HeightField;
 use parry3d::utils::Array2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
+use crate::{LIMIT_M, Solid, direction, grazes, hits, uniform, vector};
+
 const RESOLUTION_M: f64 = 0.1;
 const CELLS: [usize; 2] = [130, 90];
-const LIMIT_M: f64 = 12.0;
-const AGREE_M: f64 = 1e-3;
-const GRAZE_M: f64 = 1e-4;
-/// Far below and far above everything.
+/// Heights far below and far above everything, metres.
 const DEEP_M: f64 = -20.0;
 const HIGH_M: f64 = 40.0;
 
-fn uniform(rng: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
-    low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX)
-}
-
-/// A world and the same for parry: the field's centre is the middle of the world, its up is y.
+/// A world, and the same for parry: the field's centre is the middle of the world, its up is y.
 struct Twins {
     world: World,
     field: HeightField,
     middle: [f64; 2],
-    /// Corner to corner, metres.
-    boxes: Vec<[[f64; 3]; 2]>,
+    boxes: Vec<Solid>,
 }
 
-/// A walk of small random steps, now and then a kerb.
+/// Heights with small random steps and a few kerbs.
 fn profile(rng: &mut ChaCha8Rng, count: usize) -> Vec<f64> {
     let mut height_m = 0.0;
     (0..count)
@@ -57,7 +50,7 @@ impl Twins {
         let elevation = Elevation::from_fn(CELLS, RESOLUTION_M, origin, |x, y| {
             along[index(x, 0)] + up[index(y, 1)]
         });
-        // One sample more on each side, for the outermost half pixels are level.
+        // One more sample on each side, because the outermost half pixels are level.
         let clamped = |k: usize, count: usize| k.saturating_sub(1).min(count - 1);
         let mut heights = Array2::repeat(height + 2, width + 2, 0.0_f32);
         for row in 0..height + 2 {
@@ -102,34 +95,18 @@ impl Twins {
         }
     }
 
+    /// Range of parry's first hit.
     fn oracle(&self, ray: &Ray) -> Option<f64> {
-        let limit = LIMIT_M as f32;
-        let vector = |v: [f64; 3]| Vector::new(v[0] as f32, v[1] as f32, v[2] as f32);
-        let towards = vector(ray.direction);
-        let solids = self.boxes.iter().filter_map(|[low, high]| {
-            let half = [0, 1, 2].map(|k| 0.5 * (high[k] - low[k]));
-            let from = [0, 1, 2].map(|k| ray.origin_m[k] - 0.5 * (low[k] + high[k]));
-            let ray = parry3d::query::Ray::new(vector(from), towards);
-            Cuboid::new(vector(half)).cast_local_ray(&ray, limit, true)
-        });
         let [x, y, z] = ray.origin_m;
         let from = vector([x - self.middle[0], z, y - self.middle[1]]);
         let [dx, dy, dz] = ray.direction;
         let turned = parry3d::query::Ray::new(from, vector([dx, dz, dy]));
-        let ground = self.field.cast_local_ray(&turned, limit, true);
-        solids.chain(ground).map(f64::from).min_by(f64::total_cmp)
+        let ground = self.field.cast_local_ray(&turned, LIMIT_M as f32, true);
+        let all = hits(&self.boxes, ray).chain(ground);
+        all.map(f64::from).min_by(f64::total_cmp)
     }
 
-    fn agree(&self, ray: &Ray) -> bool {
-        let ours = self.world.cast(ray, LIMIT_M).map(|hit| hit.range_m);
-        match (ours, self.oracle(ray)) {
-            (Some(ours), Some(theirs)) => (ours - theirs).abs() <= AGREE_M,
-            (None, None) => true,
-            (Some(range), None) | (None, Some(range)) => (range - LIMIT_M).abs() <= AGREE_M,
-        }
-    }
-
-    /// Somewhere free, up to 2 m above the ground.
+    /// A free place, up to 2 m above the ground.
     fn place(&self, rng: &mut ChaCha8Rng) -> [f64; 3] {
         let [x0, y0] = self.world.occupancy().origin_m();
         let [width, height] = self.world.size_m();
@@ -143,33 +120,10 @@ impl Twins {
             }
         }
     }
-
-    fn check(&self, ray: &Ray) -> u32 {
-        if self.agree(ray) {
-            return 0;
-        }
-        let aside = [GRAZE_M, -GRAZE_M].map(|by_m| shifted(ray, by_m));
-        assert!(
-            aside.iter().any(|ray| self.agree(ray)),
-            "{ray:?}: {:?}, parry {:?}",
-            self.world.cast(ray, LIMIT_M),
-            self.oracle(ray)
-        );
-        1
-    }
-}
-
-fn shifted(ray: &Ray, by_m: f64) -> Ray {
-    let [dx, dy, _] = ray.direction;
-    let [x, y, z] = ray.origin_m;
-    Ray {
-        origin_m: [x - dy * by_m, y + dx * by_m, z + by_m],
-        ..*ray
-    }
 }
 
 #[test]
-fn agrees_with_parry_over_hills_and_walls() {
+fn rays_agree_with_parry_over_hills_and_walls() {
     let mut rng = ChaCha8Rng::seed_from_u64(40);
     let (mut cast, mut grazed, mut ground) = (0, 0, 0);
     for _ in 0..16 {
@@ -183,14 +137,10 @@ fn agrees_with_parry_over_hills_and_walls() {
             };
             let ray = Ray {
                 origin_m: twins.place(&mut rng),
-                direction: [
-                    bearing.cos() * slope.cos(),
-                    bearing.sin() * slope.cos(),
-                    slope.sin(),
-                ],
+                direction: direction(bearing, slope),
             };
             cast += 1;
-            grazed += twins.check(&ray);
+            grazed += u32::from(grazes(&twins.world, |ray| twins.oracle(ray), &ray));
             let hit = twins.world.cast(&ray, LIMIT_M);
             ground +=
                 u32::from(hit.is_some_and(|hit| hit.surface == host_sim::world::Surface::Ground));
@@ -198,7 +148,7 @@ fn agrees_with_parry_over_hills_and_walls() {
     }
     println!("{cast} rays, {grazed} grazing, {ground} on the ground");
     assert!(grazed * 300 < cast, "{grazed} of {cast} rays disagree");
-    assert!(ground * 3 > cast, "{ground} of {cast} rays meet the ground");
+    assert!(ground * 3 > cast, "{ground} of {cast} rays hit the ground");
 }
 
 type Matrix = [[f64; 3]; 3];
@@ -211,7 +161,7 @@ fn apply(m: &Matrix, v: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| (0..3).map(|k| m[i][k] * v[k]).sum())
 }
 
-/// Yaw, then pitch, then roll, as three elementary rotations.
+/// The attitude as a product of three elementary rotations: yaw, then pitch, then roll.
 fn attitude(pose: &Pose) -> Matrix {
     let (sr, cr) = pose.roll_rad.sin_cos();
     let (sp, cp) = pose.pitch_rad.sin_cos();
@@ -222,9 +172,9 @@ fn attitude(pose: &Pose) -> Matrix {
     times(&times(&yaw, &pitch), &roll)
 }
 
-/// Whole sweeps of both lasers from bodies that stand tilted on the ground, beam by beam.
+/// Compares whole sweeps of both lasers, beam by beam, from robots that stand tilted on the ground.
 #[test]
-fn sweeps_of_a_tilted_robot_are_those_of_the_oracle() {
+fn sweeps_of_a_tilted_robot_agree_with_parry() {
     let mut rng = ChaCha8Rng::seed_from_u64(41);
     let sources = [Source::LevelRange, Source::LevelFault];
     let (mut beams, mut apart, mut tilted) = (0, 0, 0);

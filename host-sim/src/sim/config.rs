@@ -1,0 +1,48 @@
+//! Parameters of a simulated run.
+
+use crate::robot::{DriveLimits, LaserNoise, Limits, OdometryModel, Traction};
+
+/// Parameters of a simulated run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SimConfig {
+    /// Seed of all noise. Default: 0.
+    pub seed: u64,
+    /// Index of the world's start. Default: 0.
+    pub start: usize,
+    /// Model of the odometry. Default: the truth.
+    pub odometry: OdometryModel,
+    /// Errors of the lasers. Default: [`LaserNoise::default`].
+    pub laser_noise: LaserNoise,
+    /// Limits of the drive. Default: [`DriveLimits::default`].
+    pub limits: DriveLimits,
+    /// Ground that the robot may use; time beyond is counted. Default: [`Limits::WORKING`].
+    pub working: Limits,
+    /// Ground that the robot just survives. Default: [`Limits::FAILING`].
+    pub failing: Limits,
+    /// How slopes slow and shift the robot. Default: [`Traction::default`].
+    pub traction: Traction,
+    /// Time between observations, milliseconds. Default: 200.
+    pub period_ms: u32,
+    /// Longest substep, milliseconds. Default: 10.
+    pub substep_ms: u32,
+    /// Age at which a command no longer counts, milliseconds. Default: 500.
+    pub stale_ms: u32,
+}
+
+impl Default for SimConfig {
+    fn default() -> Self {
+        Self {
+            seed: 0,
+            start: 0,
+            odometry: OdometryModel::Truth,
+            laser_noise: LaserNoise::default(),
+            limits: DriveLimits::default(),
+            working: Limits::WORKING,
+            failing: Limits::FAILING,
+            traction: Traction::default(),
+            period_ms: 200,
+            substep_ms: 10,
+            stale_ms: 500,
+        }
+    }
+}
