@@ -9,7 +9,7 @@ use core::time::Duration;
 
 use drive::{Robot, digest_of, start};
 use fieldline_device::STALE_MS;
-use fieldline_protocol::message::{Control, Finish, Observation, Road, Start, Status, Strategy};
+use fieldline_protocol::message::{Control, Finish, Observation, Path, Start, Status, Strategy};
 use host_sim::link::direct::Direct;
 use host_sim::link::endpoint::{Endpoint, RetryPolicy};
 use host_sim::link::fault::{Faults, Faulty};
@@ -282,7 +282,7 @@ fn a_requested_reset_is_no_error() {
 }
 
 /// The roads of every tenth step of a short drive in `office`, whole and without the first cell.
-fn roads(link: &mut dyn Link) -> Vec<[Road; 2]> {
+fn roads(link: &mut dyn Link) -> Vec<[Path; 2]> {
     let world = World::builtin("office").expect("built in");
     let mut simulator = Simulator::new(&world, SimConfig::default()).expect("the start is free");
     let start = simulator.start_message(Strategy::Frontier, (20, 20));

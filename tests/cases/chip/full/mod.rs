@@ -1,0 +1,41 @@
+//! Cases that take hours: `tests/run --full` runs them.
+
+use fieldline_tests::emulator::image;
+use fieldline_tests::runs::in_parallel;
+use fieldline_tests::{costs, worlds};
+
+use crate::{flat, uneven};
+
+mod iteration;
+
+#[test]
+#[ignore = "needs the image and QEMU, and takes hours; tests/run --full runs it"]
+fn every_flat_world_is_within_the_chips_budget() {
+    let image = image();
+    let worlds = worlds::builtins(&worlds::EXPLORABLE);
+    let reports = in_parallel(&worlds, |world| flat::on_both(world, &image));
+    costs::check("costs-full.txt", &reports);
+}
+
+#[test]
+#[ignore = "needs the image and QEMU, and takes hours; tests/run --full runs it"]
+fn every_uneven_world_is_within_the_chips_budget() {
+    let image = image();
+    let worlds = worlds::builtins(&worlds::UNEVEN);
+    let reports = in_parallel(&worlds, |world| uneven::on_both(world, &image));
+    costs::check("costs-terrain.txt", &reports);
+}
+
+/// Worlds drawn by others.
+mod data {
+    use super::{costs, flat, image, in_parallel, worlds};
+
+    #[test]
+    #[ignore = "needs worlds drawn by others (FIELDLINE_DATA), the image and QEMU; takes hours"]
+    fn every_flat_world_is_within_the_chips_budget() {
+        let image = image();
+        let worlds = worlds::drawn_by_others();
+        let reports = in_parallel(&worlds, |world| flat::on_both(world, &image));
+        costs::check("costs-data.txt", &reports);
+    }
+}

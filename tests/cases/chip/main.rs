@@ -1,0 +1,10 @@
+//! The image for the chip: its size, and whole runs of it in the emulator.
+//!
+//! Every case is ignored by default: it needs the Rust target of the chip, most cases need QEMU as
+//! well. `tests/run` installs both and runs them.
+
+mod flat;
+mod full;
+mod loops;
+mod size;
+mod uneven;

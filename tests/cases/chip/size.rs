@@ -1,0 +1,92 @@
+//! The image's budget: flash, memory, and no allocator, read from the ELF file.
+//!
+//! The limits are strict. `golden/size.txt` has the figures, compared within 5 %, because compilers
+//! arrange the code differently.
+
+use core::ops::Range;
+
+use fieldline_planner::Workspace;
+use fieldline_tests::elf::Image;
+use fieldline_tests::table::Table;
+use fieldline_tests::{costs, emulator, golden};
+
+/// Flash that the image may take of the chip's 1 MB.
+const MOST_FLASH: u64 = 256 * 1024;
+/// The chip's main memory.
+const SRAM: Range<u64> = 0x2000_0000..0x2002_0000;
+/// The chip's core-coupled memory, which holds the planner's workspace and nothing else.
+const CCM: u64 = 64 * 1024;
+
+fn image() -> Image {
+    Image::read(&emulator::image()).expect("cargo built it a moment ago")
+}
+
+#[test]
+#[ignore = "needs the image; tests/run runs it"]
+fn the_image_is_within_its_budget() {
+    let image = image();
+    let workspace = size_of::<Workspace>() as u64;
+    let mut table = Table::new(1, &["what", "bytes"]);
+    for section in &image.sections {
+        table.row(vec![section.name.clone(), section.size.to_string()]);
+    }
+    let stack = stack(&image);
+    let (sram, flash) = (image.reserved(&SRAM) + stack, image.flash);
+    for (what, bytes) in [
+        ("flash", flash),
+        ("stack", stack),
+        ("SRAM", sram),
+        ("CCM", workspace),
+    ] {
+        table.row(vec![what.into(), bytes.to_string()]);
+    }
+    golden::compare_about("size.txt", &table.to_string(), costs::DRIFT);
+    assert!(flash > 0 && flash <= MOST_FLASH, "flash {flash}");
+    assert!(sram > 0 && sram <= SRAM.end - SRAM.start, "SRAM {sram}");
+    assert!(workspace <= CCM, "CCM {workspace}");
+}
+
+/// Returns the size of the stack, which the linker script reserves.
+fn stack(image: &Image) -> u64 {
+    let bounds = image
+        .address("_stack_start")
+        .zip(image.address("_stack_end"));
+    let (start, end) = bounds.expect("memory.x says where the stack lies");
+    assert!(SRAM.contains(&end) && end < start && start <= SRAM.end);
+    start - end
+}
+
+/// The image has none of the functions that every allocation calls.
+#[test]
+#[ignore = "needs the image; tests/run runs it"]
+fn the_image_has_no_allocator() {
+    let image = image();
+    let is_there = |name: &str| {
+        image
+            .symbols
+            .iter()
+            .any(|(symbol, _)| symbol.contains(name))
+    };
+    assert!(is_there("main"), "there are symbols to look at");
+    for name in [
+        "__rust_alloc",
+        "__rg_alloc",
+        "__rdl_alloc",
+        "malloc",
+        "alloc_error",
+    ] {
+        assert!(!is_there(name), "{name} is in the image");
+    }
+}
+
+/// The emulator has memory where the chip has none.
+#[test]
+#[ignore = "needs the image; tests/run runs it"]
+fn every_section_lies_where_the_chip_has_memory() {
+    let image = image();
+    for section in &image.sections {
+        let end = section.address + section.size;
+        let on_chip = end <= SRAM.end || !(SRAM.start..0x2004_0000).contains(&section.address);
+        assert!(on_chip, "{} ends at {end:#x}", section.name);
+    }
+}

@@ -1,0 +1,9 @@
+//! Whole runs of the strategies that close loops (`ouroboros`) and patrol rails (`tdbvp`).
+
+mod closed;
+mod data;
+mod full;
+mod overlay;
+mod patrol;
+mod sides;
+mod uneven;

@@ -1,0 +1,95 @@
+//! Knowledge of a strategy beyond the map is read over the link: pictures of a run are the same by
+//! call and by bytes.
+
+use fieldline_tests::loops::{OUROBOROS, TDBVP};
+use fieldline_tests::runs::Unseen;
+use fieldline_tests::worlds;
+use host_sim::link::Link;
+use host_sim::link::direct::Direct;
+use host_sim::link::loopback::loopback;
+use host_sim::trial::Record;
+use host_sim::trial::mission::{Mission, explore};
+
+/// Pictures during a run.
+const SNAPSHOTS: usize = 12;
+
+fn run(strategy: &str, link: &mut dyn Link) -> Record {
+    let mission = Mission {
+        strategy: strategy.into(),
+        snapshots: SNAPSHOTS,
+        ..Mission::default()
+    };
+    let world = worlds::builtin("loop");
+    let (report, record) = explore(&mission, &world, link, &mut Unseen).expect("the start is free");
+    assert!(report.explored(), "{:?}", report.outcome);
+    assert_eq!(report.closures.is_some(), strategy == OUROBOROS);
+    record
+}
+
+/// Makes a run by call and by bytes, asserts that both have the same pictures, and returns the
+/// first.
+fn by_call(strategy: &str) -> Record {
+    let (call, bytes) = (
+        run(strategy, &mut Direct::new()),
+        run(strategy, &mut loopback()),
+    );
+    assert_eq!(call.snapshots.len(), SNAPSHOTS);
+    assert_eq!(call.snapshots, bytes.snapshots);
+    assert_eq!((&call.map, &call.route), (&bytes.map, &bytes.route));
+    call
+}
+
+#[test]
+fn pictures_show_a_loop_being_closed_and_its_marks_later() {
+    let record = by_call(OUROBOROS);
+    let closing: Vec<_> = record
+        .snapshots
+        .iter()
+        .filter(|snapshot| snapshot.progress.loops.closing)
+        .collect();
+    assert!(
+        !closing.is_empty(),
+        "no picture shows a loop that is being closed"
+    );
+    for snapshot in closing {
+        let route = &snapshot.route;
+        assert!(
+            route.shield.is_some() && route.tractor.is_some(),
+            "{route:?}"
+        );
+        assert!(!route.road.is_empty());
+    }
+    for snapshot in &record.snapshots {
+        let loops = snapshot.progress.loops;
+        let settled = loops.closed + loops.given_up > 0;
+        assert_eq!(snapshot.map.has_marks(), settled, "{loops:?}");
+    }
+    let said = record.closures();
+    assert!(
+        said.closed > 0 && said.closing_s > said.in_vain_s,
+        "{said:?}"
+    );
+    assert!(record.map.has_marks());
+    assert_eq!(record.map.dates(), None, "it keeps no account of visits");
+    // In some picture the path fills more than one page.
+    assert!(
+        record
+            .snapshots
+            .iter()
+            .any(|snapshot| snapshot.route.road.len() > 32)
+    );
+}
+
+#[test]
+fn rails_have_ages_and_no_loops() {
+    let record = by_call(TDBVP);
+    let (oldest, newest) = record.map.dates().expect("rails were visited");
+    assert!(oldest < newest);
+    assert!(!record.map.has_marks());
+    let routes = record.snapshots.iter().map(|snapshot| &snapshot.route);
+    assert!(
+        routes
+            .clone()
+            .all(|route| route.tractor.is_none() && route.shield.is_none())
+    );
+}

@@ -1,0 +1,10 @@
+//! Whole explorations of flat worlds by the usual strategy, and the links that carry them.
+
+mod data;
+mod endings;
+mod full;
+mod hostile;
+mod links;
+mod lost_device;
+mod periods;
+mod whole;

@@ -1,0 +1,34 @@
+//! The step period: 100 to 400 ms explore equally well; the device refuses others.
+
+use fieldline_tests::runs::Unseen;
+use fieldline_tests::worlds;
+use host_sim::link::direct::Direct;
+use host_sim::trial::mission::{Mission, MissionError, explore};
+
+fn at(period_ms: u32) -> Result<host_sim::report::Report, MissionError> {
+    let mission = Mission {
+        period_ms,
+        ..Mission::default()
+    };
+    let world = worlds::builtin("narrow-doors");
+    explore(&mission, &world, &mut Direct::new(), &mut Unseen).map(|(report, _)| report)
+}
+
+#[test]
+fn the_shortest_and_the_longest_period_explore() {
+    for period_ms in [100, 400] {
+        let report = at(period_ms).expect("the period is allowed");
+        assert!(report.explored(), "{period_ms} ms: {:?}", report.outcome);
+        assert_eq!(report.safety.collisions, 0, "{period_ms} ms");
+        assert!(report.coverage.fraction > 0.98, "{period_ms} ms");
+    }
+}
+
+#[test]
+fn a_refused_period_ends_the_run_before_the_robot_moves() {
+    for period_ms in [50, 500, 100_000] {
+        let report = at(period_ms).expect("a refused session has a report");
+        assert_eq!(report.outcome.reason, "request-refused", "{period_ms} ms");
+        assert_eq!(report.path_length_m, 0.0, "{period_ms} ms");
+    }
+}

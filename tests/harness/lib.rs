@@ -1,0 +1,51 @@
+//! What the cases share: runs, worlds, tables, golden files, and the chip's image.
+//!
+//! | module | content |
+//! | --- | --- |
+//! | [`golden`] | committed files: compare, or rewrite with `BLESS=1` |
+//! | [`digests`] | digests of command streams, all in `golden/digests.txt` |
+//! | [`random`] | the one source of seeded numbers |
+//! | [`table`] | columns of text |
+//! | [`runs`] | whole explorations, several at a time |
+//! | [`flat`] | tables of explorations of flat worlds |
+//! | [`loops`] | the table of explorations that close loops, with the papers' ratios |
+//! | [`uneven`] | whole explorations of uneven ground, and their table |
+//! | [`truth`] | maps of uneven ground against the true ground |
+//! | [`history`] | every change of every map cell, with its time |
+//! | [`watched`] | a link that is read after every step |
+//! | [`worlds`] | the built-in worlds by kind; worlds drawn by others |
+//! | [`places`] | pits and a building, found in a world's definition |
+//! | [`starts`] | starts drawn at random in a flat world |
+//! | [`bitmap`] | seeded bit maps; thinning and search cell by cell, as oracles |
+//! | [`field`] | seeded windows of the field, and their solution in f64 |
+//! | [`wilcoxon`] | the signed-rank test of paired runs |
+//! | [`plot`] | lines over a pair of axes, as an SVG |
+//! | [`costs`] | instructions of a step on the emulated chip |
+//! | [`emulator`] | the image for the chip, and QEMU |
+//! | [`elf`] | flash and memory that an image takes |
+//!
+//! Two environment variables have a meaning: `BLESS=1` rewrites golden files, and `FIELDLINE_DATA`
+//! names the folder with worlds drawn by others. Cases that take hours, or that need what a machine
+//! may lack, are `#[ignore]`d with the reason; `tests/README.md` says how to run them.
+
+pub mod bitmap;
+pub mod costs;
+pub mod digests;
+pub mod elf;
+pub mod emulator;
+pub mod field;
+pub mod flat;
+pub mod golden;
+pub mod history;
+pub mod loops;
+pub mod places;
+pub mod plot;
+pub mod random;
+pub mod runs;
+pub mod starts;
+pub mod table;
+pub mod truth;
+pub mod uneven;
+pub mod watched;
+pub mod wilcoxon;
+pub mod worlds;
