@@ -1,9 +1,7 @@
-//! Exploration by harmonic potential in a skeleton-charged window: a pure planner without heap,
-//! clock, I/O or log.
-//!
-//! What a session or an observation says cannot make it panic: indices that depend on it go through
-//! `get`, in every room but the solver's own loops (`field`), whose bounds are the window's
-//! constant shape; each of those says so where it is declared.
+#![doc = include_str!("../README.md")]
+// What a session or an observation says cannot make the planner panic: indices that depend on it
+// go through `get`, in every room but the solver's own loops (`field`), whose bounds are the
+// window's constant shape; each of those says so where it is declared.
 #![no_std]
 #![forbid(unsafe_code)]
 #![cfg_attr(
