@@ -10,6 +10,8 @@
 
 use crate::field::SIDE;
 use crate::geometry::{CELL_M, Cell, Point};
+use crate::grid::bits::halve;
+use crate::grid::{at, flood};
 use crate::map::Tiles;
 use crate::roadmap::configuration_space::{Footprint, Strip, for_each_strip};
 
@@ -37,13 +39,7 @@ pub struct LocalGrid {
 
 /// OR of adjacent groups of `scale` bits; 32 / scale bits remain.
 fn squeeze(word: u32, scale: i32) -> u64 {
-    let halve = |word: u32| {
-        let mut bits = (word | word >> 1) & 0x5555_5555;
-        bits = (bits | bits >> 1) & 0x3333_3333;
-        bits = (bits | bits >> 2) & 0x0f0f_0f0f;
-        bits = (bits | bits >> 4) & 0x00ff_00ff;
-        (bits | bits >> 8) & 0xffff
-    };
+    let halve = |word| u32::from(halve(word));
     u64::from(match scale {
         1 => word,
         2 => halve(word),
@@ -142,6 +138,14 @@ impl LocalGrid {
         }
     }
 
+    /// Returns the passable cells that a path of passable cells joins to `from`, and its own;
+    /// `None` if `from` lies outside the window.
+    pub(crate) fn reachable(&self, from: Cell) -> Option<Rows> {
+        let mut seeds: Rows = [0; SIDE];
+        Self::put(&mut seeds, self.place(from)?);
+        Some(flood::reach(&self.passable, &seeds))
+    }
+
     /// Set the passable window cells of a coarse cell, whose least map cell is `least`; whether there are any.
     pub fn mark(&self, rows: &mut Rows, least: Cell) -> bool {
         let mut any = false;
@@ -215,13 +219,8 @@ impl LocalGrid {
         let (x, y) = place;
         let columns = (0x1ff_u64 << x) >> 4;
         let touched = |rows: &Rows, row: usize| {
-            let here = rows.get(row).copied().unwrap_or(0);
-            let above = rows.get(row + 1).copied().unwrap_or(0);
-            let below = row
-                .checked_sub(1)
-                .and_then(|row| rows.get(row))
-                .copied()
-                .unwrap_or(0);
+            let here = at(rows, row);
+            let (below, above) = (at(rows, row.wrapping_sub(1)), at(rows, row + 1));
             here | here << 1 | here >> 1 | above | below
         };
         let roomy = touched(&self.obstacle, y) >> x & 1 == 0;
@@ -231,7 +230,7 @@ impl LocalGrid {
                 let taken = if roomy {
                     touched(&obstacle, row)
                 } else {
-                    obstacle.get(row).copied().unwrap_or(0)
+                    at(&obstacle, row)
                 };
                 *passable |= columns & !taken;
             }

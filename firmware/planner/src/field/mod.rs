@@ -20,7 +20,6 @@
 //! | room | what it holds |
 //! | --- | --- |
 //! | [`window`] | the cells: field, boundary, preferences; warm values across a move |
-//! | `reach` | which free cells a goal can be reached from, by bits |
 //! | `seed` | a start for cells that have no value, or one far too low |
 //! | `gauss_seidel` | one relaxation sweep, the papers' method |
 //! | `multigrid`, `pyramid` | one cycle of the fast method, and its coarse levels |
@@ -47,11 +46,6 @@ mod multigrid;
     reason = "levels are cut from a fixed scratch, sized by the same constants at compile time"
 )]
 mod pyramid;
-#[allow(
-    clippy::indexing_slicing,
-    reason = "rows are bits of `awake`, which has SIDE of them"
-)]
-mod reach;
 mod runs;
 #[allow(
     clippy::indexing_slicing,

@@ -13,8 +13,8 @@ use core::fmt;
 use fixed::types::I3F13;
 
 use crate::field::multigrid::Origin;
-use crate::field::reach;
 use crate::field::runs::Runs;
+use crate::grid::flood;
 
 /// Cells along a side of the window [Jorge15, Table I].
 pub const SIDE: usize = 61;
@@ -167,7 +167,10 @@ impl Window {
         for (free, goal) in free.iter_mut().zip(&goal) {
             *free &= !goal;
         }
-        let reached = reach::flood(&free, &goal);
+        let mut reached = flood::reach(&free, &goal);
+        for (row, goal) in reached.iter_mut().zip(&goal) {
+            *row &= !goal;
+        }
         let was_reached = core::mem::replace(&mut self.reached, reached);
         let was_goal = core::mem::replace(&mut self.goal, goal);
         let now = free.iter().zip(reached.iter().zip(&goal));

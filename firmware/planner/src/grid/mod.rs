@@ -11,10 +11,18 @@
 
 use core::fmt;
 
-pub mod bits;
+pub(crate) mod bits;
 mod class;
+pub(crate) mod flood;
+mod index;
+mod rolling;
 mod shape;
 mod sites;
+mod tile_box;
+
+pub(crate) use index::{at, inside, masked, masked_mut, triple, wrapped, wrapped_mut};
+pub(crate) use rolling::Rolling;
+pub(crate) use tile_box::TileBox;
 
 pub use class::{Class, Row};
 pub use shape::{MAX_ROWS, MAX_WORDS_PER_ROW, Region, Shape, ShapeError};
@@ -155,14 +163,6 @@ impl<'a> PlaneMut<'a> {
         self.words.fill(word);
     }
 
-    /// The words of a row; none outside.
-    #[must_use]
-    pub fn row_mut(&mut self, row: usize) -> &mut [u32] {
-        row_range(self.shape, row)
-            .and_then(|range| self.words.get_mut(range))
-            .unwrap_or(&mut [])
-    }
-
     /// All words, row after row.
     #[must_use]
     pub fn words_mut(&mut self) -> &mut [u32] {
@@ -180,34 +180,6 @@ impl<'a> PlaneMut<'a> {
 fn row_range(shape: Shape, row: usize) -> Option<core::ops::Range<usize>> {
     let start = shape.index(row, 0)?;
     Some(start..start + shape.words_per_row())
-}
-
-/// The word at an index, 0 outside.
-#[inline(always)]
-pub(crate) fn at(words: &[u32], index: usize) -> u32 {
-    words.get(index).copied().unwrap_or(0)
-}
-
-/// The words at `index − 1`, `index`, `index + 1`, 0 outside: one check for the three.
-#[inline(always)]
-pub(crate) fn triple(words: &[u32], index: usize) -> [u32; 3] {
-    match words
-        .get(index.wrapping_sub(1)..)
-        .and_then(|rest| rest.first_chunk::<3>())
-    {
-        Some(three) => *three,
-        None => triple_at_end(words, index),
-    }
-}
-
-#[cold]
-#[inline(never)]
-fn triple_at_end(words: &[u32], index: usize) -> [u32; 3] {
-    [
-        at(words, index.wrapping_sub(1)),
-        at(words, index),
-        at(words, index.wrapping_add(1)),
-    ]
 }
 
 /// The picture of a plane: `#` set, `.` clear, one line a row, row 0 first.
@@ -244,7 +216,7 @@ mod tests {
     use std::string::ToString;
     use std::vec::Vec;
 
-    use super::{Plane, PlaneMut, Shape, Site, draw, triple};
+    use super::{Plane, PlaneMut, Shape, Site, draw};
 
     #[test]
     fn bit_k_of_word_j_is_column_32_j_plus_k() {
@@ -296,14 +268,5 @@ mod tests {
         assert!(text.starts_with("#..#...") && text.lines().count() == 3);
         let sites: Vec<(u16, u16)> = plane.sites().map(|s| (s.x, s.y)).collect();
         assert_eq!(sites, [(0, 0), (3, 0), (1, 1), (2, 1)]);
-    }
-
-    #[test]
-    fn three_words_read_zero_beyond_the_ends() {
-        let words = [1, 2, 3];
-        assert_eq!(triple(&words, 1), [1, 2, 3]);
-        assert_eq!(triple(&words, 0), [0, 1, 2]);
-        assert_eq!(triple(&words, 2), [2, 3, 0]);
-        assert_eq!(triple(&words, 9), [0, 0, 0]);
     }
 }

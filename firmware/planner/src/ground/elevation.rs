@@ -19,7 +19,7 @@ use fixed::types::I7F9;
 
 use crate::geometry::Cell;
 use crate::ground::heights::{
-    COUNT, DROP, INFERRED_DROP, POSSIBLE_DROP, SCORE, SCORE_STEP, is_low_confidence, slot,
+    COUNT, DROP, INFERRED_DROP, POSSIBLE_DROP, SCORE, SCORE_STEP, Window, is_low_confidence, slot,
 };
 pub use crate::ground::heights::{Ground, Heights, WINDOW_CELLS, WINDOW_SIDE, metres};
 
@@ -61,34 +61,18 @@ impl<'a> Elevation<'a> {
 
     /// Keep the window around `centre`; nothing is known of cells that enter.
     pub fn follow(&mut self, centre: Cell) {
-        let half = WINDOW_SIDE / 2;
-        let next = Cell {
-            x: centre.x - half,
-            y: centre.y - half,
-        };
-        let old = core::mem::replace(self.origin, next);
-        let (dx, dy) = (next.x - old.x, next.y - old.y);
-        if dx.abs() >= WINDOW_SIDE || dy.abs() >= WINDOW_SIDE {
+        let from = core::mem::replace(self.origin, Window::origin(centre));
+        let Some([columns, rows]) = Window::entering(from, *self.origin) else {
             self.marks.fill(0);
             self.heights.fill([0; 2]);
             return;
-        }
-        let entering = |from: i32, to: i32| {
-            if to > from {
-                from + WINDOW_SIDE..to + WINDOW_SIDE
-            } else {
-                to..from
-            }
         };
-        for y in entering(old.y, next.y) {
-            for x in next.x..next.x + WINDOW_SIDE {
-                self.clear(Cell { x, y });
-            }
+        let (left, lower) = (self.origin.x, self.origin.y);
+        for y in rows {
+            (left..left + WINDOW_SIDE).for_each(|x| self.clear(Cell { x, y }));
         }
-        for x in entering(old.x, next.x) {
-            for y in next.y..next.y + WINDOW_SIDE {
-                self.clear(Cell { x, y });
-            }
+        for x in columns {
+            (lower..lower + WINDOW_SIDE).for_each(|y| self.clear(Cell { x, y }));
         }
     }
 

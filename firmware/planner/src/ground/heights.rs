@@ -5,11 +5,14 @@
 use fixed::types::I7F9;
 
 use crate::geometry::Cell;
+use crate::grid::Rolling;
 
 /// Cells along the window's side.
 pub const WINDOW_SIDE: i32 = 64;
 /// Cells of the window.
 pub const WINDOW_CELLS: usize = (WINDOW_SIDE * WINDOW_SIDE) as usize;
+/// The geometry of the window.
+pub(super) type Window = Rolling<WINDOW_SIDE, 1>;
 /// Bits of the count.
 pub(super) const COUNT: u8 = 0x0f;
 /// Bits of what stands.
@@ -60,10 +63,8 @@ const fn measured(mark: u8) -> u8 {
 /// Where a cell of the window at `origin` is stored; `None` outside of it.
 #[inline(always)]
 pub(super) const fn slot(origin: Cell, cell: Cell) -> Option<usize> {
-    let (x, y) = (cell.x - origin.x, cell.y - origin.y);
-    // One comparison for both ends of each.
-    if (x as u32) < WINDOW_SIDE as u32 && (y as u32) < WINDOW_SIDE as u32 {
-        Some(((cell.y & (WINDOW_SIDE - 1)) * WINDOW_SIDE + (cell.x & (WINDOW_SIDE - 1))) as usize)
+    if Window::covers(origin, cell) {
+        Some(Window::slot(cell))
     } else {
         None
     }

@@ -229,7 +229,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     fn compact_tile(&mut self, slot: usize, side_table: &mut impl SideTable) {
-        let Entry::Page(page) = Entry::of(self.directory.get(slot).copied().unwrap_or(0)) else {
+        let Entry::Page(page) = self.entry_in(slot) else {
             return;
         };
         let Some(&[low, high]) = self.pool.get(page) else {
@@ -267,7 +267,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     fn expand_tile(&mut self, slot: usize, side_table: &mut impl SideTable) -> Result<(), NoRoom> {
-        let entry = Entry::of(self.directory.get(slot).copied().unwrap_or(0));
+        let entry = self.entry_in(slot);
         let (low, kept) = match entry {
             Entry::Untouched | Entry::Page(_) => return Ok(()),
             Entry::AllFree(kept) => (ONES, kept),

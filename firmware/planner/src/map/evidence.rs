@@ -9,7 +9,7 @@
 //! Units: map cells.
 
 use crate::geometry::Cell;
-use crate::grid::Class;
+use crate::grid::{Class, Rolling, masked_mut, wrapped_mut};
 
 /// Cells along the window's side.
 pub const EVIDENCE_SIDE: i32 = 128;
@@ -20,6 +20,8 @@ const HIT: u8 = 3;
 const OBSTACLE_MIN: u8 = 10;
 const FREE_MAX: u8 = 7;
 const MAX_COUNT: u8 = 15;
+
+type Window = Rolling<EVIDENCE_SIDE, STRIDE>;
 
 /// The rolling window of counts.
 #[derive(Debug, PartialEq, Eq)]
@@ -52,7 +54,7 @@ impl Evidence {
     /// Forget everything and centre on `centre`.
     pub fn reset(&mut self, centre: Cell) {
         self.counts.as_flattened_mut().fill(0);
-        self.origin = Self::origin_around(centre);
+        self.origin = Window::origin(centre);
     }
 
     /// The memory of the counts, where there are none to be kept.
@@ -65,67 +67,39 @@ impl Evidence {
         self.counts.as_flattened_mut()
     }
 
-    const fn origin_around(centre: Cell) -> Cell {
-        let half = EVIDENCE_SIDE / 2;
-        Cell {
-            x: (centre.x - half) & !(STRIDE - 1),
-            y: (centre.y - half) & !(STRIDE - 1),
-        }
-    }
-
-    /// Keep the window around `centre`; cells that enter have no evidence.
-    pub fn follow(&mut self, centre: Cell) {
-        let next = Self::origin_around(centre);
-        let (dx, dy) = (next.x - self.origin.x, next.y - self.origin.y);
-        if dx.abs() >= EVIDENCE_SIDE || dy.abs() >= EVIDENCE_SIDE {
-            self.reset(centre);
+    /// Moves the window to `centre`. Cells that enter have no evidence.
+    pub(crate) fn follow(&mut self, centre: Cell) {
+        let from = core::mem::replace(&mut self.origin, Window::origin(centre));
+        let Some([columns, rows]) = Window::entering(from, self.origin) else {
+            self.counts.as_flattened_mut().fill(0);
             return;
-        }
-        let (old, side) = (self.origin, EVIDENCE_SIDE);
-        self.origin = next;
-        for y in if dy >= 0 {
-            old.y + side..next.y + side
-        } else {
-            next.y..old.y
-        } {
-            if let Some(row) = self.counts.get_mut((y & (side - 1)) as usize) {
-                row.fill(0);
-            }
-        }
-        let columns = if dx >= 0 {
-            old.x + side..next.x + side
-        } else {
-            next.x..old.x
         };
+        for y in rows {
+            wrapped_mut(&mut self.counts, y as usize).fill(0);
+        }
         for row in &mut self.counts {
             for x in columns.clone().step_by(2) {
-                if let Some(pair) = row.get_mut(((x & (side - 1)) / 2) as usize) {
-                    *pair = 0;
-                }
+                *wrapped_mut(row, (x & (EVIDENCE_SIDE - 1)) as usize / 2) = 0;
             }
         }
     }
 
-    /// Whether the window covers this cell.
-    #[must_use]
-    pub const fn covers(&self, cell: Cell) -> bool {
-        let (x, y) = (cell.x - self.origin.x, cell.y - self.origin.y);
-        x >= 0 && x < EVIDENCE_SIDE && y >= 0 && y < EVIDENCE_SIDE
+    /// Returns true if the window covers the cell.
+    pub(crate) const fn covers(&self, cell: Cell) -> bool {
+        Window::covers(self.origin, cell)
     }
 
-    /// The byte that holds a cell's count, and by how much it is shifted up.
+    /// Returns the byte that holds a cell's count, and the count's shift in it.
     #[inline(always)]
-    fn pair(&mut self, cell: Cell) -> Option<(&mut u8, i32)> {
-        let (x, y) = (cell.x & (EVIDENCE_SIDE - 1), cell.y & (EVIDENCE_SIDE - 1));
-        let row = self.counts.get_mut(y as usize)?;
-        Some((row.get_mut(x as usize / 2)?, (x & 1) * 4))
+    const fn pair(&mut self, cell: Cell) -> (&mut u8, i32) {
+        let row = wrapped_mut(&mut self.counts, cell.y as usize);
+        let column = (cell.x & (EVIDENCE_SIDE - 1)) as usize;
+        (masked_mut(row, column / 2), (cell.x & 1) * 4)
     }
 
     #[inline(always)]
     fn update(&mut self, cell: Cell, class: Class, change: impl Fn(u8) -> u8) -> Class {
-        let Some((pair, shift)) = self.pair(cell) else {
-            return class;
-        };
+        let (pair, shift) = self.pair(cell);
         let count = match *pair >> shift & 15 {
             0 => initial(class),
             count => count,
@@ -152,9 +126,7 @@ impl Evidence {
     /// A beam went through this cell, which is known to be free and stays so; most such cells were seen often.
     #[inline(always)]
     pub fn pass_free(&mut self, cell: Cell) {
-        let Some((pair, shift)) = self.pair(cell) else {
-            return;
-        };
+        let (pair, shift) = self.pair(cell);
         let count = *pair >> shift & 15;
         if count != 1 {
             let next = match count {

@@ -5,6 +5,8 @@
 //! Units: map cells.
 
 use crate::grid::Row;
+use crate::grid::bits::twice;
+use crate::grid::masked;
 use crate::map::compaction::ZEROS;
 use crate::map::tiles::{Plane, TILE_ROWS, Tiles, Visited};
 
@@ -49,14 +51,13 @@ impl Column<'_> {
     /// Low and high bits of a row.
     #[inline(always)]
     fn classes(&self, row: usize) -> [u32; 2] {
-        [self.low, self.high].map(|plane| plane.get(row % TILE_ROWS).copied().unwrap_or_default())
+        [self.low, self.high].map(|plane| *masked(plane, row))
     }
 
     /// Blocks of the trail in a row.
     #[inline(always)]
     fn blocks(&self, row: usize) -> u16 {
-        let row = row % TILE_ROWS / 2;
-        self.visited.get(row).copied().unwrap_or_default()
+        *masked(self.visited, row / 2)
     }
 }
 
@@ -148,16 +149,6 @@ const fn join(first: u32, second: u32, third: u32, shift: u32) -> u64 {
 #[inline(always)]
 const fn cut(first: u32, second: u32, from: u32) -> u32 {
     first >> from | second << 1 << (31 - from)
-}
-
-/// Every bit doubled.
-const fn twice(bits: u16) -> u32 {
-    let mut wide = bits as u32;
-    wide = (wide | wide << 8) & 0x00ff_00ff;
-    wide = (wide | wide << 4) & 0x0f0f_0f0f;
-    wide = (wide | wide << 2) & 0x3333_3333;
-    wide = (wide | wide << 1) & 0x5555_5555;
-    wide | wide << 1
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A tile's cells: two planes of a word a row, `low` and `high` bits of the class code, bit k = column k.
 
-use crate::grid::Class;
+use crate::grid::{Class, masked, masked_mut};
 use crate::map::tiles::TILE_ROWS;
 
 /// A bit of every cell of a tile, row by row.
@@ -34,19 +34,15 @@ impl TileMut<'_> {
     #[inline(always)]
     fn words(&self, row: usize) -> [u32; 2] {
         let [low, high] = &*self.cells;
-        [low, high].map(|plane| plane.get(row % TILE_ROWS).copied().unwrap_or_default())
+        [low, high].map(|plane| *masked(plane, row))
     }
 
     /// Store what is known of a cell.
     #[inline(always)]
     pub(super) fn set(&mut self, row: usize, bit: u32, class: Class) {
         let [low, high] = &mut *self.cells;
-        let row = row % TILE_ROWS;
-        if let (Some(low), Some(high)) = (low.get_mut(row), high.get_mut(row)) {
-            *self.edits = self
-                .edits
-                .wrapping_add(u32::from(write([low, high], bit, class)));
-        }
+        let words = [low, high].map(|plane| masked_mut(plane, row));
+        *self.edits = self.edits.wrapping_add(u32::from(write(words, bit, class)));
     }
 }
 

@@ -11,7 +11,7 @@
 //! Units: cells of [`crate::geometry::CELL_M`].
 
 use crate::geometry::Cell;
-use crate::grid::{Class, Row};
+use crate::grid::{Class, Row, TileBox, inside, masked};
 use crate::map::compaction::{Entry, FreeList, ONES, ZEROS};
 pub use crate::map::extent::{Extent, NoRoom};
 use crate::map::rows::{Column, RowReader};
@@ -33,8 +33,7 @@ pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     pub(super) free: FreeList,
     /// Tiles at the pool's end that are lent to something else.
     lent: u16,
-    width: i32,
-    height: i32,
+    slots: TileBox,
     extent: Option<Extent>,
     /// Changes of any cell so far; wraps.
     edits: u32,
@@ -50,8 +49,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             visited: [[0; TILE_SIDE as usize / 2]; SLOTS],
             free: FreeList::EMPTY,
             lent: 0,
-            width: 0,
-            height: 0,
+            slots: TileBox::EMPTY,
             extent: None,
             edits: 0,
         }
@@ -73,9 +71,14 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.visited.as_flattened_mut().fill(0);
         self.free = FreeList::EMPTY;
         self.lent = 0;
-        let fits = Self::fits(width, height);
-        self.width = if fits { i32::from(width) } else { 0 };
-        self.height = if fits { i32::from(height) } else { 0 };
+        self.slots = if Self::fits(width, height) {
+            TileBox {
+                width: width.into(),
+                height: height.into(),
+            }
+        } else {
+            TileBox::EMPTY
+        };
         self.extent = None;
         self.edits = self.edits.wrapping_add(1);
     }
@@ -115,7 +118,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Tiles across and up that the box holds.
     #[must_use]
     pub const fn box_tiles(&self) -> (i32, i32) {
-        (self.width, self.height)
+        (self.slots.width, self.slots.height)
     }
 
     /// Whether anything was ever stored in this tile.
@@ -137,7 +140,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     pub(super) fn slot(&self, tile_x: i32, tile_y: i32) -> usize {
-        (tile_y.rem_euclid(self.height) * self.width + tile_x.rem_euclid(self.width)) as usize
+        self.slots.slot(tile_x, tile_y)
     }
 
     fn in_extent(&self, tile_x: i32, tile_y: i32) -> bool {
@@ -154,8 +157,12 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         if !self.in_extent(tile_x, tile_y) {
             return Entry::Untouched;
         }
-        let word = self.directory.get(self.slot(tile_x, tile_y));
-        Entry::of(word.copied().unwrap_or(0))
+        self.entry_in(self.slot(tile_x, tile_y))
+    }
+
+    /// What the directory says of a slot's tile.
+    pub(super) fn entry_in(&self, slot: usize) -> Entry {
+        Entry::of(inside(&self.directory, slot))
     }
 
     pub(super) fn enter(&mut self, slot: usize, entry: Entry) {
@@ -183,7 +190,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
                 greatest: (tile_x, tile_y),
             },
         };
-        if grown.width() > self.width || grown.height() > self.height {
+        if grown.width() > self.slots.width || grown.height() > self.slots.height {
             Err(NoRoom::Box)
         } else if !self.has_page() {
             Err(NoRoom::Pool)
@@ -233,7 +240,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             return Class::Unknown;
         };
         let row = (cell.y & 31) as usize;
-        let [low, high] = planes.map(|plane| plane.get(row).copied().unwrap_or_default());
+        let [low, high] = planes.map(|plane| *masked(plane, row));
         let bit = cell.x & 31;
         Class::from_bits(low >> bit & 1, high >> bit & 1)
     }

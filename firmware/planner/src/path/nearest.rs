@@ -10,8 +10,7 @@
 use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows, SCALES};
 use crate::geometry::Cell;
-use crate::grid::bits::{Adjacency, flood};
-use crate::grid::{Plane, Site};
+use crate::grid::{Plane, Site, flood};
 use crate::map::Tiles;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::Frame;
@@ -43,7 +42,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
             let targets = self.targets(view, &accepts);
             let mut seeds: Rows = [0; SIDE];
             LocalGrid::put(&mut seeds, view.place(from)?);
-            let met = flood(&view.passable, &mut seeds, &targets, Adjacency::Four)?;
+            let met = flood::nearest(&view.passable, &mut seeds, &targets)?;
             let steps = u32::from(met.steps) * scale as u32 / 2;
             Some((self.site_in(view, met.site, &accepts)?, steps))
         })

@@ -3,10 +3,8 @@
 //!
 //! Units: map cells.
 
-use crate::field::SIDE;
-use crate::field::local_grid::{LocalGrid, Rows};
+use crate::field::local_grid::LocalGrid;
 use crate::geometry::Cell;
-use crate::grid::bits::{Adjacency, flood};
 use crate::map::tiles::NoRoom;
 use crate::path::PlanningContext;
 use crate::path::map_exits::no_room;
@@ -88,11 +86,6 @@ fn conclude<const TILES: usize, const SLOTS: usize>(
 
 /// Window cells that the robot's centre can reach.
 fn room_cells(view: &LocalGrid, robot: Cell) -> u32 {
-    let mut reached: Rows = [0; SIDE];
-    if let Some(place) = view.place(robot) {
-        LocalGrid::put(&mut reached, place);
-    }
-    // Without a target the flood fills everything.
-    let _ = flood(&view.passable, &mut reached, &[0; SIDE], Adjacency::Four);
-    reached.iter().map(|row| row.count_ones()).sum()
+    let reached = view.reachable(robot);
+    reached.map_or(0, |rows| rows.iter().map(|row| row.count_ones()).sum())
 }

@@ -5,6 +5,7 @@
 //!
 //! Units: bits; bit k of a word is column k.
 
+use crate::grid::bits::even;
 use crate::grid::{MAX_WORDS_PER_ROW, at};
 use crate::roadmap::configuration_space::Strip;
 
@@ -16,15 +17,6 @@ pub(super) fn coarse(lower: Strip, upper: Strip) -> [u16; 2] {
     let passable = lower.passable | upper.passable;
     let passable = passable | passable >> 1;
     [even(passable & !unknown), even(passable & unknown)]
-}
-
-/// The even bits of a word, packed.
-fn even(word: u32) -> u16 {
-    let mut bits = word & 0x5555_5555;
-    bits = (bits | bits >> 1) & 0x3333_3333;
-    bits = (bits | bits >> 2) & 0x0f0f_0f0f;
-    bits = (bits | bits >> 4) & 0x00ff_00ff;
-    (bits | bits >> 8) as u16
 }
 
 /// Where the explored meets the unexplored, and which side of it counts.

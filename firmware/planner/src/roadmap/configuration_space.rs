@@ -7,6 +7,7 @@
 //! Units: map cells.
 
 use crate::geometry::CELL_M;
+use crate::grid::{wrapped, wrapped_mut};
 use crate::map::rows::{HALO, Line};
 use crate::map::{Class, Tiles};
 use crate::math;
@@ -63,15 +64,12 @@ impl Footprint {
 impl Ring {
     #[inline(always)]
     fn get(&self, row: i32) -> Line {
-        let place = row.rem_euclid(RING as i32) as usize;
-        self.0.get(place).copied().unwrap_or_default()
+        *wrapped(&self.0, row as usize)
     }
 
     #[inline(always)]
     fn put(&mut self, row: i32, line: Line) {
-        if let Some(place) = self.0.get_mut(row.rem_euclid(RING as i32) as usize) {
-            *place = line;
-        }
+        *wrapped_mut(&mut self.0, row as usize) = line;
     }
 
     /// The cells of a row whose disc holds an obstacle. From the middle of the disc outwards its rows are less and less

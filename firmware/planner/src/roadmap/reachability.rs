@@ -11,6 +11,7 @@
 //! Units: coarse cells of 20 cm, 16 × 16 in a tile.
 
 use crate::geometry::Cell;
+use crate::grid::bits::halve;
 use crate::map::Tiles;
 use crate::map::tiles::Extent;
 use crate::roadmap::configuration_space::{Footprint, for_each_strip};
@@ -96,7 +97,7 @@ impl<'a> Flood<'a> {
             let free = strip.passable & !strip.unknown & !strip.obstacle;
             let row = row + ((y - corner.y) / 2) as usize;
             if let Some(word) = self.open.get_mut(row * self.per_row + x / 32) {
-                *word |= halve(free) << (x % 32);
+                *word |= u32::from(halve(free)) << (x % 32);
             }
         });
     }
@@ -194,9 +195,4 @@ impl<'a> Flood<'a> {
             }
         }
     }
-}
-
-/// Bits 2 k and 2 k + 1 joined into bit k.
-fn halve(word: u32) -> u32 {
-    crate::grid::bits::halve_or(u64::from(word), 0)
 }

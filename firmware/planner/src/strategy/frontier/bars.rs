@@ -4,7 +4,6 @@
 use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows};
 use crate::geometry::{Cell, Point};
-use crate::grid::bits::{Adjacency, flood};
 use crate::path::Path;
 use crate::path::PlanningContext;
 use crate::strategy::frontier::near;
@@ -21,10 +20,7 @@ pub(super) fn leak<const TILES: usize, const SLOTS: usize>(
 ) -> Option<Cell> {
     view.look_around(known.tiles, known.disc, robot.cell(), 1);
     view.free_robot(robot.cell());
-    let mut reached: Rows = [0; SIDE];
-    LocalGrid::put(&mut reached, view.place(robot.cell())?);
-    // With no target it floods everything.
-    let _ = flood(&view.passable, &mut reached, &[0; SIDE], Adjacency::Four);
+    let reached = view.reachable(robot.cell())?;
     let mut wet: Rows = [0; SIDE];
     path.cells().iter().copied().find(|&cell| {
         wet.fill(0);

@@ -10,6 +10,7 @@
 //! Units: map cells.
 
 use crate::geometry::Cell;
+use crate::grid::TileBox;
 
 /// Cells around the path that are marked with it: 1 m, half a corridor.
 pub const NEAR_CELLS: i32 = 10;
@@ -23,9 +24,7 @@ const TILE_SHIFT: i32 = 2;
 pub struct Marks<const SLOTS: usize> {
     marked: [u16; SLOTS],
     pending: [u16; SLOTS],
-    /// Tiles across and up.
-    width: i32,
-    height: i32,
+    slots: TileBox,
 }
 
 impl<const SLOTS: usize> Marks<SLOTS> {
@@ -35,8 +34,7 @@ impl<const SLOTS: usize> Marks<SLOTS> {
         Self {
             marked: [0; SLOTS],
             pending: [0; SLOTS],
-            width: 0,
-            height: 0,
+            slots: TileBox::EMPTY,
         }
     }
 
@@ -44,7 +42,7 @@ impl<const SLOTS: usize> Marks<SLOTS> {
     pub fn reset(&mut self, (width, height): (i32, i32)) {
         self.marked.fill(0);
         self.pending.fill(0);
-        (self.width, self.height) = (width, height);
+        self.slots = TileBox { width, height };
     }
 
     /// Whether a loop was closed near here.
@@ -81,12 +79,7 @@ impl<const SLOTS: usize> Marks<SLOTS> {
 
     /// The tile's place and the bit in it of a mark, by column and row of marks. Beyond every place without a box.
     fn place(&self, x: i32, y: i32) -> (usize, u16) {
-        let across = (x >> TILE_SHIFT).checked_rem_euclid(self.width);
-        let up = (y >> TILE_SHIFT).checked_rem_euclid(self.height);
-        let slot = match (across, up) {
-            (Some(across), Some(up)) => (up * self.width + across) as usize,
-            _ => SLOTS,
-        };
+        let slot = self.slots.slot(x >> TILE_SHIFT, y >> TILE_SHIFT);
         (slot, 1 << ((y & 3) << TILE_SHIFT | (x & 3)))
     }
 }

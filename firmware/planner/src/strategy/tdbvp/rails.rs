@@ -15,6 +15,7 @@
 //! as the map's are. Units: map cells; days of a growing number of steps.
 
 use crate::geometry::Cell;
+use crate::grid::TileBox;
 
 /// Map cells along a place that has a date, as a power of two.
 const SHIFT: i32 = 4;
@@ -29,9 +30,7 @@ pub const UNVISITED: f32 = -0.5;
 #[derive(Debug)]
 pub struct Rails<const SLOTS: usize> {
     dates: [[u8; 4]; SLOTS],
-    /// Tiles across and up.
-    width: i32,
-    height: i32,
+    slots: TileBox,
     today: u8,
     oldest: u8,
     /// Steps of a day, and of today so far.
@@ -45,8 +44,7 @@ impl<const SLOTS: usize> Rails<SLOTS> {
     pub const fn new() -> Self {
         Self {
             dates: [[0; 4]; SLOTS],
-            width: 0,
-            height: 0,
+            slots: TileBox::EMPTY,
             today: 1,
             oldest: 1,
             day_steps: DAY_STEPS,
@@ -57,7 +55,7 @@ impl<const SLOTS: usize> Rails<SLOTS> {
     /// Forget everything; the box is `width` × `height` tiles.
     pub fn reset(&mut self, (width, height): (i32, i32)) {
         self.dates.as_flattened_mut().fill(0);
-        (self.width, self.height) = (width, height);
+        self.slots = TileBox { width, height };
         (self.today, self.oldest) = (1, 1);
         (self.day_steps, self.steps) = (DAY_STEPS, 0);
     }
@@ -157,12 +155,7 @@ impl<const SLOTS: usize> Rails<SLOTS> {
     /// The tile's place of a cell, and the part in it. Beyond every place without a box.
     fn place(&self, cell: Cell) -> (usize, usize) {
         let (x, y) = (cell.x >> SHIFT, cell.y >> SHIFT);
-        let across = (x >> 1).checked_rem_euclid(self.width);
-        let up = (y >> 1).checked_rem_euclid(self.height);
-        let slot = match (across, up) {
-            (Some(across), Some(up)) => (up * self.width + across) as usize,
-            _ => SLOTS,
-        };
+        let slot = self.slots.slot(x >> 1, y >> 1);
         (slot, ((y & 1) << 1 | (x & 1)) as usize)
     }
 }

@@ -1,0 +1,109 @@
+//! The accessors that replace indexing. None of them can panic in the firmware.
+//!
+//! | accessor | index | outside |
+//! | --- | --- | --- |
+//! | [`at`] | may lie outside | 0 by meaning: nothing is set beyond a plane |
+//! | [`inside`] | inside, the caller guarantees it | a bug: a test build panics |
+//! | [`masked`], [`masked_mut`] | inside an array of 2ᵏ elements | a bug: a test build panics |
+//! | [`wrapped`], [`wrapped_mut`] | any; the array is a ring of 2ᵏ elements | taken mod 2ᵏ |
+
+/// Returns the element at an index, 0 outside.
+#[inline(always)]
+pub(crate) fn at<T: Copy + Default>(slice: &[T], index: usize) -> T {
+    slice.get(index).copied().unwrap_or_default()
+}
+
+/// Returns the element at an index inside the slice.
+#[inline(always)]
+#[track_caller]
+pub(crate) fn inside<T: Copy + Default>(slice: &[T], index: usize) -> T {
+    debug_assert!(index < slice.len(), "{index} of {}", slice.len());
+    at(slice, index)
+}
+
+/// Returns the element at an index inside an array whose length is a power of two.
+#[inline(always)]
+#[track_caller]
+pub(crate) const fn masked<T, const N: usize>(array: &[T; N], index: usize) -> &T {
+    debug_assert!(index < N);
+    wrapped(array, index)
+}
+
+/// Returns the element at an index inside an array whose length is a power of two.
+#[inline(always)]
+#[track_caller]
+pub(crate) const fn masked_mut<T, const N: usize>(array: &mut [T; N], index: usize) -> &mut T {
+    debug_assert!(index < N);
+    wrapped_mut(array, index)
+}
+
+/// Returns the element at an index mod N; N is a power of two.
+#[inline(always)]
+#[allow(clippy::indexing_slicing, reason = "the mask keeps the index below N")]
+pub(crate) const fn wrapped<T, const N: usize>(array: &[T; N], index: usize) -> &T {
+    const { assert!(N.is_power_of_two()) };
+    &array[index & (N - 1)]
+}
+
+/// Returns the element at an index mod N; N is a power of two.
+#[inline(always)]
+#[allow(clippy::indexing_slicing, reason = "the mask keeps the index below N")]
+pub(crate) const fn wrapped_mut<T, const N: usize>(array: &mut [T; N], index: usize) -> &mut T {
+    const { assert!(N.is_power_of_two()) };
+    &mut array[index & (N - 1)]
+}
+
+/// Returns the words at `index − 1`, `index` and `index + 1`, 0 outside: one check for the three.
+#[inline(always)]
+pub(crate) fn triple(words: &[u32], index: usize) -> [u32; 3] {
+    match words
+        .get(index.wrapping_sub(1)..)
+        .and_then(|rest| rest.first_chunk::<3>())
+    {
+        Some(three) => *three,
+        None => triple_at_end(words, index),
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn triple_at_end(words: &[u32], index: usize) -> [u32; 3] {
+    [
+        at(words, index.wrapping_sub(1)),
+        at(words, index),
+        at(words, index.wrapping_add(1)),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{inside, masked, triple, wrapped, wrapped_mut};
+
+    #[test]
+    fn three_words_read_zero_beyond_the_ends() {
+        let words = [1, 2, 3];
+        assert_eq!(triple(&words, 1), [1, 2, 3]);
+        assert_eq!(triple(&words, 0), [0, 1, 2]);
+        assert_eq!(triple(&words, 2), [2, 3, 0]);
+        assert_eq!(triple(&words, 9), [0, 0, 0]);
+    }
+
+    #[test]
+    fn a_ring_wraps_below_zero_and_above_its_end() {
+        let mut ring = [1, 2, 3, 4];
+        *wrapped_mut(&mut ring, 5) = 7;
+        assert_eq!([-1_i32, 5].map(|i| *wrapped(&ring, i as usize)), [4, 7]);
+    }
+
+    #[test]
+    #[should_panic = "3 of 3"]
+    fn an_index_outside_a_slice_is_a_bug() {
+        inside(&[1, 2, 3], 3);
+    }
+
+    #[test]
+    #[should_panic = "index < N"]
+    fn an_index_outside_an_array_is_a_bug() {
+        masked(&[1, 2, 3, 4], 4);
+    }
+}
