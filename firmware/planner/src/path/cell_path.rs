@@ -8,6 +8,9 @@
 use heapless::Vec;
 
 use crate::geometry::{Cell, Point};
+use crate::grid::Site;
+use crate::roadmap::Residues;
+use crate::roadmap::skeleton::Frame;
 
 /// Cells kept of a path; a new one is made long before the robot has used up the last.
 pub const ROAD_CELLS: usize = 96;
@@ -61,6 +64,17 @@ impl Path {
             path.goal = cell;
         }
         path
+    }
+
+    /// The path along the cells `before`, and then from a centre cell down the wave.
+    pub(crate) fn down(
+        before: impl Iterator<Item = Cell>,
+        frame: Frame,
+        residues: &Residues<'_>,
+        from: Site,
+    ) -> Self {
+        let sites = core::iter::once(from).chain(residues.descent(from));
+        Self::along(before.chain(sites.map(|site| frame.cell(site))))
     }
 
     /// The path that leads straight on to a place, which becomes the goal; the window finds the way round what stands between.

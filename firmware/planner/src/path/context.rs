@@ -3,8 +3,10 @@
 //! Units: map cells.
 
 use crate::field::local_grid::LocalGrid;
+use crate::grid::Plane;
 use crate::map::Tiles;
 use crate::path::height_levels::LevelCost;
+use crate::path::nearest::Centres;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::Skeleton;
 
@@ -19,6 +21,18 @@ pub struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     pub disc: &'a Footprint,
     /// Which goals are preferred for their height, where any are.
     pub levels: Option<LevelCost<'a, TILES>>,
+}
+
+impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {
+    /// Returns these centre cells, to search for the nearest one.
+    pub(crate) fn centres<'a>(&'a self, way: Plane<'a>) -> Centres<'a, TILES, SLOTS> {
+        Centres {
+            tiles: self.tiles,
+            disc: self.disc,
+            frame: self.topology.frame(),
+            way,
+        }
+    }
 }
 
 /// Scratch of a round of planning.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! level(x, y) = λ_h |h_storey − h(x, y)| / |ε_hmin|, rounded, at most MOST_LEVEL
-//! a goal's wave starts LATER_STEPS · level later
+//! a goal's wave starts LEVEL_STEPS · level later
 //! ```
 //!
 //! Departs from [Maffei20, III-C]: there one field over the whole grid both bends the way and chooses the goal, for a goal behind n
@@ -36,7 +36,7 @@ const SAMPLED: usize = 2;
 /// Greatest level of a goal.
 pub const MOST_LEVEL: u32 = 8;
 /// How much later a goal counts for every level, coarse steps: with Table I's parameters 10 m of way for 0.25 m of height.
-pub const LATER_STEPS: u32 = 50;
+pub const LEVEL_STEPS: u32 = 50;
 
 /// The heights. `TILES` tiles in the map's pool.
 #[derive(Debug)]
@@ -203,31 +203,34 @@ fn mean_m(heights: &Heights<'_>, corner: Cell) -> Option<f32> {
 #[derive(Clone, Copy, Debug)]
 pub struct LevelCost<'a, const TILES: usize> {
     /// What is known of heights.
-    pub storeys: &'a HeightLevels<TILES>,
+    pub heights: &'a HeightLevels<TILES>,
     /// The parameters of the preference.
-    pub terrain: &'a UnevenGround,
+    pub ground: &'a UnevenGround,
     /// The robot's storey, metres.
-    pub storey_m: f32,
+    pub reference_m: f32,
 }
 
 impl<const TILES: usize> LevelCost<'_, TILES> {
     /// As they are from another storey.
     #[must_use]
-    pub const fn from(&self, storey_m: f32) -> Self {
-        Self { storey_m, ..*self }
+    pub const fn from(&self, reference_m: f32) -> Self {
+        Self {
+            reference_m,
+            ..*self
+        }
     }
 
     /// The level of a goal, at most [`MOST_LEVEL`]; 0 where its height is not known.
     #[must_use]
     pub fn of<const SLOTS: usize>(&self, tiles: &Tiles<TILES, SLOTS>, goal: Cell) -> u32 {
-        let Some(height_m) = self.storeys.height_around_m(tiles, goal) else {
+        let Some(height_m) = self.heights.height_around_m(tiles, goal) else {
             return 0;
         };
-        let least = self.terrain.least_preference;
+        let least = self.ground.least_preference;
         if least >= 0.0 {
             return 0;
         }
-        let off = self.terrain.height_scale * (height_m - self.storey_m).abs() / -least;
+        let off = self.ground.height_scale * (height_m - self.reference_m).abs() / -least;
         math::floor((off + 0.5).min(MOST_LEVEL as f32)).max(0) as u32
     }
 }
@@ -305,9 +308,9 @@ mod tests {
             .expect("beside");
         assert!((height_m - before_m).abs() < 1e-3, "{height_m} {before_m}");
         let levels = LevelCost {
-            storeys: &storeys,
-            terrain: &UnevenGround::TABLE_I,
-            storey_m: 0.0,
+            heights: &storeys,
+            ground: &UnevenGround::TABLE_I,
+            reference_m: 0.0,
         };
         assert_eq!(levels.of(&tiles, at(edge, 3)), MOST_LEVEL);
         assert_eq!(storeys.height_around_m(&tiles, at(edge + 9, 3)), None);
@@ -317,11 +320,11 @@ mod tests {
     fn levels_count_from_the_storey_and_know_no_side() {
         let (storeys, tiles) = climbed();
         let terrain = &UnevenGround::TABLE_I;
-        let level = |storey_m: f32, x: i32| {
+        let level = |reference_m: f32, x: i32| {
             let levels = LevelCost {
-                storeys: &storeys,
-                terrain,
-                storey_m,
+                heights: &storeys,
+                ground: terrain,
+                reference_m,
             };
             levels.of(&tiles, at(x, 0))
         };
@@ -342,9 +345,9 @@ mod tests {
             ..UnevenGround::TABLE_I
         };
         let levels = LevelCost {
-            storeys: &storeys,
-            terrain,
-            storey_m: 5.0,
+            heights: &storeys,
+            ground: terrain,
+            reference_m: 5.0,
         };
         assert_eq!(levels.of(&tiles, at(2, 0)), 0);
     }

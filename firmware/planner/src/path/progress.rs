@@ -61,9 +61,9 @@ pub(crate) enum Verdict {
     /// Give it up.
     Drop(Residue),
     /// The window has no way along the path.
-    BarLeak,
+    BlockUnreachable,
     /// The robot cannot go on along the path.
-    BarAhead,
+    BlockAhead,
 }
 
 /// What is remembered of the ways to the goals.
@@ -147,7 +147,7 @@ impl ProgressChecker {
         self.flat = false;
         if self.flat_rounds >= FLAT_ROUNDS {
             self.flat_rounds = 0;
-            return Verdict::BarLeak;
+            return Verdict::BlockUnreachable;
         }
         let reached = steps <= REACHED_STEPS;
         let stood_ms = time_ms.wrapping_sub(self.stood_ms);
@@ -158,7 +158,7 @@ impl ProgressChecker {
             return if reached {
                 Verdict::Drop(Residue::Unobservable)
             } else {
-                Verdict::BarAhead
+                Verdict::BlockAhead
             };
         }
         let moves = stood_ms <= PATIENCE_MS / 2;
@@ -271,7 +271,7 @@ mod tests {
         let mut barred = 0;
         for k in 1..=100 {
             patience.note_motion(here, 500 * k);
-            barred += u32::from(patience.judge(FAR, 40, 500 * k) == Verdict::BarAhead);
+            barred += u32::from(patience.judge(FAR, 40, 500 * k) == Verdict::BlockAhead);
             assert_eq!(patience.standing_ms(500 * k), 500 * (k - 1));
         }
         assert_eq!(barred, 3, "one in 14 s");

@@ -6,11 +6,10 @@
 //! Units: map cells, coarse steps of 20 cm; sites of the topology's frame.
 
 use crate::field::local_grid::LocalGrid;
-use crate::geometry::Cell;
+use crate::geometry::{Cell, Point};
 use crate::grid::Site;
-use crate::path::Path;
-use crate::path::PlanningScratch;
 use crate::path::nearest::Centres;
+use crate::path::{Path, PlanningContext, PlanningScratch};
 use crate::roadmap::{Residues, WaveSpace, Wavefront};
 
 /// Centre cells, a wave's memory over them, and the window in which the nearest one is looked for.
@@ -60,8 +59,21 @@ impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
     /// The path from a place to where the wave began.
     pub(crate) fn path(&mut self, from: Cell) -> Option<Path> {
         let (entry, steps) = self.entry(from)?;
-        let way = core::iter::once(entry).chain(self.space.residues.descent(entry));
-        let frame = self.centres.frame;
-        Some(Path::along(way.map(|site| frame.cell(site))).after(steps))
+        let (frame, residues) = (self.centres.frame, &self.space.residues);
+        Some(Path::down(core::iter::empty(), frame, residues, entry).after(steps))
     }
+}
+
+/// Returns the path to the centre cell nearest to a place.
+pub(crate) fn path_to<const TILES: usize, const SLOTS: usize>(
+    place: Cell,
+    context: &PlanningContext<'_, TILES, SLOTS>,
+    robot: Point,
+    scratch: &mut PlanningScratch<'_>,
+) -> Option<Path> {
+    let centres = context.centres(context.topology.skeleton()?);
+    let mut search = PathSearch::open(centres, scratch)?;
+    let (nearest, _) = search.centres.nearest(place, search.view, |_| true)?;
+    search.spread(core::iter::once(nearest));
+    search.path(robot.cell())
 }

@@ -47,7 +47,7 @@ fn list_ways_out<const TILES: usize, const SLOTS: usize>(
 ) -> Option<NoRoom> {
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
     no_room(&state.map, footprint, robot, scratch, |cell| {
-        state.strategy.frontier.list_way_out(cell);
+        state.strategy.frontier.list_map_exit(cell);
     })
 }
 
@@ -62,7 +62,7 @@ fn list_leftovers<const TILES: usize, const SLOTS: usize>(
         disc: footprint,
         levels: None,
     };
-    state.strategy.frontier.list_leftovers(&known);
+    state.strategy.frontier.list_unreachable(&known);
 }
 
 /// The reason why no frontier can be reached.

@@ -97,10 +97,10 @@ impl<const TILES: usize> GroundModel<TILES> {
     ) -> Option<LevelCost<'a, TILES>> {
         let terrain = config.ground.as_ref()?;
         match self {
-            Self::Uneven(storeys) if terrain.mode.has_heights() => Some(LevelCost {
-                storeys,
-                terrain,
-                storey_m: preferences.storey_m(),
+            Self::Uneven(heights) if terrain.mode.has_heights() => Some(LevelCost {
+                heights,
+                ground: terrain,
+                reference_m: preferences.storey_m(),
             }),
             _ => None,
         }

@@ -78,16 +78,16 @@ fn resolve_unmeasured<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     pose: &Pose,
 ) {
-    while let Some(cell) = state.strategy.frontier.take_unobserved() {
+    while let Some(cell) = state.strategy.frontier.take_unobservable() {
         state.map.resolve_gaps(ground, cell);
     }
-    if state.strategy.frontier.take_stop() {
+    if state.strategy.frontier.take_stalled() {
         let front = Point {
             x_m: FRONT_M,
             y_m: 0.0,
         };
         if state.map.free_gaps(ground, pose.to_map(front).cell()) {
-            state.strategy.frontier.lift_bar();
+            state.strategy.frontier.open_last_passage();
         }
     }
 }

@@ -9,12 +9,13 @@ use crate::geometry::{Cell, Point};
 use crate::grid::Site;
 use crate::ground::elevation::{Elevation, WINDOW_CELLS};
 use crate::map::{Class, Tiles};
+use crate::path::goal_cost::GoalCost;
 use crate::path::height_levels::{HeightLevels, LevelCost};
+use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
 use crate::strategy::frontier::Frontier;
-use crate::strategy::frontier::starts::later;
 
 /// Half the width of the corridor, cells.
 const HALF: i32 = 8;
@@ -83,9 +84,9 @@ fn goals<const N: usize>(storeys_m: [Option<f32>; N]) -> [i32; N] {
             tiles: &tiles,
             disc: &disc,
             levels: storey_m.map(|storey_m| LevelCost {
-                storeys: &storeys,
-                terrain: &UnevenGround::TABLE_I,
-                storey_m,
+                heights: &storeys,
+                ground: &UnevenGround::TABLE_I,
+                reference_m: storey_m,
             }),
         };
         let lent = PlanningScratch {
@@ -174,9 +175,9 @@ fn northmost(dip_m: f32, pairs: usize) -> i32 {
         tiles: &tiles,
         disc: &disc,
         levels: Some(LevelCost {
-            storeys: &storeys,
-            terrain: &UnevenGround::TABLE_I,
-            storey_m: 0.0,
+            heights: &storeys,
+            ground: &UnevenGround::TABLE_I,
+            reference_m: 0.0,
         }),
     };
     let words = topology.frame().shape.words();
@@ -207,43 +208,40 @@ fn a_path_by_another_storey_gives_way_to_one_that_keeps_to_its_own() {
     assert!(northmost(1.5, 1) < 8, "no memory for a second way");
 }
 
-/// The sites of each number, in the order of numbers, with memory for so many words of them.
-fn starts(words: usize) -> vec::Vec<(u32, vec::Vec<Site>)> {
+/// The frontier cells of each cost class with the class's delay, with a cache of so many words.
+fn costs(words: usize) -> vec::Vec<(u32, vec::Vec<Site>)> {
     let tiles = corridor();
     let storeys = storeys(&tiles);
     let disc = Footprint::new(0.3);
     let mut topology = Box::new(Skeleton::<64>::new());
     topology.reset(Space::KnownFree);
     while !topology.advance(&tiles, &disc, u32::MAX) {}
-    let known = PlanningContext {
+    let context = PlanningContext {
         topology: &topology,
         tiles: &tiles,
         disc: &disc,
         levels: Some(LevelCost {
-            storeys: &storeys,
-            terrain: &UnevenGround::TABLE_I,
-            storey_m: 0.0,
+            heights: &storeys,
+            ground: &UnevenGround::TABLE_I,
+            reference_m: 0.0,
         }),
     };
-    let frontier = Frontier::new();
-    let goals = topology.frontier().expect("it was published");
-    let mut numbers = vec![u32::MAX; words];
-    let starts = frontier.starts(goals, &known, &mut numbers);
-    let sites = |number| starts.sites(number, &frontier, goals, &known).collect();
-    starts
-        .in_order()
-        .map(|number| (number, sites(number)))
-        .collect()
+    let mut cache = vec![u32::MAX; words];
+    let given_up = ResidualFrontiers::new();
+    let cost = GoalCost::new(&context, &given_up, None, &mut cache).expect("it was published");
+    let sites = |class| cost.sites(class).collect();
+    let delays = cost.delays();
+    delays.map(|(class, delay)| (delay, sites(class))).collect()
 }
 
 #[test]
-fn starts_that_found_no_room_are_the_same() {
-    let all = starts(100);
+fn costs_that_the_cache_has_no_room_for_are_the_same() {
+    let all = costs(100);
     assert!(all.len() > 1, "{all:?}");
-    assert!(all.is_sorted_by_key(|(number, _)| later(*number)));
+    assert!(all.is_sorted_by_key(|(delay, _)| *delay));
     let count: usize = all.iter().map(|(_, sites)| sites.len()).sum();
     assert!(count > 6, "more than a word holds: {count}");
     for words in 0..2 {
-        assert_eq!(starts(words), all, "{words} words");
+        assert_eq!(costs(words), all, "{words} words");
     }
 }

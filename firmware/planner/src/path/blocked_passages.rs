@@ -1,0 +1,96 @@
+//! Blocked passages: places where the robot could not drive on although the skeleton leads through.
+//!
+//! The skeleton is cut around each of them, so that paths lead another way. A passage is blocked at
+//! the first path cell that the local grid has no way to, or, ahead of a robot that stands, at the
+//! first path cell [`AHEAD_M`] away from it.
+//!
+//! Units: map cells, metres.
+
+use heapless::Vec;
+
+use crate::field::SIDE;
+use crate::field::local_grid::{LocalGrid, Rows};
+use crate::geometry::{Cell, Point};
+use crate::path::{Path, PlanningContext};
+use crate::roadmap::skeleton::Skeleton;
+
+/// Maximum number of blocked passages. A goal that would need one more is given up.
+const MOST_PASSAGES: usize = 8;
+/// Radius of the cut in the skeleton around a blocked passage, metres: half the width of a door.
+const CUT_RADIUS_M: f32 = 0.4;
+/// Distance from a standing robot's centre to the passage that it blocks, metres: its front, where
+/// it meets what stops it.
+const AHEAD_M: f32 = 0.5;
+
+/// The list of blocked passages, the oldest first.
+#[derive(Debug)]
+pub(crate) struct BlockedPassages {
+    cells: Vec<Cell, MOST_PASSAGES>,
+}
+
+/// There is no room for another blocked passage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PassagesFull;
+
+impl BlockedPassages {
+    /// Makes an empty list.
+    pub(crate) const fn new() -> Self {
+        Self { cells: Vec::new() }
+    }
+
+    /// Returns true if no passage is blocked.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+
+    /// Blocks the passage at a cell.
+    ///
+    /// # Errors
+    /// If the list is full. It is then as it was.
+    pub(crate) fn block(&mut self, cell: Cell) -> Result<(), PassagesFull> {
+        self.cells.push(cell).map_err(|_| PassagesFull)
+    }
+
+    /// Opens the passage that was blocked last.
+    pub(crate) fn open_last(&mut self) {
+        self.cells.pop();
+    }
+
+    /// Opens all passages.
+    pub(crate) fn open_all(&mut self) {
+        self.cells.clear();
+    }
+
+    /// Cuts the published skeleton around each blocked passage.
+    pub(crate) fn cut<const SLOTS: usize>(&self, skeleton: &mut Skeleton<SLOTS>) {
+        for &cell in &self.cells {
+            skeleton.cut(cell, CUT_RADIUS_M);
+        }
+    }
+}
+
+/// Returns the first cell of the path that the passable cells of the local grid do not lead to.
+pub(crate) fn first_unreachable<const TILES: usize, const SLOTS: usize>(
+    path: &Path,
+    context: &PlanningContext<'_, TILES, SLOTS>,
+    robot: Point,
+    grid: &mut LocalGrid,
+) -> Option<Cell> {
+    grid.look_around(context.tiles, context.disc, robot.cell(), 1);
+    grid.free_robot(robot.cell());
+    let reached = grid.reachable(robot.cell())?;
+    let mut parts: Rows = [0; SIDE];
+    path.cells().iter().copied().find(|&cell| {
+        parts.fill(0);
+        grid.mark(&mut parts, cell);
+        let mut rows = parts.iter().zip(&reached);
+        rows.all(|(part, reached)| part & reached == 0)
+    })
+}
+
+/// Returns the first cell of the path that is [`AHEAD_M`] away from the robot.
+pub(crate) fn ahead(path: &Path, robot: Point) -> Option<Cell> {
+    let robot = robot.cell();
+    let mut cells = path.cells().iter().copied();
+    cells.find(|cell| cell.distance2(robot) >= AHEAD_M * AHEAD_M)
+}

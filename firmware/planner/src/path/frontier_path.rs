@@ -1,0 +1,163 @@
+//! The path to a frontier: a wave from every frontier cell, each delayed by its cost
+//! ([`crate::path::goal_cost`]), and the way down it from the robot [Jorge15, Algorithm 1, lines 3,
+//! 4, 24].
+//!
+//! Where goals have height levels, a path that crosses other levels gives way to one that stays on
+//! the goal's, if that is longer by no more than the delay of a goal so many levels off.
+//!
+//! Units: map cells, coarse steps of 20 cm.
+
+use crate::geometry::{Cell, Point};
+use crate::grid::{Plane, PlaneMut};
+use crate::map::Tiles;
+use crate::path::goal_cost::{GoalCost, PresentGoal};
+use crate::path::height_levels::LEVEL_STEPS;
+use crate::path::residual_frontiers::ResidualFrontiers;
+use crate::path::search::PathSearch;
+use crate::path::{Path, PlanningContext, PlanningScratch};
+use crate::roadmap::{WaveSpace, Wavefront};
+
+/// A path crosses other levels if it lies this many levels farther off than its goal: 1 m with the
+/// parameters of [Maffei20, Table I].
+const OTHER_LEVELS: u32 = 4;
+/// Words at the end of the wave's queue that cache cost classes. A wave rarely has so many cells
+/// waiting.
+const CLASS_WORDS: usize = 170;
+
+/// Returns the path to the frontier cell of the least cost, which is on the same level as far as
+/// possible. `None` if no frontier is within reach.
+pub(crate) fn path_to_frontier<const TILES: usize, const SLOTS: usize>(
+    context: &PlanningContext<'_, TILES, SLOTS>,
+    given_up: &ResidualFrontiers,
+    present: Option<PresentGoal>,
+    robot: Point,
+    scratch: &mut PlanningScratch<'_>,
+) -> Option<Path> {
+    let way = context.topology.skeleton()?;
+    let queue = scratch.ring.len().saturating_sub(CLASS_WORDS);
+    let (ring, memory) = scratch.ring.split_at_mut(queue);
+    let cost = GoalCost::new(context, given_up, present, memory)?;
+    let mut scratch = PlanningScratch {
+        residues: &mut *scratch.residues,
+        ring,
+        view: &mut *scratch.view,
+    };
+    let path = path_along(way, &cost, robot, &mut scratch)?;
+    let level_path = path_on_level(&path, &cost, robot, &mut scratch);
+    level_path.or(Some(path))
+}
+
+/// For a path that crosses other levels, returns one along centre cells that are no farther off
+/// than the goal, or one level; `None` if there is none, or it is too long.
+fn path_on_level<const TILES: usize, const SLOTS: usize>(
+    path: &Path,
+    cost: &GoalCost<'_, TILES, SLOTS>,
+    robot: Point,
+    scratch: &mut PlanningScratch<'_>,
+) -> Option<Path> {
+    let PlanningContext {
+        topology,
+        tiles,
+        levels,
+        ..
+    } = cost.context;
+    let levels = levels.as_ref()?;
+    let level = |cell: Cell| levels.of(tiles, cell);
+    let least = level(path.goal()).max(1);
+    let most = path.cells().iter().copied().map(level).max()?;
+    let excess = most
+        .checked_sub(least)
+        .filter(|&excess| excess >= OTHER_LEVELS)?;
+    let frame = topology.frame();
+    // On a map so large that the plane does not fit behind the wave, the shortest path is taken.
+    let (residues, spare) = scratch.residues.split_at_mut_checked(frame.shape.words())?;
+    let mut on_level = PlaneMut::new(frame.shape, spare.as_flattened_mut()).ok()?;
+    on_level.fill(0);
+    for site in topology.skeleton()?.sites() {
+        if level(frame.cell(site)) <= least {
+            on_level.set(site);
+        }
+    }
+    let mut scratch = PlanningScratch {
+        residues,
+        ring: &mut *scratch.ring,
+        view: &mut *scratch.view,
+    };
+    let detour = path_along(on_level.view(), cost, robot, &mut scratch)?;
+    (detour.steps() <= path.steps() + LEVEL_STEPS * excess).then_some(detour)
+}
+
+/// Returns the path to the frontier cell of the least cost along these centre cells.
+fn path_along<const TILES: usize, const SLOTS: usize>(
+    way: Plane<'_>,
+    cost: &GoalCost<'_, TILES, SLOTS>,
+    robot: Point,
+    scratch: &mut PlanningScratch<'_>,
+) -> Option<Path> {
+    let mut search = PathSearch::open(cost.context.centres(way), scratch)?;
+    if !spread(&mut search.space, cost) {
+        return None;
+    }
+    let robot = robot.cell();
+    let found = search.entry(robot);
+    let PathSearch {
+        centres,
+        space,
+        view,
+    } = search;
+    let mut path = if let Some((entry, steps)) = found {
+        let line = core::iter::empty();
+        Path::down(line, centres.frame, &space.residues, entry).after(steps)
+    } else if centres.nearest(robot, view, |_| true).is_some() {
+        // No wave reached the centre cells near the robot.
+        return None;
+    } else {
+        let is_reached = |site| space.residues.get(site).is_some();
+        let (entry, line) = centres.nearest_by_air(robot, is_reached)?;
+        Path::down(line, centres.frame, &space.residues, entry)
+    };
+    path.extend(unexplored_beside(path.goal(), centres.tiles));
+    Some(path)
+}
+
+/// Spreads a wave from every frontier cell that was not given up, each after its delay. Returns
+/// true if there is one.
+fn spread<const TILES: usize, const SLOTS: usize>(
+    space: &mut WaveSpace<'_>,
+    cost: &GoalCost<'_, TILES, SLOTS>,
+) -> bool {
+    let mut any = false;
+    let mut wave = Wavefront::new();
+    wave.start(space);
+    let mut now = 0;
+    for (class, delay) in cost.delays() {
+        wave.advance_levels(space, delay - now);
+        now = delay;
+        for site in cost.sites(class) {
+            any |= wave.seed(space, site);
+        }
+    }
+    // Without a budget it always comes to its end.
+    let _ = wave.advance(space, None, u32::MAX);
+    any
+}
+
+/// Returns the coarse cell at a side of `cell` that holds the most unexplored map cells, if any.
+fn unexplored_beside<const TILES: usize, const SLOTS: usize>(
+    cell: Cell,
+    tiles: &Tiles<TILES, SLOTS>,
+) -> Option<Cell> {
+    let unknown = |cell: Cell| {
+        (0..2)
+            .map(|dy| (tiles.row(cell.x, cell.y + dy).unknown() & 3).count_ones())
+            .sum::<u32>()
+    };
+    [(2, 0), (-2, 0), (0, 2), (0, -2)]
+        .into_iter()
+        .map(|(dx, dy)| Cell {
+            x: cell.x + dx,
+            y: cell.y + dy,
+        })
+        .max_by_key(|&beside| unknown(beside))
+        .filter(|&beside| unknown(beside) > 0)
+}

@@ -1,0 +1,116 @@
+//! Residual frontiers: the goals that were given up, and at the end of an exploration the frontiers
+//! that were never reached, in groups.
+//!
+//! Units: map cells, metres.
+
+use heapless::Vec;
+
+use crate::geometry::Cell;
+use crate::path::PlanningContext;
+use crate::status::{Frontier as ResidualFrontier, Residue};
+
+/// Maximum number of residual frontiers.
+const MOST_RESIDUAL: usize = 32;
+/// Radius around a goal that was given up in which no other goal is taken, metres.
+const GIVEN_UP_RADIUS_M: f32 = 0.5;
+/// Cells at most this far from a group's first cell belong to the group, metres.
+const GROUP_RADIUS_M: f32 = 2.0;
+
+/// The list of residual frontiers, the oldest first.
+#[derive(Debug)]
+pub(crate) struct ResidualFrontiers {
+    list: Vec<ResidualFrontier, MOST_RESIDUAL>,
+}
+
+impl ResidualFrontiers {
+    /// Makes an empty list.
+    pub(crate) const fn new() -> Self {
+        Self { list: Vec::new() }
+    }
+
+    /// Returns the list.
+    pub(crate) fn as_slice(&self) -> &[ResidualFrontier] {
+        &self.list
+    }
+
+    /// Returns true if there is room for no more.
+    pub(crate) fn is_full(&self) -> bool {
+        self.list.is_full()
+    }
+
+    /// Returns true if a cell is beside a goal that was given up.
+    pub(crate) fn is_given_up(&self, cell: Cell) -> bool {
+        let mut list = self.list.iter();
+        list.any(|residual| is_near(residual.cell, cell, GIVEN_UP_RADIUS_M))
+    }
+
+    /// Gives up a goal. A full list loses its oldest one.
+    pub(crate) fn give_up(&mut self, cell: Cell, reason: Residue) {
+        if self.list.is_full() {
+            self.list.remove(0);
+        }
+        // There is room now.
+        let _ = self.list.push(ResidualFrontier {
+            cell,
+            cells: 1,
+            reason,
+        });
+    }
+
+    /// Takes the goals back that were given up because the robot came no nearer.
+    pub(crate) fn retry_without_progress(&mut self) {
+        self.list
+            .retain(|residual| residual.reason != Residue::NoProgress);
+    }
+
+    /// Takes a goal off the list that was reached and stayed unexplored.
+    pub(crate) fn take_unobservable(&mut self) -> Option<Cell> {
+        let unobservable = |residual: &ResidualFrontier| residual.reason == Residue::Unobservable;
+        let place = self.list.iter().position(unobservable)?;
+        Some(self.list.remove(place).cell)
+    }
+
+    /// Lists the frontier cells that no path leads to, in groups, after the goals given up.
+    pub(crate) fn list_unreachable<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        context: &PlanningContext<'_, TILES, SLOTS>,
+    ) {
+        let Some(frontier) = context.topology.frontier() else {
+            return;
+        };
+        for site in frontier.sites() {
+            let cell = context.topology.frame().cell(site);
+            self.count(cell, Residue::Unreachable);
+        }
+    }
+
+    /// Lists a cell beyond which the map has no room. A group beside it has the same reason.
+    pub(crate) fn list_map_exit(&mut self, cell: Cell) {
+        if let Some(group) = self.count(cell, Residue::OutOfBounds) {
+            group.reason = Residue::OutOfBounds;
+        }
+    }
+
+    /// Counts a cell to the first group near it, or begins a group. Returns the group; `None` if
+    /// the list is full.
+    fn count(&mut self, cell: Cell, reason: Residue) -> Option<&mut ResidualFrontier> {
+        let is_group = |residual: &ResidualFrontier| is_near(residual.cell, cell, GROUP_RADIUS_M);
+        if let Some(k) = self.list.iter().position(is_group) {
+            let group = self.list.get_mut(k)?;
+            group.cells = group.cells.saturating_add(1);
+            return Some(group);
+        }
+        let group = ResidualFrontier {
+            cell,
+            cells: 1,
+            reason,
+        };
+        self.list.push(group).ok()?;
+        self.list.last_mut()
+    }
+}
+
+/// Returns true if two cells are less than a radius apart, metres.
+pub(crate) fn is_near(a: Cell, b: Cell, radius_m: f32) -> bool {
+    a.distance2(b) < radius_m * radius_m
+}
