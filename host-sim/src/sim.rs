@@ -8,13 +8,13 @@
 
 mod config;
 
-use fieldline_protocol::message::{Observation, Start, Strategy, Twist};
+use fieldline_protocol::message::{Hull, LoopLimits, Observation, Start, Strategy, Twist};
 use fixed::types::I4F12;
 
 use crate::metrics::{Localization, Overlap, Ride, Safety};
 use crate::robot::{
-    Contacts, Drive, Footprint, LaserScanner, Mishap, Odometry, Pose, RADIUS_M, Source, Velocity,
-    laser, stand,
+    Contacts, Drive, Footprint, LaserScanner, Mishap, Odometry, Pose, Source, Velocity, laser,
+    stand,
 };
 use crate::world::{World, WorldError};
 pub use config::SimConfig;
@@ -38,7 +38,6 @@ pub enum Loss {
 pub struct Simulator<'w> {
     world: &'w World,
     config: SimConfig,
-    footprint: Footprint,
     time_ms: u32,
     commanded_ms: u32,
     start_z_m: f64,
@@ -65,6 +64,19 @@ fn at_most(quantity: f64) -> I4F12 {
     I4F12::saturating_from_num((quantity * least_step).floor() / least_step)
 }
 
+/// The nearest whole millimetre of a length.
+fn millimetres(length_m: f64) -> u16 {
+    (length_m * 1000.0).round() as u16
+}
+
+fn hull(footprint: &Footprint) -> Hull {
+    Hull {
+        length_mm: millimetres(2.0 * footprint.half_length_m),
+        width_mm: millimetres(2.0 * footprint.half_width_m),
+        height_mm: millimetres(footprint.height_m),
+    }
+}
+
 impl<'w> Simulator<'w> {
     /// Puts the robot at its start.
     ///
@@ -77,7 +89,6 @@ impl<'w> Simulator<'w> {
         let mut simulator = Self {
             world,
             config,
-            footprint: Footprint::PIONEER_3AT,
             time_ms: 0,
             commanded_ms: 0,
             start_z_m: pose.z_m,
@@ -180,7 +191,7 @@ impl<'w> Simulator<'w> {
 
     /// Returns the stance at a planar pose near by, or why the robot cannot go there.
     fn try_move(&mut self, next: &Pose) -> Result<Pose, Mishap> {
-        let walled = |pose: &Pose| self.footprint.overlaps(self.world, pose);
+        let walled = |pose: &Pose| self.config.footprint.overlaps(self.world, pose);
         if walled(next) {
             return self.hit_wall();
         }
@@ -234,11 +245,16 @@ impl<'w> Simulator<'w> {
         } else {
             self.safety.min_clearance_m
         };
-        if self.footprint.clearance_bound_m(self.world, &self.pose) >= needed_m {
+        if self
+            .config
+            .footprint
+            .clearance_bound_m(self.world, &self.pose)
+            >= needed_m
+        {
             self.in_contact = false;
             return;
         }
-        let clearance_m = self.footprint.clearance_m(self.world, &self.pose);
+        let clearance_m = self.config.footprint.clearance_m(self.world, &self.pose);
         self.in_contact &= clearance_m < CONTACT_OVER_M;
         self.safety.min_clearance_m = self.safety.min_clearance_m.min(clearance_m);
     }
@@ -251,13 +267,15 @@ impl<'w> Simulator<'w> {
             strategy,
             box_tiles,
             lasers: [laser::level(), laser::tilted()].into_iter().collect(),
-            robot_radius_mm: (RADIUS_M * 1000.0) as u16,
+            hull: hull(&self.config.footprint),
+            robot_radius_mm: millimetres(self.config.radius_m),
             max_linear: I4F12::saturating_from_num(limits.linear_mps),
             max_angular: I4F12::saturating_from_num(limits.angular_radps),
             linear_accel: at_most(limits.acceleration_mps2.min(limits.braking_mps2)),
             angular_accel: at_most(limits.angular_radps2),
             period_ms: u16::try_from(self.config.period_ms).unwrap_or(u16::MAX),
             uneven_ground: None,
+            loops: LoopLimits::default(),
         }
     }
 

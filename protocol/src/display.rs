@@ -7,7 +7,7 @@ use crate::message::{Cause, Crash, Parameter, Refusal};
 impl fmt::Display for Parameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Lasers => "the robot must have one or two lasers",
+            Self::Lasers => "the robot must have one or two lasers, and two on uneven ground",
             Self::Beams => "a laser must have 1 to 181 beams",
             Self::RangeLimit => "the range limit of a laser must be 1 to 16382 mm",
             Self::Bearing => {
@@ -18,6 +18,9 @@ impl fmt::Display for Parameter {
                 "the first laser must be level, and the second must look down by less than 90°"
             }
             Self::Mount => "a laser must be above the ground, at most 2 m from the robot's centre",
+            Self::Hull => {
+                "the robot's hull must be 1 to 4000 mm long and wide and at most 2000 mm high"
+            }
             Self::Radius => "the robot's radius must be 50 to 600 mm",
             Self::MaxLinear => "the maximum speed must be positive",
             Self::MaxAngular => "the maximum turn rate must be positive",
@@ -33,9 +36,10 @@ impl fmt::Display for Parameter {
                  because the field diverges beyond 2"
             }
             Self::UnevenGround => {
-                "uneven ground needs two lasers, scales of at least 0, \
-                 heights that are not 0, and slopes above 0 and at most 45°"
+                "uneven ground needs scales of at least 0, heights that are not 0, \
+                 and slopes above 0 and at most 45°"
             }
+            Self::LoopLimits => "the limits of loops must be at least 0",
         })
     }
 }

@@ -38,7 +38,7 @@ pub use readout::{
 };
 pub use refusal::{Parameter, Refusal};
 pub use residual::{MAX_FRONTIERS, ResidualFrontier, ResidualReason};
-pub use session::{Control, Laser, Preference, Start, Strategy, UnevenGround};
+pub use session::{Control, Hull, Laser, LoopLimits, Preference, Start, Strategy, UnevenGround};
 
 use heapless::Vec;
 use postcard_schema::Schema;

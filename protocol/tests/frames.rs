@@ -13,9 +13,9 @@ use fieldline_protocol::frame::{
 };
 use fieldline_protocol::message::{
     self, BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Counters, Crash, FIELD_CELL_BYTES,
-    FIELD_SIDE, FieldRow, Identity, Laser, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM, PATH_PAGE, Path,
-    Preference, Reply, Request, ResidualFrontier, ResidualReason, Start, TILE_BYTES,
-    TILE_SKELETON_BYTES, TILE_STAMPS, Tile, UnevenGround,
+    FIELD_SIDE, FieldRow, Hull, Identity, Laser, LoopLimits, MAX_FRONTIERS, MAX_SCANS,
+    NO_RETURN_MM, PATH_PAGE, Path, Preference, Reply, Request, ResidualFrontier, ResidualReason,
+    Start, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS, Tile, UnevenGround,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use proptest::prelude::*;
@@ -82,13 +82,14 @@ fn the_largest_messages_fit_and_fill_their_frames() {
     assert_eq!(reply_frame(u16::MAX, &tile).len(), MAX_REPLY_FRAME);
 
     let far = fixed::types::I4F12::MIN;
+    let farthest = fixed::types::I16F16::MIN;
     let laser = Laser {
         x: far,
         y: far,
         z: far,
         pitch: far,
-        first_bearing: fixed::types::I16F16::MIN,
-        bearing_step: fixed::types::I16F16::MIN,
+        first_bearing: farthest,
+        bearing_step: farthest,
         beams: u16::MAX,
         range_limit_mm: u16::MAX,
     };
@@ -96,6 +97,11 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         strategy: message::Strategy::Tdbvp { patrol_s: u16::MAX },
         box_tiles: (255, 255),
         lasers: [laser; MAX_SCANS].into_iter().collect(),
+        hull: Hull {
+            length_mm: u16::MAX,
+            width_mm: u16::MAX,
+            height_mm: u16::MAX,
+        },
         robot_radius_mm: u16::MAX,
         max_linear: far,
         max_angular: far,
@@ -110,11 +116,18 @@ fn the_largest_messages_fit_and_fill_their_frames() {
             least: far,
             most: far,
             height_scale: far,
-            global_scale: fixed::types::I16F16::MIN,
+            global_scale: farthest,
             climb: far,
             roll: far,
             step: far,
         }),
+        loops: LoopLimits {
+            least: farthest,
+            most: farthest,
+            most_per_frontier: farthest,
+            detour: farthest,
+            slack: farthest,
+        },
     }));
     let file = "f".repeat(CRASH_FILE_BYTES).as_str().try_into().unwrap();
     let crash = Crash {

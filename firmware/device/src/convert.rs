@@ -6,15 +6,16 @@
 //! nearest and saturates, and a NaN becomes zero. Both directions are integer arithmetic and give
 //! the same bits on every machine.
 
-use fieldline_planner::config::{self, Config};
-use fieldline_planner::config::{PreferenceMode, UnevenGround};
-use fieldline_planner::geometry::{CELL_M, Pose, Twist};
-use fieldline_planner::input::Input;
-use fieldline_planner::math;
-use fieldline_planner::robot;
-use fieldline_planner::status::{self, Residue};
+use fieldline_planner::{
+    Config, Input, LaserMount, LoopLimits, Parameter, Pose, PreferenceMode, Residue, RobotShape,
+    Strategy, Twist, UnevenGround, math, status,
+};
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
+use fixed::types::I4F12;
+
+/// A right angle, radians, rounded down.
+const RIGHT_ANGLE: I4F12 = I4F12::lit("1.57");
 
 /// Returns a wire quantity as f32.
 fn float(quantity: impl LossyInto<f32>) -> f32 {
@@ -53,19 +54,27 @@ pub fn twist(twist: &wire::Twist) -> Twist {
     }
 }
 
-/// Converts an observation from the wire. A missing scan is empty.
+/// Converts an observation from the wire. `None` unless it has one scan per laser, with one range
+/// per beam.
 #[must_use]
-pub fn input(observation: &wire::Observation) -> Input<'_> {
-    let scan = |number: usize| match observation.scans.get(number) {
+pub fn input<'a>(observation: &'a wire::Observation, lasers: &[LaserMount]) -> Option<Input<'a>> {
+    let scans = &observation.scans;
+    let has_beams = |(scan, laser): (&wire::Scan, &LaserMount)| {
+        scan.ranges_mm.len() == usize::from(laser.beams)
+    };
+    if scans.len() != lasers.len() || !scans.iter().zip(lasers).all(has_beams) {
+        return None;
+    }
+    let scan = |number: usize| match scans.get(number) {
         Some(scan) => scan.ranges_mm.as_slice(),
         None => &[],
     };
-    Input {
+    Some(Input {
         time_ms: observation.time_ms,
         pose: pose(&observation.pose),
         velocity: twist(&observation.velocity),
         scans: [scan(0), scan(1)],
-    }
+    })
 }
 
 /// Converts a velocity for the wire.
@@ -77,8 +86,8 @@ pub fn wire_twist(twist: &Twist) -> wire::Twist {
     }
 }
 
-fn laser(laser: &wire::Laser) -> robot::LaserMount {
-    robot::LaserMount {
+fn laser(laser: &wire::Laser) -> LaserMount {
+    LaserMount {
         x_m: float(laser.x),
         y_m: float(laser.y),
         z_m: float(laser.z),
@@ -91,8 +100,11 @@ fn laser(laser: &wire::Laser) -> robot::LaserMount {
 }
 
 fn uneven_ground(ground: &wire::UnevenGround) -> UnevenGround {
-    // At most 45°: `limits::check_start` refuses steeper slopes.
-    let tangent = |angle: fixed::types::I4F12| {
+    // Other angles repeat the tangents of these. The planner refuses what is not a number.
+    let tangent = |angle: I4F12| {
+        if !(I4F12::ZERO..RIGHT_ANGLE).contains(&angle) {
+            return f32::NAN;
+        }
         let (sin, cos) = math::sin_cos(float(angle));
         sin / cos
     };
@@ -116,37 +128,76 @@ fn uneven_ground(ground: &wire::UnevenGround) -> UnevenGround {
     }
 }
 
-/// Converts the parameters of a session from the wire.
+fn hull(hull: &wire::Hull) -> RobotShape {
+    let metres = |mm: u16| f32::from(mm) / 1000.0;
+    RobotShape::rectangle(
+        metres(hull.length_mm),
+        metres(hull.width_mm),
+        metres(hull.height_mm),
+    )
+}
+
+fn loop_limits(limits: &wire::LoopLimits) -> LoopLimits {
+    LoopLimits {
+        least_m: float(limits.least),
+        most_m: float(limits.most),
+        most_per_frontier: float(limits.most_per_frontier),
+        detour: float(limits.detour),
+        slack_m: float(limits.slack),
+    }
+}
+
+/// Converts the parameters of a session from the wire. The planner checks them.
 ///
-/// On uneven ground the maximum speed is limited to one map cell per period, so that the tilted
-/// laser sweeps every cell.
-#[must_use]
-pub fn config(start: &wire::Start) -> Config {
-    let default = Config::pioneer_3at(start.lasers.iter().map(laser).collect());
-    let period_s = f32::from(start.period_ms) / 1000.0;
-    let max_linear_mps = float(start.max_linear);
-    let robot_radius_m = f32::from(start.robot_radius_mm) / 1000.0;
-    Config {
-        strategy: match start.strategy {
-            wire::Strategy::Frontier => config::Strategy::Frontier,
-            wire::Strategy::Ouroboros => config::Strategy::Ouroboros,
-            wire::Strategy::Tdbvp { patrol_s } => config::Strategy::Tdbvp { patrol_s },
-        },
-        box_tiles: start.box_tiles,
-        robot_radius_m,
-        // The tight radius is the same part of the radius for every robot.
-        tight_radius_m: robot_radius_m * (default.tight_radius_m / default.robot_radius_m),
-        max_linear_mps: if start.uneven_ground.is_some() {
-            max_linear_mps.min(CELL_M / period_s)
-        } else {
-            max_linear_mps
-        },
-        max_angular_radps: float(start.max_angular),
-        linear_accel_mps2: float(start.linear_accel),
-        angular_accel_radps2: float(start.angular_accel),
-        period_s,
-        ground: start.uneven_ground.as_ref().map(uneven_ground),
-        ..default
+/// # Errors
+/// [`wire::Parameter`]: the first parameter that is out of its range.
+pub fn config(start: &wire::Start) -> Result<Config, wire::Parameter> {
+    let (across, up) = start.box_tiles;
+    let mut builder = Config::builder(hull(&start.hull))
+        .strategy(match start.strategy {
+            wire::Strategy::Frontier => Strategy::Frontier,
+            wire::Strategy::Ouroboros => Strategy::Ouroboros,
+            wire::Strategy::Tdbvp { patrol_s } => Strategy::Tdbvp { patrol_s },
+        })
+        .loops(loop_limits(&start.loops))
+        .box_tiles(across, up)
+        .radius_m(f32::from(start.robot_radius_mm) / 1000.0)
+        .max_speed(float(start.max_linear), float(start.max_angular))
+        .acceleration(float(start.linear_accel), float(start.angular_accel))
+        .period_s(f32::from(start.period_ms) / 1000.0);
+    for mount in &start.lasers {
+        builder = builder.laser(laser(mount));
+    }
+    if let Some(ground) = &start.uneven_ground {
+        builder = builder.uneven_ground(uneven_ground(ground));
+    }
+    builder
+        .build()
+        .map_err(|error| wire_parameter(error.parameter))
+}
+
+/// Returns the wire's name of a parameter that the planner refused.
+const fn wire_parameter(parameter: Parameter) -> wire::Parameter {
+    match parameter {
+        Parameter::Lasers => wire::Parameter::Lasers,
+        Parameter::Beams => wire::Parameter::Beams,
+        Parameter::RangeLimit => wire::Parameter::RangeLimit,
+        Parameter::FirstBearing | Parameter::BearingStep | Parameter::Sweep => {
+            wire::Parameter::Bearing
+        }
+        Parameter::Pitch => wire::Parameter::Pitch,
+        Parameter::Mount | Parameter::LaserHeight => wire::Parameter::Mount,
+        Parameter::HalfLength | Parameter::HalfWidth | Parameter::Height => wire::Parameter::Hull,
+        Parameter::Radius => wire::Parameter::Radius,
+        Parameter::MaxLinear => wire::Parameter::MaxLinear,
+        Parameter::MaxAngular => wire::Parameter::MaxAngular,
+        Parameter::LinearAccel => wire::Parameter::LinearAccel,
+        Parameter::AngularAccel => wire::Parameter::AngularAccel,
+        Parameter::Period => wire::Parameter::Period,
+        Parameter::LeastPreference | Parameter::MostPreference => wire::Parameter::Preference,
+        Parameter::LoopLimits => wire::Parameter::LoopLimits,
+        // The solver's parameters do not come from the wire.
+        Parameter::UnevenGround | Parameter::Solver => wire::Parameter::UnevenGround,
     }
 }
 
@@ -162,7 +213,6 @@ pub(crate) fn wire_status(status: status::Status) -> wire::Status {
             status::Fault::StartBlocked => wire::Fault::StartBlocked,
             status::Fault::MapFull => wire::Fault::MapFull,
             status::Fault::OutOfBox => wire::Fault::OutOfBox,
-            status::Fault::BadObservation => wire::Fault::BadObservation,
             status::Fault::Stuck => wire::Fault::Stuck,
         }),
     }
@@ -186,92 +236,4 @@ pub fn wire_frontier(frontier: &status::Frontier) -> wire::ResidualFrontier {
 }
 
 #[cfg(test)]
-mod tests {
-    use fieldline_planner::geometry::{Cell, Twist};
-    use fieldline_planner::status::{Frontier, Residue};
-    use fieldline_protocol::message as wire;
-    use fixed::types::{I4F12, I16F16};
-
-    use super::{config, float, quantity, wire_frontier, wire_twist};
-
-    #[test]
-    fn a_session_takes_its_limits_from_the_host() {
-        let start = wire::Start {
-            box_tiles: (30, 12),
-            robot_radius_mm: 250,
-            max_linear: I4F12::lit("0.5"),
-            max_angular: I4F12::lit("1.5"),
-            linear_accel: I4F12::lit("0.25"),
-            angular_accel: I4F12::lit("0.75"),
-            period_ms: 125,
-            ..wire::Start::default()
-        };
-        let config = config(&start);
-        assert_eq!(config.box_tiles, (30, 12));
-        assert_eq!(
-            [
-                config.robot_radius_m,
-                config.max_linear_mps,
-                config.max_angular_radps,
-                config.linear_accel_mps2,
-                config.angular_accel_radps2,
-                config.period_s,
-            ],
-            [0.25, 0.5, 1.5, 0.25, 0.75, 0.125]
-        );
-    }
-
-    #[test]
-    fn every_short_quantity_round_trips() {
-        for bits in i16::MIN..=i16::MAX {
-            let short = I4F12::from_bits(bits);
-            assert_eq!(quantity::<I4F12>(float(short)), short);
-        }
-    }
-
-    #[test]
-    fn long_quantities_round_trip_within_128_m() {
-        for bits in (-(1 << 23)..=1 << 23).step_by(997) {
-            let long = I16F16::from_bits(bits);
-            assert_eq!(quantity::<I16F16>(float(long)), long);
-        }
-    }
-
-    #[test]
-    fn quantities_saturate_and_nan_becomes_zero() {
-        let twist = |linear_mps, angular_radps| {
-            let twist = wire_twist(&Twist {
-                linear_mps,
-                angular_radps,
-            });
-            (twist.linear, twist.angular)
-        };
-        assert_eq!(twist(9.0, -9.0), (I4F12::MAX, I4F12::MIN));
-        assert_eq!(
-            twist(f32::INFINITY, f32::NEG_INFINITY),
-            (I4F12::MAX, I4F12::MIN)
-        );
-        assert_eq!(twist(f32::NAN, -f32::NAN), (I4F12::ZERO, I4F12::ZERO));
-    }
-
-    #[test]
-    fn distant_cells_saturate() {
-        let frontier = Frontier {
-            cell: Cell {
-                x: 40_000,
-                y: -40_000,
-            },
-            cells: 7,
-            reason: Residue::OutOfBounds,
-        };
-        assert_eq!(
-            wire_frontier(&frontier),
-            wire::ResidualFrontier {
-                x: i16::MAX,
-                y: i16::MIN,
-                cells: 7,
-                reason: wire::ResidualReason::OutOfBounds,
-            }
-        );
-    }
-}
+mod tests;

@@ -15,7 +15,6 @@
 extern crate std;
 
 pub mod convert;
-pub mod limits;
 mod log;
 pub mod meter;
 mod overlay;

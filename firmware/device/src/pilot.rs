@@ -18,20 +18,22 @@
 
 use fieldline_planner::field::SIDE;
 use fieldline_planner::planner::{self, CellKind, Output};
-use fieldline_planner::{Config, StageTimer, State, Workspace, step};
+use fieldline_planner::{BoxTooLarge, Config, StageTimer, State, Workspace, step};
 use fieldline_protocol::message::{
     Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS, MAX_SCANS,
     Observation, Path, Refusal, ResidualFrontier, Start, Status, Tile, Twist,
 };
 use heapless::Vec;
 
+use crate::STALE_MS;
 use crate::convert;
-use crate::limits;
 use crate::log::{info, warning};
 use crate::overlay;
 
 // The planner's rows and scans must fit into the wire's bounded lists.
 const _: () = assert!(SIDE == FIELD_SIDE && MAX_SCANS == 2);
+// A retry must fit between two observations and the end of a command.
+const _: () = assert!(Config::PERIODS_S.1 * 1000.0 < STALE_MS as f32);
 
 /// The planner's memory. The caller owns it, so that a board can place it.
 #[derive(Debug)]
@@ -142,8 +144,9 @@ impl Pilot {
         memory: &mut Memory<'_, TILES, SLOTS>,
         start: &Start,
     ) -> Result<(), Refusal> {
-        limits::check_start::<TILES, SLOTS>(start)?;
-        let config = convert::config(start);
+        let config = convert::config(start).map_err(Refusal::BadParameter)?;
+        let reset = memory.state.reset(&config);
+        reset.map_err(|BoxTooLarge { .. }| Refusal::BadBox)?;
         info!(
             "session started: box {=u8} x {=u8} tiles, {=usize} lasers, radius {=u16} mm",
             start.box_tiles.0,
@@ -151,7 +154,6 @@ impl Pilot {
             start.lasers.len(),
             start.robot_radius_mm
         );
-        memory.state.reset(&config);
         *self = Self {
             config: Some(config),
             planned: Status::Exploring,
@@ -177,15 +179,15 @@ impl Pilot {
         laps: &mut impl StageTimer,
     ) -> Result<Command, Refusal> {
         let config = self.config.as_ref().ok_or(Refusal::NotStarted)?;
-        if !limits::matches(observation, config.lasers.iter().map(|laser| laser.beams)) {
+        let Some(input) = convert::input(observation, &config.lasers) else {
             warning!("the scans of an observation do not match the lasers");
             return Ok(stopped(Status::Fault(Fault::BadObservation)));
-        }
+        };
         if self.status() != Status::Exploring {
             return Ok(stopped(self.status()));
         }
         let (state, workspace) = (&mut *memory.state, &mut *memory.workspace);
-        let output = step(config, state, workspace, convert::input(observation), laps);
+        let output = step(config, state, workspace, input, laps);
         self.planned = convert::wire_status(output.status);
         if self.planned != Status::Exploring {
             info!("exploration ended");

@@ -35,14 +35,13 @@ pub mod status;
 pub mod strategy;
 
 pub use config::{
-    Config, ConfigBuilder, ConfigError, LoopLimits, Method, Parameter, PreferenceMode,
+    BoxTooLarge, Config, ConfigBuilder, ConfigError, LoopLimits, Method, Parameter, PreferenceMode,
     SolverConfig, Strategy, UnevenGround,
 };
 pub use geometry::{Cell, Point, Pose, Twist};
 pub use input::{INVALID_MM, Input, NO_RETURN_MM};
 pub use planner::{
-    BoxTooLarge, Capacity, CellKind, F405, FieldRow, Memory, Output, Planner, State, Workspace,
-    step,
+    Capacity, CellKind, F405, FieldRow, Memory, Output, Planner, State, Workspace, step,
 };
 pub use profiling::{Stage, StageTimer};
 pub use robot::{LaserMount, MAX_BEAMS, RobotShape};

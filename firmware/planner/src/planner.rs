@@ -24,7 +24,7 @@ mod state;
 mod steer;
 mod workspace;
 
-pub use memory::{BoxTooLarge, Capacity, F405, Memory, Planner};
+pub use memory::{Capacity, F405, Memory, Planner};
 pub use state::State;
 pub use workspace::{CellKind, FieldRow, Workspace};
 

@@ -44,8 +44,6 @@ pub enum Fault {
     MapFull,
     /// A reachable frontier lies beyond the map's box.
     OutOfBox,
-    /// An observation did not match the session's lasers.
-    BadObservation,
     /// The robot did not move for too long, although it was commanded to.
     Stuck,
 }
@@ -106,7 +104,6 @@ impl fmt::Display for Fault {
             Self::StartBlocked => "the robot started inside an obstacle",
             Self::MapFull => "the map is full",
             Self::OutOfBox => "a way leads out of the map's box",
-            Self::BadObservation => "an observation did not match the lasers",
             Self::Stuck => "the robot is stuck",
         })
     }

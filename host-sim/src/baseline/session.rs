@@ -12,7 +12,6 @@
 //! clear.
 
 use fieldline_device::convert;
-use fieldline_device::limits;
 use fieldline_device::session::{self, Boot};
 use fieldline_device::{SLOTS, TILES};
 use fieldline_planner::config::Config;
@@ -20,8 +19,8 @@ use fieldline_planner::config::UnevenGround;
 use fieldline_planner::drive::{CollisionChecker, Drive, Ground, Place, recovery};
 use fieldline_planner::geometry::{Cell, Point, Pose, Twist};
 use fieldline_planner::input::Input;
-use fieldline_planner::map::Map;
 use fieldline_planner::map::obstacle_points::{self, ObstaclePoints};
+use fieldline_planner::map::{Map, Tiles};
 use fieldline_planner::math;
 use fieldline_planner::planner::starts_blocked;
 use fieldline_planner::roadmap::configuration_space::Footprint;
@@ -163,8 +162,11 @@ impl<P: Plan> Session<P> {
     }
 
     fn start(&mut self, start: &Start) -> Result<(), Refusal> {
-        limits::check_start::<TILES, SLOTS>(start)?;
-        let config = convert::config(start);
+        let config = convert::config(start).map_err(Refusal::BadParameter)?;
+        let (across, up) = config.box_tiles;
+        if !Tiles::<TILES, SLOTS>::fits(across, up) {
+            return Err(Refusal::BadBox);
+        }
         self.map.begin(&config);
         self.near.clear();
         self.heights = HeightGrid::default();
@@ -386,12 +388,10 @@ impl<P: Plan> Link for Session<P> {
         let Some(config) = self.config.take() else {
             return Err(refused(Refusal::NotStarted));
         };
-        let command = if !limits::matches(observation, config.lasers.iter().map(|l| l.beams)) {
-            standing(Status::Fault(Fault::BadObservation))
-        } else if self.status() == Status::Exploring {
-            self.step(&config, &convert::input(observation))
-        } else {
-            standing(self.status())
+        let command = match convert::input(observation, &config.lasers) {
+            None => standing(Status::Fault(Fault::BadObservation)),
+            Some(input) if self.status() == Status::Exploring => self.step(&config, &input),
+            Some(_) => standing(self.status()),
         };
         self.config = Some(config);
         Ok(command)

@@ -1,6 +1,6 @@
 //! Parameters of a simulated run.
 
-use crate::robot::{DriveLimits, LaserNoise, Limits, OdometryModel, Traction};
+use crate::robot::{DriveLimits, Footprint, LaserNoise, Limits, OdometryModel, RADIUS_M, Traction};
 
 /// Parameters of a simulated run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +13,10 @@ pub struct SimConfig {
     pub odometry: OdometryModel,
     /// Errors of the lasers. Default: [`LaserNoise::default`].
     pub laser_noise: LaserNoise,
+    /// The robot's hull. Default: a Pioneer 3-AT.
+    pub footprint: Footprint,
+    /// Radius around the robot's centre that the planner keeps clear, metres. Default: 0.30.
+    pub radius_m: f64,
     /// Limits of the drive. Default: [`DriveLimits::default`].
     pub limits: DriveLimits,
     /// Ground that the robot may use; time beyond is counted. Default: [`Limits::WORKING`].
@@ -36,6 +40,8 @@ impl Default for SimConfig {
             start: 0,
             odometry: OdometryModel::Truth,
             laser_noise: LaserNoise::default(),
+            footprint: Footprint::PIONEER_3AT,
+            radius_m: RADIUS_M,
             limits: DriveLimits::default(),
             working: Limits::WORKING,
             failing: Limits::FAILING,

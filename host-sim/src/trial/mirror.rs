@@ -8,7 +8,6 @@ use std::collections::BTreeMap;
 use fieldline_device::{SLOTS, TILES, convert};
 use fieldline_planner::config::Config;
 use fieldline_planner::geometry::{Cell, Pose};
-use fieldline_planner::input::Input;
 use fieldline_planner::map::{Class, Map};
 use fieldline_protocol::message::{Observation, Start, Status, Tile};
 
@@ -18,7 +17,8 @@ use super::snapshot::Window;
 /// The map that a device must have.
 #[derive(Debug)]
 pub struct Mirror {
-    config: Config,
+    /// `None` if the device refuses the session's parameters. The map then stays empty.
+    config: Option<Config>,
     map: Box<Map<TILES, SLOTS>>,
     pose: Pose,
 }
@@ -27,9 +27,11 @@ impl Mirror {
     /// The empty map of a session.
     #[must_use]
     pub fn new(start: &Start) -> Self {
-        let config = convert::config(start);
+        let config = convert::config(start).ok();
         let mut map = Box::new(Map::new());
-        map.begin(&config);
+        if let Some(config) = &config {
+            map.begin(config);
+        }
         let pose = Pose::default();
         Self { config, map, pose }
     }
@@ -40,22 +42,15 @@ impl Mirror {
             status,
             Status::Idle | Status::Paused | Status::EmergencyStop
         );
-        if held {
+        let Some(config) = self.config.as_ref().filter(|_| !held) else {
             return;
-        }
-        let scan = |i: usize| match observation.scans.get(i) {
-            Some(scan) => scan.ranges_mm.as_slice(),
-            None => &[],
         };
-        let input = Input {
-            time_ms: observation.time_ms,
-            pose: convert::pose(&observation.pose),
-            velocity: convert::twist(&observation.velocity),
-            scans: [scan(0), scan(1)],
+        let Some(input) = convert::input(observation, &config.lasers) else {
+            return;
         };
         self.pose = input.pose;
-        self.map.observe(&self.config, &input);
-        if self.config.ground.is_some() {
+        self.map.observe(config, &input);
+        if config.ground.is_some() {
             self.map.compact(&mut ());
         }
     }
@@ -69,7 +64,7 @@ impl Mirror {
     /// Heights and preferences in a window; `None` where the planner takes all ground for flat.
     #[must_use]
     pub fn relief(&self, window: &Window) -> Option<Relief> {
-        let terrain = self.config.ground.as_ref()?;
+        let terrain = self.config.as_ref()?.ground.as_ref()?;
         Some(Relief::of(&self.map.heights(), terrain, &self.pose, window))
     }
 
@@ -83,12 +78,14 @@ impl Mirror {
             let most = tiles.keys().map(of).max().unwrap_or(0);
             least.saturating_sub(1)..=most.saturating_add(1)
         };
+        let config = self.config.as_ref();
+        let is_uneven = config.is_some_and(|config| config.ground.is_some());
         reach(|key| key.1).all(|y| {
             reach(|key| key.0).all(|x| {
                 let ours = self.map.tiles().packed(i32::from(x), i32::from(y));
                 let theirs = tiles.get(&(x, y)).map(|tile| tile.cells.as_slice());
                 match (&ours, theirs) {
-                    (Some(ours), Some(theirs)) if self.config.ground.is_some() => ours
+                    (Some(ours), Some(theirs)) if is_uneven => ours
                         .iter()
                         .zip(theirs)
                         .all(|(&ours, &theirs)| may_be(ours, theirs)),

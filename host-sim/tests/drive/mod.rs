@@ -4,7 +4,8 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use fieldline_protocol::message::{
-    Command, Control, Laser, NO_RETURN_MM, Observation, Pose, Scan, Start, Status, Strategy, Twist,
+    Command, Control, Hull, Laser, LoopLimits, NO_RETURN_MM, Observation, Pose, Scan, Start,
+    Status, Strategy, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 use host_sim::link::digest::Digest;
@@ -37,6 +38,7 @@ pub(crate) fn start() -> Start {
         strategy: Strategy::Frontier,
         box_tiles: (20, 20),
         lasers: [level, tilted].into_iter().collect(),
+        hull: Hull::default(),
         robot_radius_mm: 300,
         max_linear: I4F12::from_num(0.7),
         max_angular: I4F12::from_num(2.44),
@@ -44,6 +46,7 @@ pub(crate) fn start() -> Start {
         angular_accel: I4F12::from_num(1.745),
         period_ms: 200,
         uneven_ground: None,
+        loops: LoopLimits::default(),
     }
 }
 

@@ -9,7 +9,7 @@ use super::{Laser, MAX_BEAMS, NO_RETURN_MM, Start, UnevenGround};
 /// A parameter of [`Start`], with its accepted range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Parameter {
-    /// [`Start::lasers`]: one or two.
+    /// [`Start::lasers`]: one or two; two on uneven ground.
     Lasers,
     /// [`Laser::beams`]: 1 to [`MAX_BEAMS`].
     Beams,
@@ -38,8 +38,12 @@ pub enum Parameter {
     /// diverges.
     Preference,
     /// The rest of [`UnevenGround`]: scales at least 0; [`UnevenGround::hole`] negative; other
-    /// heights and slopes positive; slopes at most 45°; two lasers.
+    /// heights and slopes positive; slopes at most 45°.
     UnevenGround,
+    /// [`Start::hull`]: length and width 1 to 4000 mm, height at most 2000 mm.
+    Hull,
+    /// [`Start::loops`]: at least 0.
+    LoopLimits,
 }
 
 /// Why the device refused a request.

@@ -93,6 +93,56 @@ pub struct UnevenGround {
     pub step: I4F12,
 }
 
+/// The robot's hull: a box over a rectangle whose middle is the robot's centre. Default: a Pioneer
+/// 3-AT.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Hull {
+    /// Length along the heading, millimetres: 1 to 4000.
+    pub length_mm: u16,
+    /// Width over the wheels, millimetres: 1 to 4000.
+    pub width_mm: u16,
+    /// Height of the top above the ground, millimetres: at most 2000.
+    pub height_mm: u16,
+}
+
+impl Default for Hull {
+    fn default() -> Self {
+        Self {
+            length_mm: 508,
+            width_mm: 497,
+            height_mm: 277,
+        }
+    }
+}
+
+/// Limits of the loops that strategy Ouroboros closes, metres of path; all at least 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct LoopLimits {
+    /// Least length of a loop. Default: 20.
+    pub least: I16F16,
+    /// Greatest length of a loop when nothing else is left to explore. Default: 120.
+    pub most: I16F16,
+    /// Metres by which the greatest length grows with each metre of frontier that is left.
+    /// Default: 10.
+    pub most_per_frontier: I16F16,
+    /// Ratio of the way that the robot may drive to the greatest expected length. Default: 2.
+    pub detour: I16F16,
+    /// Metres that the robot may drive beyond that. Default: 20.
+    pub slack: I16F16,
+}
+
+impl Default for LoopLimits {
+    fn default() -> Self {
+        Self {
+            least: I16F16::lit("20"),
+            most: I16F16::lit("120"),
+            most_per_frontier: I16F16::lit("10"),
+            detour: I16F16::lit("2"),
+            slack: I16F16::lit("20"),
+        }
+    }
+}
+
 /// The parameters of a session.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Start {
@@ -103,6 +153,8 @@ pub struct Start {
     pub box_tiles: (u8, u8),
     /// The laser scanners.
     pub lasers: Vec<Laser, MAX_SCANS>,
+    /// The robot's hull.
+    pub hull: Hull,
     /// Radius around the robot's centre that the planner keeps clear, millimetres: 50 to 600.
     pub robot_radius_mm: u16,
     /// Maximum speed, metres per second.
@@ -119,6 +171,8 @@ pub struct Start {
     /// Parameters of uneven ground: the planner measures heights, avoids holes and edges, and
     /// prefers level ground. `None` means flat ground, where lasers see only what stands on it.
     pub uneven_ground: Option<UnevenGround>,
+    /// Limits of loops, for [`Strategy::Ouroboros`].
+    pub loops: LoopLimits,
 }
 
 /// A change of the session's state.

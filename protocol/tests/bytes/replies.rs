@@ -246,6 +246,8 @@ fn reply_refused() {
         (Refusal::BadParameter(Parameter::Period), &[7, 4, 11]),
         (Refusal::BadParameter(Parameter::Preference), &[7, 4, 12]),
         (Refusal::BadParameter(Parameter::UnevenGround), &[7, 4, 13]),
+        (Refusal::BadParameter(Parameter::Hull), &[7, 4, 14]),
+        (Refusal::BadParameter(Parameter::LoopLimits), &[7, 4, 15]),
     ] {
         reply_is(Reply::Refused(refusal), body);
     }

@@ -2,8 +2,8 @@
 
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::message::{
-    Control, INVALID_MM, Laser, NO_RETURN_MM, Observation, Pose, Preference, Request, Scan, Start,
-    Strategy, Twist, UnevenGround,
+    Control, Hull, INVALID_MM, Laser, LoopLimits, NO_RETURN_MM, Observation, Pose, Preference,
+    Request, Scan, Start, Strategy, Twist, UnevenGround,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -40,6 +40,7 @@ fn request_control_start_on_uneven_ground() {
             0, // frontier
             0, 0, // box
             0, // no lasers
+            0xfc, 0x03, 0xf1, 0x03, 0x95, 0x02, // hull of the 3-AT
             0, 0, 0, 0, 0, 0, // radius, speeds, accelerations, period
             1, 2, // uneven ground: some, global
             0x80, 0x10, // obstacle 0.25 m = 1024/4096
@@ -52,6 +53,8 @@ fn request_control_start_on_uneven_ground() {
             0x80, 0x20, // climb 0.5 rad = 2048/4096
             0x80, 0x10, // roll 0.25 rad = 1024/4096
             0x80, 0x04, // step 1/16 m = 256/4096
+            0x80, 0x80, 0xa0, 0x01, 0x80, 0x80, 0xc0, 0x07, // default limits of loops
+            0x80, 0x80, 0x50, 0x80, 0x80, 0x10, 0x80, 0x80, 0xa0, 0x01,
         ],
     );
 }
@@ -82,6 +85,7 @@ fn request_control_start() {
             strategy: Strategy::Frontier,
             box_tiles: (20, 12),
             lasers: [laser].into_iter().collect(),
+            hull: Hull::default(),
             robot_radius_mm: 300,
             max_linear: short(0.75),
             max_angular: short(2.5),
@@ -89,6 +93,7 @@ fn request_control_start() {
             angular_accel: short(1.75),
             period_ms: 200,
             uneven_ground: None,
+            loops: LoopLimits::default(),
         })),
         &[
             1, 0, // Control, Start
@@ -102,6 +107,7 @@ fn request_control_start() {
             0x80, 0x10, // step 1/64 rad = 1024/65536
             0xb5, 0x01, // 181 beams
             0xe0, 0x5d, // 12000 mm
+            0xfc, 0x03, 0xf1, 0x03, 0x95, 0x02, // hull 508 x 497 x 277 mm
             0xac, 0x02, // radius 300 mm
             0x80, 0x30, // 0.75 m/s
             0x80, 0xa0, 0x01, // 2.5 rad/s
@@ -109,6 +115,11 @@ fn request_control_start() {
             0x80, 0x70, // 1.75 rad/s² = 7168/4096
             0xc8, 0x01, // 200 ms
             0,    // flat ground
+            0x80, 0x80, 0xa0, 0x01, // loops of at least 20 m = 1310720/65536
+            0x80, 0x80, 0xc0, 0x07, // at most 120 m
+            0x80, 0x80, 0x50, // 10 m more for each metre of frontier
+            0x80, 0x80, 0x10, // twice the length
+            0x80, 0x80, 0xa0, 0x01, // and 20 m
         ],
     );
 }

@@ -1,9 +1,10 @@
 //! Proptest strategies for arbitrary messages.
 
 use fieldline_protocol::message::{
-    self, Cause, Command, Control, Cost, Counters, Crash, Fault, FieldRow, Finish, Identity, Laser,
-    Loops, Observation, Parameter, Path, Pose, Preference, Refusal, Reply, Request,
-    ResidualFrontier, ResidualReason, Scan, Stages, Start, Status, Tile, Twist, UnevenGround,
+    self, Cause, Command, Control, Cost, Counters, Crash, Fault, FieldRow, Finish, Hull, Identity,
+    Laser, LoopLimits, Loops, Observation, Parameter, Path, Pose, Preference, Refusal, Reply,
+    Request, ResidualFrontier, ResidualReason, Scan, Stages, Start, Status, Tile, Twist,
+    UnevenGround,
 };
 use fixed::types::{I4F12, I16F16};
 use proptest::prelude::*;
@@ -100,17 +101,24 @@ fn start() -> impl Strategy<Value = Start> {
             prop::option::of(uneven_ground()),
         ),
         list(laser()),
-        any::<u16>(),
+        (any::<[u16; 4]>(), [long(), long(), long(), long(), long()]),
         any::<u16>(),
         [short(), short(), short(), short()],
     )
         .prop_map(
-            |((strategy, box_tiles, uneven_ground), lasers, robot_radius_mm, period_ms, limits)| {
+            |((strategy, box_tiles, uneven_ground), lasers, (sizes, loops), period_ms, limits)| {
+                let [length_mm, width_mm, height_mm, robot_radius_mm] = sizes;
+                let [least, most, most_per_frontier, detour, slack] = loops;
                 let [max_linear, max_angular, linear_accel, angular_accel] = limits;
                 Start {
                     strategy,
                     box_tiles,
                     lasers,
+                    hull: Hull {
+                        length_mm,
+                        width_mm,
+                        height_mm,
+                    },
                     robot_radius_mm,
                     max_linear,
                     max_angular,
@@ -118,6 +126,13 @@ fn start() -> impl Strategy<Value = Start> {
                     angular_accel,
                     period_ms,
                     uneven_ground,
+                    loops: LoopLimits {
+                        least,
+                        most,
+                        most_per_frontier,
+                        detour,
+                        slack,
+                    },
                 }
             },
         )

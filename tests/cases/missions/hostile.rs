@@ -6,8 +6,8 @@
 //! and debug assertions are on in this profile.
 
 use fieldline_protocol::message::{
-    Command, Control, Laser, MAX_BEAMS, NO_RETURN_MM, Observation, Pose, Scan, Start, Status,
-    Strategy, Twist,
+    Command, Control, Hull, Laser, LoopLimits, MAX_BEAMS, NO_RETURN_MM, Observation, Pose, Scan,
+    Start, Status, Strategy, Twist,
 };
 use fieldline_tests::random::Random;
 use fixed::types::{I4F12, I16F16};
@@ -82,6 +82,26 @@ impl AbsurdHost {
         laser
     }
 
+    fn hull(&mut self) -> Hull {
+        let mut side = || self.random.between(1, 1200) as u16;
+        Hull {
+            length_mm: side(),
+            width_mm: side(),
+            height_mm: side(),
+        }
+    }
+
+    fn loops(&mut self) -> LoopLimits {
+        let mut length = || self.wide().max(I16F16::ZERO);
+        LoopLimits {
+            least: length(),
+            most: length(),
+            most_per_frontier: length(),
+            detour: length(),
+            slack: length(),
+        }
+    }
+
     fn session(&mut self) -> Start {
         let count = if self.random.once_in(30) {
             0
@@ -95,6 +115,7 @@ impl AbsurdHost {
                 self.random.between(4, 20) as u8,
             ),
             lasers: (0..count).map(|k| self.laser(k == 0)).collect(),
+            hull: self.hull(),
             robot_radius_mm: self.random.between(50, 600) as u16,
             max_linear: self.narrow().max(I4F12::DELTA),
             max_angular: self.narrow().max(I4F12::DELTA),
@@ -102,6 +123,7 @@ impl AbsurdHost {
             angular_accel: I4F12::MAX,
             period_ms: self.random.between(100, 400) as u16,
             uneven_ground: None,
+            loops: self.loops(),
         };
         for (speed, accel) in [
             (start.max_linear, &mut start.linear_accel),

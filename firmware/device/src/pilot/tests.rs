@@ -4,7 +4,8 @@ use std::boxed::Box;
 
 use fieldline_planner::{State, Workspace};
 use fieldline_protocol::message::{
-    Control, Fault, Finish, Laser, Observation, Refusal, Scan, Start, Status, Strategy, Twist,
+    Control, Fault, Finish, Hull, Laser, LoopLimits, Observation, Refusal, Scan, Start, Status,
+    Strategy, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -30,6 +31,7 @@ pub(crate) fn start() -> Start {
         strategy: Strategy::Frontier,
         box_tiles: (20, 20),
         lasers: [level, tilted].into_iter().collect(),
+        hull: Hull::default(),
         robot_radius_mm: 300,
         max_linear: I4F12::lit("0.7"),
         max_angular: I4F12::lit("2.44"),
@@ -37,6 +39,7 @@ pub(crate) fn start() -> Start {
         angular_accel: I4F12::lit("1.745"),
         period_ms: 200,
         uneven_ground: None,
+        loops: LoopLimits::default(),
     }
 }
 

@@ -20,9 +20,6 @@ const ANY: f32 = 1e6;
 /// Planning radii, metres: half a map cell, and the most that the configuration space can grow
 /// obstacles by.
 const RADII_M: (f32, f32) = (0.5 * CELL_M, Config::MAX_RADIUS_M);
-/// Periods of a step, seconds. The device calls a command stale after 500 ms, so one retry must
-/// fit.
-const PERIODS_S: (f32, f32) = (0.1, 0.4);
 /// Time in which the robot must come to rest from its greatest speed, seconds: the drive looks four
 /// seconds ahead, one period and the braking after it.
 const REST_S: f32 = 3.0;
@@ -146,7 +143,7 @@ impl ConfigBuilder {
         check_motion(config)?;
         check_shape(&config.robot)?;
         check(Parameter::Radius, config.robot_radius_m, RADII_M)?;
-        check(Parameter::Period, config.period_s, PERIODS_S)?;
+        check(Parameter::Period, config.period_s, Config::PERIODS_S)?;
         check_loops(&config.loops)?;
         check(Parameter::Solver, config.solver.tolerance, (POSITIVE, 1.0))?;
         let cycles = f32::from(config.solver.max_cycles);
@@ -263,7 +260,7 @@ fn check_ground(ground: &UnevenGround) -> Result<(), ConfigError> {
 mod tests {
     use std::string::ToString;
 
-    use super::{ConfigBuilder, PERIODS_S, RADII_M};
+    use super::{ConfigBuilder, RADII_M};
     use crate::config::{Config, LoopLimits, Parameter, SolverConfig, UnevenGround};
     use crate::robot::{LaserMount, RobotShape};
 
@@ -373,7 +370,7 @@ mod tests {
             assert_eq!(refused(flat().radius_m(radius_m)), expected, "{radius_m}");
         }
         assert_eq!(
-            refused(flat().period_s(PERIODS_S.1 + 0.01)),
+            refused(flat().period_s(Config::PERIODS_S.1 + 0.01)),
             Some(Parameter::Period)
         );
         let flat_hull = RobotShape::rectangle(0.5, 0.0, 0.3);

@@ -11,7 +11,7 @@ mod loops;
 mod solver;
 
 pub use builder::ConfigBuilder;
-pub use error::{ConfigError, Parameter};
+pub use error::{BoxTooLarge, ConfigError, Parameter};
 pub use ground::{KERNEL_CELLS, PreferenceMode, UnevenGround};
 pub use loops::LoopLimits;
 pub use solver::{Method, SolverConfig};
@@ -85,6 +85,9 @@ impl Config {
     /// The greatest planning radius, metres: the configuration space grows obstacles by 6 cells at
     /// most.
     pub const MAX_RADIUS_M: f32 = 0.6;
+    /// Accepted periods of a step, seconds. A shorter one leaves too little time for a step; a
+    /// longer one leaves too little time for a retry before a command is stale.
+    pub const PERIODS_S: (f32, f32) = (0.1, 0.4);
 
     /// Begin with the defaults for a robot.
     #[must_use]

@@ -3,9 +3,7 @@
 //! A chip with split memory, as the STM32F405, holds [`State`] and [`Workspace`] itself and calls
 //! [`step`]. Both ways give the same bits.
 
-use core::fmt;
-
-use crate::config::Config;
+use crate::config::{BoxTooLarge, Config};
 use crate::geometry::Cell;
 use crate::input::Input;
 use crate::planner::{Output, State, Workspace, step};
@@ -24,29 +22,6 @@ pub type F405 = Capacity<152, 400>;
 pub trait Memory: sealed::Memory {}
 
 impl<const TILES: usize, const SLOTS: usize> Memory for Capacity<TILES, SLOTS> {}
-
-/// The map's box has more tile places than the capacity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BoxTooLarge {
-    /// The box in tiles, across and up.
-    pub box_tiles: (u8, u8),
-    /// Tile places of the capacity.
-    pub slots: usize,
-}
-
-impl fmt::Display for BoxTooLarge {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (across, up) = self.box_tiles;
-        write!(
-            f,
-            "a box of {across} x {up} tiles does not fit {} tile places; both sides must be at \
-             least 4 tiles, and the number across even",
-            self.slots
-        )
-    }
-}
-
-impl core::error::Error for BoxTooLarge {}
 
 /// A planner with its configuration and memory.
 ///
@@ -160,7 +135,6 @@ mod sealed {
         BoxTooLarge, Capacity, Cell, Config, Frontier, Input, Output, StageTimer, State, Status,
         Workspace, step,
     };
-    use crate::map::Tiles;
 
     /// A capacity.
     pub trait Memory {
@@ -195,15 +169,7 @@ mod sealed {
         }
 
         fn reset(&mut self, config: &Config) -> Result<(), BoxTooLarge> {
-            let (across, up) = config.box_tiles;
-            if !Tiles::<TILES, SLOTS>::fits(across, up) {
-                return Err(BoxTooLarge {
-                    box_tiles: config.box_tiles,
-                    slots: SLOTS,
-                });
-            }
-            Self::reset(self, config);
-            Ok(())
+            Self::reset(self, config)
         }
 
         fn step(

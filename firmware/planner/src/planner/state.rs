@@ -4,12 +4,12 @@
 
 use super::ground_model::GroundModel;
 use super::workspace::{RING, SCRATCH};
-use crate::config::Config;
+use crate::config::{BoxTooLarge, Config};
 use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{self, Drive};
 use crate::field::height_preference::Preferences;
 use crate::geometry::Cell;
-use crate::map::Map;
+use crate::map::{Map, Tiles};
 use crate::path::{Path, viewpoint};
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability;
@@ -84,8 +84,18 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         }
     }
 
-    /// Forget everything and begin a session with `config`.
-    pub fn reset(&mut self, config: &Config) {
+    /// Forgets everything and begins a session with `config`.
+    ///
+    /// # Errors
+    /// [`BoxTooLarge`] if the configuration's box does not fit. Nothing is forgotten then.
+    pub fn reset(&mut self, config: &Config) -> Result<(), BoxTooLarge> {
+        let (across, up) = config.box_tiles;
+        if !Tiles::<TILES, SLOTS>::fits(across, up) {
+            return Err(BoxTooLarge {
+                box_tiles: config.box_tiles,
+                slots: SLOTS,
+            });
+        }
         self.map.begin(config);
         self.preferences = Preferences::new();
         self.ground = GroundModel::of(config);
@@ -98,6 +108,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.status = Status::Exploring;
         self.started = false;
         self.has_new_skeleton = false;
+        Ok(())
     }
 
     /// The map.

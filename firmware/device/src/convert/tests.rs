@@ -1,14 +1,25 @@
 //! Every limit, just inside and just outside.
 
 use std::string::ToString;
+use std::vec::Vec;
 
+use fieldline_planner::{Cell, Frontier, LaserMount, Residue, RobotShape, Twist};
+use fieldline_protocol::message as wire;
 use fieldline_protocol::message::{
-    Laser, Observation, Parameter, Refusal, Scan, Start, UnevenGround,
+    Control, Hull, Laser, LoopLimits, Observation, Parameter, Refusal, Scan, Start, UnevenGround,
 };
 use fixed::types::{I4F12, I16F16};
 
-use super::{check_start, matches};
-use crate::pilot::tests::start;
+use super::{config, float, input, quantity, wire_frontier, wire_twist};
+use crate::pilot::Pilot;
+use crate::pilot::tests::{Bench, start};
+
+/// Returns what the device answers to these parameters.
+fn checked(start: &Start) -> Result<(), Refusal> {
+    let start = Control::Start(start.clone());
+    let started = Pilot::new().control(&mut Bench::new().memory(), &start);
+    started.map(drop)
+}
 
 fn with_laser(change: impl Fn(&mut Laser)) -> Start {
     let mut start = start();
@@ -18,16 +29,16 @@ fn with_laser(change: impl Fn(&mut Laser)) -> Start {
 
 #[test]
 fn good_parameters_are_accepted() {
-    assert_eq!(check_start::<4, 400>(&start()), Ok(()));
+    assert_eq!(checked(&start()), Ok(()));
     let slow = Start {
         linear_accel: I4F12::lit("0.234"),
         angular_accel: I4F12::lit("0.814"),
         period_ms: 400,
         ..start()
     };
-    assert_eq!(check_start::<4, 400>(&slow), Ok(()));
+    assert_eq!(checked(&slow), Ok(()));
     let upward = |laser: &mut Laser| laser.bearing_step = I16F16::lit("0.0349");
-    assert_eq!(check_start::<4, 400>(&with_laser(upward)), Ok(()));
+    assert_eq!(checked(&with_laser(upward)), Ok(()));
 }
 
 #[test]
@@ -40,6 +51,36 @@ fn every_limit_is_checked() {
                 ..start()
             },
             Parameter::Lasers,
+        ),
+        (
+            Start {
+                hull: Hull {
+                    width_mm: 0,
+                    ..Hull::default()
+                },
+                ..start()
+            },
+            Parameter::Hull,
+        ),
+        (
+            Start {
+                hull: Hull {
+                    length_mm: 4001,
+                    ..Hull::default()
+                },
+                ..start()
+            },
+            Parameter::Hull,
+        ),
+        (
+            Start {
+                loops: LoopLimits {
+                    detour: -I16F16::DELTA,
+                    ..LoopLimits::default()
+                },
+                ..start()
+            },
+            Parameter::LoopLimits,
         ),
         (
             Start {
@@ -143,18 +184,18 @@ fn every_limit_is_checked() {
         (with_laser(|laser| laser.x = I4F12::MIN), Parameter::Mount),
     ];
     for (start, parameter) in cases {
-        assert_eq!(check_start::<4, 400>(start), bad(*parameter), "{start:?}");
+        assert_eq!(checked(start), bad(*parameter), "{start:?}");
     }
     let mut tilted = start();
     tilted.lasers[0].pitch = I4F12::lit("0.35");
-    assert_eq!(check_start::<4, 400>(&tilted), bad(Parameter::Pitch));
+    assert_eq!(checked(&tilted), bad(Parameter::Pitch));
 }
 
 /// The planner holds radii of 50 to 600 mm. The wire accepts the same radii and no others.
 #[test]
 fn the_radius_is_limited_to_what_the_planner_holds() {
     let check = |robot_radius_mm| {
-        check_start::<4, 400>(&Start {
+        checked(&Start {
             robot_radius_mm,
             ..start()
         })
@@ -189,7 +230,7 @@ fn limits_of_uneven_ground_are_checked() {
     let check = |change: &dyn Fn(&mut UnevenGround)| {
         let mut ground = good;
         change(&mut ground);
-        check_start::<4, 400>(&Start {
+        checked(&Start {
             uneven_ground: Some(ground),
             ..start()
         })
@@ -215,8 +256,8 @@ fn limits_of_uneven_ground_are_checked() {
         lasers: start().lasers.into_iter().take(1).collect(),
         ..start()
     };
-    let refused = Err(Refusal::BadParameter(Parameter::UnevenGround));
-    assert_eq!(check_start::<4, 400>(&one_laser), refused);
+    let refused = Err(Refusal::BadParameter(Parameter::Lasers));
+    assert_eq!(checked(&one_laser), refused);
 }
 
 #[test]
@@ -238,7 +279,7 @@ fn the_box_must_fit_the_slots() {
             ..start()
         };
         let expected = if fits { Ok(()) } else { Err(Refusal::BadBox) };
-        assert_eq!(check_start::<4, 400>(&start), expected, "{box_tiles:?}");
+        assert_eq!(checked(&start), expected, "{box_tiles:?}");
     }
 }
 
@@ -252,7 +293,12 @@ fn scans_must_match_the_lasers() {
             scans: scans.iter().map(|beams| scan(*beams)).collect(),
             ..Observation::default()
         };
-        matches(&observation, beams.iter().copied())
+        let laser = |&beams: &u16| LaserMount {
+            beams,
+            ..LaserMount::level(0.1, 0.4)
+        };
+        let lasers: Vec<LaserMount> = beams.iter().map(laser).collect();
+        input(&observation, &lasers).is_some()
     };
     assert!(seen(&[3, 4], &[3, 4]));
     assert!(!seen(&[3, 4], &[4, 3]));
@@ -260,4 +306,92 @@ fn scans_must_match_the_lasers() {
     assert!(!seen(&[3, 4], &[3]));
     assert!(!seen(&[2], &[3]));
     assert!(!seen(&[], &[3]));
+}
+
+#[test]
+fn a_session_takes_its_limits_from_the_host() {
+    let start = Start {
+        box_tiles: (30, 12),
+        robot_radius_mm: 250,
+        max_linear: I4F12::lit("0.5"),
+        max_angular: I4F12::lit("1.5"),
+        linear_accel: I4F12::lit("0.25"),
+        angular_accel: I4F12::lit("0.75"),
+        period_ms: 125,
+        hull: Hull {
+            length_mm: 900,
+            width_mm: 600,
+            height_mm: 400,
+        },
+        lasers: start().lasers,
+        ..Start::default()
+    };
+    let config = config(&start).expect("valid");
+    assert_eq!(config.robot, RobotShape::rectangle(0.9, 0.6, 0.4));
+    assert_eq!(config.box_tiles, (30, 12));
+    assert_eq!(
+        [
+            config.robot_radius_m,
+            config.max_linear_mps,
+            config.max_angular_radps,
+            config.linear_accel_mps2,
+            config.angular_accel_radps2,
+            config.period_s,
+        ],
+        [0.25, 0.5, 1.5, 0.25, 0.75, 0.125]
+    );
+}
+
+#[test]
+fn every_short_quantity_round_trips() {
+    for bits in i16::MIN..=i16::MAX {
+        let short = I4F12::from_bits(bits);
+        assert_eq!(quantity::<I4F12>(float(short)), short);
+    }
+}
+
+#[test]
+fn long_quantities_round_trip_within_128_m() {
+    for bits in (-(1 << 23)..=1 << 23).step_by(997) {
+        let long = I16F16::from_bits(bits);
+        assert_eq!(quantity::<I16F16>(float(long)), long);
+    }
+}
+
+#[test]
+fn quantities_saturate_and_nan_becomes_zero() {
+    let twist = |linear_mps, angular_radps| {
+        let twist = wire_twist(&Twist {
+            linear_mps,
+            angular_radps,
+        });
+        (twist.linear, twist.angular)
+    };
+    assert_eq!(twist(9.0, -9.0), (I4F12::MAX, I4F12::MIN));
+    assert_eq!(
+        twist(f32::INFINITY, f32::NEG_INFINITY),
+        (I4F12::MAX, I4F12::MIN)
+    );
+    assert_eq!(twist(f32::NAN, -f32::NAN), (I4F12::ZERO, I4F12::ZERO));
+}
+
+#[test]
+fn distant_cells_saturate() {
+    let frontier = Frontier {
+        cell: Cell {
+            x: 40_000,
+            y: -40_000,
+        },
+        cells: 7,
+        reason: Residue::OutOfBounds,
+    };
+    assert_eq!(
+        wire_frontier(&frontier),
+        wire::ResidualFrontier {
+            x: i16::MAX,
+            y: i16::MIN,
+            cells: 7,
+            reason: wire::ResidualReason::OutOfBounds,
+        }
+    );
 }
