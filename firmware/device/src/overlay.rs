@@ -10,13 +10,14 @@ use fieldline_planner::State;
 use fieldline_planner::geometry::Cell;
 use fieldline_planner::map::tiles::TILE_SIDE;
 use fieldline_planner::strategy::Ouroboros;
-use fieldline_planner::strategy::tdbvp::rails::PLACE_CELLS;
+use fieldline_planner::strategy::ouroboros::REGION_CELLS;
+use fieldline_planner::strategy::tdbvp::PLACE_CELLS;
 use fieldline_protocol::message::{Loops, PATH_PAGE, Path, TILE_STAMPS};
 
 /// Side of a tile.
 const TILE: i32 = TILE_SIDE;
 /// Side of a region that the strategy closes.
-const REGION: i32 = 8;
+const REGION: i32 = REGION_CELLS;
 /// Side of a place with a visit stamp.
 const PLACE: i32 = PLACE_CELLS;
 
@@ -50,7 +51,11 @@ pub(crate) fn closed_regions<const TILES: usize, const SLOTS: usize>(
     tile: (i16, i16),
 ) -> u16 {
     state.ouroboros().map_or(0, |ouroboros| {
-        let is_closed = |k: &i32| ouroboros.marks().is_marked(square(tile, REGION, *k));
+        let is_closed = |k: &i32| {
+            ouroboros
+                .closed_regions()
+                .is_closed(square(tile, REGION, *k))
+        };
         (0..16).filter(is_closed).fold(0, |bits, k| bits | 1 << k)
     })
 }
@@ -61,9 +66,9 @@ pub(crate) fn visit_stamps<const TILES: usize, const SLOTS: usize>(
     tile: (i16, i16),
 ) -> [u8; TILE_STAMPS] {
     let stamp = |k: usize| {
-        state
-            .tdbvp()
-            .map_or(0, |tdbvp| tdbvp.rails().rank(square(tile, PLACE, k as i32)))
+        state.tdbvp().map_or(0, |tdbvp| {
+            tdbvp.rails().stamp(square(tile, PLACE, k as i32))
+        })
     };
     core::array::from_fn(stamp)
 }

@@ -122,6 +122,14 @@ impl Cell {
         }
     }
 
+    /// The four map cells of the coarse cell (20 cm) whose least map cell this is.
+    pub fn quarters(self) -> impl Iterator<Item = Self> {
+        (0..4).map(move |k| Self {
+            x: self.x + (k & 1),
+            y: self.y + (k >> 1),
+        })
+    }
+
     /// Squared distance between two cells, square metres.
     #[must_use]
     pub fn distance2(self, other: Self) -> f32 {

@@ -4,6 +4,7 @@
 //! | file | what it holds |
 //! | --- | --- |
 //! | [`cell_path`] | the path to the present goal, and the local goal on it |
+//! | [`centres`] | queries about centre cells |
 //! | [`nearest`] | the centre cell nearest to a place [Jorge15, `moveToVoronoi`] |
 //! | [`search`] | a wave over centre cells and the path down it [Jorge15, `propagatePotential`] |
 //! | [`frontier_path`] | the path to the frontier of the least cost |
@@ -21,6 +22,7 @@
 pub(crate) mod blocked_passages;
 pub mod breadcrumbs;
 pub mod cell_path;
+pub(crate) mod centres;
 pub mod context;
 pub(crate) mod frontier_path;
 pub(crate) mod goal_cost;

@@ -19,7 +19,7 @@ use crate::roadmap::skeleton::Frame;
 const MOST_BY_AIR: i32 = 1_280;
 
 /// Where centre cells are looked for.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Centres<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) tiles: &'a Tiles<TILES, SLOTS>,
     pub(crate) disc: &'a Footprint,

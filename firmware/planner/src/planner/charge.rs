@@ -7,10 +7,10 @@ use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows, SCALES};
 use crate::geometry::Cell;
 use crate::input::Input;
+use crate::path::nearest::Centres;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 use crate::roadmap::configuration_space::Footprint;
-use crate::strategy::tdbvp::Surroundings;
 
 /// Fill the local grid at the smallest scale that holds a local goal. Returns the goal's cells in
 /// it; `None` if there is no path, or no scale holds a goal.
@@ -61,13 +61,9 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
         .ground
         .block_rims(tiles, footprint, input.pose.point(), view);
     slide(workspace);
-    let around = Surroundings {
-        topology: &state.skeleton,
-        tiles: state.map.tiles(),
-        pose: input.pose,
-    };
+    let centres = Centres::of(&state.skeleton, tiles, footprint)?;
     let window = (&mut workspace.window, &workspace.view);
-    state.strategy.charge(&around, window)
+    state.strategy.charge(&centres, input.pose.point(), window)
 }
 
 /// Set the window's boundary values. The last field stays where the two windows overlap.

@@ -13,7 +13,7 @@ use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 use crate::roadmap::configuration_space::Footprint;
 use crate::status::{Fault, Status};
-use crate::strategy::ouroboros::Round;
+use crate::strategy::round::Round;
 
 /// Distance ahead of the robot's centre at which unmeasured ground stops it, metres: between its
 /// front and where the tilted beams meet level ground.
@@ -36,9 +36,9 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         view: &mut workspace.view,
     };
     let round = Round {
-        topology: &mut state.skeleton,
+        skeleton: &mut state.skeleton,
         tiles: state.map.tiles(),
-        disc: footprint,
+        footprint,
         pose: input.pose,
         time_ms: input.time_ms,
         limits: &config.loops,

@@ -1,10 +1,18 @@
-//! The strategies: what is a boundary of the window at what potential, and what counts as finished.
+//! The strategies: which cells of the window are boundaries at what potential, and when the
+//! exploration is finished.
 //!
-//! Every strategy ends up going to frontiers, so [`Frontier`] is always there; what one of them has beyond it, it keeps in
-//! memory that they share (`More`).
+//! | file | what it holds |
+//! | --- | --- |
+//! | [`frontier`] | drive to the nearest frontier, until none can be reached |
+//! | [`ouroboros`] | close every loop on the way [Jorge15] |
+//! | [`tdbvp`] | follow rails of time, and patrol [Maffei14] |
+//! | [`round`] | the inputs of a round, with `moveToVoronoi` and `propagatePotential` [Jorge15] |
+//!
+//! Every strategy drives to frontiers in the end, so a [`Strategist`] always has a [`Frontier`].
 
 pub mod frontier;
 pub mod ouroboros;
+pub(crate) mod round;
 pub mod tdbvp;
 
 pub use frontier::Frontier;
@@ -14,126 +22,115 @@ pub use tdbvp::Tdbvp;
 use crate::config::{Config, Strategy};
 use crate::field::Window;
 use crate::field::local_grid::LocalGrid;
-use crate::geometry::Pose;
+use crate::geometry::{Point, Pose};
+use crate::path::nearest::Centres;
 use crate::path::{PlanningScratch, RoundOutcome};
 use crate::roadmap::skeleton::Space;
 use crate::robot::LaserMount;
-use ouroboros::Round;
-use ouroboros::shield::Shield;
-use tdbvp::Surroundings;
+use crate::strategy::ouroboros::Shield;
+use crate::strategy::round::Round;
 
-/// What plans in a session. `SLOTS` as the map's.
+/// The session's strategy and its state. `SLOTS` as the map's.
 #[derive(Debug)]
-pub struct Strategist<const SLOTS: usize> {
-    /// What drives to frontiers: path, bars, leftovers, the second chance.
-    pub frontier: Frontier,
-    more: More<SLOTS>,
+pub(crate) struct Strategist<const SLOTS: usize> {
+    /// The path to the current goal, dropped goals, blocked passages, the second chance.
+    pub(crate) frontier: Frontier,
+    loops: Loops<SLOTS>,
 }
 
-/// What a strategy remembers beyond the frontier's.
+/// The state of a strategy that closes loops.
 ///
-/// With its tag of its own, so that the value without anything is all zeros and costs no flash as a static one.
+/// With an explicit tag, so that a value of `None` is all zeros and costs no flash in a static.
 #[derive(Debug)]
 #[repr(u8)]
 #[allow(
     clippy::large_enum_variant,
     reason = "no heap to box into; one lives at a time"
 )]
-enum More<const SLOTS: usize> {
-    Nothing,
+enum Loops<const SLOTS: usize> {
+    None,
     Ouroboros(Ouroboros<SLOTS>),
     Tdbvp(Tdbvp<SLOTS>),
 }
 
 impl<const SLOTS: usize> Strategist<SLOTS> {
-    /// Nothing but the frontier.
-    #[must_use]
-    pub const fn new() -> Self {
+    /// Strategy *frontier*, at the start.
+    pub(crate) const fn new() -> Self {
         Self {
             frontier: Frontier::new(),
-            more: More::Nothing,
+            loops: Loops::None,
         }
     }
 
-    /// Forget everything, and plan as `config` says.
-    pub fn reset(&mut self, config: &Config) {
+    /// Forgets everything and begins the strategy of `config`.
+    pub(crate) fn reset(&mut self, config: &Config) {
         self.frontier.reset();
-        self.more = match config.strategy {
-            Strategy::Frontier => More::Nothing,
-            Strategy::Ouroboros => More::Ouroboros(Ouroboros::new()),
-            Strategy::Tdbvp { .. } => More::Tdbvp(Tdbvp::new()),
-        };
         let (width, height) = config.box_tiles;
         let box_tiles = (i32::from(width), i32::from(height));
-        match (&mut self.more, config.strategy) {
-            (More::Ouroboros(ouroboros), _) => ouroboros.reset(box_tiles),
-            (More::Tdbvp(tdbvp), Strategy::Tdbvp { patrol_s }) => tdbvp.reset(box_tiles, patrol_s),
-            _ => {}
-        }
+        self.loops = match config.strategy {
+            Strategy::Frontier => Loops::None,
+            Strategy::Ouroboros => Loops::Ouroboros(Ouroboros::new(box_tiles)),
+            Strategy::Tdbvp { patrol_s } => Loops::Tdbvp(Tdbvp::new(box_tiles, patrol_s)),
+        };
     }
 
-    /// The space whose skeleton a strategy plans on.
-    #[must_use]
-    pub const fn space(strategy: Strategy) -> Space {
+    /// Returns the space whose skeleton a strategy plans on.
+    pub(crate) const fn space(strategy: Strategy) -> Space {
         match strategy {
             Strategy::Frontier | Strategy::Tdbvp { .. } => Space::KnownFree,
             Strategy::Ouroboros => Space::AnchoredNotObstacle,
         }
     }
 
-    /// What is known of loops, where the strategy closes them.
-    #[must_use]
-    pub const fn ouroboros(&self) -> Option<&Ouroboros<SLOTS>> {
-        match &self.more {
-            More::Ouroboros(ouroboros) => Some(ouroboros),
-            More::Nothing | More::Tdbvp(_) => None,
+    /// Returns the state of strategy *ouroboros*, if it is the session's.
+    pub(crate) const fn ouroboros(&self) -> Option<&Ouroboros<SLOTS>> {
+        match &self.loops {
+            Loops::Ouroboros(ouroboros) => Some(ouroboros),
+            Loops::None | Loops::Tdbvp(_) => None,
         }
     }
 
-    /// The wall behind a robot that closes a loop.
-    #[must_use]
-    pub const fn shield(&self) -> Option<&Shield> {
-        match &self.more {
-            More::Ouroboros(ouroboros) => ouroboros.shield(),
-            More::Nothing | More::Tdbvp(_) => None,
+    /// Returns the shield behind a robot that closes a loop.
+    pub(crate) fn shield(&self) -> Option<&Shield> {
+        self.ouroboros()?.shield()
+    }
+
+    /// Returns the state of strategy *tdbvp*, if it is the session's.
+    pub(crate) const fn tdbvp(&self) -> Option<&Tdbvp<SLOTS>> {
+        match &self.loops {
+            Loops::Tdbvp(tdbvp) => Some(tdbvp),
+            Loops::None | Loops::Ouroboros(_) => None,
         }
     }
 
-    /// What is known of rails, where the strategy follows them.
-    #[must_use]
-    pub const fn tdbvp(&self) -> Option<&Tdbvp<SLOTS>> {
-        match &self.more {
-            More::Tdbvp(tdbvp) => Some(tdbvp),
-            More::Nothing | More::Ouroboros(_) => None,
+    /// Records the robot's pose, and the scan of the level laser; called in every step.
+    pub(crate) fn note(&mut self, pose: &Pose, time_ms: u32, scan: Option<(&LaserMount, &[u16])>) {
+        match &mut self.loops {
+            Loops::None => {}
+            Loops::Ouroboros(ouroboros) => ouroboros.note_pose(pose),
+            Loops::Tdbvp(tdbvp) => tdbvp.note(pose, time_ms, scan),
         }
     }
 
-    /// The robot is here; to be called in every step, with the scan of the level laser.
-    pub fn note(&mut self, pose: &Pose, time_ms: u32, scan: Option<(&LaserMount, &[u16])>) {
-        match &mut self.more {
-            More::Nothing => {}
-            More::Ouroboros(ouroboros) => ouroboros.note_pose(pose),
-            More::Tdbvp(tdbvp) => tdbvp.note(pose, time_ms, scan),
-        }
-    }
-
-    /// Charge the window otherwise than with a path's local goal; `None` where the strategy has no such charge, or it leads nowhere.
-    pub fn charge<const TILES: usize>(
+    /// Charges the window with the strategy's own boundary values. `None` if it has none, or they
+    /// lead nowhere: then the window has the path's local goal.
+    pub(crate) fn charge<const TILES: usize>(
         &mut self,
-        around: &Surroundings<'_, TILES, SLOTS>,
-        (window, view): (&mut Window, &LocalGrid),
+        centres: &Centres<'_, TILES, SLOTS>,
+        robot: Point,
+        window: (&mut Window, &LocalGrid),
     ) -> Option<()> {
-        match &mut self.more {
-            More::Nothing | More::Ouroboros(_) => None,
-            More::Tdbvp(tdbvp) => tdbvp
-                .charge(&self.frontier, around, (window, view))
+        match &mut self.loops {
+            Loops::None | Loops::Ouroboros(_) => None,
+            Loops::Tdbvp(tdbvp) => tdbvp
+                .charge(&self.frontier, centres, robot, window)
                 .then_some(()),
         }
     }
 
-    /// The exploration is over; whether the robot goes on all the same.
-    pub fn begin_patrol(&mut self) -> bool {
-        let More::Tdbvp(tdbvp) = &mut self.more else {
+    /// Ends the exploration. Returns true if the robot goes on with a patrol.
+    pub(crate) fn begin_patrol(&mut self) -> bool {
+        let Loops::Tdbvp(tdbvp) = &mut self.loops else {
             return false;
         };
         let begins = tdbvp.begin_patrol();
@@ -143,32 +140,28 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         begins
     }
 
-    /// Whether the robot went on after the exploration.
-    #[must_use]
-    pub fn is_patrolling(&self) -> bool {
+    /// Returns true if the exploration is over and the robot patrols.
+    pub(crate) fn is_patrolling(&self) -> bool {
         self.tdbvp().is_some_and(Tdbvp::is_patrolling)
     }
 
-    /// Go on with a round on the published skeleton; `None` when it needs another call on the same one.
-    pub fn advance<const TILES: usize>(
+    /// Continues a round on the published skeleton; `None` if it needs another call on it.
+    pub(crate) fn advance<const TILES: usize>(
         &mut self,
         round: Round<'_, TILES, SLOTS>,
-        lent: PlanningScratch<'_>,
+        scratch: PlanningScratch<'_>,
     ) -> Option<RoundOutcome> {
-        self.frontier.cut(round.topology);
-        match &mut self.more {
-            More::Nothing => {
-                let (robot, time_ms) = (round.pose.point(), round.time_ms);
-                Some(self.frontier.replan(&round.known(), robot, time_ms, lent))
+        self.frontier.cut(round.skeleton);
+        match &mut self.loops {
+            Loops::None => {
+                let (context, robot) = (round.context(), round.pose.point());
+                let outcome = self
+                    .frontier
+                    .replan(&context, robot, round.time_ms, scratch);
+                Some(outcome)
             }
-            More::Ouroboros(ouroboros) => ouroboros.advance(&mut self.frontier, round, lent),
-            More::Tdbvp(tdbvp) => Some(tdbvp.advance(&mut self.frontier, round, lent)),
+            Loops::Ouroboros(ouroboros) => ouroboros.advance(&mut self.frontier, round, scratch),
+            Loops::Tdbvp(tdbvp) => Some(tdbvp.advance(&mut self.frontier, round, scratch)),
         }
-    }
-}
-
-impl<const SLOTS: usize> Default for Strategist<SLOTS> {
-    fn default() -> Self {
-        Self::new()
     }
 }

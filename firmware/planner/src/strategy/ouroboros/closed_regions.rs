@@ -1,140 +1,130 @@
-//! Marks: the surroundings of loops that were closed, where no tractor point is made again [Jorge15, III-A].
+//! Closed regions: the surroundings of loops, in which no new tractor point is made
+//! [Jorge15, III-A: "the next tractor point must be placed in an unmarked area"].
 //!
-//! Two bits for 0.8 × 0.8 m of the map: *marked*, and *pending*, near the path of the loop that is being closed. The path is pending
-//! until the loop is closed, and forgotten when it is not. Tiles are addressed as the map's are, so the marks lie
-//! wherever the map does and need no skeleton.
+//! A region is 0.8 × 0.8 m of the map and has two bits. *Pending*: the path of the current loop
+//! comes near. *Closed*: a loop came near that is over. Pending regions become closed at the end of
+//! the loop, or are dropped when the loop turns out to be none. Slots are addressed as the map's
+//! are, so the regions need no skeleton and outlast a map that is replaced under them.
 //!
-//! Invariant: as the map's: what is known fits the box, so no two of its tiles share a place. A mark that reaches a tile
-//! beyond may fall on the box's other side; it then keeps a tractor point from where one might have been.
+//! Departs from [Jorge15, III-A], which marks only loops that were closed: loops that were given up
+//! and places of a finished revisit become closed regions too, or the robot would begin the same
+//! loop again.
+//!
+//! Invariant: what is known fits the box, so its tiles have slots of their own. A region in a tile
+//! beyond may share the slot of one on the box's other side. The error is safe: there is no tractor
+//! point where one might have been.
 //!
 //! Units: map cells.
 
 use crate::geometry::Cell;
 use crate::grid::TileBox;
 
-/// Cells around the path that are marked with it: 1 m, half a corridor.
-pub const NEAR_CELLS: i32 = 10;
-/// Map cells along a mark, as a power of two.
-const SHIFT: i32 = 3;
-/// Marks along a tile, as a power of two.
+/// Distance from the path, along either axis, within which regions are closed with it, cells: 1 m,
+/// half the width of a corridor.
+const NEAR_CELLS: i32 = 10;
+/// Side of a region as a power of two, cells.
+const REGION_SHIFT: i32 = 3;
+/// Side of a region, cells.
+pub const REGION_CELLS: i32 = 1 << REGION_SHIFT;
+/// Regions along a tile as a power of two: a tile's 4 × 4 regions fill a `u16`.
 const TILE_SHIFT: i32 = 2;
 
-/// Marks in a box of tiles; 4 bytes for each of its `SLOTS` places.
+/// Closed and pending regions in a box of tiles: 4 bytes for each of its `SLOTS` places.
 #[derive(Debug)]
-pub struct Marks<const SLOTS: usize> {
-    marked: [u16; SLOTS],
+pub struct ClosedRegions<const SLOTS: usize> {
+    closed: [u16; SLOTS],
     pending: [u16; SLOTS],
     slots: TileBox,
 }
 
-impl<const SLOTS: usize> Marks<SLOTS> {
-    /// Nothing is marked; without a box.
-    #[must_use]
-    pub const fn new() -> Self {
+impl<const SLOTS: usize> ClosedRegions<SLOTS> {
+    /// No region is closed, in a box of (width, height) tiles.
+    pub(crate) const fn new((width, height): (i32, i32)) -> Self {
         Self {
-            marked: [0; SLOTS],
+            closed: [0; SLOTS],
             pending: [0; SLOTS],
-            slots: TileBox::EMPTY,
+            slots: TileBox { width, height },
         }
     }
 
-    /// Forget everything; the box is `width` × `height` tiles.
-    pub fn reset(&mut self, (width, height): (i32, i32)) {
-        self.marked.fill(0);
-        self.pending.fill(0);
-        self.slots = TileBox { width, height };
-    }
-
-    /// Whether a loop was closed near here.
+    /// Returns true if no new loop starts in the region of a map cell.
     #[must_use]
-    pub fn is_marked(&self, cell: Cell) -> bool {
-        let (slot, bit) = self.place(cell.x >> SHIFT, cell.y >> SHIFT);
-        self.marked.get(slot).is_some_and(|marks| marks & bit != 0)
+    pub fn is_closed(&self, cell: Cell) -> bool {
+        let (slot, bit) = self.place(cell.x >> REGION_SHIFT, cell.y >> REGION_SHIFT);
+        self.closed.get(slot).is_some_and(|tile| tile & bit != 0)
     }
 
-    /// The path of the loop that is being closed comes by here.
-    pub fn note(&mut self, cell: Cell) {
-        let span = |at: i32| (at - NEAR_CELLS) >> SHIFT..=(at + NEAR_CELLS) >> SHIFT;
+    /// Makes the regions near a cell of the loop's path pending.
+    pub(crate) fn add_pending(&mut self, cell: Cell) {
+        let span = |at: i32| (at - NEAR_CELLS) >> REGION_SHIFT..=(at + NEAR_CELLS) >> REGION_SHIFT;
         for y in span(cell.y) {
             for x in span(cell.x) {
                 let (slot, bit) = self.place(x, y);
-                if let Some(marks) = self.pending.get_mut(slot) {
-                    *marks |= bit;
+                if let Some(tile) = self.pending.get_mut(slot) {
+                    *tile |= bit;
                 }
             }
         }
     }
 
-    /// The loop is closed: what is pending is marked.
-    pub fn keep(&mut self) {
-        for (marked, pending) in self.marked.iter_mut().zip(&mut self.pending) {
-            *marked |= core::mem::take(pending);
+    /// Closes the pending regions.
+    pub(crate) fn close_pending(&mut self) {
+        for (closed, pending) in self.closed.iter_mut().zip(&mut self.pending) {
+            *closed |= core::mem::take(pending);
         }
     }
 
-    /// The loop is not closed after all.
-    pub fn forget(&mut self) {
+    /// Drops the pending regions.
+    pub(crate) fn drop_pending(&mut self) {
         self.pending.fill(0);
     }
 
-    /// The tile's place and the bit in it of a mark, by column and row of marks. Beyond every place without a box.
+    /// Returns the slot of a region, by column and row of regions, and its bit there.
     fn place(&self, x: i32, y: i32) -> (usize, u16) {
         let slot = self.slots.slot(x >> TILE_SHIFT, y >> TILE_SHIFT);
         (slot, 1 << ((y & 3) << TILE_SHIFT | (x & 3)))
     }
 }
 
-impl<const SLOTS: usize> Default for Marks<SLOTS> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::Marks;
+    use super::ClosedRegions;
     use crate::geometry::Cell;
 
     #[test]
-    fn a_path_is_marked_when_its_loop_is_closed_and_not_before() {
-        let mut marks: Marks<12> = Marks::new();
-        marks.note(Cell { x: 0, y: 0 });
-        assert!(!marks.is_marked(Cell { x: 0, y: 0 }), "there is no box");
-        marks.reset((4, 3));
+    fn regions_along_a_path_are_closed_with_its_loop_and_not_before() {
+        let mut regions: ClosedRegions<12> = ClosedRegions::new((0, 0));
+        regions.add_pending(Cell { x: 0, y: 0 });
+        regions.close_pending();
+        let is_closed = regions.is_closed(Cell { x: 0, y: 0 });
+        assert!(!is_closed, "the box has no area");
+        let mut regions: ClosedRegions<12> = ClosedRegions::new((4, 3));
         for x in -40..20 {
-            marks.note(Cell { x, y: -3 });
+            regions.add_pending(Cell { x, y: -3 });
         }
-        assert!(!marks.is_marked(Cell { x: -20, y: -3 }));
-        marks.forget();
-        marks.keep();
-        assert!(!marks.is_marked(Cell { x: -20, y: -3 }), "it was forgotten");
-        marks.note(Cell { x: -20, y: -3 });
-        marks.keep();
-        for (dx, dy) in [(0, 0), (10, 0), (-10, 0), (0, 10), (10, -10)] {
-            let near = Cell {
-                x: -20 + dx,
-                y: -3 + dy,
-            };
-            assert!(marks.is_marked(near), "{near:?}");
+        assert!(!regions.is_closed(Cell { x: -20, y: -3 }));
+        regions.drop_pending();
+        regions.close_pending();
+        let is_closed = regions.is_closed(Cell { x: -20, y: -3 });
+        assert!(!is_closed, "it was dropped");
+        regions.add_pending(Cell { x: -20, y: -3 });
+        regions.close_pending();
+        let shifted = |(dx, dy)| Cell {
+            x: -20 + dx,
+            y: -3 + dy,
+        };
+        for near in [(0, 0), (10, 0), (-10, 0), (0, 10), (10, -10)].map(shifted) {
+            assert!(regions.is_closed(near), "{near:?}");
         }
-        for (dx, dy) in [(18, 0), (-18, 0), (0, 18), (0, -18)] {
-            let far = Cell {
-                x: -20 + dx,
-                y: -3 + dy,
-            };
-            assert!(!marks.is_marked(far), "{far:?}");
+        for far in [(18, 0), (-18, 0), (0, 18), (0, -18)].map(shifted) {
+            assert!(!regions.is_closed(far), "{far:?}");
         }
     }
 
     #[test]
-    fn every_mark_of_the_box_has_a_place_of_its_own() {
-        let mut marks: Marks<12> = Marks::new();
-        marks.reset((4, 3));
-        let cell = |k: i32| Cell {
-            x: k % 16 * 8 - 64,
-            y: k / 16 * 8 + 800,
-        };
-        let places = (0..192).map(|k| marks.place(cell(k).x >> 3, cell(k).y >> 3));
+    fn every_region_of_the_box_has_a_bit_of_its_own() {
+        let regions: ClosedRegions<12> = ClosedRegions::new((4, 3));
+        let places = (0..192).map(|k| regions.place(k % 16 - 8, k / 16 + 100));
         let mut places: std::vec::Vec<_> = places.collect();
         places.sort_unstable();
         places.dedup();

@@ -18,9 +18,9 @@ use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
 use crate::strategy::Frontier;
 use crate::strategy::ouroboros::exploring::worlds::{ADJACENT, NESTED, ROOMS, THREE_LOOPS, TREES};
-use crate::strategy::ouroboros::ground::quarters;
-use crate::strategy::ouroboros::scenes::{Memory, POINT_M, SLOTS, TILES, at, pose_in};
-use crate::strategy::ouroboros::{Ouroboros, Round, Tally};
+use crate::strategy::ouroboros::scenes::{Memory, POINT_M, SLOTS, TILES, at, has_cell, pose_in};
+use crate::strategy::ouroboros::{Ouroboros, Tally};
+use crate::strategy::round::Round;
 
 /// Cells that the robot sees: as much of these loops as 12 m are of one of 70 m.
 const SIGHT: i32 = 8;
@@ -62,8 +62,7 @@ impl Exploration {
         tiles.reset(8, 6);
         let mut topology = Skeleton::new();
         topology.reset(Space::AnchoredNotObstacle);
-        let mut strategy = Ouroboros::new();
-        strategy.reset(tiles.box_tiles());
+        let strategy = Ouroboros::new(tiles.box_tiles());
         let mut robot = (0, 0);
         let mut turned = BTreeMap::new();
         for (y, row) in world.iter().enumerate() {
@@ -121,7 +120,7 @@ impl Exploration {
             } else {
                 Class::Free
             };
-            for part in quarters(at(to.0 as usize, to.1 as usize)) {
+            for part in at(to.0 as usize, to.1 as usize).quarters() {
                 self.tiles.set(part, class).unwrap();
             }
         }
@@ -137,9 +136,9 @@ impl Exploration {
         for calls in 1.. {
             assert!(calls <= 4, "a round that does not end");
             let round = Round {
-                topology: &mut self.topology,
+                skeleton: &mut self.topology,
                 tiles: &self.tiles,
-                disc: &disc,
+                footprint: &disc,
                 pose: self.pose,
                 time_ms,
                 limits: &self.limits,
@@ -163,7 +162,7 @@ impl Exploration {
     fn is_shield(&self, (x, y): (i32, i32)) -> bool {
         self.strategy
             .shield()
-            .is_some_and(|shield| shield.holds(at(x as usize, y as usize)))
+            .is_some_and(|shield| has_cell(shield, at(x as usize, y as usize)))
     }
 
     /// Some cells on towards the part of the path that is a little ahead.
@@ -281,7 +280,7 @@ impl Exploration {
         for (y, row) in self.world.iter().enumerate() {
             for (x, &c) in row.iter().enumerate() {
                 let here = (x as i32, y as i32);
-                let marked = self.strategy.marks().is_marked(at(x, y));
+                let marked = self.strategy.closed_regions().is_closed(at(x, y));
                 text.push(if here == self.robot {
                     '@'
                 } else if self.strategy.tractor() == Some(at(x, y)) {
@@ -385,7 +384,7 @@ fn a_tractor_point_that_falls_on_an_obstacle_is_gone_and_its_loop_with_it() {
     assert_eq!(exploration.strategy.shield(), None);
     assert_eq!(exploration.strategy.tally().closed, 0, "it was not reached");
     assert!(
-        !exploration.strategy.marks().is_marked(tractor),
+        !exploration.strategy.closed_regions().is_closed(tractor),
         "nor is anything marked"
     );
     assert!(

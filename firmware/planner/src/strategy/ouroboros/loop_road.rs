@@ -1,80 +1,88 @@
-//! The loop road: the two ways from the robot to the tractor point [Jorge15, III-C, third step].
+//! The loop road: two arms along the skeleton, from the robot to the tractor point
+//! [Jorge15, III-C, third step].
 //!
-//! The wave has gone out from the tractor point with the robot's surroundings as a blocker. Where it came to the robot by two
-//! ways or more there is a loop: the path's *back* is what the shield will be built across, its *front* is where the robot
-//! is to go. Neither is stored: each is the descent from its head, down the wave's distances.
+//! A wave has spread from the tractor point with the robot's surroundings as a blocker. If it
+//! reaches the robot from at least two directions, there is a loop. The *back* is the arm that the
+//! shield is built across; the *front* is the arm that the robot drives. Neither is stored: each is
+//! the descent of the wave's distances from its *head*, the first cell outside the surroundings.
 //!
-//! - Fresh ([`LoopRoad`]): the back is the way most towards where the robot came from, the front the shortest of the others.
-//! - While a loop is being closed ([`way_back`]), the back leads to the previous shield: without that, a robot among adjacent loops
-//!   might go from one to the next and close none.
+//! - A new loop [Algorithm 1, line 16], [`LoopRoad::find`]: the back is the arm that leads most
+//!   towards where the robot came from; the front is the shortest of the others.
+//! - A loop that is being closed [line 14], [`back_to_shield`]: the back leads to the previous
+//!   shield. Without that, a robot among adjacent loops may change from one to the next and close
+//!   none.
 //!
-//! Departs from the paper [Jorge15, III]:
+//! Departs from [Jorge15, III-C]:
 //!
-//! - What blocks is the robot's cell with its eight neighbours, since a skeleton that is two cells thick or a staircase leads past a
-//!   single cell, and the heads are the cells just outside.
-//! - The two ways may meet before the tractor point, where it is not on the loop but on a branch that leads there: then the loop ends
-//!   where they meet ([`LoopRoad::meet`]). A shield farther down would cut both ways, and the robot would leave the loop before it
-//!   has come to the tractor point.
-//! - The previous shield is asked for by a wave from it, not by the descent to the tractor point: that takes the shortest way, and
-//!   with a shorter loop beside the one that is being closed it does not come by the shield, although the loop is there. That the
-//!   tractor point can be reached on the shield's other side is what the wave after it shows [line 21].
+//! - The blocker is the robot's cell with its eight neighbours, and the heads are the cells just
+//!   outside. A skeleton that is a staircase or two cells thick leads past a single cell.
+//! - The arms may meet before the tractor point, if it is not on the loop but on a branch that
+//!   leads there. The loop then ends where they meet ([`LoopRoad::meet`]). A shield farther down
+//!   would cut both arms, and the robot would leave the loop before it reaches the tractor point.
+//! - The way to the previous shield comes from a wave of its own and not from the descent to the
+//!   tractor point. That descent is the shortest way: with a shorter loop beside the one that is
+//!   being closed it does not pass the shield, although the loop is there. The next wave [line 20]
+//!   shows whether the tractor point can be reached on the shield's other side.
 //!
-//! Units: steps along the skeleton, 20 cm and a little more.
+//! Units: steps along the skeleton, 20 cm each; a diagonal step counts the same.
 
 use crate::geometry::Cell;
-use crate::grid::{Plane, Site};
+use crate::grid::Site;
 use crate::math;
+use crate::path::nearest::Centres;
 use crate::roadmap::Residues;
 use crate::roadmap::branches::{MOST_WAYS, ways};
-use crate::strategy::ouroboros::ground::Ground;
 use crate::strategy::ouroboros::shield::Shield;
 
 /// Steps from the robot's cell to a head.
 const TO_HEAD: u32 = 2;
 
-/// A loop through robot and tractor point.
+/// A loop through the robot and the tractor point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LoopRoad {
-    /// The first cell of the way back.
-    pub back: Site,
-    /// The first cell of the way ahead.
-    pub front: Site,
-    /// Steps from the robot to the tractor point the back way.
-    pub back_steps: u32,
-    /// And the other way.
-    pub front_steps: u32,
-    /// Where the two meet: the tractor point, or a junction before it.
-    pub meet: Site,
+pub(super) struct LoopRoad {
+    /// The head of the back.
+    pub(super) back: Site,
+    /// The head of the front.
+    pub(super) front: Site,
+    /// Steps from the robot to the tractor point by the back.
+    pub(super) back_steps: u32,
+    /// Steps from the robot to the tractor point by the front.
+    pub(super) front_steps: u32,
+    /// The cell where the arms meet: the tractor point, or a junction before it.
+    pub(super) meet: Site,
     /// Steps from there to the tractor point.
-    pub tail_steps: u32,
+    pub(super) tail_steps: u32,
 }
 
-/// A way to the tractor point.
+/// A direction from which the wave reaches the robot.
 #[derive(Clone, Copy, Debug)]
-struct Way {
+struct Arm {
     head: Site,
+    /// Steps from the robot to the tractor point.
     steps: u32,
-    /// How much it leads back: the cosine of the angle to where the robot came from, times the distance there.
-    back: f32,
+    /// The cosine of the angle between the head and the place that the robot came from, times the
+    /// distance to that place.
+    backwards: f32,
 }
 
 impl LoopRoad {
-    /// The loop that the wave found round `robot`, the robot's cell, which `came` from there; `None` if there is
-    /// none.
-    #[must_use]
-    pub fn find<const TILES: usize, const SLOTS: usize>(
-        ground: &Ground<'_, TILES, SLOTS>,
+    /// Returns the loop that the wave found for a robot in the centre cell `robot` that came from
+    /// the cell `came`; `None` if there is no loop.
+    pub(super) fn find<const TILES: usize, const SLOTS: usize>(
+        centres: &Centres<'_, TILES, SLOTS>,
         residues: &Residues<'_>,
         (robot, came): (Site, Cell),
     ) -> Option<Self> {
-        let heads = ways(ground.way, robot);
+        let heads = ways(centres.way, robot);
         let reached = heads.iter().filter(|head| residues.get(**head).is_some());
-        let ways: heapless::Vec<Way, MOST_WAYS> = reached
-            .map(|&head| Way::measure(ground, residues, (robot, came), head))
+        let arms: heapless::Vec<Arm, MOST_WAYS> = reached
+            .map(|&head| Arm::measure(centres, residues, (robot, came), head))
             .collect();
-        let back = ways.iter().max_by(|a, b| a.back.total_cmp(&b.back))?;
-        let others = ways.iter().filter(|way| way.head != back.head);
-        let front = others.min_by_key(|way| way.steps)?;
+        let back = arms
+            .iter()
+            .max_by(|a, b| a.backwards.total_cmp(&b.backwards))?;
+        let others = arms.iter().filter(|arm| arm.head != back.head);
+        let front = others.min_by_key(|arm| arm.steps)?;
         let (meet, tail_steps) = meet(residues, back, front)?;
         Some(Self {
             back: back.head,
@@ -86,92 +94,93 @@ impl LoopRoad {
         })
     }
 
-    /// Steps all the way round.
-    #[must_use]
-    pub const fn steps(&self) -> u32 {
+    /// Returns the length of the loop, steps.
+    pub(super) const fn steps(&self) -> u32 {
         self.back_steps + self.front_steps - 2 * self.tail_steps
     }
 
-    /// The cells of the back, from its head to where it meets the front.
-    pub fn back<'a>(&self, residues: &'a Residues<'_>) -> impl Iterator<Item = Site> + use<'a> {
+    /// Returns the cells of the back, from its head to where it meets the front.
+    pub(super) fn back<'a>(
+        &self,
+        residues: &'a Residues<'_>,
+    ) -> impl Iterator<Item = Site> + use<'a> {
         let steps = self.back_steps - self.tail_steps - TO_HEAD;
-        down(residues, self.back).take(steps as usize + 1)
+        descent(residues, self.back).take(steps as usize + 1)
     }
 }
 
-/// The way down from a cell, with the cell itself.
-fn down<'a>(residues: &'a Residues<'_>, from: Site) -> impl Iterator<Item = Site> + use<'a> {
+/// The descent from a cell, with the cell itself.
+fn descent<'a>(residues: &'a Residues<'_>, from: Site) -> impl Iterator<Item = Site> + use<'a> {
     core::iter::once(from).chain(residues.descent(from))
 }
 
-/// Where two ways meet, and how many steps are left from there. Ways that have met stay together, and at the latest they
-/// meet at the tractor point.
-fn meet(residues: &Residues<'_>, one: &Way, other: &Way) -> Option<(Site, u32)> {
+/// Returns the cell where two arms meet, and the steps from there to the tractor point. Arms that
+/// have met stay together, and they meet at the tractor point at the latest.
+fn meet(residues: &Residues<'_>, one: &Arm, other: &Arm) -> Option<(Site, u32)> {
     let level = one.steps.min(other.steps);
-    let from = |way: &Way| down(residues, way.head).skip((way.steps - level) as usize);
-    let met = (0..).zip(from(one).zip(from(other)));
-    met.map(|(come, (a, b))| (come, a, b))
+    let from = |arm: &Arm| descent(residues, arm.head).skip((arm.steps - level) as usize);
+    let pairs = (0..).zip(from(one).zip(from(other)));
+    pairs
+        .map(|(done, (a, b))| (done, a, b))
         .find(|(_, a, b)| a == b)
-        .map(|(come, site, _): (u32, _, _)| (site, level - TO_HEAD - come))
+        .map(|(done, site, _): (u32, _, _)| (site, level - TO_HEAD - done))
 }
 
-impl Way {
-    /// Traversal it down to the tractor point.
+impl Arm {
+    /// Measures the arm of a head.
     fn measure<const TILES: usize, const SLOTS: usize>(
-        ground: &Ground<'_, TILES, SLOTS>,
+        centres: &Centres<'_, TILES, SLOTS>,
         residues: &Residues<'_>,
         (robot, came): (Site, Cell),
         head: Site,
     ) -> Self {
         let apart = |a: Cell, b: Cell| ((a.x - b.x) as f32, (a.y - b.y) as f32);
-        let here = ground.cell(robot);
-        let ((x, y), (to_x, to_y)) = (apart(ground.cell(head), here), apart(came, here));
+        let here = centres.cell(robot);
+        let ((x, y), (to_x, to_y)) = (apart(centres.cell(head), here), apart(came, here));
         Self {
             head,
             steps: steps_from(residues, head),
-            back: (x * to_x + y * to_y) / math::sqrt(x * x + y * y),
+            backwards: (x * to_x + y * to_y) / math::sqrt(x * x + y * y),
         }
     }
 }
 
-/// Steps from the robot's cell by a head to where the wave came from.
+/// Returns the steps from the robot's cell by a head to where the wave began.
 fn steps_from(residues: &Residues<'_>, head: Site) -> u32 {
     TO_HEAD + residues.descent(head).count() as u32
 }
 
-/// The way back to the previous shield, from which the wave has come: its cells from just behind the robot on. The other ways lead
-/// there round the loop.
-pub fn way_back<'a>(
-    way: Plane<'_>,
+/// Returns the cells from just behind the robot to the previous shield, from which the wave has
+/// spread. Of the arms that lead there the shortest is the back; the others lead round the loop.
+pub(super) fn back_to_shield<'a, const TILES: usize, const SLOTS: usize>(
+    centres: &Centres<'_, TILES, SLOTS>,
     residues: &'a Residues<'_>,
     robot: Site,
-) -> Option<impl Iterator<Item = Site> + use<'a>> {
-    let heads = ways(way, robot);
+) -> Option<impl Iterator<Item = Site> + use<'a, TILES, SLOTS>> {
+    let heads = ways(centres.way, robot);
     let reached = heads.iter().filter(|head| residues.get(**head).is_some());
     let back = reached.min_by_key(|head| steps_from(residues, **head))?;
-    Some(down(residues, *back))
+    Some(descent(residues, *back))
 }
 
-/// The first valid shield along the path's back, from the robot on [Jorge15, III-C, fourth step].
+/// Returns the first valid shield across the back, from the robot on [Jorge15, III-C, fourth step].
 ///
-/// `None` when the cells come to their end, or `MOST_TRIED` of them were looked at, without one.
-#[must_use]
-pub fn build_shield<const TILES: usize, const SLOTS: usize>(
-    ground: &Ground<'_, TILES, SLOTS>,
+/// `None` if the back ends, or [`MOST_TRIED`] cells were tried, without one.
+pub(super) fn build_shield<const TILES: usize, const SLOTS: usize>(
+    centres: &Centres<'_, TILES, SLOTS>,
     back: impl Iterator<Item = Site>,
     robot: Cell,
 ) -> Option<Shield> {
-    let mut span: Span = [None; SPAN];
+    let mut span = [None; SPAN];
     back.take(MOST_TRIED + SPAN - 1).find_map(|site| {
         span.rotate_left(1);
-        span[SPAN - 1] = Some(ground.cell(site));
+        span[SPAN - 1] = Some(centres.cell(site));
         let [near, at, far] = [span[0]?, span[SPAN / 2]?, span[SPAN - 1]?];
-        Shield::build(ground, at, [far, near], robot).ok()
+        Shield::build(centres, at, [far, near], robot).ok()
     })
 }
 
-/// Cells of the path by which its direction at the middle one is known.
+/// Consecutive cells of the back from which the direction at the middle one is taken.
 const SPAN: usize = 5;
-type Span = [Option<Cell>; SPAN];
-/// Cells of the path that are tried: the nearest 8 m. What a shield costs is bounded, and so is the search.
+/// Cells of the back that are tried: the nearest 8 m. It bounds the cost of the search.
 const MOST_TRIED: usize = 40;

@@ -1,71 +1,76 @@
-//! Errands: when nothing is left to explore, to a stretch of a loop that was not closed.
+//! Revisits: when nothing is left to explore, drive into the stretch of a loop that was not closed.
 //!
-//! A tractor point is made where the robot comes by. What it only saw from afar may be the last part of a loop; the exploration
-//! would end with that loop open. So the robot is sent into the stretch, where a tractor point is made behind it as anywhere.
+//! A tractor point is only made where the robot drives. The last part of a loop may be a stretch
+//! that the robot saw from afar, and the exploration would end with that loop open. So the robot
+//! drives to the middle of the stretch, and a tractor point is made behind it as anywhere else.
 //!
-//! Departs from [Jorge15, Algorithm 1, line 26], where the exploration is complete: "revisiting in fully explored maps" is named as open.
-//! Whatever becomes of an errand, its stretch is marked in the end, so errands come to an end too; and an errand is given up as a loop is,
-//! when the robot has come too far on it.
+//! Departs from [Jorge15, Algorithm 1, line 25], where the exploration is complete; [Jorge15, V]
+//! names "revisiting in fully explored maps" as open. Whatever the result of a revisit is, its
+//! stretch becomes a closed region, so there is an end of revisits; and a revisit has the budget of
+//! a loop.
 //!
-//! Units: metres; map cells; steps along the skeleton, 20 cm and a little more.
+//! Units: metres; map cells; steps along the skeleton, 20 cm each.
 
 use crate::config::LoopLimits;
 use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
 use crate::path::PlanningScratch;
+use crate::path::nearest::Centres;
 use crate::roadmap::Residues;
 use crate::roadmap::branches::{Branch, Kind, kind, surroundings, ways};
-use crate::strategy::ouroboros::closed_regions::Marks;
-use crate::strategy::ouroboros::ground::Ground;
-use crate::strategy::ouroboros::loop_budget::Detour;
-use crate::strategy::ouroboros::round::{Round, STEP_M};
+use crate::strategy::ouroboros::closed_regions::ClosedRegions;
+use crate::strategy::ouroboros::loop_budget::LoopBudget;
 use crate::strategy::ouroboros::tractor::LEAST_BEHIND_M;
+use crate::strategy::round::{Round, STEP_M};
 
-/// A robot this near to the middle of the stretch has done its errand, steps.
+/// Steps to the middle of the stretch at which the revisit is done: 0.8 m, within what the goal's
+/// closed regions cover.
 pub(super) const DONE_STEPS: u32 = 4;
-/// Metres of a stretch: to its middle there is room for a tractor point behind the robot, and as much again.
+/// The shortest stretch, metres: up to its middle there is room for a tractor point behind the
+/// robot, and as much again.
 const LEAST_M: f32 = 4.0 * LEAST_BEHIND_M;
 
-/// Branches that a call looks at: those with a stretch that is too short cost no wave.
+/// Branches that a call looks at. Those with too short a stretch cost no wave.
 const MOST_BRANCHES: usize = 12;
 
-/// An errand.
+/// A drive to an open loop.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Errand {
+pub(super) struct Revisit {
     /// The middle of the stretch, a centre cell when it was found.
     pub(super) goal: Cell,
-    /// The way since.
-    pub(super) detour: Detour,
+    /// The drive so far.
+    pub(super) budget: LoopBudget,
 }
 
-/// Whether there is an errand.
+/// The outcome of a search for an open loop.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Found {
-    /// To this place.
+    /// The middle of a stretch.
     Place(Cell),
-    /// Not on the branches that were looked at, which are marked now.
+    /// None on the branches of this call, which are closed regions now.
     NotHere,
-    /// No branch is left to look at.
+    /// No branch is left.
     None,
 }
 
-/// Look at the next branches that are not marked all along, with one wave at the most.
+/// Looks for an open loop on the next branches with cells outside closed regions, with one wave at
+/// most.
 pub(super) fn find<const TILES: usize, const SLOTS: usize>(
     round: &mut Round<'_, TILES, SLOTS>,
-    marks: &mut Marks<SLOTS>,
-    lent: &mut PlanningScratch<'_>,
+    regions: &mut ClosedRegions<SLOTS>,
+    scratch: &mut PlanningScratch<'_>,
 ) -> Found {
     for _ in 0..MOST_BRANCHES {
-        let Some(site) = first_open(round, marks) else {
+        let Some(site) = first_open(round, regions) else {
             return Found::None;
         };
-        let goal = middle_of_stretch(round, marks, site);
-        let loop_m = goal.and_then(|goal| loop_m(round, goal, lent));
+        let goal = middle_of_stretch(round, regions, site);
+        let loop_m = goal.and_then(|goal| loop_m(round, goal, scratch));
         match goal.zip(loop_m) {
             Some((goal, loop_m)) if round.limits.is_worth(loop_m, 0.0) => {
-                return Found::Place(round.topology.frame().cell(goal));
+                return Found::Place(round.skeleton.frame().cell(goal));
             }
-            _ => settle(round, marks, round.topology.frame().cell(site)),
+            _ => settle(round, regions, round.skeleton.frame().cell(site)),
         }
         if goal.is_some() {
             break;
@@ -74,110 +79,108 @@ pub(super) fn find<const TILES: usize, const SLOTS: usize>(
     Found::NotHere
 }
 
-/// A place and its branch are not looked at again.
+/// Closes the regions of a place and of its branch, so that neither is looked at again.
 pub(super) fn settle<const TILES: usize, const SLOTS: usize>(
     round: &Round<'_, TILES, SLOTS>,
-    marks: &mut Marks<SLOTS>,
+    regions: &mut ClosedRegions<SLOTS>,
     place: Cell,
 ) {
-    marks.forget();
-    // Also where the skeleton has left the place, or the walk along its branch goes another way.
-    marks.note(place);
-    let frame = round.topology.frame();
-    if let Some(way) = round.topology.skeleton()
-        && let Some((end, before)) = frame.site(place).and_then(|site| end_of_branch(way, site))
+    regions.drop_pending();
+    // The skeleton may have left the place, or the walk along the branch may miss it.
+    regions.add_pending(place);
+    if let Some(centres) = round.centres()
+        && let Some(site) = centres.frame.site(place)
+        && let Some((end, before)) = end_of_branch(centres.way, site)
     {
-        for site in core::iter::once(end).chain(Branch::new(way, end, before)) {
-            marks.note(frame.cell(site));
+        for site in core::iter::once(end).chain(Branch::new(centres.way, end, before)) {
+            regions.add_pending(centres.cell(site));
         }
     }
-    marks.keep();
+    regions.close_pending();
 }
 
-/// The end of a branch, with the cell before that.
-type End = (Site, Site);
-
-/// The first cell of a branch that is explored and not marked.
+/// Returns the first open cell of a branch.
 fn first_open<const TILES: usize, const SLOTS: usize>(
     round: &Round<'_, TILES, SLOTS>,
-    marks: &Marks<SLOTS>,
+    regions: &ClosedRegions<SLOTS>,
 ) -> Option<Site> {
-    let ground = round.ground()?;
-    let is_passage = |site| kind(ground.way, site) == Some(Kind::Passage);
-    let mut sites = ground.way.sites();
-    sites.find(|&site| is_open(&ground, marks, site) && is_passage(site))
+    let centres = round.centres()?;
+    let is_passage = |site| kind(centres.way, site) == Some(Kind::Passage);
+    let mut sites = centres.way.sites();
+    sites.find(|&site| is_open(&centres, regions, site) && is_passage(site))
 }
 
-/// The middle of the longest stretch of such cells in a branch, if that is long enough.
+/// Returns the middle of the longest stretch of open cells in a branch; `None` if all are shorter
+/// than [`LEAST_M`].
 fn middle_of_stretch<const TILES: usize, const SLOTS: usize>(
     round: &Round<'_, TILES, SLOTS>,
-    marks: &Marks<SLOTS>,
+    regions: &ClosedRegions<SLOTS>,
     site: Site,
 ) -> Option<Site> {
-    let ground = round.ground()?;
-    let (end, before) = end_of_branch(ground.way, site)?;
-    // Cells of the stretch so far, and the longest one: how long, and where it ends.
+    let centres = round.centres()?;
+    let (end, before) = end_of_branch(centres.way, site)?;
+    // The stretch so far, cells; then length and last cell of the longest one.
     let (mut cells, mut longest) = (0, (0, 0));
-    for (k, site) in Branch::new(ground.way, end, before).enumerate() {
-        cells = if is_open(&ground, marks, site) {
-            cells + 1
-        } else {
-            0
-        };
+    for (k, site) in Branch::new(centres.way, end, before).enumerate() {
+        let is_open = is_open(&centres, regions, site);
+        cells = if is_open { cells + 1 } else { 0 };
         longest = longest.max((cells, k));
     }
     let (cells, last) = longest;
     let is_long = cells as f32 * STEP_M >= LEAST_M;
-    let middle = || Branch::new(ground.way, end, before).nth(last - cells / 2);
+    let middle = || Branch::new(centres.way, end, before).nth(last - cells / 2);
     is_long.then(middle).flatten()
 }
 
+/// Returns true if a centre cell is explored and in no closed region.
 fn is_open<const TILES: usize, const SLOTS: usize>(
-    ground: &Ground<'_, TILES, SLOTS>,
-    marks: &Marks<SLOTS>,
+    centres: &Centres<'_, TILES, SLOTS>,
+    regions: &ClosedRegions<SLOTS>,
     site: Site,
 ) -> bool {
-    let cell = ground.cell(site);
-    !marks.is_marked(cell) && ground.is_explored(cell)
+    let cell = centres.cell(site);
+    !regions.is_closed(cell) && centres.is_explored(cell)
 }
 
-/// The end of the branch that a cell is in.
-fn end_of_branch(way: Plane<'_>, site: Site) -> Option<End> {
-    let next = way.neighbours(site).next()?;
+/// Returns an end of the branch that a cell is in, and the cell before it.
+fn end_of_branch(skeleton: Plane<'_>, site: Site) -> Option<(Site, Site)> {
+    let next = skeleton.neighbours(site).next()?;
     let mut last = (next, site);
-    for cell in Branch::new(way, site, next) {
+    for cell in Branch::new(skeleton, site, next) {
         last = (cell, last.0);
     }
-    // A branch of one cell more ends where it began.
+    // A branch of one more cell ends where it began.
     Some(if last.0 == next { (next, site) } else { last })
 }
 
-/// Length of the shortest loop through a cell, metres.
+/// Returns the length of the shortest loop through a cell, metres; `None` if there is no loop.
 fn loop_m<const TILES: usize, const SLOTS: usize>(
     round: &mut Round<'_, TILES, SLOTS>,
     at: Site,
-    lent: &mut PlanningScratch<'_>,
+    scratch: &mut PlanningScratch<'_>,
 ) -> Option<f32> {
-    let heads = ways(round.topology.skeleton()?, at);
+    let heads = ways(round.skeleton.skeleton()?, at);
     let (&from, others) = heads.split_first()?;
-    round.propagate(from, surroundings(at), None, lent)?;
-    let residues = Residues::new(round.topology.frame().shape, lent.residues).ok()?;
+    round.propagate(from, surroundings(at), None, scratch)?;
+    let residues = Residues::new(round.skeleton.frame().shape, scratch.residues).ok()?;
     let reached = others.iter().filter(|head| residues.get(**head).is_some());
     let steps = reached.map(|&head| residues.descent(head).count()).min()?;
+    // From one head through the cell to the other are four steps more.
     Some((steps + 4) as f32 * STEP_M)
 }
 
-impl Errand {
+impl Revisit {
+    /// A revisit that has just begun.
     pub(super) const fn to(goal: Cell) -> Self {
         Self {
             goal,
-            detour: Detour::new(),
+            budget: LoopBudget::NEW,
         }
     }
 
-    /// Whether the robot has come too far on it, now that so many steps are left.
+    /// Returns true if the budget is spent, now that the goal is `steps` away.
     pub(super) fn is_over(&mut self, steps: u32, limits: &LoopLimits) -> bool {
-        self.detour.note(0.0, steps as f32 * STEP_M);
-        self.detour.is_over(limits)
+        self.budget.note(0.0, steps as f32 * STEP_M);
+        self.budget.is_spent(limits)
     }
 }

@@ -18,14 +18,14 @@ use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::map::{Class, Tiles};
 use crate::path::PlanningScratch;
+use crate::path::nearest::Centres;
 use crate::roadmap::Residues;
 use crate::roadmap::branches::surroundings;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
-use crate::strategy::ouroboros::Round;
-use crate::strategy::ouroboros::ground::Ground;
 use crate::strategy::ouroboros::loop_road::{LoopRoad, build_shield};
 use crate::strategy::ouroboros::shield::{Flaw, Shield};
+use crate::strategy::round::Round;
 
 pub(super) const TILES: usize = 30;
 pub(super) const SLOTS: usize = 48;
@@ -63,6 +63,11 @@ pub(super) fn pose_in(cell: Cell, yaw_rad: f32) -> Pose {
         yaw_rad,
         ..Pose::default()
     }
+}
+
+/// Returns true if a cell is on the shield.
+pub(super) fn has_cell(shield: &Shield, cell: Cell) -> bool {
+    shield.cells().any(|on| on == cell)
 }
 
 /// The cell so many cells behind a robot.
@@ -127,7 +132,7 @@ impl Scene {
                     '?' => continue,
                     _ => Class::Free,
                 };
-                for part in super::ground::quarters(at(x, y)) {
+                for part in at(x, y).quarters() {
                     tiles.set(part, class).unwrap();
                 }
             }
@@ -155,9 +160,9 @@ impl Scene {
 
     pub(super) fn round(&mut self) -> Round<'_, TILES, SLOTS> {
         Round {
-            topology: &mut self.topology,
+            skeleton: &mut self.topology,
             tiles: &self.tiles,
-            disc: &self.disc,
+            footprint: &self.disc,
             pose: self.pose,
             time_ms: 0,
             limits: &self.limits,
@@ -165,37 +170,32 @@ impl Scene {
         }
     }
 
-    pub(super) fn ground(&self) -> Ground<'_, TILES, SLOTS> {
-        Ground {
-            tiles: &self.tiles,
-            disc: &self.disc,
-            frame: self.topology.frame(),
-            way: self.topology.skeleton().unwrap(),
-        }
+    pub(super) fn centres(&self) -> Centres<'_, TILES, SLOTS> {
+        Centres::of(&self.topology, &self.tiles, &self.disc).unwrap()
     }
 
     /// The loop road to the tractor point, the cells of its back and front, and the shield across it.
     fn look(&mut self) -> Option<Found> {
         let mut memory = Memory::new();
         let robot = self.spread(self.find('T').unwrap(), &mut memory);
-        let (ground, pose) = (self.ground(), self.pose);
-        let residues = Residues::new(ground.frame.shape, &mut memory.residues).unwrap();
-        let path = LoopRoad::find(&ground, &residues, (robot, behind(&pose, 10)))?;
+        let (centres, pose) = (self.centres(), self.pose);
+        let residues = Residues::new(centres.frame.shape, &mut memory.residues).unwrap();
+        let path = LoopRoad::find(&centres, &residues, (robot, behind(&pose, 10)))?;
         let walk = |head: Site| -> Vec<Cell> {
             let sites = core::iter::once(head).chain(residues.descent(head));
-            sites.map(|site| ground.frame.cell(site)).collect()
+            sites.map(|site| centres.frame.cell(site)).collect()
         };
         assert_eq!(walk(path.back).len() + 1, path.back_steps as usize);
         assert_eq!(walk(path.front).len() + 1, path.front_steps as usize);
         let until_meet = |cells: Vec<Cell>| -> Vec<Cell> {
             let tail = cells.len() - path.tail_steps as usize;
-            assert_eq!(cells[tail - 1], ground.frame.cell(path.meet));
+            assert_eq!(cells[tail - 1], centres.frame.cell(path.meet));
             cells[..tail].to_vec()
         };
         Some(Found {
             back: until_meet(walk(path.back)),
             front: until_meet(walk(path.front)),
-            shield: build_shield(&ground, path.back(&residues), pose.point().cell()),
+            shield: build_shield(&centres, path.back(&residues), pose.point().cell()),
         })
     }
 
@@ -215,8 +215,9 @@ impl Scene {
     /// What keeps a shield from standing at each cell of the path's back, from the robot on, up to the valid one.
     fn flaws(&mut self) -> Vec<Option<Flaw>> {
         let back = self.look().unwrap().back;
-        let (ground, here) = (self.ground(), self.pose.point().cell());
-        let judge = |span: &[Cell]| Shield::build(&ground, span[2], [span[4], span[0]], here).err();
+        let (centres, here) = (self.centres(), self.pose.point().cell());
+        let judge =
+            |span: &[Cell]| Shield::build(&centres, span[2], [span[4], span[0]], here).err();
         let mut flaws: Vec<_> = back.windows(5).map(judge).collect();
         let valid = flaws.iter().position(Option::is_none);
         flaws.truncate(valid.map_or(flaws.len(), |valid| valid + 1));
@@ -231,17 +232,17 @@ impl Scene {
     }
 
     fn picture_of(&self, found: Option<&Found>) -> String {
-        let ground = self.ground();
+        let centres = self.centres();
         let mark = |cell: Cell, seen: char| {
             let on = |cells: &[Cell]| cells.contains(&cell);
             if !matches!(seen, '.' | '?') {
                 return seen;
             }
             match found {
-                Some(found) if found.shield.is_some_and(|shield| shield.holds(cell)) => '=',
+                Some(found) if found.shield.is_some_and(|shield| has_cell(&shield, cell)) => '=',
                 Some(found) if on(&found.back) => 'b',
                 Some(found) if on(&found.front) => 'f',
-                _ if ground.is_centre(cell) => '+',
+                _ if centres.is_centre(cell) => '+',
                 _ => seen,
             }
         };

@@ -1,25 +1,25 @@
-//! The shield: a virtual wall across the loop road, behind the robot [Jorge15, III-A and III-C, fourth step].
+//! The shield: a virtual wall across the loop road, behind the robot
+//! [Jorge15, III-A and III-C, fourth step].
 //!
-//! It stands on a centre cell and runs both ways at a right angle to the path until the space ends. Valid is a shield whose two
-//! ends are at obstacles and which cuts exactly one branch of the skeleton: else the potential would flow round it, or ways
-//! would be blocked that are not the loop's.
+//! It stands on a centre cell and extends to both sides at a right angle to the path, until the
+//! space ends. A shield is valid if both ends are at obstacles and it cuts exactly one branch of
+//! the skeleton. Otherwise the potential flows round it, or it blocks ways that are not the loop's.
 //!
-//! Its cells are joined by their sides, so that no path slips through, be it diagonal. It is kept as place, direction and
-//! lengths in the map's own cells, not the skeleton's, so it lasts while skeletons come and go.
+//! Its cells share sides, so no path passes between them, not even a diagonal one. It is kept as
+//! place, direction and lengths in cells of the map, so it outlasts the skeletons.
 //!
-//! Units: coarse cells of 20 cm, named by the least of their four map cells.
-
-use core::fmt;
+//! Units: coarse cells of 20 cm, each named by its map cell with the least x and y.
 
 use crate::geometry::Cell;
+use crate::path::nearest::Centres;
 use crate::roadmap::branches::{Kind, kind};
-use crate::strategy::ouroboros::ground::Ground;
 
-/// Cells of a shield to one side of the path at the most: 6.4 m.
-pub const MOST_REACH: u8 = 32;
-/// Centre cells that lie on a shield at the most: those of a branch that crosses it aslant.
-pub const MOST_CUT: usize = 4;
-/// Cells that must be between the robot and the shield, along either axis: its window must leave it room.
+/// The longest shield to one side of the path, cells: 6.4 m.
+const MOST_REACH: u8 = 32;
+/// The most centre cells on a shield: those of one branch that crosses it at an angle.
+pub(in crate::strategy) const MOST_CUT: usize = 4;
+/// Cells between the robot and the shield along at least one axis: with fewer, the wall is at the
+/// robot's own place in the window.
 const CLEAR_CELLS: i32 = 2;
 
 /// A wall across a path.
@@ -27,51 +27,39 @@ const CLEAR_CELLS: i32 = 2;
 pub struct Shield {
     /// The centre cell that it stands on.
     at: Cell,
-    /// Its direction, to the left of the path's.
+    /// Its direction: that of the path, turned to the left.
     along: (i8, i8),
     /// Cells to the left and to the right of `at`.
     reach: [u8; 2],
 }
 
-/// Why a shield cannot stand at a cell of the path.
+/// The reason why a shield cannot stand on a cell of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Flaw {
-    /// The cell is no part of a single branch.
+pub(super) enum Flaw {
+    /// The cell is an end or a junction.
     OffBranch,
-    /// An end hangs in the open, or in the unexplored.
+    /// An end is not at an obstacle.
     OpenEnd,
-    /// It would cut another branch too.
+    /// It cuts a second branch.
     CutsMore,
-    /// It would stand in the robot's way.
+    /// It is in the robot's way.
     AtRobot,
 }
 
-impl fmt::Display for Flaw {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::OffBranch => "no shield at an end or a junction: look farther along the path",
-            Self::OpenEnd => "no shield with an end in the open: look where obstacles are nearer",
-            Self::CutsMore => "no shield across two branches: look where they are farther apart",
-            Self::AtRobot => "no shield at the robot: look farther along the path",
-        })
-    }
-}
-
-impl core::error::Error for Flaw {}
-
 impl Shield {
-    /// The shield across a path at one of its cells, where the path goes from `behind` to `ahead`.
+    /// Builds the shield across a path at its cell `at`, where the path goes from `behind` to
+    /// `ahead`.
     ///
     /// # Errors
-    /// What is wrong with it.
-    pub fn build<const TILES: usize, const SLOTS: usize>(
-        ground: &Ground<'_, TILES, SLOTS>,
+    /// The first [`Flaw`] found.
+    pub(super) fn build<const TILES: usize, const SLOTS: usize>(
+        centres: &Centres<'_, TILES, SLOTS>,
         at: Cell,
         [behind, ahead]: [Cell; 2],
         robot: Cell,
     ) -> Result<Self, Flaw> {
-        let site = ground.frame.site(at).ok_or(Flaw::OffBranch)?;
-        if kind(ground.way, site) != Some(Kind::Passage) {
+        let site = centres.frame.site(at).ok_or(Flaw::OffBranch)?;
+        if kind(centres.way, site) != Some(Kind::Passage) {
             return Err(Flaw::OffBranch);
         }
         let half = |from: i32, to: i32| ((to - from) / 2).clamp(-16, 16) as i8;
@@ -84,7 +72,7 @@ impl Shield {
         if shield.along == (0, 0) {
             return Err(Flaw::OffBranch);
         }
-        shield.stretch(ground)?;
+        shield.stretch(centres)?;
         let touches = |cell: Cell| {
             let far = |a: i32, b: i32| ((a >> 1) - (b >> 1)).abs() > CLEAR_CELLS;
             !(far(cell.x, robot.x) || far(cell.y, robot.y))
@@ -95,33 +83,34 @@ impl Shield {
         Ok(shield)
     }
 
-    /// Let it reach from obstacle to obstacle, as they are now.
+    /// Extends it to the obstacles on both sides, as they are now.
     ///
     /// # Errors
-    /// When they are not there, or it cuts more than a branch.
-    pub fn stretch<const TILES: usize, const SLOTS: usize>(
+    /// [`Flaw::OpenEnd`] or [`Flaw::CutsMore`].
+    pub(super) fn stretch<const TILES: usize, const SLOTS: usize>(
         &mut self,
-        ground: &Ground<'_, TILES, SLOTS>,
+        centres: &Centres<'_, TILES, SLOTS>,
     ) -> Result<(), Flaw> {
         for side in [0, 1] {
-            let reach = self.reach_obstacle(ground, side).ok_or(Flaw::OpenEnd)?;
+            let reach = self.reach_obstacle(centres, side).ok_or(Flaw::OpenEnd)?;
             if let Some(place) = self.reach.get_mut(side) {
                 *place = reach;
             }
         }
-        self.check_cut(ground)
+        self.check_cut(centres)
     }
 
-    /// Cells to one side before the space ends; `None` if it does not, or what is there was never measured.
+    /// Returns the cells to one side up to the first one that is not open; `None` if there is none
+    /// within reach, or a cell before it was never measured.
     fn reach_obstacle<const TILES: usize, const SLOTS: usize>(
         &self,
-        ground: &Ground<'_, TILES, SLOTS>,
+        centres: &Centres<'_, TILES, SLOTS>,
         side: usize,
     ) -> Option<u8> {
         (1_u8..).zip(self.ray(side)).find_map(|(reach, cell)| {
-            if !ground.is_open(cell) {
+            if !centres.is_open(cell) {
                 Some(Some(reach))
-            } else if reach == MOST_REACH || !ground.is_explored(cell) {
+            } else if reach == MOST_REACH || !centres.is_explored(cell) {
                 Some(None)
             } else {
                 None
@@ -129,17 +118,17 @@ impl Shield {
         })?
     }
 
-    /// Only the branch that it stands on has cells on it.
+    /// Checks that only the branch that it stands on has cells on it.
     fn check_cut<const TILES: usize, const SLOTS: usize>(
         &self,
-        ground: &Ground<'_, TILES, SLOTS>,
+        centres: &Centres<'_, TILES, SLOTS>,
     ) -> Result<(), Flaw> {
         let mut cut = 1;
         for side in [0, 1] {
-            // Of one branch are only cells that follow each other on the shield from where it stands.
+            // Cells that follow each other from where it stands are of the same branch.
             let mut is_joined = true;
             for cell in self.ray(side).take(self.length(side)) {
-                let is_centre = ground.is_centre(cell);
+                let is_centre = centres.is_centre(cell);
                 if is_centre && !is_joined {
                     return Err(Flaw::CutsMore);
                 }
@@ -157,7 +146,7 @@ impl Shield {
         self.reach.get(side).copied().map_or(0, usize::from)
     }
 
-    /// The cells from where it stands to one side, without end.
+    /// Returns the cells from where it stands to one side, without end.
     fn ray(&self, side: usize) -> Ray {
         let (x, y) = self.along;
         let sign = if side == 0 { 1 } else { -1 };
@@ -168,31 +157,18 @@ impl Shield {
         }
     }
 
-    /// The centre cell that it stands on.
-    #[must_use]
-    pub const fn at(&self) -> Cell {
-        self.at
-    }
-
-    /// Its cells, from where it stands to the left and then to the right; the last of each side are beyond the space.
-    pub fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
+    /// Returns its cells: where it stands, then to the left, then to the right. The last one of each
+    /// side is beyond the space.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
         let side = |side: usize| self.ray(side).take(self.length(side));
         core::iter::once(self.at).chain(side(0)).chain(side(1))
     }
 
-    /// The last cell to the left and the last one to the right.
+    /// Returns the last cell to the left and the last one to the right.
     #[must_use]
     pub fn ends(&self) -> [Cell; 2] {
         let last = |side: usize| self.ray(side).take(self.length(side)).last();
         [0, 1].map(|side| last(side).unwrap_or(self.at))
-    }
-
-    /// Whether a cell is on it.
-    #[must_use]
-    pub fn holds(&self, cell: Cell) -> bool {
-        let longest = 2 * i32::from(self.reach[0].max(self.reach[1]));
-        let apart = |a: i32, b: i32| (a - b).abs() > longest;
-        !(apart(cell.x, self.at.x) || apart(cell.y, self.at.y)) && self.cells().any(|on| on == cell)
     }
 }
 
@@ -240,7 +216,7 @@ mod tests {
             ..shield
         };
         for end in slant.ends() {
-            assert!(slant.holds(end), "{end:?}");
+            assert!(slant.cells().any(|cell| cell == end), "{end:?}");
         }
         assert_eq!(slant.ends()[1], Cell { x: 6, y: -8 });
     }

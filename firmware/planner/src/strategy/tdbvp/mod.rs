@@ -1,290 +1,254 @@
 //! Strategy *tdbvp*: time-driven rails [Maffei14, IV and V].
 //!
-//! The robot follows −∇p in a window in which every centre cell is charged: with the time since it was visited, or
-//! as the best there is where it was not. So it prefers the unexplored to the visited and the long forgotten to the
-//! fresh, turns to the side where it saw openings, and never comes to rest: explored, it patrols, for
-//! as long as the session asks for.
+//! The robot follows −∇p in a window in which every centre cell is charged: with the time since its
+//! last visit [eq. 3], or as the best goal if it was never visited. So the robot prefers the
+//! unexplored to the visited and the oldest visit to the newest, turns to the side where it passed
+//! openings, and never comes to rest: when all is explored it patrols, for as long as the session
+//! asks.
 //!
-//! Where a rail vanishes from the window, or none in it attracts, the robot follows a *path* instead: to the nearest
-//! unexplored along the skeleton, on patrol to the oldest rail; to the skeleton itself where it is off it, by
-//! `nearest` [Maffei14, VII: the nearest rail, else the unexplored, else the skeleton].
+//! If a rail ends in the window, or none attracts the robot, it follows a *path*: to the nearest
+//! unexplored cell along the skeleton, on patrol to the oldest rail, and to the skeleton itself if
+//! the robot is off it [Maffei14, VII: the nearest rail, else the unexplored, else the skeleton].
 //!
 //! Departs from the paper:
-//! - Unexplored cells are goals only until [`Frontier`] has given them up, and a robot that lingers follows a path for a while; there the paper
-//!   has no rule, and stands before what it cannot see.
-//! - A robot to which nothing new came for `PATIENCE_MS` while something is left follows a path. The paper relies on its rails to
-//!   lead there in the end.
-//! - On patrol a robot goes by path to a rail that is overdue: the rails lead to the oldest in the window, and what lies beyond may wait for
-//!   ever. So the age of the oldest is bounded, by a tour of everything and the way there.
+//! - [IV] The unexplored is a goal only until [`Frontier`] drops it, and a robot that lingers
+//!   follows a path for a while. The paper has no rule for what cannot be seen: the robot would
+//!   stand before it.
+//! - [IV] A robot that has visited no new place for [`IMPATIENCE_MS`], while something is left to
+//!   explore, follows a path. The paper relies on its rails to lead there in the end.
+//! - [IV] On patrol the robot follows a path to a rail that is overdue. The rails lead to the oldest
+//!   one in the window, and one beyond may wait for ever. With paths the age of the oldest is
+//!   bounded by a tour of everything and the way there.
 //!
 //! Units: map cells, metres, milliseconds.
 
 mod charges;
 mod pending_visits;
-pub mod rails;
-pub mod sides;
+mod rails;
+mod sides;
 
 #[cfg(test)]
 mod scenes;
 
+pub use rails::{PLACE_CELLS, Rails};
+
 use crate::field::local_grid::LocalGrid;
 use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point, Pose};
-use crate::map::Tiles;
-use crate::path::Path;
 use crate::path::nearest::Centres;
 use crate::path::search::PathSearch;
-use crate::path::{PlanningScratch, RoundOutcome};
-use crate::roadmap::skeleton::Skeleton;
+use crate::path::{Path, PlanningScratch, RoundOutcome};
 use crate::robot::LaserMount;
 use crate::strategy::Frontier;
-use crate::strategy::ouroboros::Round;
-use crate::strategy::tdbvp::charges::{CentreCells, charge_rails, prefer, unexplored};
-use crate::strategy::tdbvp::pending_visits::{Fresh, VISIT_M};
-pub use crate::strategy::tdbvp::rails::Rails;
-use crate::strategy::tdbvp::sides::Sides;
+use crate::strategy::round::Round;
+use crate::strategy::tdbvp::charges::{charge_rails, distance_m, has_fork, prefer, unexplored};
+use crate::strategy::tdbvp::pending_visits::{PendingVisits, VISIT_M};
+use crate::strategy::tdbvp::sides::SideVotes;
 
-/// Time without a first visit after which a robot that has something left to explore follows a path to it, milliseconds.
-/// With a minute, three adjacent loops took 378 s instead of 343 (means of four starts), and rooms without a loop 810 s instead of 584.
-const PATIENCE_MS: u32 = 15_000;
-/// A robot that is within so many metres for so many milliseconds lingers.
+/// Time without a new place after which a robot follows a path to what is left to explore,
+/// milliseconds. With 60 s, three adjacent loops took 378 s instead of 343 s (means of four
+/// starts), and rooms without a loop 810 s instead of 584 s.
+const IMPATIENCE_MS: u32 = 15_000;
+/// A robot lingers if it stays within this distance, metres, …
 const LINGER_M: f32 = 1.0;
+/// … for longer than this time, milliseconds: on its way it drives the distance in some 2 s.
 const LINGER_MS: u32 = 15_000;
-/// Centre cells this near are free while it explores, metres, so this is how far ahead the nearest rail attracts. At 0.5 m there is no room
-/// left in the half disc for a preferred side, and at a cross 10 of 20 robots went straight on; at 1 m 10 of 100.
-const ROOM_M: f32 = 1.2;
-/// Where it lingered, centre cells this near count as visited, metres: what draws it cannot be got to.
+/// Distance from where the robot lingered within which centre cells count as visited, metres: the
+/// one that attracts it cannot be reached.
 const LINGER_VISIT_M: f32 = 2.0;
+/// Distance from an exploring robot within which centre cells are free, metres, so that the nearest
+/// rail attracts from there. At 0.5 m the half disc has no room for a preferred side: at a cross 10
+/// of 20 robots drove straight on, at 1 m 10 of 100.
+const ROOM_M: f32 = 1.2;
 
-/// Steps that a centre cell adds to the least that a tour takes: its 20 cm, at half a metre a second and [`STEP_MS`] a step. On
-/// patrol a rail that was not visited for that long is overdue.
-const STEPS_PER_CELL: u32 = 2;
+/// Period of the planner, milliseconds.
 const STEP_MS: u32 = 200;
+/// Time for the 20 cm of a centre cell at 0.5 m/s, milliseconds.
+const CELL_MS: u32 = 400;
+/// Steps that a centre cell adds to a tour of all. A rail that was not visited for that long is
+/// overdue on patrol.
+const STEPS_PER_CELL: u32 = CELL_MS / STEP_MS;
 
-/// What the strategy remembers; `SLOTS` as the map's.
+/// The state of the strategy. `SLOTS` as the map's.
 #[derive(Debug)]
 pub struct Tdbvp<const SLOTS: usize> {
     rails: Rails<SLOTS>,
-    fresh: Fresh,
-    sides: Sides,
-    /// A path is followed, not the rails.
+    pending: PendingVisits,
+    votes: SideVotes,
+    /// The robot follows a path and not the rails.
     on_path: bool,
-    /// When a place was visited for the first time, and what time it is.
-    new_ms: u32,
     now_ms: u32,
-    /// Where the robot was when it last left a place, and when.
-    left: Point,
-    left_ms: u32,
+    /// Time of the last first visit to a place.
+    new_place_ms: u32,
+    /// Where and when the robot began to stay.
+    stay: Point,
+    stay_ms: u32,
     lingers: bool,
-    /// How long to patrol, and since when it does.
+    /// Length of the patrol, and its begin.
     patrol_ms: u32,
-    since_ms: Option<u32>,
-}
-
-/// What the window is made of, for a charge.
-#[derive(Debug)]
-pub struct Surroundings<'a, const TILES: usize, const SLOTS: usize> {
-    /// The published skeleton.
-    pub topology: &'a Skeleton<SLOTS>,
-    /// The map.
-    pub tiles: &'a Tiles<TILES, SLOTS>,
-    /// Where the robot is.
-    pub pose: Pose,
+    patrol_since_ms: Option<u32>,
 }
 
 impl<const SLOTS: usize> Tdbvp<SLOTS> {
-    /// At the start.
+    /// The state at the start, for a map in a box of (width, height) tiles and a patrol of
+    /// `patrol_s` seconds.
     #[must_use]
-    pub const fn new() -> Self {
+    pub(crate) const fn new(box_tiles: (i32, i32), patrol_s: u16) -> Self {
         Self {
-            rails: Rails::new(),
-            fresh: Fresh::new(),
-            sides: Sides::new(),
+            rails: Rails::new(box_tiles),
+            pending: PendingVisits::new(),
+            votes: SideVotes::NEW,
             on_path: false,
-            new_ms: 0,
             now_ms: 0,
-            left: Point { x_m: 0.0, y_m: 0.0 },
-            left_ms: 0,
+            new_place_ms: 0,
+            stay: Point { x_m: 0.0, y_m: 0.0 },
+            stay_ms: 0,
             lingers: false,
-            patrol_ms: 0,
-            since_ms: None,
+            patrol_ms: patrol_s as u32 * 1000,
+            patrol_since_ms: None,
         }
     }
 
-    /// Forget everything; the map's box is so many tiles across and up, and the patrol so long.
-    pub fn reset(&mut self, box_tiles: (i32, i32), patrol_s: u16) {
-        self.rails.reset(box_tiles);
-        (self.fresh, self.sides) = (Fresh::new(), Sides::new());
-        (self.on_path, self.lingers) = (false, false);
-        (self.new_ms, self.now_ms) = (0, 0);
-        (self.left, self.left_ms) = (Point { x_m: 0.0, y_m: 0.0 }, 0);
-        (self.patrol_ms, self.since_ms) = (u32::from(patrol_s) * 1000, None);
-    }
-
-    /// When centre cells were visited.
+    /// Returns the stamps of the last visits.
     #[must_use]
     pub const fn rails(&self) -> &Rails<SLOTS> {
         &self.rails
     }
 
-    /// Which side is preferred.
-    #[must_use]
-    pub const fn sides(&self) -> &Sides {
-        &self.sides
+    /// Returns true if the exploration is over and the robot patrols.
+    pub(super) const fn is_patrolling(&self) -> bool {
+        self.patrol_since_ms.is_some()
     }
 
-    /// Whether the exploration is over and the patrol is on.
-    #[must_use]
-    pub const fn is_patrolling(&self) -> bool {
-        self.since_ms.is_some()
-    }
-
-    /// The exploration is over; whether a patrol begins.
-    pub fn begin_patrol(&mut self) -> bool {
-        let begins = self.patrol_ms > 0 && self.since_ms.is_none();
+    /// Ends the exploration. Returns true if a patrol begins.
+    pub(super) fn begin_patrol(&mut self) -> bool {
+        let begins = self.patrol_ms > 0 && !self.is_patrolling();
         if begins {
-            self.since_ms = Some(self.now_ms);
-            // The last search, for which the robot stood, is not lingering.
-            (self.left_ms, self.lingers) = (self.now_ms, false);
-            self.fresh.begin_patrol(&mut self.rails);
+            self.patrol_since_ms = Some(self.now_ms);
+            // The robot stood for the last search: that is not lingering.
+            (self.stay_ms, self.lingers) = (self.now_ms, false);
+            self.pending.begin_patrol(&mut self.rails);
         }
         begins
     }
 
-    /// The robot is here; to be called in every step, with the scan of the level laser.
-    pub fn note(&mut self, pose: &Pose, time_ms: u32, scan: Option<(&LaserMount, &[u16])>) {
+    /// Records the robot's pose, and the scan of the level laser; called in every step.
+    pub(super) fn note(&mut self, pose: &Pose, time_ms: u32, scan: Option<(&LaserMount, &[u16])>) {
         self.now_ms = time_ms;
-        self.rails.pass();
+        self.rails.step();
         if let Some((laser, ranges_mm)) = scan {
-            self.sides.note(laser, ranges_mm);
+            self.votes.note(laser, ranges_mm);
         }
         let here = pose.point();
-        self.fresh.come(here.cell());
-        let (dx, dy) = (here.x_m - self.left.x_m, here.y_m - self.left.y_m);
-        if dx * dx + dy * dy > LINGER_M * LINGER_M {
-            (self.left, self.left_ms) = (here, time_ms);
-        } else if time_ms.wrapping_sub(self.left_ms) > LINGER_MS {
-            self.left_ms = time_ms;
+        self.pending.note(here.cell());
+        if here.distance2(self.stay) > LINGER_M * LINGER_M {
+            (self.stay, self.stay_ms) = (here, time_ms);
+        } else if time_ms.wrapping_sub(self.stay_ms) > LINGER_MS {
+            self.stay_ms = time_ms;
             self.lingers = true;
         }
     }
 
-    /// Charge the window with the rails; whether that leads the robot anywhere, or a path must.
-    pub fn charge<const TILES: usize>(
+    /// Charges the window with the rails. Returns false if the robot follows a path instead, or the
+    /// rails lead it nowhere.
+    pub(super) fn charge<const TILES: usize>(
         &mut self,
         frontier: &Frontier,
-        around: &Surroundings<'_, TILES, SLOTS>,
-        (window, view): (&mut Window, &LocalGrid),
+        centres: &Centres<'_, TILES, SLOTS>,
+        robot: Point,
+        (window, grid): (&mut Window, &LocalGrid),
     ) -> bool {
-        let robot = around.pose.point();
-        let Some(way) = around.topology.skeleton() else {
-            return false;
-        };
-        let frame = around.topology.frame();
-        let centres = CentreCells { frame, way };
-        self.visit(&centres, robot);
+        self.visit(centres, robot);
         window.set_preferences(|_, _| Preference::NONE);
         if self.on_path {
             return false;
         }
-        let goals = if self.is_patrolling() {
-            [0; SIDE]
+        let (room_m, goals) = if self.is_patrolling() {
+            (VISIT_M, [0; SIDE])
         } else {
-            let given_up = frontier.dropped().iter().map(|goal| goal.cell);
-            unexplored(view, around.tiles, given_up)
+            let dropped = frontier.dropped().iter().map(|goal| goal.cell);
+            (ROOM_M, unexplored(grid, centres.tiles, dropped))
         };
-        let dates = (&self.rails, &self.fresh);
-        charge_rails(
-            window,
-            view,
-            dates,
-            &centres,
-            (robot, self.room_m()),
-            &goals,
-        );
-        let ahead = self.fresh.ahead(robot.cell());
-        let front = self.sides.preferred().zip(ahead);
-        if let Some(front) = front.filter(|_| charges::parts(&centres, robot)) {
-            prefer(window, view, robot, front);
+        let visits = (&self.rails, &self.pending);
+        charge_rails(window, grid, visits, centres, (robot, room_m), &goals);
+        let ahead = self.pending.ahead(robot.cell());
+        let preferred = self.votes.preferred().zip(ahead);
+        if let Some(preferred) = preferred.filter(|_| has_fork(centres, robot)) {
+            prefer(window, grid, robot, preferred);
         }
-        view.place(robot.cell())
+        grid.place(robot.cell())
             .is_some_and(|(x, y)| window.is_reached(x, y))
     }
 
-    /// Centre cells this near are free, metres.
-    const fn room_m(&self) -> f32 {
-        if self.is_patrolling() {
-            VISIT_M
-        } else {
-            ROOM_M
-        }
-    }
-
-    /// Today the robot visits the centre cells beside it.
-    fn visit(&mut self, centres: &CentreCells<'_>, robot: Point) {
+    /// Visits the centre cells beside the robot.
+    fn visit<const TILES: usize>(&mut self, centres: &Centres<'_, TILES, SLOTS>, robot: Point) {
         let radius_m = if self.lingers {
             LINGER_VISIT_M
         } else {
             VISIT_M
         };
-        let (rails, fresh) = (&mut self.rails, &mut self.fresh);
-        let is_patrolling = self.since_ms.is_some();
-        fresh.leave(robot.cell(), rails, is_patrolling, |middle, half, visit| {
-            centres.around(middle, half, visit);
+        let is_patrolling = self.is_patrolling();
+        let (rails, pending) = (&mut self.rails, &mut self.pending);
+        pending.leave(robot.cell(), rails, is_patrolling, |middle, half, visit| {
+            centres.for_each_in_square(middle, half, |_, cell| visit(cell));
         });
         let mut is_new = false;
-        centres.around(robot.cell(), (radius_m / CELL_M) as i32 + 2, |cell| {
-            if charges::distance_m(cell, robot) <= radius_m {
-                is_new |= fresh.visit(cell, rails);
+        let half = (radius_m / CELL_M) as i32 + 2;
+        centres.for_each_in_square(robot.cell(), half, |_, cell| {
+            if distance_m(cell, robot) <= radius_m {
+                is_new |= pending.visit(cell, rails);
             }
         });
         if self.lingers {
-            self.fresh.settle(&mut self.rails);
-            self.new_ms = self.now_ms.wrapping_sub(PATIENCE_MS);
+            pending.write_all(rails);
+            self.new_place_ms = self.now_ms.wrapping_sub(IMPATIENCE_MS);
             self.lingers = false;
         } else if is_new {
-            self.new_ms = self.now_ms;
+            self.new_place_ms = self.now_ms;
         }
     }
 
-    /// A round on a new skeleton: whether anything is left, and the path to it, in case the rails lead nowhere.
-    pub fn advance<const TILES: usize>(
+    /// Plans a round on a new skeleton: finds out if anything is left, and the path to it in case
+    /// the rails lead nowhere.
+    pub(super) fn advance<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,
         mut round: Round<'_, TILES, SLOTS>,
-        mut lent: PlanningScratch<'_>,
+        mut scratch: PlanningScratch<'_>,
     ) -> RoundOutcome {
-        if let Some(since_ms) = self.since_ms {
-            if round.time_ms.wrapping_sub(since_ms) >= self.patrol_ms {
+        if let Some(since_ms) = self.patrol_since_ms {
+            let patrolled_ms = round.time_ms.wrapping_sub(since_ms);
+            if patrolled_ms >= self.patrol_ms {
                 return RoundOutcome::Nothing;
             }
-            return self.patrol(frontier, &mut round, &mut lent, since_ms);
+            return self.patrol(frontier, &mut round, &mut scratch, patrolled_ms);
         }
         let robot = round.pose.point();
-        let is_late = round.time_ms.wrapping_sub(self.new_ms) >= PATIENCE_MS;
-        let (outlook, is_free) =
-            frontier.glance(&round.known(), robot, round.time_ms, lent, is_late);
-        // What remains for the second chance is where the robot just fits through.
+        let is_late = round.time_ms.wrapping_sub(self.new_place_ms) >= IMPATIENCE_MS;
+        let (outcome, is_free) =
+            frontier.glance(&round.context(), robot, round.time_ms, scratch, is_late);
+        // What remains for the second chance is where the robot only just fits through.
         self.on_path = !is_free || frontier.is_second_chance();
-        outlook
+        outcome
     }
 
-    /// A round of the patrol: the path to the oldest rail, which is followed where it is overdue and where the rails lead nowhere.
+    /// Plans a round of the patrol: the path to the oldest rail, which the robot follows if the
+    /// rail is overdue or the rails lead nowhere.
     fn patrol<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,
         round: &mut Round<'_, TILES, SLOTS>,
-        lent: &mut PlanningScratch<'_>,
-        since_ms: u32,
+        scratch: &mut PlanningScratch<'_>,
+        patrolled_ms: u32,
     ) -> RoundOutcome {
-        let oldest = self.oldest(round, since_ms);
-        let path = oldest.and_then(|(oldest, _)| self.path_to(oldest, round, lent));
+        let oldest = self.oldest(round, patrolled_ms);
+        let path = oldest.and_then(|(oldest, _)| self.path_to(oldest, round, scratch));
         self.on_path = path.is_some() && oldest.is_some_and(|(_, is_overdue)| is_overdue);
         let Some(path) = path else {
             return RoundOutcome::Unsure;
         };
-        let (known, robot) = (round.known(), round.pose.point());
-        match frontier.follow(path, &known, robot, round.time_ms, lent.view) {
+        let (context, robot) = (round.context(), round.pose.point());
+        match frontier.follow(path, &context, robot, round.time_ms, scratch.view) {
             RoundOutcome::Path => RoundOutcome::Path,
             // There is always another rail.
             _ => {
@@ -294,57 +258,46 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         }
     }
 
-    /// The rank of the oldest rails, and whether they are overdue: not visited for as long as a tour of all takes at least.
+    /// Returns the stamp of the oldest rails, and true if they are overdue: not visited for as long
+    /// as a tour of all takes at least.
     fn oldest<const TILES: usize>(
         &self,
         round: &Round<'_, TILES, SLOTS>,
-        since_ms: u32,
+        patrolled_ms: u32,
     ) -> Option<(u8, bool)> {
-        let way = round.topology.skeleton()?;
-        let frame = round.topology.frame();
-        let tour_steps = STEPS_PER_CELL * way.count() as u32;
-        // What was only seen comes first; what was not visited in a whole tour cannot be.
-        let tour_ms = tour_steps.saturating_mul(STEP_MS);
-        let is_first = round.time_ms.wrapping_sub(since_ms) < tour_ms;
-        let ranks = way.sites().map(|site| self.rank(frame.cell(site)));
-        let oldest = ranks.filter(|&rank| is_first || rank > 0).min()?;
+        let centres = round.centres()?;
+        let tour_steps = STEPS_PER_CELL * centres.way.count() as u32;
+        // The never visited come first. Those not visited in a whole tour cannot be reached.
+        let is_first_tour = patrolled_ms < tour_steps.saturating_mul(STEP_MS);
+        let stamps = centres
+            .way
+            .sites()
+            .map(|site| self.stamp(centres.cell(site)));
+        let oldest = stamps.filter(|&stamp| is_first_tour || stamp > 0).min()?;
         let is_overdue = oldest == 0 || self.rails.age_steps(oldest) > tour_steps;
         Some((oldest, is_overdue))
     }
 
-    /// The older of two centre cells has the lesser rank; what the robot is visiting is the newest.
-    fn rank(&self, cell: Cell) -> u8 {
-        if self.fresh.holds(cell) {
+    /// Returns the stamp of a centre cell; the newest for one that the robot is visiting.
+    fn stamp(&self, cell: Cell) -> u8 {
+        if self.pending.holds(cell) {
             u8::MAX
         } else {
-            self.rails.rank(cell)
+            self.rails.stamp(cell)
         }
     }
 
-    /// The way along the skeleton to the centre cells of a rank.
+    /// Returns the path along the skeleton to the nearest centre cell with a stamp.
     fn path_to<const TILES: usize>(
         &self,
-        oldest: u8,
-        round: &mut Round<'_, TILES, SLOTS>,
-        lent: &mut PlanningScratch<'_>,
+        stamp: u8,
+        round: &Round<'_, TILES, SLOTS>,
+        scratch: &mut PlanningScratch<'_>,
     ) -> Option<Path> {
-        let frame = round.topology.frame();
-        let way = round.topology.skeleton()?;
-        let rank = |site| self.rank(frame.cell(site));
-        let centres = Centres {
-            tiles: round.tiles,
-            disc: round.disc,
-            frame,
-            way,
-        };
-        let mut paths = PathSearch::open(centres, lent)?;
-        paths.spread(way.sites().filter(|&site| rank(site) == oldest));
-        paths.path(round.pose.point().cell())
-    }
-}
-
-impl<const SLOTS: usize> Default for Tdbvp<SLOTS> {
-    fn default() -> Self {
-        Self::new()
+        let centres = round.centres()?;
+        let has_stamp = |site: &_| self.stamp(centres.cell(*site)) == stamp;
+        let mut search = PathSearch::open(centres, scratch)?;
+        search.spread(centres.way.sites().filter(has_stamp));
+        search.path(round.pose.point().cell())
     }
 }

@@ -1,60 +1,65 @@
-//! What the robot is visiting: places whose date is not written yet, and its last metres.
+//! Pending visits: the places around the robot whose stamp is not written yet, and its last metres.
 //!
-//! A date is for 1.6 × 1.6 m. Written when the robot comes in, it would call visited what lies ahead in the same place, and the robot
-//! would stand before it. So a place is *pending* until the robot is [`AWAY_M`] from it; meanwhile those centre cells in it
-//! are visited that the robot came near to, and the others are what they were.
+//! A stamp is for 1.6 × 1.6 m. Written when the robot enters, it would make the centre cells ahead
+//! in the same place visited, and the robot would stop before them. So a place is *pending* until
+//! the robot is [`AWAY_M`] from it. Meanwhile only those of its centre cells are visited that the
+//! robot came near to.
 //!
-//! A place that is left with centre cells not visited was visited *in part*. To explore that will do: going back for the
-//! rest of every place takes rooms without a loop from 539 s to 883 s. A patrol is strict: it goes first to the places that the
-//! exploration visited in part and remembers, and keeps the old date of one that it visits in part itself. Else a corner would wait for a tour
-//! and another one behind its neighbour's date.
+//! A place that is left with other centre cells was visited *in part*. For the exploration that is
+//! enough: going back for the rest of every place takes rooms without a loop from 539 s to 883 s. A
+//! patrol is strict. It begins with the places that the exploration visited in part and remembers,
+//! and a place that it visits in part itself keeps its old stamp. Otherwise a corner would wait for
+//! a whole tour, and another one behind its neighbour's stamp.
 //!
 //! Units: map cells, metres.
 
 use heapless::Vec;
 
-use crate::geometry::{CELL_M, Cell};
+use crate::geometry::Cell;
 use crate::path::breadcrumbs::Crumbs;
 use crate::strategy::tdbvp::rails::{PLACE_CELLS, Rails};
+use crate::strategy::tdbvp::sides::DISC_M;
 
-/// Centre cells this near to the robot are visited, metres: a metre, less half a centre cell's diagonal on either side, and little enough
-/// that no wall of a corridor of 2 m is looked through.
+/// Distance from the robot within which centre cells are visited, metres: half a corridor of 2 m
+/// less a quarter of a centre cell, so that no wall is looked through.
 pub(super) const VISIT_M: f32 = 0.95;
-/// A place this far from the robot is done with, metres: most of the way to the window's edge.
+/// Distance from the robot at which a place is done, metres: most of the way to the window's edge.
 const AWAY_M: f32 = 2.4;
-/// Metres of the way that say where ahead is: as far as the preferred side reaches, so that it does not turn with a robot that turns
-/// into it.
-const AHEAD_M: f32 = 2.0;
-/// Places that are pending at the most.
+/// Metres of the last way that give the direction ahead: the radius of the preferred side's disc,
+/// so that the disc does not turn with a robot that turns into it.
+const AHEAD_M: f32 = DISC_M;
+/// Most pending places: those within [`AWAY_M`] of a robot on its way, and some more.
 const MOST_PENDING: usize = 12;
-/// Places visited in part that are remembered; what was left longer ago has an older date, too.
-const MOST_PARTLY: usize = 32;
+/// Most places visited in part that are remembered. Those that were left longer ago have older
+/// stamps anyway.
+const MOST_PARTIAL: usize = 32;
 
-/// Centre cells along a place: one bit each.
+/// Centre cells along the side of a place: one bit each.
 const SIDE: i32 = PLACE_CELLS / 2;
 const _: () = assert!(SIDE * SIDE == 64);
 
+/// A place, by its least map cell.
 type Place = [i16; 2];
 
-/// A place that the robot is visiting.
+/// A place whose stamp is not written yet.
 #[derive(Debug)]
-struct Pending {
+struct PendingVisit {
     place: Place,
     /// Its centre cells that were visited, row by row.
     visited: u64,
 }
 
-/// The last metres and the places they lead through.
+/// The robot's last metres, and the places on them.
 #[derive(Debug)]
-pub(super) struct Fresh {
+pub(super) struct PendingVisits {
     crumbs: Crumbs,
-    /// The least cells of places, the first one entered first.
-    pending: Vec<Pending, MOST_PENDING>,
-    /// Those the exploration visited in part, the last one left last.
-    partly: Vec<Place, MOST_PARTLY>,
+    /// The first one entered first.
+    pending: Vec<PendingVisit, MOST_PENDING>,
+    /// Places that the exploration visited in part, the last one left last.
+    partial: Vec<Place, MOST_PARTIAL>,
 }
 
-/// The least cell of the place that a cell is in.
+/// Returns the place of a cell.
 fn place(cell: Cell) -> Place {
     [cell.x & -PLACE_CELLS, cell.y & -PLACE_CELLS].map(|at| at as i16)
 }
@@ -64,55 +69,54 @@ fn least_cell([x, y]: Place) -> Cell {
     Cell { x, y }
 }
 
-fn is_near(a: Cell, b: Cell, radius_m: f32) -> bool {
-    let (dx, dy) = ((a.x - b.x) as f32 * CELL_M, (a.y - b.y) as f32 * CELL_M);
-    dx * dx + dy * dy <= radius_m * radius_m
+fn is_within(a: Cell, b: Cell, radius_m: f32) -> bool {
+    a.distance2(b) <= radius_m * radius_m
 }
 
-impl Pending {
-    /// Whether a centre cell in it was visited, or was another one beside it, as the skeleton was then.
+impl PendingVisit {
+    /// Returns true if a centre cell was visited, or one beside it: the skeleton moves by a cell.
     fn has(&self, cell: Cell) -> bool {
-        // Columns 0 and 7 have nothing beside them on one side.
+        // Columns 0 and 7 have no neighbour on one side.
         let (west, east) = (0x0101_0101_0101_0101, 0x8080_8080_8080_8080);
         let row = self.visited | (self.visited & !east) << 1 | (self.visited & !west) >> 1;
         (row | row << SIDE | row >> SIDE) & bit(cell) != 0
     }
 }
 
-/// The bit of a centre cell in its place.
+/// Returns the bit of a centre cell in its place.
 fn bit(cell: Cell) -> u64 {
     let [x, y] = [cell.x, cell.y].map(|at| at.rem_euclid(PLACE_CELLS) / 2);
     1 << (y * SIDE + x)
 }
 
-/// The exploration left a place.
-fn remember(partly: &mut Vec<Place, MOST_PARTLY>, left: Place, whole: bool) {
-    partly.retain(|&other| other != left);
-    if !whole {
-        if partly.is_full() {
-            partly.remove(0);
+/// Records that the exploration left a place, visited whole or in part.
+fn remember(partial: &mut Vec<Place, MOST_PARTIAL>, left: Place, is_whole: bool) {
+    partial.retain(|&other| other != left);
+    if !is_whole {
+        if partial.is_full() {
+            partial.remove(0);
         }
-        let _ = partly.push(left);
+        let _ = partial.push(left);
     }
 }
 
-impl Fresh {
-    /// Nothing yet.
+impl PendingVisits {
+    /// No place is pending.
     pub(super) const fn new() -> Self {
         Self {
             crumbs: Crumbs::new(),
             pending: Vec::new(),
-            partly: Vec::new(),
+            partial: Vec::new(),
         }
     }
 
-    /// The robot is here.
-    pub(super) fn come(&mut self, robot: Cell) {
+    /// Records the robot's cell.
+    pub(super) fn note(&mut self, robot: Cell) {
         self.crumbs.note(robot);
     }
 
-    /// Write down what the robot left; on patrol only what it visited whole. `centre_cells` calls back with those of the square of so many cells
-    /// around a middle.
+    /// Writes the stamps of the places that the robot has left; on patrol only of those that it
+    /// visited whole. `centre_cells(middle, half, visit)` visits those in a square.
     pub(super) fn leave<const SLOTS: usize>(
         &mut self,
         robot: Cell,
@@ -120,7 +124,7 @@ impl Fresh {
         is_patrolling: bool,
         centre_cells: impl Fn(Cell, i32, &mut dyn FnMut(Cell)),
     ) {
-        let partly = &mut self.partly;
+        let partial = &mut self.partial;
         self.pending.retain(|pending| {
             let left = pending.place;
             let (least, half) = (least_cell(left), PLACE_CELLS / 2);
@@ -128,59 +132,57 @@ impl Fresh {
                 x: least.x + half,
                 y: least.y + half,
             };
-            if is_near(middle, robot, AWAY_M) {
+            if is_within(middle, robot, AWAY_M) {
                 return true;
             }
-            let mut whole = true;
+            let mut is_whole = true;
             centre_cells(middle, half, &mut |cell| {
-                whole &= place(cell) != left || pending.has(cell);
+                is_whole &= place(cell) != left || pending.has(cell);
             });
-            if whole || !is_patrolling {
+            if is_whole || !is_patrolling {
                 rails.visit(least);
             }
             if !is_patrolling {
-                remember(partly, left, whole);
+                remember(partial, left, is_whole);
             }
             false
         });
     }
 
-    /// A patrol begins: what was visited in part counts as never visited.
+    /// Begins a patrol: places visited in part count as never visited.
     pub(super) fn begin_patrol<const SLOTS: usize>(&mut self, rails: &mut Rails<SLOTS>) {
-        for left in core::mem::take(&mut self.partly) {
+        for left in core::mem::take(&mut self.partial) {
             rails.forget(least_cell(left));
         }
     }
 
-    /// The robot visits a centre cell; whether its place was never visited before.
+    /// Visits a centre cell. Returns true if its place was never visited before.
     pub(super) fn visit<const SLOTS: usize>(
         &mut self,
         cell: Cell,
         rails: &mut Rails<SLOTS>,
     ) -> bool {
-        let place = place(cell);
-        let bit = bit(cell);
+        let (place, visited) = (place(cell), bit(cell));
         if let Some(pending) = self.pending.iter_mut().find(|it| it.place == place) {
-            pending.visited |= bit;
+            pending.visited |= visited;
             return false;
         }
         let is_new = !rails.is_visited(cell);
-        let visited = bit;
-        if self.pending.push(Pending { place, visited }).is_err() {
+        if self.pending.push(PendingVisit { place, visited }).is_err() {
             rails.visit(cell);
         }
         is_new
     }
 
-    /// The way that the robot has been going for the last [`AHEAD_M`], map cells; its heading says nothing of it when it turns on the
-    /// spot.
+    /// Returns the direction of the last [`AHEAD_M`] driven, map cells. The robot's heading is not
+    /// it while the robot turns on the spot.
     pub(super) fn ahead(&self, robot: Cell) -> Option<[f32; 2]> {
         let mut crumbs = self.crumbs.newest_first();
-        let came = crumbs.find(|&crumb| !is_near(crumb, robot, AHEAD_M))?;
+        let came = crumbs.find(|&crumb| !is_within(crumb, robot, AHEAD_M))?;
         Some([robot.x - came.x, robot.y - came.y].map(|along| along as f32))
     }
 
-    /// Whether a centre cell was visited and its date is not written yet.
+    /// Returns true if a centre cell was visited and its stamp is not written yet.
     pub(super) fn holds(&self, cell: Cell) -> bool {
         let place = place(cell);
         let mut pending = self.pending.iter();
@@ -188,17 +190,11 @@ impl Fresh {
         pending.is_some_and(|pending| pending.has(cell))
     }
 
-    /// Write everything down.
-    pub(super) fn settle<const SLOTS: usize>(&mut self, rails: &mut Rails<SLOTS>) {
+    /// Writes all stamps.
+    pub(super) fn write_all<const SLOTS: usize>(&mut self, rails: &mut Rails<SLOTS>) {
         for pending in core::mem::take(&mut self.pending) {
             rails.visit(least_cell(pending.place));
         }
-    }
-}
-
-impl Default for Fresh {
-    fn default() -> Self {
-        Self::new()
     }
 }
 
@@ -206,11 +202,11 @@ impl Default for Fresh {
 mod tests {
     use std::vec::Vec;
 
-    use super::Fresh;
+    use super::PendingVisits;
     use crate::geometry::Cell;
     use crate::strategy::tdbvp::rails::{Rails, UNVISITED};
 
-    /// Centre cells along a line, for as far as there are.
+    /// The centre cells are a line.
     fn at(x: i32) -> Cell {
         Cell { x, y: 8 }
     }
@@ -221,76 +217,80 @@ mod tests {
     }
 
     fn rails() -> Rails<16> {
-        let mut rails = Rails::new();
-        rails.reset((4, 4));
-        rails
+        Rails::new((4, 4))
     }
 
-    /// The robot goes from one centre cell to another, and visits what is so near.
-    fn go(fresh: &mut Fresh, rails: &mut Rails<16>, ways: &[i32], near: i32, is_patrolling: bool) {
-        for &x in ways {
-            rails.pass();
-            fresh.come(at(x));
-            fresh.leave(at(x), rails, is_patrolling, line);
+    /// The robot drives from one centre cell to another, and visits those within `near`.
+    fn drive(
+        pending: &mut PendingVisits,
+        rails: &mut Rails<16>,
+        stops: &[i32],
+        near: i32,
+        is_patrolling: bool,
+    ) {
+        for &x in stops {
+            rails.step();
+            pending.note(at(x));
+            pending.leave(at(x), rails, is_patrolling, line);
             for near in (x - near..=x + near).filter(|x| x % 2 == 0) {
-                fresh.visit(at(near), rails);
+                pending.visit(at(near), rails);
             }
         }
     }
 
     #[test]
-    fn what_lies_ahead_in_the_same_place_is_what_it_was_until_the_robot_is_gone() {
-        let (mut rails, mut fresh) = (rails(), Fresh::new());
-        assert!(fresh.visit(at(0), &mut rails), "new");
-        assert!(!fresh.visit(at(2), &mut rails), "the place is not");
-        assert!(fresh.holds(at(0)) && !fresh.holds(at(14)));
+    fn cells_ahead_in_the_same_place_stay_unvisited_until_the_robot_is_away() {
+        let (mut rails, mut pending) = (rails(), PendingVisits::new());
+        assert!(pending.visit(at(0), &mut rails), "new");
+        assert!(!pending.visit(at(2), &mut rails), "the place is not");
+        assert!(pending.holds(at(0)) && !pending.holds(at(14)));
         assert_eq!(rails.potential(at(14)), UNVISITED);
-        let way: Vec<i32> = (3..40).collect();
-        go(&mut fresh, &mut rails, &way, 0, false);
-        assert!(!fresh.holds(at(2)), "its date is written");
+        let stops: Vec<i32> = (3..40).collect();
+        drive(&mut pending, &mut rails, &stops, 0, false);
+        assert!(!pending.holds(at(2)), "its stamp is written");
         assert!(rails.is_visited(at(2)) && rails.is_visited(at(14)));
         assert_eq!(rails.potential(at(35)), UNVISITED);
-        fresh.settle(&mut rails);
+        pending.write_all(&mut rails);
         assert!(rails.is_visited(at(35)));
     }
 
     #[test]
     fn a_skeleton_that_moves_by_a_cell_is_still_visited() {
-        let (mut rails, mut fresh) = (rails(), Fresh::new());
-        fresh.visit(Cell { x: 20, y: 6 }, &mut rails);
+        let (mut rails, mut pending) = (rails(), PendingVisits::new());
+        pending.visit(Cell { x: 20, y: 6 }, &mut rails);
         for (x, y, held) in [(20, 8, true), (18, 4, true), (22, 6, true), (24, 6, false)] {
-            assert_eq!(fresh.holds(Cell { x, y }), held, "{x} {y}");
+            assert_eq!(pending.holds(Cell { x, y }), held, "{x} {y}");
         }
         // The last column is not beside the first one of the row above.
-        fresh.visit(Cell { x: 30, y: 6 }, &mut rails);
-        assert!(!fresh.holds(Cell { x: 16, y: 8 }));
+        pending.visit(Cell { x: 30, y: 6 }, &mut rails);
+        assert!(!pending.holds(Cell { x: 16, y: 8 }));
     }
 
     #[test]
-    fn a_place_visited_in_part_has_a_date_while_all_is_explored_and_none_when_a_patrol_begins() {
-        let (mut rails, mut fresh) = (rails(), Fresh::new());
-        go(&mut fresh, &mut rails, &[20, 60], 2, false);
-        go(&mut fresh, &mut rails, &[60], 8, false);
-        assert!(rails.is_visited(at(30)), "to explore it will do");
-        fresh.begin_patrol(&mut rails);
+    fn a_place_visited_in_part_has_a_stamp_until_a_patrol_begins() {
+        let (mut rails, mut pending) = (rails(), PendingVisits::new());
+        drive(&mut pending, &mut rails, &[20, 60], 2, false);
+        drive(&mut pending, &mut rails, &[60], 8, false);
+        assert!(rails.is_visited(at(30)), "enough for the exploration");
+        pending.begin_patrol(&mut rails);
         assert!(!rails.is_visited(at(30)), "a patrol goes there first");
-        // Whole places keep their dates.
-        let (mut rails, mut fresh) = (self::rails(), Fresh::new());
-        go(&mut fresh, &mut rails, &[20, 28, 60], 8, false);
-        fresh.begin_patrol(&mut rails);
+        // Places visited whole keep their stamps.
+        let (mut rails, mut pending) = (self::rails(), PendingVisits::new());
+        drive(&mut pending, &mut rails, &[20, 28, 60], 8, false);
+        pending.begin_patrol(&mut rails);
         assert!(rails.is_visited(at(30)));
     }
 
     #[test]
-    fn a_patrol_that_visits_a_place_in_part_leaves_it_as_old_as_it_was() {
-        let (mut rails, mut fresh) = (rails(), Fresh::new());
-        go(&mut fresh, &mut rails, &[20, 28, 60], 8, false);
-        let before = rails.rank(at(30));
-        let wait = |rails: &mut Rails<16>| (0..40).for_each(|_| rails.pass());
+    fn a_patrol_that_visits_a_place_in_part_leaves_its_stamp() {
+        let (mut rails, mut pending) = (rails(), PendingVisits::new());
+        drive(&mut pending, &mut rails, &[20, 28, 60], 8, false);
+        let before = rails.stamp(at(30));
+        let wait = |rails: &mut Rails<16>| (0..40).for_each(|_| rails.step());
         wait(&mut rails);
-        go(&mut fresh, &mut rails, &[20, 60], 2, true);
-        assert_eq!(rails.rank(at(30)), before);
-        go(&mut fresh, &mut rails, &[20, 28, 60], 8, true);
-        assert!(rails.rank(at(30)) > before);
+        drive(&mut pending, &mut rails, &[20, 60], 2, true);
+        assert_eq!(rails.stamp(at(30)), before);
+        drive(&mut pending, &mut rails, &[20, 28, 60], 8, true);
+        assert!(rails.stamp(at(30)) > before);
     }
 }

@@ -1,168 +1,153 @@
-//! Rails: when the robot last visited the centre cells, and what they are charged with for it [Maffei14, eq. 3].
+//! Rails: when the robot last visited the centre cells, and the potential that follows
+//! [Maffei14, eq. 3].
 //!
 //! ```text
 //! p = (s − s_oldest) / (s_newest − s_oldest)     visited in step s: the newest 1, the oldest 0
 //! p = −0.5                                       not visited yet
 //! ```
 //!
-//! Departs from the paper, where every centre cell has its step: a skeleton changes all the time, and there is one byte for
-//! 1.6 × 1.6 m of the map. No two centre lines that a wall parts share one, a corridor of 2 m has one for 1.6 m of its length,
-//! and what the robot visits has its byte whatever becomes of the centre cells in it. The byte is a date; when the days run
-//! out, the past is moved down if it is not used to the bottom, and otherwise halved, with days of twice the length from then on, so that the
-//! robot can go on for ever.
+//! Departs from [Maffei14, IV], where every centre cell has its own step: the skeleton changes all
+//! the time, so a *place* of 1.6 × 1.6 m of the map has one byte, a *stamp*, whatever centre cells
+//! are in it. Centre lines that a wall parts do not share a place. A stamp counts *ticks* of several
+//! steps. When the ticks run out, all stamps become lower by as much as the oldest allows, or are
+//! halved and the ticks become twice as long. So the robot can go on for ever.
 //!
-//! Invariants: 0 is not visited; no date is later than today; the order of two visits never turns about. Tiles are addressed
-//! as the map's are. Units: map cells; days of a growing number of steps.
+//! Invariants: 0 is not visited; no stamp is later than now; the order of two visits never turns
+//! round. Slots are addressed as the map's are. Units: map cells; ticks of a growing number of
+//! steps.
 
 use crate::geometry::Cell;
 use crate::grid::TileBox;
 
-/// Map cells along a place that has a date, as a power of two.
-const SHIFT: i32 = 4;
-/// Map cells along a place that has a date.
-pub const PLACE_CELLS: i32 = 1 << SHIFT;
-/// A day's steps at first.
-const DAY_STEPS: u16 = 4;
+/// Side of a place as a power of two, cells.
+const PLACE_SHIFT: i32 = 4;
+/// Side of a place, which has one stamp, cells.
+pub const PLACE_CELLS: i32 = 1 << PLACE_SHIFT;
+/// Steps in a tick at first: 0.8 s at 200 ms a step, in which the robot does not cross a place.
+const FIRST_TICK_STEPS: u16 = 4;
+/// Ticks by which the stamps must be lowered at least, or they are halved: a quarter of all, so
+/// that this is rare.
+const LEAST_ROOM: u8 = u8::MAX / 4;
 /// Potential of a centre cell that was not visited yet.
-pub const UNVISITED: f32 = -0.5;
+pub(super) const UNVISITED: f32 = -0.5;
 
-/// Dates of visits in a box of tiles; 4 bytes for each of its `SLOTS` places.
+/// The stamps of a box of tiles: 4 bytes for each of its `SLOTS` places.
 #[derive(Debug)]
 pub struct Rails<const SLOTS: usize> {
-    dates: [[u8; 4]; SLOTS],
+    stamps: [[u8; 4]; SLOTS],
     slots: TileBox,
-    today: u8,
+    now: u8,
     oldest: u8,
-    /// Steps of a day, and of today so far.
-    day_steps: u16,
+    /// Steps of a tick, and of the current one so far.
+    tick_steps: u16,
     steps: u16,
 }
 
 impl<const SLOTS: usize> Rails<SLOTS> {
-    /// Nothing is visited; without a box.
-    #[must_use]
-    pub const fn new() -> Self {
+    /// No place is visited, in a box of (width, height) tiles.
+    pub(crate) const fn new((width, height): (i32, i32)) -> Self {
         Self {
-            dates: [[0; 4]; SLOTS],
-            slots: TileBox::EMPTY,
-            today: 1,
+            stamps: [[0; 4]; SLOTS],
+            slots: TileBox { width, height },
+            now: 1,
             oldest: 1,
-            day_steps: DAY_STEPS,
+            tick_steps: FIRST_TICK_STEPS,
             steps: 0,
         }
     }
 
-    /// Forget everything; the box is `width` × `height` tiles.
-    pub fn reset(&mut self, (width, height): (i32, i32)) {
-        self.dates.as_flattened_mut().fill(0);
-        self.slots = TileBox { width, height };
-        (self.today, self.oldest) = (1, 1);
-        (self.day_steps, self.steps) = (DAY_STEPS, 0);
-    }
-
-    /// Another step.
-    pub fn pass(&mut self) {
+    /// Counts a step.
+    pub(super) fn step(&mut self) {
         self.steps += 1;
-        if self.steps < self.day_steps {
+        if self.steps < self.tick_steps {
             return;
         }
         self.steps = 0;
         self.find_oldest();
-        if self.today == u8::MAX {
+        if self.now == u8::MAX {
             self.make_room();
         }
-        self.today += 1;
+        self.now += 1;
     }
 
-    /// A centre cell is visited today; whether for the first time.
-    pub fn visit(&mut self, cell: Cell) -> bool {
-        let (slot, part) = self.place(cell);
-        let today = self.today;
-        let date = self.dates.get_mut(slot).and_then(|tile| tile.get_mut(part));
-        date.is_some_and(|date| core::mem::replace(date, today) == 0)
+    /// Stamps the place of a centre cell. Returns true if it was never visited before.
+    pub(super) fn visit(&mut self, cell: Cell) -> bool {
+        let now = self.now;
+        let stamp = self.stamp_mut(cell);
+        stamp.is_some_and(|stamp| core::mem::replace(stamp, now) == 0)
     }
 
-    /// A centre cell's place counts as never visited.
-    pub fn forget(&mut self, cell: Cell) {
-        let (slot, part) = self.place(cell);
-        if let Some(date) = self.dates.get_mut(slot).and_then(|tile| tile.get_mut(part)) {
-            *date = 0;
+    /// Makes the place of a centre cell count as never visited.
+    pub(super) fn forget(&mut self, cell: Cell) {
+        if let Some(stamp) = self.stamp_mut(cell) {
+            *stamp = 0;
         }
     }
 
-    /// The date of the last visit.
-    fn date(&self, cell: Cell) -> Option<u8> {
+    /// Returns the stamp of the last visit to a map cell's place; 0 if there was none. The older of
+    /// two places has the lower stamp.
+    #[must_use]
+    pub fn stamp(&self, cell: Cell) -> u8 {
         let (slot, part) = self.place(cell);
-        let date = *self.dates.get(slot)?.get(part)?;
-        (date != 0).then_some(date)
+        let tile = self.stamps.get(slot);
+        tile.and_then(|tile| tile.get(part)).copied().unwrap_or(0)
     }
 
-    /// Whether it was ever visited.
-    #[must_use]
-    pub fn is_visited(&self, cell: Cell) -> bool {
-        self.date(cell).is_some()
+    /// Returns true if the place of a centre cell was visited.
+    pub(super) fn is_visited(&self, cell: Cell) -> bool {
+        self.stamp(cell) != 0
     }
 
-    /// Potential of a centre cell [Maffei14, eq. 3]; where all are equally old, 1.
-    #[must_use]
-    pub fn potential(&self, cell: Cell) -> f32 {
-        let Some(date) = self.date(cell) else {
-            return UNVISITED;
-        };
-        match self.today - self.oldest {
-            0 => 1.0,
-            span => f32::from(date.saturating_sub(self.oldest)) / f32::from(span),
+    /// Returns the potential of a centre cell [Maffei14, eq. 3], −0.5 or 0 to 1; 1 where all are
+    /// equally old.
+    pub(super) fn potential(&self, cell: Cell) -> f32 {
+        match (self.stamp(cell), self.now - self.oldest) {
+            (0, _) => UNVISITED,
+            (_, 0) => 1.0,
+            (stamp, span) => f32::from(stamp.saturating_sub(self.oldest)) / f32::from(span),
         }
     }
 
-    /// The older of two centre cells has the lesser rank; what was never visited is the oldest.
-    #[must_use]
-    pub fn rank(&self, cell: Cell) -> u8 {
-        self.date(cell).unwrap_or(0)
+    /// Returns the steps since a visit with this stamp; for 0, those that the stamps reach back.
+    pub(super) fn age_steps(&self, stamp: u8) -> u32 {
+        let ticks = u32::from(self.now.saturating_sub(stamp));
+        ticks * u32::from(self.tick_steps) + u32::from(self.steps)
     }
 
-    /// Steps since the visit of a rank; of what was never visited, since the days began.
-    #[must_use]
-    pub fn age_steps(&self, rank: u8) -> u32 {
-        let days = u32::from(self.today.saturating_sub(rank));
-        days * u32::from(self.day_steps) + u32::from(self.steps)
-    }
-
-    /// The earliest date that there is; today's if nothing was visited.
+    /// Finds the earliest stamp; now if nothing was visited.
     fn find_oldest(&mut self) {
-        let dates = self.dates.as_flattened().iter().copied();
-        self.oldest = dates.filter(|&date| date != 0).min().unwrap_or(self.today);
+        let stamps = self.stamps.as_flattened().iter().copied();
+        self.oldest = stamps.filter(|&stamp| stamp != 0).min().unwrap_or(self.now);
     }
 
-    /// Let the days begin earlier, or be longer.
+    /// Lowers all stamps to the bottom, or halves them and makes the ticks twice as long.
     fn make_room(&mut self) {
         let unused = self.oldest - 1;
-        let is_enough = unused >= u8::MAX / 4;
+        let is_enough = unused >= LEAST_ROOM;
         if !is_enough {
-            self.day_steps = self.day_steps.saturating_mul(2);
+            self.tick_steps = self.tick_steps.saturating_mul(2);
         }
-        let earlier = |date: u8| match date {
+        let lower = |stamp: u8| match stamp {
             0 => 0,
-            date if is_enough => date - unused,
-            date => date.div_ceil(2),
+            stamp if is_enough => stamp - unused,
+            stamp => stamp.div_ceil(2),
         };
-        for date in self.dates.as_flattened_mut() {
-            *date = earlier(*date);
+        for stamp in self.stamps.as_flattened_mut() {
+            *stamp = lower(*stamp);
         }
-        (self.today, self.oldest) = (earlier(self.today), earlier(self.oldest));
+        (self.now, self.oldest) = (lower(self.now), lower(self.oldest));
     }
 
-    /// The tile's place of a cell, and the part in it. Beyond every place without a box.
+    fn stamp_mut(&mut self, cell: Cell) -> Option<&mut u8> {
+        let (slot, part) = self.place(cell);
+        self.stamps.get_mut(slot)?.get_mut(part)
+    }
+
+    /// Returns the slot of a cell's tile and the cell's place in it.
     fn place(&self, cell: Cell) -> (usize, usize) {
-        let (x, y) = (cell.x >> SHIFT, cell.y >> SHIFT);
+        let (x, y) = (cell.x >> PLACE_SHIFT, cell.y >> PLACE_SHIFT);
         let slot = self.slots.slot(x >> 1, y >> 1);
         (slot, ((y & 1) << 1 | (x & 1)) as usize)
-    }
-}
-
-impl<const SLOTS: usize> Default for Rails<SLOTS> {
-    fn default() -> Self {
-        Self::new()
     }
 }
 
@@ -179,9 +164,7 @@ mod tests {
     }
 
     fn rails() -> Rails<16> {
-        let mut rails = Rails::new();
-        rails.reset((4, 4));
-        rails
+        Rails::new((4, 4))
     }
 
     #[test]
@@ -192,26 +175,27 @@ mod tests {
             assert!(rails.visit(place(k)), "for the first time");
             assert!(!rails.visit(place(k)));
             for _ in 0..8 {
-                rails.pass();
+                rails.step();
             }
         }
         let of = |k| rails.potential(place(k));
-        // Two days from one to the next; the last was two days ago.
+        // Two ticks from one to the next; the last was two ticks ago.
         assert_eq!([0, 1, 2, 3, 4].map(of), [0.0, 0.2, 0.4, 0.6, 0.8]);
         assert_eq!(of(5), UNVISITED);
     }
 
     #[test]
-    fn ages_are_counted_in_steps_whatever_the_days_are() {
+    fn ages_are_counted_in_steps_whatever_the_ticks_are() {
         let mut rails = rails();
         rails.visit(place(0));
         for steps in 1..=4_000 {
-            rails.pass();
-            let age = rails.age_steps(rails.rank(place(0)));
-            let day = u32::from(rails.day_steps);
-            assert!(age.abs_diff(steps) <= day, "{age} after {steps} steps");
+            rails.step();
+            let age = rails.age_steps(rails.stamp(place(0)));
+            let tick = u32::from(rails.tick_steps);
+            assert!(age.abs_diff(steps) <= tick, "{age} after {steps} steps");
         }
-        assert!(rails.day_steps > super::DAY_STEPS, "the past was pressed");
+        let is_longer = rails.tick_steps > super::FIRST_TICK_STEPS;
+        assert!(is_longer, "the stamps were halved");
     }
 
     #[test]
@@ -221,16 +205,17 @@ mod tests {
         assert_eq!(rails.potential(place(3)), 1.0);
     }
 
-    /// Round and round for a week: the order of visits is what it was, coarsely, however often the past was pressed.
+    /// Round and round for a week: the order of visits stays, coarsely, however often the stamps
+    /// are lowered or halved.
     #[test]
-    fn the_order_stands_for_ever() {
+    fn the_order_of_visits_stays_for_ever() {
         let mut rails = rails();
         let stay = 50;
         for round in 0..1_000 {
             for k in 0..20 {
                 rails.visit(place(k));
                 for _ in 0..stay {
-                    rails.pass();
+                    rails.step();
                 }
                 if round > 0 && k == 19 {
                     let p = (0..20).map(|k| rails.potential(place(k)));
@@ -240,12 +225,13 @@ mod tests {
                 }
             }
         }
-        assert!(rails.day_steps < 40, "days of {} steps", rails.day_steps);
+        let steps = rails.tick_steps;
+        assert!(steps < 40, "ticks of {steps} steps");
     }
 
     #[test]
-    fn without_a_box_nothing_is_visited() {
-        let mut rails: Rails<16> = Rails::new();
+    fn in_a_box_without_area_nothing_is_visited() {
+        let mut rails: Rails<16> = Rails::new((0, 0));
         assert!(!rails.visit(place(0)));
         assert_eq!(rails.potential(place(0)), UNVISITED);
     }

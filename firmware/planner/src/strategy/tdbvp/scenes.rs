@@ -6,11 +6,12 @@ use crate::field::local_grid::{LocalGrid, position};
 use crate::field::{SCRATCH_FLOATS, SIDE, SolverConfig, Window, descent, solve};
 use crate::geometry::Cell;
 use crate::map::{Class, Tiles};
+use crate::path::nearest::Centres;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
 use crate::strategy::tdbvp::ROOM_M;
-use crate::strategy::tdbvp::charges::{CentreCells, charge_rails, prefer};
-use crate::strategy::tdbvp::pending_visits::Fresh;
+use crate::strategy::tdbvp::charges::{charge_rails, prefer};
+use crate::strategy::tdbvp::pending_visits::PendingVisits;
 use crate::strategy::tdbvp::rails::Rails;
 use crate::strategy::tdbvp::sides::Side;
 
@@ -45,7 +46,7 @@ struct Scene {
     tiles: Tiles<16, 64>,
     topology: Skeleton<64>,
     rails: Rails<64>,
-    fresh: Fresh,
+    pending: PendingVisits,
     robot: Cell,
 }
 
@@ -55,8 +56,8 @@ impl Scene {
         let mut scene = Self {
             tiles: Tiles::new(),
             topology: Skeleton::new(),
-            rails: Rails::new(),
-            fresh: Fresh::new(),
+            rails: Rails::new((8, 8)),
+            pending: PendingVisits::new(),
             robot: Cell::default(),
         };
         scene.tiles.reset(8, 8);
@@ -86,12 +87,11 @@ impl Scene {
         scene.topology.reset(Space::KnownFree);
         let disc = Footprint::new(0.1);
         while !scene.topology.advance(&scene.tiles, &disc, u32::MAX) {}
-        scene.rails.reset((8, 8));
         for x in 3..=scene.robot.x {
             let y = scene.robot.y;
-            scene.fresh.come(Cell { x, y });
-            scene.fresh.visit(Cell { x, y }, &mut scene.rails);
-            scene.rails.pass();
+            scene.pending.note(Cell { x, y });
+            scene.pending.visit(Cell { x, y }, &mut scene.rails);
+            scene.rails.step();
         }
         scene
     }
@@ -100,10 +100,8 @@ impl Scene {
     fn heading(&self, side: Option<Side>) -> (f32, f32) {
         let mut view = LocalGrid::new();
         view.look_around(&self.tiles, &Footprint::new(0.1), self.robot, 1);
-        let centres = CentreCells {
-            frame: self.topology.frame(),
-            way: self.topology.skeleton().unwrap(),
-        };
+        let footprint = Footprint::new(0.1);
+        let centres = Centres::of(&self.topology, &self.tiles, &footprint).unwrap();
         let (mut window, least) = (Window::new(), self.robot);
         // The middle of the robot's coarse cell.
         let robot = Cell {
@@ -111,7 +109,7 @@ impl Scene {
             y: least.y + 1,
         }
         .corner();
-        let dates = (&self.rails, &self.fresh);
+        let dates = (&self.rails, &self.pending);
         charge_rails(
             &mut window,
             &view,
@@ -122,7 +120,7 @@ impl Scene {
         );
         if let Some(side) = side {
             let ahead = self
-                .fresh
+                .pending
                 .ahead(self.robot)
                 .expect("it came from somewhere");
             prefer(&mut window, &view, robot, (side, ahead));
@@ -175,9 +173,9 @@ fn where_all_was_visited_the_older_way_is_taken() {
     for up in [true, false] {
         let mut scene = Scene::new(FORK);
         scene.visit_arm(!up);
-        (0..400).for_each(|_| scene.rails.pass());
+        (0..400).for_each(|_| scene.rails.step());
         scene.visit_arm(up);
-        (0..40).for_each(|_| scene.rails.pass());
+        (0..40).for_each(|_| scene.rails.step());
         let (_, left) = scene.heading(None);
         assert!((left < 0.0) == up && left.abs() > 0.2, "{up}: {left}");
     }

@@ -1,14 +1,17 @@
-//! Side preference: at a fork the robot turns to the side where it last saw openings [Maffei14, V].
+//! Side preference: at a fork the robot turns to the side where it last passed openings
+//! [Maffei14, V].
 //!
-//! The half disc before the robot is parted into left and right; the preferred side attracts with +ε, the other repels with −ε. An
-//! *opening* is a sudden increase of the ranges to one side, and votes for that side; the preference changes only when two votes
-//! in a row are equal. So a robot that passed a way to its left, and then another, turns left at the next fork, which is how a
-//! loop is closed.
+//! ```text
+//! ε = +EPSILON on the preferred side, −EPSILON on the other        in the half disc ahead
+//! ```
 //!
-//! Openings to both sides at once vote for neither.
+//! An *opening* is a sudden increase of the mean range to one side, and a vote for that side. Two
+//! equal votes in a row set the preference. So a robot that passed two ways on its left turns left
+//! at the next fork, which closes a loop. Openings on both sides at once are no vote.
 //!
-//! The paper gives neither ε nor the size of the disc. They were measured on a symmetric T and a symmetric cross (`tests/tests/sides.rs`),
-//! in 20 approaches to each with openings on the left, and with openings on the right; how many turned there:
+//! The paper gives neither ε nor the disc's radius. Measured on a symmetric T and a symmetric cross,
+//! 20 approaches each with openings on the left and 20 with openings on the right; how many turned
+//! to that side:
 //!
 //! | ε | T | cross |
 //! | --- | --- | --- |
@@ -18,56 +21,61 @@
 //! | 0.3 | 20, 20 | 20, 20 |
 //! | 0.6 | 14, 12 | 14, 13 |
 //!
-//! Of 100 approaches 100, 100, 99 and 99 turn there with ε = 0.2, the least that suffices; a strong one draws the robot past the ways.
-//! The disc's 2 m are those of the local goal.
+//! With ε = 0.2 and 100 approaches, 100 and 100 turn at the T, 99 and 99 at the cross. A larger ε
+//! draws the robot past the ways.
 //!
-//! Departs from the paper: the preference acts where the way parts within the disc, and not all the time. In a corridor there is nothing to prefer:
-//! there it drew the robot to a wall, turned the disc with it and made it swing, with a third of the time spent on the spot.
+//! Departs from [Maffei14, V]: the preference acts only where the skeleton has a junction in the
+//! disc. In a corridor it drew the robot to a wall, turned the disc with it and made it swing: a
+//! third of the time went into turns on the spot.
 //!
 //! Units: metres, radians.
 
+use crate::path::cell_path::LOCAL_GOAL_M;
 use crate::robot::LaserMount;
 
-/// Greatest range that counts, metres: what is farther is open anyhow.
+/// Greatest range that counts, metres: what is farther is open anyway.
 const FARTHEST_M: f32 = 4.0;
-/// Increase of the mean range to a side that is an opening, metres.
+/// Increase of the mean range that is an opening, metres: half the width of a corridor.
 const OPENING_M: f32 = 1.0;
-/// The side's beams, radians from straight ahead.
+/// Share of that increase below which the opening is over: without hysteresis noise would repeat
+/// the vote.
+const CLOSED_SHARE: f32 = 0.5;
+/// Bearings of the beams to a side, radians from straight ahead: 69° to 90°.
 const SECTOR_RAD: (f32, f32) = (1.2, core::f32::consts::FRAC_PI_2);
-/// Radius of the disc, metres.
-pub const DISC_M: f32 = 2.0;
-/// Preference of a half.
-pub const EPSILON: f32 = 0.2;
+/// Radius of the half disc with the preferred side, metres: that of the local goal.
+pub(super) const DISC_M: f32 = LOCAL_GOAL_M;
+/// Preference ε of the preferred side, and minus that of the other; see the table above.
+pub(super) const EPSILON: f32 = 0.2;
 
 /// Left or right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub(super) enum Side {
     /// To the left.
     Left,
     /// To the right.
     Right,
 }
 
-/// The ranges to one side.
+/// Detects openings on one side.
 #[derive(Clone, Copy, Debug)]
-struct Flank {
+struct OpeningDetector {
     /// The least mean range since the last opening, metres; infinite at first.
     least_m: f32,
     /// An opening is beside the robot, and has voted.
     is_open: bool,
 }
 
-impl Flank {
+impl OpeningDetector {
     const NEW: Self = Self {
         least_m: f32::INFINITY,
         is_open: false,
     };
 
-    /// The mean range now; whether an opening begins.
+    /// Takes the present mean range. Returns true if an opening begins.
     fn note(&mut self, mean_m: f32) -> bool {
         let opens = mean_m > self.least_m + OPENING_M;
         let begins = opens && !self.is_open;
-        if self.is_open && mean_m < self.least_m + 0.5 * OPENING_M {
+        if self.is_open && mean_m < self.least_m + CLOSED_SHARE * OPENING_M {
             *self = Self::NEW;
         }
         self.is_open |= begins;
@@ -78,66 +86,56 @@ impl Flank {
 
 /// The votes so far.
 #[derive(Clone, Copy, Debug)]
-pub struct Sides {
-    flanks: [Flank; 2],
+pub(super) struct SideVotes {
+    /// To the left and to the right.
+    detectors: [OpeningDetector; 2],
     last_vote: Option<Side>,
     preferred: Option<Side>,
 }
 
-impl Sides {
-    /// No vote yet, no preference.
-    #[must_use]
-    pub const fn new() -> Self {
-        Self {
-            flanks: [Flank::NEW; 2],
-            last_vote: None,
-            preferred: None,
-        }
-    }
+impl SideVotes {
+    /// No vote and no preference.
+    pub(super) const NEW: Self = Self {
+        detectors: [OpeningDetector::NEW; 2],
+        last_vote: None,
+        preferred: None,
+    };
 
-    /// The side that is preferred, after two equal votes.
-    #[must_use]
-    pub const fn preferred(&self) -> Option<Side> {
+    /// Returns the preferred side; `None` before two equal votes in a row.
+    pub(super) const fn preferred(&self) -> Option<Side> {
         self.preferred
     }
 
-    /// A vote for a side.
-    pub fn vote(&mut self, side: Side) {
+    /// Votes for a side.
+    fn vote(&mut self, side: Side) {
         if self.last_vote.replace(side) == Some(side) {
             self.preferred = Some(side);
         }
     }
 
-    /// A scan of the level laser.
-    pub fn note(&mut self, laser: &LaserMount, ranges_mm: &[u16]) {
-        let [left, right] = &mut self.flanks;
-        let opens = |flank: &mut Flank, side| {
-            mean_range(laser, ranges_mm, side).is_some_and(|mean_m| flank.note(mean_m))
+    /// Takes a scan of the level laser.
+    pub(super) fn note(&mut self, laser: &LaserMount, ranges_mm: &[u16]) {
+        let [left, right] = &mut self.detectors;
+        let opens = |detector: &mut OpeningDetector, side| {
+            mean_range_m(laser, ranges_mm, side).is_some_and(|mean_m| detector.note(mean_m))
         };
         match (opens(left, Side::Left), opens(right, Side::Right)) {
             (true, false) => self.vote(Side::Left),
             (false, true) => self.vote(Side::Right),
-            // Both are no side.
             _ => {}
         }
     }
 }
 
-impl Default for Sides {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-/// Mean of the ranges to a side, none counted farther than [`FARTHEST_M`].
-fn mean_range(laser: &LaserMount, ranges_mm: &[u16], side: Side) -> Option<f32> {
+/// Returns the mean of the ranges to a side, each at most [`FARTHEST_M`]; `None` without a valid
+/// beam there.
+fn mean_range_m(laser: &LaserMount, ranges_mm: &[u16], side: Side) -> Option<f32> {
     let is_beside = |bearing: f32| {
-        let left = if side == Side::Left {
-            bearing
-        } else {
-            -bearing
+        let to_side = match side {
+            Side::Left => bearing,
+            Side::Right => -bearing,
         };
-        (SECTOR_RAD.0..=SECTOR_RAD.1).contains(&left)
+        (SECTOR_RAD.0..=SECTOR_RAD.1).contains(&to_side)
     };
     let (mut sum_m, mut beams) = (0.0, 0.0);
     for (k, &range_mm) in ranges_mm.iter().enumerate() {
@@ -152,7 +150,7 @@ fn mean_range(laser: &LaserMount, ranges_mm: &[u16], side: Side) -> Option<f32> 
 
 #[cfg(test)]
 mod tests {
-    use super::{Side, Sides};
+    use super::{Side, SideVotes};
     use crate::robot::LaserMount;
 
     const LASER: LaserMount = LaserMount {
@@ -166,7 +164,7 @@ mod tests {
         range_limit_mm: 12_000,
     };
 
-    /// A scan with walls at 1 m, and nothing near on the open sides.
+    /// A scan with walls at 1 m, and nothing within range on the open sides.
     fn scan(open: &[Side]) -> [u16; 181] {
         core::array::from_fn(|k| {
             let side = if k > 90 { Side::Left } else { Side::Right };
@@ -175,16 +173,16 @@ mod tests {
     }
 
     fn preferred(passed: &[Side]) -> Option<Side> {
-        let mut sides = Sides::new();
+        let mut votes = SideVotes::NEW;
         for &side in passed {
             for _ in 0..5 {
-                sides.note(&LASER, &scan(&[]));
+                votes.note(&LASER, &scan(&[]));
             }
             for _ in 0..9 {
-                sides.note(&LASER, &scan(&[side]));
+                votes.note(&LASER, &scan(&[side]));
             }
         }
-        sides.preferred()
+        votes.preferred()
     }
 
     #[test]
@@ -201,23 +199,23 @@ mod tests {
 
     #[test]
     fn openings_to_both_sides_at_once_are_no_vote() {
-        let mut sides = Sides::new();
+        let mut votes = SideVotes::NEW;
         for _ in 0..4 {
-            sides.note(&LASER, &scan(&[]));
-            sides.note(&LASER, &scan(&[Side::Left, Side::Right]));
+            votes.note(&LASER, &scan(&[]));
+            votes.note(&LASER, &scan(&[Side::Left, Side::Right]));
         }
-        assert_eq!((sides.last_vote, sides.preferred()), (None, None));
+        assert_eq!((votes.last_vote, votes.preferred()), (None, None));
     }
 
     #[test]
     fn an_opening_votes_once_and_noise_does_not() {
-        let mut sides = Sides::new();
-        sides.note(&LASER, &scan(&[]));
+        let mut votes = SideVotes::NEW;
+        votes.note(&LASER, &scan(&[]));
         for k in 0..50 {
             let ranges = scan(&[Side::Left]).map(|range| range.min(3_000) + k * 17 % 90);
-            sides.note(&LASER, &ranges);
+            votes.note(&LASER, &ranges);
         }
-        assert_eq!(sides.preferred(), None, "one long opening is one vote");
-        assert_eq!(sides.last_vote, Some(Side::Left));
+        assert_eq!(votes.preferred(), None, "one long opening is one vote");
+        assert_eq!(votes.last_vote, Some(Side::Left));
     }
 }

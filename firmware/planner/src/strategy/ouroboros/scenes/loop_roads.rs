@@ -4,7 +4,7 @@ use std::vec::Vec;
 
 use crate::grid::Site;
 use crate::roadmap::Residues;
-use crate::strategy::ouroboros::loop_road::{build_shield, way_back};
+use crate::strategy::ouroboros::loop_road::{back_to_shield, build_shield};
 use crate::strategy::ouroboros::scenes::{Found, Memory, Scene, assert_picture};
 
 /// The same way, blocked below.
@@ -220,6 +220,7 @@ fn a_loop_ends_where_its_ways_meet() {
 #[test]
 fn a_loop_goes_on_by_the_previous_shield_though_another_is_shorter() {
     let previous = Scene::parse(CAME).look().unwrap().shield.unwrap();
+    let stands_on = previous.cells().next().unwrap();
     assert_picture(
         &Scene::parse(CAME).drawn(),
         "
@@ -276,17 +277,19 @@ fn a_loop_goes_on_by_the_previous_shield_though_another_is_shorter() {
     // With it, the back leads there, and there is the next shield.
     let mut scene = Scene::parse(NOW);
     let mut memory = Memory::new();
-    let robot = scene.spread(previous.at(), &mut memory);
+    let robot = scene.spread(stands_on, &mut memory);
     let residues = Residues::new(scene.topology.frame().shape, &mut memory.residues).unwrap();
-    let ground = scene.ground();
-    let back: Vec<Site> = way_back(ground.way, &residues, robot).unwrap().collect();
+    let centres = scene.centres();
+    let back: Vec<Site> = back_to_shield(&centres, &residues, robot)
+        .unwrap()
+        .collect();
     let here = scene.pose.point().cell();
     let found = Found {
-        shield: build_shield(&ground, back.iter().copied(), here),
-        back: back.iter().map(|site| ground.frame.cell(*site)).collect(),
+        shield: build_shield(&centres, back.iter().copied(), here),
+        back: back.iter().map(|site| centres.frame.cell(*site)).collect(),
         front: Vec::new(),
     };
-    assert_eq!(found.back.last(), Some(&previous.at()));
+    assert_eq!(found.back.last(), Some(&stands_on));
     assert_picture(
         &scene.picture_of(Some(&found)),
         "

@@ -147,8 +147,7 @@ const BRANCHES: &str = "
 #[track_caller]
 fn assert_tractor(picture: &str, expected: &str) {
     let mut scene = Scene::parse(picture);
-    let mut strategy = Ouroboros::new();
-    strategy.reset(scene.tiles.box_tiles());
+    let mut strategy = Ouroboros::new(scene.tiles.box_tiles());
     let row = scene.picture.iter().position(|row| row.contains(&'o'));
     for (x, _) in row.into_iter().flat_map(|y| {
         let cells = scene.picture[y].iter().enumerate();
@@ -265,7 +264,7 @@ fn no_shield_hangs_in_the_open() {
     );
     let (mouth, path) = (at(10, 7), [at(8, 7), at(12, 7)]);
     let here = scene.pose.point().cell();
-    let flaw = Shield::build(&scene.ground(), mouth, path, here).unwrap_err();
+    let flaw = Shield::build(&scene.centres(), mouth, path, here).unwrap_err();
     assert_eq!(flaw, Flaw::OpenEnd);
     assert_eq!(scene.flaws(), [Some(Flaw::AtRobot), None]);
 }

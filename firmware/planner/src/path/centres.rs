@@ -1,0 +1,75 @@
+//! Queries about centre cells: by place, by map class, and in a square around a place.
+//!
+//! Units: map cells; a coarse cell of 20 cm is named by its map cell with the least x and y.
+
+use crate::geometry::Cell;
+use crate::grid::Site;
+use crate::map::{Class, Tiles};
+use crate::path::nearest::Centres;
+use crate::roadmap::configuration_space::{Footprint, is_passable};
+use crate::roadmap::skeleton::Skeleton;
+
+impl<'a, const TILES: usize, const SLOTS: usize> Centres<'a, TILES, SLOTS> {
+    /// The centre cells of a published skeleton; `None` before the first one.
+    pub(crate) fn of(
+        skeleton: &'a Skeleton<SLOTS>,
+        tiles: &'a Tiles<TILES, SLOTS>,
+        footprint: &'a Footprint,
+    ) -> Option<Self> {
+        Some(Self {
+            tiles,
+            disc: footprint,
+            frame: skeleton.frame(),
+            way: skeleton.skeleton()?,
+        })
+    }
+
+    /// Returns true if the robot's centre may be in at least one of a coarse cell's four map
+    /// cells: the rule by which the skeleton's space is loaded.
+    pub(crate) fn is_open(&self, cell: Cell) -> bool {
+        cell.quarters()
+            .any(|part| is_passable(self.tiles, self.disc, part))
+    }
+
+    /// Returns true if at most one of a coarse cell's four map cells was never measured: again the
+    /// skeleton's rule.
+    pub(crate) fn is_explored(&self, cell: Cell) -> bool {
+        let unknown = |part: &Cell| self.tiles.class(*part) == Class::Unknown;
+        cell.quarters().filter(unknown).count() < 2
+    }
+
+    /// Returns true if a coarse cell is a centre cell.
+    pub(crate) fn is_centre(&self, cell: Cell) -> bool {
+        self.frame.site(cell).is_some_and(|site| self.way.get(site))
+    }
+
+    /// Returns the coarse cell of a site.
+    pub(crate) fn cell(&self, site: Site) -> Cell {
+        self.frame.cell(site)
+    }
+
+    /// Calls `visit` with each centre cell in the square that reaches `half` map cells from a cell
+    /// to either side.
+    pub(crate) fn for_each_in_square(
+        &self,
+        middle: Cell,
+        half: i32,
+        mut visit: impl FnMut(Site, Cell),
+    ) {
+        let steps = |from: i32, origin: i32, most: usize| {
+            let least = (from - half - origin).div_euclid(2).max(0);
+            let last = (from + half - origin).div_euclid(2).min(most as i32 - 1);
+            least..=last
+        };
+        let shape = self.way.shape();
+        for y in steps(middle.y, self.frame.origin.y, shape.rows()) {
+            for x in steps(middle.x, self.frame.origin.x, shape.columns()) {
+                let (x, y) = (x as u16, y as u16);
+                let site = Site { x, y };
+                if self.way.get(site) {
+                    visit(site, self.cell(site));
+                }
+            }
+        }
+    }
+}
