@@ -1,57 +1,59 @@
-//! Crumbs: the last metres of the robot's path, by which it finds what is behind it.
+//! Breadcrumbs: the last metres of the robot's way.
 //!
-//! Where the robot was, the space is visited and can be reached, whatever the skeleton looks like by now.
+//! Where the robot was, the space is free and can be reached, whatever the skeleton looks like by
+//! now.
 //!
-//! Units: map cells; a crumb is dropped every [`STRIDE_CELLS`].
+//! Units: map cells; the robot drops a crumb every 40 cm.
 
 use crate::geometry::Cell;
 
-/// Crumbs that are kept: the last 12.8 m.
-pub const CRUMBS: usize = 32;
-/// Cells from one crumb to the next.
-pub const STRIDE_CELLS: i32 = 4;
-
-/// A crumb this far away says where the robot came from.
+/// Number of crumbs that are kept: the last 12.8 m.
+const CRUMBS: usize = 32;
+/// Distance from one crumb to the next, cells.
+const STRIDE_CELLS: i32 = 4;
+/// Distance of the crumb that says where the robot came from, cells.
 const CAME_CELLS: i32 = 8;
 
 /// The last crumbs, in a ring.
 #[derive(Debug)]
 pub struct Crumbs {
     cells: [[i16; 2]; CRUMBS],
-    /// How many were dropped, the last ones of which are kept.
+    /// Number of crumbs so far. At twice [`CRUMBS`] it restarts from [`CRUMBS`].
     dropped: u16,
 }
 
+/// Chebyshev distance of two cells.
+fn apart(a: Cell, b: Cell) -> i32 {
+    (a.x - b.x).abs().max((a.y - b.y).abs())
+}
+
 impl Crumbs {
-    /// None yet.
-    #[must_use]
-    pub const fn new() -> Self {
+    /// Makes an empty ring.
+    pub(crate) const fn new() -> Self {
         Self {
             cells: [[0; 2]; CRUMBS],
             dropped: 0,
         }
     }
 
-    /// The robot is here.
-    pub fn note(&mut self, robot: Cell) {
-        let strode =
-            |last: Cell| (last.x - robot.x).abs().max((last.y - robot.y).abs()) >= STRIDE_CELLS;
-        if !self.newest_first().next().is_none_or(strode) {
+    /// Drops a crumb at the robot if the last one is a stride behind.
+    pub(crate) fn note(&mut self, robot: Cell) {
+        let is_behind = |last| apart(last, robot) >= STRIDE_CELLS;
+        if !self.newest_first().next().is_none_or(is_behind) {
             return;
         }
         let place = usize::from(self.dropped) % CRUMBS;
         if let Some(crumb) = self.cells.get_mut(place) {
             *crumb = [robot.x as i16, robot.y as i16];
         }
-        // Counting goes on in the ring's own round, so that places follow each other for ever.
         self.dropped = match self.dropped + 1 {
             next if usize::from(next) == 2 * CRUMBS => CRUMBS as u16,
             next => next,
         };
     }
 
-    /// From the last one back.
-    pub fn newest_first(&self) -> impl Iterator<Item = Cell> + '_ {
+    /// Returns the crumbs from the last one back.
+    pub(crate) fn newest_first(&self) -> impl Iterator<Item = Cell> + '_ {
         let dropped = usize::from(self.dropped);
         let kept = dropped.min(CRUMBS);
         (1..=kept).filter_map(move |back| {
@@ -63,19 +65,11 @@ impl Crumbs {
         })
     }
 
-    /// Where the robot came from: the last crumb that it has left behind by `CAME_CELLS`; its heading says nothing of it when it
-    /// turns on the spot.
-    #[must_use]
-    pub fn came_from(&self, robot: Cell) -> Option<Cell> {
-        let far =
-            |crumb: &Cell| (crumb.x - robot.x).abs().max((crumb.y - robot.y).abs()) >= CAME_CELLS;
-        self.newest_first().find(far)
-    }
-}
-
-impl Default for Crumbs {
-    fn default() -> Self {
-        Self::new()
+    /// Returns where the robot came from: the last crumb that is at least [`CAME_CELLS`] away. The
+    /// heading does not say it while the robot turns on the spot.
+    pub(crate) fn came_from(&self, robot: Cell) -> Option<Cell> {
+        self.newest_first()
+            .find(|&crumb| apart(crumb, robot) >= CAME_CELLS)
     }
 }
 

@@ -1,17 +1,25 @@
-//! HeightLevels: how high the known ground lies, coarsely and everywhere, and how much later a goal counts for lying on another one.
+//! Height levels: a coarse map of the ground's height, and the level of a goal, which delays its
+//! wave.
 //!
 //! ```text
-//! level(x, y) = λ_h |h_storey − h(x, y)| / |ε_hmin|, rounded, at most MOST_LEVEL
-//! a goal's wave starts LEVEL_STEPS · level later
+//! level(x, y) = λ_h |h_reference − h(x, y)| / |ε_hmin|, rounded, at most MOST_LEVEL
+//! delay       = LEVEL_STEPS · level
 //! ```
 //!
-//! Departs from [Maffei20, III-C]: there one field over the whole grid both bends the way and chooses the goal, for a goal behind n
-//! cells of ε attracts e^(nε) times less. The window's field is 6 m wide, and which goal the robot goes to is the wave's choice along the
-//! skeleton; so the preference has its say there too: along a slope n grows with the height, so no limit is set to it where eq. 3 has `ε_hmin`. It counts from the *storey*, the ground that the robot last stood on level, and not
-//! from the robot's own height: halfway down a slope both of its ends are equally far off, and a storey would be left half explored.
+//! Departs from [Maffei20, III-C]. There one field over the whole grid both bends the way and
+//! chooses the goal: a goal behind n cells of ε attracts e^(nε) times less. Here the field's window
+//! is 6 m wide, and the wave along the skeleton chooses the goal; so the preference acts there as
+//! well. Along a slope n grows with the height, so the level has no limit where eq. 3 has `ε_hmin`.
 //!
-//! Heights of the elevation window are kept as it moves on, one for 8 × 8 cells of every tile of the map. On flat ground there are none,
-//! and their memory is the near field's. A tile that is folded ([`crate::map::compaction`]) keeps one height. Units: decimetres above the start, saturated at ±12.7 m.
+//! The *reference* is the height of the level ground that the robot stood on last, not the robot's
+//! own height: halfway down a slope both ends are equally far off, and the level above would be
+//! left half explored.
+//!
+//! The map keeps the heights of the elevation window as that moves on, one for 8 × 8 cells of every
+//! tile; a compact tile ([`crate::map::compaction`]) keeps one height. On flat ground there is no
+//! such map, and the obstacle points use its memory.
+//!
+//! Units: decimetres above the start, saturated at ±12.7 m.
 
 use crate::config::UnevenGround;
 use crate::geometry::Cell;
@@ -21,32 +29,33 @@ use crate::map::tiles::TILE_SIDE;
 use crate::map::{SideTable, Tiles};
 use crate::math;
 
-/// Cells along a block's side.
+/// Side of a block, cells.
 const BLOCK: i32 = 8;
-/// Blocks along a tile's side.
+/// Side of a tile, blocks.
 const ACROSS: i32 = TILE_SIDE / BLOCK;
 /// Blocks of a tile.
 const BLOCKS: usize = (ACROSS * ACROSS) as usize;
-/// Heights a metre.
+/// Units of height in a metre.
 const PER_METRE: f32 = 10.0;
-/// Of a block where none was measured.
+/// The height of a block where none was measured.
 const NONE: i8 = i8::MIN;
-/// Of so many cells along a block's side one is looked at.
+/// Every second cell along a block's side is a sample of its height.
 const SAMPLED: usize = 2;
 /// Greatest level of a goal.
-pub const MOST_LEVEL: u32 = 8;
-/// How much later a goal counts for every level, coarse steps: with Table I's parameters 10 m of way for 0.25 m of height.
-pub const LEVEL_STEPS: u32 = 50;
+pub(crate) const MOST_LEVEL: u32 = 8;
+/// Delay of a goal for each level, coarse steps. With the parameters of [Maffei20, Table I], 0.25 m
+/// of height count as 10 m of way.
+pub(crate) const LEVEL_STEPS: u32 = 50;
 
-/// The heights. `TILES` tiles in the map's pool.
+/// The map of heights, for a pool of `TILES` tiles.
 #[derive(Debug)]
 pub struct HeightLevels<const TILES: usize> {
-    /// By the tile's place in the pool.
+    /// The blocks of each tile, by the tile's place in the pool.
     blocks: [[i8; BLOCKS]; TILES],
 }
 
 impl<const TILES: usize> HeightLevels<TILES> {
-    /// Nothing measured.
+    /// Makes an empty map.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -54,7 +63,7 @@ impl<const TILES: usize> HeightLevels<TILES> {
         }
     }
 
-    /// Keep what the window holds.
+    /// Takes over the heights in the elevation window.
     pub fn note<const SLOTS: usize>(&mut self, heights: &Heights<'_>, tiles: &Tiles<TILES, SLOTS>) {
         let least = heights.origin();
         let blocks =
@@ -69,7 +78,8 @@ impl<const TILES: usize> HeightLevels<TILES> {
                 };
                 let whole = is_whole(corner.x, least.x) && is_whole(corner.y, least.y);
                 if let Some(stored) = self.block_mut(tiles, corner)
-                    // Of one that leaves the window half would count; of one that enters it half is better than nothing.
+                    // A block that leaves the window keeps the height of the whole block. For one
+                    // that enters it, half a block is better than nothing.
                     && (whole || *stored == NONE)
                     && let Some(height_m) = mean_m(heights, corner)
                 {
@@ -96,8 +106,9 @@ impl<const TILES: usize> HeightLevels<TILES> {
         self.blocks.get_mut(half / 2)?.get_mut(half % 2)
     }
 
-    /// The height of the ground around a cell, metres; where none was measured, the mean of the blocks beside that have one. A goal lies where
-    /// the measured ends, and its own block was often hardly met: taken for level, it would draw the robot up a slope.
+    /// Returns the height of the ground around a cell, metres; where none was measured, the mean of
+    /// the blocks beside that have one. A goal lies at the edge of the measured ground, and its own
+    /// block often has no height: taken for level, it would draw the robot up a slope.
     #[must_use]
     pub fn height_around_m<const SLOTS: usize>(
         &self,
@@ -120,7 +131,8 @@ impl<const TILES: usize> HeightLevels<TILES> {
         self.height_m(tiles, cell).or_else(beside)
     }
 
-    /// The height of the ground around a cell, metres; `None` where none was measured. Of a folded tile it is the tile's.
+    /// Returns the height of the ground in a cell's block, metres; `None` where none was measured.
+    /// In a compact tile it is the tile's height.
     #[must_use]
     pub fn height_m<const SLOTS: usize>(
         &self,
@@ -137,7 +149,8 @@ impl<const TILES: usize> HeightLevels<TILES> {
     }
 }
 
-/// A compact tile keeps the mean of its heights, in one of the first two places by its half of a page.
+/// A compact tile keeps the mean of its heights in one of the page's first two blocks, by its half
+/// of the page.
 impl<const TILES: usize> SideTable for HeightLevels<TILES> {
     fn release_page(&mut self, page: usize) -> i8 {
         let Some(blocks) = self.blocks.get_mut(page) else {
@@ -175,13 +188,13 @@ impl<const TILES: usize> Default for HeightLevels<TILES> {
     }
 }
 
-/// A block's place in its tile.
+/// Returns the place of a cell's block in its tile.
 fn place(cell: Cell) -> usize {
     let along = |at: i32| at.rem_euclid(TILE_SIDE) / BLOCK;
     (along(cell.y) * ACROSS + along(cell.x)) as usize
 }
 
-/// Mean height of what is measured in the block with this corner.
+/// Returns the mean height of the measured samples in the block with this corner.
 fn mean_m(heights: &Heights<'_>, corner: Cell) -> Option<f32> {
     let (mut sum_m, mut count) = (0.0, 0_u8);
     for dy in (0..BLOCK).step_by(SAMPLED) {
@@ -199,19 +212,19 @@ fn mean_m(heights: &Heights<'_>, corner: Cell) -> Option<f32> {
     (count > 0).then(|| sum_m / f32::from(count))
 }
 
-/// How much later goals count, where heights are preferred.
+/// The level of goals, where a preference for heights is on.
 #[derive(Clone, Copy, Debug)]
 pub struct LevelCost<'a, const TILES: usize> {
-    /// What is known of heights.
+    /// The map of heights.
     pub heights: &'a HeightLevels<TILES>,
     /// The parameters of the preference.
     pub ground: &'a UnevenGround,
-    /// The robot's storey, metres.
+    /// The height of the level ground that the robot stood on last, metres.
     pub reference_m: f32,
 }
 
 impl<const TILES: usize> LevelCost<'_, TILES> {
-    /// As they are from another storey.
+    /// Returns the levels from another reference height.
     #[must_use]
     pub const fn from(&self, reference_m: f32) -> Self {
         Self {
@@ -220,7 +233,7 @@ impl<const TILES: usize> LevelCost<'_, TILES> {
         }
     }
 
-    /// The level of a goal, at most [`MOST_LEVEL`]; 0 where its height is not known.
+    /// Returns the level of a goal, at most [`MOST_LEVEL`]; 0 where its height is not known.
     #[must_use]
     pub fn of<const SLOTS: usize>(&self, tiles: &Tiles<TILES, SLOTS>, goal: Cell) -> u32 {
         let Some(height_m) = self.heights.height_around_m(tiles, goal) else {
@@ -251,7 +264,8 @@ mod tests {
         Cell { x, y }
     }
 
-    /// A slope that rises to the east, seen from a robot that drove up it from x = 0 to 100 cells.
+    /// The heights of a slope that rises to the east, measured by a robot that drove up it from x =
+    /// 0 to 100 cells.
     fn climbed() -> (HeightLevels<24>, Box<Tiles<24, 64>>) {
         let mut tiles = Box::new(Tiles::new());
         tiles.reset(8, 8);
@@ -262,7 +276,7 @@ mod tests {
         }
         let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
         let mut origin = Cell::default();
-        let mut storeys = HeightLevels::new();
+        let mut map = HeightLevels::new();
         for robot in (0..=100).step_by(5) {
             let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
             window.follow(at(robot, 0));
@@ -271,59 +285,55 @@ mod tests {
                     window.measure(at(x, y), SLOPE * at(x, y).centre().x_m);
                 }
             }
-            storeys.note(&window.read(), &tiles);
+            map.note(&window.read(), &tiles);
         }
-        (storeys, tiles)
+        (map, tiles)
     }
 
     #[test]
     fn heights_stay_known_where_the_window_has_left() {
-        let (storeys, tiles) = climbed();
+        let (map, tiles) = climbed();
         for x in -15..118 {
-            let height_m = storeys.height_m(&tiles, at(x, 3)).expect("measured");
+            let height_m = map.height_m(&tiles, at(x, 3)).expect("measured");
             let truth_m = SLOPE * at(x, 3).centre().x_m;
-            // Half a block of slope, and half a decimetre.
+            // The rise over half a block, and half a decimetre.
             let most_m = SLOPE * 0.5 + 0.051;
             assert!(
                 (height_m - truth_m).abs() < most_m,
                 "{x}: {height_m} {truth_m}"
             );
         }
-        assert_eq!(storeys.height_m(&tiles, at(0, 29)), None, "never measured");
-        assert_eq!(storeys.height_m(&tiles, at(0, 500)), None, "no tile");
+        assert_eq!(map.height_m(&tiles, at(0, 29)), None, "never measured");
+        assert_eq!(map.height_m(&tiles, at(0, 500)), None, "no tile");
     }
 
-    /// The frontier's own block is not measured, the one before it is.
+    /// The block of the frontier is not measured, the one before it is.
     #[test]
-    fn a_goal_where_the_measured_ends_is_as_high_as_what_is_beside_it() {
-        let (storeys, tiles) = climbed();
+    fn a_goal_at_the_edge_of_the_measured_ground_has_the_height_beside_it() {
+        let (map, tiles) = climbed();
         let edge = (100..200)
-            .find(|&x| storeys.height_m(&tiles, at(x, 3)).is_none())
+            .find(|&x| map.height_m(&tiles, at(x, 3)).is_none())
             .expect("the window ended");
-        let before_m = storeys
-            .height_m(&tiles, at(edge - BLOCK, 3))
-            .expect("measured");
-        let height_m = storeys
-            .height_around_m(&tiles, at(edge, 3))
-            .expect("beside");
+        let before_m = map.height_m(&tiles, at(edge - BLOCK, 3)).expect("measured");
+        let height_m = map.height_around_m(&tiles, at(edge, 3)).expect("beside");
         assert!((height_m - before_m).abs() < 1e-3, "{height_m} {before_m}");
         let levels = LevelCost {
-            heights: &storeys,
+            heights: &map,
             ground: &UnevenGround::TABLE_I,
             reference_m: 0.0,
         };
         assert_eq!(levels.of(&tiles, at(edge, 3)), MOST_LEVEL);
-        assert_eq!(storeys.height_around_m(&tiles, at(edge + 9, 3)), None);
+        assert_eq!(map.height_around_m(&tiles, at(edge + 9, 3)), None);
     }
 
     #[test]
-    fn levels_count_from_the_storey_and_know_no_side() {
-        let (storeys, tiles) = climbed();
-        let terrain = &UnevenGround::TABLE_I;
+    fn levels_count_from_the_reference_and_have_no_sign() {
+        let (map, tiles) = climbed();
+        let ground = &UnevenGround::TABLE_I;
         let level = |reference_m: f32, x: i32| {
             let levels = LevelCost {
-                heights: &storeys,
-                ground: terrain,
+                heights: &map,
+                ground,
                 reference_m,
             };
             levels.of(&tiles, at(x, 0))
@@ -338,15 +348,15 @@ mod tests {
     }
 
     #[test]
-    fn without_a_limit_of_repulsion_there_are_no_levels() {
-        let (storeys, tiles) = climbed();
-        let terrain = &UnevenGround {
+    fn without_repulsion_there_are_no_levels() {
+        let (map, tiles) = climbed();
+        let ground = &UnevenGround {
             least_preference: 0.0,
             ..UnevenGround::TABLE_I
         };
         let levels = LevelCost {
-            heights: &storeys,
-            ground: terrain,
+            heights: &map,
+            ground,
             reference_m: 5.0,
         };
         assert_eq!(levels.of(&tiles, at(2, 0)), 0);
@@ -364,8 +374,8 @@ mod tests {
         for k in 0..64 {
             window.measure(at(k % 8, k / 8), -40.0);
         }
-        let mut storeys = HeightLevels::<4>::new();
-        storeys.note(&window.read(), &tiles);
-        assert_eq!(storeys.height_m(&tiles, at(1, 1)), Some(-12.7));
+        let mut map = HeightLevels::<4>::new();
+        map.note(&window.read(), &tiles);
+        assert_eq!(map.height_m(&tiles, at(1, 1)), Some(-12.7));
     }
 }

@@ -1,10 +1,11 @@
-//! What is left when no frontier is within reach: does the robot have a way to where the map has no room?
+//! Map exits: places that the robot can reach and beyond which the map has no room.
 //!
-//! Something seen beyond the map's box, through a window or a gap, is no reason to call an exploration incomplete; a door out of the
-//! box is. So the explored passable cells are flooded from the robot, and where the flood comes to the side of a tile behind
-//! which nothing can be stored, a way leads out.
+//! Something seen beyond the map's box, through a window or a gap, does not make an exploration
+//! incomplete; a door out of the box does. So the explored passable cells are flooded from the
+//! robot ([`Reachability`]). Where the flood comes to the side of a tile behind which nothing can
+//! be stored, there is an exit.
 //!
-//! Done once, at the end of a run.
+//! Computed once, at the end of a run.
 //!
 //! Units: coarse cells of 20 cm, 16 × 16 in a tile.
 
@@ -12,13 +13,13 @@ use crate::geometry::Cell;
 use crate::map::tiles::NoRoom;
 use crate::map::{Map, Tiles};
 use crate::roadmap::configuration_space::Footprint;
-use crate::roadmap::reachability::{Flood, each};
+use crate::roadmap::reachability::{Reachability, tiles_of};
 
-/// Which room the map wants for what the robot can get to, if any; `found` hears of every place where it ends, see
-/// [`ways_out`]. A map that refused nothing wants none.
-pub fn no_room<const TILES: usize, const SLOTS: usize>(
+/// Returns which room the map lacks for what the robot can reach; `None` if none, or if the map
+/// refused nothing so far. Calls `found` with every exit, see [`for_each_exit`].
+pub(crate) fn missing_room<const TILES: usize, const SLOTS: usize>(
     map: &Map<TILES, SLOTS>,
-    disc: &Footprint,
+    footprint: &Footprint,
     robot: Cell,
     scratch: &mut [u32],
     mut found: impl FnMut(Cell),
@@ -26,21 +27,23 @@ pub fn no_room<const TILES: usize, const SLOTS: usize>(
     if !map.out_of_box() && !map.pool_full() {
         return None;
     }
-    let mut no_room = None;
-    ways_out(map.tiles(), disc, robot, scratch, |cell, why| {
-        no_room = Some(why);
+    let mut missing = None;
+    for_each_exit(map.tiles(), footprint, robot, scratch, |cell, room| {
+        missing = Some(room);
         found(cell);
     });
-    no_room
+    missing
 }
 
-/// Call `found` with the least map cell of every explored coarse cell that the robot can get to and that borders on a
-/// tile the map has no room for, and say why it has none; with the robot's own if it stands on such a tile.
+/// Calls `found` with every exit and the room that is missing there. An exit is the least map cell
+/// of an explored coarse cell that the robot can reach and that borders on a tile without room. If
+/// the robot stands on such a tile, its own cell is the only exit.
 ///
-/// `scratch` is of any content, and must have [`scratch_words`](crate::roadmap::reachability::scratch_words) words; with fewer, nothing is found.
-pub fn ways_out<const TILES: usize, const SLOTS: usize>(
+/// `scratch` may hold anything. With fewer than
+/// [`scratch_words`](crate::roadmap::reachability::scratch_words) words no exit is found.
+fn for_each_exit<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
-    disc: &Footprint,
+    footprint: &Footprint,
     robot: Cell,
     scratch: &mut [u32],
     mut found: impl FnMut(Cell, NoRoom),
@@ -48,22 +51,22 @@ pub fn ways_out<const TILES: usize, const SLOTS: usize>(
     let Some(extent) = tiles.extent() else {
         return;
     };
-    if let Err(why) = tiles.room(robot.x >> 5, robot.y >> 5) {
-        // It went out already.
-        return found(robot, why);
+    if let Err(room) = tiles.room(robot.x >> 5, robot.y >> 5) {
+        // The robot has left the map.
+        return found(robot, room);
     }
-    let Some(mut flood) = Flood::new(extent, scratch) else {
+    let Some(mut reachability) = Reachability::new(extent, scratch) else {
         return;
     };
-    for tile in each(extent) {
-        flood.load(tiles, disc, tile);
+    for tile in tiles_of(extent) {
+        reachability.load(tiles, footprint, tile);
     }
-    flood.start(robot);
-    while flood.sweep() {}
-    for (tile_x, tile_y) in each(extent) {
+    reachability.start(robot);
+    while reachability.sweep() {}
+    for (tile_x, tile_y) in tiles_of(extent) {
         for side in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
-            if let Err(why) = tiles.room(tile_x + side.0, tile_y + side.1) {
-                flood.along((tile_x, tile_y), side, |cell| found(cell, why));
+            if let Err(room) = tiles.room(tile_x + side.0, tile_y + side.1) {
+                reachability.along((tile_x, tile_y), side, |cell| found(cell, room));
             }
         }
     }
@@ -74,7 +77,7 @@ mod tests {
     use std::boxed::Box;
     use std::vec::Vec;
 
-    use super::ways_out;
+    use super::for_each_exit;
     use crate::geometry::Cell;
     use crate::map::tiles::NoRoom;
     use crate::map::{Class, Tiles};
@@ -83,7 +86,8 @@ mod tests {
 
     const SLOTS: usize = 24;
 
-    /// A map of 4 × 4 tiles' box (cells 0 to 127 each way), drawn a character to 4 × 4 cells, greatest y first; `R` is the robot.
+    /// Makes a map in a box of 4 × 4 tiles (cells 0 to 127 each way) from a picture. A character is
+    /// 4 × 4 cells, the greatest y first; `R` is the robot.
     fn drawn(picture: &[&str]) -> (Box<Tiles<20, SLOTS>>, Cell) {
         let mut tiles = Box::new(Tiles::new());
         tiles.reset(4, 4);
@@ -117,7 +121,7 @@ mod tests {
     fn found(tiles: &Tiles<20, SLOTS>, robot: Cell) -> Vec<(Cell, NoRoom)> {
         let mut list = Vec::new();
         let mut scratch = [0xdead_beef; scratch_words(SLOTS)];
-        ways_out(
+        for_each_exit(
             tiles,
             &Footprint::new(0.3),
             robot,
@@ -129,7 +133,7 @@ mod tests {
         list
     }
 
-    /// The plan of a room that takes the whole box; `gap` is the east wall's line across from the robot.
+    /// The plan of a room that fills the whole box; `east` is a part of its east wall.
     fn room(east: [&str; 3]) -> Vec<std::string::String> {
         use std::format;
         use std::string::String;
@@ -145,7 +149,7 @@ mod tests {
         lines
     }
 
-    fn ways(lines: &[std::string::String]) -> usize {
+    fn exits(lines: &[std::string::String]) -> usize {
         let picture: Vec<&str> = lines.iter().map(|line| line.as_str()).collect();
         let (tiles, robot) = drawn(&picture);
         let list = found(&tiles, robot);
@@ -156,19 +160,19 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_room_has_no_way_out() {
-        assert_eq!(ways(&room(["#", "#", "#"])), 0);
+    fn a_closed_room_has_no_exit() {
+        assert_eq!(exits(&room(["#", "#", "#"])), 0);
     }
 
-    /// 0.4 m between the posts lets a laser through, and no robot of 0.3 m radius.
+    /// 0.4 m between the posts let a laser through, and no robot of 0.3 m radius.
     #[test]
-    fn a_gap_too_narrow_is_no_way_out() {
-        assert_eq!(ways(&room(["#", ".", "#"])), 0);
+    fn a_gap_too_narrow_is_no_exit() {
+        assert_eq!(exits(&room(["#", ".", "#"])), 0);
     }
 
     #[test]
-    fn a_door_is_a_way_out() {
-        assert!(ways(&room([".", ".", "."])) > 0);
+    fn a_door_is_an_exit() {
+        assert!(exits(&room([".", ".", "."])) > 0);
     }
 
     #[test]
@@ -177,14 +181,14 @@ mod tests {
         for line in &mut lines[1..31] {
             line.replace_range(16..17, "#");
         }
-        assert_eq!(ways(&lines), 0);
+        assert_eq!(exits(&lines), 0);
         lines[3].replace_range(16..17, ".");
         lines[4].replace_range(16..17, ".");
         lines[5].replace_range(16..17, ".");
-        assert!(ways(&lines) > 0, "round by the door in the north");
+        assert!(exits(&lines) > 0, "round by the door in the north");
     }
 
-    /// A meander from the south west to the north east, through word borders both ways.
+    /// A meander from the south-west to the north-east, across word borders both ways.
     #[test]
     fn the_flood_follows_every_turn() {
         let mut lines: Vec<std::string::String> = room(["#", "#", "#"]);
@@ -201,14 +205,14 @@ mod tests {
         for line in &mut lines[1..4] {
             line.replace_range(31..32, ".");
         }
-        assert!(ways(&lines) > 0);
+        assert!(exits(&lines) > 0);
         for line in &mut lines[1..31] {
             line.replace_range(20..21, "#");
         }
-        assert_eq!(ways(&lines), 0);
+        assert_eq!(exits(&lines), 0);
     }
 
-    /// Where the pool is empty, every border on a tile without one is a way out.
+    /// Once the pool is used up, every border on a tile without memory is an exit.
     #[test]
     fn a_full_pool_ends_the_map_inside_the_box() {
         let mut tiles: Box<Tiles<2, SLOTS>> = Box::default();
@@ -223,7 +227,7 @@ mod tests {
         let mut list = Vec::new();
         let mut scratch = [0; scratch_words(SLOTS)];
         let robot = Cell { x: 10, y: 10 };
-        ways_out(
+        for_each_exit(
             &tiles,
             &Footprint::new(0.3),
             robot,
@@ -240,9 +244,9 @@ mod tests {
         );
     }
 
-    /// Nothing is kept of where it stands, so there is nothing to flood.
+    /// The map has no cell where the robot stands, so there is nothing to flood.
     #[test]
-    fn a_robot_that_left_the_box_is_the_way_out() {
+    fn a_robot_that_left_the_box_is_the_exit() {
         let picture: Vec<std::string::String> = room([".", ".", "."]);
         let picture: Vec<&str> = picture.iter().map(|line| line.as_str()).collect();
         let (tiles, _) = drawn(&picture);
@@ -255,7 +259,7 @@ mod tests {
         let (tiles, robot) = drawn(&["R"]);
         let mut list = Vec::new();
         let push = |cell, why| list.push((cell, why));
-        ways_out(&tiles, &Footprint::new(0.3), robot, &mut [0; 1], push);
+        for_each_exit(&tiles, &Footprint::new(0.3), robot, &mut [0; 1], push);
         assert!(list.is_empty());
     }
 }

@@ -1,9 +1,7 @@
-//! Centre cells opened for a wave, in lent memory, and the path from a place down to where it began.
+//! A path search: a wave over centre cells in lent memory, and the path from a place down to where
+//! the wave began.
 //!
-//! All that plans along the skeleton begins with this: the wave's distances and queue, and the search for the centre cell nearest to the robot,
-//! over the same centre cells.
-//!
-//! Units: map cells, coarse steps of 20 cm; sites of the topology's frame.
+//! Units: map cells, coarse steps of 20 cm; sites of the skeleton's plane.
 
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Point};
@@ -12,7 +10,8 @@ use crate::path::nearest::Centres;
 use crate::path::{Path, PlanningContext, PlanningScratch};
 use crate::roadmap::{Residues, WaveSpace, Wavefront};
 
-/// Centre cells, a wave's memory over them, and the window in which the nearest one is looked for.
+/// The centre cells, the wave's memory over them, and the local grid in which the nearest one is
+/// searched for.
 #[derive(Debug)]
 pub(crate) struct PathSearch<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) centres: Centres<'a, TILES, SLOTS>,
@@ -21,25 +20,25 @@ pub(crate) struct PathSearch<'a, const TILES: usize, const SLOTS: usize> {
 }
 
 impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
-    /// These centre cells, to none of which a wave came yet; `None` if what is lent is too small for them.
+    /// Opens a search over these centre cells; `None` if the scratch memory is too small for them.
     pub(crate) fn open(
         centres: Centres<'a, TILES, SLOTS>,
-        lent: &'a mut PlanningScratch<'_>,
+        scratch: &'a mut PlanningScratch<'_>,
     ) -> Option<Self> {
-        let residues = Residues::new(centres.frame.shape, &mut *lent.residues).ok()?;
+        let residues = Residues::new(centres.frame.shape, &mut *scratch.residues).ok()?;
         let space = WaveSpace {
             way: centres.way,
             residues,
-            ring: &mut *lent.ring,
+            ring: &mut *scratch.ring,
         };
         Some(Self {
             centres,
             space,
-            view: &mut *lent.view,
+            view: &mut *scratch.view,
         })
     }
 
-    /// Wave from these sites, all at once, to everything that they can be reached from.
+    /// Spreads a wave from these sites, all at once, as far as the centre cells go.
     pub(crate) fn spread(&mut self, sites: impl Iterator<Item = Site>) {
         let mut wave = Wavefront::new();
         wave.start(&mut self.space);
@@ -50,13 +49,15 @@ impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
         let _ = wave.advance(&mut self.space, None, u32::MAX);
     }
 
-    /// The centre cell nearest to a place of those that the wave came to, and the coarse steps there.
+    /// Returns the centre cell nearest to a place that the wave reached, and the coarse steps
+    /// there.
     pub(crate) fn entry(&mut self, from: Cell) -> Option<(Site, u32)> {
         let is_reached = |site| self.space.residues.get(site).is_some();
         self.centres.nearest(from, self.view, is_reached)
     }
 
-    /// The path from a place to where the wave began.
+    /// Returns the path from a place to where the wave began; `None` if no centre cell that the
+    /// wave reached is near the place.
     pub(crate) fn path(&mut self, from: Cell) -> Option<Path> {
         let (entry, steps) = self.entry(from)?;
         let (frame, residues) = (self.centres.frame, &self.space.residues);

@@ -1,114 +1,113 @@
-//! Viewpoints: where to stand to see through a gap that the robot does not fit through.
+//! Viewpoints: places from which the robot can see through a gap that it does not fit through.
 //!
-//! A frontier strategy that goes to unexplored cells it can reach leaves what can only be seen: a room behind bars, the floor under
-//! a table, the space between two cupboards. When no frontier is within reach, the map is searched for *gaps*: free cells with an
-//! unexplored one beside them. From each a ray goes back, away from the unexplored, through free cells, until it meets one
-//! that the robot can reach: there it can stand and look along the ray. Of all the gaps that of the least way is taken:
+//! A strategy that drives to unexplored cells leaves what can only be seen: a room behind bars, the
+//! floor under a table, the space between two cupboards. When no frontier is within reach, this
+//! search looks through the map for *gaps*: free cells with an unexplored one at a side. From each
+//! gap a ray leads back, away from the unexplored cells, through free cells, to the first one that
+//! the robot can reach. There the robot can stand and look along the ray. The gap of the least cost
+//! wins:
 //!
 //! ```text
-//! gap      free, and unexplored at a side
-//! beyond   gap + d, gap + 2 d, … are free, and then five are unexplored      (d nearly along the edge of a shadow)
+//! gap      free, with an unexplored cell at a side
+//! beyond   gap + d, gap + 2 d, … are free, then five are unexplored     (d: along a shadow's edge)
 //! stand    the first reached cell of gap − d, gap − 2 d, …, all free
 //! cost     |robot − stand| + |stand − gap|
 //! ```
 //!
-//! None of the four papers has this; their robots leave what they cannot drive to. Done while the robot stands, in lent memory, in
-//! instalments of about a million instructions.
+//! None of the four papers has this; their robots leave what they cannot drive to. The search runs
+//! while the robot stands, in instalments of about a million instructions.
 //!
 //! Units: map cells.
 
-use crate::geometry::{CELL_M, Cell};
+use crate::geometry::Cell;
 use crate::map::tiles::Extent;
 use crate::map::{Class, Tiles};
-use crate::math;
 use crate::roadmap::configuration_space::Footprint;
-use crate::roadmap::reachability::Flood;
+use crate::roadmap::reachability::Reachability;
 
 /// Rays from a gap, all around.
 const RAYS: i32 = 64;
-/// Unexplored cells that a ray must find at its end, half a metre: less is hardly worth the way.
+/// Minimum number of unexplored cells at a ray's end, 0.5 m: fewer are hardly worth the way.
 const LEAST_BEYOND: i32 = 5;
-/// Cells that a ray goes on and back at the most: a laser of 8 m sees farther, but little of what is behind.
+/// Maximum length of a ray beyond the gap and back from it, cells. A laser of 8 m sees farther,
+/// only little of it is behind the gap.
 const MOST_ON: i32 = 30;
 const MOST_BACK: i32 = 60;
-/// Cells along the side of a block, which is searched at once; a tile has `ALONG` of them along its side.
+/// Side of a block, cells. A block is searched at once.
 const BLOCK: i32 = 8;
+/// Blocks along a tile's side.
 const ALONG: u16 = 32 / BLOCK as u16;
-/// Edge cells that a block must have: gaps narrower than this are left.
+/// Minimum number of gap cells in a block: narrower gaps are left.
 const LEAST_EDGE: u32 = 3;
-/// Gaps of a block from which rays are sent.
+/// Gaps of a block from which rays start.
 const TRIES: u32 = 4;
-/// Tiles loaded in an instalment, sweeps of the flood, and cells that rays go through; those of the last block come on top,
-/// `TRIES · RAYS · (MOST_ON + MOST_BACK)` at the most, 23,000.
-const TILES_A_STEP: u16 = 40;
-const SWEEPS_A_STEP: u32 = 3;
-const CELLS_A_STEP: i32 = 20_000;
-/// What the edges of a block cost, in cells that rays go through: measured on the chip.
+/// Limits of an instalment: tiles loaded, sweeps of the flood, cells on rays. The last block may
+/// add `TRIES · RAYS · (MOST_ON + MOST_BACK)` = 23,000 cells.
+const TILES_PER_STEP: u16 = 40;
+const SWEEPS_PER_STEP: u32 = 3;
+const CELLS_PER_STEP: i32 = 20_000;
+/// Cost of finding a block's gaps, in cells on rays: measured on the chip.
 const EDGES_CELLS: i32 = 60;
 
-/// A place to look from.
+/// A place to look from, and what for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Viewpoint {
-    /// Where to stand.
+    /// Where the robot stands.
     pub stand: Cell,
-    /// The last free cell.
+    /// The gap: the last free cell.
     pub gap: Cell,
-    /// An unexplored cell behind it.
+    /// An unexplored cell behind the gap.
     pub beyond: Cell,
 }
 
-/// What an instalment of a search says.
+/// The result of an instalment of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found {
-    /// Go on with the next instalment.
+    /// The search needs another instalment.
     Pending,
-    /// There is something to see from here.
+    /// The viewpoint of the least cost.
     Viewpoint(Viewpoint),
     /// Nothing more can be seen.
     Nothing,
 }
 
-/// What a search looks at; the same for all its instalments, but for what is measured meanwhile.
+/// The inputs of a search. They are the same for all its instalments, except for what the map
+/// learns meanwhile.
 #[derive(Debug)]
-pub struct Grounds<'a, const TILES: usize, const SLOTS: usize> {
+pub(crate) struct Inputs<'a, const TILES: usize, const SLOTS: usize> {
     /// The map.
-    pub tiles: &'a Tiles<TILES, SLOTS>,
-    /// The robot's disc, and the one it squeezes through with.
-    pub discs: [&'a Footprint; 2],
+    pub(crate) tiles: &'a Tiles<TILES, SLOTS>,
+    /// The robot's footprint, and the narrower one of its second chance.
+    pub(crate) footprints: [&'a Footprint; 2],
     /// Where the robot stands.
-    pub robot: Cell,
+    pub(crate) robot: Cell,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Phase {
     #[default]
     Idle,
-    /// Tile number n is loaded next.
+    /// Loads tile number n of the extent next.
     Load(u16),
     Flood,
-    /// Block number n is searched next.
+    /// Searches block number n next.
     Scan(u16),
 }
 
-/// A search in progress; what the robot can reach is in the memory that it was begun with.
+/// A search in progress. Its scratch memory holds what the robot can reach.
 #[derive(Debug)]
-pub struct Search {
+pub(crate) struct Search {
     phase: Phase,
-    /// The flood found nothing for the robot's own disc: it stands in a narrow place.
+    /// The robot's own footprint reaches nothing: it stands in a narrow place.
     tight: bool,
-    /// Least and greatest tile.
+    /// The tiles of the map.
     extent: Extent,
     found: bool,
     cost: f32,
     best: Viewpoint,
 }
 
-fn distance(a: Cell, b: Cell) -> f32 {
-    let (dx, dy) = ((a.x - b.x) as f32, (a.y - b.y) as f32);
-    math::sqrt(dx * dx + dy * dy) * CELL_M
-}
-
-/// Ray number n: sixteenths of a cell in a step, the longer side a whole one.
+/// Returns a step along ray number n, sixteenths of a cell. Its longer side is a whole cell.
 const fn ray(number: i32) -> (i32, i32) {
     let slant = number % 16 * 2 - 16;
     match number / 16 {
@@ -119,7 +118,7 @@ const fn ray(number: i32) -> (i32, i32) {
     }
 }
 
-/// The cell `steps` along a ray.
+/// Returns the cell `steps` along a ray.
 const fn along(from: Cell, ray: (i32, i32), steps: i32) -> Cell {
     Cell {
         x: (from.x * 16 + 8 + ray.0 * steps) >> 4,
@@ -128,9 +127,8 @@ const fn along(from: Cell, ray: (i32, i32), steps: i32) -> Cell {
 }
 
 impl Search {
-    /// None.
-    #[must_use]
-    pub const fn new() -> Self {
+    /// Makes a search that is over.
+    pub(crate) const fn new() -> Self {
         Self {
             phase: Phase::Idle,
             tight: false,
@@ -148,44 +146,44 @@ impl Search {
         }
     }
 
-    /// Whether one was begun and is not over.
-    #[must_use]
-    pub fn is_running(&self) -> bool {
+    /// Returns true if the search needs another instalment.
+    pub(crate) fn is_running(&self) -> bool {
         self.phase != Phase::Idle
     }
 
-    /// Begin one over what is known, in `scratch` of [`crate::roadmap::reachability::scratch_words`], which must stay as it is left until the
-    /// search is over.
-    pub fn begin(&mut self, extent: Option<Extent>, scratch: &mut [u32]) {
+    /// Begins a search over the map's extent. `scratch` needs
+    /// [`scratch_words`](crate::roadmap::reachability::scratch_words) words, which must keep their
+    /// values between the instalments.
+    pub(crate) fn begin(&mut self, extent: Option<Extent>, scratch: &mut [u32]) {
         *self = Self::new();
         let Some(extent) = extent else {
             return;
         };
-        if Flood::new(extent, scratch).is_some() {
+        if Reachability::new(extent, scratch).is_some() {
             (self.phase, self.extent) = (Phase::Load(0), extent);
         }
     }
 
-    /// Go on; gaps that `is_gone` are passed over.
-    pub fn advance<const TILES: usize, const SLOTS: usize>(
+    /// Runs an instalment. Gaps that `is_gone` do not count.
+    pub(crate) fn advance<const TILES: usize, const SLOTS: usize>(
         &mut self,
-        grounds: &Grounds<'_, TILES, SLOTS>,
+        inputs: &Inputs<'_, TILES, SLOTS>,
         is_gone: impl Fn(Cell) -> bool,
         scratch: &mut [u32],
     ) -> Found {
-        let Some(mut flood) = Flood::resume(self.extent, scratch) else {
+        let Some(mut reachability) = Reachability::resume(self.extent, scratch) else {
             self.phase = Phase::Idle;
             return Found::Nothing;
         };
         match self.phase {
             Phase::Idle => return Found::Nothing,
-            Phase::Load(tile) => self.load(grounds, &mut flood, tile),
+            Phase::Load(tile) => self.load(inputs, &mut reachability, tile),
             Phase::Flood => {
-                if !(0..SWEEPS_A_STEP).all(|_| flood.sweep()) {
+                if !(0..SWEEPS_PER_STEP).all(|_| reachability.sweep()) {
                     self.phase = Phase::Scan(0);
                 }
             }
-            Phase::Scan(block) => self.scan(grounds, &flood, &is_gone, block),
+            Phase::Scan(block) => self.scan(inputs, &reachability, &is_gone, block),
         }
         match (self.phase, self.found) {
             (Phase::Idle, true) => Found::Viewpoint(self.best),
@@ -194,7 +192,7 @@ impl Search {
         }
     }
 
-    /// Tile number `tile` of the extent.
+    /// Returns tile number `tile` of the extent; `None` past its end.
     fn tile(&self, tile: u16) -> Option<(i32, i32)> {
         let (across, number) = (self.extent.width(), i32::from(tile));
         let (x, y) = (number % across, number / across);
@@ -203,18 +201,18 @@ impl Search {
 
     fn load<const TILES: usize, const SLOTS: usize>(
         &mut self,
-        grounds: &Grounds<'_, TILES, SLOTS>,
-        flood: &mut Flood<'_>,
+        inputs: &Inputs<'_, TILES, SLOTS>,
+        reachability: &mut Reachability<'_>,
         first: u16,
     ) {
-        let [wide, narrow] = grounds.discs;
-        let disc = if self.tight { narrow } else { wide };
-        for number in first..first + TILES_A_STEP {
+        let [wide, narrow] = inputs.footprints;
+        let footprint = if self.tight { narrow } else { wide };
+        for number in first..first + TILES_PER_STEP {
             if let Some(tile) = self.tile(number) {
-                flood.load(grounds.tiles, disc, tile);
+                reachability.load(inputs.tiles, footprint, tile);
                 continue;
             }
-            self.phase = match (flood.start(grounds.robot), self.tight) {
+            self.phase = match (reachability.start(inputs.robot), self.tight) {
                 (true, _) => Phase::Flood,
                 (false, false) => Phase::Load(0),
                 (false, true) => Phase::Idle,
@@ -222,17 +220,17 @@ impl Search {
             self.tight = true;
             return;
         }
-        self.phase = Phase::Load(first + TILES_A_STEP);
+        self.phase = Phase::Load(first + TILES_PER_STEP);
     }
 
     fn scan<const TILES: usize, const SLOTS: usize>(
         &mut self,
-        grounds: &Grounds<'_, TILES, SLOTS>,
-        flood: &Flood<'_>,
+        inputs: &Inputs<'_, TILES, SLOTS>,
+        reachability: &Reachability<'_>,
         is_gone: &impl Fn(Cell) -> bool,
         first: u16,
     ) {
-        let mut left = CELLS_A_STEP;
+        let mut left = CELLS_PER_STEP;
         let mut number = first;
         while left > 0 {
             let Some((x, y)) = self.tile(number / (ALONG * ALONG)) else {
@@ -240,27 +238,27 @@ impl Search {
                 return;
             };
             left -= 1;
-            if grounds.tiles.is_touched(x, y) {
+            if inputs.tiles.is_touched(x, y) {
                 let corner = Cell {
                     x: x * 32 + i32::from(number % ALONG) * BLOCK,
                     y: y * 32 + i32::from(number / ALONG % ALONG) * BLOCK,
                 };
-                left -= EDGES_CELLS + self.scan_block(grounds, flood, is_gone, corner);
+                left -= EDGES_CELLS + self.scan_block(inputs, reachability, is_gone, corner);
             }
             number += 1;
         }
         self.phase = Phase::Scan(number);
     }
 
-    /// Look for gaps in a block, its least cell given; how many cells rays went through.
+    /// Searches the block at its least cell for gaps. Returns the number of cells on rays.
     fn scan_block<const TILES: usize, const SLOTS: usize>(
         &mut self,
-        grounds: &Grounds<'_, TILES, SLOTS>,
-        flood: &Flood<'_>,
+        inputs: &Inputs<'_, TILES, SLOTS>,
+        reachability: &Reachability<'_>,
         is_gone: &impl Fn(Cell) -> bool,
         corner: Cell,
     ) -> i32 {
-        let edges = edges(grounds.tiles, corner);
+        let edges = edges(inputs.tiles, corner);
         let count: u32 = edges.iter().map(|row| row.count_ones()).sum();
         if count < LEAST_EDGE {
             return 0;
@@ -269,33 +267,27 @@ impl Search {
         let apart = count.div_ceil(TRIES) as usize;
         let gaps = cells(&edges, corner).step_by(apart);
         for gap in gaps.filter(|&gap| !is_gone(gap)) {
-            if let Some(viewpoint) = look_back(grounds.tiles, flood, gap, &mut walked) {
-                self.offer(grounds.robot, viewpoint);
+            if let Some(viewpoint) = look_back(inputs.tiles, reachability, gap, &mut walked) {
+                self.offer(inputs.robot, viewpoint);
             }
         }
         walked
     }
 
     fn offer(&mut self, robot: Cell, viewpoint: Viewpoint) {
-        let cost = distance(robot, viewpoint.stand) + distance(viewpoint.stand, viewpoint.gap);
+        let cost = robot.distance_m(viewpoint.stand) + viewpoint.stand.distance_m(viewpoint.gap);
         if !self.found || cost < self.cost {
             (self.found, self.cost, self.best) = (true, cost, viewpoint);
         }
     }
 }
 
-impl Default for Search {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-/// Of a block, the free cells with an unexplored one at a side.
+/// Returns the free cells of a block that have an unexplored one at a side.
 fn edges<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     corner: Cell,
 ) -> [u32; BLOCK as usize] {
-    // From the row below the block to the one above it; the block begins at bit 16 of the words.
+    // From the row below the block to the one above it. The block begins at bit 16 of the words.
     let mut reader = tiles.reader(corner.x - 16);
     let rows: [_; BLOCK as usize + 2] =
         core::array::from_fn(|y| reader.row(corner.y + y as i32 - 1));
@@ -310,7 +302,7 @@ fn edges<const TILES: usize, const SLOTS: usize>(
     edges
 }
 
-/// The cells of a block's rows.
+/// Returns the cells of a block's rows.
 fn cells(rows: &[u32], corner: Cell) -> impl Iterator<Item = Cell> + '_ {
     rows.iter().enumerate().flat_map(move |(y, &row)| {
         crate::grid::bits::ones(row).map(move |x| Cell {
@@ -320,10 +312,10 @@ fn cells(rows: &[u32], corner: Cell) -> impl Iterator<Item = Cell> + '_ {
     })
 }
 
-/// The nearest reached cell from which something unexplored can be seen through a gap.
+/// Returns the viewpoint of a gap whose stand is nearest to it.
 fn look_back<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
-    flood: &Flood<'_>,
+    reachability: &Reachability<'_>,
     gap: Cell,
     walked: &mut i32,
 ) -> Option<Viewpoint> {
@@ -339,7 +331,7 @@ fn look_back<const TILES: usize, const SLOTS: usize>(
             if tiles.class(stand) != Class::Free {
                 break;
             }
-            if flood.is_reached(stand) {
+            if reachability.is_reached(stand) {
                 best = Some((back, Viewpoint { stand, gap, beyond }));
                 break;
             }
@@ -348,7 +340,8 @@ fn look_back<const TILES: usize, const SLOTS: usize>(
     best.map(|(_, viewpoint)| viewpoint)
 }
 
-/// The middle one of the unexplored cells that a ray ends in, if the map has room for it.
+/// Returns the middle one of the unexplored cells at a ray's end; `None` if there are too few, or
+/// the map has no room for it.
 fn look_on<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     gap: Cell,

@@ -7,7 +7,7 @@ use crate::field::local_grid::LocalGrid;
 use crate::geometry::Cell;
 use crate::map::tiles::NoRoom;
 use crate::path::PlanningContext;
-use crate::path::map_exits::no_room;
+use crate::path::map_exits::missing_room;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 use crate::roadmap::configuration_space::Footprint;
@@ -46,7 +46,7 @@ fn list_ways_out<const TILES: usize, const SLOTS: usize>(
     robot: Cell,
 ) -> Option<NoRoom> {
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
-    no_room(&state.map, footprint, robot, scratch, |cell| {
+    missing_room(&state.map, footprint, robot, scratch, |cell| {
         state.strategy.frontier.list_map_exit(cell);
     })
 }

@@ -6,7 +6,7 @@
 use crate::config::{Config, UnevenGround};
 use crate::geometry::{Point, Pose};
 use crate::input::Input;
-use crate::path::viewpoint::{Found, Grounds};
+use crate::path::viewpoint::{Found, Inputs};
 use crate::path::{PlanningScratch, RoundOutcome};
 use crate::planner::ending::finish;
 use crate::planner::state::State;
@@ -101,14 +101,14 @@ pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
 ) {
     let robot = input.pose.point().cell();
     let [wide, narrow] = [config.robot_radius_m, config.tight_radius_m].map(Footprint::new);
-    let grounds = Grounds {
+    let inputs = Inputs {
         tiles: state.map.tiles(),
-        discs: [&wide, &narrow],
+        footprints: [&wide, &narrow],
         robot,
     };
     let is_gone = |gap| state.strategy.frontier.is_gone(gap);
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
-    match state.viewpoints.advance(&grounds, is_gone, scratch) {
+    match state.viewpoints.advance(&inputs, is_gone, scratch) {
         Found::Pending => {}
         Found::Viewpoint(viewpoint) => {
             state.strategy.frontier.look_from(viewpoint);

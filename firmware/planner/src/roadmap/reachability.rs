@@ -1,12 +1,13 @@
-//! What the robot can get to: the explored passable cells, flooded from where it stands.
+//! Reachability: the explored passable cells, flooded from where the robot stands.
 //!
 //! ```text
-//! open    = coarse cells with a passable, free map cell              (at most one word for two tiles and row)
-//! reached = the smallest set with: near the robot, or open and beside a reached cell at a side
+//! open    = coarse cells with a passable, free map cell     (at most one word for two tiles and row)
+//! reached = the smallest set of open cells near the robot, or beside a reached cell at a side
 //! ```
 //!
-//! In lent memory, and in instalments if the lender keeps it as it is: some ten thousand instructions for the loading of a tile,
-//! some hundred thousand for a sweep, of which there is one for each time that the ways change from up to down.
+//! The flood runs in lent memory, and in instalments if that keeps its values. Loading a tile takes
+//! some 10,000 instructions, a sweep some 100,000. The flood needs a sweep for each time that its way
+//! turns from up to down.
 //!
 //! Units: coarse cells of 20 cm, 16 × 16 in a tile.
 
@@ -16,42 +17,44 @@ use crate::map::Tiles;
 use crate::map::tiles::Extent;
 use crate::roadmap::configuration_space::{Footprint, for_each_strip};
 
-/// Coarse cells along a tile's side.
+/// Side of a tile, coarse cells.
 const SIDE: usize = 16;
-/// Coarse cells around the robot's own from which the flood starts: it may stand nearer to something than its radius.
+/// Distance from the robot's cell at which the flood starts, coarse cells: the robot may stand nearer
+/// to an obstacle than its radius.
 const START_REACH: i32 = 2;
 
-/// Words of memory that a `Flood` needs for a box of so many tile places: two planes, and two tiles side by side share a word.
+/// Returns the words of memory that a flood needs in a box of `slots` tiles: two planes, with a word
+/// for two tiles side by side.
 #[must_use]
 pub const fn scratch_words(slots: usize) -> usize {
     SIDE * slots
 }
 
-/// The tiles of an extent.
-pub(crate) fn each(extent: Extent) -> impl Iterator<Item = (i32, i32)> {
+/// Returns the tiles of an extent, row by row.
+pub(crate) fn tiles_of(extent: Extent) -> impl Iterator<Item = (i32, i32)> {
     let rows = extent.least.1..=extent.greatest.1;
     rows.flat_map(move |y| (extent.least.0..=extent.greatest.0).map(move |x| (x, y)))
 }
 
-/// The flood's planes, row by row, as wide as the extent.
+/// The flood's planes, row by row, as wide as the extent. Invariant: a reached cell is open.
 #[derive(Debug)]
-pub(crate) struct Flood<'a> {
+pub(crate) struct Reachability<'a> {
     extent: Extent,
     per_row: usize,
     open: &'a mut [u32],
     reached: &'a mut [u32],
 }
 
-impl<'a> Flood<'a> {
-    /// All clear; `None` where the memory is too small, see [`scratch_words`].
+impl<'a> Reachability<'a> {
+    /// Makes empty planes; `None` if the memory is too small, see [`scratch_words`].
     pub(crate) fn new(extent: Extent, scratch: &'a mut [u32]) -> Option<Self> {
-        let flood = Self::resume(extent, scratch)?;
-        flood.open.fill(0);
-        flood.reached.fill(0);
-        Some(flood)
+        let reachability = Self::resume(extent, scratch)?;
+        reachability.open.fill(0);
+        reachability.reached.fill(0);
+        Some(reachability)
     }
 
-    /// The flood of this extent as it was left in its memory.
+    /// Takes up the flood of this extent that the memory holds.
     pub(crate) fn resume(extent: Extent, scratch: &'a mut [u32]) -> Option<Self> {
         let per_row = usize::try_from(extent.width()).ok()?.div_ceil(2);
         let words = per_row * SIDE * usize::try_from(extent.height()).ok()?;
@@ -64,13 +67,15 @@ impl<'a> Flood<'a> {
         })
     }
 
-    /// Coarse column and row of a map cell, as far as there are any.
+    /// Returns the coarse column and row of a map cell; `None` west or south of the extent, or east
+    /// of the planes.
     fn place(&self, cell: Cell) -> Option<(usize, usize)> {
         let x = usize::try_from((cell.x >> 1) - self.extent.least.0 * SIDE as i32).ok()?;
         let y = usize::try_from((cell.y >> 1) - self.extent.least.1 * SIDE as i32).ok()?;
         (x / 32 < self.per_row).then_some((x, y))
     }
 
+    /// Returns true if the robot can reach a cell.
     pub(crate) fn is_reached(&self, cell: Cell) -> bool {
         self.place(cell).is_some_and(|(x, y)| {
             let word = self.reached.get(y * self.per_row + x / 32);
@@ -78,11 +83,11 @@ impl<'a> Flood<'a> {
         })
     }
 
-    /// Mark what is open in a tile.
+    /// Marks the open cells of a tile.
     pub(crate) fn load<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        disc: &Footprint,
+        footprint: &Footprint,
         (tile_x, tile_y): (i32, i32),
     ) {
         let corner = Cell {
@@ -93,7 +98,7 @@ impl<'a> Flood<'a> {
         let Some((x, row)) = place.filter(|_| tiles.is_touched(tile_x, tile_y)) else {
             return;
         };
-        for_each_strip(tiles, disc, (corner.x, corner.y), 32, |y, strip| {
+        for_each_strip(tiles, footprint, (corner.x, corner.y), 32, |y, strip| {
             let free = strip.passable & !strip.unknown & !strip.obstacle;
             let row = row + ((y - corner.y) / 2) as usize;
             if let Some(word) = self.open.get_mut(row * self.per_row + x / 32) {
@@ -102,7 +107,7 @@ impl<'a> Flood<'a> {
         });
     }
 
-    /// Reach what is open around the robot; whether anything is.
+    /// Reaches the open cells around the robot. Returns true if there are any.
     pub(crate) fn start(&mut self, robot: Cell) -> bool {
         let mut any = 0;
         for dy in -START_REACH..=START_REACH {
@@ -125,7 +130,8 @@ impl<'a> Flood<'a> {
         any != 0
     }
 
-    /// Once up and once down the rows; whether that reached something new. The flood is over when it did not.
+    /// Spreads once up and once down the rows. Returns true if that reached something new; if not, the
+    /// flood is over.
     pub(crate) fn sweep(&mut self) -> bool {
         let rows = self.open.len() / self.per_row.max(1);
         let mut changed = false;
@@ -138,7 +144,8 @@ impl<'a> Flood<'a> {
         changed
     }
 
-    /// Take over what the row beside has reached, and fill the runs that hold any of it. Answers whether that is new.
+    /// Reaches the open cells of a row beside reached ones of the row `beside`, and the runs that they
+    /// are in. Returns true if any were new.
     fn spread(&mut self, row: usize, beside: Option<usize>) -> bool {
         let mut changed = false;
         let mut carry = false;
@@ -154,8 +161,9 @@ impl<'a> Flood<'a> {
         changed
     }
 
-    /// Fill a word's runs from their reached cells and `seeds` on towards the high end, in the order of bits that `turn` gives;
-    /// `carry` says whether the run that begins the word was reached in the one before, and then whether the last was.
+    /// Fills a word's runs from their reached cells and `seeds` towards the high end, in the order of
+    /// bits that `turn` gives. `carry` is true before if the run goes on from a reached cell of the
+    /// word before, and after if it goes on into the next word. Returns true if a cell was new.
     fn fill(
         &mut self,
         index: usize,
@@ -169,7 +177,7 @@ impl<'a> Flood<'a> {
         };
         let before = turn(*word);
         let seeds = open & (before | turn(seeds) | u32::from(*carry));
-        // A carry started at a seed clears the run's bits up to its end.
+        // A carry that starts at a seed clears the run's bits up to its end.
         let (sum, over) = open.overflowing_add(seeds);
         let after = open & !sum | seeds;
         *word = turn(after);
@@ -177,7 +185,7 @@ impl<'a> Flood<'a> {
         after != before
     }
 
-    /// The reached cells along one side of a tile.
+    /// Calls `found` with the reached cells along one side of a tile.
     pub(crate) fn along(&self, tile: (i32, i32), side: (i32, i32), mut found: impl FnMut(Cell)) {
         let last = 2 * (SIDE as i32 - 1);
         for k in 0..SIDE as i32 {

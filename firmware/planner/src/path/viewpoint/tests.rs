@@ -1,11 +1,12 @@
-//! Viewpoints as pictures: a character is 4 × 4 cells of 10 cm, greatest y first; `#` obstacle, `.` free, `?` unexplored, `R` the robot.
+//! Viewpoints as pictures. A character is 4 × 4 cells of 10 cm, the greatest y first: `#` obstacle,
+//! `.` free, `?` unexplored, `R` the robot.
 
 use std::boxed::Box;
 use std::vec::Vec;
 
 use crate::geometry::Cell;
 use crate::map::{Class, Tiles};
-use crate::path::viewpoint::{Found, Grounds, Search, Viewpoint, along, distance};
+use crate::path::viewpoint::{Found, Inputs, Search, Viewpoint, along};
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::scratch_words;
 
@@ -45,19 +46,19 @@ fn drawn(picture: &[&str]) -> (Box<Map>, Cell) {
     (tiles, robot)
 }
 
-/// A search from beginning to end, in scratch of any content.
+/// Runs a search from beginning to end, in scratch memory that holds anything.
 fn search(tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Viewpoint> {
     let mut scratch = std::vec![0xdead_beef; scratch_words(SLOTS)];
-    let grounds = Grounds {
+    let inputs = Inputs {
         tiles,
-        discs: [&Footprint::new(0.3), &Footprint::new(0.22)],
+        footprints: [&Footprint::new(0.3), &Footprint::new(0.22)],
         robot,
     };
-    let is_gone = |gap| gone.iter().any(|&cell| distance(cell, gap) < 0.5);
+    let is_gone = |gap| gone.iter().any(|&cell| cell.distance_m(gap) < 0.5);
     let mut search = Search::new();
     search.begin(tiles.extent(), &mut scratch);
     for _ in 0..100 {
-        match search.advance(&grounds, is_gone, &mut scratch) {
+        match search.advance(&inputs, is_gone, &mut scratch) {
             Found::Pending => assert!(search.is_running()),
             Found::Viewpoint(viewpoint) => return Some(viewpoint),
             Found::Nothing => return None,
@@ -66,7 +67,8 @@ fn search(tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Viewpoint> {
     panic!("a search without an end");
 }
 
-/// Whether there is a straight view from a viewpoint's stand to what it is for, by every ray that there is.
+/// Returns true if a ray leads from the viewpoint's stand through its gap to the unexplored cell
+/// beyond.
 fn sees(tiles: &Map, viewpoint: Viewpoint) -> bool {
     let class = |cell| tiles.class(cell);
     (0..super::RAYS).map(super::ray).any(|ray| {
@@ -88,7 +90,8 @@ fn sees(tiles: &Map, viewpoint: Viewpoint) -> bool {
     })
 }
 
-/// A hall below, and a room above behind a gap of 0.4 m: only what lies straight ahead of the gap was seen.
+/// A hall below, and a room above behind a gap of 0.4 m. Of the room only what lies straight ahead
+/// of the gap is explored.
 const GAP: [&str; 14] = [
     "##########################",
     "#????????.???????????????#",
@@ -116,15 +119,15 @@ fn a_shadow_behind_a_gap_is_looked_into_through_it() {
     assert!(sees(&tiles, viewpoint), "{viewpoint:?}");
 }
 
-/// One gap after another is given up, until there is none.
+/// Gives up one gap after another, until there is none.
 #[test]
-fn what_was_given_up_is_not_looked_at_again_and_there_is_an_end() {
+fn a_gap_given_up_is_not_looked_at_again_and_the_search_ends() {
     let (tiles, robot) = drawn(&GAP);
     let mut gone = Vec::new();
     while let Some(viewpoint) = search(&tiles, robot, &gone) {
         assert!(
             gone.iter()
-                .all(|&cell| distance(cell, viewpoint.gap) >= 0.5)
+                .all(|&cell| cell.distance_m(viewpoint.gap) >= 0.5)
         );
         assert!(sees(&tiles, viewpoint), "{viewpoint:?}");
         gone.push(viewpoint.gap);
@@ -155,7 +158,7 @@ fn where_everything_is_known_there_is_nothing_to_see() {
     assert_eq!(search(&tiles, robot, &[]), None);
 }
 
-/// The unexplored beside the room cannot be seen into from anywhere: there is no gap.
+/// Without a gap nothing beyond the wall can be seen.
 #[test]
 fn through_a_wall_nothing_is_seen() {
     let mut picture = GAP;
@@ -164,7 +167,7 @@ fn through_a_wall_nothing_is_seen() {
     assert_eq!(search(&tiles, robot, &[]), None);
 }
 
-/// Cracks of a cell or two are the noise at a wall's foot.
+/// Cracks one or two cells wide are noise at the foot of a wall.
 #[test]
 fn a_crack_is_no_gap() {
     let picture = GAP.map(|line| line.replace('?', "."));
@@ -176,7 +179,8 @@ fn a_crack_is_no_gap() {
     assert_eq!(search(&tiles, robot, &[]), None);
 }
 
-/// In a passage of 0.6 m the robot's own disc finds no passable cell; it searches as a narrower robot.
+/// In a passage of 0.6 m the robot's own footprint has no passable cell. The search uses the
+/// narrower one.
 #[test]
 fn a_robot_in_a_narrow_place_looks_too() {
     let mut picture = GAP;
