@@ -17,7 +17,7 @@ use crate::roadmap::skeleton::Frame;
 /// has used them up.
 const PATH_CELLS: usize = 96;
 /// Radius of the circle around the robot that holds the local goal, metres [Jorge15, III-C].
-const LOCAL_GOAL_M: f32 = 2.0;
+pub(crate) const LOCAL_GOAL_M: f32 = 2.0;
 /// Maximum number of steps along the path to the local goal: twice the radius.
 const MOST_STEPS_AHEAD: usize = 20;
 
