@@ -69,6 +69,12 @@ impl Point {
         let (dx, dy) = (self.x_m - other.x_m, self.y_m - other.y_m);
         dx * dx + dy * dy
     }
+
+    /// Distance to another point, metres.
+    #[must_use]
+    pub fn distance_m(self, other: Self) -> f32 {
+        math::sqrt(self.distance2(other))
+    }
 }
 
 impl Pose {
@@ -104,6 +110,16 @@ impl Pose {
 }
 
 impl Cell {
+    /// The cell `dx` columns and `dy` rows away.
+    #[inline(always)]
+    #[must_use]
+    pub const fn offset(self, dx: i32, dy: i32) -> Self {
+        Self {
+            x: self.x + dx,
+            y: self.y + dy,
+        }
+    }
+
     /// The corner of this cell with the least coordinates.
     #[must_use]
     pub fn corner(self) -> Point {

@@ -72,8 +72,8 @@ pub struct UnevenGround {
     /// Distance within which a return of the level laser over unmeasured ground is an obstacle,
     /// metres.
     pub near: I4F12,
-    /// Height below the neighbouring ground from which ground is a negative obstacle, metres;
-    /// negative.
+    /// Height below the neighbouring ground from which a return is the inside of a hole and not
+    /// ground, metres; negative.
     pub hole: I4F12,
     /// Least preference, −2 to 0.
     pub least: I4F12,

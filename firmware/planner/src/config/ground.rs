@@ -1,26 +1,26 @@
-//! Parameters of uneven ground, and which preferences bend the field on it.
+//! Parameters of uneven ground: the robot's limits on it, and the preferences that bend the field.
 //!
 //! Units: metres; slopes are tangents; preferences are pure numbers.
 
-/// `K_n`, width of the kernel in cells [Maffei20, Table I].
+/// `K_n`, the width of the kernel, cells [Maffei20, Table I].
 pub const KERNEL_CELLS: usize = 20;
 
-/// Which preferences are used.
+/// The preferences in use [Maffei20, III-C].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PreferenceMode {
-    /// None.
+    /// No preference.
     Off,
-    /// `ε_height`.
+    /// `ε_height`: prefer ground at the robot's own height.
     Height,
-    /// `ε_global`.
+    /// `ε_global`: one preference for the whole window. It grows as the field becomes flat.
     Global,
-    /// Their sum.
+    /// The sum of both.
     #[default]
     Both,
 }
 
 impl PreferenceMode {
-    /// Whether heights count.
+    /// Returns true if `ε_height` is in use.
     #[must_use]
     pub const fn has_heights(self) -> bool {
         matches!(self, Self::Height | Self::Both)
@@ -28,38 +28,43 @@ impl PreferenceMode {
 }
 
 /// Parameters of uneven ground [Maffei20, Table I], and the robot's limits on it.
+///
+/// [`Config::builder`](crate::Config::builder) checks the ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UnevenGround {
-    /// Which preferences are used. Default: both.
+    /// The preferences in use. Default: both.
     pub mode: PreferenceMode,
-    /// `h_obs`: what stands higher than this over the mean ground around it is an obstacle, metres.
-    /// Default: 0.30.
+    /// `h_obs`: height above the mean ground around from which a return is an obstacle, metres;
+    /// positive. Default: 0.30.
     pub obstacle_m: f32,
-    /// `d_obs`: what the level laser meets nearer than this over ground not yet measured is an
-    /// obstacle, metres. Default: 1.5.
+    /// `d_obs`: distance within which a steep return over unmeasured ground is an obstacle, metres;
+    /// positive. Default: 1.5.
     pub near_m: f32,
-    /// `h_hole`: ground lower than this under what is beside it, with nothing measured between, is
-    /// itself a negative obstacle, metres. Default: −0.60.
+    /// `h_hole`: depth below the neighbouring ground from which the end of a beam is the inside of
+    /// a hole and not ground, metres; negative. Default: −0.60.
     pub hole_m: f32,
-    /// `ε_hmin`, at least −2. Default: −0.5.
+    /// `ε_hmin`, the least preference: −2 to 0. Default: −0.5.
     pub least_preference: f32,
-    /// `ε_gmax`, at most 2. Default: 0.5.
+    /// `ε_gmax`, the greatest preference: 0 to 2. Default: 0.5.
     pub most_preference: f32,
-    /// `λ_h`, per metre. Default: 2.0.
+    /// `λ_h`, preference lost per metre of height; at least 0. Default: 2.0.
     pub height_scale: f32,
-    /// `λ_g`. Default: 0.005.
+    /// `λ_g`, preference gained each time that the field's steepness falls by a factor e; at least
+    /// 0. Default: 0.005.
     pub global_scale: f32,
-    /// Steepest slope that may be driven on, a tangent. Default: 0.364 (20°, the 3-AT's grade).
+    /// Steepest slope that the robot may drive up or down, a tangent: above 0, at most 1 (45°).
+    /// Default: 0.364 (20°, the 3-AT's limit).
     pub climb: f32,
-    /// Steepest slope that may be driven across, a tangent; as large as `climb`, there is no such
-    /// limit. Default: as `climb`; the 3-AT's is 0.268 (15°).
+    /// Steepest slope that the robot may drive across, a tangent: above 0, at most 1 (45°). A value
+    /// of at least `climb` sets no limit. Default: 0.364, as `climb`; the 3-AT's limit is 0.268
+    /// (15°).
     pub roll: f32,
-    /// Highest edge that may be driven over, metres. Default: 0.07.
+    /// Highest edge that the robot may drive over, metres; positive. Default: 0.07.
     pub step_m: f32,
 }
 
 impl UnevenGround {
-    /// Table I, and the limits of a Pioneer 3-AT.
+    /// The parameters of [Maffei20, Table I], and the limits of a Pioneer 3-AT.
     pub const TABLE_I: Self = Self {
         mode: PreferenceMode::Both,
         obstacle_m: 0.30,

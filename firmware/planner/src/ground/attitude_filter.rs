@@ -1,57 +1,64 @@
-//! AttitudeFilter: the attitude as it is filtered, and how far a beam may be trusted with it.
+//! The attitude filter: smooths pitch and roll, and limits how far from the robot heights are
+//! measured.
 //!
 //! ```text
-//! g      slope of the robot's plane in the world: turning on the spot does not change it
-//! j      ← j + (|g − 2 g' + g''| − j) / n,    n = min(steps so far, MAX_STEPS)      g', g'': one and two steps ago
-//! sigma  = j / (√6 √(2/π))              what noise from step to step gives; motion does not, it is smooth
-//! ĝ      ← ĝ + GAIN (g − ĝ)             while |g − ĝ| < MOTION sigma, else ĝ ← g
-//! reach  = ERROR_M / (√(GAIN / (2 − GAIN)) sigma)
+//! j      ← j + (|g − 2 g' + g''| − j) / n    n = min(steps so far, MAX_STEPS)
+//! sigma  = j / SECOND_DIFFERENCE_RATIO       standard deviation of g
+//! ĝ      ← ĝ + GAIN (g − ĝ)                  while |g − ĝ| < MOTION_SIGMAS sigma, else ĝ ← g
+//! reach  = MAX_ERROR_M / (SMOOTHED_RATIO sigma)
 //! ```
 //!
-//! An error of the attitude tilts a whole sweep: of 1° it lifts the ground 3 m to the side by 5 cm, and two sweeps that meet there make an
-//! edge that is none. A mean over many sweeps would cure that, but a robot that drives on has one or two over a cell. So the attitude is
-//! smoothed, and no height is measured farther off than errors of it stay small; the robot looks again from nearer. Below `EXACT_SIGMA` the
-//! attitude is taken as it comes: an inertial unit without noise changes nothing. Not in [Maffei20], which measures attitude without
-//! error. Units: tangents, metres, radians.
+//! Here g, g' and g'' are the slopes of the robot's plane in the world, now and one and two steps
+//! ago. A turn on the spot does not change g, and smooth motion adds nothing to j.
+//!
+//! An error of the attitude tilts a whole sweep. An error of 1° lifts the ground 3 m to the side by
+//! 5 cm, and two sweeps that meet there make a false edge. A mean over many sweeps would remove the
+//! edge, but a robot in motion has only one or two sweeps over a cell. Therefore the attitude is
+//! smoothed, and no height is measured beyond the reach; the robot measures again from nearer.
+//! Below [`EXACT_SIGMA`] the attitude is used unchanged and the reach is infinite.
+//!
+//! Departs from [Maffei20, III-B]: the paper measures attitude without error.
+//!
+//! Units: slopes are tangents; metres, radians.
 
 use crate::geometry::Pose;
 use crate::ground::ray::Attitude;
 use crate::math;
 
-/// Share of the difference that a step makes up for.
+/// Share of a deviation that the filter corrects in one step.
 const GAIN: f32 = 0.5;
-/// Standard deviation of a smoothed slope over that of a single one, √(GAIN / (2 − GAIN)).
-const SMOOTHED: f32 = 0.577;
-/// Mean of |g − 2 g' + g''| over the standard deviation of g, √6 √(2/π).
-const MEAN_SECOND: f32 = 1.954;
-/// RiseLimits in the mean at the most.
+/// Standard deviation of the filtered slope over that of one slope: √(GAIN / (2 − GAIN)).
+const SMOOTHED_RATIO: f32 = 0.577;
+/// Mean of |g − 2 g' + g''| over the standard deviation of g: √6 √(2/π), for normal noise.
+const SECOND_DIFFERENCE_RATIO: f32 = 1.954;
+/// Steps that the mean of the second differences remembers: 20 s at 5 Hz.
 const MAX_STEPS: u8 = 100;
-/// Deviation below which there is none: 0.15°.
+/// Standard deviation of a slope below which the attitude counts as exact, a tangent: 0.15°.
 const EXACT_SIGMA: f32 = 0.0026;
-/// What the attitude may lift the end of a beam by, metres.
-const ERROR_M: f32 = 0.03;
-/// Two deviations of a difference of two heights that each err by [`ERROR_M`], metres.
-const SLACK_M: f32 = 2.0 * core::f32::consts::SQRT_2 * ERROR_M;
-/// A difference of more deviations of a single slope than this is motion. That is 4.3 of the difference's own, √(1 + SMOOTHED²): at three, one
-/// step in fifty would be taken for motion, and these steps, filtered as they come, would be just those that err most.
-const MOTION: f32 = 5.0;
+/// Standard deviation of a height at the reach, metres.
+const MAX_ERROR_M: f32 = 0.03;
+/// Two standard deviations of the difference of two heights at the reach, metres.
+const SLACK_M: f32 = 2.0 * core::f32::consts::SQRT_2 * MAX_ERROR_M;
+/// Standard deviations of one slope beyond which a deviation is motion. They are 4.3 standard
+/// deviations of the deviation itself, √(1 + `SMOOTHED_RATIO`²). At 3 one step in fifty would count
+/// as motion and pass unfiltered: exactly the steps with the largest errors.
+const MOTION_SIGMAS: f32 = 5.0;
 
-/// The filter.
+/// The filter of the attitude.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct AttitudeFilter {
-    /// The filtered slope, along x and y.
+pub(crate) struct AttitudeFilter {
+    /// The filtered slope along x and y, tangents.
     slope: [f32; 2],
-    /// The slopes one and two steps ago.
+    /// The slopes one and two steps ago, tangents.
     last: [[f32; 2]; 2],
-    /// Mean second difference.
+    /// Mean magnitude of the second difference, a tangent.
     noise: f32,
     steps: u8,
 }
 
 impl AttitudeFilter {
-    /// Before the first step.
-    #[must_use]
-    pub const fn new() -> Self {
+    /// Creates the filter as it is before the first step.
+    pub(crate) const fn new() -> Self {
         Self {
             slope: [0.0; 2],
             last: [[0.0; 2]; 2],
@@ -60,15 +67,15 @@ impl AttitudeFilter {
         }
     }
 
-    /// The attitude of this step; the pose as it is filtered.
-    pub fn update(&mut self, pose: &Pose) -> Pose {
+    /// Takes the pose of this step and returns it with the filtered pitch and roll.
+    pub(crate) fn update(&mut self, pose: &Pose) -> Pose {
         let attitude = Attitude::of(pose);
         let slope = [attitude.rise(1.0, 0.0), attitude.rise(0.0, 1.0)];
         self.estimate_noise(slope);
         let sigma = self.sigma();
         let off = [slope[0] - self.slope[0], slope[1] - self.slope[1]];
-        let is_motion = off.iter().any(|off| off.abs() > MOTION * sigma);
-        let gain = if sigma < EXACT_SIGMA || is_motion {
+        let is_motion = off.iter().any(|off| off.abs() > MOTION_SIGMAS * sigma);
+        let gain = if self.is_exact() || is_motion {
             1.0
         } else {
             GAIN
@@ -83,31 +90,28 @@ impl AttitudeFilter {
         }
     }
 
-    /// Whether the attitude is as good as without noise.
-    #[must_use]
-    pub fn is_exact(&self) -> bool {
+    /// Returns true if the attitude has no noise worth filtering.
+    pub(crate) fn is_exact(&self) -> bool {
         self.sigma() < EXACT_SIGMA
     }
 
-    /// How far from the robot a height may be measured, metres.
-    #[must_use]
-    pub fn reach_m(&self) -> f32 {
+    /// Returns the distance from the robot within which heights are measured, metres.
+    pub(super) fn reach_m(&self) -> f32 {
         if self.is_exact() {
             f32::INFINITY
         } else {
-            ERROR_M / (SMOOTHED * self.sigma())
+            MAX_ERROR_M / (SMOOTHED_RATIO * self.sigma())
         }
     }
 
-    /// What two heights may differ by for the attitude alone, metres: two deviations, at the reach.
-    #[must_use]
-    pub fn slack_m(&self) -> f32 {
+    /// Returns the difference of two heights that errors of the attitude alone explain, metres.
+    pub(super) fn slack_m(&self) -> f32 {
         if self.is_exact() { 0.0 } else { SLACK_M }
     }
 
-    /// Standard deviation of a single slope.
+    /// Returns the standard deviation of one slope, a tangent.
     fn sigma(&self) -> f32 {
-        self.noise / MEAN_SECOND
+        self.noise / SECOND_DIFFERENCE_RATIO
     }
 
     fn estimate_noise(&mut self, slope: [f32; 2]) {
@@ -118,15 +122,12 @@ impl AttitudeFilter {
         let Some(count) = self.steps.checked_sub(2).filter(|&count| count > 0) else {
             return;
         };
-        let second = |k: usize| match (slope.get(k), one.get(k), two.get(k)) {
-            (Some(now), Some(one), Some(two)) => (now - 2.0 * one + two).abs(),
-            _ => 0.0,
-        };
-        let mean = 0.5 * (second(0) + second(1));
+        let second = |now: f32, one: f32, two: f32| (now - 2.0 * one + two).abs();
+        let mean = 0.5 * (second(slope[0], one[0], two[0]) + second(slope[1], one[1], two[1]));
         self.noise += (mean - self.noise) / f32::from(count);
     }
 
-    /// The pose with the filtered slope.
+    /// Returns the pose with the pitch and the roll of the filtered slope.
     fn with_filtered_slope(&self, pose: &Pose) -> Pose {
         let (sin, cos) = math::sin_cos(pose.yaw_rad);
         let [x, y] = self.slope;
@@ -143,11 +144,11 @@ impl AttitudeFilter {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::{AttitudeFilter, ERROR_M, EXACT_SIGMA, SMOOTHED};
+    use super::{AttitudeFilter, EXACT_SIGMA, MAX_ERROR_M, SMOOTHED_RATIO};
     use crate::geometry::Pose;
     use crate::ground::ray::Attitude;
 
-    /// Twelve uniform numbers of variance 1/12 each: about normal.
+    /// Returns a number that is about normal: the sum of twelve uniform numbers of variance 1/12.
     pub(in crate::ground) fn normal(seed: &mut u64) -> f32 {
         let mut sum = -6.0;
         for _ in 0..12 {
@@ -159,7 +160,7 @@ pub(super) mod tests {
         sum
     }
 
-    /// A robot that goes round in circles on a slope of 0.25 that rises to the north-east.
+    /// The pose of a robot that drives in circles on a slope of 0.25 which rises to the north-east.
     fn on_a_slope(step: u16) -> Pose {
         let yaw_rad = crate::math::wrap(0.04 * f32::from(step));
         let (sin, cos) = (yaw_rad.sin(), yaw_rad.cos());
@@ -182,7 +183,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn without_noise_the_attitude_is_taken_bit_by_bit() {
+    fn without_noise_the_attitude_is_used_bit_for_bit() {
         let mut filter = AttitudeFilter::new();
         for step in 0..500 {
             let pose = on_a_slope(step);
@@ -192,7 +193,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn noise_is_estimated_and_half_of_its_variance_goes() {
+    fn noise_is_estimated_and_its_variance_halved() {
         let sigma = 1.0_f32.to_radians();
         let (mut filter, mut seed) = (AttitudeFilter::new(), 5);
         let (mut before, mut after, mut count) = (0.0, 0.0, 0.0);
@@ -209,7 +210,7 @@ pub(super) mod tests {
                 before += (rise(&pose) - rise(&truth)).powi(2);
                 after += (rise(&filtered) - rise(&truth)).powi(2);
                 count += 1.0;
-                let ratio = filter.reach_m() / (ERROR_M / (SMOOTHED * sigma));
+                let ratio = filter.reach_m() / (MAX_ERROR_M / (SMOOTHED_RATIO * sigma));
                 assert!((0.7..1.3).contains(&ratio), "{ratio}");
             }
         }
@@ -218,9 +219,9 @@ pub(super) mod tests {
         assert!(after < 0.5 * before, "{after} of {before}");
     }
 
-    /// The sweeps that err most decide how many edges the map has that are none.
+    /// The sweeps with the largest errors decide how many false edges the map has.
     #[test]
-    fn the_worst_of_many_attitudes_is_not_believed() {
+    fn the_largest_error_of_many_attitudes_is_filtered_too() {
         let sigma = 1.0_f32.to_radians();
         let (mut filter, mut seed) = (AttitudeFilter::new(), 11);
         let mut worst = 0.0_f32;
@@ -230,12 +231,16 @@ pub(super) mod tests {
                 worst = worst.max(filtered.roll_rad.abs().max(filtered.pitch_rad.abs()));
             }
         }
-        // Of 10,000 numbers that are normal the largest is of about 3.9 deviations.
-        assert!(worst < 4.5 * SMOOTHED * sigma, "{}", worst.to_degrees());
+        // The largest of 10,000 normal numbers is about 3.9 standard deviations.
+        assert!(
+            worst < 4.5 * SMOOTHED_RATIO * sigma,
+            "{}",
+            worst.to_degrees()
+        );
     }
 
     #[test]
-    fn a_kerb_is_followed_at_once() {
+    fn the_jump_of_a_kerb_passes_unfiltered() {
         let sigma = 0.5_f32.to_radians();
         let (mut filter, mut seed) = (AttitudeFilter::new(), 9);
         for _ in 0..200 {
@@ -246,6 +251,6 @@ pub(super) mod tests {
             ..Pose::default()
         };
         assert_eq!(filter.update(&up), up);
-        assert!(filter.reach_m() < ERROR_M / (SMOOTHED * EXACT_SIGMA));
+        assert!(filter.reach_m() < MAX_ERROR_M / (SMOOTHED_RATIO * EXACT_SIGMA));
     }
 }

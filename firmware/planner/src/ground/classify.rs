@@ -1,137 +1,154 @@
-//! Heights and marks into classes, a row of the window at a time.
+//! Classification of heights and marks into the map's classes, one row of the window at a time.
 //!
-//! | class | of a cell |
+//! | class | condition for a cell |
 //! | --- | --- |
-//! | obstacle | something stands there; or it is measured, and too high over a cell beside it |
-//! | negative obstacle | never measured, and its ground is gone, or presumed to be where the map knows of none |
-//! | free | measured and neither; or between measured cells on both sides that lead over it; or glimpsed, and near |
-//! | as before | anything else: what the map says stays, until something better is known |
+//! | obstacle | something stands there; or it is measured and too high over a cell near it |
+//! | negative obstacle | it has a drop; an inferred one only if the map has no free ground there |
+//! | free | it is measured and neither of these |
+//! | free | the map knows nothing; measured cells on both sides bridge it |
+//! | free | the map knows nothing; it has a usable height of low confidence |
+//! | unchanged | none of these: the map keeps its class |
 //!
-//! Too high is an edge or a slope as [`super::falls`] tells them. The lower side stays free [*departs* from
-//! Maffei20, III-B: a mean over a kernel of 2 m blurs edges, and calls the upper side of every edge an obstacle a metre deep].
-//! An obstacle of the map is only freed where most cells around are measured too.
+//! A cell is too high by an edge or by a slope, see [`mod@super::steepness`]. An obstacle of the
+//! map becomes free only if at least six of the eight cells around it are measured too.
 //!
-//! Units: bits, bit k is column `origin.x + k`; heights in steps of [`fixed::types::I7F9`].
+//! Departs from [Maffei20, III-B]: only the upper side of an edge is an obstacle, and the lower
+//! side stays free. The paper's mean over a kernel of 2 m blurs edges, and makes every edge an
+//! obstacle that is one metre deep.
+//!
+//! Units: bit k of a word is column `origin.x + k`; heights in steps of [`fixed::types::I7F9`].
 
 use fixed::types::I7F9;
 
 use crate::config::UnevenGround;
 use crate::geometry::{CELL_M, Cell};
 use crate::grid::Row;
-use crate::ground::elevation::{Ground, Heights, WINDOW_SIDE};
+use crate::ground::elevation::{GroundState, Heights, WINDOW_SIDE};
 use crate::ground::{low_confidence, steepness};
 
-/// What a mean may be off beside its neighbour, metres.
+/// Error of the difference of two mean heights, metres: two standard deviations, for means of four
+/// heights with a standard deviation of 0.01 m each.
 const NOISE_M: f32 = 0.015;
-/// How far the cells are that a bridge rests on, to either side.
+/// Share of the climb that an edge to the next cell may add to the step.
+const ONE_CELL_CLIMB_SHARE: f32 = 0.25;
+/// Share of the climb that an edge to a cell two cells away may add to the step.
+const TWO_CELLS_CLIMB_SHARE: f32 = 0.5;
+/// Share of the greatest rise over four cells that each half must have, for a slope or an edge.
+const HALF_SHARE: f32 = 0.3;
+/// Share of the greatest rise over four cells that the ends of a bridge may differ by.
+const BRIDGE_SHARE: f32 = 0.7;
+/// Distances to the two ends of a bridge, cells: the ends are at most four cells apart.
 const BRIDGES: [(i32, i32); 6] = [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 1)];
-/// How far to either side ground is looked for over a brow, cells.
-const REACH: i32 = 10;
-/// In how many of four directions it must be found: over the corner of a hole it is in one.
+/// Distance to either side within which the ground beside a gap is looked for, cells.
+const MAX_GAP_CELLS: i32 = 10;
+/// Directions, of four, in which ground must span a gap. At the corner of a hole only one does.
 const MIN_DIRECTIONS: i32 = 3;
-/// What leads over a gap higher than an edge that may be driven over blends in: its grade lies between those on both sides, to within this. A kerb
-/// in a gap lies between level ground and level ground.
-const BLEND: f32 = 0.1;
-/// Measured cells among the eight around that it takes to free an obstacle of the map.
+/// Difference between the grade across a gap and the grades beside it, a tangent. A gap higher than
+/// an edge must blend in: a kerb in a gap is steep between two level grounds.
+const MAX_BLEND: f32 = 0.1;
+/// Measured cells, of the eight around, that free an obstacle of the map.
 const MIN_MEASURED_AROUND: u32 = 6;
 
-/// How ground leads over a gap, by how sure the attitude is in which its sides were measured.
+/// Limits for ground that spans a gap. They depend on the attitude of the measurements beside it.
 struct GapLimits {
-    /// It is no steeper than this part of the climb.
-    gentle: f32,
-    /// How far from the gap the grades on both sides are measured, cells, the best first.
-    grades: &'static [i32],
-    /// Whether the first height of a cell, which may be a false return, may forbid it.
-    heeds_single: bool,
+    /// Greatest grade across the gap, as a share of the climb.
+    climb_share: f32,
+    /// Lengths over which the grades beside the gap are measured, cells, in order of preference.
+    grade_cells: &'static [i32],
+    /// True if a height that was measured once, and may be a false return, counts against the gap.
+    trusts_single: bool,
 }
 
 impl GapLimits {
-    /// Of heights that are right: over a long way their noise tells least.
+    /// For an exact attitude: a long base has the least noise.
     const EXACT: Self = Self {
-        gentle: 1.0,
-        grades: &[8, 7, 6, 5, 4, 3],
-        heeds_single: false,
+        climb_share: 1.0,
+        grade_cells: &[8, 7, 6, 5, 4, 3],
+        trusts_single: false,
     };
-    /// Of an attitude that errs: what is far was measured in another one, and a rim casts a shadow as steep as the tilted beams.
+    /// For an attitude with errors: distant cells were measured in another attitude, and a rim
+    /// casts a shadow as steep as the tilted beams.
     const NOISY: Self = Self {
-        gentle: 0.75,
-        grades: &[3, 4, 2],
-        heeds_single: true,
+        climb_share: 0.75,
+        grade_cells: &[3, 4, 2],
+        trusts_single: true,
     };
-    /// The farthest of the latter, cells.
-    const FARTHEST: f32 = 4.0;
 }
 
-/// How much higher a cell may lie than one near it, in steps of a height.
+/// Greatest rises from a cell near by to a cell that is free, in steps of a height.
 #[derive(Clone, Copy, Debug)]
-pub struct RiseLimits {
+pub(crate) struct RiseLimits {
+    /// An edge from the next cell.
     pub(super) one: i32,
+    /// An edge from two cells away along an axis.
     pub(super) two: i32,
+    /// An edge from two cells away along both axes.
     pub(super) two_corner: i32,
-    /// Over four cells, and over half of them.
+    /// A slope over four cells.
     pub(super) four: i32,
+    /// Least rise over each half of those four cells.
     pub(super) half: i32,
-    /// From one end of a bridge to the other.
+    /// Between the ends of a bridge.
     bridge: i32,
+    /// Steepest slope, a tangent.
     climb: f32,
 }
 
 impl RiseLimits {
-    /// What a robot's limits allow.
-    #[must_use]
-    pub fn new(ground: &UnevenGround) -> Self {
+    /// The limits of a robot on uneven ground.
+    pub(crate) fn new(ground: &UnevenGround) -> Self {
         let steps = |metres: f32| i32::from(I7F9::saturating_from_num(metres).to_bits());
         let rise = |cells: f32| ground.climb * cells * CELL_M;
         let edge = ground.step_m + NOISE_M;
         Self {
-            one: steps(0.25 * rise(1.0) + edge),
-            two: steps(0.5 * rise(2.0) + edge),
-            two_corner: steps(0.5 * rise(2.83) + edge),
+            one: steps(ONE_CELL_CLIMB_SHARE * rise(1.0) + edge),
+            two: steps(TWO_CELLS_CLIMB_SHARE * rise(2.0) + edge),
+            two_corner: steps(TWO_CELLS_CLIMB_SHARE * rise(2.83) + edge),
             four: steps(rise(4.0) + NOISE_M),
-            half: steps(0.3 * rise(4.0)),
-            bridge: steps(0.7 * rise(4.0)),
+            half: steps(HALF_SHARE * rise(4.0)),
+            bridge: steps(BRIDGE_SHARE * rise(4.0)),
             climb: ground.climb,
         }
     }
 }
 
-/// The classes of a row, a bit a cell; what is in none of them stays as it is.
+/// The classes of a row, one bit a cell. A cell without a bit keeps its class in the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Classes {
+pub(crate) struct Classes {
     /// Obstacles.
-    pub obstacle: u64,
+    pub(crate) obstacle: u64,
     /// Negative obstacles.
-    pub negative: u64,
-    /// Traversable.
-    pub free: u64,
+    pub(crate) negative: u64,
+    /// Traversable cells.
+    pub(crate) free: u64,
 }
 
-/// Classify row `y` of the window, which the map holds as `known`.
-#[must_use]
-pub fn row(heights: &Heights<'_>, limits: &RiseLimits, y: i32, known: Row) -> Classes {
+/// Classifies row `y` of the window; `known` is the row in the map.
+pub(crate) fn row(heights: &Heights<'_>, limits: &RiseLimits, y: i32, known: Row) -> Classes {
     let mut classes = Classes::default();
     let origin = heights.origin();
     for k in 0..WINDOW_SIDE {
         let cell = Cell { x: origin.x + k, y };
         let bit = 1_u64 << k;
-        let bits = |dx: i32, dy: i32| at(heights, cell, dx, dy);
+        let near = |dx: i32, dy: i32| height_steps(heights, cell.offset(dx, dy));
         if heights.is_obstacle(cell) {
             classes.obstacle |= bit;
-        } else if let Some(height) = bits(0, 0) {
-            if let Some(fall) = steepness::steepness(limits, height, bits) {
-                if steepness::is_confirmed(heights, cell, fall) {
+        } else if let Some(height) = near(0, 0) {
+            if let Some(steepness) = steepness::steepness(limits, height, near) {
+                if steepness::is_confirmed(heights, cell, steepness) {
                     classes.obstacle |= bit;
                 }
-            } else if known.obstacle() & bit == 0 || is_well_measured(bits) {
+            } else if known.obstacle() & bit == 0 || is_well_measured(near) {
                 classes.free |= bit;
             }
         } else if heights.is_drop(cell) {
-            // What is but presumed to be gone is, unless ground was measured there before the window came by again.
+            // Ground in the map was measured before the window came back here.
             if !heights.is_inferred_drop(cell) || known.free() & bit == 0 {
                 classes.negative |= bit;
             }
         } else if known.unknown() & bit != 0
-            && (bridges(limits, bits) || low_confidence::is_usable(heights, limits.climb, cell))
+            && (is_bridged(heights, limits, cell)
+                || low_confidence::is_usable(heights, limits.climb, cell))
         {
             classes.free |= bit;
         }
@@ -139,69 +156,73 @@ pub fn row(heights: &Heights<'_>, limits: &RiseLimits, y: i32, known: Row) -> Cl
     classes
 }
 
+/// Returns the mean height of a cell, in steps; `None` if it was never measured.
 #[inline(always)]
-fn at(heights: &Heights<'_>, cell: Cell, dx: i32, dy: i32) -> Option<i32> {
-    let near = Cell {
-        x: cell.x + dx,
-        y: cell.y + dy,
-    };
+fn height_steps(heights: &Heights<'_>, cell: Cell) -> Option<i32> {
     heights
-        .fixed(near)
+        .fixed(cell)
         .map(|height| i32::from(height.to_bits()))
 }
 
-/// Whether most cells around are measured.
-fn is_well_measured(bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
+/// Returns true if at least [`MIN_MEASURED_AROUND`] cells around a measured cell are measured too.
+fn is_well_measured(near: impl Fn(i32, i32) -> Option<i32>) -> bool {
     let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
-    let known = around.filter(|&(dx, dy)| bits(dx, dy).is_some()).count() as u32;
+    let measured = around.filter(|&(dx, dy)| near(dx, dy).is_some()).count() as u32;
     // The cell itself is one of them.
-    known > MIN_MEASURED_AROUND
+    measured > MIN_MEASURED_AROUND
 }
 
-/// Whether the nearest measured cells on both sides of a cell that was never measured lead over it, no more steeply than may be climbed, in
-/// three of the four directions at least and in all in which there are two, and nothing between them is gone; what is but held to be gone
-/// tells nothing. Two heights may differ by `slack_m` for errors of the attitude alone.
-#[must_use]
-pub fn spans_gap(heights: &Heights<'_>, ground: &UnevenGround, cell: Cell, slack_m: f32) -> bool {
+/// Returns true if measured ground on both sides spans a cell that was never measured.
+///
+/// In each of the four directions, the nearest known cells on both sides within [`MAX_GAP_CELLS`]
+/// must be measured. A drop or an obstacle there refuses the gap, and an inferred drop tells
+/// nothing. The grade between them must not exceed the climb, and their difference must be at most
+/// a step or blend in with the grades beside the gap. At least [`MIN_DIRECTIONS`] directions must
+/// pass, and none may fail. `slack_m` is the difference of two heights that errors of the attitude
+/// alone explain, metres.
+pub(crate) fn spans_gap(
+    heights: &Heights<'_>,
+    ground: &UnevenGround,
+    cell: Cell,
+    slack_m: f32,
+) -> bool {
     let limits = if slack_m > 0.0 {
         GapLimits::NOISY
     } else {
         GapLimits::EXACT
     };
-    let lookup = |cell: Cell| {
-        heights
-            .ground(cell)
-            .filter(|ground| *ground != Ground::Uncertain)
+    let longest = limits.grade_cells.iter().copied().max().unwrap_or(1) as f32;
+    let known = |cell: Cell| {
+        let state = heights.ground_state(cell);
+        state.filter(|state| *state != GroundState::Uncertain)
     };
     let mut directions = 0;
-    for (dx, dy, cells) in [(1, 0, 1.0), (1, 1, 1.41), (0, 1, 1.0), (-1, 1, 1.41)] {
-        let on = |cells: i32| Cell {
-            x: cell.x + cells * dx,
-            y: cell.y + cells * dy,
-        };
-        let reach = |way: i32| (1..=REACH).find_map(|far| Some((far, lookup(on(way * far))?)));
-        let (Some((there, high)), Some((here, low))) = (reach(1), reach(-1)) else {
+    // Lengths of the directions in cells; 1.41 is √2.
+    for (dx, dy, length) in [(1, 0, 1.0), (1, 1, 1.41), (0, 1, 1.0), (-1, 1, 1.41)] {
+        let on = |cells: i32| cell.offset(cells * dx, cells * dy);
+        let nearest = |sign: i32| (1..=MAX_GAP_CELLS).find_map(|k| Some((k, known(on(sign * k))?)));
+        let (Some((ahead, high)), Some((behind, low))) = (nearest(1), nearest(-1)) else {
             continue;
         };
-        let (Ground::Measured(high), Ground::Measured(low)) = (high, low) else {
+        let (GroundState::Measured(high), GroundState::Measured(low)) = (high, low) else {
             return false;
         };
-        let step_m = cells * CELL_M;
-        let (rise_m, way_m) = (high - low, (there + here) as f32 * step_m);
-        let most_m = limits.gentle * ground.climb * way_m + slack_m;
-        let blend = BLEND + slack_m / (GapLimits::FARTHEST * step_m);
+        let step_m = length * CELL_M;
+        let (rise_m, gap_m) = (high - low, (ahead + behind) as f32 * step_m);
+        let max_rise_m = limits.climb_share * ground.climb * gap_m + slack_m;
+        let max_blend = MAX_BLEND + slack_m / (longest * step_m);
         let blends = || {
-            let grade = rise_m / way_m;
-            let beyond = grade_on(heights, &on, (there, 1), limits.grades, step_m);
-            let before = grade_on(heights, &on, (-here, -1), limits.grades, step_m);
-            beyond
-                .zip(before)
-                .is_some_and(|(a, b)| (a.min(b) - blend..=a.max(b) + blend).contains(&grade))
+            let grade = rise_m / gap_m;
+            let beyond = grade_beside(heights, &on, (ahead, 1), limits.grade_cells, step_m);
+            let before = grade_beside(heights, &on, (-behind, -1), limits.grade_cells, step_m);
+            beyond.zip(before).is_some_and(|(a, b)| {
+                (a.min(b) - max_blend..=a.max(b) + max_blend).contains(&grade)
+            })
         };
-        if rise_m.abs() <= most_m && (rise_m.abs() <= ground.step_m + slack_m || blends()) {
+        if rise_m.abs() <= max_rise_m && (rise_m.abs() <= ground.step_m + slack_m || blends()) {
             directions += 1;
-        } else if limits.heeds_single
-            || (heights.count(on(there)) > 1 && heights.count(on(-here)) > 1)
+        } else if limits.trusts_single
+            || (heights.count(on(ahead)) > 1 && heights.count(on(-behind)) > 1)
         {
             return false;
         }
@@ -209,35 +230,35 @@ pub fn spans_gap(heights: &Heights<'_>, ground: &UnevenGround, cell: Cell, slack
     directions >= MIN_DIRECTIONS
 }
 
-/// The grade of the ground beside a gap, from its cell at `from` outwards to the first measured one of those so many cells away; positive where
-/// it rises along the direction.
-fn grade_on(
+/// Returns the grade of the ground beside a gap, a tangent: from the cell `from` outwards over the
+/// first of `grade_cells` that ends on a measured cell. It is positive if the ground rises along
+/// the direction.
+fn grade_beside(
     heights: &Heights<'_>,
     on: &impl Fn(i32) -> Cell,
-    (from, way): (i32, i32),
-    grades: &[i32],
+    (from, sign): (i32, i32),
+    grade_cells: &[i32],
     step_m: f32,
 ) -> Option<f32> {
     let near_m = heights.height_m(on(from))?;
-    grades.iter().find_map(|&cells| {
-        let far_m = heights.height_m(on(from + way * cells))?;
-        Some((far_m - near_m) / ((way * cells) as f32 * step_m))
+    grade_cells.iter().find_map(|&cells| {
+        let far_m = heights.height_m(on(from + sign * cells))?;
+        Some((far_m - near_m) / ((sign * cells) as f32 * step_m))
     })
 }
 
-/// Whether a cell of the window is led over by measured cells on both sides, at most four apart.
-#[must_use]
-pub fn is_bridged(heights: &Heights<'_>, limits: &RiseLimits, cell: Cell) -> bool {
-    bridges(limits, |dx, dy| at(heights, cell, dx, dy))
-}
-
-/// Whether measured cells on both sides, at most four apart, lead over a cell.
-fn bridges(limits: &RiseLimits, bits: impl Fn(i32, i32) -> Option<i32>) -> bool {
-    let leads = |a: Option<i32>, b: Option<i32>| {
+/// Returns true if measured cells on both sides along an axis, at most four cells apart, bridge a
+/// cell: their heights differ by less than a climbable slope.
+pub(super) fn is_bridged(heights: &Heights<'_>, limits: &RiseLimits, cell: Cell) -> bool {
+    let near = |dx: i32, dy: i32| height_steps(heights, cell.offset(dx, dy));
+    let bridges = |a: Option<i32>, b: Option<i32>| {
         a.zip(b)
             .is_some_and(|(a, b)| (a - b).abs() <= limits.bridge)
     };
-    BRIDGES.into_iter().any(|(there, here)| {
-        leads(bits(there, 0), bits(-here, 0)) || leads(bits(0, there), bits(0, -here))
+    BRIDGES.into_iter().any(|(ahead, behind)| {
+        bridges(near(ahead, 0), near(-behind, 0)) || bridges(near(0, ahead), near(0, -behind))
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,17 +1,21 @@
-//! Rooms: what the level laser sees through a doorway [Maffei20, IV, scenario 3].
+//! Doorway view: the part of a room that the level laser sees through a doorway [Maffei20, IV,
+//! scenario 3].
 //!
 //! ```text
 //!      room             beams between the jambs J all end on something that stands
-//!   ___J     J___       |J J| at most MAX_DOORWAY_M, both near and standing
-//!        \ /            then what they cross is floor, and what they end on is wall
+//!   ___J     J___       |J J| is at most MAX_DOORWAY_M; both jambs are near and stand
+//!        \ /            then the cells that the beams cross are floor, and their ends are wall
 //!       robot
 //! ```
 //!
-//! The tilted laser measures ground where it meets it, 1.4 m ahead; the floor of a room it meets only from inside. The paper's robot does not go in,
-//! for it senses the interior from the door. So there, and nowhere else, level beams say what they say in the plane: a room's floor is taken to go
-//! on as the ground before its door does. Over open ground they pass over holes and end on slopes, so they say nothing of it; this is why the
-//! doorway must be narrow, and every beam through it must end higher over the robot's ground than `h_obs`. Whoever goes in nevertheless has
-//! the tilted laser ahead of him, and what that measures counts for more.
+//! The tilted laser meets the ground 1.4 m ahead, so it measures a room's floor only from inside.
+//! The paper's robot senses the interior from the door and does not go in. Therefore level beams
+//! count through a doorway as they do on flat ground: the room's floor continues the ground before
+//! its door.
+//!
+//! Level beams count nowhere else. In the open they pass over holes and end on slopes. So the
+//! doorway must be narrow, and every beam through it must end higher over the robot's ground than
+//! `h_obs`. If the robot drives in, the heights that the tilted laser measures replace this view.
 //!
 //! Units: metres; ranges in millimetres; beams by their number in the sweep.
 
@@ -21,45 +25,46 @@ use crate::config::UnevenGround;
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::ground::elevation::Heights;
 use crate::ground::ray::{Attitude, Mount, Ray};
+use crate::input::INVALID_MM;
 use crate::math;
 use crate::robot::LaserMount;
 
-/// Widest doorway, metres.
+/// Greatest width of a doorway, metres.
 const MAX_DOORWAY_M: f32 = 2.0;
-/// Narrowest one, metres: through a gap there is too little to be seen.
+/// Least width of a doorway, metres: a narrower gap shows too little.
 const MIN_DOORWAY_M: f32 = 0.6;
-/// A jamb ends a beam nearer than the beam beside it, by this, millimetres.
+/// Difference of range between a jamb and the next beam, millimetres; the jamb is nearer.
 const JAMB_STEP_MM: u16 = 100;
-/// Everything through the doorway ends behind its threshold by this, metres.
+/// Least depth behind the threshold of every beam's end, metres.
 const RECESS_M: f32 = 0.08;
-/// And something by this: less is a niche.
+/// Least depth behind the threshold of the deepest end, metres: a shallower space is a niche.
 const MIN_DEPTH_M: f32 = 1.0;
-/// Jambs are nearer than this, millimetres: in the window of heights.
+/// Range below which a beam's end can be a jamb, millimetres: inside the elevation window.
 const MAX_JAMB_MM: u16 = 3_000;
-/// The robot is_tilted less than this, a tangent.
+/// Greatest slope of the robot along x and y, a tangent: 2.9°.
 const MAX_TILT: f32 = 0.05;
-/// What stands begins at a beam's end and is marked so much behind, metres.
-const BEHIND_M: f32 = 0.03;
-/// Ends of beams side by side belong to one wall if they are nearer to each other than this, metres.
-const ONE_WALL_M: f32 = 0.7;
-/// From one beam between them to the next, at their ends, metres.
+/// Distance between the ends of neighbouring beams on one wall, metres.
+const MAX_WALL_GAP_M: f32 = 0.7;
+/// Distance between interpolated beams at their ends, metres: they miss no cell.
 const STRIDE_M: f32 = 0.5 * CELL_M;
+/// Least sine of the angle between two beams: a smaller one counts as this.
+const MIN_SINE: f32 = 1e-3;
 
-/// What a room's cell is.
+/// The part of a room that a cell belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// A beam crossed it.
+pub(crate) enum Part {
+    /// A beam crossed the cell.
     Floor,
-    /// A beam ended in it.
+    /// A beam ended in the cell.
     Wall,
 }
 
-/// A view with the level laser.
+/// The view of the level laser from one pose.
 #[derive(Debug)]
-pub struct DoorwayView<'a> {
+pub(crate) struct DoorwayView<'a> {
     attitude: Attitude,
     mount: Mount<'a>,
-    /// Height of the ground that the robot stands on, metres.
+    /// Height of the ground under the robot, metres.
     ground_m: f32,
     ground: &'a UnevenGround,
     laser: &'a LaserMount,
@@ -67,9 +72,8 @@ pub struct DoorwayView<'a> {
 }
 
 impl<'a> DoorwayView<'a> {
-    /// A view from a pose; `None` if the robot is_tilted.
-    #[must_use]
-    pub fn new(
+    /// Creates the view from a pose; `None` if the robot is tilted more than [`MAX_TILT`].
+    pub(crate) fn new(
         pose: &Pose,
         ground: &'a UnevenGround,
         laser: &'a LaserMount,
@@ -89,33 +93,34 @@ impl<'a> DoorwayView<'a> {
         })
     }
 
+    /// Returns the range of a beam that hit something.
     fn range(&self, number: usize) -> Option<u16> {
         let range = *self.ranges_mm.get(number)?;
-        (range != 0 && range < self.laser.range_limit_mm).then_some(range)
+        (range != INVALID_MM && range < self.laser.range_limit_mm).then_some(range)
     }
 
+    /// Returns a beam that hit something.
     fn ray(&self, number: usize) -> Option<Ray> {
         let range_m = f32::from(self.range(number)?) * 1e-3;
         self.attitude.ray(&self.mount, number, range_m)
     }
 
-    /// The beams through the first doorway whose one jamb is a beam or one behind it.
-    #[must_use]
-    pub fn next_doorway(&self, heights: &Heights<'_>, from: usize) -> Option<Range<usize>> {
-        let last = self.ranges_mm.len();
-        (from..last)
-            .filter(|&left| self.is_jamb(left, left + 1))
-            .find_map(|left| {
-                // Beyond a beam that met nothing there is no room.
-                let mut beyond = (left + 1..last).take_while(|&k| self.range(k).is_some());
-                let right = beyond.find(|&right| {
-                    self.is_jamb(right, right - 1) && self.is_doorway(heights, left, right)
+    /// Returns the beams through the first doorway whose first jamb is beam `from` or a later one.
+    pub(crate) fn next_doorway(&self, heights: &Heights<'_>, from: usize) -> Option<Range<usize>> {
+        let beams = self.ranges_mm.len();
+        (from..beams)
+            .filter(|&first| self.is_jamb(first, first + 1))
+            .find_map(|first| {
+                // A beam that hit nothing ends the search: it shows no room.
+                let mut beyond = (first + 1..beams).take_while(|&k| self.range(k).is_some());
+                let second = beyond.find(|&second| {
+                    self.is_jamb(second, second - 1) && self.is_doorway(heights, first, second)
                 })?;
-                Some(left + 1..right)
+                Some(first + 1..second)
             })
     }
 
-    /// Whether a beam ends near, and nearer than the one beside it.
+    /// Returns true if a beam ends near the robot, and nearer than the beam beside it.
     fn is_jamb(&self, jamb: usize, beside: usize) -> bool {
         match (self.range(jamb), self.range(beside)) {
             (Some(jamb), Some(beside)) => jamb < MAX_JAMB_MM && beside > jamb + JAMB_STEP_MM,
@@ -123,25 +128,27 @@ impl<'a> DoorwayView<'a> {
         }
     }
 
-    /// Whether two ends are the jambs of a doorway, and everything seen through it stands.
-    fn is_doorway(&self, heights: &Heights<'_>, left: usize, right: usize) -> bool {
-        let (Some(a), Some(b)) = (self.ray(left), self.ray(right)) else {
+    /// Returns true if two beams end on the jambs of a doorway, and all beams between them end on
+    /// something that stands behind it.
+    fn is_doorway(&self, heights: &Heights<'_>, first: usize, second: usize) -> bool {
+        let (Some(a), Some(b)) = (self.ray(first), self.ray(second)) else {
             return false;
         };
-        let [from, to] = [&a, &b].map(|ray| ray.at(ray.length_m));
-        let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
-        let width_m = math::sqrt(dx * dx + dy * dy);
-        let stands = |ray: &Ray| heights.is_obstacle(wall(ray));
+        let (from, to) = (a.end(), b.end());
+        let width_m = from.distance_m(to);
+        let stands = |ray: &Ray| heights.is_obstacle(ray.hit_cell());
         if !(MIN_DOORWAY_M..=MAX_DOORWAY_M).contains(&width_m) || !stands(&a) || !stands(&b) {
             return false;
         }
-        // How far behind the threshold a point lies. Bearings grow counter-clockwise, so the second jamb is the left one.
-        let behind_m =
+        let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
+        // Depth behind the threshold. Bearings grow counter-clockwise, so the second jamb is on the
+        // left and a positive depth is beyond the threshold.
+        let depth_m =
             |point: Point| (dy * (point.x_m - from.x_m) - dx * (point.y_m - from.y_m)) / width_m;
         let mut deepest_m = 0.0_f32;
-        let all = (left + 1..right).all(|k| {
+        let all = (first + 1..second).all(|k| {
             self.ray(k).is_some_and(|ray| {
-                let depth_m = behind_m(ray.at(ray.length_m));
+                let depth_m = depth_m(ray.end());
                 deepest_m = deepest_m.max(depth_m);
                 let over_m = ray.height_m(ray.length_m) - self.ground_m;
                 depth_m > RECESS_M && over_m > self.ground.obstacle_m
@@ -150,15 +157,15 @@ impl<'a> DoorwayView<'a> {
         all && deepest_m > MIN_DEPTH_M
     }
 
-    /// The cell that a beam ends in.
-    #[must_use]
-    pub fn end_cell(&self, number: usize) -> Option<Cell> {
-        self.ray(number).map(|ray| wall(&ray))
+    /// Returns the cell of what a beam hit.
+    pub(crate) fn end_cell(&self, number: usize) -> Option<Cell> {
+        self.ray(number).map(|ray| ray.hit_cell())
     }
 
-    /// Tell of what a beam sees, and of the space between it and the one before: they are farther apart than cells are wide, most of all
-    /// where a wall runs along them. A cell may be told of more than once, and as both.
-    pub fn for_each_cell(&self, number: usize, mut found: impl FnMut(Cell, Part)) {
+    /// Calls `found` for the cells that a beam sees, and for those between it and the beam before:
+    /// their ends are farther apart than a cell is wide. A cell may come more than once, also as
+    /// both parts.
+    pub(crate) fn for_each_cell(&self, number: usize, mut found: impl FnMut(Cell, Part)) {
         let Some(ray) = self.ray(number) else {
             return;
         };
@@ -169,27 +176,24 @@ impl<'a> DoorwayView<'a> {
     }
 }
 
-fn wall(ray: &Ray) -> Cell {
-    ray.at(ray.length_m + BEHIND_M).cell()
-}
-
-/// Beams between two side by side, if these end on one wall: to points on the line between their ends.
+/// Calls `found` for the cells between two neighbouring beams that end on one wall. Interpolated
+/// beams run to points on the line between the two ends.
 fn cells_between(one: &Ray, other: &Ray, found: &mut impl FnMut(Cell, Part)) {
-    let [from, to] = [one, other].map(|ray| ray.at(ray.length_m));
-    let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
-    let apart_m = math::sqrt(dx * dx + dy * dy);
-    if apart_m > ONE_WALL_M {
+    let (from, to) = (one.end(), other.end());
+    let gap_m = from.distance_m(to);
+    if gap_m > MAX_WALL_GAP_M {
         return;
     }
-    let count = math::floor(apart_m / STRIDE_M);
-    // So far the two themselves cross all there is between them.
+    let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
+    let count = math::floor(gap_m / STRIDE_M);
+    // Up to here the two beams themselves cross all cells between them.
     let (ux, uy) = one.along;
     let (vx, vy) = other.along;
-    let parting = (ux * vy - uy * vx).abs();
+    let sine = (ux * vy - uy * vx).abs();
     let from_m = one
         .length_m
         .min(other.length_m)
-        .min(STRIDE_M / parting.max(1e-3));
+        .min(STRIDE_M / sine.max(MIN_SINE));
     for k in 1..=count {
         let part = k as f32 / (count + 1) as f32;
         let (x, y) = (
@@ -209,9 +213,9 @@ fn cells_between(one: &Ray, other: &Ray, found: &mut impl FnMut(Cell, Part)) {
     }
 }
 
-/// A beam from a length on.
+/// Calls `found` for the cells of a beam from length `from_m` on.
 fn cells_of_ray(ray: &Ray, from_m: f32, found: &mut impl FnMut(Cell, Part)) {
-    let wall = wall(ray);
+    let wall = ray.hit_cell();
     let mut s_m = from_m;
     while s_m < ray.length_m {
         let cell = ray.at(s_m).cell();
@@ -225,19 +229,18 @@ fn cells_of_ray(ray: &Ray, from_m: f32, found: &mut impl FnMut(Cell, Part)) {
 
 #[cfg(test)]
 mod tests {
-    use std::boxed::Box;
     use std::collections::BTreeMap;
     use std::vec::Vec;
 
     use super::{DoorwayView, Part};
     use crate::config::UnevenGround;
     use crate::geometry::{Cell, Point, Pose};
-    use crate::ground::elevation::{Elevation, WINDOW_CELLS};
+    use crate::ground::elevation::tests::OwnedWindow;
     use crate::input::NO_RETURN_MM;
-    use crate::robot::LaserMount;
-    use crate::robot::is_level;
+    use crate::robot::{LaserMount, is_level};
 
-    /// A metre is two characters across and one line up; `#` stands. The robot is at (4, 1.5), in the middle, and looks north.
+    /// A plan of a room: a metre is two characters across and one line up, `#` stands. The robot is
+    /// at (3.5, 1.0), in the middle, and looks north.
     const ROOM: [&str; 7] = [
         "################",
         "##............##",
@@ -248,6 +251,7 @@ mod tests {
         "................",
     ];
 
+    /// Returns true if something stands at a point of the plan.
     fn stands(plan: &[&str; 7], x_m: f32, y_m: f32) -> bool {
         let line = plan.iter().rev().nth(y_m as usize);
         line.and_then(|line| line.as_bytes().get((2.0 * x_m) as usize)) == Some(&b'#')
@@ -262,19 +266,10 @@ mod tests {
         yaw_rad: core::f32::consts::FRAC_PI_2,
     };
 
-    fn laser() -> LaserMount {
-        LaserMount {
-            x_m: 0.0,
-            y_m: 0.0,
-            z_m: 0.45,
-            pitch_rad: 0.0,
-            first_bearing_rad: -core::f32::consts::FRAC_PI_2,
-            bearing_step_rad: core::f32::consts::PI / 180.0,
-            beams: 181,
-            range_limit_mm: 12_000,
-        }
-    }
+    /// The level laser of these tests.
+    const LASER: LaserMount = LaserMount::level(0.0, 0.45);
 
+    /// Returns the ranges of a scan at [`POSE`].
     fn scan(plan: &[&str; 7]) -> Vec<u16> {
         let beam = |number: usize| {
             let angle = (number as f32).to_radians();
@@ -291,22 +286,19 @@ mod tests {
         (0..181).map(beam).collect()
     }
 
-    /// What is told of the cells, with walls before floor.
+    /// Returns the parts of the cells that the view finds; a wall replaces floor.
     fn seen(plan: &[&str; 7], pose: Pose, ranges_mm: &[u16]) -> BTreeMap<(i32, i32), Part> {
-        let (mut heights, mut marks) = (std::vec![0; 2 * WINDOW_CELLS], std::vec![0; WINDOW_CELLS]);
-        let mut origin = Cell::default();
-        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
-        window.follow(pose.point().cell());
+        let mut owned = OwnedWindow::new(pose.point().cell());
+        let mut window = owned.write();
         for cell in (0..70).flat_map(|y| (0..80).map(move |x| Cell { x, y })) {
             let Point { x_m, y_m } = cell.centre();
             if stands(plan, x_m, y_m) {
                 (0..2).for_each(|_| window.mark_obstacle(cell));
             }
         }
-        let (ground, laser) = (UnevenGround::TABLE_I, Box::new(laser()));
-        assert!(is_level(&laser));
+        assert!(is_level(&LASER));
         let mut cells = BTreeMap::new();
-        if let Some(view) = DoorwayView::new(&pose, &ground, &laser, ranges_mm) {
+        if let Some(view) = DoorwayView::new(&pose, &UnevenGround::TABLE_I, &LASER, ranges_mm) {
             let mut from = 0;
             while let Some(beams) = view.next_doorway(&window.read(), from) {
                 from = beams.end;
@@ -324,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_room_is_known_from_before_its_door() {
+    fn the_robot_sees_a_room_from_before_its_door() {
         let cells = seen(&ROOM, POSE, &scan(&ROOM));
         let (mut floor, mut wall) = (0, 0);
         for (&(x, y), part) in &cells {
@@ -344,10 +336,11 @@ mod tests {
                 }
             }
         }
-        // The wedge through a door of 1 m, 2 m before the robot, up to 5 m: (1.5 + 2.5) / 2 × 3 m², and the wall at its end.
+        // The wedge through a door of 1 m, 2 m before the robot, up to 5 m: (1.5 + 2.5) / 2 × 3 m²,
+        // and the wall at its end.
         assert!(floor > 480, "{floor}");
         assert!(wall >= 24, "{wall}");
-        // Without gaps: every floor cell's neighbour in the wedge is told of as well.
+        // The wedge has no gaps.
         for y in 31..59 {
             let row: Vec<i32> = cells
                 .keys()
@@ -360,11 +353,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_room_says_nothing() {
+    fn no_view_without_a_doorway_and_a_room() {
         let silent = |plan: &[&str; 7], pose: Pose, ranges_mm: &[u16]| {
             assert!(seen(plan, pose, ranges_mm).is_empty());
         };
-        // Nothing behind the gap.
+        // Nothing stands behind the gap.
         let mut open = ROOM;
         open[0] = "######....######";
         silent(&open, POSE, &scan(&open));
@@ -377,17 +370,17 @@ mod tests {
         let mut shut = ROOM;
         shut[4] = "################";
         silent(&shut, POSE, &scan(&shut));
-        // A robot that is_tilted: its level beams end on the ground, or over the walls.
-        let is_tilted = Pose {
+        // A tilted robot: its level beams end on the ground, or pass over the walls.
+        let tilted = Pose {
             pitch_rad: 0.06,
             ..POSE
         };
-        silent(&ROOM, is_tilted, &scan(&ROOM));
-        // One that is_tilted less, whose beams come down so far that they may end on the floor.
-        let stoops = Pose {
+        silent(&ROOM, tilted, &scan(&ROOM));
+        // A robot tilted less: its beams come down so far that they may end on the floor.
+        let leaning = Pose {
             pitch_rad: 0.045,
             ..POSE
         };
-        silent(&ROOM, stoops, &scan(&ROOM));
+        silent(&ROOM, leaning, &scan(&ROOM));
     }
 }

@@ -1,21 +1,29 @@
-//! Suspicions: ground that is held to be gone because the robot came near without measuring it.
+//! Drop inference: marks drops near the robot that no beam saw.
 //!
 //! ```text
-//! held to be gone:  suspected, or on a rim;  within NEAR_M of the robot;  nothing leads over it
-//! on a rim:         nothing was ever met in it, and of the eight cells around one is gone and one is measured
+//! inferred:  a possible drop, or a cell on a rim; within NEAR_M of the robot; no ground spans it
+//! on a rim:  no beam ever met it, and of the eight cells around one is a drop and one is measured
 //! ```
 //!
-//! Beams that come down too gently to tell a rim from a slope, and those that meet what may be the slope behind a brow, leave a suspicion
-//! ([`super::survey`]). And at the corner of a hole beams pass
-//! over what is gone and meet the other side's face just below the ground, as they would in a dip: no beam says anything of the last
-//! cells before the corner, and the robot that drives along one side turns there beside ground that it never saw. A rim does not end in the
-//! open, so there what goes on along measured ground is taken for gone as well.
+//! A possible drop comes from a beam that is too gentle to tell a rim from a slope, or that meets
+//! what may be the slope behind a brow ([`super::survey`]). A rim needs no beam: at the corner of a
+//! hole the beams pass over the drop and meet the face of the other side just below the ground, as
+//! in a dip, so no beam shows the last cells before the corner. A robot that drives along one side
+//! would turn there beside ground that it never saw. A rim does not end in the open, so the drop
+//! continues along measured ground.
 //!
-//! What is but held to be gone is no evidence against the ground beside it and gives way to the first height that is measured. What lies on
-//! a rim, and no beam said anything of, is not gone in the map where ground was measured before: a robot that comes again, or backs, has in
-//! the window but the strip that it stood on. What a beam told is: a hole's far wall and the foot of a kerb are measured as ground from the
-//! other side. Of an attitude that errs a suspicion is worth no more than a rim. Not in [Maffei20], whose ray back to the robot marks
-//! whatever was not detected. Units: metres, map cells.
+//! Inferred drops are weaker than drops that a beam saw:
+//!
+//! - They do not count against the ground beside them, and the first measured height removes them.
+//! - A drop on a rim does not override free ground in the map. When the robot comes back or
+//!   reverses, the window holds only the strip that it stood on. A confirmed possible drop does
+//!   override it: a hole's far wall and the foot of a kerb are measured as ground from the other
+//!   side.
+//! - If the attitude is noisy, a possible drop is worth no more than a rim.
+//!
+//! Departs from [Maffei20, III-B]: the paper marks all undetected ground on the ray to the robot.
+//!
+//! Units: metres, map cells.
 
 use crate::config::UnevenGround;
 use crate::geometry::{CELL_M, Cell};
@@ -23,28 +31,26 @@ use crate::ground::classify::{RiseLimits, is_bridged, spans_gap};
 use crate::ground::elevation::Elevation;
 use crate::math;
 
-/// Ground nearer to the robot than this that was never measured will not be, metres: the steep beams met level ground farther off, and would
-/// have met a slope.
+/// Distance from the robot within which unmeasured ground stays unmeasured, metres. The steep beams
+/// meet level ground farther off (1.39 m), and would have met a slope.
 const NEAR_M: f32 = 0.9;
 
-/// Settle what is suspected around the robot at `middle`. Two heights may differ by `slack_m` for errors of the attitude alone.
-pub fn infer_drops(
+/// Infers drops around the robot's cell. `slack_m` is the difference of two heights that errors of
+/// the attitude alone explain, metres.
+pub(super) fn infer_drops(
     elevation: &mut Elevation<'_>,
     ground: &UnevenGround,
-    middle: Cell,
+    robot: Cell,
     slack_m: f32,
 ) {
     let reach = math::floor(NEAR_M / CELL_M);
     let side = 2 * reach + 1;
-    let near = |k: i32| Cell {
-        x: middle.x - reach + k % side,
-        y: middle.y - reach + k / side,
-    };
+    let near = |k: i32| robot.offset(k % side - reach, k / side - reach);
     let all = 0..side * side;
     for cell in all.clone().map(near) {
         let heights = elevation.read();
         if heights.is_possible_drop(cell) && !spans_gap(&heights, ground, cell, slack_m) {
-            // Errors of the attitude raise suspicions on ground that was measured well before.
+            // Errors of the attitude make possible drops of ground that was measured well before.
             if slack_m > 0.0 {
                 elevation.infer_drop(cell);
             } else {
@@ -53,7 +59,7 @@ pub fn infer_drops(
         }
     }
     let limits = RiseLimits::new(ground);
-    // There and back, so that it goes on along a rim both ways.
+    // Forwards and backwards, so that a rim continues in both directions.
     for cell in all.clone().chain(all.rev()).map(near) {
         let heights = elevation.read();
         if heights.is_on_rim(cell)
@@ -68,24 +74,20 @@ pub fn infer_drops(
 #[cfg(test)]
 mod tests {
     use std::string::String;
-    use std::vec;
 
     use super::infer_drops;
     use crate::config::UnevenGround;
     use crate::geometry::Cell;
-    use crate::grid::Row;
+    use crate::grid::{Class, Row};
     use crate::ground::classify::{self, RiseLimits};
-    use crate::ground::elevation::{Elevation, Heights, WINDOW_CELLS};
-    use crate::map::{Class, Tiles};
+    use crate::ground::elevation::Heights;
+    use crate::ground::elevation::tests::OwnedWindow;
 
-    /// What two steps make of rows from the north, the robot in the middle of them: `.` measured at 0, `v` seen to be gone, `s` suspected,
-    /// anything else never met.
+    /// Returns the rows after two steps of inference, from the north, with the robot in the middle:
+    /// `.` measured at 0, `v` a drop, `s` a possible drop, a space never met.
     fn after_inference(rows: &[&str]) -> String {
-        let mut heights = vec![0; 2 * WINDOW_CELLS];
-        let mut marks = vec![0; WINDOW_CELLS];
-        let mut origin = Cell::default();
-        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
-        window.follow(Cell::default());
+        let mut owned = OwnedWindow::new(Cell::default());
+        let mut window = owned.write();
         let (width, height) = (rows[0].len() as i32, rows.len() as i32);
         let cells = || (0..height).flat_map(|r| (0..width).map(move |k| (r, k)));
         let place = |(r, k): (i32, i32)| Cell {
@@ -119,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rim_goes_on_around_the_corner_along_measured_ground() {
+    fn a_rim_continues_around_the_corner_along_measured_ground() {
         let seen = after_inference(&[
             "........       ",
             "........       ",
@@ -149,9 +151,10 @@ mod tests {
         assert_eq!(seen, expected.map(|row| std::format!("{row}\n")).concat());
     }
 
-    /// Beams beside the robot leave stripes; what lies between two of them is measured on both sides, and what lies beside them is not.
+    /// Beams beside the robot leave stripes of measured ground. Ground on both sides spans the
+    /// cells between two stripes.
     #[test]
-    fn between_stripes_no_rim_goes_on() {
+    fn no_rim_continues_between_stripes() {
         let rows = [
             "..............v",
             "               ",
@@ -171,9 +174,9 @@ mod tests {
         );
     }
 
-    /// A suspicion that is settled says nothing of the next one, which ground on all sides leads over.
+    /// A possible drop beside another does not keep the ground around both from spanning them.
     #[test]
-    fn one_suspicion_does_not_settle_another() {
+    fn one_possible_drop_does_not_confirm_another() {
         let seen = after_inference(&[
             "...............",
             "...............",
@@ -189,54 +192,41 @@ mod tests {
         assert_eq!(seen.matches('s').count(), 2, "{seen}");
     }
 
-    /// The bits of a row of the window with one cell presumed to be gone, one believed and one seen to be, where the map has this.
+    /// Returns the negative obstacles of a row of the window with one inferred drop (bit 3), one
+    /// seen drop (bit 5) and one confirmed drop (bit 7). `known` is the row in the map.
     fn negative(known: Row) -> u64 {
-        let mut heights = vec![0; 2 * WINDOW_CELLS];
-        let mut marks = vec![0; WINDOW_CELLS];
-        let mut origin = Cell::default();
-        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
-        window.follow(Cell { x: 32, y: 32 });
+        let mut owned = OwnedWindow::new(Cell { x: 32, y: 32 });
+        let mut window = owned.write();
         window.infer_drop(Cell { x: 3, y: 9 });
         window.mark_drop(Cell { x: 5, y: 9 });
         window.mark_possible_drop(Cell { x: 7, y: 9 });
         window.confirm_drop(Cell { x: 7, y: 9 });
-        classify::row(
-            &window.read(),
-            &RiseLimits::new(&UnevenGround::TABLE_I),
-            9,
-            known,
-        )
-        .negative
+        let limits = RiseLimits::new(&UnevenGround::TABLE_I);
+        classify::row(&window.read(), &limits, 9, known).negative
     }
 
-    /// A robot that comes again, or backs, has nothing in the window but the strip that it stands on; but what was free from the other side, a
-    /// hole's wall or the foot of a kerb, is gone from this one.
+    /// The window of a robot that comes back or reverses holds only the strip that it stands on.
+    /// But ground that is free from one side, a hole's far wall or a kerb's foot, is a drop from
+    /// the other.
     #[test]
-    fn what_is_inferred_drop_to_be_gone_is_not_where_ground_was_measured_before_and_what_a_beam_told_is()
-     {
-        let (presumed, told) = (1 << 3, 1 << 5 | 1 << 7);
-        for (class, expected) in [
-            (Class::Unknown, presumed | told),
-            (Class::Negative, presumed | told),
-            (Class::Free, told),
+    fn free_ground_in_the_map_overrides_only_an_inferred_drop() {
+        let (inferred, seen) = (1 << 3, 1 << 5 | 1 << 7);
+        for (class, low, high, expected) in [
+            (Class::Unknown, 0, 0, inferred | seen),
+            (Class::Negative, u64::MAX, u64::MAX, inferred | seen),
+            (Class::Free, u64::MAX, 0, seen),
         ] {
-            let mut tiles = Tiles::<4, 16>::new();
-            tiles.reset(4, 4);
-            for x in 0..64 {
-                tiles.set(Cell { x, y: 9 }, class).expect("room");
-            }
-            assert_eq!(negative(tiles.row(0, 9)), expected, "{class:?}");
+            let visited = 0;
+            let known = negative(Row { low, high, visited });
+            assert_eq!(known, expected, "{class:?}");
         }
     }
 
-    /// What is suspected behind level ground in the middle, after the robot came near with this much error of the attitude: whether it is held
-    /// to be gone, and whether for being on a rim alone.
-    fn held(slack_m: f32) -> (bool, bool) {
-        let mut heights = vec![0; 2 * WINDOW_CELLS];
-        let mut marks = vec![0; WINDOW_CELLS];
-        let mut origin = Cell::default();
-        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
-        window.follow(Cell::default());
+    /// Returns if a possible drop behind level ground becomes a drop, and if that is only inferred,
+    /// for this slack of the attitude.
+    fn inferred_behind(slack_m: f32) -> (bool, bool) {
+        let mut owned = OwnedWindow::new(Cell::default());
+        let mut window = owned.write();
         for (x, y) in (-8..=0).flat_map(|x| (-8..=8).map(move |y| (x, y))) {
             window.measure(Cell { x, y }, 0.0);
         }
@@ -253,8 +243,8 @@ mod tests {
     }
 
     #[test]
-    fn a_suspicion_of_an_attitude_that_errs_is_worth_no_more_than_a_rim() {
-        assert_eq!(held(0.0), (true, false));
-        assert_eq!(held(0.05), (true, true));
+    fn a_possible_drop_of_a_noisy_attitude_is_only_inferred() {
+        assert_eq!(inferred_behind(0.0), (true, false));
+        assert_eq!(inferred_behind(0.05), (true, true));
     }
 }

@@ -1,34 +1,42 @@
-//! The elevation window: 64 × 64 cells around the robot, each with the running mean of the heights measured in it.
+//! The elevation window: 64 × 64 cells around the robot, each with the running mean of the heights
+//! measured in it [Maffei20, III-B].
 //!
 //! ```text
-//! h ← h + (z − h) / n,    n = min(measurements so far, MAX_COUNT)          [Maffei20, III-B]
+//! h ← h + (z − h) / n,    n = min(measurements so far, MAX_COUNT)
 //! ```
 //!
-//! A height is an [`I7F9`]: ±64 m around the start in steps of 2 mm. Beside it lies a byte of marks: how often the cell was
-//! measured, how sure it is that something stands in it, and whether the ground seems to be gone. Of a cell never measured the height says
-//! whether that is suspected. Ground met from too far off to be measured is glimpsed: it has a height of its own kind, counted and marked at
-//! once, which denies that the ground is gone and gives way to the first that is measured.
+//! A height is an [`I7F9`]: ±64 m around the start in steps of 2 mm. Beside it lies a mark of one
+//! byte: the count of measurements, the count of hits of something that stands, and a bit for a
+//! drop. While a cell is not measured, its stored height says how sure the drop is.
 //!
-//! The window owns no memory. A session on flat ground has no use for it, and one on uneven ground none for the counts of
-//! [`crate::map::Evidence`], so the heights lie in the latter's 8 KB and the marks in the last tiles of the map's pool.
+//! Ground met from too far off to be measured has a height of *low confidence*: a mean of its own
+//! kind. It denies a drop, and the first measured height replaces it.
 //!
-//! Invariant: a slot belongs to exactly one cell of the window (cell mod 64), and strips that enter are cleared.
+//! The window owns no memory. A session on uneven ground does not use the map's hit counts, and a
+//! session on flat ground has no elevation window, so both share one memory. The map lends it.
+//!
+//! Invariant: a slot of the memory belongs to exactly one cell of the window (both coordinates
+//! modulo 64), and a cell that enters the window is cleared.
+//!
 //! Units: map cells, metres above the start.
 
 use fixed::types::I7F9;
 
 use crate::geometry::Cell;
+pub(super) use crate::ground::heights::GroundState;
 use crate::ground::heights::{
     COUNT, DROP, INFERRED_DROP, POSSIBLE_DROP, SCORE, SCORE_STEP, Window, is_low_confidence, slot,
 };
-pub use crate::ground::heights::{Ground, Heights, WINDOW_CELLS, WINDOW_SIDE, metres};
+pub use crate::ground::heights::{Heights, WINDOW_CELLS, WINDOW_SIDE};
 
-/// Measurements that a mean remembers.
+/// Measurements that a mean remembers. Range: 1 to 15, as many as [`COUNT`] holds.
 const MAX_COUNT: u8 = 15;
-/// What is farther off a mean, in steps of a height, may be false: 0.15 m.
+/// A height farther than this from the mean may be a false return: 0.15 m, in steps of a height.
 const OUTLIER_STEPS: i32 = I7F9::lit("0.15").to_bits() as i32;
+/// What a hit of something that stands adds to the score. A measurement of ground takes one away.
+const HIT_STEPS: u8 = 2 * SCORE_STEP;
 
-/// The window.
+/// The elevation window, for writing.
 #[derive(Debug)]
 pub struct Elevation<'a> {
     heights: &'a mut [[u8; 2]],
@@ -37,7 +45,8 @@ pub struct Elevation<'a> {
 }
 
 impl<'a> Elevation<'a> {
-    /// The window over memory for [`WINDOW_CELLS`] cells, all zeros at first.
+    /// Creates the window over memory for [`WINDOW_CELLS`] cells: two bytes of height and one mark
+    /// each, all zeros at first. `origin` is the window's least cell.
     #[must_use]
     pub fn new(heights: &'a mut [u8], marks: &'a mut [u8], origin: &'a mut Cell) -> Self {
         let (heights, _) = heights.as_chunks_mut();
@@ -48,7 +57,7 @@ impl<'a> Elevation<'a> {
         }
     }
 
-    /// The window, for reading.
+    /// Returns the window for reading.
     #[inline(always)]
     #[must_use]
     pub fn read(&self) -> Heights<'_> {
@@ -59,7 +68,7 @@ impl<'a> Elevation<'a> {
         }
     }
 
-    /// Keep the window around `centre`; nothing is known of cells that enter.
+    /// Moves the window so that `centre` is in its middle, and clears the cells that enter.
     pub fn follow(&mut self, centre: Cell) {
         let from = core::mem::replace(self.origin, Window::origin(centre));
         let Some([columns, rows]) = Window::entering(from, *self.origin) else {
@@ -80,25 +89,30 @@ impl<'a> Elevation<'a> {
         self.marks.get_mut(slot(*self.origin, cell)?)
     }
 
+    /// Returns the mark and the stored height of a cell of the window.
+    fn stored_mut(&mut self, cell: Cell) -> Option<(&mut u8, &mut [u8; 2])> {
+        let slot = slot(*self.origin, cell)?;
+        self.marks.get_mut(slot).zip(self.heights.get_mut(slot))
+    }
+
     fn clear(&mut self, cell: Cell) {
-        let Some(slot) = slot(*self.origin, cell) else {
-            return;
-        };
-        if let (Some(mark), Some(stored)) = (self.marks.get_mut(slot), self.heights.get_mut(slot)) {
+        if let Some((mark, stored)) = self.stored_mut(cell) {
             (*mark, *stored) = (0, [0; 2]);
         }
     }
 
-    /// Ground was measured in a cell: into its mean. What is far off the mean is left out, for it may be a false return; but then the mean
-    /// counts for less, until it gives way, and where there was but one before, the lower one stays. Then the ground is not gone, and what stands there stands less surely. Outside the
-    /// window nothing happens.
+    /// Adds a measured height to a cell's mean, metres; ignores cells outside the window.
+    ///
+    /// The cell is then no drop, and one hit of its obstacle score is taken back. A height more
+    /// than 0.15 m off the mean may be a false return: the mean stays and its count falls, until
+    /// the mean gives way. Of two first heights that differ so much, the lower one stays.
     pub fn measure(&mut self, cell: Cell, height_m: f32) {
         self.discard_low_confidence(cell);
         self.average(cell, height_m);
     }
 
-    /// Ground was met in a cell from too far off to measure it: into the mean of such, if it was never measured.
-    pub fn measure_low_confidence(&mut self, cell: Cell, height_m: f32) {
+    /// Adds a height of low confidence to the mean of a cell that was never measured, metres.
+    pub(super) fn measure_low_confidence(&mut self, cell: Cell, height_m: f32) {
         if self.read().count(cell) > 0 {
             return;
         }
@@ -108,7 +122,6 @@ impl<'a> Elevation<'a> {
         }
     }
 
-    /// What was but glimpsed gives way.
     fn discard_low_confidence(&mut self, cell: Cell) {
         if let Some(mark) = self.mark_mut(cell)
             && is_low_confidence(*mark)
@@ -117,13 +130,8 @@ impl<'a> Elevation<'a> {
         }
     }
 
-    /// A height into the mean of a cell.
     fn average(&mut self, cell: Cell, height_m: f32) {
-        let Some(slot) = slot(*self.origin, cell) else {
-            return;
-        };
-        let (Some(mark), Some(stored)) = (self.marks.get_mut(slot), self.heights.get_mut(slot))
-        else {
+        let Some((mark, stored)) = self.stored_mut(cell) else {
             return;
         };
         let count = (*mark & COUNT).saturating_add(1).min(MAX_COUNT);
@@ -142,61 +150,60 @@ impl<'a> Elevation<'a> {
             }
             return;
         }
-        // Rounded to nearest, so that a mean does not creep downwards.
+        // Rounded to nearest, so that the mean has no bias downwards.
         let mean = mean + (2 * off + n).div_euclid(2 * n);
         *stored = I7F9::from_bits(mean as i16).to_le_bytes();
-        let standing = (*mark & SCORE).saturating_sub(SCORE_STEP) & SCORE;
-        *mark = standing | count;
+        let score = (*mark & SCORE).saturating_sub(SCORE_STEP) & SCORE;
+        *mark = score | count;
     }
 
-    /// Something was met that stands in a cell.
-    pub fn mark_obstacle(&mut self, cell: Cell) {
+    /// Marks a hit of something that stands in a cell. The second hit makes it an obstacle.
+    pub(super) fn mark_obstacle(&mut self, cell: Cell) {
         self.discard_low_confidence(cell);
         if let Some(mark) = self.mark_mut(cell) {
-            let standing = (*mark & SCORE).saturating_add(2 * SCORE_STEP);
-            *mark = *mark & COUNT | standing.min(SCORE);
+            let score = (*mark & SCORE).saturating_add(HIT_STEPS);
+            *mark = *mark & COUNT | score.min(SCORE);
         }
     }
 
-    /// The ground of a cell that was never measured was seen to be gone.
-    pub fn mark_drop(&mut self, cell: Cell) {
+    /// Marks a drop that a beam saw, in a cell that was never measured.
+    pub(super) fn mark_drop(&mut self, cell: Cell) {
         self.mark_unmeasured(cell, DROP, [0; 2]);
     }
 
-    /// The ground of a cell that was never measured may be gone.
-    pub fn mark_possible_drop(&mut self, cell: Cell) {
+    /// Marks a possible drop, in a cell that was never measured. It may also be a slope.
+    pub(super) fn mark_possible_drop(&mut self, cell: Cell) {
         if !self.read().is_drop(cell) {
             self.mark_unmeasured(cell, 0, POSSIBLE_DROP);
         }
     }
 
-    /// Ground that was suspected to be gone is held to be.
-    pub fn confirm_drop(&mut self, cell: Cell) {
+    /// Turns a possible drop into a drop.
+    pub(super) fn confirm_drop(&mut self, cell: Cell) {
         if !self.read().is_drop(cell) {
             self.mark_unmeasured(cell, DROP, POSSIBLE_DROP);
         }
     }
 
-    /// Ground that lies beside what is gone, or was suspected in an attitude that errs, is held to be gone where the map knows of none.
-    pub fn infer_drop(&mut self, cell: Cell) {
+    /// Infers a drop from the cells around, or from a possible drop of an uncertain attitude. It
+    /// does not override ground that the map holds as free.
+    pub(super) fn infer_drop(&mut self, cell: Cell) {
         if !self.read().is_drop(cell) {
             self.mark_unmeasured(cell, DROP, INFERRED_DROP);
         }
     }
 
-    /// What is said of a cell where no ground was ever met.
-    fn mark_unmeasured(&mut self, cell: Cell, mark: u8, stored: [u8; 2]) {
-        if let Some(slot) = slot(*self.origin, cell)
-            && let (Some(of_cell), Some(height)) =
-                (self.marks.get_mut(slot), self.heights.get_mut(slot))
-            && *of_cell & COUNT == 0
+    fn mark_unmeasured(&mut self, cell: Cell, bits: u8, height: [u8; 2]) {
+        if let Some((mark, stored)) = self.stored_mut(cell)
+            && *mark & COUNT == 0
         {
-            *of_cell |= mark;
-            *height = stored;
+            *mark |= bits;
+            *stored = height;
         }
     }
 
-    /// The robot stands on a cell.
+    /// Measures a cell that carries a wheel: it is ground, so nothing stands there and it is no
+    /// drop.
     pub fn mark_wheel_contact(&mut self, cell: Cell, height_m: f32) {
         self.discard_low_confidence(cell);
         if let Some(mark) = self.mark_mut(cell) {
@@ -207,4 +214,4 @@ impl<'a> Elevation<'a> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -1,6 +1,17 @@
-//! The elevation window as it is read: heights and the bits of a cell's mark.
+//! Read access to the elevation window, and the layout of what it stores for a cell.
 //!
-//! What they mean is told, and written, in [`super::elevation`]. Units: map cells, metres above the start.
+//! A cell has a stored height of two bytes and a mark of one byte:
+//!
+//! | bits of the mark | what they hold |
+//! | --- | --- |
+//! | 0 to 3, [`COUNT`] | measurements in the mean height, 0 to 15 |
+//! | 4 to 6, [`SCORE`] | hits of something that stands, 0 to 7 |
+//! | 7, [`DROP`] | without a count: a drop; with a count: the height has low confidence |
+//!
+//! The stored height is the mean, an [`I7F9`], if the count is not 0. Without a count it is 0,
+//! [`POSSIBLE_DROP`] or [`INFERRED_DROP`]. [`super::elevation`] writes all of it.
+//!
+//! Units: map cells, metres above the start.
 
 use fixed::types::I7F9;
 
@@ -13,46 +24,62 @@ pub const WINDOW_SIDE: i32 = 64;
 pub const WINDOW_CELLS: usize = (WINDOW_SIDE * WINDOW_SIDE) as usize;
 /// The geometry of the window.
 pub(super) type Window = Rolling<WINDOW_SIDE, 1>;
-/// Bits of the count.
+/// Bits of a mark that count measurements.
 pub(super) const COUNT: u8 = 0x0f;
-/// Bits of what stands.
+/// Bits of a mark that count hits of something that stands.
 pub(super) const SCORE: u8 = 0x70;
-/// One hit of something that stands.
+/// One hit, in the bits of [`SCORE`].
 pub(super) const SCORE_STEP: u8 = 0x10;
-/// The ground seems to be gone; with a count, the height is but glimpsed.
+/// Bit of a mark: the ground is gone, or the height has low confidence.
 pub(super) const DROP: u8 = 0x80;
-/// Hits from which on something stands there: fewer are false returns.
-const OBSTACLE_FROM_STEPS: u8 = 3;
+/// Hits that make a cell an obstacle. Fewer hits may be false returns.
+const MIN_OBSTACLE_HITS: u8 = 3;
+/// Stored height of a possible drop, and of a drop confirmed from one. It is no mean.
+pub(super) const POSSIBLE_DROP: [u8; 2] = [1, 0];
+/// Stored height of a drop inferred from its surroundings. It is no mean.
+pub(super) const INFERRED_DROP: [u8; 2] = [2, 0];
 
-/// What is known of the ground of a cell, if anything is.
+/// The state of a cell's ground where something is known of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ground {
-    /// Measured, metres.
+pub(super) enum GroundState {
+    /// Measured: its mean height, metres.
     Measured(f32),
-    /// Never measured, and held to be gone.
+    /// Never measured; a drop was inferred there, but no beam saw it.
     Uncertain,
-    /// Seen to be gone, or something stands on it.
+    /// A beam saw a drop, or something stands there.
     Blocked,
 }
 
-/// The window, for reading.
+/// The elevation window, for reading.
 #[derive(Clone, Copy, Debug)]
 pub struct Heights<'a> {
     pub(super) heights: &'a [[u8; 2]],
     pub(super) marks: &'a [u8],
-    /// Its least cell.
+    /// The cell with the least coordinates.
     pub(super) origin: Cell,
 }
 
-/// Whether a mark is of a height that is but glimpsed.
+/// Returns true if the mark's height has low confidence.
 #[inline(always)]
 pub(super) const fn is_low_confidence(mark: u8) -> bool {
     mark & DROP != 0 && mark & COUNT != 0
 }
 
-/// How often a cell of this mark was measured.
+/// Returns true if the mark says that the ground is gone.
 #[inline(always)]
-const fn measured(mark: u8) -> u8 {
+const fn is_drop(mark: u8) -> bool {
+    mark & (COUNT | DROP) == DROP
+}
+
+/// Returns true if the mark has the hits of an obstacle.
+#[inline(always)]
+const fn is_obstacle(mark: u8) -> bool {
+    mark & SCORE >= MIN_OBSTACLE_HITS * SCORE_STEP
+}
+
+/// Returns the number of measurements in a mark, without those of low confidence.
+#[inline(always)]
+const fn count(mark: u8) -> u8 {
     if is_low_confidence(mark) {
         0
     } else {
@@ -60,7 +87,7 @@ const fn measured(mark: u8) -> u8 {
     }
 }
 
-/// Where a cell of the window at `origin` is stored; `None` outside of it.
+/// Returns the storage index of a cell of the window at `origin`; `None` outside the window.
 #[inline(always)]
 pub(super) const fn slot(origin: Cell, cell: Cell) -> Option<usize> {
     if Window::covers(origin, cell) {
@@ -71,7 +98,9 @@ pub(super) const fn slot(origin: Cell, cell: Cell) -> Option<usize> {
 }
 
 impl<'a> Heights<'a> {
-    /// A window whose least cell is `origin`, over memory for [`WINDOW_CELLS`] cells; what is missing was never measured.
+    /// Creates a view of the window whose least cell is `origin`, over memory for [`WINDOW_CELLS`]
+    /// cells: two bytes of height and one mark each. Cells that the memory does not hold were never
+    /// measured.
     #[must_use]
     pub fn new(heights: &'a [u8], marks: &'a [u8], origin: Cell) -> Self {
         let (heights, _) = heights.as_chunks();
@@ -82,127 +111,114 @@ impl<'a> Heights<'a> {
         }
     }
 
-    /// Its least cell.
+    /// The cell of the window with the least coordinates.
     #[must_use]
     pub const fn origin(&self) -> Cell {
         self.origin
     }
 
     #[inline(always)]
-    fn mark(&self, slot: usize) -> u8 {
+    fn mark_at(&self, slot: usize) -> u8 {
         self.marks.get(slot).copied().unwrap_or(0)
     }
 
-    /// The stored height of a cell; `None` where none was measured.
+    /// Returns the mark of a cell; 0 outside the window.
     #[inline(always)]
-    #[must_use]
-    pub fn fixed(&self, cell: Cell) -> Option<I7F9> {
+    fn mark(&self, cell: Cell) -> u8 {
+        slot(self.origin, cell).map_or(0, |slot| self.mark_at(slot))
+    }
+
+    /// Returns the mark and the stored height of a cell of the window.
+    #[inline(always)]
+    fn stored(&self, cell: Cell) -> Option<(u8, [u8; 2])> {
         let slot = slot(self.origin, cell)?;
-        if measured(self.mark(slot)) == 0 {
+        Some((self.mark_at(slot), *self.heights.get(slot)?))
+    }
+
+    /// Returns the mean height of a cell; `None` if it was never measured.
+    #[inline(always)]
+    pub(super) fn fixed(&self, cell: Cell) -> Option<I7F9> {
+        let slot = slot(self.origin, cell)?;
+        if count(self.mark_at(slot)) == 0 {
             return None;
         }
         Some(I7F9::from_le_bytes(*self.heights.get(slot)?))
     }
 
-    /// The mean height of a cell, metres; `None` where none was measured.
+    /// Returns the mean height of a cell, metres; `None` if it was never measured.
     #[inline(always)]
     #[must_use]
     pub fn height_m(&self, cell: Cell) -> Option<f32> {
         self.fixed(cell).map(metres)
     }
 
-    /// The mean height of a cell that was glimpsed and never measured, metres.
-    #[must_use]
-    pub fn low_confidence_m(&self, cell: Cell) -> Option<f32> {
-        let slot = slot(self.origin, cell).filter(|&slot| is_low_confidence(self.mark(slot)))?;
-        Some(metres(I7F9::from_le_bytes(*self.heights.get(slot)?)))
+    /// Returns the mean height of a cell that was met only with low confidence, metres.
+    pub(crate) fn low_confidence_m(&self, cell: Cell) -> Option<f32> {
+        let (_, height) = self
+            .stored(cell)
+            .filter(|&(mark, _)| is_low_confidence(mark))?;
+        Some(metres(I7F9::from_le_bytes(height)))
     }
 
-    /// What is known of a cell's ground: `None` where it was never measured.
+    /// Returns the state of a cell's ground; `None` if nothing is known of it.
     #[inline(always)]
-    #[must_use]
-    pub fn ground(&self, cell: Cell) -> Option<Ground> {
-        let slot = slot(self.origin, cell)?;
-        let mark = self.mark(slot);
-        if mark == 0 {
-            return None;
-        }
-        let stored = *self.heights.get(slot)?;
-        if mark & SCORE >= OBSTACLE_FROM_STEPS * SCORE_STEP {
-            Some(Ground::Blocked)
-        } else if mark & (COUNT | DROP) == DROP {
+    pub(super) fn ground_state(&self, cell: Cell) -> Option<GroundState> {
+        let (mark, stored) = self.stored(cell).filter(|&(mark, _)| mark != 0)?;
+        if is_obstacle(mark) {
+            Some(GroundState::Blocked)
+        } else if is_drop(mark) {
             Some(if stored == POSSIBLE_DROP || stored == INFERRED_DROP {
-                Ground::Uncertain
+                GroundState::Uncertain
             } else {
-                Ground::Blocked
+                GroundState::Blocked
             })
         } else {
-            (measured(mark) > 0).then(|| Ground::Measured(metres(I7F9::from_le_bytes(stored))))
+            (count(mark) > 0).then(|| GroundState::Measured(metres(I7F9::from_le_bytes(stored))))
         }
     }
 
-    /// How often a cell was measured, up to 15.
-    #[must_use]
-    pub fn count(&self, cell: Cell) -> u8 {
-        slot(self.origin, cell).map_or(0, |slot| measured(self.mark(slot)))
+    /// Returns the number of measurements in a cell's mean, at most 15.
+    pub(super) fn count(&self, cell: Cell) -> u8 {
+        count(self.mark(cell))
     }
 
-    /// Whether something stands in a cell.
-    #[must_use]
-    pub fn is_obstacle(&self, cell: Cell) -> bool {
-        slot(self.origin, cell)
-            .is_some_and(|slot| self.mark(slot) & SCORE >= OBSTACLE_FROM_STEPS * SCORE_STEP)
+    /// Returns true if something stands in a cell.
+    pub(super) fn is_obstacle(&self, cell: Cell) -> bool {
+        is_obstacle(self.mark(cell))
     }
 
-    /// Whether the ground of a cell seems to be gone.
-    #[must_use]
-    pub fn is_drop(&self, cell: Cell) -> bool {
-        slot(self.origin, cell).is_some_and(|slot| self.mark(slot) & (COUNT | DROP) == DROP)
+    /// Returns true if the ground of a cell is gone: seen, confirmed or inferred.
+    pub(super) fn is_drop(&self, cell: Cell) -> bool {
+        is_drop(self.mark(cell))
     }
 
-    /// Whether nothing was ever met in a cell, and of the eight around one seems to be gone and one is measured.
-    #[must_use]
-    pub fn is_on_rim(&self, cell: Cell) -> bool {
-        let around = || {
-            (-1..=1)
-                .flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)))
-                .map(|(dx, dy)| Cell {
-                    x: cell.x + dx,
-                    y: cell.y + dy,
-                })
-        };
-        slot(self.origin, cell).is_some_and(|slot| self.mark(slot) == 0)
-            && around().any(|near| self.is_drop(near))
-            && around().any(|near| self.count(near) > 0)
+    /// Returns true if a cell of the window has no mark at all, and at least one of its eight
+    /// neighbours is a drop and at least one is measured.
+    pub(super) fn is_on_rim(&self, cell: Cell) -> bool {
+        let mut neighbours = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| cell.offset(dx, dy)));
+        slot(self.origin, cell).is_some_and(|slot| self.mark_at(slot) == 0)
+            && neighbours.clone().any(|near| self.is_drop(near))
+            && neighbours.any(|near| self.count(near) > 0)
     }
 
-    /// Whether the ground of a cell is but presumed to be gone: it lies on a rim, or was suspected in an attitude that errs.
-    #[must_use]
-    pub fn is_inferred_drop(&self, cell: Cell) -> bool {
-        slot(self.origin, cell).is_some_and(|slot| {
-            self.mark(slot) & (COUNT | DROP) == DROP
-                && self.heights.get(slot) == Some(&INFERRED_DROP)
-        })
+    /// Returns true if the drop of a cell is only inferred, see
+    /// [`Elevation::infer_drop`](super::Elevation::infer_drop).
+    pub(super) fn is_inferred_drop(&self, cell: Cell) -> bool {
+        self.stored(cell)
+            .is_some_and(|(mark, stored)| is_drop(mark) && stored == INFERRED_DROP)
     }
 
-    /// Whether the ground of a cell never measured is suspected to be gone, and not yet believed to be.
-    #[must_use]
-    pub fn is_possible_drop(&self, cell: Cell) -> bool {
-        slot(self.origin, cell).is_some_and(|slot| {
-            self.mark(slot) & (COUNT | DROP) == 0 && self.heights.get(slot) == Some(&POSSIBLE_DROP)
-        })
+    /// Returns true if a cell was never measured and a beam suggests that its ground is gone, and
+    /// no drop is marked there yet.
+    pub(super) fn is_possible_drop(&self, cell: Cell) -> bool {
+        self.stored(cell)
+            .is_some_and(|(mark, stored)| mark & (COUNT | DROP) == 0 && stored == POSSIBLE_DROP)
     }
 }
 
-/// What the height of a cell never measured says if its ground is suspected to be gone, or but held to be for that.
-pub(super) const POSSIBLE_DROP: [u8; 2] = [1, 0];
-/// And if it is but presumed to be gone; nothing else is ever stored there.
-pub(super) const INFERRED_DROP: [u8; 2] = [2, 0];
-
-/// A stored height in metres.
+/// Converts a height to metres.
 #[inline(always)]
-#[must_use]
-pub fn metres(height: I7F9) -> f32 {
+fn metres(height: I7F9) -> f32 {
     const STEP_M: f32 = 1.0 / (1 << I7F9::FRAC_NBITS) as f32;
     f32::from(height.to_bits()) * STEP_M
 }

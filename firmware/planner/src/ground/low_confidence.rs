@@ -1,83 +1,80 @@
-//! Glimpses: ground met from farther off than the attitude lets heights be measured.
+//! Heights of low confidence: ground met beyond the reach of the [attitude
+//! filter](super::attitude_filter), and when it counts as free.
 //!
 //! ```text
-//! enough:  |z − h| ≤ TOLERANCE_M + CLIMB_SHARE climb d        h measured nearest on the way to the robot, d away over ground, d ≤ MAX_CELLS
+//! usable:  |z − h| ≤ TOLERANCE_M + CLIMB_SHARE climb d
 //! ```
 //!
-//! Over the brow of a slope tilted beams meet the ground far off only, until the robot itself tilts; of an attitude that is not sure nothing
-//! would be measured there, and ground never measured stops the robot before its nose goes down. So what was glimpsed there is free to
-//! drive on once the robot stands so near that it will not be measured from where it stands, unless it lies higher or lower than a
-//! gentle slope from the measured ground before it can lead. It becomes no height: beside heights that are measured its errors would
-//! make edges. Not in [Maffei20], which measures attitude without error. Units: metres, map cells.
+//! Here z is the height of the cell and h the first measured height on the line to the robot, d
+//! away over ground. The cell lies at most [`MAX_CELLS`] from the robot.
+//!
+//! Behind a brow, tilted beams meet the ground only far off, until the robot itself tilts. If the
+//! attitude is noisy, nothing is measured there, and unmeasured ground stops the robot before its
+//! nose goes down. Therefore such ground becomes free when the robot is too near to measure it, if
+//! a gentle slope leads to it from the measured ground before it. It never becomes a measured
+//! height, because its errors would make edges beside measured heights.
+//!
+//! Departs from [Maffei20, III-B]: the paper measures attitude without error.
+//!
+//! Units: metres, map cells; slopes are tangents.
 
-use crate::geometry::{CELL_M, Cell};
+use crate::geometry::Cell;
 use crate::ground::elevation::{Heights, WINDOW_SIDE};
 
-/// From farther off than this to either side of the robot glimpses are not enough, cells: tilted beams meet level ground beyond, and
-/// measure it.
+/// Greatest distance from the robot along an axis, cells. Tilted beams meet level ground farther
+/// off (1.39 m) and measure it there.
 const MAX_CELLS: i32 = 9;
-/// What a mean of glimpses errs by, metres.
+/// Error of a mean height of low confidence, metres.
 const TOLERANCE_M: f32 = 0.10;
-/// The part of the climb by which ground may rise or fall on the way to a glimpse.
+/// Share of the climb by which ground may rise or fall on the way to the cell.
 const CLIMB_SHARE: f32 = 0.75;
 
-/// Whether a cell that was only glimpsed is as good as measured to the robot in the window's middle, which climbs so much.
-#[must_use]
-pub fn is_usable(heights: &Heights<'_>, climb: f32, cell: Cell) -> bool {
+/// Returns true if a cell with a height of low confidence counts as free. `climb` is the steepest
+/// slope that the robot climbs. The robot is in the middle of the window.
+pub(super) fn is_usable(heights: &Heights<'_>, climb: f32, cell: Cell) -> bool {
     let Some(low_confidence_m) = heights.low_confidence_m(cell) else {
         return false;
     };
-    let origin = heights.origin();
-    let (dx, dy) = (
-        origin.x + WINDOW_SIDE / 2 - cell.x,
-        origin.y + WINDOW_SIDE / 2 - cell.y,
-    );
-    let way = dx.abs().max(dy.abs());
-    if way > MAX_CELLS {
+    let robot = heights.origin().offset(WINDOW_SIDE / 2, WINDOW_SIDE / 2);
+    let (dx, dy) = (robot.x - cell.x, robot.y - cell.y);
+    let steps = dx.abs().max(dy.abs());
+    if steps > MAX_CELLS {
         return false;
     }
-    let far_m = crate::math::sqrt((dx * dx + dy * dy) as f32) * CELL_M;
-    for k in 1..=way {
-        let on = Cell {
-            x: cell.x + nearest(k * dx, way),
-            y: cell.y + nearest(k * dy, way),
-        };
+    let distance_m = cell.distance_m(robot);
+    for k in 1..=steps {
+        let on = cell.offset(rounded(k * dx, steps), rounded(k * dy, steps));
         if heights.is_obstacle(on) || heights.is_drop(on) {
             return false;
         }
         if let Some(height_m) = heights.height_m(on) {
-            let d_m = far_m * k as f32 / way as f32;
+            let d_m = distance_m * k as f32 / steps as f32;
             return (low_confidence_m - height_m).abs() <= TOLERANCE_M + CLIMB_SHARE * climb * d_m;
         }
     }
     false
 }
 
-/// a / b to the nearest whole, for b > 0.
-const fn nearest(a: i32, b: i32) -> i32 {
+/// Returns a / b, rounded to nearest, for b > 0.
+const fn rounded(a: i32, b: i32) -> i32 {
     (2 * a + b).div_euclid(2 * b)
 }
 
 #[cfg(test)]
 mod tests {
-    use std::boxed::Box;
-    use std::vec;
-
     use super::is_usable;
     use crate::geometry::Cell;
-    use crate::ground::elevation::{Elevation, WINDOW_CELLS};
+    use crate::ground::elevation::Elevation;
+    use crate::ground::elevation::tests::OwnedWindow;
 
     const CLIMB: f32 = 0.36;
-    /// Three cells ahead of what is measured around the robot, at 0.
+    /// Three cells ahead of the measured ground around the robot.
     const CELL: Cell = Cell { x: 6, y: 2 };
 
-    /// Level ground measured as far as column 3, and a glimpse three cells on.
+    /// Level ground measured up to column 3, and a height of low confidence three cells on.
     fn is_usable_at(low_confidence_m: f32, before: impl Fn(&mut Elevation<'_>)) -> bool {
-        let mut heights: Box<[u8]> = vec![0; 2 * WINDOW_CELLS].into();
-        let mut marks: Box<[u8]> = vec![0; WINDOW_CELLS].into();
-        let mut origin = Cell::default();
-        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
-        window.follow(Cell::default());
+        let mut owned = OwnedWindow::new(Cell::default());
+        let mut window = owned.write();
         for x in -3..=3 {
             for y in -3..=3 {
                 window.measure(Cell { x, y }, 0.0);
@@ -89,9 +86,9 @@ mod tests {
     }
 
     #[test]
-    fn what_a_gentle_slope_leads_to_is_enough() {
+    fn a_gentle_slope_makes_low_confidence_usable() {
         // 0.10 + 0.75 · 0.36 · 0.316
-        for (low_confidence_m, enough) in [
+        for (low_confidence_m, expected) in [
             (0.0, true),
             (-0.17, true),
             (0.17, true),
@@ -100,14 +97,14 @@ mod tests {
         ] {
             assert_eq!(
                 is_usable_at(low_confidence_m, |_| ()),
-                enough,
+                expected,
                 "{low_confidence_m}"
             );
         }
     }
 
     #[test]
-    fn what_is_gone_or_stands_on_the_way_is_not_led_over() {
+    fn a_drop_or_an_obstacle_between_refuses_low_confidence() {
         let between = Cell { x: 4, y: 1 };
         assert!(!is_usable_at(0.0, |window| window.mark_drop(between)));
         assert!(!is_usable_at(0.0, |window| {
@@ -117,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn measured_ground_and_ground_far_off_are_no_matter_of_glimpses() {
+    fn measured_ground_and_distant_ground_are_not_of_low_confidence() {
         assert!(!is_usable_at(0.0, |window| window.measure(CELL, 0.0)));
         assert!(!is_usable_at(0.0, |window| {
             window.follow(Cell { x: -4, y: 0 });

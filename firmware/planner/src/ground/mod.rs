@@ -1,42 +1,41 @@
-//! Uneven ground: how high it lies around the robot, what of it can be driven on, and what of it is preferred
-//! [Maffei20, III-B and III-C].
+//! Uneven ground: heights around the robot, and the cells that the robot can drive on.
+//! Source: [Maffei20, III-B].
 //!
 //! ```text
-//! both scans + pose (z, roll, pitch, yaw) → elevation → classes → the map's tiles          each step
-//!                                           elevation → ε_height ┐
-//!                               field → p_diff → ε_global ───────┴→ ε of the window's cells
+//! both scans + pose (z, roll, pitch, yaw) → elevation → classes → the map's tiles      each step
 //! ```
 //!
 //! | room | what it holds |
 //! | --- | --- |
 //! | [`elevation`] | the mean height of every cell in a window of 64 × 64 cells around the robot |
-//! | [`ray`] | beams in three dimensions, from the tilted robot |
-//! | [`survey`] | beams into heights, and into marks where something stands or the ground is gone |
-//! | [`drop_inference`] | ground that is held to be gone because it was not measured on the way |
-//! | [`doorway_view`] | what level beams say through a doorway |
-//! | [`low_confidence`] | ground met from too far off to be measured, and when that is enough |
-//! | [`classify`] | heights and marks into the map's classes |
-//! | [`steepness`] | where the ground lies too high over that beside it: edges, and slopes in any direction |
-//! | [`attitude_filter`] | what is believed of the attitude |
+//! | `heights` | read access to that window, and its layout in memory |
+//! | `ray` | a beam in three dimensions, from the tilted robot |
+//! | `attitude_filter` | the smoothed attitude, and how far it allows heights to be measured |
+//! | `survey` | both scans into heights, obstacles and drops |
+//! | `drop_inference` | drops near the robot that no beam saw |
+//! | `low_confidence` | ground met from too far off to be measured |
+//! | `steepness` | edges and slopes that are too steep |
+//! | `classify` | heights and marks into the map's classes |
+//! | `doorway_view` | the part of a room that level beams see through a doorway |
 //!
-//! Everything is judged against the ground that the robot stands on and against ground measured beside it, never against the height of the
-//! start. Units: metres; slopes are tangents; heights count from the start.
+//! Invariant: every decision compares the ground under the robot with ground measured beside it,
+//! never with the height of the start. The room knows nothing of the map, which calls it.
 //!
-//! [Maffei20]: "Exploration of 3D terrains using potential fields with elevation-based local distortions".
+//! Words: a *drop* is a cell whose ground is gone; a *rim* is the border of a drop; a *brow* is the
+//! upper end of a slope; the *climb* is the steepest slope that the robot drives on.
+//!
+//! Units: metres; slopes are tangents; heights count from the start.
 
-pub mod attitude_filter;
-pub mod classify;
-pub mod doorway_view;
-pub mod drop_inference;
+mod attitude_filter;
+pub(crate) mod classify;
+pub(crate) mod doorway_view;
+mod drop_inference;
 pub mod elevation;
 mod heights;
-pub mod low_confidence;
-pub mod ray;
-pub mod steepness;
-pub mod survey;
+mod low_confidence;
+pub(crate) mod ray;
+mod steepness;
+pub(crate) mod survey;
 
-#[cfg(test)]
-mod tests;
-
-pub use attitude_filter::AttitudeFilter;
+pub(crate) use attitude_filter::AttitudeFilter;
 pub use elevation::{Elevation, Heights};

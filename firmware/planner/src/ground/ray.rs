@@ -1,59 +1,75 @@
-//! A beam in three dimensions, from the robot as it stands.
+//! A laser beam in three dimensions, from the tilted robot.
 //!
 //! ```text
 //! body:   (cos b cos t, sin b, −cos b sin t)        b bearing, t tilt of the mount
 //! world:  R_z(yaw) R_y(pitch) R_x(roll) · body      positive pitch is nose down
 //! ```
 //!
-//! Along a beam everything counts by its length over ground, s: it runs at `from.z + slope · s`. Units: metres, radians.
+//! Positions along a beam are lengths over ground, s: the beam has the height `from.z + slope · s`.
+//! Units: metres, radians; slopes are tangents.
 
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Cell, Point, Pose};
 use crate::math;
 use crate::robot::LaserMount;
 
+/// Depth behind a beam's end at which an obstacle is marked, metres: three standard deviations of a
+/// range (0.01 m), so that the cell belongs to what was hit and not to the ground before it.
+pub(crate) const HIT_DEPTH_M: f32 = 0.03;
+/// Least cosine between the robot's up axis and the vertical: 84°. A steeper robot has no plane.
+const MIN_UPRIGHT: f32 = 0.1;
+/// Least cosine between a beam and the horizontal: 87°. A steeper beam has no direction.
+const MIN_HORIZONTAL: f32 = 0.05;
+
 /// The robot's attitude: its forward, left and up axes in the world.
 #[derive(Clone, Copy, Debug)]
-pub struct Attitude {
+pub(crate) struct Attitude {
     axes: [[f32; 3]; 3],
     pose: Pose,
 }
 
 /// One beam.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ray {
-    /// Where it starts.
-    pub from: Point,
-    /// How high that is.
-    pub from_z_m: f32,
-    /// Unit vector over ground.
-    pub along: (f32, f32),
-    /// Height gained a metre over ground.
-    pub slope: f32,
-    /// Length over ground.
-    pub length_m: f32,
+pub(crate) struct Ray {
+    /// Its start: the laser's position.
+    pub(crate) from: Point,
+    /// Height of the start, metres.
+    pub(crate) from_z_m: f32,
+    /// Its direction over ground, a unit vector.
+    pub(crate) along: (f32, f32),
+    /// Height gained for each metre over ground.
+    pub(crate) slope: f32,
+    /// Length over ground, metres.
+    pub(crate) length_m: f32,
 }
 
 impl Ray {
-    /// The point over ground that far along.
-    #[must_use]
-    pub fn at(&self, s_m: f32) -> Point {
+    /// Returns the point over ground at length `s_m`.
+    pub(crate) fn at(&self, s_m: f32) -> Point {
         Point {
             x_m: self.from.x_m + self.along.0 * s_m,
             y_m: self.from.y_m + self.along.1 * s_m,
         }
     }
 
-    /// Its height there.
-    #[must_use]
-    pub fn height_m(&self, s_m: f32) -> f32 {
+    /// Returns the beam's height at length `s_m`, metres.
+    pub(crate) fn height_m(&self, s_m: f32) -> f32 {
         self.from_z_m + self.slope * s_m
+    }
+
+    /// Returns the point over ground where the beam ends.
+    pub(crate) fn end(&self) -> Point {
+        self.at(self.length_m)
+    }
+
+    /// Returns the cell of what the beam hit, [`HIT_DEPTH_M`] behind its end.
+    pub(crate) fn hit_cell(&self) -> Cell {
+        self.at(self.length_m + HIT_DEPTH_M).cell()
     }
 }
 
 impl Attitude {
-    /// Of a robot at a pose.
-    #[must_use]
-    pub fn of(pose: &Pose) -> Self {
+    /// The attitude of a robot at a pose.
+    pub(crate) fn of(pose: &Pose) -> Self {
         let (sr, cr) = math::sin_cos(pose.roll_rad);
         let (sp, cp) = math::sin_cos(pose.pitch_rad);
         let (sy, cy) = math::sin_cos(pose.yaw_rad);
@@ -67,7 +83,8 @@ impl Attitude {
         }
     }
 
-    fn turn(&self, body: [f32; 3]) -> [f32; 3] {
+    /// Turns a vector of the robot's frame into the world's.
+    fn to_world(self, body: [f32; 3]) -> [f32; 3] {
         let [forward, left, up] = &self.axes;
         let [x, y, z] = body;
         [
@@ -77,33 +94,32 @@ impl Attitude {
         ]
     }
 
-    /// Height of the plane that the robot stands on, at a point; the robot's own height if it stands upright on a wall.
-    #[must_use]
-    pub fn plane_m(&self, point: Point) -> f32 {
+    /// Returns the height of the robot's plane (the ground under its wheels) at a point, metres.
+    pub(crate) fn plane_m(&self, point: Point) -> f32 {
         let (dx, dy) = (point.x_m - self.pose.x_m, point.y_m - self.pose.y_m);
         self.pose.z_m + self.rise(dx, dy)
     }
 
-    /// How much that plane rises over a way.
-    #[must_use]
-    pub fn rise(&self, dx_m: f32, dy_m: f32) -> f32 {
+    /// Returns the rise of the robot's plane over a distance along x and y, metres; 0 if the plane
+    /// is steeper than 84°.
+    pub(crate) fn rise(&self, dx_m: f32, dy_m: f32) -> f32 {
         let [_, _, up] = &self.axes;
-        if up[2] > 0.1 {
+        if up[2] > MIN_UPRIGHT {
             -(up[0] * dx_m + up[1] * dy_m) / up[2]
         } else {
             0.0
         }
     }
 
-    /// Beam `number` of a laser, `range_m` long; `None` for one that goes straight up or down.
-    #[must_use]
-    pub fn ray(&self, mount: &Mount<'_>, number: usize, range_m: f32) -> Option<Ray> {
+    /// Returns beam `number` of a laser with a length of `range_m`; `None` if it runs steeper than
+    /// 87°.
+    pub(crate) fn ray(&self, mount: &Mount<'_>, number: usize, range_m: f32) -> Option<Ray> {
         let laser = mount.laser;
         let bearing = laser.first_bearing_rad + number as f32 * laser.bearing_step_rad;
         let (sin, cos) = math::sin_cos(bearing);
-        let [dx, dy, dz] = self.turn([cos * mount.cos_tilt, sin, -cos * mount.sin_tilt]);
+        let [dx, dy, dz] = self.to_world([cos * mount.cos_tilt, sin, -cos * mount.sin_tilt]);
         let across = math::sqrt(dx * dx + dy * dy);
-        (across > 0.05).then(|| Ray {
+        (across > MIN_HORIZONTAL).then(|| Ray {
             from: Point {
                 x_m: self.pose.x_m + mount.offset[0],
                 y_m: self.pose.y_m + mount.offset[1],
@@ -118,9 +134,9 @@ impl Attitude {
 
 /// A laser on the tilted robot.
 #[derive(Clone, Copy, Debug)]
-pub struct Mount<'a> {
+pub(crate) struct Mount<'a> {
     laser: &'a LaserMount,
-    /// From the robot's place to the laser's, in the world.
+    /// From the robot's position to the laser's, in the world's axes, metres.
     offset: [f32; 3],
     sin_tilt: f32,
     cos_tilt: f32,
@@ -128,12 +144,11 @@ pub struct Mount<'a> {
 
 impl<'a> Mount<'a> {
     /// A laser on a robot in this attitude.
-    #[must_use]
-    pub fn new(attitude: &Attitude, laser: &'a LaserMount) -> Self {
+    pub(crate) fn new(attitude: &Attitude, laser: &'a LaserMount) -> Self {
         let (sin_tilt, cos_tilt) = math::sin_cos(laser.pitch_rad);
         Self {
             laser,
-            offset: attitude.turn([laser.x_m, laser.y_m, laser.z_m]),
+            offset: attitude.to_world([laser.x_m, laser.y_m, laser.z_m]),
             sin_tilt,
             cos_tilt,
         }
@@ -144,20 +159,11 @@ impl<'a> Mount<'a> {
 mod tests {
     use super::{Attitude, Mount};
     use crate::geometry::{Point, Pose};
-    use crate::math;
     use crate::robot::LaserMount;
 
-    fn laser(pitch_rad: f32) -> LaserMount {
-        LaserMount {
-            x_m: 0.15,
-            y_m: 0.0,
-            z_m: 0.45,
-            pitch_rad,
-            first_bearing_rad: -0.5 * math::PI,
-            bearing_step_rad: math::PI / 180.0,
-            beams: 181,
-            range_limit_mm: 12_000,
-        }
+    /// The laser of these tests, which looks down by `pitch_rad`.
+    const fn laser(pitch_rad: f32) -> LaserMount {
+        LaserMount::tilted(0.15, 0.45, pitch_rad)
     }
 
     #[test]
@@ -169,14 +175,14 @@ mod tests {
         let ray = attitude.ray(&mount, 90, range_m).expect("it goes ahead");
         assert!((ray.length_m - 0.45 / 20.0_f32.to_radians().tan()).abs() < 1e-4);
         assert!(ray.height_m(ray.length_m).abs() < 1e-4);
-        let end = ray.at(ray.length_m);
+        let end = ray.end();
         assert!(
             (end.x_m - 1.3864).abs() < 1e-3 && end.y_m.abs() < 1e-4,
             "{end:?}"
         );
     }
 
-    /// On a slope the plane under the robot is the slope, and a level beam runs along it, whichever way the robot faces.
+    /// On a slope the robot's plane is the slope. A level beam runs along it at every heading.
     #[test]
     fn level_beams_keep_their_height_over_the_robots_plane() {
         for (pitch_rad, roll_rad, yaw_rad) in [
@@ -199,18 +205,18 @@ mod tests {
             let over = |point: Point, z_m: f32| z_m - attitude.plane_m(point);
             for number in [0, 45, 90, 120, 180] {
                 let ray = attitude.ray(&mount, number, 2.0).expect("no cliff face");
-                let (near, far) = (ray.at(0.1), ray.at(ray.length_m));
+                let (near, far) = (ray.at(0.1), ray.end());
                 let near_m = over(near, ray.height_m(0.1));
                 let far_m = over(far, ray.height_m(ray.length_m));
                 assert!((near_m - far_m).abs() < 1e-4, "{near_m} {far_m}");
-                // Measured upright the distance from a tilted plane is longer.
+                // Measured along the vertical, the distance from a tilted plane is longer.
                 assert!(near_m > 0.449 && near_m < 0.49, "{near_m}");
             }
         }
     }
 
     #[test]
-    fn nose_up_looks_farther_and_the_left_wheel_up_lifts_the_left() {
+    fn pitch_up_raises_the_front_and_positive_roll_raises_the_left() {
         let at = |pitch_rad, roll_rad| {
             Attitude::of(&Pose {
                 pitch_rad,

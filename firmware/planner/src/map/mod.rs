@@ -13,6 +13,8 @@ pub mod rows;
 mod tile;
 pub mod tiles;
 mod traversal;
+#[cfg(test)]
+mod uneven_tests;
 
 pub use crate::grid::Class;
 pub use compaction::SideTable;

@@ -18,7 +18,7 @@ use heapless::Vec;
 
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::grid::bits::ones;
-use crate::ground::survey::BEHIND_M;
+use crate::ground::ray::HIT_DEPTH_M;
 use crate::input::{has_company, informative_range_mm};
 use crate::map::integrate::{level_beams, sensor_point};
 use crate::map::{Class, Tiles};
@@ -191,7 +191,7 @@ pub fn inflated_border_cells<const TILES: usize, const SLOTS: usize>(
     robot: Point,
 ) -> impl Iterator<Item = (Point, f32)> + '_ {
     border_cells(tiles, robot).map(|at| match tiles.class(at.cell()) {
-        Class::Obstacle => (at, BEHIND_M),
+        Class::Obstacle => (at, HIT_DEPTH_M),
         _ => (at, 0.0),
     })
 }
