@@ -71,7 +71,7 @@ fn run(args: &Args, world: &World, strategy: &str, seed: u64) -> anyhow::Result<
         "bvp" => {
             let mut session = Session::new(Bvp::new());
             let report = explore(&mut session)?.0;
-            (report, Some(session.plan.work()))
+            (report, Some(session.strategy.work()))
         }
         "greedy-frontier" => {
             let tuning = Tuning {

@@ -1,132 +1,50 @@
-//! The known space as one flat array of cells, drawn from the planner's map, for algorithms that look at all of it.
+//! The known space as one flat array of cells, copied from the planner's map.
 //!
-//! A cell is *passable* where the robot's centre may be: the same disc around the same obstacle cells as the planner's own
-//! strategy uses. What is not passable counts as obstacle, so an unknown cell that the robot does not fit into is nobody's goal.
-//! The chart reaches one tile beyond the known extent, as far as the map's box has room: what could never be stored is no goal
-//! either.
+//! A cell is *passable* if the robot's centre may be there: outside of the planner's own footprint
+//! around each obstacle cell. All other cells count as obstacles, so an unknown cell into which the
+//! robot does not fit is no goal. The chart reaches one tile beyond the known extent, unless the
+//! box of the map ends there: a cell that the map cannot store is no goal either.
 //!
-//! Invariant: the cells of the outermost ring are not passable, so a passable cell has eight neighbours by plain index
-//! arithmetic. Units: map cells of 10 cm; index = row · width + column.
+//! Invariant: the cells of the outermost ring are not passable, so a passable cell has eight
+//! neighbours by plain index arithmetic. Units: map cells of 10 cm; index = row · width + column.
 
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::map::Tiles;
 use fieldline_planner::map::tiles::{Extent, TILE_SIDE};
 use fieldline_planner::roadmap::configuration_space::{Footprint, for_each_strip};
 
+use crate::metrics::CellArea;
+
 const PASSABLE: u8 = 1;
 const UNKNOWN: u8 = 2;
 const OBSTACLE: u8 = 4;
 
-/// Cells around a robot that stands too near to something in which it may look for a way out.
+/// Half the side of the square around a blocked robot in which cells may be freed, cells.
 const LET_OUT_CELLS: i32 = 4;
 
-/// Where a chart lies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Frame {
-    /// The map cell of index 0.
-    pub origin: Cell,
-    /// Cells across.
-    pub width: usize,
-    /// Cells up.
-    pub height: usize,
-}
-
-impl Frame {
-    /// The index of a map cell, if it is in the frame.
-    #[must_use]
-    pub fn index(&self, cell: Cell) -> Option<usize> {
-        let x = usize::try_from(cell.x - self.origin.x).ok()?;
-        let y = usize::try_from(cell.y - self.origin.y).ok()?;
-        (x < self.width && y < self.height).then(|| y * self.width + x)
-    }
-
-    /// The map cell of an index.
-    #[must_use]
-    pub fn cell(&self, index: usize) -> Cell {
-        let (x, y) = self.place(index);
-        Cell {
-            x: self.origin.x + x as i32,
-            y: self.origin.y + y as i32,
-        }
-    }
-
-    /// Column and row of an index.
-    #[must_use]
-    pub fn place(&self, index: usize) -> (usize, usize) {
-        let width = self.width.max(1);
-        (index % width, index / width)
-    }
-
-    /// Cells in it.
-    #[must_use]
-    pub const fn len(&self) -> usize {
-        self.width * self.height
-    }
-
-    /// Whether it holds nothing.
-    #[must_use]
-    pub const fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The four neighbours of an inner cell: east, north, west, south.
-    #[must_use]
-    pub const fn four(&self, index: usize) -> [usize; 4] {
-        [index + 1, index + self.width, index - 1, index - self.width]
-    }
-
-    /// Whether an index is on the outermost ring.
-    #[must_use]
-    pub fn is_rim(&self, index: usize) -> bool {
-        let (x, y) = self.place(index);
-        x == 0 || y == 0 || x + 1 >= self.width || y + 1 >= self.height
-    }
-
-    fn around(extent: Extent, (across, up): (i32, i32)) -> Self {
-        let widen = |least: i32, greatest: i32, most: i32| {
-            let spare = most - (greatest - least + 1);
-            (
-                least - i32::from(spare > 1),
-                greatest + i32::from(spare > 0),
-            )
-        };
-        let (west, east) = widen(extent.least.0, extent.greatest.0, across);
-        let (south, north) = widen(extent.least.1, extent.greatest.1, up);
-        let cells = |tiles: i32| usize::try_from(tiles * TILE_SIDE).unwrap_or(0);
-        Self {
-            origin: Cell {
-                x: west * TILE_SIDE,
-                y: south * TILE_SIDE,
-            },
-            width: cells(east - west + 1),
-            height: cells(north - south + 1),
-        }
-    }
-}
-
-/// The cells.
+/// The chart.
 #[derive(Clone, Debug, Default)]
 pub struct Chart {
-    frame: Frame,
+    area: CellArea,
     flags: Vec<u8>,
-    /// Cells that are passable only for the robot that stands among them.
+    /// Cells that are passable only because the robot stands beside them.
     freed: Vec<usize>,
-    /// The state of the map that this was drawn from.
+    /// Extent and edit count of the map at the last copy.
     drawn: Option<(Extent, u32)>,
 }
 
 impl Chart {
-    /// Nothing known.
+    /// Makes an empty chart.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Draw the map as it is now, for a robot at `robot`.
+    /// Copies the map for a robot at `robot`. Does nothing if the map has not changed since.
     pub fn draw<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        disc: &Footprint,
+        footprint: &Footprint,
         robot: Point,
     ) {
         let Some(extent) = tiles.extent() else {
@@ -139,63 +57,64 @@ impl Chart {
         let state = Some((extent, tiles.edits()));
         if self.drawn != state {
             self.drawn = state;
-            self.frame = Frame::around(extent, tiles.box_tiles());
+            self.area = around(extent, tiles.box_tiles());
             self.flags.clear();
-            self.flags.resize(self.frame.len(), 0);
-            self.copy(tiles, disc);
+            self.flags.resize(self.area.len(), 0);
+            self.copy(tiles, footprint);
             self.close_ring();
         }
         self.let_out(robot.cell());
     }
 
-    /// Where it lies.
+    /// Returns the map cells of the chart.
     #[must_use]
-    pub const fn frame(&self) -> Frame {
-        self.frame
+    pub const fn area(&self) -> CellArea {
+        self.area
     }
 
-    /// Whether the robot's centre may be here.
+    /// Returns true if the robot's centre may be in a cell.
     #[must_use]
     pub fn is_passable(&self, index: usize) -> bool {
         self.has(index, PASSABLE)
     }
 
-    /// Whether this was never measured.
+    /// Returns true if a cell was never measured.
     #[must_use]
     pub fn is_unknown(&self, index: usize) -> bool {
         self.has(index, UNKNOWN)
     }
 
-    /// Whether something stands here.
+    /// Returns true if a cell is an obstacle.
     #[must_use]
     pub fn is_obstacle(&self, index: usize) -> bool {
         self.has(index, OBSTACLE)
     }
 
-    /// Whether the robot's centre may be here, and it was measured.
+    /// Returns true if a cell is passable and was measured.
     #[must_use]
-    pub fn is_way(&self, index: usize) -> bool {
+    pub fn is_known_passable(&self, index: usize) -> bool {
         self.flags
             .get(index)
             .is_some_and(|flags| flags & (PASSABLE | UNKNOWN) == PASSABLE)
     }
 
-    /// Whether an unexplored cell that the robot would fit into is here.
+    /// Returns true if a cell is passable and was never measured.
     #[must_use]
     pub fn is_unexplored(&self, index: usize) -> bool {
         self.has(index, PASSABLE | UNKNOWN)
     }
 
-    /// Known cells that the robot's centre can get to from `robot`, counted up to `most`.
+    /// Counts the known cells that the robot's centre can reach from `robot`, at most `most`.
     #[must_use]
     pub fn room(&self, robot: Cell, most: usize) -> usize {
-        let home = self.frame.index(robot).filter(|&home| self.is_way(home));
+        let home = self.area.index(robot);
+        let home = home.filter(|&home| self.is_known_passable(home));
         let mut reached: Vec<usize> = home.into_iter().collect();
         let mut next = 0;
         while let Some(&index) = reached.get(next).filter(|_| reached.len() < most) {
             next += 1;
-            for near in self.frame.four(index) {
-                if self.is_way(near) && !reached.contains(&near) {
+            for near in self.area.four(index) {
+                if self.is_known_passable(near) && !reached.contains(&near) {
                     reached.push(near);
                 }
             }
@@ -212,17 +131,18 @@ impl Chart {
     fn copy<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        disc: &Footprint,
+        footprint: &Footprint,
     ) {
-        let Frame {
-            origin,
+        let CellArea {
+            x,
+            y,
             width,
             height,
-        } = self.frame;
+        } = self.area;
         for column in (0..width).step_by(32) {
-            let corner = (origin.x + column as i32, origin.y);
-            for_each_strip(tiles, disc, corner, height as i32, |y, strip| {
-                let first = (y - origin.y) as usize * width + column;
+            let corner = (x + column as i32, y);
+            for_each_strip(tiles, footprint, corner, height as i32, |row, strip| {
+                let first = (row - y) as usize * width + column;
                 for (k, flags) in self.flags[first..first + 32].iter_mut().enumerate() {
                     let bit = |word: u32| (word >> k & 1) as u8;
                     *flags = (bit(strip.passable) * PASSABLE)
@@ -234,7 +154,7 @@ impl Chart {
     }
 
     fn close_ring(&mut self) {
-        let Frame { width, height, .. } = self.frame;
+        let CellArea { width, height, .. } = self.area;
         for x in 0..width {
             self.flags[x] &= !PASSABLE;
             self.flags[(height - 1) * width + x] &= !PASSABLE;
@@ -245,8 +165,11 @@ impl Chart {
         }
     }
 
-    /// The planner's own rule for a robot that stands nearer to something than its radius: around it, whatever does not
-    /// touch an obstacle is passable; failing that, whatever is no obstacle.
+    /// Frees cells around a robot that stands nearer to an obstacle than its radius, as the planner
+    /// does.
+    ///
+    /// In a square around the robot, cells that touch no obstacle become passable. If the robot's
+    /// own cell touches one, all cells that are no obstacles become passable.
     fn let_out(&mut self, robot: Cell) {
         let Some(home) = self.inner(robot) else {
             return;
@@ -277,23 +200,38 @@ impl Chart {
     }
 
     fn touches_obstacle(&self, index: usize) -> bool {
-        self.is_obstacle(index)
-            || self
-                .frame
-                .four(index)
-                .into_iter()
-                .any(|beside| self.is_obstacle(beside))
+        let four = self.area.four(index);
+        self.is_obstacle(index) || four.into_iter().any(|beside| self.is_obstacle(beside))
     }
 
-    /// The index of a cell that is not on the outermost ring.
+    /// Returns the index of a cell; `None` on the outermost ring and outside.
     fn inner(&self, cell: Cell) -> Option<usize> {
-        self.frame
-            .index(cell)
-            .filter(|&index| !self.frame.is_rim(index))
+        let index = self.area.index(cell)?;
+        (!self.area.is_rim(index)).then_some(index)
     }
 }
 
-/// Charts drawn from characters, for the tests of the baselines.
+/// The cells of a map's extent, widened by one tile on each side if the box of the map has room.
+fn around(extent: Extent, (across, up): (i32, i32)) -> CellArea {
+    let widen = |least: i32, greatest: i32, most: i32| {
+        let spare = most - (greatest - least + 1);
+        (
+            least - i32::from(spare > 1),
+            greatest + i32::from(spare > 0),
+        )
+    };
+    let (west, east) = widen(extent.least.0, extent.greatest.0, across);
+    let (south, north) = widen(extent.least.1, extent.greatest.1, up);
+    let cells = |tiles: i32| usize::try_from(tiles * TILE_SIDE).unwrap_or(0);
+    CellArea {
+        x: west * TILE_SIDE,
+        y: south * TILE_SIDE,
+        width: cells(east - west + 1),
+        height: cells(north - south + 1),
+    }
+}
+
+/// Charts from characters, for the tests of the baselines.
 #[cfg(test)]
 pub(super) mod sketch {
     use super::Chart;
@@ -301,14 +239,16 @@ pub(super) mod sketch {
     use fieldline_planner::map::{Class, Tiles};
     use fieldline_planner::roadmap::configuration_space::Footprint;
 
-    /// A chart of rows of characters, greatest y first, least x and y at cell (0, 0): `#` obstacle, `?` unknown, `R` the robot on
-    /// a free cell, anything else free. The robot is a point, so that every cell but the obstacles is passable. Beyond the
-    /// picture everything is unknown.
+    /// Makes a chart from rows of characters, and the position of the robot.
+    ///
+    /// The first row has the greatest y; the last row begins at cell (0, 0). `#` is an obstacle,
+    /// `?` unknown, `R` the robot in a free cell, any other character free. All cells outside are
+    /// unknown. The robot is a point, so only obstacles are not passable.
     pub(crate) fn chart(rows: &[&str]) -> (Chart, Point) {
         chart_for(rows, 0.05)
     }
 
-    /// The same for a robot of this radius.
+    /// Does the same for a robot of this radius, metres.
     pub(crate) fn chart_for(rows: &[&str], radius_m: f32) -> (Chart, Point) {
         let mut tiles: Box<Tiles<128, 128>> = Box::new(Tiles::new());
         let long = rows.iter().any(|row| row.len() > 200);
@@ -341,29 +281,26 @@ mod tests {
     use fieldline_planner::geometry::Cell;
 
     #[test]
-    fn what_is_drawn_is_what_is_there() {
+    fn the_chart_has_the_classes_of_the_map() {
         let (chart, _) = chart(&[
             "#####", //
             "#R.?#", "#####",
         ]);
-        let at = |x, y| chart.frame().index(Cell { x, y }).unwrap();
+        let at = |x, y| chart.area().index(Cell { x, y }).unwrap();
         assert!(chart.is_obstacle(at(0, 1)) && !chart.is_passable(at(0, 1)));
-        assert!(chart.is_way(at(2, 1)) && !chart.is_unexplored(at(2, 1)));
-        assert!(chart.is_unexplored(at(3, 1)) && !chart.is_way(at(3, 1)));
-        assert!(
-            chart.is_unexplored(at(-3, 1)),
-            "the outside is unknown, too"
-        );
-        assert_eq!(chart.frame().cell(at(-3, 1)), Cell { x: -3, y: 1 });
+        assert!(chart.is_known_passable(at(2, 1)) && !chart.is_unexplored(at(2, 1)));
+        assert!(chart.is_unexplored(at(3, 1)) && !chart.is_known_passable(at(3, 1)));
+        assert!(chart.is_unexplored(at(-3, 1)), "outside is unknown");
+        assert_eq!(chart.area().cell(at(-3, 1)), Cell { x: -3, y: 1 });
     }
 
     #[test]
     fn the_outermost_ring_is_closed() {
         let (chart, _) = chart(&["R"]);
-        let frame = chart.frame();
-        for index in 0..frame.len() {
-            let (x, y) = frame.place(index);
-            let outer = x == 0 || y == 0 || x + 1 == frame.width || y + 1 == frame.height;
+        let area = chart.area();
+        for index in 0..area.len() {
+            let (x, y) = area.place(index);
+            let outer = x == 0 || y == 0 || x + 1 == area.width || y + 1 == area.height;
             assert_eq!(chart.is_passable(index), !outer, "({x}, {y})");
         }
     }
@@ -378,13 +315,13 @@ mod tests {
             "####?####",
         ];
         let (chart, _) = chart_for(&rows, 0.2);
-        let at = |x, y| chart.frame().index(Cell { x, y }).unwrap();
+        let at = |x, y| chart.area().index(Cell { x, y }).unwrap();
         assert!(chart.is_unknown(at(4, 0)) && !chart.is_unexplored(at(4, 0)));
         assert!(chart.is_passable(at(4, 2)) && !chart.is_passable(at(4, 1)));
     }
 
     #[test]
-    fn room_is_what_can_be_come_to() {
+    fn room_counts_only_reachable_cells() {
         let rows = [
             "#######", //
             "#..#..#", "#.R#..#", "#######",
@@ -406,15 +343,15 @@ mod tests {
             "..........",
         ];
         let (chart, _) = chart_for(&rows, 0.3);
-        let at = |x, y| chart.frame().index(Cell { x, y }).unwrap();
+        let at = |x, y| chart.area().index(Cell { x, y }).unwrap();
         assert!(chart.is_passable(at(4, 3)), "its own cell");
         assert!(chart.is_passable(at(8, 3)) && !chart.is_passable(at(9, 3)));
         assert!(!chart.is_passable(at(4, 4)), "this one touches the wall");
         let (chart, _) = chart_for(&["#####", "..R..", "....."], 0.3);
-        let at = |x, y| chart.frame().index(Cell { x, y }).unwrap();
+        let at = |x, y| chart.area().index(Cell { x, y }).unwrap();
         assert!(
             chart.is_passable(at(1, 1)),
-            "failing that, what is no obstacle"
+            "in a narrow place all that is no obstacle"
         );
         assert!(!chart.is_passable(at(1, 2)));
     }

@@ -1,6 +1,7 @@
-//! Every height that was measured, beyond the window that a chip has room for.
+//! All heights measured so far.
 //!
-//! The planner's elevation window rolls on with the robot; here what leaves it is kept as it was last. Metres above the start; map cells.
+//! The planner's elevation window rolls with the robot and forgets the cells that leave it. This
+//! grid keeps the last height of every cell. Units: metres above the start; map cells.
 
 use std::collections::BTreeMap;
 
@@ -11,14 +12,14 @@ use fieldline_planner::ground::elevation::WINDOW_SIDE;
 /// Cells along a block's side.
 const SIDE: i32 = 64;
 
-/// Heights by blocks of 64 × 64 cells; NaN where none was measured.
+/// Heights in blocks of 64 × 64 cells; NaN in a cell that was not measured.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HeightGrid {
     blocks: BTreeMap<(i32, i32), Vec<f32>>,
 }
 
 impl HeightGrid {
-    /// Take over every height of the window.
+    /// Copies every height of the window.
     pub fn keep(&mut self, heights: &Heights<'_>) {
         let Cell { x, y } = heights.origin();
         for cell in
@@ -32,7 +33,7 @@ impl HeightGrid {
         }
     }
 
-    /// The last known height of a cell.
+    /// Returns the last height of a cell, metres.
     #[must_use]
     pub fn height_m(&self, cell: Cell) -> Option<f32> {
         let (block, slot) = place(cell);
@@ -41,6 +42,7 @@ impl HeightGrid {
     }
 }
 
+/// Returns the block of a cell, and its index in the block.
 fn place(cell: Cell) -> ((i32, i32), usize) {
     let block = (cell.x.div_euclid(SIDE), cell.y.div_euclid(SIDE));
     let slot = cell.y.rem_euclid(SIDE) * SIDE + cell.x.rem_euclid(SIDE);
@@ -54,7 +56,7 @@ mod tests {
     use fieldline_planner::ground::elevation::{Elevation, WINDOW_CELLS};
 
     #[test]
-    fn what_leaves_the_window_is_kept_and_what_is_measured_anew_is_changed() {
+    fn a_height_outlives_the_window_and_a_new_measurement_replaces_it() {
         let (mut bytes, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
         let mut origin = Cell { x: -32, y: -32 };
         let mut grid = HeightGrid::default();

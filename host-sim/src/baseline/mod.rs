@@ -1,13 +1,16 @@
-//! Baselines that run on the host only, for comparison with the planner: [`bvp`] and [`greedy`].
+//! Baselines to compare the planner with: [`bvp`] and [`greedy`]. They run on the host only.
 //!
-//! A baseline is a [`crate::link::Link`] without bytes ([`Session`]) over a strategy ([`Plan`]).
+//! A baseline is a [`Session`] over a [`Strategy`]. The session is a [`crate::link::Link`] without
+//! bytes.
 
 pub mod bvp;
 pub mod chart;
 pub mod greedy;
 pub mod heights;
 pub mod session;
+pub mod strategy;
 
 pub use bvp::Bvp;
 pub use greedy::GreedyFrontier;
-pub use session::{Plan, Session};
+pub use session::Session;
+pub use strategy::Strategy;

@@ -1,15 +1,18 @@
-//! A host-only planner as a [`Link`]: everything but the strategy is the device's own code.
+//! A baseline as a [`Link`]: only the strategy is its own, the rest is the code of the device.
 //!
 //! ```text
-//! observation → Map, ObstaclePoints → Chart → Plan (the strategy) → heading → Drive → command
-//!                └→ HeightGrid ───────────┘   on uneven ground, where the map's rims take the near field's place
+//! observation → Map, ObstaclePoints → Chart → Strategy → heading → Drive → command
+//!                └→ HeightGrid ───────────┘   (on uneven ground)
 //! ```
 //!
-//! Map (with the capacity of the default image, so that a run ends for want of memory where the device's would), near
-//! field, clearance and drive are those of `fieldline_planner`; so are the rules for a blocked start, for what an end means, and
-//! that nothing is planned while the drive searches for a manoeuvre. What differs from the planner's own step is what a
-//! [`Plan`] says. Departs from that step in one thing: a robot that looks around at its goal does so only where the turn is
-//! clear.
+//! Map, obstacle points, configuration space and drive come from `fieldline_planner`. The map has
+//! the capacity of the default image, so a run ends with a full map where the device's run would.
+//! The rules for a blocked start and for the reason of an end are the planner's too. While the
+//! drive searches for a recovery, nothing is planned. On uneven ground the collision checker gets
+//! the borders of the map's obstacles in place of the obstacle points.
+//!
+//! Departs from the planner's step in one point: at its goal the robot turns to the left only, and
+//! stands still if that turn is blocked.
 
 use fieldline_device::convert;
 use fieldline_device::session::{self, Boot};
@@ -25,7 +28,7 @@ use fieldline_planner::math;
 use fieldline_planner::planner::starts_blocked;
 use fieldline_planner::roadmap::configuration_space::Footprint;
 use fieldline_planner::robot::is_level;
-use fieldline_planner::status::{self, Residue};
+use fieldline_planner::status::Residue;
 use fieldline_protocol::message::{
     Command, Control, Cost, Fault, FieldRow, Finish, Identity, MAX_FRONTIERS, Observation, Path,
     Refusal, ResidualFrontier, Start, Status, TILE_SKELETON_BYTES, TILE_STAMPS, Tile,
@@ -33,120 +36,54 @@ use fieldline_protocol::message::{
 
 use super::chart::Chart;
 use super::heights::HeightGrid;
+use super::strategy::{Outcome, Scene, Strategy, UnevenScene};
 use crate::link::{Link, LinkError, LinkStats};
 
-/// Turn rate of a robot that looks around at its goal, radians a second: the planner's.
+/// Turn rate of a robot that looks around at its goal, radians per second; as in the planner.
 const LOOK_AROUND_RADPS: f32 = 0.6;
-/// Clearance kept in that turn, metres: the drive's when creeping.
+/// Clearance of that turn, metres; the planner's for a robot that creeps.
 const LOOK_AROUND_MARGIN_M: f32 = 0.025;
-/// Time for which a plan must find nothing before the exploration is over, milliseconds.
+/// Time without a goal after which the exploration ends, milliseconds.
 const EMPTY_MS: u32 = 1_000;
-/// A robot whose centre has less room than this, in cells, is boxed in: the planner's one square metre.
+/// A robot with less free space than this is boxed in, cells: 1 m², as in the planner.
 const BOX_CELLS: usize = 100;
 
-/// What a plan is made from.
-#[derive(Clone, Copy, Debug)]
-pub struct Scene<'a> {
-    /// The known space.
-    pub chart: &'a Chart,
-    /// The robot.
-    pub pose: Pose,
-    /// The host's clock, milliseconds.
-    pub time_ms: u32,
-    /// The ground, if it is to be heeded.
-    pub ground: Option<Uneven<'a>>,
-}
-
-/// Uneven ground.
-#[derive(Clone, Copy, Debug)]
-pub struct Uneven<'a> {
-    /// Its parameters.
-    pub terrain: &'a UnevenGround,
-    /// How high it lies.
-    pub heights: &'a HeightGrid,
-}
-
-/// What a strategy says of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outlook {
-    /// There is a way to unexplored space.
-    Way,
-    /// There is none.
-    Nothing,
-    /// The robot cannot move, whatever the goal.
-    Stuck,
-}
-
-/// A strategy: where to go next.
-pub trait Plan {
-    /// Forget everything.
-    fn reset(&mut self);
-
-    /// Look at the scene of this step.
-    fn plan(&mut self, scene: &Scene<'_>) -> Outlook;
-
-    /// The heading that the plan asks for at a point near the robot, radians; `None` where it asks for none.
-    fn heading_at(&self, scene: &Scene<'_>, point: Point) -> Option<f32>;
-
-    /// How far along the plan a point near the robot is, by a factor that is 1 where the robot stands and that doubles in
-    /// about 0.1 m in a passage as wide as the robot, as the planner's q does.
-    fn potential_at(&self, scene: &Scene<'_>, point: Point) -> f32;
-
-    /// Goals that were given up, and why.
-    fn dropped(&self) -> Vec<status::Frontier>;
-
-    /// Solver cycles of the last plan.
-    fn cycles(&self) -> u16 {
-        0
-    }
-
-    /// Whether the last plan's solver ran out of cycles.
-    fn is_exhausted(&self) -> bool {
-        false
-    }
-
-    /// A row of the last field around the robot.
-    fn field_row(&self, _row: u8) -> Option<FieldRow> {
-        None
-    }
-}
-
-/// A strategy at work.
+/// A session of one strategy.
 #[derive(Debug)]
-pub struct Session<P> {
+pub struct Session<S> {
     /// The strategy.
-    pub plan: P,
+    pub strategy: S,
     config: Option<Config>,
     status: Status,
     paused: bool,
     started: bool,
     empty_since_ms: Option<u32>,
     map: Box<Map<TILES, SLOTS>>,
-    near: ObstaclePoints,
+    obstacle_points: ObstaclePoints,
     heights: HeightGrid,
-    /// Goals whose ground was given up with them.
-    given_up: usize,
+    /// Number of dropped goals that `resolve_gaps` has handled.
+    resolved: usize,
     drive: Drive,
     chart: Chart,
     scratch: Vec<u32>,
     calls: u64,
 }
 
-impl<P: Plan> Session<P> {
-    /// Before a start.
+impl<S: Strategy> Session<S> {
+    /// Makes a session that was not started yet.
     #[must_use]
-    pub fn new(plan: P) -> Self {
+    pub fn new(strategy: S) -> Self {
         Self {
-            plan,
+            strategy,
             config: None,
             status: Status::Idle,
             paused: false,
             started: false,
             empty_since_ms: None,
             map: Box::new(Map::new()),
-            near: ObstaclePoints::new(),
+            obstacle_points: ObstaclePoints::new(),
             heights: HeightGrid::default(),
-            given_up: 0,
+            resolved: 0,
             drive: Drive::new(),
             chart: Chart::new(),
             scratch: vec![0; recovery::SCRATCH_WORDS],
@@ -168,12 +105,12 @@ impl<P: Plan> Session<P> {
             return Err(Refusal::BadBox);
         }
         self.map.begin(&config);
-        self.near.clear();
+        self.obstacle_points.clear();
         self.heights = HeightGrid::default();
-        self.given_up = 0;
+        self.resolved = 0;
         self.drive = Drive::new();
         self.chart = Chart::new();
-        self.plan.reset();
+        self.strategy.reset();
         self.config = Some(config);
         self.status = Status::Exploring;
         self.paused = false;
@@ -188,9 +125,10 @@ impl<P: Plan> Session<P> {
             return standing(self.status);
         }
         if !self.drive.is_searching() {
-            let disc = Footprint::new(config.robot_radius_m);
-            self.chart.draw(self.map.tiles(), &disc, input.pose.point());
-            self.look(config, input);
+            let footprint = Footprint::new(config.robot_radius_m);
+            self.chart
+                .draw(self.map.tiles(), &footprint, input.pose.point());
+            self.plan(config, input);
         }
         if self.status == Status::Exploring && self.empty_since_ms.is_none() {
             self.follow(config, input)
@@ -199,36 +137,36 @@ impl<P: Plan> Session<P> {
         }
     }
 
-    /// Let the strategy look at the scene.
-    fn look(&mut self, config: &Config, input: &Input<'_>) {
-        let ground = ground(config, &self.heights);
-        let scene = scene(&self.chart, ground, input);
-        match self.plan.plan(&scene) {
-            Outlook::Way => self.empty_since_ms = None,
-            Outlook::Stuck => self.status = Status::Fault(Fault::Stuck),
-            Outlook::Nothing => {
+    /// Lets the strategy plan.
+    fn plan(&mut self, config: &Config, input: &Input<'_>) {
+        let scene = scene(config, &self.chart, &self.heights, input);
+        match self.strategy.plan(&scene) {
+            Outcome::Path => self.empty_since_ms = None,
+            Outcome::Stuck => self.status = Status::Fault(Fault::Stuck),
+            Outcome::Nothing => {
                 let since = *self.empty_since_ms.get_or_insert(input.time_ms);
                 if input.time_ms.wrapping_sub(since) >= EMPTY_MS {
                     self.status = self.conclude(input.pose.point().cell());
                 }
             }
         }
-        if let Some(terrain) = &config.ground {
-            self.resolve_gaps(terrain);
+        if let Some(ground) = &config.ground {
+            self.resolve_gaps(ground);
         }
     }
 
-    /// Ground that stays out of view where a goal was given up is settled, as the planner settles it.
-    fn resolve_gaps(&mut self, terrain: &UnevenGround) {
-        let dropped = self.plan.dropped();
-        let new = dropped.iter().skip(self.given_up);
+    /// Marks the gaps of the ground at goals that were dropped as unobservable, as the planner
+    /// does.
+    fn resolve_gaps(&mut self, ground: &UnevenGround) {
+        let dropped = self.strategy.dropped();
+        let new = dropped.iter().skip(self.resolved);
         for frontier in new.filter(|frontier| frontier.reason == Residue::Unobservable) {
-            self.map.resolve_gaps(terrain, frontier.cell);
+            self.map.resolve_gaps(ground, frontier.cell);
         }
-        self.given_up = dropped.len();
+        self.resolved = dropped.len();
     }
 
-    /// Scans and odometry into the map and the near field.
+    /// Integrates scans and odometry into the map and the obstacle points.
     fn sense(&mut self, config: &Config, input: &Input<'_>) {
         if !self.started {
             self.started = true;
@@ -244,13 +182,13 @@ impl<P: Plan> Session<P> {
         }
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             if is_level(laser) {
-                self.near
+                self.obstacle_points
                     .update(&config.robot, &input.pose, laser, ranges_mm);
             }
         }
     }
 
-    /// Why there is nothing left within reach.
+    /// Returns the reason of the end, once no goal is reachable.
     fn conclude(&self, robot: Cell) -> Status {
         if self.map.pool_full() {
             Status::Fault(Fault::MapFull)
@@ -263,49 +201,50 @@ impl<P: Plan> Session<P> {
         }
     }
 
-    /// What is near: by the level beams, or on uneven ground, where they end on slopes, by the map.
-    fn surround(&self, config: &Config, pose: &Pose) -> CollisionChecker {
+    /// Makes the collision checker for this step.
+    ///
+    /// On uneven ground level beams end on slopes, so the obstacles come from the map.
+    fn collision_checker(&self, config: &Config, pose: &Pose) -> CollisionChecker {
         if config.ground.is_none() {
-            return CollisionChecker::new(&config.robot, pose, self.near.points());
+            return CollisionChecker::new(&config.robot, pose, self.obstacle_points.points());
         }
-        let mut surround = CollisionChecker::empty(&config.robot);
-        surround.keep_off(
-            pose,
-            obstacle_points::inflated_border_cells(self.map.tiles(), pose.point()),
-        );
-        surround
+        let mut checker = CollisionChecker::empty(&config.robot);
+        let borders = obstacle_points::inflated_border_cells(self.map.tiles(), pose.point());
+        checker.keep_off(pose, borders);
+        checker
     }
 
-    /// Drive where the plan says.
+    /// Drives along the heading of the plan.
     fn follow(&mut self, config: &Config, input: &Input<'_>) -> Command {
         let pose = input.pose;
-        let scene = scene(&self.chart, ground(config, &self.heights), input);
-        let plan = &self.plan;
-        let surround = self.surround(config, &pose);
-        let heading = plan.heading_at(&scene, pose.point());
+        let scene = scene(config, &self.chart, &self.heights, input);
+        let strategy = &self.strategy;
+        let checker = self.collision_checker(config, &pose);
+        let heading = strategy.heading_at(&scene, pose.point());
         let velocity = if heading.is_some() {
             let heading_there = |place: Place| {
-                let there = plan.heading_at(&scene, ahead(&pose, place));
+                let there = strategy.heading_at(&scene, to_map(&pose, place));
                 there.map(|heading| math::wrap(heading - pose.yaw_rad))
             };
-            let potential_there = |place: Place| plan.potential_at(&scene, ahead(&pose, place));
+            let potential_there =
+                |place: Place| strategy.potential_at(&scene, to_map(&pose, place));
             let ground = Ground {
-                surround: &surround,
+                surround: &checker,
                 heading_at: heading_there,
                 potential_at: Some(&potential_there),
             };
             self.drive
                 .follow(config, &ground, input.velocity, &mut self.scratch)
         } else {
-            look_around(config, input, &surround)
+            look_around(config, input, &checker)
         };
         Command {
             velocity: convert::wire_twist(&velocity),
             status: Status::Exploring,
             heading: convert::quantity(heading.unwrap_or(pose.yaw_rad)),
             cost: Cost {
-                cycles: self.plan.cycles(),
-                budget_exhausted: self.plan.is_exhausted(),
+                cycles: self.strategy.cycles(),
+                budget_exhausted: self.strategy.is_exhausted(),
                 ..Cost::default()
             },
             ..Command::default()
@@ -313,44 +252,43 @@ impl<P: Plan> Session<P> {
     }
 }
 
-fn scene<'a>(chart: &'a Chart, ground: Option<Uneven<'a>>, input: &Input<'_>) -> Scene<'a> {
+fn scene<'a>(
+    config: &'a Config,
+    chart: &'a Chart,
+    heights: &'a HeightGrid,
+    input: &Input<'_>,
+) -> Scene<'a> {
+    let uneven = |ground| UnevenScene { ground, heights };
     Scene {
         chart,
         pose: input.pose,
         time_ms: input.time_ms,
-        ground,
+        uneven: config.ground.as_ref().map(uneven),
     }
 }
 
-/// The ground, where the session heeds it.
-fn ground<'a>(config: &'a Config, heights: &'a HeightGrid) -> Option<Uneven<'a>> {
-    let terrain = config.ground.as_ref()?;
-    Some(Uneven { terrain, heights })
-}
-
-/// A turn on the spot where that touches nothing.
-fn look_around(config: &Config, input: &Input<'_>, surround: &CollisionChecker) -> Twist {
+/// Returns a turn on the spot, or a standstill if the turn is blocked.
+fn look_around(config: &Config, input: &Input<'_>, checker: &CollisionChecker) -> Twist {
     let turn = Twist {
         linear_mps: 0.0,
         angular_radps: LOOK_AROUND_RADPS,
     };
-    if surround.admits(turn, input.velocity, config, LOOK_AROUND_MARGIN_M) {
+    if checker.admits(turn, input.velocity, config, LOOK_AROUND_MARGIN_M) {
         turn
     } else {
         Twist::default()
     }
 }
 
-/// A place relative to the robot, in the map.
-fn ahead(pose: &Pose, place: Place) -> Point {
-    let (sin, cos) = math::sin_cos(pose.yaw_rad);
-    Point {
-        x_m: pose.x_m + place.x_m * cos - place.y_m * sin,
-        y_m: pose.y_m + place.x_m * sin + place.y_m * cos,
-    }
+/// Transforms a place from the robot frame to the map frame.
+fn to_map(pose: &Pose, place: Place) -> Point {
+    pose.to_map(Point {
+        x_m: place.x_m,
+        y_m: place.y_m,
+    })
 }
 
-/// Zero velocity, and why.
+/// Makes a command with zero velocity.
 fn standing(status: Status) -> Command {
     Command {
         status,
@@ -362,7 +300,7 @@ fn refused(refusal: Refusal) -> LinkError {
     LinkError::Refused(refusal.to_string())
 }
 
-impl<P: Plan> Link for Session<P> {
+impl<S: Strategy> Link for Session<S> {
     fn hello(&mut self) -> Result<Identity, LinkError> {
         Ok(session::identity(Boot::default(), TILES, SLOTS))
     }
@@ -412,12 +350,12 @@ impl<P: Plan> Link for Session<P> {
 
     fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
         self.calls += 1;
-        Ok(self.plan.field_row(row))
+        Ok(self.strategy.field_row(row))
     }
 
     fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
         self.calls += 1;
-        let dropped = self.plan.dropped();
+        let dropped = self.strategy.dropped();
         Ok(dropped
             .iter()
             .take(MAX_FRONTIERS)
@@ -433,7 +371,7 @@ impl<P: Plan> Link for Session<P> {
         Vec::new()
     }
 
-    /// Every call counts as a frame sent and one received.
+    /// Counts every call as one frame sent and one received.
     fn stats(&self) -> LinkStats {
         LinkStats {
             sent: self.calls,

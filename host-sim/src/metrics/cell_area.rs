@@ -8,7 +8,7 @@ use super::coverage::MAP_CELL_M;
 use crate::world::World;
 
 /// A rectangle of map cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CellArea {
     /// Column of the first cell.
     pub x: i32,
@@ -61,13 +61,55 @@ impl CellArea {
             .filter_map(move |offset| self.beside(cell, offset))
     }
 
+    /// Returns the least rectangle that contains both; one without cells does not count.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        if self.is_empty() {
+            return other;
+        } else if other.is_empty() {
+            return self;
+        }
+        let (x, y) = (self.x.min(other.x), self.y.min(other.y));
+        let end = |low: i32, cells: usize| low + cells as i32;
+        let east = end(self.x, self.width).max(end(other.x, other.width));
+        let north = end(self.y, self.height).max(end(other.y, other.height));
+        Self {
+            x,
+            y,
+            width: (east - x) as usize,
+            height: (north - y) as usize,
+        }
+    }
+
     /// The cell at an index.
     #[must_use]
     pub fn cell(&self, index: usize) -> Cell {
+        let (x, y) = self.place(index);
         Cell {
-            x: self.x + (index % self.width) as i32,
-            y: self.y + (index / self.width) as i32,
+            x: self.x + x as i32,
+            y: self.y + y as i32,
         }
+    }
+
+    /// Column and row of an index, counted from the first cell.
+    #[must_use]
+    pub fn place(&self, index: usize) -> (usize, usize) {
+        let width = self.width.max(1);
+        (index % width, index / width)
+    }
+
+    /// The four neighbours of an index that is not on the outermost ring: east, north, west,
+    /// south.
+    #[must_use]
+    pub const fn four(&self, index: usize) -> [usize; 4] {
+        [index + 1, index + self.width, index - 1, index - self.width]
+    }
+
+    /// Returns true if an index is on the outermost ring.
+    #[must_use]
+    pub fn is_rim(&self, index: usize) -> bool {
+        let (x, y) = self.place(index);
+        x == 0 || y == 0 || x + 1 >= self.width || y + 1 >= self.height
     }
 
     /// Number of cells.
@@ -100,5 +142,19 @@ mod tests {
         }
         assert_eq!(area.index(Cell { x: 8, y: 1 }), None);
         assert_eq!(area.index(Cell { x: 0, y: 0 }), None);
+    }
+
+    #[test]
+    fn the_rectangle_around_two_contains_both() {
+        let area = |x, y, width, height| CellArea {
+            x,
+            y,
+            width,
+            height,
+        };
+        let both = area(-5, 2, 10, 4).with(area(0, 0, 8, 5));
+        assert_eq!(both, area(-5, 0, 13, 6));
+        assert_eq!(area(9, 9, 0, 0).with(both), both);
+        assert_eq!(both.with(area(9, 9, 0, 4)), both);
     }
 }

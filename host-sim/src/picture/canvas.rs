@@ -1,6 +1,7 @@
-//! A page of pixels: crisp cells, antialiased lines, discs and polygons, and text.
+//! A page of pixels, with crisp cells, antialiased lines, discs and polygons, and text.
 //!
-//! Units: pixels, x to the right, y down, a pixel's centre at half. Everything drawn off the page is cut.
+//! Units: pixels, x to the right, y down; the centre of a pixel is at (0.5, 0.5). Drawing is
+//! clipped to the page.
 
 use tiny_skia::{
     Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, Transform,
@@ -18,19 +19,19 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    /// A page of one colour; sides of at least one pixel.
+    /// Makes a page of one colour, at least one pixel wide and high.
     pub(super) fn new(width: u32, height: u32, page: Rgb) -> Option<Self> {
         let mut pixmap = Pixmap::new(width.max(1), height.max(1))?;
         pixmap.fill(page.alpha(1.0));
         Some(Self { pixmap })
     }
 
-    /// The PNG file.
+    /// Encodes the page as a PNG file.
     pub(super) fn png(&self) -> Option<Vec<u8>> {
         self.pixmap.encode_png().ok()
     }
 
-    /// A rectangle without antialiasing: what a cell needs to stay crisp.
+    /// Fills a square without antialiasing, so that cells are crisp.
     pub(super) fn cell(&mut self, (x, y): (i32, i32), side: i32, colour: Rgb) {
         let (width, height) = (self.pixmap.width() as i32, self.pixmap.height() as i32);
         let colour = colour.alpha(1.0).premultiply().to_color_u8();
@@ -42,7 +43,7 @@ impl Canvas {
         }
     }
 
-    /// A filled rectangle.
+    /// Fills a rectangle.
     pub(super) fn rect(&mut self, (x, y): Spot, width: f32, height: f32, colour: Color) {
         let corners = [
             (x, y),
@@ -53,35 +54,35 @@ impl Canvas {
         self.polygon(&corners, colour);
     }
 
-    /// A filled polygon.
+    /// Fills a polygon.
     pub(super) fn polygon(&mut self, corners: &[Spot], colour: Color) {
         if let Some(path) = path(corners, true) {
             self.fill(&path, colour);
         }
     }
 
-    /// A filled disc.
+    /// Fills a disc.
     pub(super) fn disc(&mut self, (x, y): Spot, radius: f32, colour: Color) {
         if let Some(path) = PathBuilder::from_circle(x, y, radius) {
             self.fill(&path, colour);
         }
     }
 
-    /// A line through spots, with round ends.
+    /// Draws a line through spots, with round ends.
     pub(super) fn line(&mut self, spots: &[Spot], width: f32, colour: Color) {
         if let Some(path) = path(spots, false) {
             self.stroke(&path, width, colour);
         }
     }
 
-    /// The outline of a polygon.
+    /// Draws the outline of a polygon.
     pub(super) fn outline(&mut self, corners: &[Spot], width: f32, colour: Color) {
         if let Some(path) = path(corners, true) {
             self.stroke(&path, width, colour);
         }
     }
 
-    /// A text whose baseline begins at `(x, y)`; `size` is the height of an em.
+    /// Draws a text; its baseline begins at `(x, y)`, and `size` is the height of an em.
     pub(super) fn text(&mut self, (x, y): Spot, size: f32, words: &str, colour: Rgb) {
         let glyphs = outline(words, size);
         let place = Transform::from_translate(x, y);

@@ -1,22 +1,23 @@
-//! The true ground beside the robot's map: heights as colour under a light from the north-west, and what is not to be driven on.
+//! The true ground beside the robot's map: heights as colours, lit from the north-west, and ground
+//! that the robot must not drive on.
 //!
-//! Colour says the height, from the lowest ground of the world to the highest, and light the slope:
-//! `1 + 0.9 (dz/dx · (−1, 1)/√2)`, clamped. Every 0.5 m there is a contour; where the ground spans less than 1.5 m, every
-//! 0.1 m. What stands on the ground, what rises too steeply and what falls too steeply have the colours that they would have
-//! on a right map; ground that the robot cannot get to is greyed. Metres.
+//! Colour shows the height, from the lowest ground of the world to the highest. Light shows the
+//! slope: `1 + 0.9 (dz/dx · (−1, 1)/√2)`, clamped. Contours are 0.5 m apart, or 0.1 m if the ground
+//! spans less than 1.5 m. Walls, ground that rises too steeply, and ground that falls too steeply
+//! have the colours of a correct map. Unreachable ground is greyed. Units: metres.
 
 use fieldline_planner::geometry::Cell;
 
+use super::Frame;
 use super::canvas::Canvas;
 use super::palette::{self, Rgb};
-use super::{Extent, Frame};
-use crate::metrics::{GroundTruth, TrueClass, Truth, truth};
+use crate::metrics::{CellArea, GroundTruth, TrueClass, Truth, truth};
 use crate::report::grid_map::CELL_M;
 use crate::world::World;
 
-/// Spans below this have finer contours, metres.
+/// Least span of heights with contours 0.5 m apart, metres.
 const FINE_M: f64 = 1.5;
-/// How much of ground out of reach is grey.
+/// Share of grey in the colour of unreachable ground.
 const GREYED: f32 = 0.72;
 
 /// The ground of a run in an uneven world.
@@ -29,7 +30,7 @@ pub struct Ground<'a> {
 }
 
 impl<'a> Ground<'a> {
-    /// Of a world whose cells are so to the robot; heights count from that of the start in the world.
+    /// Makes it from a world and the true classes of its cells. Heights are relative to the start.
     #[must_use]
     pub fn new(world: &'a World, truth: &'a GroundTruth, start_z_m: f64) -> Self {
         let span_m = world.elevation().and_then(|ground| ground.span_m());
@@ -41,23 +42,17 @@ impl<'a> Ground<'a> {
         }
     }
 
-    /// The map cells that it is drawn on.
-    pub(super) fn extent(&self) -> Extent {
-        let frame = self.truth.area();
-        Extent {
-            x: frame.x,
-            y: frame.y,
-            width: frame.width as i32,
-            height: frame.height as i32,
-        }
+    /// Returns the map cells of the world.
+    pub(super) fn area(&self) -> CellArea {
+        *self.truth.area()
     }
 
-    /// Lowest and highest ground above the start, metres.
+    /// Returns the lowest and highest ground above the start, metres.
     pub(super) fn span_m(&self) -> [f64; 2] {
         self.span_m
     }
 
-    /// From one contour to the next, metres.
+    /// Returns the distance between two contours, metres.
     pub(super) fn contour_m(&self) -> f64 {
         let [low, high] = self.span_m;
         if high - low < FINE_M { 0.1 } else { 0.5 }
@@ -68,7 +63,7 @@ impl<'a> Ground<'a> {
         self.world.ground_m(x, y).map(|z| z - self.start_z_m)
     }
 
-    /// The colour of a cell; `None` outside of the world.
+    /// Returns the colour of a cell; `None` outside of the world.
     fn colour(&self, x: i32, y: i32) -> Option<Rgb> {
         let cell = Cell { x, y };
         self.truth.area().index(cell)?;
@@ -88,7 +83,7 @@ impl<'a> Ground<'a> {
         })
     }
 
-    /// Height, light and contours.
+    /// Returns the colour of a height, with light and contours.
     fn lit(&self, height_m: f64, x: i32, y: i32) -> Rgb {
         let [low, high] = self.span_m;
         let share = (height_m - low) / (high - low).max(1e-9);
@@ -96,7 +91,8 @@ impl<'a> Ground<'a> {
         let east = (beside(1, 0) - beside(-1, 0)) / (2.0 * CELL_M);
         let north = (beside(0, 1) - beside(0, -1)) / (2.0 * CELL_M);
         let light = 1.0 + 0.9 * core::f64::consts::FRAC_1_SQRT_2 * (east - north);
-        // Half an interval off, so that level ground at the start's height is not all contour.
+        // Contours lie half an interval off zero, so that level ground at the height of the start
+        // is not all contour.
         let band = |z: f64| (z / self.contour_m() + 0.5).floor();
         let contour = band(height_m) != band(beside(1, 0)) || band(height_m) != band(beside(0, -1));
         let light = light.clamp(0.55, 1.2) * if contour { 0.84 } else { 1.0 };
@@ -104,12 +100,12 @@ impl<'a> Ground<'a> {
     }
 }
 
-/// The colour of ground out of reach.
+/// Returns the colour of unreachable ground.
 pub(super) fn greyed(bare: Rgb) -> Rgb {
     bare.mix(palette::UNKNOWN, GREYED)
 }
 
-/// Every cell of the ground.
+/// Draws every cell of the ground.
 pub(super) fn cells(canvas: &mut Canvas, frame: &Frame, ground: &Ground<'_>) {
     for row in 0..frame.rows {
         for column in 0..frame.columns {

@@ -1,4 +1,4 @@
-//! What lies on the map, from the ground up: cells, field, skeleton, arrows, path, marks.
+//! The layers of the map picture, from the bottom up: cells, field, skeleton, arrows, path, marks.
 
 use fieldline_protocol::message::FIELD_SIDE;
 
@@ -9,14 +9,14 @@ use crate::report::grid_map::{CELL_M, MapCell};
 use crate::report::tum::Stamped;
 use crate::trial::snapshot::{Window, WindowCell};
 
-/// Cells between grid lines: 5 m.
+/// Distance between grid lines, cells: 5 m.
 const GRID_CELLS: i32 = 50;
-/// Window cells between arrows.
+/// Distance between arrows, window cells.
 const ARROW_STEP: usize = 3;
-/// Colours that the path is cut into.
+/// Number of colours of the path.
 const PATH_SHADES: usize = 192;
 
-/// Cells, a tint where a loop was closed, and a grid of 5 m under the free ones.
+/// Draws the cells: free cells with a grid of 5 m, and tinted in closed regions.
 pub(super) fn map(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
     for row in 0..frame.rows {
         for column in 0..frame.columns {
@@ -35,7 +35,7 @@ pub(super) fn map(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
     }
 }
 
-/// The window's cells, tinted by ln q: the nearer a goal, the deeper. Obstacles of the map stay visible.
+/// Tints the cells of the window by ln q, darker near a goal. Obstacles of the map stay visible.
 pub(super) fn field(canvas: &mut Canvas, frame: &Frame, window: &Window, map: &GridMap) {
     let steepness = |q: f32| f64::from(q).max(1e-300).ln();
     let lowest = window.q.iter().filter(|q| **q > 0.0);
@@ -60,7 +60,7 @@ pub(super) fn field(canvas: &mut Canvas, frame: &Frame, window: &Window, map: &G
     }
 }
 
-/// Arrows down the potential, and the window's border.
+/// Draws arrows along −∇p, and the border of the window.
 pub(super) fn arrows(canvas: &mut Canvas, frame: &Frame, window: &Window) {
     let cells = window.cell_m / CELL_M;
     let length = (ARROW_STEP as f64 * cells * 0.62 * f64::from(frame.cell_px)) as f32;
@@ -96,7 +96,7 @@ pub(super) fn arrows(canvas: &mut Canvas, frame: &Frame, window: &Window) {
     canvas.outline(&clipped, 1.2, palette::WINDOW.alpha(0.7));
 }
 
-/// An arrow of `length` pixels, centred, pointing along a unit vector of the page.
+/// Draws an arrow of `length` pixels, centred on a spot, along a unit vector of the page.
 pub(super) fn arrow(
     canvas: &mut Canvas,
     (x, y): Spot,
@@ -122,7 +122,7 @@ pub(super) fn arrow(
     canvas.polygon(&[tip, wing(1.0), wing(-1.0)], colour);
 }
 
-/// The unit vector of ∇q in a free cell.
+/// Returns the unit vector of ∇q in a free cell; `None` where q is flat.
 pub(super) fn direction(window: &Window, x: usize, y: usize) -> Option<(f32, f32)> {
     let at = |x: usize, y: usize| f64::from(window.q[y * FIELD_SIDE + x]);
     if window.cells[y * FIELD_SIDE + x] != WindowCell::Free {
@@ -133,7 +133,7 @@ pub(super) fn direction(window: &Window, x: usize, y: usize) -> Option<(f32, f32
     (norm > 0.0).then(|| ((gx / norm) as f32, (gy / norm) as f32))
 }
 
-/// The skeleton of the free space: a line between neighbouring centre cells of 20 cm.
+/// Draws the skeleton: a line between neighbouring skeleton cells of 20 cm.
 pub(super) fn skeleton(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
     let colour = palette::SKELETON.alpha(1.0);
     let width = (frame.cell_px as f32 * 0.3).max(1.3);
@@ -143,7 +143,7 @@ pub(super) fn skeleton(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
     }
 }
 
-/// Neighbouring centre cells, in units of 20 cm.
+/// Returns the pairs of neighbouring skeleton cells, in units of 20 cm.
 pub(super) fn links<'a>(
     frame: &Frame,
     map: &'a GridMap,
@@ -158,7 +158,7 @@ pub(super) fn links<'a>(
         .flat_map(move |(x, y)| {
             let to = [(1, 0), (0, 1), (1, 1), (-1, 1)].into_iter();
             to.filter(move |&(dx, dy)| {
-                // A diagonal is a link only where no corner goes round it.
+                // A diagonal is a link only if no corner cell joins its ends.
                 let round = dx * dy != 0 && (on(x + dx, y) || on(x, y + dy));
                 on(x + dx, y + dy) && !round
             })
@@ -166,12 +166,12 @@ pub(super) fn links<'a>(
         })
 }
 
-/// The middle of a centre cell.
+/// Returns the middle of a skeleton cell.
 pub(super) fn skeleton_middle(frame: &Frame, x: i32, y: i32) -> Spot {
     frame.spot(f64::from(2 * x + 1), f64::from(2 * y + 1))
 }
 
-/// The path, coloured by time, on a white casing.
+/// Draws the path, coloured by time, with a white outline.
 pub(super) fn path(canvas: &mut Canvas, frame: &Frame, path: &[Stamped]) {
     let spots: Vec<Spot> = path.iter().map(|p| frame.metres(p.x_m, p.y_m)).collect();
     let width = (frame.cell_px as f32 * 0.5).clamp(1.6, 3.0);
@@ -189,21 +189,21 @@ pub(super) fn path(canvas: &mut Canvas, frame: &Frame, path: &[Stamped]) {
     }
 }
 
-/// A diamond on every frontier that was left.
+/// Draws a diamond on every residual frontier.
 pub(super) fn residue(canvas: &mut Canvas, frame: &Frame, residue: &[(f64, f64)]) {
     for &(x_m, y_m) in residue {
         diamond(canvas, frame.metres(x_m, y_m));
     }
 }
 
-/// The mark of a residual frontier.
+/// Draws the mark of a residual frontier.
 pub(super) fn diamond(canvas: &mut Canvas, (x, y): Spot) {
     let around = |r: f32| [(x, y - r), (x + r, y), (x, y + r), (x - r, y)];
     canvas.polygon(&around(7.0), palette::PAGE.alpha(1.0));
     canvas.polygon(&around(5.2), palette::RESIDUE.alpha(1.0));
 }
 
-/// A ring where the robot began, an arrowhead where it ended.
+/// Draws a ring at the start and an arrowhead at the end of the path.
 pub(super) fn ends(canvas: &mut Canvas, frame: &Frame, path: &[Stamped]) {
     if let (Some(first), Some(last)) = (path.first(), path.last()) {
         let size = (frame.metre_px() * 0.25).clamp(6.0, 12.0);
@@ -212,14 +212,14 @@ pub(super) fn ends(canvas: &mut Canvas, frame: &Frame, path: &[Stamped]) {
     }
 }
 
-/// The mark of the start.
+/// Draws the mark of the start.
 pub(super) fn ring(canvas: &mut Canvas, spot: Spot, radius: f32) {
     canvas.disc(spot, radius + 2.0, palette::PAGE.alpha(1.0));
     canvas.disc(spot, radius, palette::START.alpha(1.0));
     canvas.disc(spot, radius * 0.45, palette::PAGE.alpha(1.0));
 }
 
-/// The mark of the end, pointing where the robot looked.
+/// Draws the mark of the end, in the direction of the robot.
 pub(super) fn head(canvas: &mut Canvas, (x, y): Spot, yaw_rad: f64, size: f32) {
     let point = |turn: f64, reach: f32| {
         let (s, c) = (yaw_rad + turn).sin_cos();

@@ -1,11 +1,12 @@
-//! Words and keys around the map: title, scale bar, what each colour means, and the time scale of the path.
+//! Text around the map: title, scale bar, the meaning of each colour, and the time scale of the
+//! path.
 
 use super::canvas::Canvas;
 use super::ground::greyed;
 use super::palette::{self, Rgb};
 use super::{Frame, Ground, HEADER, MARGIN, Scene, layers, loops};
 
-/// Pixels from one line to the next.
+/// Distance of two lines, pixels.
 const LINE: f32 = super::LINE as f32;
 
 /// Height of the time scale, pixels.
@@ -13,14 +14,14 @@ const TIME_BAR: f32 = 118.0;
 /// Height of the scale of heights, pixels.
 const HEIGHT_BAR: f32 = 78.0;
 
-/// Two lines above the map.
+/// Draws the two lines above the map.
 pub(super) fn title(canvas: &mut Canvas, scene: &Scene<'_>) {
     let left = MARGIN as f32;
     canvas.text((left, 37.0), 23.0, scene.title, palette::INK);
     canvas.text((left, 61.0), 15.5, scene.subtitle, palette::FAINT);
 }
 
-/// A round length of up to a quarter of the map's width.
+/// Draws a bar of a round length, at most a quarter of the width of the map.
 pub(super) fn scale_bar(canvas: &mut Canvas, frame: &Frame) {
     let metres = round_length(frame.width() as f32 / frame.metre_px() / 4.0);
     let length = metres * frame.metre_px();
@@ -41,7 +42,7 @@ pub(super) fn scale_bar(canvas: &mut Canvas, frame: &Frame) {
     canvas.text(at, 14.0, &label, palette::INK);
 }
 
-/// What a map beside the robot's own is, under it.
+/// Draws a caption below a map.
 pub(super) fn caption(canvas: &mut Canvas, frame: &Frame, words: &str) {
     let at = (
         frame.left as f32,
@@ -50,14 +51,14 @@ pub(super) fn caption(canvas: &mut Canvas, frame: &Frame, words: &str) {
     canvas.text(at, 14.0, words, palette::INK);
 }
 
-/// 1, 2 or 5 times a power of ten, not above `metres` where that is at least one.
+/// Returns 1, 2 or 5 times a power of ten, at most `metres`, and at least 1.
 fn round_length(metres: f32) -> f32 {
     let lengths = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0];
     let fitting = lengths.into_iter().rfind(|length| *length <= metres);
     fitting.unwrap_or(1.0)
 }
 
-/// The keys, from `left` on.
+/// Draws the keys, from `left` on.
 pub(super) fn panel(canvas: &mut Canvas, left: i32, scene: &Scene<'_>) {
     let (left, mut y) = (left as f32, HEADER as f32 + 8.0);
     let mid = left + 13.0;
@@ -67,7 +68,7 @@ pub(super) fn panel(canvas: &mut Canvas, left: i32, scene: &Scene<'_>) {
         (palette::NEGATIVE, "negative obstacle"),
         (palette::UNKNOWN, "not measured"),
     ];
-    // On level ground nothing is negative.
+    // A flat world has no negative obstacles.
     let level = scene.ground.is_none();
     for (colour, words) in cells {
         if level && colour == palette::NEGATIVE {
@@ -112,7 +113,7 @@ pub(super) fn panel(canvas: &mut Canvas, left: i32, scene: &Scene<'_>) {
     }
 }
 
-/// The keys of the true ground: its heights above the start, and what is not to be driven on.
+/// Draws the keys of the true ground: its heights above the start, and its classes.
 fn ground_keys(canvas: &mut Canvas, left: f32, mut y: f32, ground: &Ground<'_>) {
     let [low_m, high_m] = ground.span_m();
     for i in 0..HEIGHT_BAR as i32 {
@@ -136,7 +137,7 @@ fn ground_keys(canvas: &mut Canvas, left: f32, mut y: f32, ground: &Ground<'_>) 
     }
 }
 
-/// A height above the start.
+/// Formats a height above the start.
 fn signed(height_m: f64) -> String {
     format!("{height_m:+.2} m from the start")
 }
@@ -155,7 +156,7 @@ fn label(canvas: &mut Canvas, left: f32, y: f32, words: &str) {
     canvas.text((left + 40.0, y + 5.0), 15.5, words, palette::INK);
 }
 
-/// The path's colours over simulated time.
+/// Draws the colours of the path over simulated time.
 fn time_bar(canvas: &mut Canvas, left: f32, top: f32, scene: &Scene<'_>) {
     let total_s = (scene.path.last().map_or(0, |p| p.time_ms) + 500) / 1000;
     let (x, width) = (left + 6.0, 14.0);

@@ -1,7 +1,8 @@
-//! What strategies that close loops or follow rails show: rails by age, the road, tractor point, shield, and loops given up.
+//! Loops and rails: rails by age, the path to the goal, tractor point, shield, and loops given up.
 //!
-//! Marks of closed loops are a tint of the map's free cells ([`super::layers::map`]). Rails are bands under the path, from the
-//! newest visit, dark, to the oldest, light; a centre cell that was never visited is skeleton and no more.
+//! Closed regions are a tint of the map's free cells ([`super::layers::map`]). Rails are bands
+//! below the path of the robot, from dark (the newest visit) to light (the oldest). A skeleton cell
+//! that was never visited has no band.
 
 use super::canvas::{Canvas, Spot};
 use super::layers::{links, skeleton_middle};
@@ -11,10 +12,10 @@ use crate::trial::route::{Route, middle_m};
 
 /// Side of the tractor point's square, pixels.
 const TRACTOR_PX: f32 = 10.0;
-/// Shades that rails are drawn in.
+/// Number of shades of the rails.
 const SHADES: u8 = 8;
 
-/// The visited centre cells, the oldest first so that the newest lie on top.
+/// Draws the visited skeleton cells, the oldest first, so that the newest lie on top.
 pub(super) fn rails(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
     let Some((oldest, newest)) = map.dates() else {
         return;
@@ -36,14 +37,14 @@ pub(super) fn rails(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
     }
 }
 
-/// The road, and the tractor point and the shield of the loop that is being closed.
+/// Draws the path to the goal, and tractor point and shield of the loop that is being closed.
 pub(super) fn route(canvas: &mut Canvas, frame: &Frame, route: &Route) {
     let spot = |place| {
         let [x_m, y_m] = middle_m(place);
         frame.metres(x_m, y_m)
     };
     let spots: Vec<Spot> = route.road.iter().map(|place| spot(*place)).collect();
-    road(canvas, &spots);
+    path(canvas, &spots);
     if let Some(ends) = route.shield {
         shield(canvas, ends.map(spot));
     }
@@ -52,26 +53,26 @@ pub(super) fn route(canvas: &mut Canvas, frame: &Frame, route: &Route) {
     }
 }
 
-/// Where loops were given up.
+/// Draws a cross where each loop was given up.
 pub(super) fn given_up(canvas: &mut Canvas, frame: &Frame, places: &[(f64, f64)]) {
     for &(x_m, y_m) in places {
         cross(canvas, frame.metres(x_m, y_m));
     }
 }
 
-/// The mark of a road.
-fn road(canvas: &mut Canvas, spots: &[Spot]) {
+/// Draws the path to the goal.
+fn path(canvas: &mut Canvas, spots: &[Spot]) {
     canvas.line(spots, 4.5, palette::PAGE.alpha(0.8));
     canvas.line(spots, 2.4, palette::WINDOW.alpha(1.0));
 }
 
-/// The mark of a shield.
+/// Draws a shield.
 fn shield(canvas: &mut Canvas, ends: [Spot; 2]) {
     canvas.line(&ends, 7.0, palette::PAGE.alpha(0.9));
     canvas.line(&ends, 4.0, palette::LOOP.alpha(1.0));
 }
 
-/// The mark of a tractor point.
+/// Draws a tractor point.
 fn tractor(canvas: &mut Canvas, (x, y): Spot) {
     for (side, colour) in [
         (TRACTOR_PX + 4.0, palette::PAGE),
@@ -82,7 +83,7 @@ fn tractor(canvas: &mut Canvas, (x, y): Spot) {
     }
 }
 
-/// The mark of a loop that was given up.
+/// Draws the mark of a loop that was given up.
 fn cross(canvas: &mut Canvas, (x, y): Spot) {
     for (width, colour) in [(6.0, palette::PAGE), (2.6, palette::LOOP)] {
         for side in [-1.0, 1.0] {
@@ -92,16 +93,16 @@ fn cross(canvas: &mut Canvas, (x, y): Spot) {
     }
 }
 
-/// A key of the legend: what draws its mark around a spot, and its words.
+/// A key of the legend: a function that draws its mark at a spot, and its words.
 pub(super) type Key = (fn(&mut Canvas, Spot), &'static str);
 
-/// The keys of what there is.
+/// Returns the keys of the marks in a scene.
 pub(super) fn keys(scene: &Scene<'_>) -> Vec<Key> {
     let mut keys: Vec<Key> = Vec::new();
     if scene.map.has_marks() {
         keys.push((
             |canvas, spot| patch(canvas, spot, palette::MARK),
-            "loop closed near",
+            "closed region",
         ));
     }
     if scene.map.dates().is_some() {
@@ -110,8 +111,8 @@ pub(super) fn keys(scene: &Scene<'_>) -> Vec<Key> {
     let route = scene.route;
     if route.is_some_and(|route| !route.road.is_empty()) {
         keys.push((
-            |canvas, (x, y)| road(canvas, &[(x - 13.0, y), (x + 13.0, y)]),
-            "road",
+            |canvas, (x, y)| path(canvas, &[(x - 13.0, y), (x + 13.0, y)]),
+            "path to the goal",
         ));
     }
     if route.is_some_and(|route| route.tractor.is_some()) {

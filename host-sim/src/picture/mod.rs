@@ -1,9 +1,11 @@
-//! `run.png`: the map, the skeleton, the last window's field and the path coloured by time, with a legend; what is known of loops
-//! and rails; in an uneven world the true ground beside it, in the same frame, and under both what the planner made of the last
-//! window.
+//! `run.png`: the map, the skeleton, the field of the last window, and the path coloured by time,
+//! with a legend.
 //!
-//! A map cell is a square of whole pixels, two to six but for the smallest maps, so that the map stays crisp; everything else is antialiased. North
-//! is up.
+//! Loops and rails are drawn if the strategy has them. In an uneven world the true ground lies
+//! beside the map at the same scale, and below both the planner's view of the last window.
+//!
+//! A map cell is a square of whole pixels (2 to 6; up to 14 for a small map), so the map is crisp.
+//! All else is antialiased. North is up.
 
 mod canvas;
 mod ground;
@@ -14,6 +16,7 @@ mod palette;
 mod panels;
 mod text;
 
+use crate::metrics::CellArea;
 use crate::report::GridMap;
 use crate::report::tum::Stamped;
 use crate::trial::relief::Relief;
@@ -32,89 +35,59 @@ const HEADER: i32 = 78;
 const FOOTER: i32 = 46;
 /// Pixels for the legend to the right.
 const PANEL: i32 = 236;
-/// The legend's least height, pixels; and with the ground's keys.
+/// Least height of the legend without and with the keys of the ground, pixels.
 const PANEL_HEIGHT: [i32; 2] = [470, 770];
 /// Pixels from one line of the legend to the next.
 const LINE: i32 = 29;
 /// Pixels between two maps side by side.
 const GAP: i32 = 24;
-/// The least width of the map's part, so that the title fits.
+/// Least width of the part with the map, pixels, so that the title fits.
 const LEAST_WIDTH: i32 = 420;
-/// Cells of unknown around the map.
+/// Width of the rim of unknown cells around the map, cells.
 const RIM: i32 = 3;
-/// The picture's side that a map of any size should not pass by much, pixels.
+/// Side of the picture that a large map should fit, pixels.
 const GOOD_SIDE: i32 = 1_500;
-/// The same where two maps lie side by side.
+/// Side of the picture that each of two maps side by side should fit, pixels.
 const GOOD_SIDE_OF_TWO: i32 = 1_000;
 
-/// What is drawn.
+/// Contents of the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     /// First line.
     pub title: &'a str,
     /// Second line.
     pub subtitle: &'a str,
-    /// The robot's map.
+    /// Map of the robot.
     pub map: &'a GridMap,
-    /// Where the robot went.
+    /// Path of the robot.
     pub path: &'a [Stamped],
     /// The last window.
     pub window: Option<&'a Window>,
     /// Heights and preferences in it.
     pub relief: Option<&'a Relief>,
-    /// Frontiers that were left, metres.
+    /// Residual frontiers, metres.
     pub residue: &'a [(f64, f64)],
-    /// Where the planner was going.
+    /// Path to the goal, tractor point and shield.
     pub route: Option<&'a Route>,
-    /// Where loops were given up, metres.
+    /// Places where loops were given up, metres.
     pub given_up: &'a [(f64, f64)],
     /// The true ground, in an uneven world.
     pub ground: Option<Ground<'a>>,
-    /// A map that the page must have room for too, so that the pictures of a series are of one size.
+    /// A map that must fit on the page too, so that all pictures of a series have one size.
     pub room_for: Option<&'a GridMap>,
 }
 
-/// A rectangle of map cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Extent {
-    x: i32,
-    y: i32,
-    width: i32,
-    height: i32,
-}
-
-impl Extent {
-    fn of(map: &GridMap) -> Self {
-        Self {
-            x: map.origin_x,
-            y: map.origin_y,
-            width: map.width as i32,
-            height: map.height as i32,
-        }
-    }
-
-    fn is_empty(self) -> bool {
-        self.width == 0 || self.height == 0
-    }
-
-    /// The least rectangle around two; one without cells counts for nothing.
-    fn with(self, other: Self) -> Self {
-        if self.is_empty() {
-            return other;
-        } else if other.is_empty() {
-            return self;
-        }
-        let (x, y) = (self.x.min(other.x), self.y.min(other.y));
-        Self {
-            x,
-            y,
-            width: (self.x + self.width).max(other.x + other.width) - x,
-            height: (self.y + self.height).max(other.y + other.height) - y,
-        }
+/// The cells of a map.
+fn area(map: &GridMap) -> CellArea {
+    CellArea {
+        x: map.origin_x,
+        y: map.origin_y,
+        width: map.width,
+        height: map.height,
     }
 }
 
-/// Where the map lies on the page.
+/// Place of the map on the page.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     left: i32,
@@ -127,12 +100,12 @@ struct Frame {
 }
 
 impl Frame {
-    /// A map of this extent, drawn so that `good_side` pixels are enough for it if they can be.
-    fn around(extent: Extent, good_side: i32) -> Self {
-        let side = |cells: i32| cells.max(1) + 2 * RIM;
-        let (columns, rows) = (side(extent.width), side(extent.height));
+    /// Makes a frame around cells; it fits `good_side` pixels unless its cells become too small.
+    fn around(area: CellArea, good_side: i32) -> Self {
+        let side = |cells: usize| cells.max(1) as i32 + 2 * RIM;
+        let (columns, rows) = (side(area.width), side(area.height));
         let longest = columns.max(rows);
-        // A closet is drawn larger, so that its marks do not cover it.
+        // A small map is drawn larger, so that its marks do not cover it.
         let cell_px = (good_side / longest)
             .clamp(2, 6)
             .max((LEAST_WIDTH / longest).min(14));
@@ -140,26 +113,24 @@ impl Frame {
             left: MARGIN + (LEAST_WIDTH - columns * cell_px).max(0) / 2,
             top: HEADER,
             cell_px,
-            origin_x: extent.x - RIM,
-            origin_y: extent.y - RIM,
+            origin_x: area.x - RIM,
+            origin_y: area.y - RIM,
             columns,
             rows,
         }
     }
 
-    /// The frame of what is drawn.
+    /// Makes the frame of a scene.
     fn of(scene: &Scene<'_>) -> Self {
-        let map = Extent::of(scene.map);
-        let map = scene
-            .room_for
-            .map_or(map, |room| map.with(Extent::of(room)));
+        let map = area(scene.map);
+        let map = scene.room_for.map_or(map, |room| map.with(area(room)));
         match scene.ground {
             None => Self::around(map, GOOD_SIDE),
-            Some(ground) => Self::around(map.with(ground.extent()), GOOD_SIDE_OF_TWO),
+            Some(ground) => Self::around(map.with(ground.area()), GOOD_SIDE_OF_TWO),
         }
     }
 
-    /// The same to the right of this one.
+    /// Makes the same frame to the right of this one.
     fn beside(&self) -> Self {
         Self {
             left: self.left + self.width() + GAP,
@@ -175,7 +146,7 @@ impl Frame {
         self.rows * self.cell_px
     }
 
-    /// The upper left pixel of a map cell.
+    /// Returns the upper left pixel of a map cell.
     fn pixel(&self, x: i32, y: i32) -> (i32, i32) {
         (
             self.left + (x - self.origin_x) * self.cell_px,
@@ -183,7 +154,7 @@ impl Frame {
         )
     }
 
-    /// A point in map cells (not metres).
+    /// Returns the spot of a point in map cells (not metres).
     fn spot(&self, x: f64, y: f64) -> Spot {
         let side = f64::from(self.cell_px);
         (
@@ -192,26 +163,26 @@ impl Frame {
         )
     }
 
-    /// Whether a spot lies on the map.
+    /// Returns true if a spot lies on the map.
     fn holds(&self, (x, y): Spot) -> bool {
         let within =
             |v: f32, from: i32, length: i32| v >= from as f32 && v <= (from + length) as f32;
         within(x, self.left, self.width()) && within(y, self.top, self.height())
     }
 
-    /// A point in metres.
+    /// Returns the spot of a point in metres.
     fn metres(&self, x_m: f64, y_m: f64) -> Spot {
         let cell_m = crate::report::grid_map::CELL_M;
         self.spot(x_m / cell_m, y_m / cell_m)
     }
 
-    /// Pixels of a metre.
+    /// Returns the pixels per metre.
     fn metre_px(&self) -> f32 {
         self.cell_px as f32 / crate::report::grid_map::CELL_M as f32
     }
 }
 
-/// The PNG file of a run; empty only if the page is too large for memory.
+/// Draws the PNG file of a run; empty only if the page does not fit into memory.
 #[must_use]
 pub fn run_png(scene: &Scene<'_>) -> Vec<u8> {
     let frame = Frame::of(scene);
@@ -246,7 +217,7 @@ pub fn run_png(scene: &Scene<'_>) -> Vec<u8> {
     canvas.png().unwrap_or_default()
 }
 
-/// What the robot made of it.
+/// Draws the map of the robot and all that lies on it.
 fn robots_map(canvas: &mut Canvas, frame: &Frame, scene: &Scene<'_>) {
     layers::map(canvas, frame, scene.map);
     if let Some(window) = scene.window {

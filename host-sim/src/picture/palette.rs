@@ -1,4 +1,4 @@
-//! The colours of a run's picture, chosen to stay apart for colour-blind eyes and in grey print.
+//! The colours of the picture. They are distinct to colour-blind eyes and in grey print.
 
 use tiny_skia::Color;
 
@@ -10,32 +10,32 @@ pub(super) const INK: Rgb = Rgb(0x1d, 0x23, 0x2b);
 pub(super) const FAINT: Rgb = Rgb(0x6b, 0x75, 0x82);
 /// Hairlines.
 pub(super) const HAIR: Rgb = Rgb(0xd5, 0xda, 0xe0);
-/// Cells never measured.
+/// Unknown cells.
 pub(super) const UNKNOWN: Rgb = Rgb(0xe8, 0xeb, 0xef);
 /// Free cells.
 pub(super) const FREE: Rgb = Rgb(0xff, 0xff, 0xff);
 /// Obstacle cells.
 pub(super) const OBSTACLE: Rgb = Rgb(0x2b, 0x33, 0x3d);
-/// Holes and cliffs.
+/// Negative obstacles: holes and cliffs.
 pub(super) const NEGATIVE: Rgb = Rgb(0x8a, 0x5a, 0x3b);
 /// Ground that rises too steeply.
 pub(super) const STEEP_UP: Rgb = Rgb(0x56, 0x60, 0x6c);
 /// Ground that rises too steeply from one side and falls too steeply from the other.
 pub(super) const STEEP_BOTH: Rgb = Rgb(0x70, 0x5d, 0x54);
-/// Lines of five metres.
+/// Grid lines, 5 m apart.
 pub(super) const GRID: Rgb = Rgb(0xec, 0xef, 0xf2);
 /// The skeleton.
 pub(super) const SKELETON: Rgb = Rgb(0x7f, 0xb2, 0xc4);
 /// The window and its arrows.
 pub(super) const WINDOW: Rgb = Rgb(0x1f, 0x6f, 0xb2);
-/// Where it began.
+/// Start of the path.
 pub(super) const START: Rgb = Rgb(0x1a, 0x93, 0x6f);
-/// Frontiers that were left.
+/// Residual frontiers.
 pub(super) const RESIDUE: Rgb = Rgb(0xe0, 0x8e, 0x0b);
 
-/// What belongs to a loop that is being closed: tractor point, shield; and one given up.
+/// Tractor point and shield of the loop that is being closed; loops given up.
 pub(super) const LOOP: Rgb = Rgb(0xc0, 0x1f, 0x2e);
-/// Free cells near a closed loop.
+/// Free cells of closed regions.
 pub(super) const MARK: Rgb = Rgb(0xe6, 0xf3, 0xe4);
 
 /// An opaque colour.
@@ -43,19 +43,19 @@ pub(super) const MARK: Rgb = Rgb(0xe6, 0xf3, 0xe4);
 pub(super) struct Rgb(pub(super) u8, pub(super) u8, pub(super) u8);
 
 impl Rgb {
-    /// With an opacity of `alpha` in 0..=1.
+    /// Returns the colour with an opacity of `alpha`, 0 to 1.
     pub(super) fn alpha(self, alpha: f32) -> Color {
         let opacity = (alpha.clamp(0.0, 1.0) * 255.0) as u8;
         Color::from_rgba8(self.0, self.1, self.2, opacity)
     }
 
-    /// Brighter or darker by a factor.
+    /// Returns the colour, brighter or darker by a factor.
     pub(super) fn lit(self, light: f32) -> Self {
         let channel = |v: u8| (f32::from(v) * light).clamp(0.0, 255.0) as u8;
         Self(channel(self.0), channel(self.1), channel(self.2))
     }
 
-    /// Some of the way to another colour.
+    /// Returns the mixture with a share of another colour, 0 to 1.
     pub(super) fn mix(self, other: Self, share: f32) -> Self {
         let channel = |a: u8, b: u8| (f32::from(a) + (f32::from(b) - f32::from(a)) * share) as u8;
         Self(
@@ -66,7 +66,7 @@ impl Rgb {
     }
 }
 
-/// From the first to the last moment of the path: dark violet over magenta to amber, falling in darkness all the way.
+/// Colours of the path from first to last: dark violet over magenta to amber, ever lighter.
 pub(super) fn time(share: f32) -> Rgb {
     const STOPS: [Rgb; 5] = [
         Rgb(0x2d, 0x11, 0x60),
@@ -78,7 +78,7 @@ pub(super) fn time(share: f32) -> Rgb {
     along(&STOPS, share)
 }
 
-/// The field by how near a goal is, far to near: a light blue that deepens.
+/// Colours of the field on the map, from far from a goal to near: light to deeper blue.
 pub(super) fn field(share: f32) -> Rgb {
     const STOPS: [Rgb; 3] = [
         Rgb(0xf3, 0xf8, 0xfc),
@@ -88,7 +88,7 @@ pub(super) fn field(share: f32) -> Rgb {
     along(&STOPS, share)
 }
 
-/// Rails from the newest visit to the oldest: a dark green that grows lighter all the way.
+/// Colours of rails from the newest visit to the oldest: dark to light green.
 pub(super) fn age(share: f32) -> Rgb {
     const STOPS: [Rgb; 3] = [
         Rgb(0x0b, 0x55, 0x3c),
@@ -98,7 +98,7 @@ pub(super) fn age(share: f32) -> Rgb {
     along(&STOPS, share)
 }
 
-/// Ground from the lowest to the highest: a dull teal over green to sand, growing lighter all the way.
+/// Colours of ground from the lowest to the highest: teal over green to sand, ever lighter.
 pub(super) fn height(share: f32) -> Rgb {
     const STOPS: [Rgb; 4] = [
         Rgb(0x5f, 0x93, 0x9c),
@@ -109,7 +109,7 @@ pub(super) fn height(share: f32) -> Rgb {
     along(&STOPS, share)
 }
 
-/// A preference from the strongest that repels to the strongest that attracts: orange over white to violet.
+/// Colours of preferences from repelling to attracting: orange over white to violet.
 pub(super) fn preference(share: f32) -> Rgb {
     const STOPS: [Rgb; 5] = [
         Rgb(0xb3, 0x58, 0x06),
@@ -121,7 +121,7 @@ pub(super) fn preference(share: f32) -> Rgb {
     along(&STOPS, share)
 }
 
-/// The field where it stands alone, far to near: dark blue to a pale yellow.
+/// Colours of the field in a panel, from far from a goal to near: dark blue to pale yellow.
 pub(super) fn potential(share: f32) -> Rgb {
     const STOPS: [Rgb; 5] = [
         Rgb(0x18, 0x2b, 0x4d),
@@ -133,6 +133,7 @@ pub(super) fn potential(share: f32) -> Rgb {
     along(&STOPS, share)
 }
 
+/// Returns the colour at a share of a scale, 0 to 1.
 fn along(stops: &[Rgb], share: f32) -> Rgb {
     let place = share.clamp(0.0, 1.0) * (stops.len() - 1) as f32;
     let i = (place as usize).min(stops.len() - 2);
@@ -144,7 +145,7 @@ mod tests {
     use super::{Rgb, age, height, time};
 
     #[test]
-    fn scales_of_time_height_and_age_grow_lighter_all_the_way() {
+    fn scales_of_time_height_and_age_grow_lighter() {
         let light = |Rgb(r, g, b): Rgb| {
             0.2126 * f32::from(r) + 0.7152 * f32::from(g) + 0.0722 * f32::from(b)
         };

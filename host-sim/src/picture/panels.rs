@@ -1,8 +1,10 @@
-//! The last window of a run on uneven ground, four times side by side [Maffei-Terrain, fig. 3]: the heights that were measured, the classes of
-//! the map, the preferences, and the potential.
+//! The last window on uneven ground in four panels, as in [Maffei20, fig. 3]: measured heights,
+//! classes of the map, preferences, potential.
 //!
-//! A window cell is a square of whole pixels. Heights have the colours of the true ground beside the map, from the lowest to the highest that was
-//! measured; preferences are orange where they repel, violet where they attract, and white where neither; the potential is coloured by ln q, light near a goal, with arrows along −∇p.
+//! A window cell is a square of whole pixels. Heights have the colours of the true ground, from the
+//! lowest measured height to the highest. Preferences are orange where they repel, violet where
+//! they attract, and white at 0. The potential is coloured by ln q, light near a goal, with arrows
+//! along −∇p.
 
 use fieldline_protocol::message::FIELD_SIDE;
 
@@ -14,20 +16,20 @@ use crate::report::grid_map::CELL_M;
 use crate::trial::relief::Relief;
 use crate::trial::snapshot::{Window, WindowCell};
 
-/// How many there are.
+/// Number of panels.
 const PANELS: i32 = 4;
-/// Pixels of a window cell at the least and at the most.
+/// Least and greatest side of a window cell, pixels.
 const CELL_PX: [i32; 2] = [3, 8];
-/// Window cells between arrows.
+/// Distance between arrows, window cells.
 const ARROW_STEP: usize = 4;
-/// The strongest preference that has a colour of its own.
+/// Absolute preference at the ends of the colour scale.
 const STRONGEST: f32 = 0.5;
-/// Heights that span less do not use all colours, metres.
+/// Least span of heights that uses the whole colour scale, metres.
 const LEAST_SPAN_M: f32 = 0.4;
-/// Cells of the window's side.
+/// Side of the window, cells.
 const SIDE: i32 = FIELD_SIDE as i32;
 
-/// Where the row of panels lies.
+/// Place of the row of panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Strip {
     left: i32,
@@ -35,7 +37,7 @@ pub(super) struct Strip {
     cell_px: i32,
 }
 
-/// One of them.
+/// Place of a panel.
 #[derive(Clone, Copy, Debug)]
 struct Panel {
     left: i32,
@@ -44,19 +46,19 @@ struct Panel {
 }
 
 impl Strip {
-    /// Under maps that are so wide.
+    /// Makes a strip at a place, for a width of pixels.
     pub(super) fn under(left: i32, top: i32, width: i32) -> Self {
         let [least, most] = CELL_PX;
         let cell_px = ((width - (PANELS - 1) * GAP) / (PANELS * SIDE)).clamp(least, most);
         Self { left, top, cell_px }
     }
 
-    /// Pixels across.
+    /// Returns the width, pixels.
     pub(super) fn width(&self) -> i32 {
         PANELS * SIDE * self.cell_px + (PANELS - 1) * GAP
     }
 
-    /// Pixels down.
+    /// Returns the height, pixels.
     pub(super) fn height(&self) -> i32 {
         SIDE * self.cell_px
     }
@@ -72,7 +74,7 @@ impl Strip {
 }
 
 impl Panel {
-    /// Every cell of the window by its index.
+    /// Draws every cell of the window in the colour for its index.
     fn fill(&self, canvas: &mut Canvas, colour: impl Fn(usize) -> Rgb) {
         for index in 0..FIELD_SIDE * FIELD_SIDE {
             let (x, y) = (index as i32 % SIDE, index as i32 / SIDE);
@@ -84,7 +86,7 @@ impl Panel {
         }
     }
 
-    /// A point in window cells.
+    /// Returns the spot of a point in window cells.
     fn spot(&self, x: f64, y: f64) -> Spot {
         let side = f64::from(self.cell_px);
         (
@@ -93,7 +95,7 @@ impl Panel {
         )
     }
 
-    /// Frame, caption, and where the robot is.
+    /// Draws the border, the caption and the robot.
     fn finish(&self, canvas: &mut Canvas, scene: &Scene<'_>, window: &Window, words: &str) {
         let side = f64::from(SIDE);
         let corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)];
@@ -118,7 +120,7 @@ impl Panel {
     }
 }
 
-/// All four.
+/// Draws all panels.
 pub(super) fn draw(canvas: &mut Canvas, strip: &Strip, scene: &Scene<'_>) {
     let (Some(window), Some(relief)) = (scene.window, scene.relief) else {
         return;
@@ -149,14 +151,14 @@ pub(super) fn draw(canvas: &mut Canvas, strip: &Strip, scene: &Scene<'_>) {
     }
 }
 
-/// Lowest and highest height above the start, metres.
+/// Returns the lowest and highest height above the start, metres.
 fn span_m(relief: &Relief) -> [f32; 2] {
     let known = || relief.heights_m.iter().copied().flatten();
     let low_m = known().reduce(f32::min).unwrap_or(0.0);
     [low_m, known().reduce(f32::max).unwrap_or(low_m)]
 }
 
-/// A height under a light from the north-west.
+/// Returns the colour of a height, lit from the north-west.
 fn height(relief: &Relief, [low_m, high_m]: [f32; 2], index: usize) -> Rgb {
     let (x, y) = (index % FIELD_SIDE, index / FIELD_SIDE);
     let at = |x: usize, y: usize| {
@@ -170,13 +172,13 @@ fn height(relief: &Relief, [low_m, high_m]: [f32; 2], index: usize) -> Rgb {
     let rise = |beside: Option<f32>| beside.map_or(0.0, |height_m| here - height_m);
     let (west, north) = (x.checked_sub(1).and_then(|x| at(x, y)), at(x, y + 1));
     let light = 1.0 + 3.0 * (rise(west) + rise(north));
-    // Less than the whole scale lies in its middle.
+    // A small span lies in the middle of the scale.
     let wide_m = (high_m - low_m).max(LEAST_SPAN_M);
     let share = 0.5 + (here - 0.5 * (low_m + high_m)) / wide_m;
     palette::height(share).lit(light.clamp(0.6, 1.2))
 }
 
-/// What the map holds most against driving over a window cell.
+/// Returns the colour of the worst class of the map in a window cell.
 fn class(scene: &Scene<'_>, window: &Window, index: usize) -> Rgb {
     if window.cells[index] == WindowCell::Goal {
         return palette::WINDOW;
@@ -201,7 +203,7 @@ fn class(scene: &Scene<'_>, window: &Window, index: usize) -> Rgb {
     }
 }
 
-/// A preference; where the field is not solved there is none.
+/// Returns the colour of a preference; that of unknown cells where the field is not solved.
 fn preference(relief: &Relief, window: &Window, index: usize) -> Rgb {
     match window.cells[index] {
         WindowCell::Obstacle => palette::UNKNOWN,
@@ -212,7 +214,7 @@ fn preference(relief: &Relief, window: &Window, index: usize) -> Rgb {
     }
 }
 
-/// Least and greatest preference where the field is solved.
+/// Returns the least and greatest preference where the field is solved.
 fn range(relief: &Relief, window: &Window) -> (f32, f32) {
     let cells = relief.preferences.iter().zip(&window.cells);
     let solved = || {
@@ -225,26 +227,26 @@ fn range(relief: &Relief, window: &Window) -> (f32, f32) {
     )
 }
 
-/// −ln q of the cell farthest from any goal.
+/// Returns −ln q of the cell farthest from any goal.
 fn depth(window: &Window) -> f64 {
     let reached = window.q.iter().filter(|q| **q > 0.0);
     let least = reached.fold(1.0_f32, |least, q| least.min(*q));
     (-f64::from(least).ln()).max(1e-6)
 }
 
-/// Of a cell, by ln q.
+/// Returns the colour of a cell, by ln q.
 fn potential(window: &Window, depth: f64, index: usize) -> Rgb {
     let q = window.q[index];
     match window.cells[index] {
         WindowCell::Obstacle => palette::UNKNOWN,
         WindowCell::Goal => palette::WINDOW,
-        // No way to a goal.
+        // No path to a goal.
         WindowCell::Free if q <= 0.0 => palette::UNKNOWN,
         WindowCell::Free => palette::potential((1.0 + f64::from(q).ln() / depth) as f32),
     }
 }
 
-/// Arrows along −∇p.
+/// Draws arrows along −∇p.
 fn arrows(canvas: &mut Canvas, panel: &Panel, window: &Window) {
     let length = ARROW_STEP as f32 * 0.6 * panel.cell_px as f32;
     for y in (1..FIELD_SIDE - 1).step_by(ARROW_STEP) {

@@ -1,7 +1,7 @@
-//! What can be asserted of a picture: places, colours at places, and that odd runs draw at all.
+//! Tests of places and colours, and pictures of unusual runs.
 
 use super::panels::Strip;
-use super::{Extent, FOOTER, Frame, GAP, GOOD_SIDE, Ground, MARGIN, Scene, run_png};
+use super::{FOOTER, Frame, GAP, GOOD_SIDE, Ground, MARGIN, Scene, area, run_png};
 use crate::metrics::{Footing, GroundTruth};
 use crate::report::tum::Stamped;
 use crate::report::{GridMap, MapCell};
@@ -16,10 +16,28 @@ fn decode(png: &[u8]) -> tiny_skia::Pixmap {
 }
 
 fn around(map: &GridMap) -> Frame {
-    Frame::around(Extent::of(map), GOOD_SIDE)
+    Frame::around(area(map), GOOD_SIDE)
 }
 
-/// A room of 100 × 80 cells with a wall and a door, the robot's path through it and a window around its end.
+/// Makes a scene with a map and nothing else.
+fn scene_of(map: &GridMap) -> Scene<'_> {
+    Scene {
+        title: "room · frontier · seed 1",
+        subtitle: "explored 99.2 % in 1:00 min, 7.2 m driven",
+        map,
+        path: &[],
+        window: None,
+        relief: None,
+        residue: &[],
+        route: None,
+        given_up: &[],
+        ground: None,
+        room_for: None,
+    }
+}
+
+/// Makes a room of 100 × 80 cells with a wall and a door, a path through it, and a window around
+/// the end of the path.
 fn room() -> (GridMap, Vec<Stamped>, Window) {
     let mut map = GridMap::unknown(-50, -40, 100, 80);
     for y in -38..38 {
@@ -68,17 +86,10 @@ fn room() -> (GridMap, Vec<Stamped>, Window) {
 fn colours_are_where_the_map_says() {
     let (map, path, window) = room();
     let scene = Scene {
-        title: "room · frontier · seed 1",
-        subtitle: "explored 99.2 % in 1:00 min, 7.2 m driven",
-        map: &map,
         path: &path,
         window: Some(&window),
-        relief: None,
         residue: &[(-2.0, -3.0)],
-        route: None,
-        given_up: &[],
-        ground: None,
-        room_for: None,
+        ..scene_of(&map)
     };
     let png = run_png(&scene);
     if let Ok(folder) = std::env::var("FIELDLINE_PICTURES") {
@@ -109,20 +120,8 @@ fn colours_are_where_the_map_says() {
 
 #[test]
 fn a_run_that_saw_nothing_still_has_a_picture() {
-    let scene = Scene {
-        title: "nothing",
-        subtitle: "",
-        map: &GridMap::default(),
-        path: &[],
-        window: None,
-        relief: None,
-        residue: &[],
-        route: None,
-        given_up: &[],
-        ground: None,
-        room_for: None,
-    };
-    assert!(decode(&run_png(&scene)).width() > 400);
+    let png = run_png(&scene_of(&GridMap::default()));
+    assert!(decode(&png).width() > 400);
 }
 
 #[test]
@@ -135,17 +134,8 @@ fn the_true_ground_lies_beside_the_map_in_the_same_frame() {
     let mut map = GridMap::unknown(20, 20, 40, 40);
     map.set(30, 30, MapCell::NegativeObstacle);
     let scene = Scene {
-        title: "causeway",
-        subtitle: "",
-        map: &map,
-        path: &[],
-        window: None,
-        relief: None,
-        residue: &[],
-        route: None,
-        given_up: &[],
         ground: Some(ground),
-        room_for: None,
+        ..scene_of(&map)
     };
     let (page, frame) = (decode(&run_png(&scene)), Frame::of(&scene));
     let beside = frame.beside();
@@ -162,19 +152,19 @@ fn the_true_ground_lies_beside_the_map_in_the_same_frame() {
     assert_eq!(colour(&beside, 13.05, 3.05), negative, "no floor");
     assert_eq!(colour(&beside, 0.05, 3.05), (0x2b, 0x33, 0x3d), "fence");
     assert_eq!(colour(&beside, -0.15, 3.05), unknown, "outside");
-    // Ground that is driven on is sand here, and greyed where it lies out of reach.
+    // Reachable ground is sand, unreachable ground is greyed.
     let light = |(r, g, b): (u8, u8, u8)| (r > 0xd8 && g > 0xc8, r > b);
     assert_eq!(light(colour(&beside, 4.05, 7.05)), (true, true));
     assert_eq!(light(colour(&beside, 13.05, 11.05)), (false, false));
 }
 
 #[test]
-fn the_last_window_is_shown_four_times_under_the_maps() {
+fn the_last_window_is_in_four_panels_below_the_maps() {
     let world = World::builtin("causeway").expect("listed");
     let footing = Footing::new(&world, world.starts()[0], RADIUS_M, &Limits::WORKING);
     let truth = GroundTruth::new(&world, &footing, &Limits::WORKING);
     let (map, path, window) = room();
-    // The western half lies 1 m higher, and what is farthest north is not measured; the east repels.
+    // The western half lies 1 m higher, the north is not measured, and the east repels.
     let cells = 0..61 * 61;
     let relief = Relief {
         heights_m: cells
@@ -186,17 +176,11 @@ fn the_last_window_is_shown_four_times_under_the_maps() {
             .collect(),
     };
     let scene = Scene {
-        title: "room",
-        subtitle: "",
-        map: &map,
         path: &path,
         window: Some(&window),
         relief: Some(&relief),
-        residue: &[],
-        route: None,
-        given_up: &[],
         ground: Some(Ground::new(&world, &truth, 0.0)),
-        room_for: None,
+        ..scene_of(&map)
     };
     let (page, frame) = (decode(&run_png(&scene)), Frame::of(&scene));
     let right = frame.beside();
@@ -214,7 +198,7 @@ fn the_last_window_is_shown_four_times_under_the_maps() {
     assert_eq!(colour(0, 20, 20), (0xf6, 0xe6, 0xc8), "high");
     assert_eq!(colour(0, 40, 20), (0x5f, 0x93, 0x9c), "low");
     assert_eq!(colour(0, 20, 55), unknown, "not measured");
-    // The wall is column 5 of the window, the goal at (40, 30) is column 45 of row 58.
+    // The wall is column 5 of the window. The goal at (40, 30) is column 45 of row 58.
     assert_eq!(colour(1, 5, 20), (0x2b, 0x33, 0x3d), "wall");
     assert_eq!(colour(1, 20, 20), (0xff, 0xff, 0xff), "free");
     assert_eq!(colour(1, 45, 58), (0x1f, 0x6f, 0xb2), "goal");
@@ -226,43 +210,20 @@ fn the_last_window_is_shown_four_times_under_the_maps() {
 }
 
 #[test]
-fn a_page_has_room_for_the_map_to_come() {
+fn a_page_has_room_for_a_later_map() {
     let (early, late) = (
         GridMap::unknown(0, 0, 30, 20),
         GridMap::unknown(-40, -10, 90, 120),
     );
     let size = |map, room_for| {
         let page = decode(&run_png(&Scene {
-            title: "series",
-            subtitle: "",
-            map,
-            path: &[],
-            window: None,
-            relief: None,
-            residue: &[],
-            route: None,
-            given_up: &[],
-            ground: None,
             room_for,
+            ..scene_of(map)
         }));
         (page.width(), page.height())
     };
     assert_ne!(size(&early, None), size(&late, None));
     assert_eq!(size(&early, Some(&late)), size(&late, None));
-}
-
-#[test]
-fn a_map_beyond_the_world_is_drawn_too() {
-    let extent = |x, y, width, height| Extent {
-        x,
-        y,
-        width,
-        height,
-    };
-    let both = extent(-5, 2, 10, 4).with(extent(0, 0, 8, 5));
-    assert_eq!(both, extent(-5, 0, 13, 6));
-    assert_eq!(extent(9, 9, 0, 0).with(both), both);
-    assert_eq!(both.with(extent(9, 9, 0, 4)), both);
 }
 
 #[test]
@@ -287,9 +248,9 @@ fn pixels_and_spots_agree() {
 }
 
 #[test]
-fn loops_and_rails_are_drawn_where_they_are() {
+fn loops_and_rails_are_drawn_at_their_places() {
     let (mut map, path, _) = room();
-    // Tile (-1, 0): its lower left mark, and dates of its two lower places.
+    // Tile (-1, 0): its lower left region is closed, and its two lower places have dates.
     map.overlay((-1, 0), 1, [3, 9, 0, 0]);
     let route = Route {
         tractor: Some((-40, -20)),
@@ -297,17 +258,10 @@ fn loops_and_rails_are_drawn_where_they_are() {
         road: vec![(30, -10), (30, 0)],
     };
     let scene = Scene {
-        title: "room",
-        subtitle: "",
-        map: &map,
         path: &path[..1],
-        window: None,
-        relief: None,
-        residue: &[],
         route: Some(&route),
         given_up: &[(-2.0, -3.0)],
-        ground: None,
-        room_for: None,
+        ..scene_of(&map)
     };
     let (page, frame) = (decode(&run_png(&scene)), around(&map));
     let colour = |x_m: f64, y_m: f64| {
@@ -319,10 +273,14 @@ fn loops_and_rails_are_drawn_where_they_are() {
     assert_eq!(colour(-3.9, -1.9), red, "the tractor point");
     assert_eq!(colour(2.1, -2.4), red, "the shield");
     assert_eq!(colour(-2.0, -3.0), red, "a loop given up");
-    assert_eq!(colour(3.1, -0.5), (0x1f, 0x6f, 0xb2), "the road");
-    assert_eq!(colour(-3.15, 0.15), (0xe6, 0xf3, 0xe4), "a mark");
+    assert_eq!(
+        colour(3.1, -0.5),
+        (0x1f, 0x6f, 0xb2),
+        "the path to the goal"
+    );
+    assert_eq!(colour(-3.15, 0.15), (0xe6, 0xf3, 0xe4), "a closed region");
     assert_eq!(colour(-2.25, 0.15), (0xff, 0xff, 0xff), "beside it");
-    // Beside the skeleton's own line, which lies on the band; the younger rail is the darker one.
+    // Beside the line of the skeleton, which lies on the band. The younger rail is darker.
     let band = |x_m: f64| colour(x_m, 1.56);
     assert_eq!(band(-2.5), (0xbf, 0xe5, 0xbb), "the oldest rail");
     assert_eq!(band(-0.7), (0x0b, 0x55, 0x3c), "the newest rail");

@@ -1,4 +1,4 @@
-//! Words as outlines: glyphs of a free font, Ubuntu Light, laid side by side.
+//! Text as outlines: glyphs of a free font, Ubuntu Light, side by side.
 //!
 //! Units: pixels; the baseline is y = 0, y grows downwards.
 
@@ -6,7 +6,7 @@ use epaint_default_fonts::UBUNTU_LIGHT;
 use tiny_skia::{Path, PathBuilder};
 use ttf_parser::{Face as Font, OutlineBuilder};
 
-/// The outline of `words` with an em of `size`; `None` for blanks.
+/// Returns the outline of `words` with an em of `size` pixels; `None` for blanks.
 pub(super) fn outline(words: &str, size: f32) -> Option<Path> {
     let font = Font::parse(UBUNTU_LIGHT, 0).ok()?;
     let mut pen = Pen {
@@ -15,7 +15,7 @@ pub(super) fn outline(words: &str, size: f32) -> Option<Path> {
         x: 0.0,
     };
     for glyph in words.chars().map(|letter| font.glyph_index(letter)) {
-        // Glyph 0 is the box that fonts draw for what they lack.
+        // Glyph 0 is the box for a missing character.
         let glyph = glyph.unwrap_or_default();
         font.outline_glyph(glyph, &mut pen);
         pen.x += f32::from(font.glyph_hor_advance(glyph).unwrap_or(0)) * pen.scale;
@@ -23,7 +23,7 @@ pub(super) fn outline(words: &str, size: f32) -> Option<Path> {
     pen.builder.finish()
 }
 
-/// Draws at `x`, turning the font's upward y downwards.
+/// Draws glyphs at `x`; y of the font points up and is reversed.
 struct Pen {
     builder: PathBuilder,
     scale: f32,

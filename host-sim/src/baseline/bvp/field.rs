@@ -1,13 +1,13 @@
-//! The potential over the whole known grid [Prestes et al.]: obstacles p = 1, every unexplored cell p = 0, in between
-//! ∇²p = 0, solved for q = 1 − p so that far cells keep their digits.
+//! The potential over the whole known grid [Prestes02]: p = 1 on obstacles, p = 0 in every
+//! unexplored cell, ∇²p = 0 in between. It is solved for q = 1 − p, so that far cells stay precise.
 //!
-//! A goal holds q = 2^1000 (the equation is homogeneous), which leaves f64 2074 binary orders of magnitude below it.
-//! Departs from [Prestes et al.], who relax p itself: in p a cell whose 1 − p is below the rounding of 1 is flat, and in a
-//! real building that is most of them. The baseline is better for it, never worse.
+//! A goal holds q = 2^1000. This changes nothing, because the equation is homogeneous, and leaves
+//! 2074 binary orders of magnitude below it in f64.
 //!
-//! With preferences ([`Field::prefer`]) the equation is that of [Maffei-Terrain, eq. 2], |ε| ≤ 2.
+//! Departs from [Prestes02]: the paper relaxes p itself. There, all cells whose 1 − p is below the
+//! rounding of 1 are flat, which in a real building is most of them. The baseline can only gain.
 //!
-//! Only free cells that the robot can come to are unknowns of the system, and those need no value for the others.
+//! With preferences ([`Field::prefer`]) the equation is [Maffei20, eq. 2], |ε| ≤ 2.
 //!
 //! Units: cells of the chart; headings in radians, counter-clockwise from x.
 
@@ -15,75 +15,47 @@ use fieldline_planner::config::KERNEL_CELLS;
 use fieldline_planner::geometry::{CELL_M, Cell, Point};
 use fieldline_planner::math;
 
-use super::graph::Node;
+use super::boundary::{Boundary, Kind};
 use super::multigrid::Multigrid;
-use crate::baseline::chart::{Chart, Frame};
+use crate::baseline::chart::Chart;
 
 /// q of a goal: 2^1000.
 pub(super) const GOAL: f64 = f64::from_bits((1023 + 1000) << 52);
 
-/// What a cell is in the boundary-value problem.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// Not passable, or out of the robot's reach: q = 0.
-    #[default]
-    Obstacle,
-    /// Unexplored: q = [`GOAL`].
-    Goal,
-    /// An unknown of the system, by number.
-    Free(u32),
-}
-
-/// Boundary and field.
+/// The field: a boundary and the solution for it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Field {
-    frame: Frame,
-    kinds: Vec<Kind>,
-    /// The chart's index of every unknown.
-    homes: Vec<u32>,
-    /// Unexplored cells beside free ones.
-    goals: usize,
+    boundary: Boundary,
     solver: Multigrid,
 }
 
 impl Field {
-    /// Take the boundary from the chart, keeping the field of cells that were free before. Unexplored cells for which
-    /// `is_goal` is false are free cells of the field.
+    /// Takes the boundary from the chart. Cells that were free before keep their q. Unexplored
+    /// cells for which `is_goal` is false are free.
     pub(super) fn charge(&mut self, chart: &Chart, robot: Cell, is_goal: impl Fn(Cell) -> bool) {
-        let frame = chart.frame();
-        let (kinds, homes, goals) = bounds(chart, robot, is_goal);
-        self.goals = goals;
-        if frame == self.frame && kinds == self.kinds {
+        let boundary = Boundary::new(chart, robot, is_goal);
+        if boundary == self.boundary {
             return;
         }
-        let updates = self.solver.updates;
-        let mut solver = Multigrid::new(nodes(frame, &kinds, &homes), places(frame, &homes), GOAL);
-        for (node, &home) in homes.iter().enumerate() {
-            if let Some(before) = self.value(frame.cell(home as usize)) {
+        let mut solver = Multigrid::new(boundary.nodes(), boundary.places(), GOAL);
+        for (node, cell) in boundary.cells().enumerate() {
+            if let Some(before) = self.value(cell) {
                 solver.set(node, before);
             }
         }
-        solver.updates = updates;
-        *self = Self {
-            frame,
-            kinds,
-            homes,
-            goals,
-            solver,
-        };
+        solver.updates = self.solver.updates;
+        *self = Self { boundary, solver };
     }
 
-    /// Give every free cell a preference.
-    pub(super) fn prefer(&mut self, of: impl Fn(Cell) -> f32) {
-        let cells = self
-            .homes
-            .iter()
-            .map(|&home| self.frame.cell(home as usize));
-        self.solver.prefer(cells.map(of).collect());
+    /// Sets the preference ε of every free cell.
+    pub(super) fn prefer(&mut self, epsilon: impl Fn(Cell) -> f32) {
+        self.solver
+            .prefer(self.boundary.cells().map(epsilon).collect());
     }
 
-    /// Mean of |p − p(robot)| over the free cells of the kernel around the robot that have a way to a goal
-    /// ([`fieldline_planner::field::preference`]); `None` where the robot has none.
+    /// Returns the mean of |p − p(robot)| over the free cells of the kernel around the robot that
+    /// have a path to a goal ([`fieldline_planner::field::preference`]); `None` if the robot has
+    /// none.
     pub(super) fn p_diff(&self, robot: Cell) -> Option<f64> {
         let here = self.value(robot)?;
         let half = KERNEL_CELLS as i32 / 2;
@@ -101,38 +73,38 @@ impl Field {
         Some(if count > 0.0 { sum / count } else { 0.0 })
     }
 
-    /// Whether any unexplored cell can be come to.
+    /// Returns true if the robot can reach an unexplored cell.
     pub(super) const fn has_goals(&self) -> bool {
-        self.goals > 0
+        self.boundary.has_goals()
     }
 
-    /// One multigrid cycle.
+    /// Runs one cycle of the solver.
     pub(super) fn cycle(&mut self) {
         self.solver.cycle();
     }
 
-    /// Unknowns of the system.
+    /// Returns the number of unknowns.
     pub(super) fn cells(&self) -> usize {
-        self.homes.len()
+        self.boundary.len()
     }
 
-    /// Cell updates so far.
+    /// Returns the number of cell updates so far.
     pub(super) const fn updates(&self) -> u64 {
         self.solver.updates
     }
 
-    /// What a cell is.
+    /// Returns the role of a cell.
     pub(super) fn kind(&self, cell: Cell) -> Kind {
-        let index = self.frame.index(cell);
-        index.map_or(Kind::Obstacle, |index| self.kinds[index])
+        self.boundary.kind(cell)
     }
 
-    /// q of a cell: 0 on obstacles and outside.
+    /// Returns q of a cell: 0 on obstacles and outside.
     pub(super) fn q(&self, cell: Cell) -> f64 {
-        self.frame.index(cell).map_or(0.0, |index| self.at(index))
+        let index = self.boundary.area.index(cell);
+        index.map_or(0.0, |index| self.at(index))
     }
 
-    /// q of a free cell that has one.
+    /// Returns q of a free cell, if it is above 0.
     fn value(&self, cell: Cell) -> Option<f64> {
         match self.kind(cell) {
             Kind::Free(node) => Some(self.solver.values()[node as usize]).filter(|q| *q > 0.0),
@@ -140,15 +112,17 @@ impl Field {
         }
     }
 
+    /// Returns q of a cell by its index.
     fn at(&self, index: usize) -> f64 {
-        match self.kinds[index] {
+        match self.boundary.at(index) {
             Kind::Obstacle => 0.0,
             Kind::Goal => GOAL,
             Kind::Free(node) => self.solver.values()[node as usize],
         }
     }
 
-    /// The heading of −∇p at a point of a free cell, interpolated between cell centres; `None` where there is no slope.
+    /// Returns the heading of −∇p at a point of a free cell, interpolated between cell centres;
+    /// `None` where p is flat.
     pub(super) fn heading_at(&self, point: Point) -> Option<f32> {
         self.gradient(point.cell())?;
         let (x, y) = (point.x_m / CELL_M - 0.5, point.y_m / CELL_M - 0.5);
@@ -169,36 +143,36 @@ impl Field {
                 sum = (sum.0 + weight * gx, sum.1 + weight * gy);
             }
         }
-        // The gradient's size means nothing, and f32 could not hold it.
+        // f32 cannot hold the magnitude of the gradient, and the heading does not need it.
         let size = sum.0.abs().max(sum.1.abs());
         (size > 0.0).then(|| math::atan2((sum.1 / size) as f32, (sum.0 / size) as f32))
     }
 
-    /// Twice ∇q at the centre of a free cell.
+    /// Returns 2 ∇q at the centre of a free cell.
     fn gradient(&self, cell: Cell) -> Option<(f64, f64)> {
-        let index = self.frame.index(cell)?;
-        let Kind::Free(_) = self.kinds[index] else {
+        let area = &self.boundary.area;
+        let index = area.index(cell)?;
+        let Kind::Free(_) = self.boundary.at(index) else {
             return None;
         };
-        let [east, north, west, south] = self.frame.four(index).map(|near| self.at(near));
+        let [east, north, west, south] = area.four(index).map(|near| self.at(near));
         Some((east - west, north - south))
     }
 
-    /// The way of steepest descent of p from a free cell, cell by cell: the goal it leads to and its length, or `None` where
-    /// the field has a local minimum (it has not converged yet) or is flat.
+    /// Follows the steepest descent of p from a free cell, cell by cell. Returns the goal at its
+    /// end and its length in cells; `None` if it ends in a local minimum (before convergence) or
+    /// where p is flat.
     pub(super) fn descend(&self, from: Cell) -> Option<(Cell, u32)> {
-        let mut index = self.frame.index(from)?;
-        for steps in 0..self.frame.len() as u32 {
-            if self.kinds[index] == Kind::Goal {
-                return Some((self.frame.cell(index), steps));
+        let area = &self.boundary.area;
+        let mut index = area.index(from)?;
+        for steps in 0..area.len() as u32 {
+            match self.boundary.at(index) {
+                Kind::Goal => return Some((area.cell(index), steps)),
+                Kind::Obstacle => return None,
+                Kind::Free(_) => {}
             }
-            let Kind::Free(_) = self.kinds[index] else {
-                return None;
-            };
-            let near = self.frame.four(index);
-            let best = near
-                .into_iter()
-                .max_by(|&a, &b| self.at(a).total_cmp(&self.at(b)))?;
+            let near = area.four(index).into_iter();
+            let best = near.max_by(|&a, &b| self.at(a).total_cmp(&self.at(b)))?;
             if self.at(best) <= self.at(index) {
                 return None;
             }
@@ -206,69 +180,6 @@ impl Field {
         }
         None
     }
-}
-
-/// What every cell is, the unknowns in order of their index, and the number of goals beside them.
-fn bounds(
-    chart: &Chart,
-    robot: Cell,
-    is_goal: impl Fn(Cell) -> bool,
-) -> (Vec<Kind>, Vec<u32>, usize) {
-    let frame = chart.frame();
-    let mut kinds = vec![Kind::Obstacle; frame.len()];
-    let mut pending: Vec<usize> = frame
-        .index(robot)
-        .filter(|&i| chart.is_passable(i))
-        .into_iter()
-        .collect();
-    let mut goals = 0;
-    for &start in &pending {
-        kinds[start] = Kind::Free(0);
-    }
-    while let Some(index) = pending.pop() {
-        for near in frame.four(index) {
-            if kinds[near] != Kind::Obstacle || !chart.is_passable(near) {
-                continue;
-            }
-            if chart.is_unexplored(near) && is_goal(frame.cell(near)) {
-                kinds[near] = Kind::Goal;
-                goals += 1;
-            } else {
-                kinds[near] = Kind::Free(0);
-                pending.push(near);
-            }
-        }
-    }
-    let mut homes = Vec::new();
-    for (home, kind) in (0..).zip(&mut kinds) {
-        if let Kind::Free(node) = kind {
-            *node = homes.len() as u32;
-            homes.push(home);
-        }
-    }
-    (kinds, homes, goals)
-}
-
-fn nodes(frame: Frame, kinds: &[Kind], homes: &[u32]) -> Vec<Node> {
-    let node = |&home: &u32| {
-        let near = frame.four(home as usize).map(|near| kinds[near]);
-        Node {
-            beside: near.map(|kind| match kind {
-                Kind::Free(node) => Some(node),
-                _ => None,
-            }),
-            goals: (0..4).fold(0, |bits, k| bits | u8::from(near[k] == Kind::Goal) << k),
-        }
-    };
-    homes.iter().map(node).collect()
-}
-
-fn places(frame: Frame, homes: &[u32]) -> Vec<(u32, u32)> {
-    let place = |&home: &u32| {
-        let (x, y) = frame.place(home as usize);
-        (x as u32, y as u32)
-    };
-    homes.iter().map(place).collect()
 }
 
 #[cfg(test)]
@@ -306,13 +217,10 @@ mod tests {
     }
 
     fn cells(field: &Field) -> Vec<Cell> {
-        let cells = (0..field.frame.len()).map(|index| field.frame.cell(index));
-        cells
-            .filter(|&cell| matches!(field.kind(cell), Kind::Free(_)))
-            .collect()
+        field.boundary.cells().collect()
     }
 
-    /// Largest relative change that one more relaxation of any cell would make.
+    /// Returns the greatest relative change that one more relaxation of any cell would make.
     fn residual(field: &Field) -> f64 {
         let one = |cell: Cell| {
             let near = [(1, 0), (0, 1), (-1, 0), (0, -1)];
@@ -339,7 +247,7 @@ mod tests {
         assert!(residual(&field) < 1e-12, "{:e}", residual(&field));
     }
 
-    /// As [`residual`], of the equation with these preferences.
+    /// Does the same for the equation with these preferences.
     fn residual_with(field: &Field, epsilon: impl Fn(Cell) -> f32) -> f64 {
         let one = |cell: Cell| {
             let q = |dx: i32, dy: i32| {
@@ -386,7 +294,7 @@ mod tests {
         check(&mixed, 12, 1e-2);
     }
 
-    /// A corridor one cell wide: the walls' sides are equal, so along it q is that of a line with its flows tilted.
+    /// In a corridor one cell wide only its own cells have q above 0.
     #[test]
     fn p_diff_is_the_mean_over_the_kernel() {
         let wall = "#".repeat(42);
@@ -400,7 +308,7 @@ mod tests {
             }) / GOAL
         };
         let sum: f64 = (-10..10).map(|dx| (q(dx) - q(0)).abs()).sum();
-        let p_diff = field.p_diff(home).expect("a way");
+        let p_diff = field.p_diff(home).expect("a path");
         assert!((p_diff / (sum / 19.0) - 1.0).abs() < 1e-12);
         assert_eq!(field.p_diff(Cell { x: 0, y: 0 }), None);
     }
@@ -415,9 +323,10 @@ mod tests {
         }
     }
 
-    /// p itself, or q in f64 from a goal of 1, has no slope left at the far end: q falls by 2 − √3 a cell, to 1e-343.
+    /// With a goal of 1, q would have no slope at the far end: it falls by 2 − √3 per cell, to
+    /// 1e-343.
     #[test]
-    fn a_corridor_of_sixty_metres_keeps_its_slope() {
+    fn a_corridor_of_sixty_metres_is_nowhere_flat() {
         let wall = "#".repeat(602);
         let corridor = format!("#R{}?", ".".repeat(599));
         let (field, robot) = solved(&[&wall, &corridor, &wall], 40);
@@ -435,7 +344,7 @@ mod tests {
     fn a_warm_start_needs_fewer_cycles_than_a_cold_one() {
         let (chart, robot) = chart(&ROOMS);
         let (mut field, _) = solved(&ROOMS, 30);
-        // One of the two goals is given up: it becomes a free cell, and all others keep what they had.
+        // One of the two goals is dropped. It becomes a free cell, and all others keep their q.
         let upper = Cell { x: 33, y: 13 };
         field.charge(&chart, robot.cell(), |cell| cell != upper);
         assert_eq!(field.kind(Cell { x: 33, y: 12 }), Kind::Goal);
@@ -454,7 +363,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_come_to_is_no_part_of_it() {
+    fn unreachable_cells_are_no_part_of_it() {
         let (field, robot) = solved(&["#######", "#R.#.?#", "#######"], 1);
         assert!(!field.has_goals() && field.cells() == 2);
         assert_eq!(field.kind(Cell { x: 5, y: 1 }), Kind::Obstacle);

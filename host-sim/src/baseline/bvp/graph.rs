@@ -1,4 +1,4 @@
-//! Balance equations on graphs, each coarser than the last, as the full-grid field needs them.
+//! Balance equations on a graph, and its coarser graphs, for the full-grid field.
 //!
 //! Every level has unknowns x > 0 with
 //!
@@ -6,34 +6,36 @@
 //! x_i (w_i + Σ_k f_ki) = Σ_j f_ij x_j + b_i
 //! ```
 //!
-//! where `f_ij` ≥ 0 flows from j into i, `w_i` ≥ 0 is lost to cells whose value is given, and `b_i` ≥ 0 comes from goals. On the
-//! finest level x is q itself: every f is 1, w counts the neighbours that are goals or obstacles (together f and w are 4), b
-//! is the goals' value. A coarser level scales groups of x by common factors y, and its coefficients
+//! `f_ij` ≥ 0 is the flow from j into i, `w_i` ≥ 0 the loss to cells with a given value, and `b_i`
+//! ≥ 0 the source from goals. On the finest level x is q: every f is 1, w is the number of
+//! neighbours that are goals or obstacles (the f and w of a node sum to 4), and b is the value of
+//! the goals among them. A coarser level scales groups of x by common factors y. Its coefficients
 //!
 //! ```text
 //! F_IJ = Σ f_ij x_j        W_J = Σ w_j x_j        B_I = Σ b_i
 //! ```
 //!
-//! are sums of positive numbers only, so that they keep their digits whatever the range of x. A group is a connected part of
-//! a block of 2 × 2 places: it never joins the two sides of a wall.
+//! are sums of positive numbers only, so they keep their precision over any range of x. A group is
+//! a connected part of a block of 2 × 2 places: it never joins the two sides of a wall.
 //!
-//! Preferences [Maffei-Terrain, eq. 2] tilt the flows of the finest level: of two opposite neighbours the greater x flows in by
-//! 1 + ε/2 and the smaller by 1 − ε/2, as x is at the time. What is lost, `w_j = 4 − Σ_k f_kj`, may then be a little below 0, so that a factor
-//! is kept from more than doubling what its group's neighbours and goals ask for.
+//! Preferences [Maffei20, eq. 2] tilt the flows of the finest level. Of two opposite neighbours the
+//! greater x flows in by 1 + ε/2 and the smaller by 1 − ε/2, with x as it is at the time. The loss
+//! `w_j = 4 − Σ_k f_kj` may then be slightly negative. So a factor is limited to twice what the
+//! neighbours and goals of its group ask for.
 
 use core::cmp::Ordering;
 
-/// No node, no edge.
+/// Index of no node or no edge.
 const NONE: u32 = u32::MAX;
 
-/// Nodes that are solved directly.
+/// Greatest number of nodes that is solved directly.
 pub(super) const FEW: usize = 40;
 
-/// A level; node i has the edges `starts[i]..starts[i + 1]`.
+/// A level. Node i has the edges `starts[i]..starts[i + 1]`.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Level {
     starts: Vec<u32>,
-    /// The other node of each edge.
+    /// The node that each edge comes from.
     from: Vec<u32>,
     /// f of each edge.
     flow: Vec<f64>,
@@ -43,9 +45,9 @@ pub(super) struct Level {
     outflow: Vec<f64>,
     /// x.
     pub(super) value: Vec<f64>,
-    /// Flows are tilted by preferences.
+    /// True if preferences tilt the flows.
     tilted: bool,
-    /// The coarser node of each node, and the coarser edge of each edge (none within a group).
+    /// The coarser node of each node, and the coarser edge of each edge ([`NONE`] within a group).
     group: Vec<u32>,
     group_edge: Vec<u32>,
 }
@@ -53,9 +55,9 @@ pub(super) struct Level {
 /// A cell of the finest level.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Node {
-    /// The free neighbours, by number.
+    /// The free neighbours, by number: east, north, west, south.
     pub(super) beside: [Option<u32>; 4],
-    /// Neighbours that are goals, bit k for that of `beside[k]`.
+    /// Neighbours that are goals: bit k for the place of `beside[k]`.
     pub(super) goals: u8,
 }
 
@@ -66,7 +68,7 @@ impl Node {
 }
 
 impl Level {
-    /// The finest level, for goals of the value `goal`.
+    /// Makes the finest level, with goals of the value `goal`.
     pub(super) fn finest(nodes: &[Node], goal: f64) -> Self {
         let mut level = Self::with_capacity(nodes.len());
         for node in nodes {
@@ -84,7 +86,7 @@ impl Level {
         level
     }
 
-    /// Tilt the finest level's flows by the nodes' preferences, as x is now; neighbours are in the order east, north, west, south.
+    /// Tilts the flows of the finest level by the preferences of the nodes, for the present x.
     pub(super) fn tilt(&mut self, nodes: &[Node], preferences: &[f32], goal: f64) {
         self.tilted = true;
         self.loss.fill(4.0);
@@ -125,7 +127,7 @@ impl Level {
         level
     }
 
-    /// Nodes.
+    /// Returns the number of nodes.
     pub(super) fn len(&self) -> usize {
         self.starts.len() - 1
     }
@@ -134,7 +136,7 @@ impl Level {
         self.starts[node] as usize..self.starts[node + 1] as usize
     }
 
-    /// One Gauss–Seidel sweep, in either order.
+    /// Runs one Gauss–Seidel sweep, in either order.
     pub(super) fn sweep(&mut self, backwards: bool) {
         let count = self.len();
         for k in 0..count {
@@ -150,7 +152,8 @@ impl Level {
         }
     }
 
-    /// A coarser level's structure, and the coarser places, from where this level's nodes lie.
+    /// Makes the next coarser level from the places of this level's nodes; returns it and the
+    /// places of its nodes. Its coefficients are not set yet.
     pub(super) fn coarsen(&mut self, places: &[(u32, u32)]) -> (Self, Vec<(u32, u32)>) {
         let block = |node: usize| (places[node].0 / 2, places[node].1 / 2);
         let count = self.groups(&block);
@@ -161,7 +164,7 @@ impl Level {
         (self.join(count), blocks)
     }
 
-    /// Number the connected parts of every block.
+    /// Numbers the connected parts of every block; returns their number.
     fn groups(&mut self, block: &impl Fn(usize) -> (u32, u32)) -> usize {
         self.group = vec![NONE; self.len()];
         let (mut count, mut pending) = (0, Vec::new());
@@ -185,12 +188,13 @@ impl Level {
         count as usize
     }
 
-    /// The graph of the groups.
+    /// Makes the graph of the groups.
     fn join(&mut self, count: usize) -> Self {
         let mut coarse = Self::with_capacity(count);
         let members = members(&self.group, count);
-        // The edge to each group that was met last, valid from the present group's first edge on.
-        let mut met = vec![NONE; count];
+        // The last edge to each group; it belongs to the present group if it is not before its
+        // first edge.
+        let mut last_edge = vec![NONE; count];
         self.group_edge = vec![NONE; self.from.len()];
         for (group, nodes) in members.iter().enumerate() {
             let first = coarse.from.len() as u32;
@@ -200,12 +204,12 @@ impl Level {
                     if other as usize == group {
                         continue;
                     }
-                    let known = met[other as usize];
+                    let known = last_edge[other as usize];
                     if known == NONE || known < first {
-                        met[other as usize] = coarse.from.len() as u32;
+                        last_edge[other as usize] = coarse.from.len() as u32;
                         coarse.from.push(other);
                     }
-                    self.group_edge[edge] = met[other as usize];
+                    self.group_edge[edge] = last_edge[other as usize];
                 }
             }
             coarse.starts.push(coarse.from.len() as u32);
@@ -222,7 +226,7 @@ impl Level {
         coarse
     }
 
-    /// Give the coarser level the coefficients that follow from the present x, and factors of 1.
+    /// Sets the coefficients of the coarser level for the present x, and its factors to 1.
     pub(super) fn restrict(&self, coarse: &mut Self) {
         coarse.flow.fill(0.0);
         coarse.loss.fill(0.0);
@@ -246,32 +250,32 @@ impl Level {
         }
         coarse.tilted = self.tilted;
         if self.tilted {
-            coarse.keep_from_doubling();
+            coarse.limit_factors();
         }
     }
 
-    /// No factor above 2 for neighbours' factors of 1.
-    fn keep_from_doubling(&mut self) {
+    /// Limits every factor to 2 for factors of 1 at the neighbours.
+    fn limit_factors(&mut self) {
         for node in 0..self.len() {
             let edges = self.edges(node);
             let inflow = self.flow[edges].iter().sum::<f64>() + self.source[node];
-            let wanting = 0.5 * inflow - self.outflow[node];
-            if wanting > 0.0 {
-                self.outflow[node] += wanting;
-                self.loss[node] += wanting;
+            let missing = 0.5 * inflow - self.outflow[node];
+            if missing > 0.0 {
+                self.outflow[node] += missing;
+                self.loss[node] += missing;
             }
         }
     }
 
-    /// Scale every x by its group's factor.
+    /// Scales every x by the factor of its group.
     pub(super) fn prolong(&mut self, coarse: &Self) {
         for (value, &group) in self.value.iter_mut().zip(&self.group) {
             *value *= coarse.value[group as usize];
         }
     }
 
-    /// Solve directly, the way of Grassmann, Taksar and Heyman: what is left of a column is summed anew, never subtracted.
-    /// Cost: n³/3.
+    /// Solves directly by the elimination of Grassmann, Taksar and Heyman: the rest of a column is
+    /// summed anew and never subtracted, so nothing cancels. Cost: n³/3 operations.
     pub(super) fn eliminate(&mut self) {
         let count = self.len();
         let mut flow = vec![vec![0.0; count]; count];
@@ -306,7 +310,7 @@ impl Level {
     }
 }
 
-/// The nodes of each group, ascending.
+/// Returns the nodes of each group, in ascending order.
 fn members(group: &[u32], count: usize) -> Vec<Vec<u32>> {
     let mut members = vec![Vec::new(); count];
     for (node, &group) in (0..).zip(group) {
@@ -319,7 +323,7 @@ fn members(group: &[u32], count: usize) -> Vec<Vec<u32>> {
 mod tests {
     use super::{Level, Node};
 
-    /// A corridor of `count` cells with a goal beyond its last one.
+    /// Makes a corridor of `count` cells with a goal beyond the last one.
     fn corridor(count: u32) -> Vec<Node> {
         let node = |k: u32| Node {
             beside: [
@@ -349,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn elimination_keeps_its_digits_over_hundreds_of_orders() {
+    fn elimination_is_precise_over_hundreds_of_orders() {
         let mut level = Level::finest(&corridor(400), 1.0);
         level.eliminate();
         let ratio = level.value[100] / level.value[101];
@@ -359,7 +363,8 @@ mod tests {
 
     #[test]
     fn groups_are_connected_parts_of_blocks_and_their_equations_are_sums() {
-        // Places (0,0) (1,0) and (1,1) are a block, but (0,0) is not connected with the others; (2,0) is the next block.
+        // Places (0,0), (1,0) and (1,1) are in one block, but (0,0) is not connected with the
+        // others. Place (2,1) is in the next block.
         let mut nodes = corridor(4);
         nodes[0] = Node::default();
         nodes[1].beside[0] = None;

@@ -1,28 +1,34 @@
-//! Baseline *bvp*: the frontier-guided boundary-value problem over the full grid [Prestes et al.], the method that all four
-//! papers start from.
+//! Baseline *bvp*: the boundary-value problem over the full grid [Prestes02], from which the
+//! methods of all the other papers start.
 //!
-//! Obstacles hold p = 1, every cell not measured yet p = 0, and the free cells are relaxed over the whole known grid; the robot
-//! follows −∇p from where it stands. It chooses no goal and remembers none: it is drawn to the nearest and largest
-//! frontiers, and the exploration is finished when no unexplored cell can be come to.
+//! Obstacles hold p = 1, unexplored cells p = 0, and the free cells of the whole known grid are
+//! relaxed. The robot follows −∇p from where it stands. It chooses no goal and remembers none: the
+//! nearest and largest frontiers attract it most. The exploration ends when the robot can reach no
+//! unexplored cell.
 //!
-//! What is the same as for the planner's strategy: map, clearance (cells in which the robot does not fit are obstacles, so
-//! unexplored cells among them attract nothing), drive, and the rule that ends every run: an unexplored cell that the field
-//! leads to and that comes no nearer is given up after a while ([`patience`]), with those within [`patience::DROP_RADIUS_M`] of it;
-//! they hold no value from then on but are relaxed like free cells. What is stronger than in [Prestes et al.]: the field is
-//! solved for 1 − p, to convergence, by multigrid, where a fixed number of sweeps of p leaves it flat away from the
-//! frontiers. So the paper's known failure, flattening, cannot end a run here. The other one, indecision between far goals, is
-//! in the method and stays.
+//! Shared with the planner: map, configuration space (a cell into which the robot does not fit is
+//! an obstacle, so unexplored cells among obstacles attract nothing) and drive. An unexplored cell
+//! that the field leads to and that comes no nearer is dropped, with the cells within
+//! [`progress::DROP_RADIUS_M`] of it: from then on they are relaxed like free cells. The rule is in
+//! [`progress`].
 //!
-//! On uneven ground ([`Uneven`]) it has the planner's preferences [Maffei-UnevenGround, eqs. 3 to 5], over the whole grid: every height that was
-//! ever measured counts, where the chip knows those of a window around the robot.
+//! Departs from [Prestes02]: the field is solved for 1 − p, to convergence, by multigrid. A fixed
+//! number of sweeps of p leaves it flat far from the frontiers, which ends runs. That failure of
+//! the method cannot occur here. The other failure, indecision between far goals, remains.
 //!
-//! # What it would cost on the chip
-//! See [`Work`]: the grid grows with the building, which is why this baseline lives on the host.
+//! On uneven ground ([`UnevenScene`]) it has the planner's preferences [Maffei20, eqs. 3 to 5] over
+//! the whole grid, with every height measured so far. The planner has them in a window around the
+//! robot.
+//!
+//! # Cost
+//! See [`Work`]: the grid grows with the building, so this baseline runs on the host only.
 
+mod boundary;
 mod field;
 mod graph;
 mod multigrid;
-pub mod patience;
+pub mod progress;
+mod work;
 
 use fieldline_planner::config::PreferenceMode;
 use fieldline_planner::field::height_preference::Preferences;
@@ -31,31 +37,16 @@ use fieldline_planner::math;
 use fieldline_planner::status::Frontier;
 use fieldline_protocol::message::{FIELD_SIDE, FieldRow};
 
-use super::session::{Outlook, Plan, Scene, Uneven};
-use field::{Field, GOAL, Kind};
-use patience::Patience;
+use super::strategy::{Outcome, Scene, Strategy, UnevenScene};
+use boundary::Kind;
+use field::{Field, GOAL};
+use progress::ProgressChecker;
+pub use work::Work;
 
-/// Cycles in a step at the most.
+/// Greatest number of cycles in a step.
 const MOST_CYCLES: u16 = 12;
-/// A heading that a cycle changes by less than this has converged, radians.
+/// The heading has converged if a cycle changes it by less than this, radians.
 const SETTLED_RAD: f32 = 0.01;
-
-/// What a run has cost so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
-    /// Steps.
-    pub steps: u64,
-    /// Free cells of the field, summed over the steps.
-    pub cells: u64,
-    /// Most free cells in a step.
-    pub most_cells: u64,
-    /// Cells of the known box in the largest step.
-    pub box_cells: u64,
-    /// Cell updates of the solver.
-    pub updates: u64,
-    /// Cycles.
-    pub cycles: u64,
-}
 
 /// The strategy.
 #[derive(Clone, Debug, Default)]
@@ -63,48 +54,49 @@ pub struct Bvp {
     field: Field,
     robot: Cell,
     preferences: Preferences,
-    patience: Patience,
+    progress: ProgressChecker,
     cycles: u16,
     exhausted: bool,
     work: Work,
 }
 
 impl Bvp {
-    /// At the start.
+    /// Makes the strategy for a new session.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// What the run has cost.
+    /// Returns the cost of the run so far.
     #[must_use]
     pub const fn work(&self) -> Work {
         self.work
     }
 
-    /// Set the field's boundary.
+    /// Sets the boundary of the field.
     fn charge(&mut self, scene: &Scene<'_>) {
-        let patience = &self.patience;
-        let is_goal = |cell| !patience.is_dropped(cell);
+        let progress = &self.progress;
+        let is_goal = |cell| !progress.is_dropped(cell);
         self.field.charge(scene.chart, self.robot, is_goal);
     }
 
-    /// Give every cell its preference, as flat as the field was in the step before.
-    fn prefer(&mut self, scene: &Scene<'_>, ground: &Uneven<'_>) {
-        let (terrain, heights) = (ground.terrain, ground.heights);
-        if terrain.mode == PreferenceMode::Off {
+    /// Sets the preference of every cell, for the flatness of the field of the step before.
+    fn prefer(&mut self, scene: &Scene<'_>, uneven: &UnevenScene<'_>) {
+        let (ground, heights) = (uneven.ground, uneven.heights);
+        if ground.mode == PreferenceMode::Off {
             return;
         }
-        let global = self.preferences.global(terrain);
+        let global = self.preferences.global(ground);
         let preferences = self.preferences;
         self.field.prefer(|cell| {
             let height_m = heights.height_m(cell);
             let difference_m = height_m.map(|height_m| height_m - scene.pose.z_m);
-            preferences.of_cell(terrain, global, difference_m)
+            preferences.of_cell(ground, global, difference_m)
         });
     }
 
-    /// Cycles until the heading has settled, or no slope is left to find.
+    /// Runs cycles until the heading at a point has converged and the descent reaches a goal, at
+    /// most [`MOST_CYCLES`].
     fn relax(&mut self, at: Point) {
         let mut before = None;
         self.cycles = 0;
@@ -126,48 +118,40 @@ impl Bvp {
             before = heading;
         }
     }
-
-    fn account(&mut self, box_cells: usize) {
-        let cells = self.field.cells() as u64;
-        self.work.steps += 1;
-        self.work.cells += cells;
-        self.work.most_cells = self.work.most_cells.max(cells);
-        self.work.box_cells = self.work.box_cells.max(box_cells as u64);
-        self.work.updates = self.field.updates();
-        self.work.cycles += u64::from(self.cycles);
-    }
 }
 
-impl Plan for Bvp {
+impl Strategy for Bvp {
     fn reset(&mut self) {
         *self = Self::new();
     }
 
-    fn plan(&mut self, scene: &Scene<'_>) -> Outlook {
+    fn plan(&mut self, scene: &Scene<'_>) -> Outcome {
         let at = scene.pose.point();
         self.robot = at.cell();
         self.charge(scene);
-        if !self.field.has_goals() && self.patience.try_again() {
+        if !self.field.has_goals() && self.progress.try_again() {
             self.charge(scene);
         }
         if !self.field.has_goals() {
-            return Outlook::Nothing;
+            return Outcome::Nothing;
         }
-        if let Some(ground) = &scene.ground {
-            self.prefer(scene, ground);
+        if let Some(uneven) = &scene.uneven {
+            self.prefer(scene, uneven);
         }
         self.relax(at);
         if let Some(p_diff) = self.field.p_diff(self.robot) {
             self.preferences.note(p_diff as f32);
         }
-        self.account(scene.chart.frame().len());
+        let (field, box_cells) = (&self.field, scene.chart.area().len());
+        self.work
+            .add(field.cells(), box_cells, self.cycles, field.updates());
         if let Some(goal) = self.field.descend(self.robot) {
-            self.patience.note(at, goal, scene.time_ms);
+            self.progress.note(at, goal, scene.time_ms);
         }
-        if self.patience.is_stuck() {
-            Outlook::Stuck
+        if self.progress.is_stuck() {
+            Outcome::Stuck
         } else {
-            Outlook::Way
+            Outcome::Path
         }
     }
 
@@ -181,7 +165,7 @@ impl Plan for Bvp {
     }
 
     fn dropped(&self) -> Vec<Frontier> {
-        self.patience.dropped().to_vec()
+        self.progress.dropped().to_vec()
     }
 
     fn cycles(&self) -> u16 {
@@ -192,7 +176,7 @@ impl Plan for Bvp {
         self.exhausted
     }
 
-    /// The part of the grid around the robot.
+    /// Returns a row of the part of the grid around the robot.
     fn field_row(&self, row: u8) -> Option<FieldRow> {
         let half = FIELD_SIDE as i32 / 2;
         if usize::from(row) >= FIELD_SIDE || self.field.cells() == 0 {
@@ -228,19 +212,25 @@ impl Plan for Bvp {
 #[cfg(test)]
 mod tests {
     use super::{Bvp, MOST_CYCLES, PreferenceMode};
-    use crate::baseline::chart::sketch::chart;
+    use crate::baseline::chart::{Chart, sketch::chart};
     use crate::baseline::heights::HeightGrid;
-    use crate::baseline::session::{Outlook, Plan, Scene, Uneven};
+    use crate::baseline::strategy::{Outcome, Scene, Strategy, UnevenScene};
     use fieldline_planner::config::UnevenGround;
     use fieldline_planner::geometry::{Cell, Point, Pose};
     use fieldline_planner::ground::elevation::{Elevation, WINDOW_CELLS};
     use fieldline_protocol::message::FIELD_SIDE;
 
-    fn pose(at: Point) -> Pose {
-        Pose {
+    fn scene(chart: &Chart, at: Point, time_ms: u32) -> Scene<'_> {
+        let pose = Pose {
             x_m: at.x_m,
             y_m: at.y_m,
             ..Pose::default()
+        };
+        Scene {
+            chart,
+            pose,
+            time_ms,
+            uneven: None,
         }
     }
 
@@ -249,20 +239,12 @@ mod tests {
         let (chart, robot) = chart(rows);
         let (mut bvp, mut at) = (Bvp::new(), robot);
         for step in 0..400 {
-            if chart
-                .frame()
-                .index(at.cell())
-                .is_some_and(|i| chart.is_unexplored(i))
-            {
+            let index = chart.area().index(at.cell());
+            if index.is_some_and(|index| chart.is_unexplored(index)) {
                 return Some(at.cell());
             }
-            let scene = Scene {
-                chart: &chart,
-                pose: pose(at),
-                time_ms: step * 10,
-                ground: None,
-            };
-            assert_eq!(bvp.plan(&scene), Outlook::Way);
+            let scene = scene(&chart, at, step * 10);
+            assert_eq!(bvp.plan(&scene), Outcome::Path);
             let (sin, cos) = bvp.heading_at(&scene, at)?.sin_cos();
             at.x_m += 0.05 * cos;
             at.y_m += 0.05 * sin;
@@ -285,15 +267,10 @@ mod tests {
             "#........#.........#",
             "####################",
         ];
-        // There is no door to the robot's room: nothing to come to.
+        // The robot's room has no door, so no goal is reachable.
         let (closed, robot) = chart(&rows);
-        let scene = Scene {
-            chart: &closed,
-            pose: pose(robot),
-            time_ms: 0,
-            ground: None,
-        };
-        assert_eq!(Bvp::new().plan(&scene), Outlook::Nothing);
+        let scene = scene(&closed, robot, 0);
+        assert_eq!(Bvp::new().plan(&scene), Outcome::Nothing);
         let mut opened = rows;
         opened[5] = "####..####.........#";
         assert_eq!(follow(&opened), Some(Cell { x: 18, y: 2 }));
@@ -321,9 +298,10 @@ mod tests {
         assert!(goal(larger_right) > 15, "equally far, the right is larger");
     }
 
-    /// Two ways round a block to one goal, the shorter over ground that lies lower: with preferences the robot goes the longer way.
+    /// Two paths lead round a block to one goal, the shorter over lower ground. With preferences
+    /// the robot takes the longer path.
     #[test]
-    fn preferences_bend_the_way_to_level_ground() {
+    fn preferences_turn_the_robot_to_level_ground() {
         let rows = [
             "#################", //
             "#...............#",
@@ -350,38 +328,36 @@ mod tests {
         let mut heights = HeightGrid::default();
         heights.keep(&elevation.read());
         let turn = |mode| {
-            let terrain = UnevenGround {
+            let ground = UnevenGround {
                 mode,
                 least_preference: -1.0,
                 ..UnevenGround::TABLE_I
             };
-            let ground = Uneven {
-                terrain: &terrain,
+            let uneven = UnevenScene {
+                ground: &ground,
                 heights: &heights,
             };
             let scene = Scene {
-                chart: &chart,
-                pose: pose(robot),
-                time_ms: 0,
-                ground: Some(ground),
+                uneven: Some(uneven),
+                ..scene(&chart, robot, 0)
             };
             let mut bvp = Bvp::new();
             for _ in 0..10 {
-                assert_eq!(bvp.plan(&scene), Outlook::Way);
+                assert_eq!(bvp.plan(&scene), Outcome::Path);
             }
-            bvp.heading_at(&scene, robot).expect("a way")
+            bvp.heading_at(&scene, robot).expect("a path")
         };
         assert!(
             turn(PreferenceMode::Off) < 0.0,
-            "the shorter way is to the south"
+            "the shorter path is to the south"
         );
         assert!(
             turn(PreferenceMode::Global) < 0.0,
-            "which attracts all ground alike"
+            "a global preference is the same everywhere"
         );
         assert!(
             turn(PreferenceMode::Both) > 0.0,
-            "the level one to the north"
+            "the level path is to the north"
         );
         assert!(turn(PreferenceMode::Height) > 0.0);
     }
@@ -390,14 +366,9 @@ mod tests {
     fn the_window_shown_is_the_grid_around_the_robot() {
         let (chart, robot) = chart(&["#####", "#R.?#", "#####"]);
         let mut bvp = Bvp::new();
-        assert_eq!(bvp.field_row(0), None, "nothing was solved yet");
-        let scene = Scene {
-            chart: &chart,
-            pose: pose(robot),
-            time_ms: 0,
-            ground: None,
-        };
-        assert_eq!(bvp.plan(&scene), Outlook::Way);
+        assert_eq!(bvp.field_row(0), None, "no field yet");
+        let scene = scene(&chart, robot, 0);
+        assert_eq!(bvp.plan(&scene), Outcome::Path);
         assert!(bvp.cycles() <= MOST_CYCLES && !bvp.is_exhausted());
         let row = bvp.field_row(FIELD_SIDE as u8 / 2).unwrap();
         let middle = FIELD_SIDE / 2;

@@ -1,26 +1,32 @@
-//! The solver of the full-grid field: cycles over ever coarser graphs, warm from the step before.
+//! The solver of the full-grid field: cycles over coarser and coarser graphs. Each step starts from
+//! the solution of the step before.
 //!
-//! One cycle works down from the finest level: it sums the equations of every group, solves for the groups' factors by the
-//! same means (twice on the coarse levels, a W cycle), scales, and sweeps once. The coarsest level is solved directly. With preferences the flows
-//! of the finest level are tilted anew before each cycle; under preferences beyond ±1 a cycle is 16 sweeps and nothing else.
-//! Work is counted in *cell updates*: one for a node swept, one for a node summed or scaled, and one for a node whose flows are tilted.
+//! One cycle works down from the finest level. It sums the equations of every group, solves for the
+//! factors of the groups on the next level (twice on the coarse levels: a W cycle), scales the
+//! groups, and sweeps once. The coarsest level is solved directly. With preferences the flows of
+//! the finest level are tilted anew before each cycle. With a preference beyond ±1 a cycle is
+//! [`STRONG_SWEEPS`] sweeps of the finest level.
+//!
+//! Work is counted in *cell updates*: one per node for a sweep, for summing, for scaling, and for
+//! tilting.
 
 use super::graph::{FEW, Level, Node};
 
-/// Sweeps after the factors of a level, so that steps at the groups' edges are smoothed.
+/// Sweeps after the scaling of a level; they smooth the jumps at the edges of the groups.
 const SWEEPS: usize = 1;
-/// Beyond this preference coarse levels do not help any more: factors overshoot while the flows turn round.
-const FIRM: f32 = 1.0;
-/// Sweeps that take the place of a cycle then.
+/// Beyond this preference, coarse levels do not help: the factors overshoot while the flows
+/// reverse.
+const STRONG: f32 = 1.0;
+/// Sweeps of a cycle with such preferences.
 const STRONG_SWEEPS: usize = 16;
 
-/// The levels, the finest first.
+/// The solver; its first level is the finest.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Multigrid {
     levels: Vec<Level>,
     nodes: Vec<Node>,
     goal: f64,
-    /// ε of every node, where there are preferences.
+    /// ε of every node; empty without preferences.
     preferences: Vec<f32>,
     is_strong: bool,
     backwards: bool,
@@ -29,11 +35,11 @@ pub(super) struct Multigrid {
 }
 
 impl Multigrid {
-    /// For these nodes at these places; every value is that of a goal.
+    /// Makes the levels for nodes and their places; the value of every node is that of a goal.
     pub(super) fn new(nodes: Vec<Node>, places: Vec<(u32, u32)>, goal: f64) -> Self {
         let mut levels = vec![Level::finest(&nodes, goal)];
         let mut places = places;
-        // The reached cells are connected, so they end as one group when all places have become one.
+        // The nodes are connected, so they are one group when all places are one.
         while let Some(last) = levels.last_mut()
             && last.len() > FEW
             && places.iter().any(|&place| place != (0, 0))
@@ -50,25 +56,25 @@ impl Multigrid {
         }
     }
 
-    /// q of the nodes.
+    /// Returns q of every node.
     pub(super) fn values(&self) -> &[f64] {
         self.levels.first().map_or(&[], |level| &level.value)
     }
 
-    /// Start from these.
+    /// Sets q of a node, to start from.
     pub(super) fn set(&mut self, node: usize, value: f64) {
         if let Some(level) = self.levels.first_mut() {
             level.value[node] = value;
         }
     }
 
-    /// From now on with these preferences, ε of every node.
+    /// Sets ε of every node for the next cycles.
     pub(super) fn prefer(&mut self, preferences: Vec<f32>) {
-        self.is_strong = preferences.iter().any(|epsilon| epsilon.abs() > FIRM);
+        self.is_strong = preferences.iter().any(|epsilon| epsilon.abs() > STRONG);
         self.preferences = preferences;
     }
 
-    /// One cycle.
+    /// Runs one cycle.
     pub(super) fn cycle(&mut self) {
         self.backwards = !self.backwards;
         let mut updates = 0;
@@ -88,6 +94,7 @@ impl Multigrid {
     }
 }
 
+/// Runs a cycle on the first of these levels, `times` times.
 fn descend(levels: &mut [Level], times: usize, backwards: bool, updates: &mut u64) {
     let Some((level, coarser)) = levels.split_first_mut() else {
         return;

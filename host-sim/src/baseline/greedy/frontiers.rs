@@ -1,81 +1,81 @@
-//! Frontiers and what they cost: the rule of `explore_lite`.
+//! Search for frontiers and their costs, by the rules of `explore_lite`.
 //!
-//! The free cells connected with the robot's are searched; an unknown cell with one of them among its four neighbours is a
-//! frontier cell. Frontiers are the 8-connected clusters of them; those shorter than a minimum size are ignored. The cheapest
-//! is the goal:
+//! The search covers the free cells connected with the robot's cell. An unknown cell with one of
+//! them among its four neighbours is a frontier cell. A frontier is an 8-connected cluster of
+//! frontier cells; clusters below a minimum size are ignored. The cheapest frontier is the goal:
 //!
 //! ```text
 //! cost = potential_scale · distance − gain_scale · size
 //! ```
 //!
-//! As the package does by default, the search looks at the map without inflation, so that a door as wide as the minimum size
-//! counts; whether the robot fits through is the global planner's business. A frontier is driven to at a cell with a way to it
-//! at most `APPROACH_CELLS` from one of its own, the goal tolerance of ROS 2's default planner.
+//! As in the package, the search ignores inflation, so a door as wide as the minimum size counts;
+//! the global planner decides whether the robot fits through. The path to a frontier ends at most
+//! [`APPROACH_CELLS`] from one of its cells, the goal tolerance of ROS 2's default planner.
 //!
-//! Units: metres; a frontier's size is its number of cells times the side of one.
+//! Units: metres; the size of a frontier is its number of cells times their side.
 
 use fieldline_planner::geometry::{CELL_M, Cell};
 
-use super::route::Routes;
+use super::paths::Paths;
 use super::tuning::Tuning;
 use crate::baseline::chart::Chart;
 
-/// How far from a frontier's cell the way to it may end, cells: 0.5 m.
+/// Greatest distance from a frontier cell to the end of the path to it, cells: 0.5 m.
 const APPROACH_CELLS: i32 = 5;
 
 /// A frontier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frontier {
-    /// Cells in it.
+    /// Number of cells.
     pub cells: usize,
-    /// Length of the shortest of the ways to its cells, metres.
+    /// Length of the shortest path to its cells, metres.
     pub distance_m: f32,
-    /// Its cell nearest to its centroid of those that can be approached.
+    /// The cell nearest to its centroid, among those with a path.
     pub goal: Cell,
-    /// The end of the way to that cell, by the chart's index.
+    /// Index of the end of the path to that cell, in the chart.
     pub approach: usize,
 }
 
 impl Frontier {
-    /// Cells times their side, metres.
+    /// Returns the size: cells times their side, metres.
     #[must_use]
     pub fn size_m(&self) -> f32 {
         self.cells as f32 * CELL_M
     }
 
-    /// The cost; the least is the best.
+    /// Returns the cost; the least is the best.
     #[must_use]
     pub fn cost(&self, tuning: &Tuning) -> f32 {
         tuning.potential_scale * self.distance_m - tuning.gain_scale * self.size_m()
     }
 }
 
-/// What a search found.
+/// Result of a search.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Found {
-    /// Frontiers of at least the minimum size with a way to them, the cheapest first; of equal ones the one of least index first.
+    /// Frontiers with a path, the cheapest first; equal ones in the order of their indices.
     pub frontiers: Vec<Frontier>,
-    /// Those without a way: a cell of each, and how many it has.
+    /// Frontiers without a path: a cell of each, and its number of cells.
     pub unreachable: Vec<(Cell, usize)>,
 }
 
-/// All frontiers of at least the minimum size.
+/// Finds all frontiers of at least the minimum size.
 #[must_use]
-pub fn search(chart: &Chart, routes: &Routes, robot: Cell, tuning: &Tuning) -> Found {
+pub fn search(chart: &Chart, paths: &Paths, robot: Cell, tuning: &Tuning) -> Found {
     let mut open = frontier_cells(chart, robot);
     let mut found = Found::default();
     for first in 0..open.len() {
         if !open[first] {
             continue;
         }
-        let cells = cluster(&mut open, chart.frame().width, first);
-        // A hair is taken off against rounding: 0.75 m are eight cells, 0.8 m too.
+        let cells = cluster(&mut open, chart.area().width, first);
+        // 0.1 mm less, against rounding: eight cells pass for 0.75 m and for 0.8 m.
         if (cells.len() as f32) * CELL_M > tuning.min_frontier_size_m - 1e-4 {
-            match frontier(chart, routes, &cells) {
+            match frontier(chart, paths, &cells) {
                 Some(frontier) => found.frontiers.push(frontier),
                 None => found
                     .unreachable
-                    .push((chart.frame().cell(first), cells.len())),
+                    .push((chart.area().cell(first), cells.len())),
             }
         }
     }
@@ -85,9 +85,9 @@ pub fn search(chart: &Chart, routes: &Routes, robot: Cell, tuning: &Tuning) -> F
     found
 }
 
-/// The unknown cells beside free cells that are connected with the robot's.
+/// Marks the unknown cells beside free cells that are connected with the robot's cell.
 fn frontier_cells(chart: &Chart, robot: Cell) -> Vec<bool> {
-    let frame = chart.frame();
+    let frame = chart.area();
     let mut frontier = vec![false; frame.len()];
     let mut seen = vec![false; frame.len()];
     let mut pending: Vec<usize> = frame.index(robot).into_iter().collect();
@@ -107,7 +107,7 @@ fn frontier_cells(chart: &Chart, robot: Cell) -> Vec<bool> {
     frontier
 }
 
-/// Take the 8-connected cluster that `first` is in out of `open`.
+/// Removes the 8-connected cluster around `first` from `open` and returns it.
 fn cluster(open: &mut [bool], width: usize, first: usize) -> Vec<usize> {
     let mut cells = vec![first];
     open[first] = false;
@@ -126,37 +126,39 @@ fn cluster(open: &mut [bool], width: usize, first: usize) -> Vec<usize> {
     cells
 }
 
-/// The cell with a way to it that is nearest to a cell, within the tolerance; the first one of equal ones.
-fn approach(chart: &Chart, routes: &Routes, cell: Cell) -> Option<usize> {
+/// Returns the cell with a path that is nearest to a cell, within the tolerance; the first of equal
+/// ones.
+fn approach(chart: &Chart, paths: &Paths, cell: Cell) -> Option<usize> {
     let reach = -APPROACH_CELLS..=APPROACH_CELLS;
     let around = reach
         .clone()
         .flat_map(|dy| reach.clone().map(move |dx| (dx, dy)));
     let near = around.filter_map(|(dx, dy)| {
         let square = dx * dx + dy * dy;
-        let index = chart.frame().index(Cell {
+        let index = chart.area().index(Cell {
             x: cell.x + dx,
             y: cell.y + dy,
         })?;
-        routes.length_m(index)?;
+        paths.length_m(index)?;
         (square <= APPROACH_CELLS * APPROACH_CELLS).then_some((square, index))
     });
     near.min_by_key(|(square, _)| *square)
         .map(|(_, index)| index)
 }
 
-fn frontier(chart: &Chart, routes: &Routes, cells: &[usize]) -> Option<Frontier> {
-    let members = || cells.iter().map(|&index| chart.frame().cell(index));
+/// Makes a frontier from its cells; `None` if there is no path to any.
+fn frontier(chart: &Chart, paths: &Paths, cells: &[usize]) -> Option<Frontier> {
+    let members = || cells.iter().map(|&index| chart.area().cell(index));
     let count = cells.len() as f32;
     let sum = members().fold((0.0, 0.0), |sum, cell| {
         (sum.0 + cell.x as f32, sum.1 + cell.y as f32)
     });
     let from_centroid =
         |cell: Cell| (cell.x as f32 - sum.0 / count).hypot(cell.y as f32 - sum.1 / count);
-    let ways = members().filter_map(|cell| Some((cell, approach(chart, routes, cell)?)));
-    let ways: Vec<(Cell, usize)> = ways.collect();
-    let lengths = ways.iter().filter_map(|&(_, way)| routes.length_m(way));
-    let goal = ways
+    let ends = members().filter_map(|cell| Some((cell, approach(chart, paths, cell)?)));
+    let ends: Vec<(Cell, usize)> = ends.collect();
+    let lengths = ends.iter().filter_map(|&(_, end)| paths.length_m(end));
+    let goal = ends
         .iter()
         .min_by(|a, b| from_centroid(a.0).total_cmp(&from_centroid(b.0)));
     let &(goal, approach) = goal?;
@@ -173,7 +175,7 @@ mod tests {
     use super::{Found, Frontier, search};
     use crate::baseline::chart::sketch::chart_for;
     use crate::baseline::greedy::inflation::Inflation;
-    use crate::baseline::greedy::route::Routes;
+    use crate::baseline::greedy::paths::Paths;
     use crate::baseline::greedy::tuning::Tuning;
     use fieldline_planner::geometry::Cell;
 
@@ -186,19 +188,20 @@ mod tests {
 
     fn found(rows: &[&str], radius_m: f32, tuning: &Tuning) -> Found {
         let (chart, robot) = chart_for(rows, radius_m);
-        let routes = Routes::from(&chart, &Inflation::new(&chart), robot.cell());
-        search(&chart, &routes, robot.cell(), tuning)
+        let paths = Paths::from(&chart, &Inflation::new(&chart), robot.cell());
+        search(&chart, &paths, robot.cell(), tuning)
     }
 
-    /// Cells and goal of each frontier.
-    fn told(found: &Found) -> Vec<(usize, (i32, i32))> {
-        let tell = |f: &Frontier| (f.cells, (f.goal.x, f.goal.y));
-        found.frontiers.iter().map(tell).collect()
+    /// Number of cells and goal of each frontier.
+    fn summary(found: &Found) -> Vec<(usize, (i32, i32))> {
+        let row = |f: &Frontier| (f.cells, (f.goal.x, f.goal.y));
+        found.frontiers.iter().map(row).collect()
     }
 
     #[test]
     fn clusters_are_eight_connected_and_lie_in_the_unknown() {
-        // A staircase is one frontier; the cells behind the wall are another; those behind them are none.
+        // A staircase is one frontier, the cells behind the wall are another. Unknown cells behind
+        // frontier cells are none.
         let rows = [
             "############", //
             "#..????#???#",
@@ -207,7 +210,7 @@ mod tests {
             "#R.......###",
             "############",
         ];
-        let mut found = told(&found(&rows, 0.05, &tuning(0.0)));
+        let mut found = summary(&found(&rows, 0.05, &tuning(0.0)));
         found.sort_unstable();
         assert_eq!(found, [(3, (9, 3)), (4, (4, 3))]);
     }
@@ -274,8 +277,8 @@ mod tests {
             "#???????????#",
             "#############",
         ];
-        // The ring's centroid is the robot itself.
-        let found = told(&found(&rows, 0.05, &tuning(0.0)));
+        // The centroid of the ring is the robot itself.
+        let found = summary(&found(&rows, 0.05, &tuning(0.0)));
         assert!(found.len() == 1 && found[0].0 == 28, "{found:?}");
         let (x, y) = found[0].1;
         assert!(x == 1 || x == 11 || y == 1 || y == 7, "({x}, {y})");
@@ -306,7 +309,7 @@ mod tests {
             "#???############???#",
             "####################",
         ];
-        let goals = |tuning: &Tuning| told(&found(&rows, 0.05, tuning));
+        let goals = |tuning: &Tuning| summary(&found(&rows, 0.05, tuning));
         let near = goals(&tuning(0.0));
         let far = goals(&Tuning {
             potential_scale: -3.0,

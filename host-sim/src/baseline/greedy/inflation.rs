@@ -1,41 +1,49 @@
-//! How near obstacles are, and what that costs: `costmap_2d`'s inflation with its defaults, seen by navfn.
+//! Distances to obstacles, and the cost of a step: the inflation of `costmap_2d` with its defaults,
+//! as navfn sees it.
 //!
-//! A step onto a cell costs its length times 1 + 4.03·exp(−10·(d − r)), where d is the distance of the cell's centre from the nearest
-//! obstacle cell's and r the robot's radius, and its length alone from 0.55 m on. The inflation layer gives a cell
-//! 252·exp(−10·(d − r)) up to an inflation radius of 0.55 m, and navfn's cost of a step onto a cell of cost c is 50 + 0.8·c.
+//! A step onto a cell costs its length times
 //!
-//! Units: cells; distances are squared and whole.
+//! ```text
+//! 1 + 4.03 · exp(−10 · (d − r))   for d ≤ 0.55 m,   1 for more
+//! ```
+//!
+//! with d the distance from the cell's centre to the nearest obstacle cell's, and r the robot's
+//! radius, metres. The inflation layer gives a cell 252 · exp(−10 · (d − r)), and navfn's cost of a
+//! step onto a cell of cost c is 50 + 0.8 · c.
+//!
+//! Units: cells; distances are squared integers.
 
 use fieldline_planner::geometry::CELL_M;
 
-use crate::baseline::chart::{Chart, Frame};
+use crate::baseline::chart::Chart;
+use crate::metrics::CellArea;
 
-/// Least squared distance at which a cell costs no more than its length: beyond 5.5 cells, 0.55 m.
+/// Least squared distance without inflation: beyond 5.5 cells, 0.55 m.
 const FREE_FROM: u8 = 31;
-/// Cells from an obstacle that may be nearer than that.
+/// Greatest distance in x or y of a cell with inflation, cells.
 const REACH: i32 = 5;
-/// The robot's radius, cells.
+/// Radius of the robot, cells.
 const RADIUS: f32 = 3.0;
 
-/// Price of an unknown cell, per cent: navfn counts it as 253, the dearest that can be passed.
+/// Price of an unknown cell, per cent: navfn counts it as 253, the highest passable cost.
 pub const UNKNOWN_PERCENT: u32 = 506;
 
-/// Squared distances to the nearest obstacle, at most `FREE_FROM`.
+/// Squared distance from each cell to the nearest obstacle, at most `FREE_FROM`.
 #[derive(Clone, Debug, Default)]
 pub struct Inflation {
-    frame: Frame,
+    area: CellArea,
     squares: Vec<u8>,
 }
 
 impl Inflation {
-    /// Of the chart's obstacles.
+    /// Measures the distances in a chart.
     #[must_use]
     pub fn new(chart: &Chart) -> Self {
-        let frame = chart.frame();
-        let mut squares = vec![FREE_FROM; frame.len()];
-        let (width, height) = (frame.width as i32, frame.height as i32);
-        for index in (0..frame.len()).filter(|&index| chart.is_obstacle(index)) {
-            let (x, y) = frame.place(index);
+        let area = chart.area();
+        let mut squares = vec![FREE_FROM; area.len()];
+        let (width, height) = (area.width as i32, area.height as i32);
+        for index in (0..area.len()).filter(|&index| chart.is_obstacle(index)) {
+            let (x, y) = area.place(index);
             let (x, y) = (x as i32, y as i32);
             for dy in -REACH.min(y)..=REACH.min(height - 1 - y) {
                 for dx in -REACH.min(x)..=REACH.min(width - 1 - x) {
@@ -45,28 +53,28 @@ impl Inflation {
                 }
             }
         }
-        Self { frame, squares }
+        Self { area, squares }
     }
 
-    /// Where it lies.
+    /// Returns the map cells of the chart.
     #[must_use]
-    pub const fn frame(&self) -> Frame {
-        self.frame
+    pub const fn area(&self) -> CellArea {
+        self.area
     }
 
-    /// Squared distance of a cell from the nearest obstacle, as far as it matters; 0 outside.
+    /// Returns the squared distance of a cell, at most 31; 0 outside.
     #[must_use]
     pub fn square(&self, index: usize) -> u8 {
         self.squares.get(index).copied().unwrap_or(0)
     }
 }
 
-/// What a step costs, in per cent of its length, by squared distance.
+/// Cost of a step in per cent of its length, by squared distance.
 #[derive(Clone, Debug)]
 pub struct Prices([u32; FREE_FROM as usize + 1]);
 
 impl Prices {
-    /// The table.
+    /// Makes the table.
     #[must_use]
     pub fn new() -> Self {
         Self(core::array::from_fn(|square| {
@@ -80,7 +88,7 @@ impl Prices {
         }))
     }
 
-    /// The price at a squared distance.
+    /// Returns the price at a squared distance.
     #[must_use]
     pub fn percent(&self, square: u8) -> u32 {
         self.0[usize::from(square.min(FREE_FROM))]
@@ -109,7 +117,7 @@ mod tests {
         ];
         let (chart, _) = chart(&rows);
         let inflation = Inflation::new(&chart);
-        let at = |x, y| inflation.square(chart.frame().index(Cell { x, y }).unwrap());
+        let at = |x, y| inflation.square(chart.area().index(Cell { x, y }).unwrap());
         assert_eq!((at(0, 3), at(1, 3), at(2, 1)), (0, 1, 4 + 4));
         assert_eq!((at(5, 1), at(7, 3)), (4 + 1, 9));
         assert_eq!(at(11, 3), 16 + 9);

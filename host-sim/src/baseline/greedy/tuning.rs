@@ -1,15 +1,15 @@
-//! The parameters of `explore_lite`, with the values of its own launch file.
+//! Parameters of `explore_lite`; the defaults are those of its launch file.
 
-/// Parameters; the default is what the package starts with (`explore.launch`).
+/// The parameters; defaults as in the package's `explore.launch`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
-    /// Cost of a metre of way.
+    /// Cost per metre of path.
     pub potential_scale: f32,
-    /// Cost saved by a metre of frontier.
+    /// Cost saved per metre of frontier.
     pub gain_scale: f32,
-    /// Shorter frontiers are ignored, metres.
+    /// Least size of a frontier, metres; smaller ones are ignored.
     pub min_frontier_size_m: f32,
-    /// Time from one choice of a goal to the next, milliseconds.
+    /// Time between two choices of a goal, milliseconds.
     pub planner_period_ms: u32,
     /// Time without progress after which a goal is blacklisted, milliseconds.
     pub progress_timeout_ms: u32,

@@ -51,10 +51,10 @@ impl Watch for Gauge {
 /// Explores over the full grid; returns the known area after each step, and its cells times cycles.
 fn metered(world: &World) -> Vec<Point> {
     let session = Session::new(Bvp::new());
-    let mut before = session.plan.work();
+    let mut before = session.strategy.work();
     let mut works = Vec::new();
     let look = |session: &mut Session<Bvp>, _: &Observation, _: &Command| {
-        let after = session.plan.work();
+        let after = session.strategy.work();
         let cells = (after.cells - before.cells) as f64;
         works.push(cells * (after.cycles - before.cycles) as f64);
         before = after;
