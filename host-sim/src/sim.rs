@@ -291,6 +291,13 @@ impl<'w> Simulator<'w> {
         &self.config
     }
 
+    /// The start in the world.
+    #[must_use]
+    pub fn start(&self) -> crate::world::Start {
+        let starts = self.world.starts();
+        starts.get(self.config.start).copied().unwrap_or_default()
+    }
+
     /// Simulated milliseconds since the start.
     #[must_use]
     pub fn time_ms(&self) -> u32 {

@@ -40,7 +40,7 @@ pub fn table(reports: &[Report]) -> Table {
         let of = report.planner.instructions.unwrap_or_default();
         let mut row = vec![report.world.clone(), report.steps.to_string()];
         row.extend([of.p50, of.p99, of.max].map(|count| format!("{count:.0}")));
-        let stages = report.planner.stages.unwrap_or_default();
+        let stages = report.planner.stage_instructions.unwrap_or_default();
         row.extend(stages.by_name().map(|(_, of)| format!("{:.0}", of.max)));
         row.push(report.planner.stack_bytes.unwrap_or(0).to_string());
         table.row(row);
@@ -51,7 +51,7 @@ pub fn table(reports: &[Report]) -> Table {
 /// Asserts that every step was counted and that none took too long.
 fn assert_within_budget(reports: &[Report]) {
     for report in reports {
-        let most = if report.terrain.is_some() {
+        let most = if report.true_ground.is_some() {
             MOST_UNEVEN
         } else {
             MOST_INSTRUCTIONS

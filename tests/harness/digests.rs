@@ -73,13 +73,6 @@ impl Digest {
         let digest = |report| Self::of(report, settings);
         reports.iter().map(digest).collect()
     }
-
-    /// Returns the same run under another name of its strategy.
-    #[must_use]
-    pub fn by(mut self, strategy: &str) -> Self {
-        self.key.strategy = strategy.into();
-        self
-    }
 }
 
 /// The file: digest and tables of every run.

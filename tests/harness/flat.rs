@@ -30,7 +30,7 @@ pub fn table(reports: &[Report]) -> Table {
             number(coverage.t99_s, 1),
             format!("{:.1}", report.sim_time_s),
             format!("{:.1}", report.path_length_m),
-            number(coverage.overlap, 3),
+            number(report.path_overlap, 3),
             (safety.collisions + safety.falls + safety.tips).to_string(),
             number(safety.min_clearance_m, 3),
             report.outcome.residual_frontiers.len().to_string(),
@@ -101,7 +101,7 @@ pub fn means(reports: &[Report]) -> Table {
             number(mean(&|r| r.coverage.t90_s), 1),
             number(mean(&|r| r.coverage.t99_s), 1),
             number(mean(&|r| Some(r.path_length_m)), 1),
-            number(mean(&|r| r.coverage.overlap), 3),
+            number(mean(&|r| r.path_overlap), 3),
             group.iter().map(hits).sum::<u32>().to_string(),
             group.iter().filter(|r| !r.explored()).count().to_string(),
         ]);

@@ -79,20 +79,18 @@ pub fn means(reports: &[Report]) -> Table {
             runs.len().to_string(),
             number(own_s, 1),
             number(mean(&runs, |r| Some(r.path_length_m)), 1),
-            format!(
-                "{}/{}",
-                sum(|r| r.loops.loops_closed),
-                sum(|r| r.loops.loops)
-            ),
+            format!("{}/{}", sum(|r| r.loops.circled), sum(|r| r.loops.islands)),
             number(mean(&runs, |r| Some(known(r))), 2),
             number(runs.iter().map(|r| known(r)).reduce(f64::min), 2),
             sum(|r| r.safety.collisions).to_string(),
             group.iter().filter(|r| !r.explored()).count().to_string(),
             number(
-                mean(&runs, |r| Some(r.closures.as_ref()?.given_up.len() as f64)),
+                mean(&runs, |r| {
+                    Some(r.loop_closing.as_ref()?.given_up.len() as f64)
+                }),
                 1,
             ),
-            number(mean(&runs, |r| Some(r.closures.as_ref()?.in_vain_s)), 1),
+            number(mean(&runs, |r| Some(r.loop_closing.as_ref()?.wasted_s)), 1),
             over(FRONTIER),
             over(BVP),
             number(paper.map(|(_, _, ratio)| *ratio), 2),
@@ -119,7 +117,7 @@ pub fn table(reports: &[Report]) -> Table {
             report.start.to_string(),
             format!("{:.1}", report.sim_time_s),
             format!("{:.1}", report.path_length_m),
-            format!("{}/{}", report.loops.loops_closed, report.loops.loops),
+            format!("{}/{}", report.loops.circled, report.loops.islands),
             format!("{:.2}", 100.0 * report.coverage.fraction),
             report.safety.collisions.to_string(),
             number(report.safety.min_clearance_m, 3),

@@ -9,8 +9,9 @@ use host_sim::link::direct::Direct;
 use host_sim::metrics::{MapScore as Truth, crossings};
 use host_sim::report::Report;
 use host_sim::trial::Record;
-use host_sim::trial::mission::{Mission, TERRAIN};
+use host_sim::trial::mission::Mission;
 use host_sim::trial::uneven::{TABLE_I, radians};
+use host_sim::trial::wording;
 use host_sim::world::World;
 
 use crate::digests::Digest;
@@ -71,8 +72,8 @@ impl<'a> UnevenRun<'a> {
     #[must_use]
     pub fn mission(&self) -> Mission {
         Mission {
-            strategy: TERRAIN.into(),
-            terrain: Some(UnevenGround {
+            strategy: FRONTIER.into(),
+            uneven_ground: Some(UnevenGround {
                 preference: self.preference,
                 roll: self.roll_deg.map_or(TABLE_I.roll, radians),
                 ..TABLE_I
@@ -87,7 +88,7 @@ impl<'a> UnevenRun<'a> {
 
     /// Returns the settings in [`crate::digests`].
     fn settings(&self) -> String {
-        let mut settings = format!("preference={}", word(self.preference));
+        let mut settings = format!("preference={}", wording::preference(self.preference));
         if let Some([laser_m, degrees]) = self.noise {
             let laser_cm = 100.0 * laser_m;
             settings += &format!(",laser={laser_cm:.0}cm,attitude={degrees}deg");
@@ -163,23 +164,23 @@ pub fn table(runs: &[Summary]) -> Table {
     let mut table = Table::new(3, &columns);
     for run in runs {
         let (report, safety) = (&run.report, &run.report.safety);
-        let ride = report.terrain.unwrap_or_default();
+        let ride = report.true_ground.unwrap_or_default();
         table.row(vec![
             report.world.clone(),
-            word(run.preference).into(),
+            wording::preference(run.preference).into(),
             format!("{}({})", report.outcome.status, report.outcome.reason),
             report.start.to_string(),
             report.seed.to_string(),
             format!("{:.1}", report.sim_time_s),
             format!("{:.1}", report.path_length_m),
-            format!("{:.2}", report.climb_m),
+            format!("{:.2}", report.height_change_m),
             format!("{:.2}", 100.0 * report.coverage.fraction),
             safety.collisions.to_string(),
             safety.falls.to_string(),
             safety.tips.to_string(),
             number(safety.min_clearance_m, 3),
-            format!("{:.1}", ride.max_climb_deg),
-            format!("{:.1}", ride.max_side_deg),
+            format!("{:.1}", ride.max_pitch_deg),
+            format!("{:.1}", ride.max_roll_deg),
             crossings_or_dash(run),
         ]);
     }
@@ -218,12 +219,12 @@ pub fn means(runs: &[Summary]) -> Table {
         let two_levels = first.report.world == "slope";
         table.row(vec![
             first.report.world.clone(),
-            word(first.preference).into(),
+            wording::preference(first.preference).into(),
             group.len().to_string(),
             sum(|run| u32::from(run.report.explored())),
             format!("{:.1}", mean(|run| run.report.sim_time_s)),
             format!("{:.1}", mean(|run| run.report.path_length_m)),
-            format!("{:.2}", mean(|run| run.report.climb_m)),
+            format!("{:.2}", mean(|run| run.report.height_change_m)),
             format!("{:.2}", mean(|run| 100.0 * run.report.coverage.fraction)),
             number(group.iter().map(known).reduce(f64::min), 2),
             sum(|run| run.report.safety.collisions),
@@ -243,7 +244,7 @@ pub fn means(runs: &[Summary]) -> Table {
 /// Returns the digests of some runs.
 #[must_use]
 pub fn digests(runs: &[Summary]) -> Vec<Digest> {
-    let digest = |run: &Summary| Digest::of(&run.report, &run.settings).by(FRONTIER);
+    let digest = |run: &Summary| Digest::of(&run.report, &run.settings);
     runs.iter().map(digest).collect()
 }
 
@@ -261,7 +262,7 @@ pub fn markdown(runs: &[Summary]) -> String {
             report.world,
             report.sim_time_s,
             report.path_length_m,
-            report.climb_m,
+            report.height_change_m,
             100.0 * report.coverage.fraction,
             safety.collisions,
             safety.falls,
@@ -281,16 +282,5 @@ fn crossings_or_dash(run: &Summary) -> String {
     match run.report.world.as_str() {
         "slope" => run.crossings.to_string(),
         _ => "-".into(),
-    }
-}
-
-/// Returns a preference's word on the command line.
-#[must_use]
-pub fn word(preference: Preference) -> &'static str {
-    match preference {
-        Preference::Off => "off",
-        Preference::Height => "height",
-        Preference::Global => "global",
-        Preference::Both => "both",
     }
 }

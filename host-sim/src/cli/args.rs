@@ -1,4 +1,4 @@
-//! The arguments and what they may be.
+//! The arguments of the command line and their values.
 
 use std::path::PathBuf;
 
@@ -8,14 +8,15 @@ use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
 use host_sim::robot::{Limits, LimitsError};
-use host_sim::trial::uneven::{self, TerrainError};
+use host_sim::trial::uneven::{self, ParameterError};
 
-use super::baselines;
+use super::strategies;
 
-/// Pictures that a run may leave on its way.
+/// Most pictures during a run. Each is read over the link and held until the end.
 const MOST_SNAPSHOTS: usize = 500;
 
-/// Explore simulated buildings with the Fieldline planner; without a command, explore the built-in office.
+/// Explore simulated worlds with the Fieldline planner; without a command, explore the built-in
+/// office
 #[derive(Debug, Parser)]
 #[command(name = "host-sim", version)]
 pub(super) struct Cli {
@@ -25,11 +26,11 @@ pub(super) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    /// Explore worlds and leave a folder with report, map, trajectory, commands and picture of each
+    /// Explore worlds; write a folder with report, map, trajectory, commands and picture of each
     Explore(Box<ExploreArgs>),
     /// List the built-in worlds
     Worlds {
-        /// One JSON object a line
+        /// Print one JSON object a line
         #[arg(long)]
         json: bool,
     },
@@ -37,30 +38,54 @@ pub(super) enum Command {
     Solve(SolveArgs),
 }
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct ExploreArgs {
-    /// World files (YAML for ROS map servers) or names of built-in worlds; WORLD@N starts at its start N
+    /// World files (YAML for ROS map servers) or names of built-in worlds; WORLD@N begins at its
+    /// start N
     #[arg(value_name = "WORLD[@N]", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
-    /// What plans: frontier, ouroboros or tdbvp on the device, terrain there on uneven ground, or a baseline on the host
-    #[arg(long, default_value = baselines::FRONTIER, value_parser = baselines::parse)]
+    /// Strategy: frontier, ouroboros or tdbvp on the device, or a baseline on the host, bvp or
+    /// greedy-frontier
+    #[arg(long, default_value = strategies::FRONTIER, value_parser = strategies::parse)]
     pub(super) strategy: String,
-    /// Heed uneven ground, with these preferences in the field [default: both with --strategy terrain, flat ground else]
+    /// Ground that the planner expects [default: flat; uneven if --preference or
+    /// --ground-parameters is given]
+    #[arg(long, value_enum)]
+    pub(super) ground: Option<GroundArg>,
+    /// Preferences of the field on uneven ground [default: both]
     #[arg(long, value_enum, value_name = "WHICH")]
     pub(super) preference: Option<PreferenceArg>,
-    /// Heed uneven ground, with these parameters, any of [default: h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005,climb=20,roll=20,step=0.07]
-    #[arg(long, value_name = "PARAMETERS", value_parser = terrain)]
-    pub(super) terrain: Option<UnevenGround>,
+    /// Parameters of uneven ground, one or more [default:
+    /// h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005,climb=20,roll=20,step=0.07]
+    #[arg(
+        long,
+        alias = "terrain",
+        value_name = "PARAMETERS",
+        value_parser = ground_parameters
+    )]
+    pub(super) ground_parameters: Option<UnevenGround>,
     /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback; direct for baselines]
     #[arg(long)]
     pub(super) link: Option<LinkSpec>,
-    /// Decides every random number of the run
-    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<u64>, allow_negative_numbers = true)]
+    /// Seed of every random number of the run
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "0",
+        value_parser = whole::<u64>,
+        allow_negative_numbers = true
+    )]
     pub(super) seed: u64,
-    /// Which of the world's start poses, from 0, where WORLD@N does not say it
-    #[arg(long, value_name = "N", default_value = "0", value_parser = whole::<usize>, allow_negative_numbers = true)]
+    /// Index of the world's start pose, from 0; WORLD@N comes first
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "0",
+        value_parser = whole::<usize>,
+        allow_negative_numbers = true
+    )]
     pub(super) start: usize,
-    /// What the robot believes of its motion
+    /// Source of the pose that the planner is told
     #[arg(long, value_enum, default_value_t = OdometryArg::Truth)]
     pub(super) odometry: OdometryArg,
     /// Standard deviation of roll and pitch, degrees [default: 0 with truth, 0.5 with noisy]
@@ -69,37 +94,60 @@ pub(super) struct ExploreArgs {
     /// Standard deviation of the lasers' ranges, metres [default: 0.01]
     #[arg(long, value_name = "M", value_parser = laser_noise, allow_negative_numbers = true)]
     pub(super) laser_noise: Option<f64>,
-    /// Ground that counts as reachable, degrees and metres, any of [default: climb=20,side=15,step=0.07,drop=0.07]
-    #[arg(long, value_name = "LIMITS", value_parser = working)]
-    pub(super) limits: Option<Limits>,
-    /// Ground that the robot does not survive, any of [default: climb=30,side=25,step=0.1,drop=0.15]
-    #[arg(long, value_name = "LIMITS", value_parser = failing)]
-    pub(super) failing: Option<Limits>,
+    /// Ground that counts as reachable in the report, degrees and metres, one limit or more; no
+    /// effect on the planner [default: climb=20,roll=15,step=0.07,drop=0.07]
+    #[arg(long, alias = "limits", value_name = "LIMITS", value_parser = working)]
+    pub(super) working_limits: Option<Limits>,
+    /// Ground that stops, drops or tips the robot, one limit or more [default:
+    /// climb=30,roll=25,step=0.1,drop=0.15]
+    #[arg(long, alias = "failing", value_name = "LIMITS", value_parser = failing)]
+    pub(super) failing_limits: Option<Limits>,
     /// Simulated seconds after which a run ends
-    #[arg(long, value_name = "S", default_value = "3600", value_parser = time_limit, allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "S",
+        default_value = "3600",
+        value_parser = time_limit,
+        allow_negative_numbers = true
+    )]
     pub(super) time_limit: u32,
-    /// Patrol so many simulated seconds once all is explored; for tdbvp
-    #[arg(long, value_name = "S", default_value = "0", value_parser = whole::<u16>, allow_negative_numbers = true)]
+    /// Simulated seconds of patrol after everything is explored; for tdbvp
+    #[arg(
+        long,
+        value_name = "S",
+        default_value = "0",
+        value_parser = whole::<u16>,
+        allow_negative_numbers = true
+    )]
     pub(super) patrol_for: u16,
-    /// Folder of the run; of several runs, the folder of their folders [default: out/WORLD-STRATEGY-SEED]
+    /// Folder of the run; with several runs, the folder of their folders [default:
+    /// out/WORLD-STRATEGY-SEED, on uneven ground out/WORLD-STRATEGY-uneven-SEED]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Let simulated time pass no faster than the clock on the wall
+    /// Run no faster than real time
     #[arg(long)]
     pub(super) realtime: bool,
-    /// Break the link on purpose, as in drop=0.02,duplicate=0.02,corrupt=0.02,truncate=0.01,delay=0.01,reset@900
+    /// Inject faults into the link, as in
+    /// drop=0.02,duplicate=0.02,corrupt=0.02,truncate=0.01,delay=0.01,reset@900
     #[arg(long, value_name = "SPEC")]
     pub(super) fault: Option<FaultArg>,
-    /// Extent that the device's map can hold, in metres across and up, as in 128x32 [default: chosen for the world]
+    /// Extent of the device's map in metres across and up, as in 128x32 [default: chosen for the
+    /// world]
     #[arg(long, value_name = "AxB", value_parser = map_shape, allow_hyphen_values = true)]
     pub(super) map_shape: Option<(u8, u8)>,
     /// Compare every step's heading with that of the converged window
     #[arg(long)]
     pub(super) check_field: bool,
-    /// Leave so many pictures of the run on its way, evenly in simulated time, in the folder snapshots
-    #[arg(long, value_name = "N", default_value = "0", value_parser = snapshots, allow_negative_numbers = true)]
+    /// Number of pictures during the run, evenly in simulated time, in the folder snapshots
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "0",
+        value_parser = snapshots,
+        allow_negative_numbers = true
+    )]
     pub(super) snapshots: usize,
-    /// Print the reports, one JSON object a line, and nothing else
+    /// Print only the reports, one JSON object a line
     #[arg(long)]
     pub(super) json: bool,
 }
@@ -108,17 +156,18 @@ impl Default for ExploreArgs {
     fn default() -> Self {
         Self {
             worlds: vec!["office".into()],
-            strategy: baselines::FRONTIER.into(),
+            strategy: strategies::FRONTIER.into(),
+            ground: None,
             preference: None,
-            terrain: None,
+            ground_parameters: None,
             link: None,
             seed: 0,
             start: 0,
             odometry: OdometryArg::Truth,
             imu_noise: None,
             laser_noise: None,
-            limits: None,
-            failing: None,
+            working_limits: None,
+            failing_limits: None,
             time_limit: 3_600_000,
             patrol_for: 0,
             out: None,
@@ -132,33 +181,41 @@ impl Default for ExploreArgs {
     }
 }
 
-/// Faults, and the words they were asked for with.
+/// Faults, and the text that names them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FaultArg {
-    pub(super) words: String,
+    pub(super) text: String,
     pub(super) faults: Faults,
 }
 
 impl core::str::FromStr for FaultArg {
     type Err = FaultsError;
 
-    fn from_str(words: &str) -> Result<Self, FaultsError> {
+    fn from_str(text: &str) -> Result<Self, FaultsError> {
         Ok(Self {
-            words: words.into(),
-            faults: words.parse()?,
+            text: text.into(),
+            faults: text.parse()?,
         })
     }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum GroundArg {
+    /// Take all ground for level
+    Flat,
+    /// Measure heights; avoid steps, slopes and holes
+    Uneven,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum PreferenceArg {
-    /// None
+    /// No preference
     Off,
-    /// For ground at the robot's own height
+    /// Prefer ground at the robot's own height
     Height,
-    /// For all ground, against a field that grows flat
+    /// One preference for the whole window, which grows as the field becomes flat
     Global,
-    /// Their sum
+    /// The sum of both
     Both,
 }
 
@@ -175,23 +232,24 @@ impl From<PreferenceArg> for Preference {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum OdometryArg {
-    /// The exact pose
+    /// The true pose
     Truth,
-    /// Wheel encoders and an inertial unit
+    /// Wheel encoders and an inertial unit, with errors
     Noisy,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct SolveArgs {
-    /// One character a cell, first line = greatest y: # obstacle, G goal, . free, R robot; at most 61 x 61
+    /// Text file of at most 61 x 61 characters, one a cell, greatest y first: # obstacle, G goal,
+    /// . free, R robot
     pub(super) window: PathBuf,
-    /// Preferences in the same layout, comma-separated, within -2 and 2
+    /// Preferences in the same layout, comma-separated, from -2 to 2
     #[arg(long, value_name = "EPS.csv")]
     pub(super) preference: Option<PathBuf>,
-    /// Which solver
+    /// Solver
     #[arg(long, value_enum, default_value_t = SolverArg::Multigrid)]
     pub(super) solver: SolverArg,
-    /// Write q = 1 - p of every cell here
+    /// File for q = 1 - p of every cell
     #[arg(long, value_name = "FIELD.csv")]
     pub(super) out: Option<PathBuf>,
     /// Print the answer as one JSON object
@@ -201,19 +259,19 @@ pub(super) struct SolveArgs {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum SolverArg {
-    /// Multigrid, with Gauss-Seidel where it is known to be weak
+    /// Multigrid; Gauss-Seidel under strong preferences
     Multigrid,
     /// Gauss-Seidel from q = 0
     GaussSeidel,
 }
 
-/// A number without sign or point.
+/// Parses a number without sign or point.
 fn whole<T: core::str::FromStr>(text: &str) -> Result<T, String> {
     let number = text.parse();
     number.map_err(|_| "give a whole number from 0 on".into())
 }
 
-/// Seconds to milliseconds.
+/// Parses seconds; returns milliseconds.
 fn time_limit(text: &str) -> Result<u32, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds > 0.0 && seconds <= 4e6 => Ok((seconds * 1000.0).ceil() as u32),
@@ -221,7 +279,7 @@ fn time_limit(text: &str) -> Result<u32, String> {
     }
 }
 
-/// Pictures of a run: each is read over the link and held until the end.
+/// Parses a number of pictures.
 fn snapshots(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {
         Ok(number) if number <= MOST_SNAPSHOTS => Ok(number),
@@ -229,27 +287,27 @@ fn snapshots(text: &str) -> Result<usize, String> {
     }
 }
 
-/// The usual working limits, changed.
+/// Parses changes of the usual working limits.
 fn working(text: &str) -> Result<Limits, LimitsError> {
     Limits::WORKING.changed(text)
 }
 
-/// The usual failing limits, changed.
+/// Parses changes of the usual failing limits.
 fn failing(text: &str) -> Result<Limits, LimitsError> {
     Limits::FAILING.changed(text)
 }
 
-/// Table I, changed.
-fn terrain(text: &str) -> Result<UnevenGround, TerrainError> {
+/// Parses changes of the usual parameters.
+fn ground_parameters(text: &str) -> Result<UnevenGround, ParameterError> {
     uneven::changed(uneven::TABLE_I, text)
 }
 
-/// Degrees.
+/// Parses degrees.
 fn imu_noise(text: &str) -> Result<f64, String> {
     deviation(text, 20.0, "degrees")
 }
 
-/// Metres.
+/// Parses metres.
 fn laser_noise(text: &str) -> Result<f64, String> {
     deviation(text, 1.0, "metres")
 }
@@ -261,7 +319,7 @@ fn deviation(text: &str, most: f64, unit: &str) -> Result<f64, String> {
     }
 }
 
-/// `AxB` metres to tiles.
+/// Parses `AxB` metres; returns tiles.
 fn map_shape(text: &str) -> Result<(u8, u8), String> {
     let side = |text: &str| text.trim().parse::<f64>().ok();
     let sides = text.split_once('x');
@@ -279,12 +337,12 @@ mod tests {
     use clap::{CommandFactory as _, Parser as _};
 
     #[test]
-    fn the_definition_is_sound() {
+    fn the_definition_of_the_arguments_is_valid() {
         Cli::command().debug_assert();
     }
 
     #[test]
-    fn the_defaults_of_the_command_are_those_of_no_command() {
+    fn no_command_is_explore_with_its_defaults() {
         let cli = Cli::parse_from(["host-sim", "explore"]);
         let Some(super::Command::Explore(args)) = cli.command else {
             panic!("explore");

@@ -1,4 +1,4 @@
-//! `host-sim explore`: worlds in, folders and reports out.
+//! `host-sim explore`: explores worlds; writes folders and reports.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,28 +14,30 @@ use host_sim::trial::mission::{self, Mission, MissionError};
 use host_sim::trial::uneven;
 use host_sim::world::World;
 
-use super::args::{ExploreArgs, OdometryArg};
+use super::args::{ExploreArgs, GroundArg, OdometryArg};
 use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
-use super::{baselines, note, say};
+use super::strategies::{self, FRONTIER, TERRAIN};
+use super::{note, say};
 
-/// One run to do.
-struct Errand {
+/// A run to make.
+struct Run {
     world: World,
     mission: Mission,
     folder: PathBuf,
 }
 
-/// Explores every world; whether all of them ended explored.
+/// Explores every world; returns true if every run ended explored.
 pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
-    let link = baselines::place(&args.strategy, args.link.as_ref())?;
-    baselines::check(&args.strategy, args.check_field, args.fault.is_some())?;
-    baselines::check_patrol(&args.strategy, args.patrol_for)?;
-    let errands = errands(args, &mission(args, &link)?)?;
+    let args = &without_alias(args)?;
+    let link = strategies::link_of(&args.strategy, args.link.as_ref())?;
+    strategies::check(&args.strategy, args.check_field, args.fault.is_some())?;
+    strategies::check_patrol(&args.strategy, args.patrol_for)?;
+    let runs = runs(args, &mission(args, &link)?)?;
     let interrupt = Interrupt::listen()?;
     let mut all_explored = true;
-    for errand in &errands {
-        all_explored &= explore(args, &link, errand, &interrupt)?;
+    for run in &runs {
+        all_explored &= explore(args, &link, run, &interrupt)?;
         if interrupt.pressed() {
             break;
         }
@@ -43,8 +45,23 @@ pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     Ok(all_explored)
 }
 
-/// Every world is opened and every folder proved before the first run.
-fn errands(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Errand>> {
+/// Replaces `--strategy terrain` by its meaning, and says so on standard error.
+fn without_alias(args: &ExploreArgs) -> Result<ExploreArgs> {
+    let mut args = args.clone();
+    if args.strategy == TERRAIN {
+        let meaning = format!("--strategy {TERRAIN} means --strategy {FRONTIER} --ground uneven");
+        if args.ground == Some(GroundArg::Flat) {
+            bail!("{meaning}; leave --ground flat out");
+        }
+        note(&format!("host-sim: {meaning}"));
+        args.strategy = FRONTIER.into();
+        args.ground = Some(GroundArg::Uneven);
+    }
+    Ok(args)
+}
+
+/// Opens every world and prepares every folder, before the first run.
+fn runs(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Run>> {
     let open = |name: &String| {
         let (name, start) = with_start(name);
         let world = World::open(name)?;
@@ -61,7 +78,9 @@ fn errands(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Errand>> {
             0 => String::new(),
             start => format!("@{start}"),
         };
-        format!("{}{start}-{}-{}", world.name(), args.strategy, args.seed)
+        let ground = mission.uneven_ground.map_or("", |_| "-uneven");
+        let (world, strategy, seed) = (world.name(), &args.strategy, args.seed);
+        format!("{world}{start}-{strategy}{ground}-{seed}")
     }));
     let single = worlds.len() == 1;
     worlds
@@ -74,7 +93,7 @@ fn errands(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Errand>> {
                 None => Path::new("out").join(name),
             };
             folder::prepare(&folder)?;
-            Ok(Errand {
+            Ok(Run {
                 world,
                 mission,
                 folder,
@@ -83,7 +102,7 @@ fn errands(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Errand>> {
         .collect()
 }
 
-/// `WORLD@N` is a world and one of its starts, unless a file has that name.
+/// Splits `WORLD@N` into a world and one of its starts, unless a file has that name.
 fn with_start(name: &str) -> (&str, Option<usize>) {
     let parts = name.rsplit_once('@').filter(|_| !Path::new(name).exists());
     match parts.and_then(|(world, start)| Some((world, start.parse().ok()?))) {
@@ -92,7 +111,7 @@ fn with_start(name: &str) -> (&str, Option<usize>) {
     }
 }
 
-/// The same name a second time gets `-2`.
+/// Makes names unique: the second of a name gets `-2`.
 fn unique(names: impl Iterator<Item = String>) -> Vec<String> {
     let mut count: BTreeMap<String, u32> = BTreeMap::new();
     names
@@ -107,13 +126,8 @@ fn unique(names: impl Iterator<Item = String>) -> Vec<String> {
         .collect()
 }
 
-/// One run, from hello to folder.
-fn explore(
-    args: &ExploreArgs,
-    link: &LinkSpec,
-    errand: &Errand,
-    interrupt: &Interrupt,
-) -> Result<bool> {
+/// Makes one run, from hello to folder; returns true if it ended explored.
+fn explore(args: &ExploreArgs, link: &LinkSpec, run: &Run, interrupt: &Interrupt) -> Result<bool> {
     let options = Options {
         faults: args
             .fault
@@ -122,62 +136,70 @@ fn explore(
         seed: args.seed,
         real_time: args.realtime,
     };
-    let name = errand.world.name();
-    for text in errand.world.notes() {
+    let name = run.world.name();
+    for text in run.world.notes() {
         note(&format!("host-sim: {name}: {text}"));
     }
-    let mut planner = baselines::open(&args.strategy, link, &options)
+    let mut planner = strategies::open(&args.strategy, link, &options)
         .with_context(|| format!("--link {link}"))?;
     let mut onlooker = Onlooker::new(name, args.realtime, interrupt.clone());
-    let run = mission::explore(
-        &errand.mission,
-        &errand.world,
-        planner.as_mut(),
-        &mut onlooker,
-    );
+    let result = mission::explore(&run.mission, &run.world, planner.as_mut(), &mut onlooker);
     onlooker.finish();
-    let (report, record) = match run {
+    let (report, record) = match result {
         Err(MissionError::Link(error)) => bail!("--link {link}: {error}"),
-        run => run?,
+        result => result?,
     };
-    let album = Album::new(&errand.world, &report, &record);
-    folder::write(&errand.folder, &report, &record, &album.end())?;
-    folder::write_snapshots(&errand.folder, album.on_the_way())?;
-    tell(args, &report, &record, &errand.folder)?;
+    let album = Album::new(&run.world, &report, &record);
+    folder::write(&run.folder, &report, &record, &album.end())?;
+    folder::write_snapshots(&run.folder, album.on_the_way())?;
+    print(args, &report, &record, &run.folder)?;
     Ok(report.explored())
 }
 
-/// The parameters of uneven ground, if any are asked for: with them every strategy on the device heeds it, and baseline bvp.
-fn terrain(args: &ExploreArgs) -> Result<Option<UnevenGround>> {
-    if args.preference.is_none() && args.terrain.is_none() {
+/// Returns the parameters of uneven ground; `None` on flat ground.
+fn uneven_ground(args: &ExploreArgs) -> Result<Option<UnevenGround>> {
+    let implied = args.preference.is_some() || args.ground_parameters.is_some();
+    let flat = match args.ground {
+        Some(ground) => ground == GroundArg::Flat,
+        None => !implied,
+    };
+    if flat && implied {
+        bail!(
+            "--ground flat has no preferences and no parameters; say --ground uneven, \
+             or leave --preference and --ground-parameters out"
+        );
+    }
+    if flat {
         return Ok(None);
     }
-    if !baselines::heeds_ground(&args.strategy) {
+    if !strategies::knows_uneven_ground(&args.strategy) {
         bail!(
-            "--strategy {} takes all ground for flat; leave --preference and --terrain out",
+            "--strategy {} takes all ground for flat; \
+             leave --ground, --preference and --ground-parameters out",
             args.strategy
         );
     }
-    let terrain = args.terrain.unwrap_or(uneven::TABLE_I);
+    let parameters = args.ground_parameters.unwrap_or(uneven::TABLE_I);
     Ok(Some(UnevenGround {
-        preference: args.preference.map_or(terrain.preference, Into::into),
-        ..terrain
+        preference: args.preference.map_or(parameters.preference, Into::into),
+        ..parameters
     }))
 }
 
 fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
-    let working = args.limits.unwrap_or(Limits::WORKING);
-    let failing = args.failing.unwrap_or(Limits::FAILING);
+    let working = args.working_limits.unwrap_or(Limits::WORKING);
+    let failing = args.failing_limits.unwrap_or(Limits::FAILING);
     if !working.is_within(&failing) {
         bail!(
-            "--limits {working} allows what --failing {failing} does not survive; lower the one or raise the other"
+            "--working-limits {working} exceed --failing-limits {failing}; \
+             lower the first or raise the second"
         );
     }
     Ok(Mission {
         strategy: args.strategy.clone(),
-        terrain: terrain(args)?,
+        uneven_ground: uneven_ground(args)?,
         link: link.to_string(),
-        fault: args.fault.as_ref().map(|fault| fault.words.clone()),
+        fault: args.fault.as_ref().map(|fault| fault.text.clone()),
         seed: args.seed,
         start: args.start,
         noisy_odometry: args.odometry == OdometryArg::Noisy,
@@ -194,8 +216,8 @@ fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     })
 }
 
-/// The report on standard output, and what people want to know.
-fn tell(args: &ExploreArgs, report: &Report, record: &Record, folder: &Path) -> Result<()> {
+/// Prints the report on standard output, and advice on standard error.
+fn print(args: &ExploreArgs, report: &Report, record: &Record, folder: &Path) -> Result<()> {
     if args.json {
         say(&report.to_json_line())?;
     } else {
@@ -219,7 +241,7 @@ mod tests {
     use super::{unique, with_start};
 
     #[test]
-    fn a_start_may_follow_the_world() {
+    fn the_name_of_a_world_may_end_with_a_start() {
         assert_eq!(with_start("slope@3"), ("slope", Some(3)));
         assert_eq!(with_start("a@b/c.yaml@12"), ("a@b/c.yaml", Some(12)));
         assert_eq!(with_start("a@b/c.yaml"), ("a@b/c.yaml", None));

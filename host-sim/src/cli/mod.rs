@@ -5,11 +5,11 @@
 //! carries results only: text for people, or with `--json` one JSON object a line.
 
 mod args;
-mod baselines;
 mod explore;
 mod pictures;
 mod progress;
 mod solve;
+mod strategies;
 mod worlds;
 
 use std::io::{self, Write as _};

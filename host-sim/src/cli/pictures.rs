@@ -18,7 +18,7 @@ pub(super) struct Album<'a> {
 impl<'a> Album<'a> {
     /// Of a run in a world.
     pub(super) fn new(world: &'a World, report: &'a Report, record: &'a Record) -> Self {
-        let start_z_m = report.terrain.map_or(0.0, |terrain| terrain.start_z_m);
+        let start_z_m = report.true_ground.map_or(0.0, |ground| ground.start_z_m);
         let truth = record.ground.as_ref();
         let ground = truth.map(|truth| Ground::new(world, truth, start_z_m));
         Self {
@@ -50,7 +50,11 @@ impl<'a> Album<'a> {
 
     /// Where loops were given up by then.
     fn given_up(&self, time_ms: u32) -> Vec<(f64, f64)> {
-        let said = self.report.closures.iter().flat_map(|said| &said.given_up);
+        let said = self
+            .report
+            .loop_closing
+            .iter()
+            .flat_map(|said| &said.given_up);
         said.filter(|at| at.time_s * 1000.0 <= f64::from(time_ms))
             .map(|at| (at.x_m, at.y_m))
             .collect()
@@ -68,7 +72,7 @@ impl<'a> Album<'a> {
         let subtitle = format!(
             "{:.1} % of {:.0} m² known after {}:{:02} min and {:.1} m",
             progress.coverage * 100.0,
-            self.report.coverage.reachable_m2,
+            self.report.coverage.explorable_m2,
             seconds / 60,
             seconds % 60,
             progress.path_m

@@ -51,7 +51,7 @@ pub(super) fn level(world: &World, area: &CellArea, limits: &Limits) -> Vec<bool
     // Over the wheelbase and over the track; less by a fifth for the ground between the samples.
     let slopes = [
         0.268 * libm::tan(limits.climb_rad),
-        0.394 * libm::tan(limits.side_rad),
+        0.394 * libm::tan(limits.roll_rad),
     ];
     let little_m = 0.8
         * slopes[0]

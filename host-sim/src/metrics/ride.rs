@@ -8,9 +8,9 @@ use crate::robot::{Limits, Pose};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Ride {
     /// Steepest pitch, up or down, radians.
-    pub max_climb_rad: f64,
+    pub max_pitch_rad: f64,
     /// Steepest roll, to either side, radians.
-    pub max_side_rad: f64,
+    pub max_roll_rad: f64,
     /// Time spent beyond the limits, seconds.
     pub over_limits_s: f64,
 }
@@ -18,8 +18,8 @@ pub struct Ride {
 impl Ride {
     /// Adds an attitude that lasted for some seconds.
     pub fn add(&mut self, pose: &Pose, limits: &Limits, seconds: f64) {
-        self.max_climb_rad = self.max_climb_rad.max(pose.pitch_rad.abs());
-        self.max_side_rad = self.max_side_rad.max(pose.roll_rad.abs());
+        self.max_pitch_rad = self.max_pitch_rad.max(pose.pitch_rad.abs());
+        self.max_roll_rad = self.max_roll_rad.max(pose.roll_rad.abs());
         if !limits.holds_attitude(pose.pitch_rad, pose.roll_rad) {
             self.over_limits_s += seconds;
         }
@@ -41,8 +41,8 @@ mod tests {
             };
             ride.add(&pose, &Limits::WORKING, 0.5);
         }
-        assert_eq!(ride.max_climb_rad, 21.0_f64.to_radians());
-        assert_eq!(ride.max_side_rad, 16.0_f64.to_radians());
+        assert_eq!(ride.max_pitch_rad, 21.0_f64.to_radians());
+        assert_eq!(ride.max_roll_rad, 16.0_f64.to_radians());
         assert_eq!(ride.over_limits_s, 1.0);
     }
 }

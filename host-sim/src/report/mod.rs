@@ -1,38 +1,43 @@
-//! What a run leaves behind: `report.json` and the files beside it.
+//! The files that a run leaves: `report.json` and those beside it.
 //!
-//! The structures here are the schema, field by field and in the order written; `host-sim/README.md` is its prose.
-//! Invariant: every number in the file is finite, and `null` stands for "not measured" or "never reached".
-//! Units are in the names: `_m` metres, `_m2` square metres, `_s` seconds, `_us` microseconds, `_deg` degrees.
+//! The structures here are the schema of `report.json`, field by field and in this order;
+//! `host-sim/README.md` describes it in prose. Invariant: every number in the file is finite, and
+//! `null` stands for "not measured" or "never reached". Units are in the names: `_m` metres, `_m2`
+//! square metres, `_s` seconds, `_us` microseconds, `_deg` degrees.
 
-pub mod closures;
 pub mod commands;
 pub mod folder;
 pub mod grid_map;
+pub mod loop_closing;
 pub mod ros_map;
-pub mod terrain;
 mod text;
+pub mod true_ground;
 pub mod tum;
 
 use serde::{Deserialize, Serialize};
 
 pub use crate::link::LinkStats;
-pub use closures::{Closures, GivenUp};
 pub use grid_map::{GridMap, MapCell};
-pub use terrain::Terrain;
+pub use loop_closing::{GivenUp, LoopClosing};
+pub use true_ground::TrueGround;
 
-/// Version of the schema: it grows by one when a field changes its meaning or goes.
-pub const SCHEMA_VERSION: u32 = 1;
+/// Version of the schema. It grows by one when a key changes its name or meaning, or goes.
+pub const SCHEMA_VERSION: u32 = 2;
 
-/// One run, as `report.json` tells it.
+/// One run, as in `report.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// [`SCHEMA_VERSION`].
     pub schema_version: u32,
-    /// The world's name: a built-in's, or the file's stem.
+    /// Name of the world: a built-in one, or the file's stem.
     pub world: String,
-    /// The strategy that planned.
+    /// Strategy that planned.
     pub strategy: String,
-    /// The rung of the run, as given to `--link`.
+    /// Ground that the planner expected: `flat` or `uneven`.
+    pub ground: String,
+    /// Preferences of the field on uneven ground: `off`, `height`, `global` or `both`.
+    pub preference: Option<String>,
+    /// Link to the planner, as given to `--link`.
     pub link: String,
     /// Seed of every random number of the run.
     pub seed: u64,
@@ -40,74 +45,75 @@ pub struct Report {
     pub odometry: String,
     /// Index into the world's start poses.
     pub start: usize,
-    /// The faults put on the link, as given to `--fault`.
-    pub fault: Option<String>,
-    /// How the sensors erred.
+    /// Faults put on the link, as given to `--fault`.
+    pub injected_faults: Option<String>,
+    /// Noise of the sensors.
     pub noise: Noise,
-    /// What may surprise about the world file.
-    pub notes: Vec<String>,
-    /// How it ended.
+    /// Remarks on the world file.
+    pub world_notes: Vec<String>,
+    /// End of the run.
     pub outcome: Outcome,
     /// Simulated seconds.
     pub sim_time_s: f64,
-    /// Metres driven, by the true pose.
+    /// Length of the true path, metres.
     pub path_length_m: f64,
-    /// Metres up and down: the sum of the changes of the true height from step to step.
-    pub climb_m: f64,
+    /// Share of the path that the robot had driven before.
+    pub path_overlap: Option<f64>,
+    /// Sum of the changes of the true height, up and down, from step to step, metres.
+    pub height_change_m: f64,
     /// Observations answered.
     pub steps: u64,
-    /// What became known, and when.
+    /// Ground known, and when.
     pub coverage: Coverage,
-    /// Loops that were closed, and how many there are.
-    #[serde(flatten)]
+    /// Loops of the world that the true path closed.
     pub loops: Loops,
-    /// What the device said of loops; `null` where the strategy closes none.
-    pub closures: Option<Closures>,
-    /// What became of the rails on patrol; `null` without one.
+    /// Loops that the device reported; `null` if the strategy closes none.
+    pub loop_closing: Option<LoopClosing>,
+    /// Ages of the rails on patrol; `null` without a patrol.
     pub patrol: Option<Patrol>,
-    /// What the true robot suffered.
+    /// Contacts of the true robot.
     pub safety: Safety,
-    /// The ground, and how it was driven over; `null` in a flat world.
-    pub terrain: Option<Terrain>,
-    /// Estimated pose against the true one.
-    pub localization: Localization,
-    /// What planning cost.
+    /// The true ground, and the drive over it; `null` in a flat world.
+    pub true_ground: Option<TrueGround>,
+    /// Distance between the estimated and the true position.
+    pub position_error: PositionError,
+    /// Cost of planning.
     pub planner: Planner,
-    /// The quality of the windows' solutions.
+    /// Quality of the windows' solutions.
     pub field: Field,
-    /// The link's counters, both ends.
+    /// Counters of the link, both ends.
     pub link_stats: LinkStats,
     /// 128-bit FNV-1a of the command stream, 32 hexadecimal digits.
     pub digest: String,
-    /// Cross-checks of the tool on itself.
+    /// Cross-checks of the simulator.
     pub debug: Debug,
 }
 
-/// How a run ended.
+/// End of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
-    /// `finished`, `fault`, `time-limit`, `frozen` or `interrupted`.
+    /// `finished`, `fault`, `lost`, `time-limit`, `frozen` or `interrupted`.
     pub status: String,
-    /// Which finish or fault; `explored` is the one that a run is for.
+    /// Kind of finish or fault. Only `explored` is a success.
     pub reason: String,
-    /// Frontiers that were left, and why each.
+    /// Frontiers left at the end.
     pub residual_frontiers: Vec<ResidualFrontier>,
 }
 
-/// A frontier that was left.
+/// A frontier left at the end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ResidualFrontier {
-    /// Centre of a cell of it, odometry frame.
+    /// Centre of one of its cells, odometry frame.
     pub x_m: f64,
-    /// Centre of a cell of it.
+    /// Centre of one of its cells.
     pub y_m: f64,
-    /// Cells in it.
+    /// Number of its cells.
     pub cells: u32,
     /// `unreachable`, `unobservable`, `out-of-bounds` or `no-progress`.
     pub reason: String,
 }
 
-/// Standard deviations of what the sensors say.
+/// Standard deviations of the sensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
     /// Of a laser's range.
@@ -116,49 +122,48 @@ pub struct Noise {
     pub imu_deg: f64,
 }
 
-/// What became known of what a disc of the robot's radius could have seen from where it can reach.
+/// Ground known, as a share of the ground that a disc of the robot's radius can see from where it
+/// can go.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
-    /// `known_m2 / reachable_m2`, at most 1.
+    /// `known_m2 / explorable_m2`, at most 1.
     pub fraction: f64,
-    /// Area known at the end, of the reachable.
+    /// Area known at the end, of the explorable.
     pub known_m2: f64,
-    /// Area that could have been seen.
-    pub reachable_m2: f64,
-    /// When the fraction first was 0.90.
+    /// Area that can be seen; in an uneven world the area that the robot can cover.
+    pub explorable_m2: f64,
+    /// First time at which the fraction was 0.90.
     pub t90_s: Option<f64>,
-    /// When the fraction first was 0.99.
+    /// First time at which the fraction was 0.99.
     pub t99_s: Option<f64>,
-    /// Share of the path driven over ground that had been driven over before.
-    pub overlap: Option<f64>,
 }
 
-/// Ways round islands of the world, judged on the true path.
+/// Loops of the world that the robot drove, judged on its true path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Loops {
-    /// Islands that the robot went all the way round.
-    pub loops_closed: u32,
-    /// Islands with a way round of at least 10 m.
-    pub loops: u32,
+    /// Islands of the world with a way round them of at least 10 m.
+    pub islands: u32,
+    /// Islands that the robot drove round completely.
+    pub circled: u32,
 }
 
 /// Ages of the rails on a patrol, judged on the true path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Patrol {
-    /// Greatest time that any rail was not visited for, seconds.
-    pub oldest_rail_s: f64,
-    /// Mean of all rails and steps, seconds.
-    pub mean_age_s: f64,
+    /// Longest time for which a rail was not visited, seconds.
+    pub max_rail_age_s: f64,
+    /// Mean over all rails and steps, seconds.
+    pub mean_rail_age_s: f64,
 }
 
-/// What the true footprint met in the true world.
+/// Contacts of the true footprint with the true world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Safety {
-    /// Times the footprint came to touch an obstacle.
+    /// Number of times that the footprint began to touch an obstacle.
     pub collisions: u32,
-    /// Times it lost the ground.
+    /// Number of times that a wheel lost the ground.
     pub falls: u32,
-    /// Times it tipped.
+    /// Number of times that the robot tipped over.
     pub tips: u32,
     /// Least distance from the footprint to an obstacle.
     pub min_clearance_m: Option<f64>,
@@ -166,47 +171,47 @@ pub struct Safety {
 
 /// Distance between the estimated and the true position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Localization {
+pub struct PositionError {
     /// Mean over the steps.
-    pub mean_error_m: Option<f64>,
+    pub mean_m: Option<f64>,
     /// Greatest over the steps.
-    pub max_error_m: Option<f64>,
+    pub max_m: Option<f64>,
 }
 
-/// What planning cost.
+/// Cost of planning.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Planner {
-    /// Microseconds of a step's round trip on the link, on this host.
-    pub wall_us: Option<Percentiles>,
-    /// Instructions of a step on the device; `null` where it does not count them.
+    /// Time from sending an observation to the command, on this host, microseconds.
+    pub round_trip_us: Option<Percentiles>,
+    /// Instructions of a step on the device; `null` if it does not count them.
     pub instructions: Option<Percentiles>,
-    /// The same by stages, each over all steps: their greatest need not fall into one step.
-    pub stages: Option<Stages>,
-    /// Deepest stack of the device; `null` where it does not measure it.
+    /// Instructions of each stage. The maxima of two stages may come from different steps.
+    pub stage_instructions: Option<Stages>,
+    /// Deepest stack of the device; `null` if it does not measure it.
     pub stack_bytes: Option<u32>,
 }
 
 /// Instructions of a step's stages.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stages {
-    /// Taking a request apart, and putting the reply before it together.
+    /// Decodes the request; encodes the reply to the request before it.
     pub session: Percentiles,
-    /// Scans and odometry into the map.
+    /// Enters scans and odometry into the map.
     pub sense: Percentiles,
-    /// An instalment of the skeleton.
+    /// Thins one share of the skeleton.
     pub topology: Percentiles,
-    /// The wave over a new skeleton, and the road.
+    /// Runs the wavefront over a new skeleton, and searches the path.
     pub plan: Percentiles,
-    /// The window's cells and boundary.
+    /// Sets the window's cells and boundary.
     pub window: Percentiles,
-    /// The window's field.
+    /// Solves the window's field.
     pub solve: Percentiles,
-    /// Descent, drive, and the search for a manoeuvre.
+    /// Descends the field, drives, and searches for a recovery.
     pub drive: Percentiles,
 }
 
 impl Stages {
-    /// The stages by name, in the order of a step.
+    /// Returns the stages with their names, in the order of a step.
     #[must_use]
     pub const fn by_name(&self) -> [(&'static str, Percentiles); 7] {
         [
@@ -221,40 +226,39 @@ impl Stages {
     }
 }
 
-/// Nearest-rank percentiles of the steps.
+/// Nearest-rank percentiles over the steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Percentiles {
-    /// Half of the steps are at or below.
+    /// Half of the steps are at or below it.
     pub p50: f64,
-    /// 99 of 100 steps are at or below.
+    /// 99 of 100 steps are at or below it.
     pub p99: f64,
     /// The greatest.
     pub max: f64,
 }
 
-/// The quality of the windows' solutions.
+/// Quality of the windows' solutions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Field {
-    /// Greatest angle between a step's heading and that of the converged window; `null` without `--check-field`.
-    pub worst_heading_error_deg: Option<f64>,
-    /// The same angle over all compared steps.
+    /// Angle between a step's heading and that of the converged window; `null` without
+    /// `--check-field`.
     pub heading_error_deg: Option<Percentiles>,
-    /// Steps whose solver ran out of budget.
-    pub budget_exhausted: u64,
-}
-
-/// Cross-checks of the tool on itself.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Debug {
-    /// The map read over the link is cell for cell the one that the host kept from the same observations; `null` where
-    /// either is missing.
-    pub map_matches_mirror: Option<bool>,
     /// Windows that `--check-field` compared.
     pub checked_windows: u64,
+    /// Steps in which the solver's budget ended before it converged.
+    pub budget_exhausted_steps: u64,
+}
+
+/// Cross-checks of the simulator.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Debug {
+    /// True if the map read over the link equals the host's copy, cell for cell; `null` if either
+    /// is missing.
+    pub map_matches_mirror: Option<bool>,
 }
 
 impl Report {
-    /// The file's text: indented JSON and a newline.
+    /// Returns the text of the file: indented JSON and a newline.
     #[must_use]
     pub fn to_json_pretty(&self) -> String {
         let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
@@ -262,13 +266,13 @@ impl Report {
         text
     }
 
-    /// The report on one line, without a newline.
+    /// Returns the report on one line, without a newline.
     #[must_use]
     pub fn to_json_line(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Whether the run did what it was for.
+    /// Returns true if everything is explored.
     #[must_use]
     pub fn explored(&self) -> bool {
         self.outcome.status == "finished" && self.outcome.reason == "explored"
@@ -276,7 +280,7 @@ impl Report {
 }
 
 impl Percentiles {
-    /// Of `samples` in any order; `None` of none.
+    /// Returns the percentiles of `samples`, which may be in any order; `None` if there are none.
     ///
     /// Nearest rank: the p-th percentile of n samples is the ⌈p·n⌉-th smallest.
     #[must_use]
@@ -296,7 +300,7 @@ impl Percentiles {
 mod tests {
     use super::{Percentiles, Report};
 
-    /// A report with a value of each kind in it.
+    /// Returns a report with a value of each kind.
     pub(crate) fn sample() -> Report {
         serde_json::from_str(include_str!("sample.json")).expect("the sample fits the schema")
     }
@@ -317,14 +321,14 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_one_line_and_says_the_same() {
+    fn a_line_is_one_line_with_the_same_content() {
         let line = sample().to_json_line();
         assert!(!line.contains('\n'));
         assert_eq!(serde_json::from_str::<Report>(&line).unwrap(), sample());
     }
 
     #[test]
-    fn what_is_not_finite_is_null() {
+    fn numbers_that_are_not_finite_are_null() {
         let mut report = sample();
         report.safety.min_clearance_m = Some(f64::INFINITY);
         report.coverage.fraction = f64::NAN;

@@ -1,28 +1,33 @@
-//! A report in a few lines for a person.
+//! The report as a few lines of text.
 
-use super::{Closures, GivenUp, Report};
+use super::{GivenUp, LoopClosing, Loops, Report};
 
 impl Report {
-    /// World, strategy and seed.
+    /// Returns world, strategy, uneven ground and seed on one line.
     #[must_use]
     pub fn headline(&self) -> String {
-        format!("{} · {} · seed {}", self.world, self.strategy, self.seed)
+        let ground = match self.ground.as_str() {
+            "flat" => String::new(),
+            ground => format!(" · {ground} ground"),
+        };
+        let (world, strategy, seed) = (&self.world, &self.strategy, self.seed);
+        format!("{world} · {strategy}{ground} · seed {seed}")
     }
 
-    /// How it ended, how much is known, how long and how far, on one line.
+    /// Returns end, coverage, time and path length on one line.
     #[must_use]
     pub fn in_short(&self) -> String {
         format!(
             "{}, {:.1} % of {:.0} m² known after {} min and {:.1} m",
             self.ending(),
             self.coverage.fraction * 100.0,
-            self.coverage.reachable_m2,
+            self.coverage.explorable_m2,
             minutes(self.sim_time_s),
             self.path_length_m,
         )
     }
 
-    /// The summary after a run.
+    /// Returns the summary of the run, several lines.
     #[must_use]
     pub fn to_text(&self) -> String {
         let milestone = |name: &str, time_s: Option<f64>| match time_s {
@@ -39,7 +44,7 @@ impl Report {
                 "  coverage  {}, {}; driven again {:.0} %",
                 milestone("90 %", self.coverage.t90_s),
                 milestone("99 %", self.coverage.t99_s),
-                self.coverage.overlap.unwrap_or(0.0) * 100.0,
+                self.path_overlap.unwrap_or(0.0) * 100.0,
             ),
             format!(
                 "  safety    {} collisions, {} falls, {} tips; least clearance {clearance}",
@@ -47,35 +52,33 @@ impl Report {
             ),
             format!("  planner   {}", self.cost()),
         ];
-        if self.loops.loops > 0 {
-            let super::Loops {
-                loops_closed,
-                loops,
-            } = self.loops;
-            lines.push(format!("  loops     {loops_closed} of {loops} closed"));
+        let Loops { islands, circled } = self.loops;
+        if islands > 0 {
+            lines.push(format!("  loops     {circled} of {islands} closed"));
         }
-        lines.extend(self.closures.as_ref().map(closures));
+        lines.extend(self.loop_closing.as_ref().map(loop_closing));
         if let Some(patrol) = &self.patrol {
             lines.push(format!(
                 "  patrol    oldest rail {:.0} s, mean age {:.0} s",
-                patrol.oldest_rail_s, patrol.mean_age_s
+                patrol.max_rail_age_s, patrol.mean_rail_age_s
             ));
         }
-        if let Some(terrain) = &self.terrain {
+        if let Some(ground) = &self.true_ground {
             lines.push(format!(
-                "  ground    {:.1} m up and down; steepest {:.1} deg along, {:.1} deg across; {:.1} s beyond {:.0} and {:.0} deg",
-                self.climb_m,
-                terrain.max_climb_deg,
-                terrain.max_side_deg,
-                terrain.over_limits_s,
-                terrain.working.climb_deg,
-                terrain.working.side_deg,
+                "  ground    {:.1} m up and down; pitch {:.1} deg, roll {:.1} deg at most; \
+                 {:.1} s beyond {:.0} and {:.0} deg",
+                self.height_change_m,
+                ground.max_pitch_deg,
+                ground.max_roll_deg,
+                ground.over_limits_s,
+                ground.working.climb_deg,
+                ground.working.roll_deg,
             ));
         }
-        if let Some(error_m) = self.localization.max_error_m.filter(|m| *m > 1e-3) {
-            let mean_m = self.localization.mean_error_m.unwrap_or(0.0);
+        if let Some(max_m) = self.position_error.max_m.filter(|m| *m > 1e-3) {
+            let mean_m = self.position_error.mean_m.unwrap_or(0.0);
             lines.push(format!(
-                "  odometry  off by {mean_m:.2} m in the mean, {error_m:.2} m at most"
+                "  position  wrong by {mean_m:.2} m on average, {max_m:.2} m at most"
             ));
         }
         for left in &self.outcome.residual_frontiers {
@@ -87,7 +90,7 @@ impl Report {
         lines.join("\n")
     }
 
-    /// `explored`, `boxed-in`, `fault (stuck)`, `time-limit` ...
+    /// Returns one word or two: `explored`, `boxed-in`, `fault (stuck)`, `time-limit` ...
     fn ending(&self) -> String {
         match self.outcome.status.as_str() {
             "finished" => self.outcome.reason.clone(),
@@ -98,12 +101,12 @@ impl Report {
 
     fn cost(&self) -> String {
         let mut words = format!("{} steps", self.steps);
-        if let Some(wall) = self.planner.wall_us {
+        if let Some(us) = self.planner.round_trip_us {
             words += &format!(
                 ", {:.2} ms each by {} (p99 {:.2})",
-                wall.p50 / 1e3,
+                us.p50 / 1e3,
                 self.link,
-                wall.p99 / 1e3
+                us.p99 / 1e3
             );
         }
         if let Some(count) = self.planner.instructions {
@@ -113,24 +116,23 @@ impl Report {
                 count.max / 1e6
             );
         }
-        if let Some(error_deg) = self.field.worst_heading_error_deg {
-            words += &format!(", worst heading error {error_deg:.1} deg");
+        if let Some(error_deg) = self.field.heading_error_deg {
+            words += &format!(", worst heading error {:.1} deg", error_deg.max);
         }
         words
     }
 }
 
-/// What the device said of loops.
-fn closures(said: &Closures) -> String {
+/// Returns the loops that the device reported.
+fn loop_closing(reported: &LoopClosing) -> String {
     let mut line = format!(
-        "  closing   {} closed by the robot's word, {} given up as not there; {:.0} s, {:.0} s of them in vain",
-        said.closed,
-        said.given_up.len(),
-        said.closing_s,
-        said.in_vain_s
+        "  closing   the robot reports {} closed, {} given up; {:.0} s, {:.0} s of them wasted",
+        reported.closed,
+        reported.given_up.len(),
+        reported.closing_s,
+        reported.wasted_s
     );
-    for at in &said.given_up {
-        let GivenUp { time_s, x_m, y_m } = at;
+    for GivenUp { time_s, x_m, y_m } in &reported.given_up {
         line += &format!(
             "\n  given up  a loop after {}, at ({x_m:.1}, {y_m:.1})",
             minutes(*time_s)
@@ -139,7 +141,7 @@ fn closures(said: &Closures) -> String {
     line
 }
 
-/// `5:07`.
+/// Formats as `5:07`.
 fn minutes(seconds: f64) -> String {
     let whole = seconds.max(0.0).round() as u64;
     format!("{}:{:02}", whole / 60, whole % 60)
@@ -148,10 +150,10 @@ fn minutes(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use crate::report::tests::sample;
-    use crate::report::{Closures, GivenUp};
+    use crate::report::{GivenUp, LoopClosing, TrueGround};
 
     #[test]
-    fn the_summary_says_what_matters() {
+    fn the_summary_has_all_parts_in_order() {
         let report = sample();
         assert_eq!(report.headline(), "office · frontier · seed 1");
         assert_eq!(
@@ -168,10 +170,11 @@ mod tests {
     #[test]
     fn uneven_ground_has_a_line_of_its_own() {
         let mut report = sample();
-        report.climb_m = 12.34;
-        report.terrain = Some(crate::report::Terrain {
-            max_climb_deg: 18.26,
-            max_side_deg: 7.0,
+        report.height_change_m = 12.34;
+        report.ground = "uneven".into();
+        report.true_ground = Some(TrueGround {
+            max_pitch_deg: 18.26,
+            max_roll_deg: 7.0,
             over_limits_s: 0.4,
             working: (&crate::robot::Limits::WORKING).into(),
             ..Default::default()
@@ -180,34 +183,39 @@ mod tests {
         report.outcome.reason = "tipped".into();
         let text = report.to_text();
         assert!(text.contains("lost (tipped), "), "{text}");
-        let line = "  ground    12.3 m up and down; steepest 18.3 deg along, 7.0 deg across; 0.4 s beyond 20 and 15 deg";
+        assert!(
+            text.starts_with("office · frontier · uneven ground · seed 1: "),
+            "{text}"
+        );
+        let line = "  ground    12.3 m up and down; pitch 18.3 deg, roll 7.0 deg at most; \
+                    0.4 s beyond 20 and 15 deg";
         assert!(text.lines().any(|l| l == line), "{text}");
     }
 
     #[test]
-    fn a_loop_that_was_given_up_is_said() {
+    fn a_loop_that_was_given_up_has_a_line() {
         let mut report = sample();
         let place = GivenUp {
             time_s: 125.4,
             x_m: 3.0,
             y_m: -1.24,
         };
-        report.closures = Some(Closures {
+        report.loop_closing = Some(LoopClosing {
             closed: 2,
             given_up: vec![place],
             closing_s: 210.4,
-            in_vain_s: 30.0,
+            wasted_s: 30.0,
         });
         let text = report.to_text();
         let lines = "
-  closing   2 closed by the robot's word, 1 given up as not there; 210 s, 30 s of them in vain
+  closing   the robot reports 2 closed, 1 given up; 210 s, 30 s of them wasted
   given up  a loop after 2:05, at (3.0, -1.2)
 ";
         assert!(text.contains(lines), "{text}");
     }
 
     #[test]
-    fn what_never_came_is_said() {
+    fn a_milestone_that_was_never_reached_is_shown() {
         let mut report = sample();
         report.coverage.t99_s = None;
         report.outcome.status = "fault".into();

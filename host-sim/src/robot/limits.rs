@@ -13,7 +13,7 @@
 //! braking, which are not simulated.
 //!
 //! Angles in radians, lengths in metres. The text form has degrees and metres:
-//! `climb=20,side=15,step=0.07,drop=0.07`.
+//! `climb=20,roll=15,step=0.07,drop=0.07`.
 
 use core::fmt;
 use core::str::FromStr;
@@ -24,7 +24,7 @@ pub struct Limits {
     /// Greatest slope along the heading, up or down, radians.
     pub climb_rad: f64,
     /// Greatest slope across the heading, radians.
-    pub side_rad: f64,
+    pub roll_rad: f64,
     /// Highest edge that a wheel goes up, metres.
     pub step_m: f64,
     /// Deepest edge that a wheel goes down, metres.
@@ -35,7 +35,7 @@ impl Limits {
     /// Ground that the robot may use: 20°, 15°, 0.07 m, 0.07 m.
     pub const WORKING: Self = Self {
         climb_rad: 20.0 * DEGREE,
-        side_rad: 15.0 * DEGREE,
+        roll_rad: 15.0 * DEGREE,
         step_m: 0.07,
         drop_m: 0.07,
     };
@@ -43,7 +43,7 @@ impl Limits {
     /// Ground that the robot just survives: 30°, 25°, 0.10 m, 0.15 m.
     pub const FAILING: Self = Self {
         climb_rad: 30.0 * DEGREE,
-        side_rad: 25.0 * DEGREE,
+        roll_rad: 25.0 * DEGREE,
         step_m: 0.10,
         drop_m: 0.15,
     };
@@ -52,7 +52,7 @@ impl Limits {
     #[must_use]
     pub fn holds_attitude(&self, pitch_rad: f64, roll_rad: f64) -> bool {
         // The angles on a slope exactly at the limit have a rounding error.
-        pitch_rad.abs() <= self.climb_rad + SLACK && roll_rad.abs() <= self.side_rad + SLACK
+        pitch_rad.abs() <= self.climb_rad + SLACK && roll_rad.abs() <= self.roll_rad + SLACK
     }
 
     /// Returns true if every limit of `self` is at most that of `other`.
@@ -63,7 +63,7 @@ impl Limits {
     }
 
     fn numbers(&self) -> [f64; 4] {
-        [self.climb_rad, self.side_rad, self.step_m, self.drop_m]
+        [self.climb_rad, self.roll_rad, self.step_m, self.drop_m]
     }
 }
 
@@ -77,7 +77,7 @@ pub struct LimitsError(String);
 
 impl fmt::Display for LimitsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let form = "write for instance climb=20,side=15,step=0.07,drop=0.07";
+        let form = "write for instance climb=20,roll=15,step=0.07,drop=0.07";
         write!(f, "{}; {form} (degrees and metres, any of them)", self.0)
     }
 }
@@ -98,7 +98,7 @@ impl Limits {
             let value = f64::from_str(number.trim()).unwrap_or(f64::NAN);
             let (slot, most, unit) = match name.trim() {
                 "climb" => (&mut self.climb_rad, 60.0, DEGREE),
-                "side" => (&mut self.side_rad, 60.0, DEGREE),
+                "roll" => (&mut self.roll_rad, 60.0, DEGREE),
                 "step" => (&mut self.step_m, 1.0, 1.0),
                 "drop" => (&mut self.drop_m, 1.0, 1.0),
                 other => return Err(LimitsError(format!("there is no limit called '{other}'"))),
@@ -119,9 +119,9 @@ impl fmt::Display for Limits {
         let degrees = |rad: f64| (rad / DEGREE * 100.0).round() / 100.0 + 0.0;
         write!(
             f,
-            "climb={},side={},step={},drop={}",
+            "climb={},roll={},step={},drop={}",
             degrees(self.climb_rad),
-            degrees(self.side_rad),
+            degrees(self.roll_rad),
             self.step_m,
             self.drop_m
         )
@@ -141,7 +141,7 @@ mod tests {
             ..Limits::WORKING
         };
         assert_eq!(changed, Ok(expected));
-        assert_eq!(expected.to_string(), "climb=25,side=15,step=0.07,drop=0.05");
+        assert_eq!(expected.to_string(), "climb=25,roll=15,step=0.07,drop=0.05");
         assert_eq!(Limits::WORKING.changed(&expected.to_string()), Ok(expected));
     }
 
@@ -168,7 +168,7 @@ mod tests {
     fn the_working_limits_are_within_the_failing_ones() {
         assert!(Limits::WORKING.is_within(&Limits::FAILING));
         assert!(!Limits::FAILING.is_within(&Limits::WORKING));
-        let [climb, side] = [Limits::WORKING.climb_rad, Limits::WORKING.side_rad];
+        let [climb, side] = [Limits::WORKING.climb_rad, Limits::WORKING.roll_rad];
         assert!(Limits::WORKING.holds_attitude(-climb, side));
         assert!(!Limits::WORKING.holds_attitude(climb + 1e-3, 0.0));
         assert!(!Limits::WORKING.holds_attitude(0.0, -side - 1e-3));

@@ -4,6 +4,8 @@
 //! drives (any [`Body`]). It is lockstep: simulated time passes only in [`Body::drive`], so that the commands do not depend
 //! on how long an answer takes; the wall clock is only measured. Same link, same body, same seed: same record.
 
+mod account;
+mod body;
 pub mod ending;
 pub mod freeze;
 pub mod mirror;
@@ -15,6 +17,7 @@ pub mod route;
 pub mod series;
 pub mod shape;
 pub mod snapshot;
+mod summary;
 pub mod uneven;
 pub mod wording;
 
@@ -23,35 +26,18 @@ use std::time::Instant;
 use fieldline_protocol::message::{Command, Control, Loops, Observation, Start, Status, Twist};
 
 use crate::link::{Link, LinkError};
-use crate::report::tum::Stamped;
-use crate::sim::Loss;
 use freeze::FreezeDetector;
 use relief::Relief;
 use series::Series;
 use snapshot::{Snapshot, Window};
 
+pub use body::Body;
 pub use ending::Ending;
 pub use record::{Record, Step};
 
 /// Time that the robot is given to come to rest after the last command, milliseconds: its watchdog's 500 ms and braking
 /// from full speed at 0.3 m/s².
 const REST_MS: u32 = 3_000;
-
-/// The robot in its world, as a run needs it.
-pub trait Body {
-    /// Simulated time from one observation to the next, milliseconds.
-    fn period_ms(&self) -> u32;
-    /// What the robot senses now.
-    fn observe(&mut self) -> Observation;
-    /// Drive so for one period. `None` is silence: the last velocity counts until the robot's own watchdog finds it stale.
-    fn drive(&mut self, velocity: Option<Twist>);
-    /// Where the robot truly is, in the frame of the observations' poses.
-    fn truth(&self) -> Stamped;
-    /// Why the robot cannot go on any more, if so.
-    fn loss(&self) -> Option<Loss> {
-        None
-    }
-}
 
 /// Keeps account of what became known.
 pub trait Survey {

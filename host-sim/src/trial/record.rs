@@ -13,7 +13,7 @@ use super::{Ending, Progress, wording};
 use crate::link::digest::Digest;
 use crate::link::{LinkError, LinkStats};
 use crate::metrics::GroundTruth;
-use crate::report::closures::{Closures, Word};
+use crate::report::loop_closing::{LoopClosing, LoopStatus};
 use crate::report::tum::Stamped;
 use crate::report::{self, GridMap, Percentiles};
 
@@ -41,8 +41,8 @@ pub struct Record {
     pub coverage: f64,
     /// Metres driven, by the true pose.
     pub path_m: f64,
-    /// Sum of all changes of the true height from step to step, metres.
-    pub climb_m: f64,
+    /// Sum of the changes of the true height from step to step, metres.
+    pub height_change_m: f64,
     /// Of the commands so far.
     pub digest: Digest,
     /// The device's map.
@@ -76,7 +76,7 @@ impl Default for Record {
             steps: Vec::new(),
             coverage: 0.0,
             path_m: 0.0,
-            climb_m: 0.0,
+            height_change_m: 0.0,
             digest: Digest::default(),
             map: GridMap::default(),
             tiles: BTreeMap::new(),
@@ -129,7 +129,7 @@ impl Record {
                 step.truth.y_m - last.truth.y_m,
             );
             self.path_m += dx.hypot(dy);
-            self.climb_m += (step.truth.z_m - last.truth.z_m).abs();
+            self.height_change_m += (step.truth.z_m - last.truth.z_m).abs();
         }
         self.digest.add(&step.command);
         self.coverage = coverage;
@@ -156,7 +156,7 @@ impl Record {
             x_m: centre_m(frontier.x),
             y_m: centre_m(frontier.y),
             cells: u32::from(frontier.cells),
-            reason: wording::residue(frontier.reason).into(),
+            reason: wording::residual(frontier.reason).into(),
         };
         report::Outcome {
             status: self.ending.status().into(),
@@ -165,12 +165,12 @@ impl Record {
         }
     }
 
-    /// The report's part on what the device said of loops.
+    /// Returns the report's part on loops that the device reported.
     #[must_use]
-    pub fn closures(&self) -> Closures {
-        Closures::of(self.steps.iter().map(|step| {
+    pub fn loop_closing(&self) -> LoopClosing {
+        LoopClosing::of(self.steps.iter().map(|step| {
             let (estimate, loops) = (step.estimate, step.command.loops);
-            Word {
+            LoopStatus {
                 time_s: f64::from(estimate.time_ms) / 1000.0,
                 at_m: [estimate.x_m, estimate.y_m],
                 closing: loops.closing,
@@ -180,17 +180,17 @@ impl Record {
         }))
     }
 
-    /// The report's part on odometry.
+    /// Returns the report's part on the position's error.
     #[must_use]
-    pub fn localization(&self) -> report::Localization {
+    pub fn position_error(&self) -> report::PositionError {
         let error = |s: &Step| (s.estimate.x_m - s.truth.x_m).hypot(s.estimate.y_m - s.truth.y_m);
         let errors: Vec<f64> = self.steps.iter().map(error).collect();
         if errors.is_empty() {
-            return report::Localization::default();
+            return report::PositionError::default();
         }
-        report::Localization {
-            mean_error_m: Some(errors.iter().sum::<f64>() / errors.len() as f64),
-            max_error_m: errors.into_iter().reduce(f64::max),
+        report::PositionError {
+            mean_m: Some(errors.iter().sum::<f64>() / errors.len() as f64),
+            max_m: errors.into_iter().reduce(f64::max),
         }
     }
 
@@ -206,9 +206,9 @@ impl Record {
         };
         let all = |part| of(part).unwrap_or_default();
         report::Planner {
-            wall_us: Percentiles::of(&wall),
+            round_trip_us: Percentiles::of(&wall),
             instructions: of(|cost| cost.instructions),
-            stages: (!counted.is_empty()).then(|| report::Stages {
+            stage_instructions: (!counted.is_empty()).then(|| report::Stages {
                 session: all(|cost| cost.stages.session),
                 sense: all(|cost| cost.stages.sense),
                 topology: all(|cost| cost.stages.topology),
@@ -228,11 +228,10 @@ impl Record {
     #[must_use]
     pub fn field(&self) -> report::Field {
         let exhausted = |step: &&Step| step.command.cost.budget_exhausted;
-        let errors = Percentiles::of(&self.heading_errors_deg);
         report::Field {
-            worst_heading_error_deg: errors.map(|errors| errors.max),
-            heading_error_deg: errors,
-            budget_exhausted: self.steps.iter().filter(exhausted).count() as u64,
+            heading_error_deg: Percentiles::of(&self.heading_errors_deg),
+            checked_windows: self.heading_errors_deg.len() as u64,
+            budget_exhausted_steps: self.steps.iter().filter(exhausted).count() as u64,
         }
     }
 }

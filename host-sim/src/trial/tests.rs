@@ -219,8 +219,8 @@ fn a_finish_ends_the_run_and_everything_is_read() {
     );
     let frontier = &outcome.residual_frontiers[0];
     assert_eq!((frontier.x_m, frontier.y_m), (3.05, -1.25));
-    let localization = record.localization();
-    assert!((localization.mean_error_m.unwrap() - 0.25).abs() < 1e-4);
+    let error = record.position_error();
+    assert!((error.mean_m.unwrap() - 0.25).abs() < 1e-4);
 }
 
 #[test]
@@ -245,7 +245,7 @@ fn a_robot_that_fell_ends_the_run_at_once() {
 }
 
 #[test]
-fn climb_is_the_sum_of_all_ups_and_downs() {
+fn height_change_is_the_sum_of_all_ups_and_downs() {
     let (record, ..) = ends(vec![
         command(Status::Exploring, 0.5),
         command(Status::Exploring, 0.5),
@@ -254,7 +254,11 @@ fn climb_is_the_sum_of_all_ups_and_downs() {
         command(Status::Finished(Finish::Explored), 0.0),
     ]);
     // Heights 0, 0.025, 0.05, 0.075, −0.2.
-    assert!((record.climb_m - 0.35).abs() < 1e-3, "{}", record.climb_m);
+    assert!(
+        (record.height_change_m - 0.35).abs() < 1e-3,
+        "{}",
+        record.height_change_m
+    );
 }
 
 #[test]
@@ -324,13 +328,13 @@ fn costs_are_reported_only_where_the_device_measures() {
     let (record, ..) = ends(vec![command(Status::Exploring, 0.1), Ok(measured)]);
     let planner = record.planner();
     assert_eq!(planner.instructions.unwrap().max, 4e6);
-    let stages = planner.stages.unwrap();
+    let stages = planner.stage_instructions.unwrap();
     assert_eq!((stages.solve.p50, stages.drive.max), (3e6, 0.0));
     assert_eq!(planner.stack_bytes, Some(2_048));
-    assert!(planner.wall_us.unwrap().p50 >= 0.0);
-    assert_eq!(record.field().budget_exhausted, 1);
+    assert!(planner.round_trip_us.unwrap().p50 >= 0.0);
+    assert_eq!(record.field().budget_exhausted_steps, 1);
     let (record, ..) = ends(vec![command(Status::Finished(Finish::Explored), 0.0)]);
     assert_eq!(record.planner().instructions, None);
-    assert_eq!(record.planner().stages, None);
+    assert_eq!(record.planner().stage_instructions, None);
     assert_eq!(record.planner().stack_bytes, None);
 }

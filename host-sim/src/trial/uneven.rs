@@ -33,16 +33,16 @@ pub fn radians(degrees: f64) -> I4F12 {
 
 /// Why a text gives no parameters.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TerrainError(String);
+pub struct ParameterError(String);
 
-impl fmt::Display for TerrainError {
+impl fmt::Display for ParameterError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let form = "write for instance h_obs=0.3,h_hole=-0.6,eps_gmax=0.5";
         write!(f, "{}; {form}", self.0)
     }
 }
 
-impl core::error::Error for TerrainError {}
+impl core::error::Error for ParameterError {}
 
 /// Least and greatest of a parameter, and why it ends there.
 fn bounds(name: &str) -> Option<([f64; 2], &'static str)> {
@@ -64,20 +64,20 @@ fn bounds(name: &str) -> Option<([f64; 2], &'static str)> {
 /// These parameters with those changed that a text names.
 ///
 /// # Errors
-/// [`TerrainError`] for an unknown name, a text that is no number, and a number out of its bounds.
-pub fn changed(mut terrain: UnevenGround, text: &str) -> Result<UnevenGround, TerrainError> {
+/// [`ParameterError`] for an unknown name, a text that is no number, and a number out of its bounds.
+pub fn changed(mut terrain: UnevenGround, text: &str) -> Result<UnevenGround, ParameterError> {
     for part in text.split(',').map(str::trim) {
         let Some((name, number)) = part.split_once('=') else {
-            return Err(TerrainError(format!("'{part}' is not name=number")));
+            return Err(ParameterError(format!("'{part}' is not name=number")));
         };
         let name = name.trim();
         let Some(([least, most], reason)) = bounds(name) else {
-            return Err(TerrainError(format!("there is no parameter '{name}'")));
+            return Err(ParameterError(format!("there is no parameter '{name}'")));
         };
         let value = f64::from_str(number.trim()).unwrap_or(f64::NAN);
         if !(value >= least && value <= most) {
             let text = format!("{name} must be from {least} to {most}, not '{number}': {reason}");
-            return Err(TerrainError(text));
+            return Err(ParameterError(text));
         }
         let short = I4F12::saturating_from_num(value);
         match name {

@@ -1,8 +1,8 @@
-//! The words that reports, tables and progress lines use for the wire's enums. They are part of the report's schema.
+//! Words for the wire's enums in reports, tables and progress lines. They are part of the schema.
 
-use fieldline_protocol::message::{Fault, Finish, ResidualReason, Status};
+use fieldline_protocol::message::{Fault, Finish, Preference, ResidualReason, Status};
 
-/// `exploring`, `finished(explored)`, `fault(stuck)` ...
+/// Returns `exploring`, `finished(explored)`, `fault(stuck)` ...
 #[must_use]
 pub fn status(status: Status) -> String {
     match status {
@@ -15,7 +15,7 @@ pub fn status(status: Status) -> String {
     }
 }
 
-/// Why an exploration ended.
+/// Returns the reason for the end of an exploration.
 #[must_use]
 pub fn finish(finish: Finish) -> &'static str {
     match finish {
@@ -25,7 +25,7 @@ pub fn finish(finish: Finish) -> &'static str {
     }
 }
 
-/// Why the planner cannot go on.
+/// Returns the reason why the planner cannot go on.
 #[must_use]
 pub fn fault(fault: Fault) -> &'static str {
     match fault {
@@ -37,13 +37,24 @@ pub fn fault(fault: Fault) -> &'static str {
     }
 }
 
-/// Why a frontier was left.
+/// Returns the reason why a frontier was left.
 #[must_use]
-pub fn residue(residue: ResidualReason) -> &'static str {
-    match residue {
+pub fn residual(reason: ResidualReason) -> &'static str {
+    match reason {
         ResidualReason::Unreachable => "unreachable",
         ResidualReason::Unobservable => "unobservable",
         ResidualReason::OutOfBounds => "out-of-bounds",
         ResidualReason::NoProgress => "no-progress",
+    }
+}
+
+/// Returns the preferences of the field, as on the command line.
+#[must_use]
+pub fn preference(preference: Preference) -> &'static str {
+    match preference {
+        Preference::Off => "off",
+        Preference::Height => "height",
+        Preference::Global => "global",
+        Preference::Both => "both",
     }
 }

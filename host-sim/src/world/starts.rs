@@ -101,7 +101,7 @@ impl World {
         let Some(here_m) = self.ground_m(x_m, y_m) else {
             return false;
         };
-        let steepest = libm::tan(Limits::WORKING.side_rad);
+        let steepest = libm::tan(Limits::WORKING.roll_rad);
         // Beyond the border the ground counts as level.
         [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]
             .into_iter()

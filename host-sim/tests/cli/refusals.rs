@@ -181,12 +181,12 @@ fn bad_arguments_are_refused_in_one_line() {
     explore(&["--imu-noise", "90"], &["'90'", "degrees from 0 to 20"]);
     explore(&["--laser-noise", "-1"], &["'-1'", "metres from 0 to 1"]);
     explore(
-        &["--limits", "climb=steep"],
+        &["--working-limits", "climb=steep"],
         &["climb", "degrees and metres"],
     );
     explore(
-        &["--limits", "climb=40"],
-        &["--limits climb=40", "--failing"],
+        &["--working-limits", "climb=40"],
+        &["--working-limits climb=40", "--failing-limits"],
     );
     refused(&folder, &["explore", "loop@7"], &["robots[7]", "2 starts"]);
     for bad in ["64", "-5x5", "nanx5", "infx5", "0x9"] {
@@ -203,7 +203,27 @@ fn bad_arguments_are_refused_in_one_line() {
     );
     explore(
         &["--strategy", "greedy-frontier", "--preference", "off"],
-        &["greedy-frontier", "leave --preference and --terrain out"],
+        &[
+            "greedy-frontier",
+            "leave --ground, --preference and --ground-parameters out",
+        ],
+    );
+    explore(
+        &["--ground", "flat", "--preference", "off"],
+        &["--ground flat", "say --ground uneven"],
+    );
+    explore(
+        &["--strategy", "terrain", "--ground", "flat"],
+        &["means --strategy frontier", "leave --ground flat out"],
+    );
+    explore(
+        &["--ground-parameters", "eps_gmax=3"],
+        &["--ground-parameters", "eps_gmax", "from 0 to 2"],
+    );
+    explore(&["--ground", "hilly"], &["hilly", "flat, uneven"]);
+    explore(
+        &["--patrol-for", "9"],
+        &["frontier", "leave --patrol-for out"],
     );
     explore(
         &["--strategy", "bvp", "--fault", "drop=0.1"],

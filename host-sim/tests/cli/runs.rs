@@ -128,8 +128,13 @@ fn snapshots_of_an_uneven_run_change_no_result() {
     };
     let plain = run(&["--link", "direct"]);
     assert_eq!(plain["start"], 1);
-    assert_eq!(plain["terrain"]["working"]["climb_deg"], 20.0);
-    assert!(plain["terrain"]["classes"]["cells"][0][1].as_u64().unwrap() > 1_000);
+    assert_eq!(plain["true_ground"]["working"]["climb_deg"], 20.0);
+    assert!(
+        plain["true_ground"]["map_score"]["confusion"][0][1]
+            .as_u64()
+            .unwrap()
+            > 1_000
+    );
     let home = folder.path().join("out/causeway@1-frontier-0");
     assert_eq!(files(&home), FILES, "no snapshots by default");
     for link in ["direct", "loopback"] {
@@ -150,6 +155,38 @@ fn snapshots_of_an_uneven_run_change_no_result() {
         sizes.dedup();
         assert_eq!(sizes.len(), 1, "all have one size, so they make a film");
     }
+}
+
+#[test]
+fn the_alias_terrain_is_frontier_on_uneven_ground() {
+    let folder = folder();
+    let run = |more: &[&str]| {
+        let arguments = ["explore", "slope", "--time-limit", "5", "--json"];
+        let (status, stdout, stderr) = outcome(&folder, &[&arguments, more].concat());
+        assert_eq!(status, 1, "the time limit ended it: {stderr}");
+        (reports(&stdout).remove(0), stderr)
+    };
+    let (alias, stderr) = run(&["--strategy", "terrain"]);
+    let meaning = "--strategy terrain means --strategy frontier --ground uneven\n";
+    assert!(
+        stderr.starts_with(&format!("host-sim: {meaning}")),
+        "{stderr}"
+    );
+    assert!(files(&folder.path().join("out")).contains(&"slope-frontier-uneven-0".into()));
+    let (plain, stderr) = run(&["--ground", "uneven"]);
+    assert!(!stderr.contains("means"), "{stderr}");
+    let (implied, _) = run(&["--preference", "both"]);
+    for report in [&alias, &plain, &implied] {
+        let words = ["strategy", "ground", "preference"].map(|key| report[key].as_str());
+        assert_eq!(words, [Some("frontier"), Some("uneven"), Some("both")]);
+        assert_eq!(report["digest"], alias["digest"]);
+    }
+    let (flat, _) = run(&[]);
+    assert_eq!(
+        (flat["ground"].as_str(), flat["preference"].as_str()),
+        (Some("flat"), None)
+    );
+    assert_ne!(flat["digest"], alias["digest"]);
 }
 
 #[test]
@@ -183,7 +220,7 @@ fn silence_or_a_reset_ends_the_run_with_a_typed_fault() {
         assert_eq!(status, 1);
         assert_eq!(report["outcome"]["status"], "fault", "{fault}");
         assert_eq!(report["outcome"]["reason"], reason, "{fault}");
-        assert_eq!(report["fault"], fault);
+        assert_eq!(report["injected_faults"], fault);
         assert_eq!(report["safety"]["collisions"], 0, "{fault}");
         assert!(stderr.contains("host-sim: loop: "), "{stderr}");
         assert_eq!(files(&folder.path().join("out/loop-frontier-0")), FILES);
@@ -204,10 +241,9 @@ fn check_field_reports_the_heading_error() {
     let (_, stdout, _) = outcome(&folder, &arguments);
     let report = &reports(&stdout)[0];
     let field = &report["field"];
-    assert!(report["debug"]["checked_windows"].as_u64().unwrap() > 30);
-    let worst = field["worst_heading_error_deg"].as_f64().unwrap();
+    assert!(field["checked_windows"].as_u64().unwrap() > 30);
+    let worst = field["heading_error_deg"]["max"].as_f64().unwrap();
     assert!((0.0..=180.0).contains(&worst));
-    assert_eq!(field["heading_error_deg"]["max"].as_f64(), Some(worst));
     assert!(
         field["heading_error_deg"]["p50"].as_f64().unwrap() < 2.0,
         "{field}"

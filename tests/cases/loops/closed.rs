@@ -44,7 +44,7 @@ fn faults(report: &Report) -> Vec<String> {
         _ => LEAST_COVERAGE,
     };
     let mut faults = runs::faults(report, least);
-    let (closed, all) = (report.loops.loops_closed, report.loops.loops);
+    let (closed, all) = (report.loops.circled, report.loops.islands);
     if report.strategy == OUROBOROS && closed < all {
         faults.push(format!("{closed} of {all} loops closed"));
     }

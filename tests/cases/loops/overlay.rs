@@ -22,7 +22,7 @@ fn run(strategy: &str, link: &mut dyn Link) -> Record {
     let world = worlds::builtin("loop");
     let (report, record) = explore(&mission, &world, link, &mut Unseen).expect("the start is free");
     assert!(report.explored(), "{:?}", report.outcome);
-    assert_eq!(report.closures.is_some(), strategy == OUROBOROS);
+    assert_eq!(report.loop_closing.is_some(), strategy == OUROBOROS);
     record
 }
 
@@ -64,9 +64,9 @@ fn pictures_show_a_loop_being_closed_and_its_marks_later() {
         let settled = loops.closed + loops.given_up > 0;
         assert_eq!(snapshot.map.has_marks(), settled, "{loops:?}");
     }
-    let said = record.closures();
+    let said = record.loop_closing();
     assert!(
-        said.closed > 0 && said.closing_s > said.in_vain_s,
+        said.closed > 0 && said.closing_s > said.wasted_s,
         "{said:?}"
     );
     assert!(record.map.has_marks());

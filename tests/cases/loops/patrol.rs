@@ -115,9 +115,9 @@ fn table(patrols: &[Patrol]) -> Table {
         table.row(vec![
             patrol.start.to_string(),
             number(Some(explored_s), 1),
-            number(ages.map(|ages| ages.oldest_rail_s), 1),
-            number(ages.map(|ages| ages.oldest_rail_s / TOUR_S), 2),
-            number(ages.map(|ages| ages.mean_age_s), 1),
+            number(ages.map(|ages| ages.max_rail_age_s), 1),
+            number(ages.map(|ages| ages.max_rail_age_s / TOUR_S), 2),
+            number(ages.map(|ages| ages.mean_rail_age_s), 1),
             report.safety.collisions.to_string(),
             patrol.solved.to_string(),
             patrol.flat.to_string(),
@@ -131,11 +131,14 @@ fn faults(patrol: &Patrol) -> Vec<String> {
     let mut faults = runs::faults(&patrol.report, LEAST_COVERAGE);
     match patrol.report.patrol {
         None => faults.push("did not reach its end".into()),
-        Some(ages) if ages.oldest_rail_s > MOST_TOURS * TOUR_S => {
-            faults.push(format!("a rail waited for {} s", ages.oldest_rail_s));
+        Some(ages) if ages.max_rail_age_s > MOST_TOURS * TOUR_S => {
+            faults.push(format!("a rail waited for {} s", ages.max_rail_age_s));
         }
-        Some(ages) if ages.mean_age_s >= TOUR_S => {
-            faults.push(format!("rails wait for {} s in the mean", ages.mean_age_s));
+        Some(ages) if ages.mean_rail_age_s >= TOUR_S => {
+            faults.push(format!(
+                "rails wait for {} s in the mean",
+                ages.mean_rail_age_s
+            ));
         }
         Some(_) => {}
     }

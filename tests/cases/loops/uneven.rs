@@ -21,7 +21,7 @@ const LEAST_COVERAGE: f64 = 0.98;
 fn go(run: &Run<'_>) -> Report {
     let mission = Mission {
         strategy: run.strategy.into(),
-        terrain: Some(TABLE_I),
+        uneven_ground: Some(TABLE_I),
         start: run.start,
         ..Mission::default()
     };

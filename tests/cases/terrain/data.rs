@@ -66,7 +66,10 @@ fn uneven_worlds_drawn_by_others() {
             report.seed.to_string(),
             format!("{all:.3}"),
             format!("{clear:.3}"),
-            format!("{:.1}", report.terrain.unwrap_or_default().over_limits_s),
+            format!(
+                "{:.1}",
+                report.true_ground.unwrap_or_default().over_limits_s
+            ),
         ]);
     }
     let (runs, shares): (Vec<Summary>, Vec<[f64; 2]>) = watched.into_iter().unzip();

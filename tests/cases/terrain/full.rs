@@ -14,9 +14,10 @@ use fieldline_protocol::message::Preference;
 use fieldline_tests::digests::Digest;
 use fieldline_tests::runs::in_parallel;
 use fieldline_tests::table::{Table, number};
-use fieldline_tests::uneven::{self, Summary, UnevenRun, word};
+use fieldline_tests::uneven::{self, Summary, UnevenRun};
 use fieldline_tests::wilcoxon::signed_rank;
 use fieldline_tests::{golden, truth, worlds};
+use host_sim::trial::wording;
 
 use crate::scenarios;
 use crate::shared::{WatchedRun, assert_explored, explore};
@@ -131,7 +132,7 @@ fn mean(runs: &[Summary], of: Quantity) -> f64 {
 /// Figures that are compared.
 const QUANTITIES: [(&str, Quantity); 4] = [
     ("crossings", |run| f64::from(run.crossings)),
-    ("climb m", |run| run.report.climb_m),
+    ("climb m", |run| run.report.height_change_m),
     ("path m", |run| run.report.path_length_m),
     ("time s", |run| run.report.sim_time_s),
 ];
@@ -154,7 +155,7 @@ fn preferences_on_the_big_slope() {
     let pairs = Pairs { with, without };
     let mut counts = Table::new(1, &["crossings", "0", "1", "2", "3", "4", "5 and more"]);
     for half in [with, without] {
-        let mut row = vec![word(half[0].preference).to_owned()];
+        let mut row = vec![wording::preference(half[0].preference).to_owned()];
         let of = |k: u32| half.iter().filter(|run| run.crossings.min(5) == k).count();
         row.extend((0..=5).map(|k| of(k).to_string()));
         counts.row(row);

@@ -22,7 +22,7 @@ const USUAL_DEG: f64 = 20.0;
 const MOST_BEYOND: f64 = 0.2;
 
 fn beyond_s(run: &Summary) -> f64 {
-    run.report.terrain.unwrap_or_default().over_limits_s
+    run.report.true_ground.unwrap_or_default().over_limits_s
 }
 
 /// Makes a table with one line for each run and its limit.
@@ -41,7 +41,7 @@ fn table(runs: &[(&Summary, f64)]) -> Table {
     let mut table = Table::new(1, &columns);
     for (run, limit_deg) in runs {
         let report = &run.report;
-        let ride = report.terrain.unwrap_or_default();
+        let ride = report.true_ground.unwrap_or_default();
         table.row(vec![
             report.world.clone(),
             format!("{limit_deg}"),
@@ -49,8 +49,8 @@ fn table(runs: &[(&Summary, f64)]) -> Table {
             format!("{:.2}", 100.0 * report.coverage.fraction),
             format!("{:.1}", report.sim_time_s),
             format!("{:.1}", report.path_length_m),
-            format!("{:.2}", report.climb_m),
-            format!("{:.1}", ride.max_side_deg),
+            format!("{:.2}", report.height_change_m),
+            format!("{:.1}", ride.max_roll_deg),
             format!("{:.1}", ride.over_limits_s),
         ]);
     }

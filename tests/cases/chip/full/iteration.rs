@@ -84,7 +84,7 @@ fn explored(world: &World, strategy: &str, link: &mut dyn Link) -> Vec<(f64, Ste
     let known = gauge
         .0
         .iter()
-        .map(|share| share * report.coverage.reachable_m2);
+        .map(|share| share * report.coverage.explorable_m2);
     known.zip(record.steps).collect()
 }
 

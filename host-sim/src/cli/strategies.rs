@@ -1,6 +1,7 @@
-//! What can plan: the device's strategies by any link, and baselines that only the host has the memory for.
+//! Strategies: those of the device over any link, and baselines that need a host's memory.
 //!
-//! A baseline is a [`Link`] of its own, without bytes: it answers observations with commands and shows a map.
+//! A baseline is a [`Link`] of its own, without bytes: it answers observations with commands and
+//! has a map.
 
 use anyhow::{Result, bail};
 use fieldline_protocol::message::Strategy;
@@ -10,13 +11,16 @@ use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::trial::mission::{STRATEGIES, on_device};
 
-/// The strategy on the device if nothing is said.
+/// The default strategy.
 pub(super) const FRONTIER: &str = "frontier";
 
-/// The boundary-value problem over the full grid.
+/// An alias: the default strategy on uneven ground.
+pub(super) const TERRAIN: &str = "terrain";
+
+/// The baseline that solves the boundary-value problem over the full grid [Prestes02].
 const BVP: &str = "bvp";
 
-/// Makes a baseline.
+/// Constructor of a baseline.
 type Make = fn() -> Box<dyn Link>;
 
 /// The baselines by name.
@@ -27,14 +31,14 @@ const BASELINES: &[(&str, Make)] = &[
     }),
 ];
 
-/// A known strategy's name, or what the known ones are.
+/// Parses the name of a strategy, or the alias.
 pub(super) fn parse(name: &str) -> Result<String, String> {
     let known: Vec<&str> = STRATEGIES
         .iter()
         .map(|(name, _)| *name)
         .chain(BASELINES.iter().map(|(name, _)| *name))
         .collect();
-    if known.contains(&name) {
+    if known.contains(&name) || name == TERRAIN {
         Ok(name.into())
     } else {
         Err(format!(
@@ -44,28 +48,31 @@ pub(super) fn parse(name: &str) -> Result<String, String> {
     }
 }
 
-/// Where a strategy runs if nothing is said, and the refusal of where it cannot.
-pub(super) fn place(strategy: &str, link: Option<&LinkSpec>) -> Result<LinkSpec> {
+/// Returns the link of a strategy: the one given or the default. Refuses bytes for a baseline.
+pub(super) fn link_of(strategy: &str, link: Option<&LinkSpec>) -> Result<LinkSpec> {
     match (strategy, link) {
         (name, None) if on_device(name).is_some() => Ok(LinkSpec::Loopback),
         (name, Some(link)) if on_device(name).is_some() => Ok(link.clone()),
         (_, None | Some(LinkSpec::Direct)) => Ok(LinkSpec::Direct),
         (_, Some(link)) => bail!(
-            "--strategy {strategy} runs on the host only, not by --link {link}; leave --link out or say direct"
+            "--strategy {strategy} runs on the host only, not over --link {link}; \
+             leave --link out or say direct"
         ),
     }
 }
 
-/// Whether a strategy can be told to heed uneven ground.
-pub(super) fn heeds_ground(strategy: &str) -> bool {
+/// Returns true if a strategy can plan on uneven ground.
+pub(super) fn knows_uneven_ground(strategy: &str) -> bool {
     strategy == BVP || on_device(strategy).is_some()
 }
 
-/// The refusal of what only the device's strategies have: windows to compare, bytes to break.
+/// Refuses `--check-field` and `--fault` for strategies without a window or without bytes.
 pub(super) fn check(strategy: &str, check_field: bool, faults: bool) -> Result<()> {
     match strategy {
         "tdbvp" if check_field => {
-            bail!("--strategy tdbvp charges rails, which --check-field does not know; leave it out")
+            bail!(
+                "--check-field has no reference for --strategy tdbvp, which charges rails; leave it out"
+            )
         }
         name if on_device(name).is_some() => Ok(()),
         _ if check_field => {
@@ -76,7 +83,7 @@ pub(super) fn check(strategy: &str, check_field: bool, faults: bool) -> Result<(
     }
 }
 
-/// The refusal of a patrol by what has no rails to patrol on.
+/// Refuses a patrol for strategies without rails.
 pub(super) fn check_patrol(strategy: &str, patrol_s: u16) -> Result<()> {
     match on_device(strategy) {
         Some(Strategy::Tdbvp { .. }) => Ok(()),
@@ -87,7 +94,7 @@ pub(super) fn check_patrol(strategy: &str, patrol_s: u16) -> Result<()> {
     }
 }
 
-/// What plans, ready for its hello.
+/// Opens the planner of a strategy.
 pub(super) fn open(strategy: &str, link: &LinkSpec, options: &Options) -> Result<Box<dyn Link>> {
     let baseline = BASELINES.iter().find(|(name, _)| *name == strategy);
     Ok(match baseline {
@@ -98,11 +105,11 @@ pub(super) fn open(strategy: &str, link: &LinkSpec, options: &Options) -> Result
 
 #[cfg(test)]
 mod tests {
-    use super::{FRONTIER, check, parse, place};
+    use super::{FRONTIER, check, link_of, parse};
     use host_sim::link::spec::LinkSpec;
 
     #[test]
-    fn unknown_strategies_are_named_with_the_known() {
+    fn an_unknown_strategy_is_refused_with_a_list_of_the_known() {
         let error = parse("magic").unwrap_err();
         assert!(
             error.contains("'magic'") && error.contains("frontier") && error.contains("ouroboros"),
@@ -111,15 +118,15 @@ mod tests {
     }
 
     #[test]
-    fn the_device_runs_anywhere_and_a_baseline_on_the_host() {
-        assert_eq!(place(FRONTIER, None).unwrap(), LinkSpec::Loopback);
-        assert_eq!(place("ouroboros", None).unwrap(), LinkSpec::Loopback);
+    fn the_device_takes_any_link_and_a_baseline_only_the_direct_one() {
+        assert_eq!(link_of(FRONTIER, None).unwrap(), LinkSpec::Loopback);
+        assert_eq!(link_of("ouroboros", None).unwrap(), LinkSpec::Loopback);
         assert_eq!(
-            place(FRONTIER, Some(&LinkSpec::Qemu)).unwrap(),
+            link_of(FRONTIER, Some(&LinkSpec::Qemu)).unwrap(),
             LinkSpec::Qemu
         );
-        assert_eq!(place("bvp", None).unwrap(), LinkSpec::Direct);
-        let error = place("bvp", Some(&LinkSpec::Loopback))
+        assert_eq!(link_of("bvp", None).unwrap(), LinkSpec::Direct);
+        let error = link_of("bvp", Some(&LinkSpec::Loopback))
             .unwrap_err()
             .to_string();
         assert!(error.contains("bvp") && error.contains("direct"), "{error}");

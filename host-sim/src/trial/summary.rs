@@ -1,0 +1,153 @@
+//! The report of a run, put together from its mission, simulator, account and record.
+
+use fieldline_protocol::message::{Finish, Strategy};
+
+use super::account::Account;
+use super::mission::Mission;
+use super::{Ending, Record, wording};
+use crate::metrics::patrol::{Patrol, without_spurs};
+use crate::metrics::{CellSet, Loops};
+use crate::report::true_ground::{ClassScores, TrueGround, degrees};
+use crate::report::{self, Report, SCHEMA_VERSION};
+use crate::robot::{OdometryModel, RADIUS_M};
+use crate::sim::{SimConfig, Simulator};
+
+/// Returns the report.
+pub(super) fn report(
+    mission: &Mission,
+    simulator: &Simulator<'_>,
+    account: &Account,
+    record: &Record,
+) -> Report {
+    let world = simulator.world();
+    let ground = mission.uneven_ground.map_or("flat", |_| "uneven");
+    let odometry = if mission.noisy_odometry {
+        "noisy"
+    } else {
+        "truth"
+    };
+    let closes_loops = mission.strategy() == Strategy::Ouroboros;
+    let map_is_read = !record.tiles.is_empty();
+    Report {
+        schema_version: SCHEMA_VERSION,
+        world: world.name().into(),
+        strategy: mission.strategy.clone(),
+        ground: ground.into(),
+        preference: mission
+            .preference()
+            .map(|it| wording::preference(it).into()),
+        link: mission.link.clone(),
+        seed: mission.seed,
+        odometry: odometry.into(),
+        start: mission.start,
+        injected_faults: mission.fault.clone(),
+        noise: noise(simulator.config()),
+        world_notes: world.notes().to_vec(),
+        outcome: record.outcome(),
+        sim_time_s: f64::from(record.progress().time_ms) / 1000.0,
+        path_length_m: simulator.path_length_m(),
+        path_overlap: Some(simulator.overlap()),
+        height_change_m: record.height_change_m,
+        steps: record.steps.len() as u64,
+        coverage: coverage(account),
+        loops: loops(simulator, record),
+        loop_closing: closes_loops.then(|| record.loop_closing()),
+        patrol: patrol(mission, record),
+        safety: safety(simulator),
+        true_ground: true_ground(simulator, record),
+        position_error: record.position_error(),
+        planner: record.planner(),
+        field: record.field(),
+        link_stats: record.link_stats,
+        digest: record.digest.to_string(),
+        debug: report::Debug {
+            map_matches_mirror: map_is_read.then(|| account.mirror.equals(&record.tiles)),
+        },
+    }
+}
+
+fn coverage(account: &Account) -> report::Coverage {
+    let coverage = &account.coverage;
+    report::Coverage {
+        fraction: coverage.fraction(),
+        known_m2: whole_cells_m2(coverage.known_m2()),
+        explorable_m2: whole_cells_m2(coverage.reachable_m2()),
+        t90_s: coverage.t90_s(),
+        t99_s: coverage.t99_s(),
+    }
+}
+
+fn loops(simulator: &Simulator<'_>, record: &Record) -> report::Loops {
+    let world = simulator.world();
+    let reach = CellSet::reach(world, simulator.start(), RADIUS_M);
+    let truth = record.steps.iter().map(|step| step.truth);
+    let path: Vec<[f64; 2]> = truth.map(|truth| [truth.x_m, truth.y_m]).collect();
+    let loops = Loops::judge(world, &reach, &path);
+    report::Loops {
+        islands: loops.of,
+        circled: loops.closed,
+    }
+}
+
+/// Returns ages of the rails on patrol; `None` unless the run ended with its patrol.
+fn patrol(mission: &Mission, record: &Record) -> Option<report::Patrol> {
+    let explored = record.ending == Ending::Finished(Finish::Explored);
+    if mission.patrol_s == 0 || !explored {
+        return None;
+    }
+    let path = record.steps.iter().map(|step| {
+        let truth = step.truth;
+        [f64::from(truth.time_ms) / 1000.0, truth.x_m, truth.y_m]
+    });
+    let path: Vec<[f64; 3]> = path.collect();
+    let rails: Vec<[f64; 2]> = record.map.rails().collect();
+    let rails = without_spurs(&rails);
+    let ages = Patrol::judge(&rails, &path, f64::from(mission.patrol_s))?;
+    Some(report::Patrol {
+        max_rail_age_s: ages.oldest_rail_s,
+        mean_rail_age_s: ages.mean_age_s,
+    })
+}
+
+fn safety(simulator: &Simulator<'_>) -> report::Safety {
+    let safety = simulator.safety();
+    report::Safety {
+        collisions: safety.collisions,
+        falls: safety.falls,
+        tips: safety.tips,
+        min_clearance_m: Some(safety.min_clearance_m).filter(|m| m.is_finite()),
+    }
+}
+
+fn noise(config: &SimConfig) -> report::Noise {
+    let imu_rad = match config.odometry {
+        OdometryModel::Truth => 0.0,
+        OdometryModel::Tilting(sigma_rad) => sigma_rad,
+        OdometryModel::Noisy(noise) => noise.attitude_rad,
+    };
+    report::Noise {
+        laser_m: config.laser_noise.sigma_m,
+        imu_deg: degrees(imu_rad),
+    }
+}
+
+fn true_ground(simulator: &Simulator<'_>, record: &Record) -> Option<TrueGround> {
+    let (ground, config) = (record.ground.as_ref()?, simulator.config());
+    // A map in a frame that drifts cannot be compared cell by cell.
+    let still = !matches!(config.odometry, OdometryModel::Noisy(_));
+    let comparable = still && !record.tiles.is_empty();
+    let score = || ClassScores::from(&ground.compare(|cell| record.map.get(cell.x, cell.y)));
+    let out = TrueGround {
+        start_z_m: simulator.start_z_m(),
+        working: (&config.working).into(),
+        failing: (&config.failing).into(),
+        map_score: comparable.then(score),
+        ..TrueGround::default()
+    };
+    Some(out.with_ride(&simulator.ride()))
+}
+
+/// Rounds to whole cells of 0.01 m²; the last bits are rounding errors.
+fn whole_cells_m2(area_m2: f64) -> f64 {
+    (area_m2 * 100.0).round() / 100.0
+}
