@@ -8,7 +8,7 @@ use super::relief::Relief;
 use super::snapshot::Window;
 use super::{Setup, Survey};
 use crate::metrics::{Coverage, Footing, GroundTruth};
-use crate::robot::{RADIUS_M, laser};
+use crate::robot::laser;
 use crate::sim::Simulator;
 
 /// The map's copy and the coverage judged by it.
@@ -27,12 +27,13 @@ impl Account {
         let start = simulator.start();
         let range_m = f64::from(laser::level().range_limit_mm) / 1000.0;
         let uneven = world.elevation();
-        let footing = uneven.map(|_| Footing::new(world, start, RADIUS_M, working));
+        let footing =
+            uneven.map(|_| Footing::new(world, start, simulator.config().radius_m, working));
         Self {
             mirror: Mirror::new(&setup.start),
             coverage: match &footing {
                 Some(footing) => Coverage::on(footing),
-                None => Coverage::new(world, start, RADIUS_M, range_m),
+                None => Coverage::new(world, start, simulator.config().radius_m, range_m),
             },
             ground: footing.map(|footing| GroundTruth::new(world, &footing, working)),
         }

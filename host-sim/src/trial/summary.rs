@@ -9,7 +9,7 @@ use crate::metrics::patrol::{Patrol, without_spurs};
 use crate::metrics::{CellSet, Loops};
 use crate::report::true_ground::{ClassScores, TrueGround, degrees};
 use crate::report::{self, Report, SCHEMA_VERSION};
-use crate::robot::{OdometryModel, RADIUS_M};
+use crate::robot::OdometryModel;
 use crate::sim::{SimConfig, Simulator};
 
 /// Returns the report.
@@ -79,7 +79,7 @@ fn coverage(account: &Account) -> report::Coverage {
 
 fn loops(simulator: &Simulator<'_>, record: &Record) -> report::Loops {
     let world = simulator.world();
-    let reach = CellSet::reach(world, simulator.start(), RADIUS_M);
+    let reach = CellSet::reach(world, simulator.start(), simulator.config().radius_m);
     let truth = record.steps.iter().map(|step| step.truth);
     let path: Vec<[f64; 2]> = truth.map(|truth| [truth.x_m, truth.y_m]).collect();
     let loops = Loops::judge(world, &reach, &path);
