@@ -49,3 +49,12 @@ pub mod uneven;
 pub mod watched;
 pub mod wilcoxon;
 pub mod worlds;
+
+/// Runs the Rust in the project's pages as tests.
+#[cfg(doctest)]
+mod pages {
+    #[doc = include_str!("../../README.md")]
+    mod readme {}
+    #[doc = include_str!("../../CONTRIBUTING.md")]
+    mod contributing {}
+}
