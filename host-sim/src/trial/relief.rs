@@ -9,7 +9,7 @@
 
 use fieldline_planner::config::KERNEL_CELLS;
 use fieldline_planner::config::UnevenGround;
-use fieldline_planner::field::height_preference::Preferences;
+use fieldline_planner::field::preference::Preferences;
 use fieldline_planner::geometry::{Cell, Pose};
 use fieldline_planner::ground::Heights;
 use fieldline_protocol::message::FIELD_SIDE;

@@ -10,7 +10,7 @@ use fieldline_planner::field::{
     Method, SCRATCH_FLOATS, Solution, SolverConfig, Stop, Window, solve,
 };
 use fieldline_tests::field::truth::Truth;
-use fieldline_tests::field::{cells, degrees_between};
+use fieldline_tests::field::{ascend, cells, degrees_between};
 
 /// Largest error of a right heading, degrees.
 pub(crate) const TOLERANCE_DEG: f64 = 5.0;
@@ -49,7 +49,7 @@ impl Judge {
     pub(crate) fn field_is_right(&self, window: &Window) -> bool {
         let (mut count, mut right) = (0, 0);
         for (x, y) in cells().filter(|&(x, y)| window.is_reached(x, y)) {
-            if descent::ascend(window, x, y).is_none() {
+            if ascend(window, x, y).is_none() {
                 return false;
             }
             let q = |x: usize, y: usize| f64::from(window.q(x, y));

@@ -1,14 +1,13 @@
 //! Precision of the solved field: descent ends on a goal, q holds in f32 where p fails, and values
 //! converge to the truth.
 
-use fieldline_planner::field::descent;
 use fieldline_planner::field::{
     GOAL, Method, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, solve,
 };
 use fieldline_tests::field::floor::{KINDS, Kind};
 use fieldline_tests::field::scenes::{Pull, Scene, scene};
 use fieldline_tests::field::truth::Truth;
-use fieldline_tests::field::{cells, degrees_between};
+use fieldline_tests::field::{ascend, cells, degrees_between};
 
 use crate::judge::{Judge, TOLERANCE_DEG, work};
 
@@ -23,7 +22,7 @@ fn steepest_ascent_from_every_cell_ends_on_a_goal() {
         );
         for start in cells().filter(|&(x, y)| window.is_reached(x, y)) {
             let mut at = start;
-            while let Some(next) = descent::ascend(&window, at.0, at.1) {
+            while let Some(next) = ascend(&window, at.0, at.1) {
                 let goal = window.is_goal(next.0, next.1);
                 assert!(goal || window.q(next.0, next.1) > window.q(at.0, at.1));
                 at = next;
@@ -80,8 +79,6 @@ fn p_in_f32_fails_where_q_holds() {
         );
 
         let p = solve_p(&window);
-        let mut in_p = window.clone();
-        in_p.clear();
         let gradient = |x: usize, y: usize| {
             let i = (y + 1) * WIDTH + x + 1;
             (

@@ -13,7 +13,7 @@
 
 use fieldline_planner::field::{SIDE, Window};
 
-use super::{Rows, cells};
+use super::cells;
 
 /// Largest relative residual of an accepted solution.
 const RESIDUAL: f64 = 1e-12;
@@ -87,15 +87,15 @@ impl Truth {
         gy.atan2(gx)
     }
 
-    /// Returns `p_diff` at a cell: the mean of `|p − p_robot|` over the reached cells of the kernel
+    /// Returns `p_diff` at a cell: the mean of `|p − p_robot|` over the reachable cells of the kernel
     /// from 10 cells before to 9 cells after.
     #[must_use]
-    pub fn p_diff(&self, reached: &Rows, x: usize, y: usize) -> f64 {
+    pub fn p_diff(&self, x: usize, y: usize) -> f64 {
         let inside = |a: usize, b: usize| b + 10 >= a && b < a + 10;
-        let kernel = cells().filter(|&(column, row)| inside(x, column) && inside(y, row));
-        let others = kernel
-            .filter(|&(column, row)| reached[row] >> column & 1 == 1 && (column, row) != (x, y));
-        let differences: Vec<f64> = others
+        let reached = |c, r| self.free.binary_search(&at(c, r)).is_ok() && (c, r) != (x, y);
+        let kernel = cells().filter(|&(c, r)| inside(x, c) && inside(y, r));
+        let differences: Vec<f64> = kernel
+            .filter(|&(c, r)| reached(c, r))
             .map(|(c, r)| (self.q(c, r) - self.q(x, y)).abs())
             .collect();
         differences.iter().sum::<f64>() / differences.len() as f64

@@ -1,25 +1,28 @@
-//! Down the potential: the heading of −∇p, which is +∇q.
+//! Descent of the potential: the heading of −∇p, which is +∇q.
 //!
 //! ```text
 //! ∂q/∂x = (q(x+1, y) − q(x−1, y)) / 2        ∂q/∂y likewise
 //! ```
 //!
-//! Obstacles take part with their q = 0, so that the heading turns away from walls. Between cell centres the gradient
-//! is interpolated bilinearly over those of the four cells around that have one.
+//! Obstacles count with q = 0, so the heading turns away from walls. Between cell centres the
+//! gradient is interpolated bilinearly over those of the four surrounding cells that have one.
 //!
-//! Units: headings in radians, counter-clockwise from x; positions in cells, cell (x, y) covering [x, x+1) × [y, y+1).
+//! Units: headings in radians, counter-clockwise from x; positions in cells. Cell (x, y) covers [x,
+//! x+1) × [y, y+1).
 
 use crate::field::window::{STRIDE, Window, index};
 use crate::math;
 
-/// The heading of −∇p at the centre of cell (x, y); `None` where the field is flat: on goals, obstacles, outside, in
-/// cells that no goal can be reached from, and where q has underflowed.
+/// Returns the heading of −∇p at the centre of cell (x, y), radians.
+///
+/// `None` where the field is flat: on goals and obstacles, outside the window, in cells from which
+/// no goal is reachable, and where q has underflowed.
 #[must_use]
 pub fn heading(window: &Window, x: usize, y: usize) -> Option<f32> {
     angle(gradient(window, x, y)?)
 }
 
-/// The heading of −∇p at a point of a free cell, in cells; `None` as for [`heading`].
+/// Returns the heading of −∇p at a point of a free cell, given in cells; `None` as in [`heading`].
 #[must_use]
 pub fn heading_at(window: &Window, x: f32, y: f32) -> Option<f32> {
     let (home_x, home_y) = (math::floor(x), math::floor(y));
@@ -40,34 +43,9 @@ pub fn heading_at(window: &Window, x: f32, y: f32) -> Option<f32> {
     angle(sum)
 }
 
-/// One step of the steepest way from cell (x, y): a goal beside it, or else the one of the four cells beside with the
-/// greatest q, if that is greater than q here. From any reached cell of a solved window these steps lead to a goal.
+/// Returns 2 ∇q at the centre of a reachable cell; `None` in all others.
 #[must_use]
-pub fn ascend(window: &Window, x: usize, y: usize) -> Option<(usize, usize)> {
-    if !window.is_reached(x, y) {
-        return None;
-    }
-    let mut best = (window.q(x, y), None);
-    for (x, y) in [
-        (x.wrapping_sub(1), y),
-        (x + 1, y),
-        (x, y.wrapping_sub(1)),
-        (x, y + 1),
-    ] {
-        // Among goals alone q may have rounded to a goal's own value.
-        if window.is_goal(x, y) {
-            return Some((x, y));
-        }
-        if window.q(x, y) > best.0 {
-            best = (window.q(x, y), Some((x, y)));
-        }
-    }
-    best.1
-}
-
-/// Twice ∇q at the centre of a reached cell; `None` in all others.
-#[must_use]
-pub fn gradient(window: &Window, x: usize, y: usize) -> Option<(f32, f32)> {
+pub(crate) fn gradient(window: &Window, x: usize, y: usize) -> Option<(f32, f32)> {
     if !window.is_reached(x, y) {
         return None;
     }
@@ -82,6 +60,6 @@ fn cell_gradient(window: &Window, x: i32, y: i32) -> Option<(f32, f32)> {
 }
 
 fn angle((x, y): (f32, f32)) -> Option<f32> {
-    // Written so that a position that is no number has no heading.
+    // The comparison is false for NaN: such a position has no heading.
     (x.abs() + y.abs() > 0.0).then(|| math::atan2(y, x))
 }

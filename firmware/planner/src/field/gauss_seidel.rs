@@ -1,29 +1,31 @@
-//! Gauss–Seidel: one sweep in row order, the papers' method [Prestes02; Maffei20, eq. 2], in q-form:
+//! Gauss–Seidel: one sweep in row order, the papers' method [Prestes02; Maffei20, eq. 2], for q = 1
+//! − p:
 //!
 //! ```text
 //! q ← ((N + S) + (W + E) + (ε/2) (|N − S| + |W − E|)) / 4
 //! ```
 //!
-//! For |ε| ≤ 2 this is a convex combination of the neighbours. Hence: started from q = 0 it rises monotonically, and
-//! at every sweep each cell with q > 0 has a strictly better neighbour (no local minimum of p), which neither
-//! over-relaxation nor the multigrid can promise in transit.
+//! For |ε| ≤ 2 this is a convex combination of the neighbours. So from q = 0 the field rises
+//! monotonically, and after every sweep each cell with q > 0 has a strictly better neighbour: p has
+//! no local minimum. Over-relaxation and the multigrid do not guarantee that before they converge.
 
 use core::cell::Cell;
 
 use crate::field::runs::Runs;
 use crate::field::window::{Preference, STRIDE, Window, index};
 
-/// Relax every reached cell once, from the lowest row up, left to right.
+/// Relaxes every reachable cell once, from the lowest row up, left to right.
 pub(super) fn sweep(window: &mut Window) {
     if window.preferred {
         sweep_rows::<true, false>(window);
     } else {
-        // Without preferences the last term is zero: leaving it out gives the same bits.
+        // Without preferences the last term is zero; without the term the bits are the same.
         sweep_rows::<false, false>(window);
     }
 }
 
-/// As [`sweep`]; answers the greatest relative change of a cell, infinite while some rise from zero.
+/// Sweeps as [`sweep`] does and returns the greatest relative change of a cell. The change is
+/// infinite while a cell rises from zero.
 pub(super) fn measured_sweep(window: &mut Window) -> f32 {
     if window.preferred {
         sweep_rows::<true, true>(window)
@@ -45,7 +47,8 @@ fn sweep_rows<const PREFERRED: bool, const MEASURED: bool>(window: &mut Window) 
     worst
 }
 
-/// Relax a run of cells: `around` begins below the run's first cell and ends above the cell after its last.
+/// Relaxes a run of cells. `around` begins below the run's first cell and ends above the cell after
+/// its last one.
 #[inline(always)]
 fn relax_run<const PREFERRED: bool, const MEASURED: bool>(
     around: &mut [f32],
@@ -69,7 +72,7 @@ fn relax_run<const PREFERRED: bool, const MEASURED: bool>(
         }
         west = sum * 0.25;
         if MEASURED {
-            // Below the least normal number a relative change means nothing.
+            // Below the least normal number a relative change has no meaning.
             let change = (west - here.get()).abs();
             if change > *worst * here.get() + f32::MIN_POSITIVE {
                 *worst = change / here.get();

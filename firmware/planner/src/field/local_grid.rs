@@ -1,43 +1,46 @@
-//! What stands in the local window: 61 × 61 cells around the robot, as bit rows.
+//! The local grid: passable cells and obstacles of the window, 61 × 61 cells around the robot.
 //!
-//! A window cell is `scale` × `scale` map cells (1, 2 or 4): where no centre cell is near, the window grows [Jorge15,
-//! III-B] by growing its cells, at the same memory and time. It is passable if any of its map cells is: passable cells
-//! on the two sides of a wall are five cells apart, so no wall is lost at 20 cm. At 40 cm one would be, so there all of
-//! its map cells must be passable; that closes doors, but a window of this scale is only asked for in the open.
+//! A window cell is `scale` × `scale` map cells (1, 2 or 4). If no centre cell is near, the window
+//! grows [Jorge15, III-B] by a larger scale, at the same memory and time. At scales 1 and 2 a
+//! window cell is passable if any of its map cells is: passable cells on the two sides of a wall
+//! are five cells apart, so no wall is lost at 20 cm. At 40 cm a wall could be lost, so at scale 4
+//! all map cells must be passable. That closes doors; a window of this scale is only used in open
+//! space.
 //!
-//! Invariant: `origin` is a multiple of `scale`; bit x of row y is the window cell whose least map cell is
-//! origin + scale·(x, y).
+//! Invariant: `origin` is a multiple of `scale`; bit x of row y is the window cell whose least map
+//! cell is origin + scale·(x, y).
+//!
+//! Units: cells; metres where a name says so.
 
-use crate::field::SIDE;
+use crate::field::window::{ROW, SIDE};
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::bits::halve;
 use crate::grid::{at, flood};
 use crate::map::Tiles;
 use crate::roadmap::configuration_space::{Footprint, Strip, for_each_strip};
 
-/// Scales that a window may grow to.
-pub const SCALES: [i32; 3] = [1, 2, 4];
+pub(crate) use crate::field::window::Rows;
 
-/// Bit rows of the window.
-pub type Rows = [u64; SIDE];
+/// Scales of the window, map cells along a window cell.
+pub(crate) const SCALES: [i32; 3] = [1, 2, 4];
 
-/// The bits of a row that are cells.
-const INSIDE: u64 = (1 << SIDE) - 1;
+/// Cells around a robot in a blocked cell within which [`LocalGrid::free_robot`] opens a way out.
+const ESCAPE_CELLS: usize = 4;
 
 /// The window's cells.
 #[derive(Clone, Debug)]
 pub struct LocalGrid {
     /// Least map cell.
     pub origin: Cell,
-    /// Map cells along a window cell; 0 before the first look.
+    /// Map cells along a window cell; 0 before the first update.
     pub scale: i32,
-    /// The robot's centre may be here.
+    /// Cells where the robot's centre may be.
     pub passable: Rows,
-    /// Something stands here.
+    /// Cells that hold an obstacle.
     pub obstacle: Rows,
 }
 
-/// OR of adjacent groups of `scale` bits; 32 / scale bits remain.
+/// Returns the OR of each group of `scale` adjacent bits; 32 / scale bits remain.
 fn squeeze(word: u32, scale: i32) -> u64 {
     let halve = |word| u32::from(halve(word));
     u64::from(match scale {
@@ -47,8 +50,16 @@ fn squeeze(word: u32, scale: i32) -> u64 {
     })
 }
 
+/// Returns the 2 × 2 map cells of a coarse cell whose least map cell is `least`.
+fn parts(least: Cell) -> impl Iterator<Item = Cell> {
+    (0..4).map(move |k| Cell {
+        x: least.x + (k & 1),
+        y: least.y + (k >> 1),
+    })
+}
+
 impl LocalGrid {
-    /// A window of nothing: all zeros, so that a static one costs no flash.
+    /// Returns an empty grid. It is all zeros, so a static one costs no flash.
     #[must_use]
     pub const fn new() -> Self {
         let origin = Cell { x: 0, y: 0 };
@@ -60,11 +71,11 @@ impl LocalGrid {
         }
     }
 
-    /// See the window around `centre`.
-    pub fn look_around<const TILES: usize, const SLOTS: usize>(
+    /// Reads the window around the map cell `centre` from the map.
+    pub fn update<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        disc: &Footprint,
+        footprint: &Footprint,
         centre: Cell,
         scale: i32,
     ) {
@@ -82,7 +93,7 @@ impl LocalGrid {
         for block in 0..(across + 31) / 32 {
             let shift = (block * 32 / scale) as u32;
             let corner = (origin.x + block * 32, origin.y);
-            for_each_strip(tiles, disc, corner, across, |y, strip: Strip| {
+            for_each_strip(tiles, footprint, corner, across, |y, strip: Strip| {
                 let row = ((y - origin.y) / scale) as usize;
                 let put = |rows: &mut Rows, word: u32| {
                     if let Some(out) = rows.get_mut(row) {
@@ -95,18 +106,14 @@ impl LocalGrid {
             });
         }
         for (passable, blocked) in self.passable.iter_mut().zip(blocked) {
-            *passable &= if scale == 4 {
-                INSIDE & !blocked
-            } else {
-                INSIDE
-            };
+            *passable &= if scale == 4 { ROW & !blocked } else { ROW };
         }
         for row in &mut self.obstacle {
-            *row &= INSIDE;
+            *row &= ROW;
         }
     }
 
-    /// The window cell of a map cell, if it is in the window.
+    /// Returns the window cell of a map cell; `None` outside the window.
     #[must_use]
     pub fn place(&self, cell: Cell) -> Option<(usize, usize)> {
         let x = (cell.x - self.origin.x).checked_div_euclid(self.scale)?;
@@ -115,7 +122,7 @@ impl LocalGrid {
         (inside(x) && inside(y)).then_some((x as usize, y as usize))
     }
 
-    /// The map cell of a window cell (its middle).
+    /// Returns the map cell in the middle of a window cell.
     #[must_use]
     pub const fn cell(&self, x: usize, y: usize) -> Cell {
         let middle = self.scale / 2;
@@ -125,13 +132,13 @@ impl LocalGrid {
         }
     }
 
-    /// Whether a window cell is set in `rows`.
+    /// Returns true if a window cell is set in `rows`.
     #[must_use]
     pub fn has(rows: &Rows, (x, y): (usize, usize)) -> bool {
         rows.get(y).is_some_and(|row| row >> x & 1 == 1)
     }
 
-    /// Set a window cell in `rows`.
+    /// Sets a window cell in `rows`.
     pub fn put(rows: &mut Rows, (x, y): (usize, usize)) {
         if let Some(row) = rows.get_mut(y) {
             *row |= 1 << x;
@@ -146,14 +153,11 @@ impl LocalGrid {
         Some(flood::reach(&self.passable, &seeds))
     }
 
-    /// Set the passable window cells of a coarse cell, whose least map cell is `least`; whether there are any.
+    /// Sets in `rows` the passable window cells of a coarse cell whose least map cell is `least`.
+    /// Returns true if there are any.
     pub fn mark(&self, rows: &mut Rows, least: Cell) -> bool {
         let mut any = false;
-        for k in 0..4 {
-            let part = Cell {
-                x: least.x + (k & 1),
-                y: least.y + (k >> 1),
-            };
+        for part in parts(least) {
             let passable = |place: &_| Self::has(&self.passable, *place);
             if let Some(place) = self.place(part).filter(passable) {
                 Self::put(rows, place);
@@ -163,13 +167,9 @@ impl LocalGrid {
         any
     }
 
-    /// Take a coarse cell, whose least map cell is `least`, out of what is passable.
+    /// Makes the coarse cell whose least map cell is `least` impassable.
     pub fn block(&mut self, least: Cell) {
-        for k in 0..4 {
-            let part = Cell {
-                x: least.x + (k & 1),
-                y: least.y + (k >> 1),
-            };
+        for part in parts(least) {
             if let Some((x, y)) = self.place(part)
                 && let Some(row) = self.passable.get_mut(y)
             {
@@ -178,37 +178,46 @@ impl LocalGrid {
         }
     }
 
-    /// Keep the robot's centre off cells (their middles) by the disc, or by as much as it keeps now where that is less: so it is never shut in.
-    /// Where a window cell is a map cell; in a larger one there is no telling.
-    pub fn keep_off(&mut self, robot: Cell, cells: impl Iterator<Item = Point>, disc: &Footprint) {
+    /// Makes the footprint around each of `cells` (their centres) impassable, except cells at least
+    /// as far from it as the robot is now: so the robot is never enclosed. Does nothing unless the
+    /// scale is 1; a larger window cell does not resolve the distance.
+    pub fn keep_off(
+        &mut self,
+        robot: Cell,
+        cells: impl Iterator<Item = Point>,
+        footprint: &Footprint,
+    ) {
         if self.scale != 1 {
             return;
         }
         for cell in cells.map(Point::cell) {
             let (dx, dy) = (robot.x - cell.x, robot.y - cell.y);
-            self.clear_disc(cell, disc, dx * dx + dy * dy);
+            self.block_footprint(cell, footprint, dx * dx + dy * dy);
         }
     }
 
-    /// Nothing in the disc around a cell, and nearer to it than the root of `near2`, is passable.
-    fn clear_disc(&mut self, cell: Cell, disc: &Footprint, near2: i32) {
+    /// Makes the footprint around a cell impassable, where it is nearer than the root of `limit2`,
+    /// in cells.
+    fn block_footprint(&mut self, cell: Cell, footprint: &Footprint, limit2: i32) {
         let (x, y) = (cell.x - self.origin.x, cell.y - self.origin.y);
-        for dy in -disc.reach()..=disc.reach() {
+        for dy in -footprint.reach()..=footprint.reach() {
             let row = usize::try_from(y + dy).unwrap_or(SIDE);
-            let (Some(row), Some(half)) = (self.passable.get_mut(row), disc.half_width(dy)) else {
+            let row = self.passable.get_mut(row);
+            let Some((row, half)) = row.zip(footprint.half_width(dy)) else {
                 continue;
             };
             for dx in -half..=half {
-                if dx * dx + dy * dy < near2 && (0..SIDE as i32).contains(&(x + dx)) {
+                if dx * dx + dy * dy < limit2 && (0..SIDE as i32).contains(&(x + dx)) {
                     *row &= !(1 << (x + dx));
                 }
             }
         }
     }
 
-    /// Let the robot out where its own cell is not passable (it stands nearer to something than its radius, or the map is
-    /// wrong by a cell): within four cells of it, whatever does not touch an obstacle counts as passable; failing
-    /// that, whatever is no obstacle.
+    /// Opens a way out if the robot's own cell is not passable: it stands nearer to an obstacle
+    /// than its radius, or the map is wrong by a cell. Within [`ESCAPE_CELLS`] every cell that
+    /// touches no obstacle becomes passable; if the robot's own cell touches one, every cell that
+    /// is none.
     pub fn free_robot(&mut self, robot: Cell) {
         let Some(place) = self.place(robot) else {
             return;
@@ -217,27 +226,26 @@ impl LocalGrid {
             return;
         }
         let (x, y) = place;
-        let columns = (0x1ff_u64 << x) >> 4;
-        let touched = |rows: &Rows, row: usize| {
-            let here = at(rows, row);
-            let (below, above) = (at(rows, row.wrapping_sub(1)), at(rows, row + 1));
-            here | here << 1 | here >> 1 | above | below
+        let columns = ((1_u64 << (2 * ESCAPE_CELLS + 1)) - 1) << x >> ESCAPE_CELLS;
+        let obstacle = |row: usize| at(&self.obstacle, row);
+        let touched = |row: usize| {
+            let here = obstacle(row);
+            here | here << 1 | here >> 1 | obstacle(row + 1) | obstacle(row.wrapping_sub(1))
         };
-        let roomy = touched(&self.obstacle, y) >> x & 1 == 0;
-        let obstacle = self.obstacle;
+        let has_room = touched(y) >> x & 1 == 0;
         for (row, passable) in self.passable.iter_mut().enumerate() {
-            if row.abs_diff(y) <= 4 {
-                let taken = if roomy {
-                    touched(&obstacle, row)
+            if row.abs_diff(y) <= ESCAPE_CELLS {
+                let taken = if has_room {
+                    touched(row)
                 } else {
-                    at(&obstacle, row)
+                    obstacle(row)
                 };
                 *passable |= columns & !taken;
             }
         }
         Self::put(&mut self.passable, place);
         for row in &mut self.passable {
-            *row &= INSIDE;
+            *row &= ROW;
         }
     }
 }
@@ -248,9 +256,9 @@ impl Default for LocalGrid {
     }
 }
 
-/// A point in cells of the window whose least map cell and scale are given.
+/// Returns a point of the map in cells of the window with this least map cell and scale.
 #[must_use]
-pub fn position((origin, scale): (Cell, i32), point: Point) -> (f32, f32) {
+pub(crate) fn position((origin, scale): (Cell, i32), point: Point) -> (f32, f32) {
     let side = CELL_M * scale as f32;
     let along = |at: f32, origin: i32| (at - origin as f32 * CELL_M) / side;
     (along(point.x_m, origin.x), along(point.y_m, origin.y))
@@ -281,19 +289,19 @@ mod tests {
 
     #[test]
     fn the_window_at_scale_one_is_the_map() {
-        let (tiles, disc) = (room(), Footprint::new(0.3));
-        let mut view = LocalGrid::new();
-        view.look_around(&tiles, &disc, Cell { x: 3, y: -2 }, 1);
+        let (tiles, footprint) = (room(), Footprint::new(0.3));
+        let mut grid = LocalGrid::new();
+        grid.update(&tiles, &footprint, Cell { x: 3, y: -2 }, 1);
         for y in 0..SIDE {
             for x in 0..SIDE {
-                let cell = view.cell(x, y);
-                assert_eq!(view.place(cell), Some((x, y)));
+                let cell = grid.cell(x, y);
+                assert_eq!(grid.place(cell), Some((x, y)));
                 assert_eq!(
-                    LocalGrid::has(&view.passable, (x, y)),
-                    is_passable(&tiles, &disc, cell)
+                    LocalGrid::has(&grid.passable, (x, y)),
+                    is_passable(&tiles, &footprint, cell)
                 );
                 assert_eq!(
-                    LocalGrid::has(&view.obstacle, (x, y)),
+                    LocalGrid::has(&grid.obstacle, (x, y)),
                     tiles.class(cell) == Class::Obstacle
                 );
             }
@@ -302,15 +310,15 @@ mod tests {
 
     #[test]
     fn a_grown_window_is_passable_where_any_of_its_cells_is() {
-        let (tiles, disc) = (room(), Footprint::new(0.3));
+        let (tiles, footprint) = (room(), Footprint::new(0.3));
         for scale in [2, 4] {
-            let mut view = LocalGrid::new();
-            view.look_around(&tiles, &disc, Cell { x: -5, y: 9 }, scale);
+            let mut grid = LocalGrid::new();
+            grid.update(&tiles, &footprint, Cell { x: -5, y: 9 }, scale);
             for y in 0..SIDE {
                 for x in 0..SIDE {
                     let least = Cell {
-                        x: view.origin.x + x as i32 * scale,
-                        y: view.origin.y + y as i32 * scale,
+                        x: grid.origin.x + x as i32 * scale,
+                        y: grid.origin.y + y as i32 * scale,
                     };
                     let (mut any, mut all) = (false, true);
                     for k in 0..scale * scale {
@@ -318,13 +326,13 @@ mod tests {
                             x: least.x + k % scale,
                             y: least.y + k / scale,
                         };
-                        let passable = is_passable(&tiles, &disc, cell);
+                        let passable = is_passable(&tiles, &footprint, cell);
                         any |= passable;
                         all &= passable;
                     }
                     let wanted = if scale < 4 { any } else { all };
                     assert_eq!(
-                        LocalGrid::has(&view.passable, (x, y)),
+                        LocalGrid::has(&grid.passable, (x, y)),
                         wanted,
                         "scale {scale} ({x}, {y})"
                     );
@@ -333,47 +341,47 @@ mod tests {
         }
     }
 
-    /// GroundModel a cell to be kept off, and a robot that stands nearer to another one than that.
+    /// One cell to keep off, and another that is nearer to the robot than the footprint's radius.
     #[test]
-    fn the_centre_is_kept_off_cells_but_never_shut_in() {
-        let (tiles, disc) = (room(), Footprint::new(0.3));
+    fn the_centre_is_kept_off_cells_but_never_enclosed() {
+        let (tiles, footprint) = (room(), Footprint::new(0.3));
         let robot = Cell { x: -10, y: 0 };
-        let mut view = LocalGrid::new();
-        view.look_around(&tiles, &disc, robot, 1);
-        let before = view.passable;
+        let mut grid = LocalGrid::new();
+        grid.update(&tiles, &footprint, robot, 1);
+        let before = grid.passable;
         let (far, near) = (Cell { x: -16, y: 1 }, Cell { x: -10, y: 2 });
-        view.keep_off(robot, [far, near].map(Cell::centre).into_iter(), &disc);
+        grid.keep_off(robot, [far, near].map(Cell::centre).into_iter(), &footprint);
         for (y, row) in before.iter().enumerate() {
             for x in 0..SIDE {
-                let cell = view.cell(x, y);
+                let cell = grid.cell(x, y);
                 let within = |of: Cell, most2: i32| {
                     let (dx, dy) = (cell.x - of.x, cell.y - of.y);
                     dx * dx + dy * dy < most2
                 };
                 let kept = within(far, 9) || within(near, 4);
                 let wanted = row >> x & 1 == 1 && !kept;
-                assert_eq!(LocalGrid::has(&view.passable, (x, y)), wanted, "{cell:?}");
+                assert_eq!(LocalGrid::has(&grid.passable, (x, y)), wanted, "{cell:?}");
             }
         }
-        let place = view.place(robot).expect("the middle");
+        let place = grid.place(robot).expect("the middle");
         assert!(
-            LocalGrid::has(&view.passable, place),
+            LocalGrid::has(&grid.passable, place),
             "it stands 2 cells off"
         );
     }
 
     #[test]
     fn a_robot_too_near_to_a_wall_is_let_out() {
-        let (tiles, disc) = (room(), Footprint::new(0.3));
+        let (tiles, footprint) = (room(), Footprint::new(0.3));
         let robot = Cell { x: -28, y: 0 };
-        let mut view = LocalGrid::new();
-        view.look_around(&tiles, &disc, robot, 1);
-        let place = view.place(robot).unwrap();
-        assert!(!LocalGrid::has(&view.passable, place));
-        view.free_robot(robot);
-        assert!(LocalGrid::has(&view.passable, place));
+        let mut grid = LocalGrid::new();
+        grid.update(&tiles, &footprint, robot, 1);
+        let place = grid.place(robot).unwrap();
+        assert!(!LocalGrid::has(&grid.passable, place));
+        grid.free_robot(robot);
+        assert!(LocalGrid::has(&grid.passable, place));
         assert!(
-            !LocalGrid::has(&view.passable, (place.0 - 2, place.1)),
+            !LocalGrid::has(&grid.passable, (place.0 - 2, place.1)),
             "not into the wall"
         );
     }

@@ -1,14 +1,17 @@
-//! One multigrid cycle: correct the field by factors constant over 2 × 2 cells, then smooth it by one sweep.
+//! One multigrid cycle: a correction by factors constant over 2 × 2 cells, then one smoothing
+//! sweep.
 //!
 //! ```text
-//! equations ← the cells' equations summed over blocks, |N − S| and |W − E| with their present signs     (Picard)
-//! x         ← the blocks' factors, by a W cycle over 31-16-8-4-2 blocks a side                        (pyramid)
+//! equations ← the cells' equations summed over blocks,
+//!             |N − S| and |W − E| with their present signs                         (Picard)
+//! x         ← the blocks' factors, by a W cycle over 31-16-8-4-2 blocks a side    (pyramid)
 //! q         ← min(q (1 + 1.5 (x − 1)), GOAL)
 //! q         ← one Gauss–Seidel sweep
 //! ```
 //!
-//! A cell's equation is taken four times over, `4 q = Σ w q_k` with w = 1 ± ε/2, plus for the greater of two opposite
-//! neighbours. The blocks' origin alternates between cycles, so that no wall stays inside the same blocks.
+//! A cell's equation is multiplied by four: `4 q = Σ w q_k` with w = 1 ± ε/2; the plus holds for
+//! the greater of two opposite neighbours. The blocks' origin alternates between cycles, so no wall
+//! stays inside the same blocks.
 //!
 //! Invariant: 0 ≤ q ≤ GOAL. A cycle's cost hardly depends on the field's values.
 
@@ -16,15 +19,15 @@ use crate::field::gauss_seidel;
 use crate::field::pyramid::{
     self, EAST, EMPTY, Equation, FINEST, NORTH, OUT, Pyramid, SOURCE, SOUTH, WEST,
 };
-use crate::field::window::{GOAL, Preference, SIDE, STRIDE, Window};
+use crate::field::window::{GOAL, Preference, Rows, STRIDE, Window};
 
-/// Floats of scratch memory that a cycle needs, 36 KB. Their content before and after means nothing.
+/// Floats of scratch memory that a cycle needs, 36 KB. Their content has no meaning between cycles.
 pub const SCRATCH_FLOATS: usize = pyramid::FLOATS;
 
-/// A row of cells two by two, as the blocks see it; the last pair is only the neighbour of the one before.
+/// A row of cells in pairs, one for each block; the last pair is only a neighbour.
 type Pairs<T> = [[T; 2]; STRIDE / 2];
 
-/// Where the blocks begin: block (X, Y) covers columns 2X − origin and the next, and such rows.
+/// Origin of the blocks: block (X, Y) covers the two columns from 2X − offset and such rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Origin {
     /// At cell (0, 0).
@@ -41,7 +44,7 @@ impl Origin {
         }
     }
 
-    /// Cells from the first block's corner to cell (0, 0), in x and in y.
+    /// Returns the cells from the first block's corner to cell (0, 0), in x and in y.
     fn offset(self) -> usize {
         match self {
             Self::Even => 0,
@@ -49,21 +52,21 @@ impl Origin {
         }
     }
 
-    /// Where the lower row of block row `y` starts in the window's arrays.
+    /// Returns the start of the lower row of block row `y` in the window's arrays.
     fn start(self, y: usize) -> usize {
         (2 * y + 1 - self.offset()) * STRIDE + 1 - self.offset()
     }
 }
 
-/// One cycle. Answers max |x − 1| over the blocks: the relative error that the field had.
+/// Runs one cycle and returns max |x − 1| over the blocks: the relative error that the field had.
 ///
-/// The window must be raised (see `seed`): zero stays zero, however it is multiplied.
+/// The window must be raised first (see `seed`): a product never raises zero.
 pub(super) fn cycle(window: &mut Window, scratch: &mut [f32; SCRATCH_FLOATS]) -> f32 {
     let mut pyramid = Pyramid::new(scratch);
     if window.preferred {
         assemble::<true>(window, pyramid.equations());
     } else {
-        // Tilts of zero: leaving them out gives the same bits.
+        // All tilts are zero; without them the bits are the same.
         assemble::<false>(window, pyramid.equations());
     }
     pyramid.solve();
@@ -77,7 +80,7 @@ pub(super) fn cycle(window: &mut Window, scratch: &mut [f32; SCRATCH_FLOATS]) ->
     error
 }
 
-/// Sum the cells' equations over the finest blocks.
+/// Sums the cells' equations over the finest blocks.
 fn assemble<const PREFERRED: bool>(window: &Window, equations: &mut [Equation]) {
     for (y, equations) in equations.chunks_exact_mut(FINEST).enumerate() {
         let row = BlockRow::new(window, y);
@@ -104,15 +107,16 @@ fn assemble<const PREFERRED: bool>(window: &Window, equations: &mut [Equation]) 
     }
 }
 
-/// Two rows of cells with those below and above them, aligned so that block X has columns 2X and 2X + 1.
+/// Two rows of cells, the row below and the row above, aligned so that block X has columns 2X and
+/// 2X + 1.
 struct BlockRow<'a> {
     /// The row below, the lower one, the upper one, the row above.
     q: [&'a Pairs<f32>; 4],
-    /// Goals in those rows, one column further to the left.
+    /// Goals in those rows, shifted left by one bit.
     goal: [u64; 4],
-    /// The lower row's preferences, the upper one's.
+    /// Preferences of the lower and the upper row.
     preference: [&'a Pairs<Preference>; 2],
-    /// Reached cells of those two.
+    /// Reachable cells of the lower and the upper row.
     reached: [u64; 2],
 }
 
@@ -120,8 +124,8 @@ impl<'a> BlockRow<'a> {
     fn new(window: &'a Window, y: usize) -> Self {
         let offset = window.origin.offset();
         let start = window.origin.start(y);
-        // Rows outside the window have no cells; rows outside its margins are never looked at.
-        let mask = |rows: &[u64; SIDE], row: usize| {
+        // Rows outside the window have no cells; rows outside its margins are not read.
+        let mask = |rows: &Rows, row: usize| {
             let row = (2 * y + row).checked_sub(1 + offset);
             row.and_then(|row| rows.get(row))
                 .map_or(0, |bits| bits << offset)
@@ -146,7 +150,7 @@ impl<'a> BlockRow<'a> {
         }
     }
 
-    /// Columns with a reached cell beside a goal in either row.
+    /// Returns the columns with a reachable cell beside a goal, in either row.
     fn beside_goal(&self) -> u64 {
         let [below, lower, upper, above] = self.goal;
         let beside_lower = (below | upper) >> 1 | lower | lower >> 2;
@@ -154,7 +158,7 @@ impl<'a> BlockRow<'a> {
         (self.reached[0] & beside_lower) | (self.reached[1] & beside_upper)
     }
 
-    /// Block x, given its western neighbours.
+    /// Returns block x, given its western neighbours.
     #[inline(always)]
     fn block(&self, x: usize, west: [f32; 2]) -> Block {
         Block {
@@ -166,27 +170,27 @@ impl<'a> BlockRow<'a> {
     }
 }
 
-/// The row that starts at `start`, or `outside` if there is no such row.
+/// Returns the row that starts at `start`, or `outside` if there is no such row.
 fn pairs<'a, T>(cells: &'a [T], start: Option<usize>, outside: &'a Pairs<T>) -> &'a Pairs<T> {
     let row = start.and_then(|start| cells.get(start..));
     row.and_then(|row| row.as_chunks().0.first_chunk())
         .unwrap_or(outside)
 }
 
-/// A block's cells and the eight around them.
+/// A block's cells and their eight neighbours.
 struct Block {
     /// By rows: below, lower, upper, above.
     q: [[f32; 2]; 4],
-    /// To the left of the lower cells and of the upper ones.
+    /// West of the lower row and of the upper one.
     west: [f32; 2],
-    /// To their right.
+    /// East of them.
     east: [f32; 2],
-    /// Lower and upper.
+    /// Preferences of the lower and the upper row.
     preference: [[Preference; 2]; 2],
 }
 
 impl Block {
-    /// The equation of a block of free cells without a goal beside.
+    /// Returns the equation of a block of reachable cells without a goal beside.
     #[inline(always)]
     fn full<const PREFERRED: bool>(&self) -> Equation {
         let mut sum = EMPTY;
@@ -198,11 +202,11 @@ impl Block {
         sum
     }
 
-    /// The equation of any block, from the lowest bits of the rows' masks: `reached` the lower and the upper,
-    /// `goal` all four, one column further to the left.
+    /// Returns the equation of any block from the lowest bits of its masks: `reached` of the lower
+    /// and the upper row, `goal` of all four rows, shifted left by one bit.
     fn partial<const PREFERRED: bool>(&self, reached: [u64; 2], goal: [u64; 4]) -> Equation {
         let mut sum = EMPTY;
-        // A goal below, above, left, right of the cell in column `right` of row `upper`?
+        // Goals below, above, left and right of the cell in column `right` of row `upper`.
         let goals = |upper: usize, right: usize| {
             [
                 goal[upper] >> 1,
@@ -228,7 +232,8 @@ impl Block {
         sum
     }
 
-    /// Add one cell's equation: 4 q against what flows in from below, above, left and right, where `goals` may be.
+    /// Adds one cell's equation: 4 q against the inflow from below, above, left and right. `goals`
+    /// tells which of these sides is a goal.
     #[inline(always)]
     fn add_cell<const PREFERRED: bool, const UPPER: usize, const RIGHT: usize>(
         &self,
@@ -254,7 +259,8 @@ impl Block {
     }
 }
 
-/// Add what flows into a cell from one side: from a goal, from the same block, or from the block on that side.
+/// Adds the inflow of a cell from one side: from a goal, from the same block, or from the block on
+/// that side.
 #[inline(always)]
 fn add_inflow(sum: &mut Equation, side: usize, inflow: f32, inside: bool, goal: bool) {
     if goal {
@@ -266,7 +272,8 @@ fn add_inflow(sum: &mut Equation, side: usize, inflow: f32, inside: bool, goal: 
     }
 }
 
-/// Multiply the field by the over-corrected factors. Answers max |x − 1|. If `CHARGED`, goals are left alone.
+/// Multiplies the field by the over-corrected factors and returns max |x − 1|. If `CHARGED`, goals
+/// keep their values.
 fn correct<const CHARGED: bool>(window: &mut Window, factors: &[f32]) -> f32 {
     let mut error = 0.0;
     let offset = window.origin.offset();
@@ -303,7 +310,7 @@ fn correct<const CHARGED: bool>(window: &mut Window, factors: &[f32]) -> f32 {
         }
     }
     if !CHARGED {
-        // Obstacles stayed zero; goals may have been scaled down.
+        // Obstacles stayed zero; the factors may have scaled goals down.
         window.charge_goals();
     }
     error

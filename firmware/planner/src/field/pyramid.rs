@@ -1,6 +1,6 @@
 //! The coarse levels of the multigrid: blocks of 2 × 2 blocks, and one correction factor for each.
 //!
-//! Multiply all values of block J by a factor `x_J`, and ask that the sum of the block's equations holds:
+//! Multiply all values of block J by a factor `x_J` and require the sum of the block's equations:
 //!
 //! ```text
 //! D_J x_J = Σ_K A_JK x_K + b_J        K: the four blocks beside J
@@ -10,42 +10,45 @@
 //! D_J  = Σ 4 q_i − Σ w_ik q_k,  i, k ∈ J        what flows out
 //! ```
 //!
-//! At the solution every x is 1, so max |x − 1| tells the error that is left. The system looks like the fine one, so a
-//! block of blocks is a block again: A, b and D add up, with each x absorbed into the q beside it. A *factor* keeps
-//! small values small: far from the goals, where q falls by a fixed part every few cells, an added correction
-//! would bury the field under the near side's rounding.
+//! At the solution every x is 1, so max |x − 1| is the remaining error. The system has the form of
+//! the fine one, so a block of blocks is again a block: A, b and D add up, with each x absorbed
+//! into its q. A *factor* preserves small values. Far from the goals q falls by a fixed part every
+//! few cells; the rounding of an added correction from the near side would be larger than the
+//! field.
 //!
-//! The factors of a level lie row by row between two margins as long as a row, so that the neighbours of factor i are
-//! i ± 1 and i ± side without a test: what is read across a border meets a coupling of zero.
+//! The factors of a level lie row by row between two margins, each as long as a row. So the
+//! neighbours of factor i are i ± 1 and i ± side without a test: a factor read across a border has
+//! a coupling of zero.
 //!
-//! Invariants: 0 ≤ x ≤ [`MOST`]; D ≥ 0.7 (ΣA + b) ≥ 0.7 [`FAINT`]. So nothing divides by zero, and nothing overflows:
-//! from one level to the next A grows at most 8-fold and D 16-fold, from 2¹⁰² and 2¹⁰⁴ to 2¹¹⁴ and 2¹²⁰.
+//! Invariants: 0 ≤ x ≤ [`MOST`]; D ≥ 0.7 (ΣA + b) ≥ 0.7 [`FAINT`]. So nothing divides by zero.
+//! Nothing overflows: from one level to the next A grows at most 8-fold and D 16-fold, from 2¹⁰²
+//! and 2¹⁰⁴ to 2¹¹⁴ and 2¹²⁰.
 
 use core::cell::Cell;
 
-/// One block's equation: D, b and A from the four sides, by the constants below.
+/// One block's equation: D, b, and A from the four sides, indexed by the constants below.
 pub(super) type Equation = [f32; EQUATION_FLOATS];
 
 const EQUATION_FLOATS: usize = 6;
 
-/// D: what flows out, for a factor of one.
+/// D: outflow for a factor of one.
 pub(super) const OUT: usize = 0;
-/// b: what flows in from goals.
+/// b: inflow from goals.
 pub(super) const SOURCE: usize = 1;
-/// A: what flows in from the block below.
+/// A: inflow from the block below.
 pub(super) const SOUTH: usize = 2;
-/// A: what flows in from the block above.
+/// A: inflow from the block above.
 pub(super) const NORTH: usize = 3;
-/// A: what flows in from the block to the left.
+/// A: inflow from the block to the left.
 pub(super) const WEST: usize = 4;
-/// A: what flows in from the block to the right.
+/// A: inflow from the block to the right.
 pub(super) const EAST: usize = 5;
 
-/// A flow far below that of any value the field can tell from zero. Every block gets that much out and as much from
-/// goals, so that where nothing is known x = 1.
-pub(super) const FAINT: f32 = f32::from_bits((127 - 120) << 23);
+/// 2⁻¹²⁰, far below the flow of any value that the field distinguishes from zero. Every block gets
+/// this outflow and the same inflow from goals, so x = 1 where there is no other flow.
+const FAINT: f32 = f32::from_bits((127 - 120) << 23);
 
-/// No block at all.
+/// The absent block beyond an odd row's end.
 const NOTHING: Equation = [0.0; EQUATION_FLOATS];
 
 /// A block without a free cell.
@@ -60,14 +63,16 @@ const COARSEST: usize = 2;
 /// Double sweeps that solve the coarsest level.
 const COARSEST_SWEEPS: usize = 2;
 
-/// Least outflow in parts of the inflow: a field far from its solution has blocks that keep all that flows in.
+/// Least outflow as a part of the inflow: in a field far from its solution some blocks keep all
+/// their inflow.
 const LEAST_OUTFLOW: f32 = 0.7;
 
-/// Over-correction: blocks of equal factors answer a smooth error with too little, for they pay for its slope in steps
-/// at their borders. From 1.6 on the last cycles no longer settle; 1.3 takes a quarter more of them.
+/// Over-correction: factors that are constant over a block correct a smooth error too little,
+/// because the steps at the blocks' borders cost as much as its slope. From 1.6 on the last cycles
+/// no longer settle; 1.3 takes a quarter more cycles.
 const OVERCORRECTION: f32 = 1.5;
 
-/// Greatest factor of one relaxation: a field farther off than that takes another cycle.
+/// Greatest factor of one relaxation. A field with a larger error takes another cycle.
 const MOST: f32 = 4.0;
 
 /// Floats of all levels: equations, and factors with their margins.
@@ -91,7 +96,7 @@ const FACTORS: usize = {
     sum
 };
 
-/// A level and the coarser ones behind it.
+/// A level and all coarser ones.
 #[derive(Debug)]
 pub(super) struct Pyramid<'a> {
     side: usize,
@@ -100,7 +105,7 @@ pub(super) struct Pyramid<'a> {
 }
 
 impl<'a> Pyramid<'a> {
-    /// All levels, in scratch memory of any content.
+    /// Returns all levels, in scratch memory of any content.
     pub(super) fn new(scratch: &'a mut [f32; FLOATS]) -> Self {
         let (equations, factors) = scratch.split_at_mut(EQUATIONS * EQUATION_FLOATS);
         factors.fill(1.0);
@@ -112,17 +117,18 @@ impl<'a> Pyramid<'a> {
         }
     }
 
-    /// The finest level's equations, row by row, to be set before [`Pyramid::solve`].
+    /// Returns the finest level's equations, row by row; the caller sets them before
+    /// [`Pyramid::solve`].
     pub(super) fn equations(&mut self) -> &mut [Equation] {
         &mut self.equations[..self.side * self.side]
     }
 
-    /// The finest level's factors, row by row.
+    /// Returns the finest level's factors, row by row.
     pub(super) fn factors(&self) -> &[f32] {
         &self.factors[self.side..][..self.side * self.side]
     }
 
-    /// Find this level's factors: a W cycle, of one turn on the finest level and two on the others.
+    /// Finds this level's factors by a W cycle: one turn on the finest level, two on the others.
     pub(super) fn solve(&mut self) {
         let (mut level, mut coarser) = self.split();
         level.factors.fill(1.0);
@@ -140,7 +146,7 @@ impl<'a> Pyramid<'a> {
         }
     }
 
-    /// This level alone, and the rest.
+    /// Splits into this level and the coarser ones.
     fn split(&mut self) -> (Level<'_>, Pyramid<'_>) {
         let side = self.side;
         let (equations, coarser_equations) = self.equations.split_at_mut(side * side);
@@ -168,12 +174,12 @@ struct Level<'a> {
     side: usize,
     /// Row by row.
     equations: &'a mut [Equation],
-    /// Row by row, between two margins as long as a row, and one to spare.
+    /// Row by row, between two margins as long as a row, and a spare one.
     factors: &'a mut [f32],
 }
 
 impl Level<'_> {
-    /// Two Gauss–Seidel sweeps, back and forth: x ← (b + Σ A x) / D.
+    /// Runs two Gauss–Seidel sweeps, backwards and forwards: x ← (b + Σ A x) / D.
     fn relax(&mut self) {
         let (side, count) = (self.side, self.side * self.side);
         let factors = Cell::from_mut(&mut *self.factors).as_slice_of_cells();
@@ -188,7 +194,7 @@ impl Level<'_> {
         cells.for_each(relax);
     }
 
-    /// Add up the equations, their factors absorbed, over blocks of 2 × 2.
+    /// Sums the equations, with their factors absorbed, over blocks of 2 × 2.
     fn aggregate(&self, coarse: &mut [Equation]) {
         let side = self.side;
         let coarse_side = side.div_ceil(2);
@@ -215,12 +221,12 @@ impl Level<'_> {
         }
     }
 
-    /// The factors from `start` on, two by two.
+    /// Returns the factors from `start` on, in pairs.
     fn factor_pairs(&self, start: usize) -> &[[f32; 2]] {
         self.factors[start..].as_chunks().0
     }
 
-    /// Multiply the factors by those of the blocks they lie in, over-corrected.
+    /// Multiplies the factors by the over-corrected ones of their coarse blocks.
     fn spread(&mut self, coarse: &[f32]) {
         let (side, coarse_side) = (self.side, self.side.div_ceil(2));
         let rows = self.factors[side..][..side * side].chunks_exact_mut(side);
@@ -239,16 +245,16 @@ impl Level<'_> {
     }
 }
 
-/// A cell beside others: south and north, west and east.
-type GroundModel<'a> = (
+/// The four neighbours of a factor: south and north, west and east.
+type Neighbours<'a> = (
     (&'a Cell<f32>, &'a Cell<f32>),
     (&'a Cell<f32>, &'a Cell<f32>),
 );
 
-/// x ← (b + Σ A x) / D.
+/// Relaxes one factor: x ← (b + Σ A x) / D.
 #[inline(always)]
 fn relax(
-    ((equation, here), ((south, north), (west, east))): ((&Equation, &Cell<f32>), GroundModel<'_>),
+    ((equation, here), ((south, north), (west, east))): ((&Equation, &Cell<f32>), Neighbours<'_>),
 ) {
     let upright = equation[SOUTH] * south.get() + equation[NORTH] * north.get();
     let level = equation[WEST] * west.get() + equation[EAST] * east.get();
@@ -256,7 +262,8 @@ fn relax(
     here.set(if factor > MOST { MOST } else { factor });
 }
 
-/// An equation with its factors multiplied in: the block's own, and those below, above, left and right of it.
+/// Returns an equation with its factors multiplied in: the block's own, and those below, above,
+/// left and right of it.
 #[inline(always)]
 fn absorb(equation: &Equation, [here, south, north, west, east]: [f32; 5]) -> Equation {
     [
@@ -269,10 +276,11 @@ fn absorb(equation: &Equation, [here, south, north, west, east]: [f32; 5]) -> Eq
     ]
 }
 
-/// Add two equations side by side to a block's, as its lower row or its upper one; the lower comes first.
+/// Adds two equations side by side to a block's, as its lower row or its upper one; the lower row
+/// comes first.
 #[inline(always)]
 fn add_pair(block: &mut Equation, west: &Equation, east: &Equation, lower: bool) {
-    // What flows between the two stays inside, and so does what flows between the rows.
+    // Flows between the two, and between the rows, stay inside the block.
     let out = (west[OUT] + east[OUT]) - (west[EAST] + east[WEST]);
     let source = west[SOURCE] + east[SOURCE];
     let (south, north) = (west[SOUTH] + east[SOUTH], west[NORTH] + east[NORTH]);
@@ -287,7 +295,7 @@ fn add_pair(block: &mut Equation, west: &Equation, east: &Equation, lower: bool)
     }
 }
 
-/// D ≥ 0.7 (ΣA + b).
+/// Raises D to at least 0.7 (ΣA + b).
 #[inline(always)]
 pub(super) fn bound_outflow(equation: &mut Equation) {
     let [out, source, south, north, west, east] = equation;
@@ -297,7 +305,7 @@ pub(super) fn bound_outflow(equation: &mut Equation) {
     }
 }
 
-/// 1 + 1.5 (x − 1), within half and twice x.
+/// Returns 1 + 1.5 (x − 1), clamped between x/2 and 2x.
 #[inline(always)]
 pub(super) fn overcorrect(x: f32) -> f32 {
     let y = 1.0 + OVERCORRECTION * (x - 1.0);

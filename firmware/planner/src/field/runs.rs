@@ -1,8 +1,8 @@
-//! Runs of set bits in a row of the window: the solver's loops go run by run, never cell by cell through a test.
+//! Runs of set bits in a row of the window: the solver loops over runs, without a test per cell.
 
 use core::ops::Range;
 
-/// The runs of set bits in a word, from the lowest, as ranges of bit positions.
+/// Iterator over the runs of set bits in a word, from the lowest, as ranges of bit positions.
 #[derive(Clone, Debug)]
 pub(super) struct Runs(pub(super) u64);
 

@@ -1,37 +1,39 @@
-//! A start worth correcting: a value for each cell that has none, or one far too low.
+//! A first value for each cell that has none, or one far too low.
 //!
-//! The multigrid multiplies. It brings down what is too high in a few cycles, but what is too low it raises only as far
-//! as the smoothing carries, and zero it never raises. At the solution a cell has at least (1 − |ε|/2)/4 of its best
-//! neighbour's value; so one with less than a sixteenth, in a new cell, beside a new goal, behind a door that opened,
-//! holds no value but the lack of one:
+//! The multigrid multiplies. It lowers values that are too high within a few cycles. It raises
+//! values that are too low only as far as its smoothing carries, and it never raises zero. At the
+//! solution a cell has at least (1 − |ε|/2)/4 of its best neighbour's value. So a cell with less
+//! than a sixteenth (a new cell, or one beside a new goal or behind a door that opened) has no
+//! valid value yet:
 //!
 //! ```text
 //! q ← 0.85 n  where  16 q < n = max(N, S, W, E)
 //! ```
 //!
-//! GroundModel a warm field this continues it outwards. A cold window is raised by a finer comb, to about 0.85 to the power of
-//! the distance to the nearest goal, so that the start has roughly the field's shape.
+//! Around a warm field this continues the field outwards. In a cold window the ratio is 1.25
+//! instead of 16: values become about 0.85 to the power of the distance to the nearest goal, which
+//! is roughly the field's shape.
 //!
-//! Invariant: no cell falls; afterwards no reached cell is below a sixteenth of its neighbours.
+//! Invariant: no cell falls; afterwards no reachable cell is below a sixteenth of a neighbour.
 
 use core::cell::Cell;
 
 use crate::field::runs::Runs;
 use crate::field::window::{SIDE, STRIDE, Window, index};
 
-/// What a cell takes of its neighbour's value: about the field's fall from cell to cell indoors. From 1, a flat start,
-/// the heading behind doors takes a third more cycles.
+/// Part of its best neighbour's value that a raised cell takes: about the field's ratio from cell
+/// to cell indoors. With 1, a flat start, the heading behind doors takes a third more cycles.
 const PART: f32 = 0.85;
 
-/// How many times a neighbour may exceed a cell of a field that was right before the boundary moved. Strong repulsion,
-/// ε < −1.5, may need more, and gets a worse start.
+/// Greatest ratio of a neighbour to a cell in a field that was right before the boundary moved. A
+/// strong repulsion, ε < −1.5, can exceed it and gets a worse start.
 const STEEPEST: f32 = 16.0;
 
-/// The same in a cold window, where no value is worth keeping: just more than 1/0.85.
+/// Greatest ratio in a cold window, which has no value to keep: slightly more than 1/[`PART`].
 const STEEPEST_COLD: f32 = 1.25;
 
-/// Raise what is too low, in sweeps up and down over the rows that may hold such cells: those with something new, and
-/// those beside a row that changed.
+/// Raises the cells that are too low, in sweeps up and down over the rows that may hold such cells:
+/// rows with a new cell or goal, and the neighbours of a row that changed.
 pub(super) fn raise(window: &mut Window) {
     let steepest = if window.warm { STEEPEST } else { STEEPEST_COLD };
     let mut upward = true;
@@ -51,7 +53,7 @@ pub(super) fn raise(window: &mut Window) {
     window.warm = true;
 }
 
-/// Raise the cells of a row to what their neighbours give. Answers whether one changed.
+/// Raises the cells of a row that their neighbours exceed too far. Returns true if one changed.
 fn raise_row(window: &mut Window, y: usize, steepest: f32) -> bool {
     let mut changed = false;
     for run in Runs(window.reached[y]) {
@@ -83,7 +85,7 @@ fn raise_row(window: &mut Window, y: usize, steepest: f32) -> bool {
     changed
 }
 
-/// The greater of two numbers, without the care for NaN that makes `f32::max` a call.
+/// Returns the greater of two numbers; `f32::max` handles NaN and compiles to a call.
 #[inline(always)]
 fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }

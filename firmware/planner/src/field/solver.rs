@@ -1,11 +1,13 @@
-//! Solve the window: which method, how long, and when to stop.
+//! Solving of the window: choice of the method, budget, stop rule.
 //!
-//! The multigrid stops when its own factors say that the field is right, max |x − 1| < 0.05: a small residual says
-//! nothing, since a slow mode has a small residual and a large error. It gives way to Gauss–Seidel where it is known
-//! to be weak, under a strong global attraction, and where its factors stop converging.
+//! The multigrid stops when its factors show that the field is right: max |x − 1| < 0.05. The
+//! residual is no measure, because a slow mode has a small residual and a large error. Gauss–Seidel
+//! takes over under a strong global attraction, where the multigrid is weak, and when the factors
+//! stop converging.
 //!
-//! The budget is in multigrid cycles, a hard bound on time: Gauss–Seidel spends [`SWEEPS_PER_CYCLE`] sweeps for one.
-//! A field that ran out of budget stays in the window, and the next call goes on from it.
+//! The budget is in multigrid cycles, a hard bound on time: Gauss–Seidel spends
+//! [`SWEEPS_PER_CYCLE`] sweeps per cycle. If the budget runs out, the field stays in the window and
+//! the next call continues from it.
 
 use crate::config::{Method, SolverConfig};
 use crate::field::gauss_seidel;
@@ -14,47 +16,50 @@ use crate::field::runs::Runs;
 use crate::field::seed;
 use crate::field::window::{Window, index};
 
-/// Gauss–Seidel sweeps that cost about as much as a multigrid cycle.
+/// Gauss–Seidel sweeps that take about the time of one multigrid cycle.
 pub const SWEEPS_PER_CYCLE: u16 = 5;
 
-/// Mean preference above which the multigrid is not used: q comes so near to the goal's value over whole rooms that
-/// the factors see little but rounding, and call a field right that is not.
+/// Mean preference above which Gauss–Seidel solves instead of the multigrid: q is so near to the
+/// goal's value over whole rooms that the factors show only rounding, and a wrong field seems
+/// right.
 const STRONG_ATTRACTION: f32 = 0.15;
 
-/// Cycles of one call without a better error after which the multigrid gives up.
-const PATIENCE: u16 = 12;
+/// Consecutive cycles of one call without a smaller error after which the multigrid gives up.
+const MOST_IDLE_CYCLES: u16 = 12;
 
-/// Relative change of any cell in one sweep below which Gauss–Seidel has converged. Its slowest modes lose less than a
-/// hundredth of their error a sweep, so this leaves up to a few thousandths.
+/// Greatest relative change of a cell in the last sweep of Gauss–Seidel. Its slowest modes lose
+/// less than a hundredth of their error per sweep, so the remaining error is a few thousandths at
+/// most.
 const SWEEP_TOLERANCE: f32 = 1e-5;
 
-/// Why a solve ended.
+/// Reason for the end of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stop {
     /// The stop rule holds.
     Converged,
-    /// The budget ran out first; the next call goes on from here.
+    /// The budget ran out first; the next call continues.
     Budget,
-    /// No free cell can be reached from a goal: there is no field.
+    /// No free cell reaches a goal: there is no field.
     Flat,
 }
 
-/// What a solve did.
+/// Result of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solution {
     /// Multigrid cycles spent.
     pub cycles: u16,
     /// Gauss–Seidel sweeps spent, beyond the one in each cycle.
     pub sweeps: u16,
-    /// Why it ended.
+    /// Reason for the end.
     pub stop: Stop,
-    /// What the stop rule looked at last: the multigrid's max |x − 1|, or the greatest relative change of a sweep.
+    /// Last value of the stop rule: max |x − 1| of the multigrid, or the greatest relative change
+    /// of a sweep.
     pub residual: f32,
-    /// The method that ended it: never [`Method::Auto`].
+    /// The method of the end: never [`Method::Auto`].
     pub method: Method,
 }
 
-/// Solve the window's field from whatever it holds.
+/// Solves the window's field, starting from its present values.
 pub fn solve(
     window: &mut Window,
     scratch: &mut [f32; SCRATCH_FLOATS],
@@ -105,7 +110,7 @@ fn run_multigrid(
         if solution.residual < best {
             (best, since) = (solution.residual, 0);
         }
-        if config.method == Method::Auto && since >= PATIENCE {
+        if config.method == Method::Auto && since >= MOST_IDLE_CYCLES {
             solution.method = Method::GaussSeidel;
             return;
         }
@@ -113,7 +118,7 @@ fn run_multigrid(
 }
 
 fn run_gauss_seidel(window: &mut Window, config: &SolverConfig, solution: &mut Solution) {
-    // What has risen part of the way is worth keeping.
+    // Values that rose only in part are worth keeping.
     window.warm = true;
     for _ in solution.cycles..config.max_cycles {
         for _ in 1..SWEEPS_PER_CYCLE {
@@ -128,7 +133,7 @@ fn run_gauss_seidel(window: &mut Window, config: &SolverConfig, solution: &mut S
     }
 }
 
-/// Mean ε of the reached cells.
+/// Returns the mean ε of the reachable cells.
 fn mean_preference(window: &Window) -> f32 {
     if !window.preferred {
         return 0.0;

@@ -76,7 +76,7 @@ pub(crate) fn first_unreachable<const TILES: usize, const SLOTS: usize>(
     robot: Point,
     grid: &mut LocalGrid,
 ) -> Option<Cell> {
-    grid.look_around(context.tiles, context.disc, robot.cell(), 1);
+    grid.update(context.tiles, context.disc, robot.cell(), 1);
     grid.free_robot(robot.cell());
     let reached = grid.reachable(robot.cell())?;
     let mut parts: Rows = [0; SIDE];

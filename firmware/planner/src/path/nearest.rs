@@ -37,7 +37,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         accepts: impl Fn(Site) -> bool,
     ) -> Option<(Site, u32)> {
         SCALES.iter().find_map(|&scale| {
-            view.look_around(self.tiles, self.disc, from, scale);
+            view.update(self.tiles, self.disc, from, scale);
             view.free_robot(from);
             let targets = self.targets(view, &accepts);
             let mut seeds: Rows = [0; SIDE];

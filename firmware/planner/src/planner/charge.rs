@@ -26,7 +26,7 @@ pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
     }
     let tiles = state.map.tiles();
     SCALES.iter().find_map(|&scale| {
-        grid.look_around(tiles, footprint, robot.cell(), scale);
+        grid.update(tiles, footprint, robot.cell(), scale);
         if let Some(shield) = state.strategy.shield() {
             shield.cells().for_each(|cell| grid.block(cell));
         }
@@ -54,7 +54,7 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     state.strategy.tdbvp()?;
     let robot = input.pose.point().cell();
     let view = &mut workspace.view;
-    view.look_around(state.map.tiles(), footprint, robot, 1);
+    view.update(state.map.tiles(), footprint, robot, 1);
     view.free_robot(robot);
     let tiles = state.map.tiles();
     state

@@ -73,7 +73,7 @@ fn conclude<const TILES: usize, const SLOTS: usize>(
     robot: Cell,
     missing: Option<NoRoom>,
 ) -> Status {
-    view.look_around(state.map.tiles(), footprint, robot, 1);
+    view.update(state.map.tiles(), footprint, robot, 1);
     view.free_robot(robot);
     match missing {
         Some(NoRoom::Pool) => Status::Fault(Fault::MapFull),

@@ -16,7 +16,7 @@
 use crate::config::Config;
 use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{CollisionChecker, Incline};
-use crate::field::height_preference::Preferences;
+use crate::field::preference::Preferences;
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Point, Pose};
 use crate::input::Input;
@@ -82,7 +82,7 @@ impl<const TILES: usize> GroundModel<TILES> {
                 }
             }
             Self::Uneven(levels) => {
-                preferences.stand(&input.pose);
+                preferences.note_pose(&input.pose);
                 levels.note(&map.heights(), map.tiles());
                 map.compact(levels);
             }
@@ -100,7 +100,7 @@ impl<const TILES: usize> GroundModel<TILES> {
             Self::Uneven(heights) if terrain.mode.has_heights() => Some(LevelCost {
                 heights,
                 ground: terrain,
-                reference_m: preferences.storey_m(),
+                reference_m: preferences.reference_m(),
             }),
             _ => None,
         }

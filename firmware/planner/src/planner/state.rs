@@ -7,7 +7,7 @@ use super::workspace::{RING, SCRATCH};
 use crate::config::{BoxTooLarge, Config};
 use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{self, Drive};
-use crate::field::height_preference::Preferences;
+use crate::field::preference::Preferences;
 use crate::geometry::Cell;
 use crate::map::{Map, Tiles};
 use crate::path::{Path, viewpoint};

@@ -31,7 +31,7 @@ pub mod progress;
 mod work;
 
 use fieldline_planner::config::PreferenceMode;
-use fieldline_planner::field::height_preference::Preferences;
+use fieldline_planner::field::preference::Preferences;
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::math;
 use fieldline_planner::status::Frontier;

@@ -99,7 +99,7 @@ impl Scene {
     /// Where the field leads from the robot: x and y of its heading.
     fn heading(&self, side: Option<Side>) -> (f32, f32) {
         let mut view = LocalGrid::new();
-        view.look_around(&self.tiles, &Footprint::new(0.1), self.robot, 1);
+        view.update(&self.tiles, &Footprint::new(0.1), self.robot, 1);
         let footprint = Footprint::new(0.1);
         let centres = Centres::of(&self.topology, &self.tiles, &footprint).unwrap();
         let (mut window, least) = (Window::new(), self.robot);
