@@ -7,8 +7,8 @@
 //! Obstacles count with q = 0, so the heading turns away from walls. Between cell centres the
 //! gradient is interpolated bilinearly over those of the four surrounding cells that have one.
 //!
-//! Units: headings in radians, counter-clockwise from x; positions in cells. Cell (x, y) covers [x,
-//! x+1) × [y, y+1).
+//! Units: headings in radians, counter-clockwise from x; positions in cells.
+//! Cell (x, y) covers [x, x+1) × [y, y+1).
 
 use crate::field::window::{STRIDE, Window, index};
 use crate::math;

@@ -1,5 +1,5 @@
-//! Gauss–Seidel: one sweep in row order, the papers' method [Prestes02; Maffei20, eq. 2], for q = 1
-//! − p:
+//! Gauss–Seidel: one sweep in row order, the papers' method [Prestes02; Maffei20, eq. 2], for
+//! q = 1 − p:
 //!
 //! ```text
 //! q ← ((N + S) + (W + E) + (ε/2) (|N − S| + |W − E|)) / 4

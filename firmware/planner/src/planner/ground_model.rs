@@ -16,8 +16,8 @@
 use crate::config::Config;
 use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{CollisionChecker, Incline};
-use crate::field::preference::Preferences;
 use crate::field::local_grid::LocalGrid;
+use crate::field::preference::Preferences;
 use crate::geometry::{Cell, Point, Pose};
 use crate::input::Input;
 use crate::map::obstacle_points::ObstaclePoints;
