@@ -35,8 +35,8 @@ pub mod status;
 pub mod strategy;
 
 pub use config::{
-    BoxTooLarge, Config, ConfigBuilder, ConfigError, LoopLimits, Method, Parameter, PreferenceMode,
-    SolverConfig, Strategy, UnevenGround,
+    BoxTooLarge, Config, ConfigBuilder, ConfigError, LoopLimits, Method, OuroborosTuning,
+    Parameter, PreferenceMode, SolverConfig, Strategy, Tuned, Tuning, TuningError, UnevenGround,
 };
 pub use geometry::{Cell, Point, Pose, Twist};
 pub use input::{INVALID_MM, Input, NO_RETURN_MM};

@@ -6,7 +6,7 @@
 use heapless::Vec;
 
 use crate::config::{
-    Config, ConfigError, LoopLimits, Parameter, SolverConfig, Strategy, UnevenGround,
+    Config, ConfigError, LoopLimits, Parameter, SolverConfig, Strategy, Tuning, UnevenGround,
 };
 use crate::geometry::CELL_M;
 use crate::input::NO_RETURN_MM;
@@ -127,7 +127,14 @@ impl ConfigBuilder {
         self
     }
 
-    /// Check every parameter.
+    /// Sets the tuned constants. Default: [`Tuning::DEFAULT`].
+    #[must_use]
+    pub const fn tuning(mut self, tuning: &'static Tuning) -> Self {
+        self.config.tuning = tuning;
+        self
+    }
+
+    /// Checks every parameter.
     ///
     /// On uneven ground the greatest speed becomes at most one map cell a period, so that two
     /// sweeps of the tilted laser leave no gap.

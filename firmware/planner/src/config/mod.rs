@@ -9,12 +9,14 @@ mod error;
 mod ground;
 mod loops;
 mod solver;
+mod tuning;
 
 pub use builder::ConfigBuilder;
 pub use error::{BoxTooLarge, ConfigError, Parameter};
 pub use ground::{KERNEL_CELLS, PreferenceMode, UnevenGround};
 pub use loops::LoopLimits;
 pub use solver::{Method, SolverConfig};
+pub use tuning::{OuroborosTuning, Tuned, Tuning, TuningError};
 
 use heapless::Vec;
 
@@ -77,6 +79,8 @@ pub struct Config {
     pub solver: SolverConfig,
     /// Thinning words a step. Default: 6,000.
     pub topology_units: u32,
+    /// The tuned constants. Default: [`Tuning::DEFAULT`].
+    pub tuning: &'static Tuning,
     /// Parameters of uneven ground; `None` on flat ground, where lasers only see obstacles.
     pub ground: Option<UnevenGround>,
 }
@@ -116,6 +120,7 @@ impl Config {
                 ..SolverConfig::DEFAULT
             },
             topology_units: 6_000,
+            tuning: &Tuning::DEFAULT,
             ground: None,
         }
     }
