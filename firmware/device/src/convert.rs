@@ -8,7 +8,7 @@
 
 use fieldline_planner::{
     Config, Input, LaserMount, LoopLimits, Parameter, Pose, PreferenceMode, Residue, RobotShape,
-    Strategy, Twist, UnevenGround, math, status,
+    Strategy, Tuning, Twist, UnevenGround, math, status,
 };
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
@@ -147,13 +147,18 @@ fn loop_limits(limits: &wire::LoopLimits) -> LoopLimits {
     }
 }
 
-/// Converts the parameters of a session from the wire. The planner checks them.
+/// Converts the parameters of a session from the wire. The planner checks them. Without `tuning` the
+/// tuned constants have their defaults.
 ///
 /// # Errors
 /// [`wire::Parameter`]: the first parameter that is out of its range.
-pub fn config(start: &wire::Start) -> Result<Config, wire::Parameter> {
+pub fn config(
+    start: &wire::Start,
+    tuning: Option<&'static Tuning>,
+) -> Result<Config, wire::Parameter> {
     let (across, up) = start.box_tiles;
     let mut builder = Config::builder(hull(&start.hull))
+        .tuning(tuning.unwrap_or(&Tuning::DEFAULT))
         .strategy(match start.strategy {
             wire::Strategy::Frontier => Strategy::Frontier,
             wire::Strategy::Ouroboros => Strategy::Ouroboros,

@@ -18,7 +18,7 @@
 
 use fieldline_planner::field::SIDE;
 use fieldline_planner::planner::{self, CellKind, Output};
-use fieldline_planner::{BoxTooLarge, Config, StageTimer, State, Workspace, step};
+use fieldline_planner::{BoxTooLarge, Config, StageTimer, State, Tuning, Workspace, step};
 use fieldline_protocol::message::{
     Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS, MAX_SCANS,
     Observation, Path, Refusal, ResidualFrontier, Start, Status, Tile, Twist,
@@ -63,6 +63,8 @@ pub struct Memory<'a, const TILES: usize, const SLOTS: usize> {
 /// Invariant: `pressed` implies `latched`.
 #[derive(Debug)]
 pub struct Pilot {
+    /// `None` means the defaults, so that a new pilot is all zeros and its static needs no flash.
+    tuning: Option<&'static Tuning>,
     config: Option<Config>,
     /// The status after the last step.
     planned: Status,
@@ -82,11 +84,21 @@ impl Pilot {
     #[must_use]
     pub const fn new() -> Self {
         Self {
+            tuning: None,
             config: None,
             planned: Status::Idle,
             paused: false,
             latched: false,
             pressed: false,
+        }
+    }
+
+    /// Returns a pilot whose sessions use these tuned constants.
+    #[must_use]
+    pub fn tuned(tuning: &'static Tuning) -> Self {
+        Self {
+            tuning: Some(tuning),
+            ..Self::new()
         }
     }
 
@@ -123,6 +135,7 @@ impl Pilot {
             Control::Start(start) => self.start(memory, start)?,
             Control::Reset => {
                 *self = Self {
+                    tuning: self.tuning,
                     pressed: self.pressed,
                     latched: self.latched,
                     ..Self::new()
@@ -144,7 +157,7 @@ impl Pilot {
         memory: &mut Memory<'_, TILES, SLOTS>,
         start: &Start,
     ) -> Result<(), Refusal> {
-        let config = convert::config(start).map_err(Refusal::BadParameter)?;
+        let config = convert::config(start, self.tuning).map_err(Refusal::BadParameter)?;
         let reset = memory.state.reset(&config);
         reset.map_err(|BoxTooLarge { .. }| Refusal::BadBox)?;
         info!(
@@ -155,6 +168,7 @@ impl Pilot {
             start.robot_radius_mm
         );
         *self = Self {
+            tuning: self.tuning,
             config: Some(config),
             planned: Status::Exploring,
             paused: false,

@@ -15,8 +15,6 @@ pub struct RobotShape {
     pub height_m: f32,
     /// Distance from the centre to a corner of the rectangle, metres.
     pub half_diagonal_m: f32,
-    /// Radius of the disc that paths are planned for, metres: half the width and a margin.
-    pub planning_radius_m: f32,
 }
 
 /// The margin of the planning radius over half the width, metres: half a map cell.
@@ -24,10 +22,7 @@ const PLANNING_MARGIN_M: f32 = 0.05;
 
 impl RobotShape {
     /// A Pioneer 3-AT: 0.508 m × 0.497 m, 0.277 m high.
-    pub const PIONEER_3AT: Self = Self {
-        planning_radius_m: 0.30,
-        ..Self::rectangle(0.508, 0.497, 0.277)
-    };
+    pub const PIONEER_3AT: Self = Self::rectangle(0.508, 0.497, 0.277);
 
     /// A rectangular robot.
     #[must_use]
@@ -38,8 +33,16 @@ impl RobotShape {
             half_width_m,
             height_m,
             half_diagonal_m: hypotenuse(half_length_m, half_width_m),
-            planning_radius_m: half_width_m + PLANNING_MARGIN_M,
         }
+    }
+
+    /// Radius of the disc that paths are planned for, metres: half the width and half a map cell,
+    /// rounded up to a centimetre.
+    #[must_use]
+    pub const fn planning_radius_m(&self) -> f32 {
+        let centimetres = (self.half_width_m + PLANNING_MARGIN_M) * 100.0;
+        // A cast rounds down. 0.999 leaves a whole number of centimetres as it is.
+        (centimetres + 0.999) as u32 as f32 / 100.0
     }
 
     /// A round robot. Its hull is the square around the circle.
@@ -132,6 +135,8 @@ mod tests {
 
     #[test]
     fn a_round_robot_is_the_square_around_it() {
+        assert_eq!(RobotShape::PIONEER_3AT.planning_radius_m(), 0.30);
+        assert_eq!(RobotShape::round(0.35, 0.3).planning_radius_m(), 0.23);
         let round = RobotShape::round(0.4, 0.3);
         assert_eq!(round, RobotShape::rectangle(0.4, 0.4, 0.3));
     }

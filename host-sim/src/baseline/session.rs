@@ -99,7 +99,7 @@ impl<S: Strategy> Session<S> {
     }
 
     fn start(&mut self, start: &Start) -> Result<(), Refusal> {
-        let config = convert::config(start).map_err(Refusal::BadParameter)?;
+        let config = convert::config(start, None).map_err(Refusal::BadParameter)?;
         let (across, up) = config.box_tiles;
         if !Tiles::<TILES, SLOTS>::fits(across, up) {
             return Err(Refusal::BadBox);

@@ -2,7 +2,7 @@
 
 use fieldline_device::session::{self, Boot};
 use fieldline_device::{Memory, Pilot, SLOTS, State, TILES};
-use fieldline_planner::Workspace;
+use fieldline_planner::{Tuning, Workspace};
 use fieldline_protocol::message::{
     Command, Control, FieldRow, Identity, Observation, Path, Refusal, ResidualFrontier, Status,
     Tile,
@@ -29,8 +29,18 @@ impl Direct {
     /// A pilot that has just booted.
     #[must_use]
     pub fn new() -> Self {
+        Self::of(Pilot::new())
+    }
+
+    /// A pilot that has just booted, with these tuned constants.
+    #[must_use]
+    pub fn tuned(tuning: &'static Tuning) -> Self {
+        Self::of(Pilot::tuned(tuning))
+    }
+
+    fn of(pilot: Pilot) -> Self {
         Self {
-            pilot: Pilot::new(),
+            pilot,
             state: Box::new(State::new()),
             workspace: Box::new(Workspace::new()),
             calls: 0,

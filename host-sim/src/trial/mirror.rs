@@ -27,7 +27,7 @@ impl Mirror {
     /// The empty map of a session.
     #[must_use]
     pub fn new(start: &Start) -> Self {
-        let config = convert::config(start).ok();
+        let config = convert::config(start, None).ok();
         let mut map = Box::new(Map::new());
         if let Some(config) = &config {
             map.begin(config);

@@ -326,7 +326,7 @@ fn a_session_takes_its_limits_from_the_host() {
         lasers: start().lasers,
         ..Start::default()
     };
-    let config = config(&start).expect("valid");
+    let config = config(&start, None).expect("valid");
     assert_eq!(config.robot, RobotShape::rectangle(0.9, 0.6, 0.4));
     assert_eq!(config.box_tiles, (30, 12));
     assert_eq!(

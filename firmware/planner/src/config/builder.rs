@@ -91,8 +91,8 @@ impl ConfigBuilder {
     /// Set the radius of the disc that paths are planned for, metres: 0.05 to 0.6. Default:
     /// [`RobotShape::planning_radius_m`].
     #[must_use]
-    pub fn radius_m(mut self, radius_m: f32) -> Self {
-        self.config.set_radius_m(radius_m);
+    pub const fn radius_m(mut self, radius_m: f32) -> Self {
+        self.config.robot_radius_m = radius_m;
         self
     }
 

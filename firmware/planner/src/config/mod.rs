@@ -63,8 +63,6 @@ pub struct Config {
     pub box_tiles: (u8, u8),
     /// Radius of the disc that paths are planned for, metres.
     pub robot_radius_m: f32,
-    /// Radius at the second chance, metres: half the robot's width less the error of a cell.
-    pub tight_radius_m: f32,
     /// Greatest speed, metres a second. Default: 0.7 (Pioneer 3-AT).
     pub max_linear_mps: f32,
     /// Greatest turn rate, radians a second. Default: 2.44 (140°/s).
@@ -101,15 +99,13 @@ impl Config {
 
     /// The defaults for a robot with these lasers, in the largest square box of the default image.
     const fn new(robot: RobotShape, lasers: Vec<LaserMount, 2>) -> Self {
-        let radius_m = robot.planning_radius_m;
         Self {
             strategy: Strategy::Frontier,
             loops: LoopLimits::DEFAULT,
             robot,
             lasers,
             box_tiles: (20, 20),
-            robot_radius_m: radius_m,
-            tight_radius_m: tight_radius_m(radius_m),
+            robot_radius_m: robot.planning_radius_m(),
             max_linear_mps: 0.7,
             max_angular_radps: 2.44,
             linear_accel_mps2: 0.3,
@@ -131,16 +127,10 @@ impl Config {
         Self::new(RobotShape::PIONEER_3AT, lasers)
     }
 
-    const fn set_radius_m(&mut self, radius_m: f32) {
-        self.robot_radius_m = radius_m;
-        self.tight_radius_m = tight_radius_m(radius_m);
+    /// Returns the radius at the second chance, metres. The 3-AT's is 0.22 of 0.30: half its width
+    /// less the error of a map cell. Another robot's is in proportion.
+    #[must_use]
+    pub const fn tight_radius_m(&self) -> f32 {
+        self.robot_radius_m * (0.22 / 0.30)
     }
-}
-
-/// The radius at the second chance. The 3-AT's is 0.22 m of 0.30; another robot's is in proportion.
-const fn tight_radius_m(radius_m: f32) -> f32 {
-    if radius_m == 0.30 {
-        return 0.22;
-    }
-    radius_m * (0.22 / 0.30)
 }

@@ -100,7 +100,7 @@ pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
     input: &Input<'_>,
 ) {
     let robot = input.pose.point().cell();
-    let [wide, narrow] = [config.robot_radius_m, config.tight_radius_m].map(Footprint::new);
+    let [wide, narrow] = [config.robot_radius_m, config.tight_radius_m()].map(Footprint::new);
     let inputs = Inputs {
         tiles: state.map.tiles(),
         footprints: [&wide, &narrow],

@@ -132,7 +132,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// The footprint that paths are planned for: narrower at the second chance.
     pub(super) fn footprint(&self, config: &Config) -> Footprint {
         Footprint::new(if self.strategy.frontier.is_second_chance() {
-            config.tight_radius_m
+            config.tight_radius_m()
         } else {
             config.robot_radius_m
         })
