@@ -174,11 +174,8 @@ fn is_well_measured(near: impl Fn(i32, i32) -> Option<i32>) -> bool {
 
 /// Returns true if measured ground on both sides spans a cell that was never measured.
 ///
-/// In each of the four directions, the nearest known cells on both sides within [`MAX_GAP_CELLS`]
-/// must be measured. A drop or an obstacle there refuses the gap, and an inferred drop tells
-/// nothing. The grade between them must not exceed the climb, and their difference must be at most
-/// a step or blend in with the grades beside the gap. At least [`MIN_DIRECTIONS`] directions must
-/// pass, and none may fail. `slack_m` is the difference of two heights that errors of the attitude
+/// Ground must span the cell in at least [`MIN_DIRECTIONS`] of the four directions, and no
+/// direction may refuse it. `slack_m` is the difference of two heights that errors of the attitude
 /// alone explain, metres.
 pub(crate) fn spans_gap(
     heights: &Heights<'_>,
@@ -186,65 +183,117 @@ pub(crate) fn spans_gap(
     cell: Cell,
     slack_m: f32,
 ) -> bool {
-    let limits = if slack_m > 0.0 {
-        GapLimits::NOISY
-    } else {
-        GapLimits::EXACT
-    };
-    let longest = limits.grade_cells.iter().copied().max().unwrap_or(1) as f32;
-    let known = |cell: Cell| {
-        let state = heights.ground_state(cell);
-        state.filter(|state| *state != GroundState::Uncertain)
+    let gap = Gap {
+        heights,
+        ground,
+        cell,
+        slack_m,
+        limits: if slack_m > 0.0 {
+            &GapLimits::NOISY
+        } else {
+            &GapLimits::EXACT
+        },
     };
     let mut directions = 0;
-    // Lengths of the directions in cells; 1.41 is √2.
-    for (dx, dy, length) in [(1, 0, 1.0), (1, 1, 1.41), (0, 1, 1.0), (-1, 1, 1.41)] {
-        let on = |cells: i32| cell.offset(cells * dx, cells * dy);
-        let nearest = |sign: i32| (1..=MAX_GAP_CELLS).find_map(|k| Some((k, known(on(sign * k))?)));
-        let (Some((ahead, high)), Some((behind, low))) = (nearest(1), nearest(-1)) else {
-            continue;
-        };
-        let (GroundState::Measured(high), GroundState::Measured(low)) = (high, low) else {
-            return false;
-        };
-        let step_m = length * CELL_M;
-        let (rise_m, gap_m) = (high - low, (ahead + behind) as f32 * step_m);
-        let max_rise_m = limits.climb_share * ground.climb * gap_m + slack_m;
-        let max_blend = MAX_BLEND + slack_m / (longest * step_m);
-        let blends = || {
-            let grade = rise_m / gap_m;
-            let beyond = grade_beside(heights, &on, (ahead, 1), limits.grade_cells, step_m);
-            let before = grade_beside(heights, &on, (-behind, -1), limits.grade_cells, step_m);
-            beyond.zip(before).is_some_and(|(a, b)| {
-                (a.min(b) - max_blend..=a.max(b) + max_blend).contains(&grade)
-            })
-        };
-        if rise_m.abs() <= max_rise_m && (rise_m.abs() <= ground.step_m + slack_m || blends()) {
-            directions += 1;
-        } else if limits.trusts_single
-            || (heights.count(on(ahead)) > 1 && heights.count(on(-behind)) > 1)
-        {
-            return false;
+    for direction in DIRECTIONS {
+        match gap.is_spanned_along(direction) {
+            Some(true) => directions += 1,
+            Some(false) => return false,
+            None => {}
         }
     }
     directions >= MIN_DIRECTIONS
 }
 
-/// Returns the grade of the ground beside a gap, a tangent: from the cell `from` outwards over the
-/// first of `grade_cells` that ends on a measured cell. It is positive if the ground rises along
-/// the direction.
-fn grade_beside(
-    heights: &Heights<'_>,
-    on: &impl Fn(i32) -> Cell,
-    (from, sign): (i32, i32),
-    grade_cells: &[i32],
-    step_m: f32,
-) -> Option<f32> {
-    let near_m = heights.height_m(on(from))?;
-    grade_cells.iter().find_map(|&cells| {
-        let far_m = heights.height_m(on(from + sign * cells))?;
-        Some((far_m - near_m) / ((sign * cells) as f32 * step_m))
-    })
+/// A cell of a gap, and the ground around it.
+struct Gap<'a> {
+    heights: &'a Heights<'a>,
+    ground: &'a UnevenGround,
+    cell: Cell,
+    slack_m: f32,
+    limits: &'a GapLimits,
+}
+
+impl Gap<'_> {
+    /// Returns true if ground spans the gap along a direction, false if it refuses the gap, and
+    /// `None` if it tells nothing.
+    ///
+    /// The ends are the nearest cells on both sides that are known; an inferred drop is not. Both
+    /// must be measured. The grade between them must not exceed the climb, and their difference
+    /// must be at most a step, or blend in with the grades beside the gap.
+    fn is_spanned_along(&self, direction: Direction) -> Option<bool> {
+        let ((ahead, high), (behind, low)) = self.end(direction, 1).zip(self.end(direction, -1))?;
+        let (GroundState::Measured(high), GroundState::Measured(low)) = (high, low) else {
+            return Some(false);
+        };
+        let (rise_m, gap_m) = (high - low, (ahead + behind) as f32 * direction.step_m());
+        let max_rise_m = self.limits.climb_share * self.ground.climb * gap_m + self.slack_m;
+        let is_low = rise_m.abs() <= self.ground.step_m + self.slack_m;
+        let blends = || self.blends(direction, (ahead, behind), rise_m / gap_m);
+        if rise_m.abs() <= max_rise_m && (is_low || blends()) {
+            return Some(true);
+        }
+        let count = |cells: i32| self.heights.count(direction.cell(self.cell, cells));
+        let is_refused = self.limits.trusts_single || (count(ahead) > 1 && count(-behind) > 1);
+        is_refused.then_some(false)
+    }
+
+    /// Returns the nearest known cell to one side: its distance in cells, and its state.
+    fn end(&self, direction: Direction, sign: i32) -> Option<(i32, GroundState)> {
+        (1..=MAX_GAP_CELLS).find_map(|cells| {
+            let cell = direction.cell(self.cell, sign * cells);
+            let state = self.heights.ground_state(cell)?;
+            (state != GroundState::Uncertain).then_some((cells, state))
+        })
+    }
+
+    /// Returns true if the grade across the gap lies between those beside it, give or take
+    /// [`MAX_BLEND`].
+    fn blends(&self, direction: Direction, (ahead, behind): (i32, i32), grade: f32) -> bool {
+        let beside = self.grade_beside(direction, ahead, 1);
+        let Some((a, b)) = beside.zip(self.grade_beside(direction, -behind, -1)) else {
+            return false;
+        };
+        let longest = self.limits.grade_cells.iter().copied().max().unwrap_or(1) as f32;
+        let max_blend = MAX_BLEND + self.slack_m / (longest * direction.step_m());
+        (a.min(b) - max_blend..=a.max(b) + max_blend).contains(&grade)
+    }
+
+    /// Returns the grade of the ground beside the gap, a tangent: from the cell `from` outwards, to
+    /// the first of [`GapLimits::grade_cells`] that is measured. It is positive if the ground rises
+    /// along the direction.
+    fn grade_beside(&self, direction: Direction, from: i32, sign: i32) -> Option<f32> {
+        let height_m = |cells: i32| self.heights.height_m(direction.cell(self.cell, cells));
+        let near_m = height_m(from)?;
+        self.limits.grade_cells.iter().find_map(|&cells| {
+            let far_m = height_m(from + sign * cells)?;
+            Some((far_m - near_m) / ((sign * cells) as f32 * direction.step_m()))
+        })
+    }
+}
+
+/// One of the directions across a gap: the columns and rows of a step, and its length in cells.
+#[derive(Clone, Copy)]
+struct Direction(i32, i32, f32);
+
+/// Both axes and both diagonals; 1.41 is √2.
+const DIRECTIONS: [Direction; 4] = [
+    Direction(1, 0, 1.0),
+    Direction(1, 1, 1.41),
+    Direction(0, 1, 1.0),
+    Direction(-1, 1, 1.41),
+];
+
+impl Direction {
+    /// Returns the cell so many steps from another.
+    const fn cell(self, from: Cell, steps: i32) -> Cell {
+        from.offset(steps * self.0, steps * self.1)
+    }
+
+    /// Returns the length of a step, metres.
+    const fn step_m(self) -> f32 {
+        self.2 * CELL_M
+    }
 }
 
 /// Returns true if measured cells on both sides along an axis, at most four cells apart, bridge a

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! A height is an [`I7F9`]: ±64 m around the start in steps of 2 mm. Beside it lies a mark of one
-//! byte: the count of measurements, the count of hits of something that stands, and a bit for a
-//! drop. While a cell is not measured, its stored height says how sure the drop is.
+//! byte: the count of measurements, the score of something that stands, and a bit for a drop. While
+//! a cell is not measured, its stored height says how sure the drop is.
 //!
 //! Ground met from too far off to be measured has a height of *low confidence*: a mean of its own
 //! kind. It denies a drop, and the first measured height replaces it.
@@ -25,7 +25,7 @@ use fixed::types::I7F9;
 use crate::geometry::Cell;
 pub(super) use crate::ground::heights::GroundState;
 use crate::ground::heights::{
-    COUNT, DROP, INFERRED_DROP, POSSIBLE_DROP, SCORE, SCORE_STEP, Window, is_low_confidence, slot,
+    COUNT, DROP, INFERRED_DROP, POSSIBLE_DROP, SCORE, SCORE_POINT, Window, is_low_confidence, slot,
 };
 pub use crate::ground::heights::{Heights, WINDOW_CELLS, WINDOW_SIDE};
 
@@ -33,8 +33,8 @@ pub use crate::ground::heights::{Heights, WINDOW_CELLS, WINDOW_SIDE};
 const MAX_COUNT: u8 = 15;
 /// A height farther than this from the mean may be a false return: 0.15 m, in steps of a height.
 const OUTLIER_STEPS: i32 = I7F9::lit("0.15").to_bits() as i32;
-/// What a hit of something that stands adds to the score. A measurement of ground takes one away.
-const HIT_STEPS: u8 = 2 * SCORE_STEP;
+/// Score of a hit of something that stands: two points. A measurement of ground takes one away.
+const HIT_SCORE: u8 = 2 * SCORE_POINT;
 
 /// The elevation window, for writing.
 #[derive(Debug)]
@@ -103,9 +103,9 @@ impl<'a> Elevation<'a> {
 
     /// Adds a measured height to a cell's mean, metres; ignores cells outside the window.
     ///
-    /// The cell is then no drop, and one hit of its obstacle score is taken back. A height more
-    /// than 0.15 m off the mean may be a false return: the mean stays and its count falls, until
-    /// the mean gives way. Of two first heights that differ so much, the lower one stays.
+    /// The cell is then no drop, and its obstacle score falls by one point. A height that is
+    /// 15 cm off the mean may be a false return: the mean stays and its count falls, until the mean
+    /// gives way. Of two first heights that differ so much, the lower one stays.
     pub fn measure(&mut self, cell: Cell, height_m: f32) {
         self.discard_low_confidence(cell);
         self.average(cell, height_m);
@@ -153,7 +153,7 @@ impl<'a> Elevation<'a> {
         // Rounded to nearest, so that the mean has no bias downwards.
         let mean = mean + (2 * off + n).div_euclid(2 * n);
         *stored = I7F9::from_bits(mean as i16).to_le_bytes();
-        let score = (*mark & SCORE).saturating_sub(SCORE_STEP) & SCORE;
+        let score = (*mark & SCORE).saturating_sub(SCORE_POINT) & SCORE;
         *mark = score | count;
     }
 
@@ -161,7 +161,7 @@ impl<'a> Elevation<'a> {
     pub(super) fn mark_obstacle(&mut self, cell: Cell) {
         self.discard_low_confidence(cell);
         if let Some(mark) = self.mark_mut(cell) {
-            let score = (*mark & SCORE).saturating_add(HIT_STEPS);
+            let score = (*mark & SCORE).saturating_add(HIT_SCORE);
             *mark = *mark & COUNT | score.min(SCORE);
         }
     }

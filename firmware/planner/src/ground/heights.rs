@@ -5,7 +5,7 @@
 //! | bits of the mark | what they hold |
 //! | --- | --- |
 //! | 0 to 3, [`COUNT`] | measurements in the mean height, 0 to 15 |
-//! | 4 to 6, [`SCORE`] | hits of something that stands, 0 to 7 |
+//! | 4 to 6, [`SCORE`] | score of something that stands, 0 to 7 points |
 //! | 7, [`DROP`] | without a count: a drop; with a count: the height has low confidence |
 //!
 //! The stored height is the mean, an [`I7F9`], if the count is not 0. Without a count it is 0,
@@ -26,14 +26,14 @@ pub const WINDOW_CELLS: usize = (WINDOW_SIDE * WINDOW_SIDE) as usize;
 pub(super) type Window = Rolling<WINDOW_SIDE, 1>;
 /// Bits of a mark that count measurements.
 pub(super) const COUNT: u8 = 0x0f;
-/// Bits of a mark that count hits of something that stands.
+/// Bits of a mark that hold the score of something that stands.
 pub(super) const SCORE: u8 = 0x70;
-/// One hit, in the bits of [`SCORE`].
-pub(super) const SCORE_STEP: u8 = 0x10;
+/// One point of the score.
+pub(super) const SCORE_POINT: u8 = 0x10;
 /// Bit of a mark: the ground is gone, or the height has low confidence.
 pub(super) const DROP: u8 = 0x80;
-/// Hits that make a cell an obstacle. Fewer hits may be false returns.
-const MIN_OBSTACLE_HITS: u8 = 3;
+/// Least score of an obstacle, points. A hit adds two: one hit may be a false return.
+const MIN_OBSTACLE_SCORE: u8 = 3;
 /// Stored height of a possible drop, and of a drop confirmed from one. It is no mean.
 pub(super) const POSSIBLE_DROP: [u8; 2] = [1, 0];
 /// Stored height of a drop inferred from its surroundings. It is no mean.
@@ -71,10 +71,10 @@ const fn is_drop(mark: u8) -> bool {
     mark & (COUNT | DROP) == DROP
 }
 
-/// Returns true if the mark has the hits of an obstacle.
+/// Returns true if the mark has the score of an obstacle.
 #[inline(always)]
 const fn is_obstacle(mark: u8) -> bool {
-    mark & SCORE >= MIN_OBSTACLE_HITS * SCORE_STEP
+    mark & SCORE >= MIN_OBSTACLE_SCORE * SCORE_POINT
 }
 
 /// Returns the number of measurements in a mark, without those of low confidence.

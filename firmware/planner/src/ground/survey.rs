@@ -200,12 +200,10 @@ impl<'a, 'm> Survey<'a, 'm> {
     /// Enters a beam that hit something. `has_company`: a beam beside it ended about as far.
     fn process_return(&mut self, ray: &Ray, is_level: bool, has_company: bool) {
         let z_m = ray.height_m(ray.length_m);
-        let cell = ray.end().cell();
         let last = self.last_ground(ray, ray.length_m);
         let (gap_m, rise_m) = (ray.length_m - last.s_m, z_m - last.height_m);
-        let climb_m = self.ground.climb * gap_m;
-        if rise_m > climb_m + HEIGHT_TOLERANCE_M {
-            let is_obstacle = self.is_obstacle(ray, cell, z_m);
+        if rise_m > self.ground.climb * gap_m + HEIGHT_TOLERANCE_M {
+            let is_obstacle = self.is_obstacle(ray, z_m);
             if is_obstacle && has_company {
                 self.elevation.mark_obstacle(ray.hit_cell());
             }
@@ -217,7 +215,7 @@ impl<'a, 'm> Survey<'a, 'm> {
         } else if self.is_rim(ray, &last, gap_m, rise_m) {
             let is_hole = rise_m < self.ground.hole_m;
             // A brow that bends as quickly looks the same until the slope behind it is measured.
-            let may_be_brow = gap_m > MIN_BROW_GAP_M && -rise_m < climb_m;
+            let may_be_brow = gap_m > MIN_BROW_GAP_M && -rise_m < self.ground.climb * gap_m;
             if is_hole || !may_be_brow || self.slack_m > 0.0 {
                 self.mark_drops(ray, &last, ray.length_m);
             } else {
@@ -227,15 +225,24 @@ impl<'a, 'm> Survey<'a, 'm> {
                 return;
             }
         }
-        let cell = if rise_m > climb_m + WALL_FOOT_M {
-            self.wall_foot(ray).unwrap_or(cell)
-        } else {
-            cell
-        };
+        self.measure(ray, is_level, gap_m, rise_m);
+    }
+
+    /// Measures P as ground if K is near enough, or if a tilted beam met a climbable slope.
+    fn measure(&mut self, ray: &Ray, is_level: bool, gap_m: f32, rise_m: f32) {
+        let climb_m = self.ground.climb * gap_m;
         let is_linked = gap_m <= MAX_GROUND_GAP_M || (!is_level && rise_m.abs() <= climb_m);
-        if is_linked && ray.length_m < self.reach_m {
+        if !is_linked {
+            return;
+        }
+        let foot = (rise_m > climb_m + WALL_FOOT_M)
+            .then(|| self.wall_foot(ray))
+            .flatten();
+        let cell = foot.unwrap_or_else(|| ray.end().cell());
+        let z_m = ray.height_m(ray.length_m);
+        if ray.length_m < self.reach_m {
             self.elevation.measure(cell, z_m);
-        } else if is_linked && ray.length_m < LOW_CONFIDENCE_REACH * self.reach_m {
+        } else if ray.length_m < LOW_CONFIDENCE_REACH * self.reach_m {
             self.elevation.measure_low_confidence(cell, z_m);
         }
     }
@@ -290,8 +297,8 @@ impl<'a, 'm> Survey<'a, 'm> {
     }
 
     /// Returns true if a steep P is obstacle (a) or (b).
-    fn is_obstacle(&self, ray: &Ray, cell: Cell, z_m: f32) -> bool {
-        match self.kernel_mean(cell) {
+    fn is_obstacle(&self, ray: &Ray, z_m: f32) -> bool {
+        match self.kernel_mean(ray.end().cell()) {
             Some(mean_m) => z_m - mean_m > self.ground.obstacle_m,
             None => ray.length_m < self.ground.near_m,
         }
