@@ -1,8 +1,11 @@
-//! Poses, cells and the only conversions between them.
+//! Points, poses, cells, and the only conversions between them.
 //!
-//! Units: metres and radians; x east, y north, angles counter-clockwise from x. A [`Cell`] is a
-//! square of side [`CELL_M`]; cell (i, j) covers [i, i+1) × [j, j+1) times that side, in the
-//! odometry frame.
+//! ```text
+//! cell (i, j) covers [i, i + 1) × [j, j + 1) · CELL_M in the odometry frame
+//! ```
+//!
+//! Units: metres and radians; x east, y north, angles counter-clockwise from x. The robot's frame
+//! has x forward and y left.
 
 use crate::math;
 
@@ -12,18 +15,18 @@ pub const CELL_M: f32 = 0.1;
 /// A planar point, metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
-    /// Metres.
+    /// Metres east, or forward in the robot's frame.
     pub x_m: f32,
-    /// Metres.
+    /// Metres north, or left in the robot's frame.
     pub y_m: f32,
 }
 
 /// The robot's pose in the odometry frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// Metres.
+    /// Metres east of the start.
     pub x_m: f32,
-    /// Metres.
+    /// Metres north of the start.
     pub y_m: f32,
     /// Metres above the start.
     pub z_m: f32,
@@ -38,23 +41,23 @@ pub struct Pose {
 /// A planar velocity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Twist {
-    /// Metres a second, forward.
+    /// Metres per second, forward.
     pub linear_mps: f32,
-    /// Radians a second, counter-clockwise.
+    /// Radians per second, counter-clockwise.
     pub angular_radps: f32,
 }
 
 /// A cell of the map, by column and row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cell {
-    /// Column, grows with x.
+    /// Column; grows with x.
     pub x: i32,
-    /// Row, grows with y.
+    /// Row; grows with y.
     pub y: i32,
 }
 
 impl Point {
-    /// The map cell that holds this point.
+    /// Returns the map cell that holds this point.
     #[must_use]
     pub fn cell(self) -> Cell {
         Cell {
@@ -63,7 +66,7 @@ impl Point {
         }
     }
 
-    /// Squared distance to another point, square metres.
+    /// Returns the squared distance to another point, square metres.
     #[must_use]
     pub fn distance2(self, other: Self) -> f32 {
         let (dx, dy) = (self.x_m - other.x_m, self.y_m - other.y_m);
@@ -78,7 +81,7 @@ impl Point {
 }
 
 impl Pose {
-    /// The planar position.
+    /// Returns the position in the plane.
     #[must_use]
     pub fn point(&self) -> Point {
         Point {
@@ -87,7 +90,7 @@ impl Pose {
         }
     }
 
-    /// A point in the robot's frame (x forward, y left) as a point of the map.
+    /// Converts a point of the robot's frame to the odometry frame.
     #[must_use]
     pub fn to_map(&self, local: Point) -> Point {
         let (sin, cos) = math::sin_cos(self.yaw_rad);
@@ -97,7 +100,7 @@ impl Pose {
         }
     }
 
-    /// A point of the map as a point in the robot's frame (x forward, y left).
+    /// Converts a point of the odometry frame to the robot's frame.
     #[must_use]
     pub fn to_robot(&self, point: Point) -> Point {
         let (sin, cos) = math::sin_cos(self.yaw_rad);
@@ -110,7 +113,7 @@ impl Pose {
 }
 
 impl Cell {
-    /// The cell `dx` columns and `dy` rows away.
+    /// Returns the cell `dx` columns and `dy` rows away.
     #[inline(always)]
     #[must_use]
     pub const fn offset(self, dx: i32, dy: i32) -> Self {
@@ -120,7 +123,7 @@ impl Cell {
         }
     }
 
-    /// The corner of this cell with the least coordinates.
+    /// Returns the corner of this cell with the least coordinates.
     #[must_use]
     pub fn corner(self) -> Point {
         Point {
@@ -129,7 +132,7 @@ impl Cell {
         }
     }
 
-    /// The centre of this cell.
+    /// Returns the centre of this cell.
     #[must_use]
     pub fn centre(self) -> Point {
         Point {
@@ -138,7 +141,7 @@ impl Cell {
         }
     }
 
-    /// The four map cells of the coarse cell (20 cm) whose least map cell this is.
+    /// Returns the four map cells of the coarse cell (20 cm) whose least map cell this is.
     pub fn quarters(self) -> impl Iterator<Item = Self> {
         (0..4).map(move |k| Self {
             x: self.x + (k & 1),
@@ -146,7 +149,7 @@ impl Cell {
         })
     }
 
-    /// Squared distance between two cells, square metres.
+    /// Returns the squared distance between the centres of two cells, square metres.
     #[must_use]
     pub fn distance2(self, other: Self) -> f32 {
         let dx = (self.x - other.x) as f32 * CELL_M;
@@ -154,7 +157,7 @@ impl Cell {
         dx * dx + dy * dy
     }
 
-    /// Distance between two cells, metres.
+    /// Returns the distance between the centres of two cells, metres.
     #[must_use]
     pub fn distance_m(self, other: Self) -> f32 {
         let (dx, dy) = ((self.x - other.x) as f32, (self.y - other.y) as f32);

@@ -1,17 +1,17 @@
-//! What a step is given: time, odometry and two scans, and what a single range says.
+//! The input of a step: time, odometry and two scans. Also the rules for a single range.
 //!
 //! Units: milliseconds, metres, radians; ranges in millimetres.
 
 use crate::geometry::{Pose, Twist};
 
-/// Range code: nothing came back, so free up to the range limit.
+/// Range code: nothing came back, so the beam was free up to the range limit.
 pub const NO_RETURN_MM: u16 = 16_383;
-/// Range code: no information.
+/// Range code: the beam carries no information.
 pub const INVALID_MM: u16 = 0;
-/// Difference of range within which two adjacent beams hit the same thing, millimetres.
-const COMPANY_MM: u16 = 250;
+/// Two adjacent beams whose ranges differ by less than this hit the same thing, millimetres.
+const SAME_THING_MM: u16 = 250;
 
-/// What a step is given.
+/// The input of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a> {
     /// The host's clock, milliseconds.
@@ -20,13 +20,13 @@ pub struct Input<'a> {
     pub pose: Pose,
     /// Measured velocity.
     pub velocity: Twist,
-    /// Ranges in millimetres of each laser of [`Config::lasers`]; [`NO_RETURN_MM`] and
-    /// [`INVALID_MM`] are codes.
+    /// Ranges of each laser of [`Config::lasers`](crate::Config::lasers), millimetres;
+    /// [`NO_RETURN_MM`] and [`INVALID_MM`] are codes.
     pub scans: [&'a [u16]; 2],
 }
 
-/// The range of beam `i` if it says anything: not if it is invalid, nor if it is a dropout, a lone
-/// no-return between two returns.
+/// Returns the range of beam `i`, millimetres; `None` if it is invalid or a dropout. A dropout is a
+/// lone no-return between two returns.
 pub(crate) fn informative_range_mm(ranges_mm: &[u16], i: usize, limit_mm: u16) -> Option<u16> {
     let range = *ranges_mm.get(i)?;
     let returned = |k: Option<usize>| {
@@ -37,13 +37,17 @@ pub(crate) fn informative_range_mm(ranges_mm: &[u16], i: usize, limit_mm: u16) -
     (range != INVALID_MM && !dropout).then_some(range)
 }
 
-/// Whether a beam beside this one ended about as far. Within reach even a pole of 4 cm is hit by
-/// two; a lone point is a false return, and one that fell behind the robot would never be seen
-/// through.
+/// Returns true if a neighbour of this beam ended at about its range.
+///
+/// Two beams hit even a pole of 4 cm within reach, so a lone return is false. A false point behind
+/// the robot would stay for ever, because no beam passes through it.
 pub(crate) fn has_company(ranges_mm: &[u16], number: usize) -> bool {
-    let range = |k: Option<usize>| k.and_then(|k| ranges_mm.get(k)).copied();
-    let here = range(Some(number)).unwrap_or(0);
-    let near =
-        |beside: Option<u16>| beside.is_some_and(|beside| beside.abs_diff(here) < COMPANY_MM);
-    near(range(number.checked_sub(1))) || near(range(Some(number + 1)))
+    let Some(&here) = ranges_mm.get(number) else {
+        return false;
+    };
+    let is_near = |beside: usize| {
+        let beside = ranges_mm.get(beside);
+        beside.is_some_and(|beside| beside.abs_diff(here) < SAME_THING_MM)
+    };
+    is_near(number.wrapping_sub(1)) || is_near(number + 1)
 }

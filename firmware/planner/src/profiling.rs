@@ -1,34 +1,34 @@
-//! Where a step's time goes: marks between its stages, for whoever holds a counter.
+//! Marks at the ends of a step's stages, so that a caller can measure each stage.
 //!
-//! The planner knows no clock. It says which stage it has just ended, and what that means is the
-//! caller's business: a board reads its instruction counter, a host passes `()` and the marks are
-//! compiled away. The answer of a step does not depend on it.
+//! The planner has no clock. It calls [`StageTimer::mark`] at the end of a stage. A board reads its
+//! instruction counter there. A host passes `()`, and the compiler removes the calls. The output of
+//! a step does not depend on the timer.
 
-/// A part of a step; see [`crate::planner`].
+/// A stage of a step; see [`crate::planner`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// Scans and odometry into the map and the near field.
+    /// Enters scans and odometry into the map and the obstacle points.
     Sense,
-    /// An instalment of loading and thinning.
+    /// Loads and thins an instalment of the skeleton.
     Topology,
-    /// The wave over a new skeleton, and the path down it.
+    /// Runs the wavefront over a new skeleton and follows the path down it.
     Plan,
-    /// The window's cells and boundary.
+    /// Builds the window's cells and boundary.
     Window,
-    /// The window's field.
+    /// Solves the window's field.
     Solve,
-    /// Descent, drive, and the search for a manoeuvre.
+    /// Descends the field, chooses the velocity and searches recovery manoeuvres.
     Drive,
 }
 
-/// Takes notice of the ends of stages.
+/// Receives the ends of stages.
 pub trait StageTimer {
-    /// Everything since the last lap, or since the step began, was `stage`. A step may have several
-    /// timer of a stage, or none.
+    /// Ends `stage`, which began at the last mark or at the begin of the step. A step may mark a
+    /// stage several times or never.
     fn mark(&mut self, stage: Stage);
 }
 
-/// Takes no notice.
+/// Ignores all marks.
 impl StageTimer for () {
     #[inline(always)]
     fn mark(&mut self, _: Stage) {}

@@ -1,7 +1,8 @@
-//! The robot: the shape of its hull, and where its lasers sit.
+//! The robot: the shape of its hull, and the mounts of its lasers.
 //!
 //! Units: metres, radians; ranges in millimetres.
 
+use crate::geometry::CELL_M;
 use crate::math::PI;
 
 /// The robot's hull: a box that stands on a rectangle around the robot's centre.
@@ -17,14 +18,14 @@ pub struct RobotShape {
     pub half_diagonal_m: f32,
 }
 
-/// The margin of the planning radius over half the width, metres: half a map cell.
-const PLANNING_MARGIN_M: f32 = 0.05;
+/// Margin of the planning radius over half the width, metres: half a map cell.
+const PLANNING_MARGIN_M: f32 = 0.5 * CELL_M;
 
 impl RobotShape {
     /// A Pioneer 3-AT: 0.508 m × 0.497 m, 0.277 m high.
     pub const PIONEER_3AT: Self = Self::rectangle(0.508, 0.497, 0.277);
 
-    /// A rectangular robot.
+    /// Returns the shape of a rectangular robot.
     #[must_use]
     pub const fn rectangle(length_m: f32, width_m: f32, height_m: f32) -> Self {
         let (half_length_m, half_width_m) = (0.5 * length_m, 0.5 * width_m);
@@ -36,8 +37,8 @@ impl RobotShape {
         }
     }
 
-    /// Radius of the disc that paths are planned for, metres: half the width and half a map cell,
-    /// rounded up to a centimetre.
+    /// Returns the radius of the disc that paths are planned for, metres: half the width plus half
+    /// a map cell, rounded up to a centimetre.
     #[must_use]
     pub const fn planning_radius_m(&self) -> f32 {
         let centimetres = (self.half_width_m + PLANNING_MARGIN_M) * 100.0;
@@ -45,14 +46,14 @@ impl RobotShape {
         (centimetres + 0.999) as u32 as f32 / 100.0
     }
 
-    /// A round robot. Its hull is the square around the circle.
+    /// Returns the shape of a round robot: the square around its circle.
     #[must_use]
     pub const fn round(diameter_m: f32, height_m: f32) -> Self {
         Self::rectangle(diameter_m, diameter_m, height_m)
     }
 }
 
-/// √(a² + b²) by Newton's iteration, which can run at compile time; 0 where both are 0.
+/// Returns √(a² + b²) by Newton's iteration, which can run at compile time; 0 if both are 0.
 const fn hypotenuse(a: f32, b: f32) -> f32 {
     let square = a * a + b * b;
     // The sum of the sides is at most √2 times the root, so four iterations are exact to f32.
@@ -65,15 +66,15 @@ const fn hypotenuse(a: f32, b: f32) -> f32 {
     root
 }
 
-/// Beams of a scan at most.
+/// Greatest number of beams in a scan.
 pub const MAX_BEAMS: u16 = 181;
 
-/// The place of a laser on the robot, and its sweep.
+/// The place of a laser on the robot, and its sweep. A point of it is x forward, y left, z up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LaserMount {
     /// Metres ahead of the robot's centre.
     pub x_m: f32,
-    /// Metres to its left.
+    /// Metres to the left of the robot's centre.
     pub y_m: f32,
     /// Metres above the ground under it.
     pub z_m: f32,

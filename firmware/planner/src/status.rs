@@ -1,6 +1,8 @@
-//! The planner's account of itself: exploring, finished with a reason, or at fault with a reason.
+//! The planner's status: exploring, finished with a reason, or at fault with a reason.
 //!
 //! Every type has a `Display` in plain words for a log or a screen.
+//!
+//! Units: map cells.
 
 use core::fmt;
 
@@ -17,16 +19,16 @@ use crate::geometry::Cell;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Status {
-    /// It drives to unexplored space.
+    /// The planner drives to unexplored space.
     #[default]
     Exploring,
-    /// It is done.
+    /// The exploration is complete.
     Finished(Finish),
-    /// It cannot go on.
+    /// The planner cannot continue.
     Fault(Fault),
 }
 
-/// Why an exploration ended.
+/// The reason why an exploration is complete.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finish {
     /// No reachable frontier is left.
@@ -35,7 +37,7 @@ pub enum Finish {
     BoxedIn,
 }
 
-/// Why the planner cannot go on.
+/// The reason why the planner cannot continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// The robot started inside an obstacle.
@@ -44,11 +46,11 @@ pub enum Fault {
     MapFull,
     /// A reachable frontier lies beyond the map's box.
     OutOfBox,
-    /// The robot did not move for too long, although it was commanded to.
+    /// The robot did not move for too long, although it was commanded to move.
     Stuck,
 }
 
-/// Why a frontier was left.
+/// The reason why a frontier was left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Residue {
     /// No path for the robot's radius leads there.
@@ -57,11 +59,11 @@ pub enum Residue {
     Unobservable,
     /// It lies beyond the map's box.
     OutOfBounds,
-    /// The robot came no nearer to it.
+    /// The robot did not come nearer to it.
     NoProgress,
 }
 
-/// A residual frontier: cells that border on the unexplored and were left.
+/// A residual frontier: cells that border on unexplored space and that the exploration left.
 ///
 /// ```
 /// use fieldline_planner::{Cell, Frontier, Residue};
@@ -103,7 +105,7 @@ impl fmt::Display for Fault {
         f.write_str(match self {
             Self::StartBlocked => "the robot started inside an obstacle",
             Self::MapFull => "the map is full",
-            Self::OutOfBox => "a way leads out of the map's box",
+            Self::OutOfBox => "a path leads out of the map's box",
             Self::Stuck => "the robot is stuck",
         })
     }

@@ -1,6 +1,14 @@
-//! What is known of a cell, in two bits.
+//! The class of a cell in two bits, and rows of 64 classes as bit masks.
+//!
+//! ```text
+//! class       low  high
+//! unknown      0    0
+//! free         1    0
+//! obstacle     0    1
+//! negative     1    1
+//! ```
 
-/// What is known of a cell.
+/// The class of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Class {
@@ -9,20 +17,20 @@ pub enum Class {
     Unknown = 0,
     /// Traversable.
     Free = 1,
-    /// Stands in the way.
+    /// Something stands in it.
     Obstacle = 2,
     /// A hole, cliff or downward slope [Maffei20, III-B].
     Negative = 3,
 }
 
 impl Class {
-    /// Nothing is known to stand here.
+    /// Returns true if the class is neither an obstacle nor a negative obstacle.
     #[must_use]
     pub const fn is_open(self) -> bool {
         matches!(self, Self::Unknown | Self::Free)
     }
 
-    /// By its bits in the low and the high plane, each 0 or not.
+    /// Returns the class of a cell from its bits in the low and the high plane, each 0 or not.
     pub(crate) const fn from_bits(low: u32, high: u32) -> Self {
         match (low, high) {
             (0, 0) => Self::Unknown,
@@ -33,7 +41,7 @@ impl Class {
     }
 }
 
-/// 64 cells of a row: bit k of each word is column x + k.
+/// 64 cells of a row. Bit k of each word is column x + k, where x is the reader's column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Row {
     pub(crate) low: u64,
@@ -42,31 +50,31 @@ pub struct Row {
 }
 
 impl Row {
-    /// Cells that stand in the way, of either sign.
+    /// Returns the obstacles, negative ones included.
     #[must_use]
     pub const fn obstacle(self) -> u64 {
         self.high
     }
 
-    /// Negative obstacles.
+    /// Returns the negative obstacles.
     #[must_use]
     pub const fn negative(self) -> u64 {
         self.high & self.low
     }
 
-    /// Cells known to be traversable.
+    /// Returns the traversable cells.
     #[must_use]
     pub const fn free(self) -> u64 {
         self.low & !self.high
     }
 
-    /// Cells on or beside the robot's way so far.
+    /// Returns the cells of the robot's trail.
     #[must_use]
     pub const fn visited(self) -> u64 {
         self.visited
     }
 
-    /// Cells never measured.
+    /// Returns the cells never measured.
     #[must_use]
     pub const fn unknown(self) -> u64 {
         !(self.low | self.high)

@@ -1,13 +1,20 @@
-//! Bit planes: one bit a cell, 32 cells a word, over memory lent by the caller. The one place that indexes.
+//! Memory for cells: bit planes, floods, rolling windows, toroidal tile addresses, and the
+//! accessors that replace indexing.
 //!
-//! Bit k of word j of a row is column 32 j + k. Rows are stored one after another, row 0 first; a printed plane shows
-//! row 0 on its first line. Whatever lies outside a plane reads 0 and cannot be written. Shapes are chosen at run
-//! time, so one piece of memory serves a square box as well as a long one.
+//! A bit plane has one bit per cell and 32 cells per word, in memory that the caller lends:
 //!
-//! Invariant: a plane's slice holds exactly `shape.words()` words, so that an index computed from a row and a word
+//! ```text
+//! bit k of word j of a row = column 32 j + k
+//! ```
+//!
+//! Rows follow one another, row 0 first. A printed plane shows row 0 on its first line. Cells
+//! outside a plane read 0 and cannot be written. A plane takes its shape at run time, so the same
+//! memory serves a square box and a long one.
+//!
+//! Invariant: a plane's slice holds exactly `shape.words()` words. So the index of a row and a word
 //! inside the shape is inside the slice.
 //!
-//! Units: cells; the side of a cell is the caller's business.
+//! Units: cells. The caller chooses the side of a cell.
 
 use core::fmt;
 
@@ -28,14 +35,14 @@ pub use class::{Class, Row};
 pub use shape::{MAX_ROWS, MAX_WORDS_PER_ROW, Region, Shape, ShapeError};
 pub use sites::{Site, Sites};
 
-/// A plane to look at.
+/// A bit plane, read only.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane<'a> {
     shape: Shape,
     words: &'a [u32],
 }
 
-/// A plane to change.
+/// A bit plane that can be changed.
 #[derive(Debug)]
 pub struct PlaneMut<'a> {
     shape: Shape,
@@ -43,43 +50,43 @@ pub struct PlaneMut<'a> {
 }
 
 impl<'a> Plane<'a> {
-    /// A plane over the first words of `words`.
+    /// Creates a plane over the first words of `words`.
     ///
     /// # Errors
-    /// When the memory is too small for the shape.
+    /// [`ShapeError::TooLarge`] if the memory is too small for the shape.
     pub fn new(shape: Shape, words: &'a [u32]) -> Result<Self, ShapeError> {
         let needs = shape.lend(words.len())?;
         let words = words.get(..needs).unwrap_or(&[]);
         Ok(Self { shape, words })
     }
 
-    /// Rows and words.
+    /// Returns the numbers of rows and words.
     #[must_use]
     pub const fn shape(&self) -> Shape {
         self.shape
     }
 
-    /// All words, row after row.
+    /// Returns all words, row after row.
     #[must_use]
     pub const fn words(&self) -> &'a [u32] {
         self.words
     }
 
-    /// Whether the cell is set.
+    /// Returns true if the cell is set.
     #[must_use]
     #[inline]
     pub fn get(&self, site: Site) -> bool {
         self.word(usize::from(site.y), usize::from(site.x / 32)) & site.bit() != 0
     }
 
-    /// 32 cells of a row.
+    /// Returns 32 cells of a row; 0 outside.
     #[must_use]
     #[inline]
     pub fn word(&self, row: usize, word: usize) -> u32 {
         self.shape.index(row, word).map_or(0, |i| at(self.words, i))
     }
 
-    /// The words of a row; none outside.
+    /// Returns the words of a row; none outside.
     #[must_use]
     pub fn row(&self, row: usize) -> &'a [u32] {
         row_range(self.shape, row)
@@ -87,19 +94,19 @@ impl<'a> Plane<'a> {
             .unwrap_or(&[])
     }
 
-    /// The set cells around a site, in the order of [`Site::neighbours`].
+    /// Returns the set cells around a site, in the order of [`Site::neighbours`].
     pub fn neighbours(&self, site: Site) -> impl Iterator<Item = Site> + use<'a> {
         let plane = *self;
         site.neighbours().filter(move |&near| plane.get(near))
     }
 
-    /// The set cells, row after row.
+    /// Returns the set cells, row after row.
     #[must_use]
     pub fn sites(&self) -> Sites<'a> {
         Sites::new(*self)
     }
 
-    /// Number of set cells.
+    /// Returns the number of set cells.
     #[must_use]
     pub fn count(&self) -> usize {
         self.words.iter().map(|w| w.count_ones() as usize).sum()
@@ -107,23 +114,23 @@ impl<'a> Plane<'a> {
 }
 
 impl<'a> PlaneMut<'a> {
-    /// A plane over the first words of `words`, which keep their values.
+    /// Creates a plane over the first words of `words`, which keep their values.
     ///
     /// # Errors
-    /// When the memory is too small for the shape.
+    /// [`ShapeError::TooLarge`] if the memory is too small for the shape.
     pub fn new(shape: Shape, words: &'a mut [u32]) -> Result<Self, ShapeError> {
         let needs = shape.lend(words.len())?;
         let words = words.get_mut(..needs).unwrap_or(&mut []);
         Ok(Self { shape, words })
     }
 
-    /// Rows and words.
+    /// Returns the numbers of rows and words.
     #[must_use]
     pub const fn shape(&self) -> Shape {
         self.shape
     }
 
-    /// The same plane, to look at.
+    /// Returns the plane, read only.
     #[must_use]
     pub fn view(&self) -> Plane<'_> {
         Plane {
@@ -132,13 +139,13 @@ impl<'a> PlaneMut<'a> {
         }
     }
 
-    /// Whether the cell is set.
+    /// Returns true if the cell is set.
     #[must_use]
     pub fn get(&self, site: Site) -> bool {
         self.view().get(site)
     }
 
-    /// Set a cell; whether it was clear before. Outside nothing happens.
+    /// Sets a cell; does nothing outside. Returns true if the cell was clear.
     pub fn set(&mut self, site: Site) -> bool {
         let was = self.word_mut(site).map(|word| {
             let was = *word;
@@ -148,7 +155,7 @@ impl<'a> PlaneMut<'a> {
         was.is_some_and(|word| word & site.bit() == 0)
     }
 
-    /// Clear a cell; whether it was set before. Outside nothing happens.
+    /// Clears a cell; does nothing outside. Returns true if the cell was set.
     pub fn clear(&mut self, site: Site) -> bool {
         let was = self.word_mut(site).map(|word| {
             let was = *word;
@@ -158,12 +165,12 @@ impl<'a> PlaneMut<'a> {
         was.is_some_and(|word| word & site.bit() != 0)
     }
 
-    /// Set every word to `word`.
+    /// Sets every word to `word`.
     pub fn fill(&mut self, word: u32) {
         self.words.fill(word);
     }
 
-    /// All words, row after row.
+    /// Returns all words, row after row.
     #[must_use]
     pub fn words_mut(&mut self) -> &mut [u32] {
         self.words
@@ -182,7 +189,7 @@ fn row_range(shape: Shape, row: usize) -> Option<core::ops::Range<usize>> {
     Some(start..start + shape.words_per_row())
 }
 
-/// The picture of a plane: `#` set, `.` clear, one line a row, row 0 first.
+/// Prints a plane: `#` is set, `.` is clear; one line per row, row 0 first.
 impl fmt::Display for Plane<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for row in 0..self.shape.rows() {
@@ -197,8 +204,10 @@ impl fmt::Display for Plane<'_> {
     }
 }
 
-/// Draw a picture into a plane, from its corner (0, 0): `#` sets, any other character clears; one line a row, row 0
-/// first, blanks around a line ignored. Cells beyond the picture are cleared, cells beyond the plane dropped.
+/// Draws a picture into a plane, from its corner (0, 0): `#` sets, any other character clears.
+///
+/// A line is a row, row 0 first; blanks around a line do not count. The function clears cells
+/// beyond the picture and ignores characters beyond the plane.
 pub fn draw(plane: &mut PlaneMut<'_>, picture: &str) {
     plane.fill(0);
     let lines = picture.lines().map(str::trim).filter(|l| !l.is_empty());

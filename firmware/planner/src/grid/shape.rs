@@ -1,18 +1,22 @@
-//! The size of a plane, and rectangles in it.
+//! The size of a plane, and rectangles of whole words in it.
+//!
+//! Units: rows, and words of 32 cells.
 
 use core::fmt;
 
 use crate::grid::Site;
 
-/// Greatest number of words in a row: a row and a word more then have one bit each in a `u32`.
+/// Greatest number of words in a row: a `u32` then has a bit for each word and one more.
 pub const MAX_WORDS_PER_ROW: usize = 31;
 /// Greatest number of rows: the index of a word then fits in a `u16`.
 pub const MAX_ROWS: usize = 2048;
 
 const _: () = assert!(MAX_WORDS_PER_ROW * MAX_ROWS <= 1 << 16);
 
-/// Rows and words of a plane. Kept less one: a shape is never empty, and the least one is all zeros, so that a static
-/// planner costs no flash.
+/// The numbers of rows and words of a plane; neither is 0.
+///
+/// The fields store each number less one. So the smallest shape is all zeros, and a static planner
+/// costs no flash.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
     more_words: u16,
@@ -32,7 +36,7 @@ pub struct Region {
     pub words: u16,
 }
 
-/// Why a plane of this shape cannot be had.
+/// The reason why a plane of this shape is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShapeError {
     /// No rows or no words.
@@ -41,7 +45,7 @@ pub enum ShapeError {
     TooWide(usize),
     /// More rows than [`MAX_ROWS`].
     TooTall(usize),
-    /// The memory lent is too small.
+    /// The lent memory is too small.
     TooLarge {
         /// Words that the shape needs.
         needs: usize,
@@ -66,7 +70,8 @@ impl fmt::Display for ShapeError {
             }
             Self::TooLarge { needs, has } => write!(
                 f,
-                "a plane of {needs} words in memory of {has}: lend more memory or take a smaller box"
+                "a plane of {needs} words in memory of {has}: lend more memory or take a \
+                 smaller box"
             ),
         }
     }
@@ -75,16 +80,16 @@ impl fmt::Display for ShapeError {
 impl core::error::Error for ShapeError {}
 
 impl Shape {
-    /// One word.
+    /// One row of one word.
     pub const UNIT: Self = Self {
         more_words: 0,
         more_rows: 0,
     };
 
-    /// A shape of `rows` rows of `words_per_row` words (32 cells each).
+    /// Creates a shape of `rows` rows of `words_per_row` words (32 cells each).
     ///
     /// # Errors
-    /// When a side is 0 or beyond its limit.
+    /// [`ShapeError`] if a side is 0 or beyond its limit.
     pub const fn new(words_per_row: usize, rows: usize) -> Result<Self, ShapeError> {
         if words_per_row == 0 || rows == 0 {
             return Err(ShapeError::Empty);
@@ -101,37 +106,37 @@ impl Shape {
         })
     }
 
-    /// Words in a row.
+    /// Returns the number of words in a row.
     #[must_use]
     pub const fn words_per_row(self) -> usize {
         self.more_words as usize + 1
     }
 
-    /// Rows.
+    /// Returns the number of rows.
     #[must_use]
     pub const fn rows(self) -> usize {
         self.more_rows as usize + 1
     }
 
-    /// Columns.
+    /// Returns the number of columns.
     #[must_use]
     pub const fn columns(self) -> usize {
         self.words_per_row() * 32
     }
 
-    /// Words in the plane.
+    /// Returns the number of words in the plane.
     #[must_use]
     pub const fn words(self) -> usize {
         self.words_per_row() * self.rows()
     }
 
-    /// Whether the site lies in the plane.
+    /// Returns true if the site lies in the plane.
     #[must_use]
     pub const fn contains(self, site: Site) -> bool {
         (site.x as usize) < self.columns() && (site.y as usize) < self.rows()
     }
 
-    /// The whole plane.
+    /// Returns the region of the whole plane.
     #[must_use]
     pub const fn whole(self) -> Region {
         Region {
@@ -142,7 +147,7 @@ impl Shape {
         }
     }
 
-    /// The smallest region that holds both corners and all between; corners outside are moved to the border.
+    /// Returns the smallest region that holds both corners; a corner outside moves to the border.
     #[must_use]
     pub fn region(self, one: Site, other: Site) -> Region {
         let row = |y: u16| y.min(self.more_rows);
@@ -157,14 +162,14 @@ impl Shape {
         }
     }
 
-    /// Index of a word, and `None` outside.
+    /// Returns the index of a word; `None` outside.
     #[inline]
     pub(crate) fn index(self, row: usize, word: usize) -> Option<usize> {
         (row < self.rows() && word < self.words_per_row())
             .then(|| row * self.words_per_row() + word)
     }
 
-    /// Words needed, if `has` words are enough.
+    /// Returns the number of words that the plane needs if `has` words are enough.
     pub(super) fn lend(self, has: usize) -> Result<usize, ShapeError> {
         let needs = self.words();
         if has < needs {
@@ -175,13 +180,13 @@ impl Shape {
 }
 
 impl Region {
-    /// Words in the region.
+    /// Returns the number of words in the region.
     #[must_use]
     pub const fn size(self) -> usize {
         self.rows as usize * self.words as usize
     }
 
-    /// The part of the region that lies in a plane of this shape.
+    /// Returns the part of the region that lies in a plane of this shape.
     #[must_use]
     pub(crate) fn within(self, shape: Shape) -> Self {
         let (rows, words) = (shape.more_rows + 1, shape.more_words + 1);

@@ -1,8 +1,11 @@
-//! A cell of a plane, and walks over cells.
+//! A cell of a plane, its neighbours, and iteration over set cells.
+//!
+//! Units: columns and rows of the plane.
 
 use crate::grid::Plane;
 
-/// A cell of a bit plane, by column and row. Not a [`crate::geometry::Cell`]: a plane has its own origin and scale.
+/// A cell of a bit plane, by column and row. It is not a map cell ([`crate::geometry::Cell`]),
+/// because a plane has its own origin and scale.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Site {
     /// Column.
@@ -11,7 +14,7 @@ pub struct Site {
     pub y: u16,
 }
 
-/// Steps to the eight neighbours, sides before diagonals: the tie order of every walk.
+/// Steps to the eight neighbours, sides before diagonals. This order decides ties everywhere.
 const STEPS: [(i8, i8); 8] = [
     (1, 0),
     (0, -1),
@@ -24,7 +27,7 @@ const STEPS: [(i8, i8); 8] = [
 ];
 
 impl Site {
-    /// The site `dx` columns and `dy` rows away, if both stay in the range of the type.
+    /// Returns the site `dx` columns and `dy` rows away; `None` if it leaves the range of the type.
     #[must_use]
     pub fn offset(self, dx: i8, dy: i8) -> Option<Self> {
         Some(Self {
@@ -33,15 +36,16 @@ impl Site {
         })
     }
 
-    /// The up to eight sites around: first those that share a side (east, north, west, south, with row 0 in the
-    /// north), then the diagonal ones (north-east, north-west, south-west, south-east). They may lie outside a plane.
+    /// Returns the sites around, at most eight: first east, north, west and south, with row 0 in
+    /// the north, then north-east, north-west, south-west and south-east. They may lie outside a
+    /// plane.
     pub fn neighbours(self) -> impl Iterator<Item = Self> {
         STEPS
             .iter()
             .filter_map(move |&(dx, dy)| self.offset(dx, dy))
     }
 
-    /// This site's bit in its word.
+    /// Returns the site's bit in its word.
     #[inline]
     pub(crate) const fn bit(self) -> u32 {
         1 << (self.x & 31)
@@ -76,13 +80,11 @@ impl Iterator for Sites<'_> {
         }
         let bit = self.left.trailing_zeros() as usize;
         self.left &= self.left - 1;
-        let (row, word) = {
-            let per_row = self.plane.shape.words_per_row();
-            (
-                (self.next_word - 1) / per_row,
-                (self.next_word - 1) % per_row,
-            )
-        };
+        let per_row = self.plane.shape.words_per_row();
+        let (row, word) = (
+            (self.next_word - 1) / per_row,
+            (self.next_word - 1) % per_row,
+        );
         Some(Site {
             x: (word * 32 + bit) as u16,
             y: row as u16,

@@ -134,7 +134,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 
     /// The robot cannot go on for ground around a cell that was never measured: what leads over it is taken for free. Whether
     /// there was any.
-    pub fn free_gaps(&mut self, ground: &UnevenGround, ahead: Cell) -> bool {
+    pub(crate) fn free_gaps(&mut self, ground: &UnevenGround, ahead: Cell) -> bool {
         self.fill_gaps(ground, (ahead, FREE_GAP_CELLS), None)
     }
 

@@ -12,7 +12,7 @@ use crate::geometry::Cell;
 use crate::grid::{Class, Rolling, masked_mut, wrapped_mut};
 
 /// Cells along the window's side.
-pub const EVIDENCE_SIDE: i32 = 128;
+pub(crate) const EVIDENCE_SIDE: i32 = 128;
 /// The window moves in steps of this many cells, so that it seldom does.
 const STRIDE: i32 = 16;
 
@@ -25,7 +25,7 @@ type Window = Rolling<EVIDENCE_SIDE, STRIDE>;
 
 /// The rolling window of counts.
 #[derive(Debug, PartialEq, Eq)]
-pub struct Evidence {
+pub(crate) struct Evidence {
     /// Two cells a byte, row by row.
     counts: [[u8; EVIDENCE_SIDE as usize / 2]; EVIDENCE_SIDE as usize],
     /// The window's least cell, a multiple of [`STRIDE`].
@@ -43,8 +43,7 @@ const fn initial(class: Class) -> u8 {
 
 impl Evidence {
     /// No evidence anywhere.
-    #[must_use]
-    pub const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self {
             counts: [[0; EVIDENCE_SIDE as usize / 2]; EVIDENCE_SIDE as usize],
             origin: Cell { x: 0, y: 0 },
@@ -52,7 +51,7 @@ impl Evidence {
     }
 
     /// Forget everything and centre on `centre`.
-    pub fn reset(&mut self, centre: Cell) {
+    pub(crate) fn reset(&mut self, centre: Cell) {
         self.counts.as_flattened_mut().fill(0);
         self.origin = Window::origin(centre);
     }
@@ -114,18 +113,18 @@ impl Evidence {
     }
 
     /// A beam ended in this cell, whose class was `class`; returns its class now.
-    pub fn hit(&mut self, cell: Cell, class: Class) -> Class {
+    pub(crate) fn hit(&mut self, cell: Cell, class: Class) -> Class {
         self.update(cell, class, |count| (count + HIT).min(MAX_COUNT))
     }
 
     /// A beam went through this cell, whose class was `class`; returns its class now.
-    pub fn pass(&mut self, cell: Cell, class: Class) -> Class {
+    pub(crate) fn pass(&mut self, cell: Cell, class: Class) -> Class {
         self.update(cell, class, |count| count.saturating_sub(1).max(1))
     }
 
     /// A beam went through this cell, which is known to be free and stays so; most such cells were seen often.
     #[inline(always)]
-    pub fn pass_free(&mut self, cell: Cell) {
+    pub(crate) fn pass_free(&mut self, cell: Cell) {
         let (pair, shift) = self.pair(cell);
         let count = *pair >> shift & 15;
         if count != 1 {

@@ -17,16 +17,17 @@ use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::grid::Class;
 use crate::input::informative_range_mm;
 use crate::input::{INVALID_MM, NO_RETURN_MM};
+use crate::map::Map;
+use crate::map::evidence::Evidence;
 use crate::map::tiles::{NoRoom, TileMut};
 use crate::map::traversal::Traversal;
-use crate::map::{Evidence, Map};
 use crate::math;
 use crate::robot::LaserMount;
 use crate::robot::is_level;
 
 /// An obstacle's least height above the robot's ground for the tilted laser, metres: above the 3-AT's ground clearance
 /// and three sigma of an attitude error of 1° at the tilted beam's reach.
-pub const MIN_OBSTACLE_M: f32 = 0.15;
+pub(crate) const MIN_OBSTACLE_M: f32 = 0.15;
 /// Length before a beam's end in which it does not erode obstacles, metres.
 const GUARD_M: f32 = 0.35;
 
@@ -123,7 +124,7 @@ pub(crate) fn level_beams<'a>(
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Enter one scan of `laser`, taken at `pose`. What there is no room for sets [`Map::out_of_box`] or [`Map::pool_full`].
-    pub fn integrate(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
+    pub(crate) fn integrate(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
         if is_level(laser) {
             for beam in level_beams(pose, laser, ranges_mm) {
                 self.free_along(&beam);
@@ -139,7 +140,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 
     /// The robot stands here, so a disc of `radius_m` around it is free.
-    pub fn free_footprint(&mut self, centre: Point, radius_m: f32) {
+    pub(crate) fn free_footprint(&mut self, centre: Point, radius_m: f32) {
         let (middle, reach) = (centre.cell(), math::floor(radius_m / CELL_M) + 1);
         for y in middle.y - reach..=middle.y + reach {
             for x in middle.x - reach..=middle.x + reach {

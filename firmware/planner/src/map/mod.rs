@@ -3,13 +3,13 @@
 //! [`tiles`] keeps the class of every cell for the whole run, [`evidence`] the counts around the robot, and
 //! [`integrate`] turns beams into both.
 
-pub mod compaction;
+pub(crate) mod compaction;
 mod elevation_layer;
-pub mod evidence;
+pub(crate) mod evidence;
 mod extent;
-pub mod integrate;
+pub(crate) mod integrate;
 pub mod obstacle_points;
-pub mod rows;
+pub(crate) mod rows;
 mod tile;
 pub mod tiles;
 mod traversal;
@@ -18,8 +18,9 @@ mod uneven_tests;
 
 pub use crate::grid::Class;
 pub use compaction::SideTable;
-pub use evidence::Evidence;
 pub use tiles::Tiles;
+
+use evidence::Evidence;
 
 use crate::config::Config;
 use crate::geometry::Cell;
@@ -74,7 +75,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 
     /// Forget everything; the box is `width` × `height` tiles.
-    pub fn reset(&mut self, width: u8, height: u8) {
+    pub(crate) fn reset(&mut self, width: u8, height: u8) {
         self.tiles.reset(width, height);
         self.evidence.reset(Cell::default());
         self.last_cell = None;

@@ -26,9 +26,9 @@ use crate::math;
 use crate::robot::{LaserMount, RobotShape};
 
 /// Points kept at the most.
-pub const MAX_POINTS: usize = 256;
+pub(crate) const MAX_POINTS: usize = 256;
 /// Distance from the robot's centre within which points ahead are kept, metres: half the robot and its braking distance.
-pub const REACH_M: f32 = 1.2;
+pub(crate) const REACH_M: f32 = 1.2;
 /// The same to the sides and behind, metres: half its diagonal and the longest leg backwards.
 const REACH_BEHIND_M: f32 = 0.8;
 /// Returns this near to a point are returns of it, metres: two sigma of a range and some. What is rounded off a sharp corner is
@@ -157,7 +157,7 @@ impl ObstaclePoints {
 }
 
 /// The middles of the map's obstacle cells within reach behind the robot: what [`ObstaclePoints`] never met, or has forgotten.
-pub fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
+pub(crate) fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
 ) -> impl Iterator<Item = Point> + '_ {
@@ -173,7 +173,7 @@ pub fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
 
 /// The middles of the cells around the robot that it must not touch on uneven ground, as far as they border on free cells:
 /// obstacles of either sign, and ground never measured.
-pub fn border_cells<const TILES: usize, const SLOTS: usize>(
+pub(crate) fn border_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
 ) -> impl Iterator<Item = Point> + '_ {

@@ -11,23 +11,22 @@ use crate::map::compaction::ZEROS;
 use crate::map::tiles::{Plane, TILE_ROWS, Tiles, Visited};
 
 /// Columns to the left of a [`Line`]'s own that its halo begins.
-pub const HALO: i32 = 16;
+pub(crate) const HALO: i32 = 16;
 
 /// 32 cells of a row, and what stands up to [`HALO`] columns beside them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Line {
+pub(crate) struct Line {
     /// Cells that stand in the way, [`HALO`] columns farther to the left: bit `HALO` is the first cell.
-    pub around: u64,
+    pub(crate) around: u64,
     /// Cells never measured.
-    pub unknown: u32,
+    pub(crate) unknown: u32,
     /// Cells on or beside the robot's way so far.
-    pub visited: u32,
+    pub(crate) visited: u32,
 }
 
 impl Line {
     /// Cells that stand in the way, of either sign.
-    #[must_use]
-    pub const fn obstacle(self) -> u32 {
+    pub(crate) const fn obstacle(self) -> u32 {
         (self.around >> HALO) as u32
     }
 }
@@ -63,7 +62,7 @@ impl Column<'_> {
 
 /// Reads rows one after another.
 #[derive(Debug)]
-pub struct RowReader<'a, const TILES: usize, const SLOTS: usize> {
+pub(crate) struct RowReader<'a, const TILES: usize, const SLOTS: usize> {
     tiles: &'a Tiles<TILES, SLOTS>,
     x: i32,
     tile_y: i32,
@@ -100,7 +99,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
     }
 
     /// The 64 cells of row `y`.
-    pub fn row(&mut self, y: i32) -> Row {
+    pub(crate) fn row(&mut self, y: i32) -> Row {
         let (row, shift) = self.tile_row(y);
         let [first, second, third] = self.columns.map(|column| column.classes(row));
         let visited = self.columns.map(|column| twice(column.blocks(row)));
@@ -113,7 +112,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
 
     /// The 32 cells of row `y` that begin [`HALO`] columns to the right of the reader.
     #[inline(always)]
-    pub fn line(&mut self, y: i32) -> Line {
+    pub(crate) fn line(&mut self, y: i32) -> Line {
         let (row, shift) = self.tile_row(y);
         let [first, second, third] = self.columns.map(|column| column.classes(row));
         let around = join(first[1], second[1], third[1], shift);

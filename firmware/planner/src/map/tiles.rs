@@ -122,14 +122,13 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Whether anything was ever stored in this tile.
-    #[must_use]
-    pub fn is_touched(&self, tile_x: i32, tile_y: i32) -> bool {
+    pub(crate) fn is_touched(&self, tile_x: i32, tile_y: i32) -> bool {
         self.entry(tile_x, tile_y) != Entry::Untouched
     }
 
-    /// Pages of the pool in use.
-    #[must_use]
-    pub const fn used(&self) -> usize {
+    /// Returns the number of pages in use.
+    #[cfg(test)]
+    pub(crate) const fn used(&self) -> usize {
         self.free.used()
     }
 
@@ -203,7 +202,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     ///
     /// # Errors
     /// [`NoRoom`] where the box or the pool cannot hold it.
-    pub fn room(&self, tile_x: i32, tile_y: i32) -> Result<(), NoRoom> {
+    pub(crate) fn room(&self, tile_x: i32, tile_y: i32) -> Result<(), NoRoom> {
         if self.is_touched(tile_x, tile_y) {
             Ok(())
         } else if !self.in_extent(tile_x, tile_y) {
@@ -260,7 +259,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// The robot's centre has been in this cell.
-    pub fn mark_visited(&mut self, cell: Cell) {
+    pub(crate) fn mark_visited(&mut self, cell: Cell) {
         if !self.in_extent(cell.x >> 5, cell.y >> 5) {
             return;
         }
@@ -275,14 +274,12 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// The 64 cells from `x` on in row `y`.
-    #[must_use]
-    pub fn row(&self, x: i32, y: i32) -> Row {
+    pub(crate) fn row(&self, x: i32, y: i32) -> Row {
         self.reader(x).row(y)
     }
 
     /// A reader of rows of 64 cells from column `x` on.
-    #[must_use]
-    pub const fn reader(&self, x: i32) -> RowReader<'_, TILES, SLOTS> {
+    pub(crate) const fn reader(&self, x: i32) -> RowReader<'_, TILES, SLOTS> {
         RowReader::new(self, x)
     }
 
