@@ -1,6 +1,6 @@
 //! The path to a frontier: a wave from every frontier cell, each delayed by its cost
 //! ([`crate::path::goal_cost`]), and the way down it from the robot [Jorge15, Algorithm 1, lines 3,
-//! 4, 24].
+//! 4, 23].
 //!
 //! Where goals have height levels, a path that crosses other levels gives way to one that stays on
 //! the goal's, if that is longer by no more than the delay of a goal so many levels off.

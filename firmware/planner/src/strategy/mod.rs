@@ -4,11 +4,11 @@
 //! | file | what it holds |
 //! | --- | --- |
 //! | [`frontier`] | drive to the nearest frontier, until none can be reached |
-//! | [`ouroboros`] | close every loop on the way [Jorge15] |
-//! | [`tdbvp`] | follow rails of time, and patrol [Maffei14] |
-//! | [`round`] | the inputs of a round, with `moveToVoronoi` and `propagatePotential` [Jorge15] |
+//! | [`ouroboros`] | close every loop on the way [Jorge15, Algorithm 1] |
+//! | [`tdbvp`] | follow rails of time, and patrol [Maffei14, IV and V] |
+//! | `round` | the inputs of a round, `moveToVoronoi` and `propagatePotential` [Jorge15, III-C] |
 //!
-//! Every strategy drives to frontiers in the end, so a [`Strategist`] always has a [`Frontier`].
+//! Every strategy drives to frontiers in the end, so a `Strategist` always has a [`Frontier`].
 
 pub mod frontier;
 pub mod ouroboros;

@@ -1,8 +1,8 @@
-//! Whole explorations of small worlds: every loop is closed, and nothing holds the robot.
+//! Whole explorations of small worlds: every loop is closed, and no loop holds the robot.
 //!
-//! A crude robot: it sees every coarse cell within 1.6 m that no obstacle hides, and in each round goes some cells along the
-//! path, by the shortest way that does not lead through the shield. Worlds are pictures as in [`super::scenes`]; digits are obstacles that
-//! name what a loop goes round.
+//! The robot is simple: it sees every coarse cell within 1.6 m that no obstacle hides, and in each
+//! round it moves some cells along the path, round the shield. Worlds are pictures as in
+//! [`super::scenes`]; a digit is an obstacle with that name, which a loop goes round.
 
 mod worlds;
 
@@ -22,13 +22,13 @@ use crate::strategy::ouroboros::scenes::{Memory, POINT_M, SLOTS, TILES, at, has_
 use crate::strategy::ouroboros::{Ouroboros, Tally};
 use crate::strategy::round::Round;
 
-/// Cells that the robot sees: as much of these loops as 12 m are of one of 70 m.
+/// Cells that the robot sees: the same share of these loops as 12 m of one of 70 m.
 const SIGHT: i32 = 8;
-/// Cells that it goes in a round.
+/// Cells that it moves in a round.
 const STRIDE: usize = 3;
-/// Rounds after which something holds the robot.
+/// Rounds after which a loop holds the robot.
 const MOST_ROUNDS: usize = 3000;
-/// Bounds for worlds that are as small as the robot's sight is.
+/// Limits for worlds that are as small as the robot's sight.
 const SMALL: LoopLimits = LoopLimits {
     least_m: 10.0,
     most_m: 120.0,
@@ -40,14 +40,14 @@ const SMALL: LoopLimits = LoopLimits {
 struct Exploration {
     world: Vec<Vec<char>>,
     tiles: Tiles<TILES, SLOTS>,
-    topology: Skeleton<SLOTS>,
+    skeleton: Skeleton<SLOTS>,
     strategy: Ouroboros<SLOTS>,
     frontier: Frontier,
     limits: LoopLimits,
     memory: Memory,
     robot: (i32, i32),
     pose: Pose,
-    /// Angle come round each digit's middle: now, least and greatest.
+    /// Angle that the robot has turned round each digit's middle: now, least and greatest, radians.
     turned: BTreeMap<char, [f64; 3]>,
     path: Vec<(i32, i32)>,
 }
@@ -60,8 +60,8 @@ impl Exploration {
             .collect();
         let mut tiles = Tiles::new();
         tiles.reset(8, 6);
-        let mut topology = Skeleton::new();
-        topology.reset(Space::AnchoredNotObstacle);
+        let mut skeleton = Skeleton::new();
+        skeleton.reset(Space::AnchoredNotObstacle);
         let strategy = Ouroboros::new(tiles.box_tiles());
         let mut robot = (0, 0);
         let mut turned = BTreeMap::new();
@@ -78,7 +78,7 @@ impl Exploration {
         Self {
             world,
             tiles,
-            topology,
+            skeleton,
             strategy,
             frontier: Frontier::new(),
             limits,
@@ -96,7 +96,7 @@ impl Exploration {
         cell.is_none_or(|&c| c == '#' || c.is_ascii_digit())
     }
 
-    /// Everything within sight into the map.
+    /// Writes everything within sight into the map.
     fn see(&mut self) {
         let (x, y) = self.robot;
         for to in (y - SIGHT..=y + SIGHT).flat_map(|j| (x - SIGHT..=x + SIGHT).map(move |i| (i, j)))
@@ -126,34 +126,34 @@ impl Exploration {
         }
     }
 
-    /// A whole round on a new skeleton.
+    /// Plans a whole round on a new skeleton.
     fn plan(&mut self, time_ms: u32) -> RoundOutcome {
-        let disc = Footprint::new(POINT_M);
+        let footprint = Footprint::new(POINT_M);
         self.strategy.note_pose(&self.pose);
-        while !self.topology.advance(&self.tiles, &disc, u32::MAX) {}
-        self.frontier.cut(&mut self.topology);
-        let before = self.topology.skeleton().unwrap().words().to_vec();
+        while !self.skeleton.advance(&self.tiles, &footprint, u32::MAX) {}
+        self.frontier.cut(&mut self.skeleton);
+        let before = self.skeleton.skeleton().unwrap().words().to_vec();
         for calls in 1.. {
             assert!(calls <= 4, "a round that does not end");
             let round = Round {
-                skeleton: &mut self.topology,
+                skeleton: &mut self.skeleton,
                 tiles: &self.tiles,
-                footprint: &disc,
+                footprint: &footprint,
                 pose: self.pose,
                 time_ms,
                 limits: &self.limits,
                 levels: None,
             };
-            let outlook = self
+            let outcome = self
                 .strategy
                 .advance(&mut self.frontier, round, self.memory.lend());
             assert_eq!(
-                self.topology.skeleton().unwrap().words(),
+                self.skeleton.skeleton().unwrap().words(),
                 before,
                 "it stays cut"
             );
-            if let Some(outlook) = outlook {
-                return outlook;
+            if let Some(outcome) = outcome {
+                return outcome;
             }
         }
         unreachable!()
@@ -165,7 +165,7 @@ impl Exploration {
             .is_some_and(|shield| has_cell(shield, at(x as usize, y as usize)))
     }
 
-    /// Some cells on towards the part of the path that is a little ahead.
+    /// Moves some cells towards the part of the path that is a little ahead.
     fn go(&mut self) {
         let cells = self.frontier.path().cells();
         let here = at(self.robot.0 as usize, self.robot.1 as usize);
@@ -175,7 +175,7 @@ impl Exploration {
         };
         let goal = cells[(nearest + STRIDE).min(cells.len() - 1)];
         let goal = (goal.x / 2, goal.y / 2);
-        for step in self.way_to(goal).into_iter().take(STRIDE) {
+        for step in self.steps_to(goal).into_iter().take(STRIDE) {
             self.step_to(step);
         }
     }
@@ -214,20 +214,20 @@ impl Exploration {
             .collect()
     }
 
-    /// The shortest way over free cells that are no shield, without the first cell.
-    fn way_to(&self, goal: (i32, i32)) -> Vec<(i32, i32)> {
+    /// The shortest path over free cells round the shield, without the first cell.
+    fn steps_to(&self, goal: (i32, i32)) -> Vec<(i32, i32)> {
         let mut from = BTreeMap::from([(self.robot, self.robot)]);
         let mut queue = VecDeque::from([self.robot]);
         while let Some(here) = queue.pop_front() {
             if here == goal {
-                let mut way = std::vec![];
+                let mut steps = std::vec![];
                 let mut back = here;
                 while back != self.robot {
-                    way.push(back);
+                    steps.push(back);
                     back = from[&back];
                 }
-                way.reverse();
-                return way;
+                steps.reverse();
+                return steps;
             }
             for (dx, dy) in [(1, 0), (-1, 0), (0, 1), (0, -1)] {
                 let near = (here.0 + dx, here.1 + dy);
@@ -240,12 +240,12 @@ impl Exploration {
         Vec::new()
     }
 
-    /// Go on to the end; the rounds it took.
-    fn run(&mut self) -> usize {
+    /// Explores to the end.
+    fn run(&mut self) {
         self.see();
         for round in 0..MOST_ROUNDS {
             match self.plan(round as u32 * 800) {
-                RoundOutcome::Nothing => return round,
+                RoundOutcome::Nothing => return,
                 RoundOutcome::Stuck => panic!("stuck\n{}", self.drawn()),
                 RoundOutcome::Path | RoundOutcome::Unsure => self.go(),
             }
@@ -256,7 +256,7 @@ impl Exploration {
         );
     }
 
-    /// The islands that the robot has been round.
+    /// The digits that the robot has been round.
     fn rounded(&self) -> String {
         let round = |[_, least, most]: [f64; 3]| most - least > 0.97 * core::f64::consts::TAU;
         self.turned
@@ -305,7 +305,7 @@ impl Exploration {
     }
 }
 
-/// Every island is gone round, and nothing is left unknown.
+/// Asserts that the robot goes round every digit, and that nothing is left unknown.
 #[track_caller]
 fn assert_closes_all(world: &str) {
     let mut exploration = Exploration::new(world, SMALL);
@@ -371,7 +371,7 @@ fn a_tractor_point_that_falls_on_an_obstacle_is_gone_and_its_loop_with_it() {
         exploration.go();
     }
     let tractor = exploration.strategy.tractor().unwrap();
-    // The map is replaced: where the tractor point is, there is a thing of 0.6 m.
+    // The map is replaced: at the tractor point there is an obstacle of 0.6 m now.
     for part in (-2..4).flat_map(|dy| (-2..4).map(move |dx| (dx, dy))) {
         let cell = Cell {
             x: tractor.x + part.0,
@@ -394,7 +394,7 @@ fn a_tractor_point_that_falls_on_an_obstacle_is_gone_and_its_loop_with_it() {
 }
 
 #[test]
-fn a_loop_that_is_not_worth_the_way_is_not_begun() {
+fn a_loop_that_is_not_worth_closing_is_not_begun() {
     let limits = LoopLimits {
         least_m: 500.0,
         ..LoopLimits::default()
@@ -407,7 +407,7 @@ fn a_loop_that_is_not_worth_the_way_is_not_begun() {
 
 #[test]
 fn a_loop_that_takes_too_long_is_given_up() {
-    // The way round a block is 20 m and more; half of that is too far here.
+    // A loop round a block is 20 m and more; half of that is too far here.
     let limits = LoopLimits {
         detour: 0.2,
         slack_m: 2.0,

@@ -3,17 +3,17 @@
 //! | lines | what they do | where |
 //! | --- | --- | --- |
 //! | 3 | update the Voronoi cells | [`roadmap`](crate::roadmap), the space without obstacles |
-//! | 4 | move the robot to the Voronoi | [`Round::nearest`] |
-//! | 5–10 | move, disable or generate the tractor point | [`tractor`], [`closed_regions`] |
-//! | 12 | propagate from it, the robot as a blocker | [`Round::propagate`] |
-//! | 13–16 | the loop road, past the previous shield if there is one | [`loop_road`] |
-//! | 18 | the shield | [`shield`] |
-//! | 20 | propagate from the tractor point, the shield as a blocker | [`Round::path`] |
-//! | 23 | else propagate from the unexplored | [`Frontier::replan`] |
-//! | 25 | none is left: complete, unless a loop is open | [`revisit`] |
+//! | 4 | move the robot to the Voronoi | `Round::nearest` |
+//! | 5–10 | move, disable or generate the tractor point | `tractor`, `closed_regions` |
+//! | 12 | propagate from it, the robot as a blocker | `Round::propagate` |
+//! | 13–16 | the loop road, past the previous shield if there is one | `loop_road` |
+//! | 18 | the shield | `shield` |
+//! | 20 | propagate from the tractor point, the shield as a blocker | `Round::path` |
+//! | 23 | else propagate from the unexplored | `Frontier::replan` |
+//! | 25 | none is left: complete, unless a loop is open | `revisit` |
 //! | 26–28 | local goal, local potential, drive | [`planner`](crate::planner) |
 //!
-//! A round takes up to three calls of [`Ouroboros::advance`] (more for line 25), each with one wave
+//! A round takes up to three calls of `advance` (more for line 25), each with one wave
 //! at most, all on the same published skeleton. Between two calls nothing of the wave is needed, so
 //! its memory is free for other uses.
 //!
@@ -21,9 +21,9 @@
 //! point, shield, closed regions and path outlast any number of skeletons.
 //!
 //! Departs from [Jorge15, Algorithm 1, line 17], where a missing loop road ends the loop at once: a
-//! loop is lost only after [`LOST_ROUNDS`] rounds in a row without loop road or shield, since a
-//! skeleton may grow a spur under the robot for a moment. After [`MOST_LOST`] lost loops the next
-//! one is given up, or the robot might begin and lose the same loop for ever.
+//! loop is lost only after `LOST_ROUNDS` rounds in a row without loop road or shield, since a
+//! skeleton may grow a spur under the robot for a moment. After `MOST_LOST` lost loops the next one
+//! is given up, or the robot might begin and lose the same loop for ever.
 //!
 //! Units: map cells, metres, milliseconds.
 
@@ -236,7 +236,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             let (context, time_ms) = (round.context(), round.time_ms);
             return Some(frontier.follow(path, &context, here, time_ms, scratch.view));
         }
-        // No loop was begun on the way here.
+        // No loop began on the drive here.
         revisit::settle(round, &mut self.regions, revisit.goal);
         self.stage = Stage::Search;
         None

@@ -1,8 +1,9 @@
 //! Scenes: each rule of a loop as a picture.
 //!
-//! A character is a coarse cell, row 0 (the least y) on top: `#` obstacle, `.` free, `?` never measured, `T` the tractor
-//! point, and the robot with its heading `>`, `<`, `v` (towards greater y) or `^`. In what comes back, `b` and `f` are the loop road's back and
-//! front, `=` the shield, `+` other centre cells. The robot is a point, so it fits wherever there is no obstacle.
+//! A character is a coarse cell, row 0 (the least y) on top: `#` obstacle, `.` free, `?` never
+//! measured, `T` the tractor point, and the robot with its heading `>`, `<`, `v` (towards greater
+//! y) or `^`. In a result, `b` and `f` are the loop road's back and front, `=` the shield, `+`
+//! other centre cells. The robot is a point, so it fits wherever there is no obstacle.
 
 mod loop_roads;
 mod revisits;
@@ -36,8 +37,8 @@ pub(super) const POINT_M: f32 = 0.05;
 pub(super) struct Scene {
     picture: Vec<Vec<char>>,
     pub(super) tiles: Tiles<TILES, SLOTS>,
-    pub(super) topology: Skeleton<SLOTS>,
-    pub(super) disc: Footprint,
+    pub(super) skeleton: Skeleton<SLOTS>,
+    pub(super) footprint: Footprint,
     pub(super) pose: Pose,
     limits: LoopLimits,
 }
@@ -70,7 +71,7 @@ pub(super) fn has_cell(shield: &Shield, cell: Cell) -> bool {
     shield.cells().any(|on| on == cell)
 }
 
-/// The cell so many cells behind a robot.
+/// The cell this many cells behind a robot.
 fn behind(pose: &Pose, cells: i32) -> Cell {
     let (sin, cos) = crate::math::sin_cos(pose.yaw_rad);
     let back = |at: i32, along: f32| at - (along * cells as f32) as i32;
@@ -85,7 +86,7 @@ fn behind(pose: &Pose, cells: i32) -> Cell {
 pub(super) struct Memory {
     residues: Vec<[u32; 2]>,
     ring: Vec<u32>,
-    view: LocalGrid,
+    grid: LocalGrid,
 }
 
 impl Memory {
@@ -93,7 +94,7 @@ impl Memory {
         Self {
             residues: std::vec![[0; 2]; SLOTS * 8],
             ring: std::vec![0; 256],
-            view: LocalGrid::new(),
+            grid: LocalGrid::new(),
         }
     }
 
@@ -101,7 +102,7 @@ impl Memory {
         PlanningScratch {
             residues: &mut self.residues,
             ring: &mut self.ring,
-            view: &mut self.view,
+            view: &mut self.grid,
         }
     }
 }
@@ -137,15 +138,15 @@ impl Scene {
                 }
             }
         }
-        let disc = Footprint::new(POINT_M);
-        let mut topology = Skeleton::new();
-        topology.reset(Space::AnchoredNotObstacle);
-        while !topology.advance(&tiles, &disc, u32::MAX) {}
+        let footprint = Footprint::new(POINT_M);
+        let mut skeleton = Skeleton::new();
+        skeleton.reset(Space::AnchoredNotObstacle);
+        while !skeleton.advance(&tiles, &footprint, u32::MAX) {}
         Self {
             picture,
             tiles,
-            topology,
-            disc,
+            skeleton,
+            footprint,
             pose,
             limits: LoopLimits::default(),
         }
@@ -160,9 +161,9 @@ impl Scene {
 
     pub(super) fn round(&mut self) -> Round<'_, TILES, SLOTS> {
         Round {
-            skeleton: &mut self.topology,
+            skeleton: &mut self.skeleton,
             tiles: &self.tiles,
-            footprint: &self.disc,
+            footprint: &self.footprint,
             pose: self.pose,
             time_ms: 0,
             limits: &self.limits,
@@ -171,48 +172,49 @@ impl Scene {
     }
 
     pub(super) fn centres(&self) -> Centres<'_, TILES, SLOTS> {
-        Centres::of(&self.topology, &self.tiles, &self.disc).unwrap()
+        Centres::of(&self.skeleton, &self.tiles, &self.footprint).unwrap()
     }
 
-    /// The loop road to the tractor point, the cells of its back and front, and the shield across it.
+    /// Looks for the loop road to the tractor point and for the shield across it.
     fn look(&mut self) -> Option<Found> {
         let mut memory = Memory::new();
         let robot = self.spread(self.find('T').unwrap(), &mut memory);
         let (centres, pose) = (self.centres(), self.pose);
         let residues = Residues::new(centres.frame.shape, &mut memory.residues).unwrap();
-        let path = LoopRoad::find(&centres, &residues, (robot, behind(&pose, 10)))?;
+        let road = LoopRoad::find(&centres, &residues, (robot, behind(&pose, 10)))?;
         let walk = |head: Site| -> Vec<Cell> {
             let sites = core::iter::once(head).chain(residues.descent(head));
             sites.map(|site| centres.frame.cell(site)).collect()
         };
-        assert_eq!(walk(path.back).len() + 1, path.back_steps as usize);
-        assert_eq!(walk(path.front).len() + 1, path.front_steps as usize);
+        assert_eq!(walk(road.back).len() + 1, road.back_steps as usize);
+        assert_eq!(walk(road.front).len() + 1, road.front_steps as usize);
         let until_meet = |cells: Vec<Cell>| -> Vec<Cell> {
-            let tail = cells.len() - path.tail_steps as usize;
-            assert_eq!(cells[tail - 1], centres.frame.cell(path.meet));
+            let tail = cells.len() - road.tail_steps as usize;
+            assert_eq!(cells[tail - 1], centres.frame.cell(road.meet));
             cells[..tail].to_vec()
         };
         Some(Found {
-            back: until_meet(walk(path.back)),
-            front: until_meet(walk(path.front)),
-            shield: build_shield(&centres, path.back(&residues), pose.point().cell()),
+            back: until_meet(walk(road.back)),
+            front: until_meet(walk(road.front)),
+            shield: build_shield(&centres, road.back(&residues), pose.point().cell()),
         })
     }
 
-    /// A wave from the centre cell nearest to a place, with the robot's surroundings as a blocker; the robot's cell.
+    /// Spreads a wave from the centre cell nearest to a place, with the robot's surroundings as a
+    /// blocker; returns the robot's centre cell.
     fn spread(&mut self, from: Cell, memory: &mut Memory) -> Site {
         let here = self.pose.point().cell();
         let mut round = self.round();
         let robot = round.nearest(here, &mut memory.lend()).unwrap();
         let goal = round.nearest(from, &mut memory.lend()).unwrap();
-        let lent = &mut memory.lend();
+        let scratch = &mut memory.lend();
         round
-            .propagate(goal, surroundings(robot), None, lent)
+            .propagate(goal, surroundings(robot), None, scratch)
             .unwrap();
         robot
     }
 
-    /// What keeps a shield from standing at each cell of the path's back, from the robot on, up to the valid one.
+    /// The flaws of a shield at each cell of the back, from the robot on, up to the valid one.
     fn flaws(&mut self) -> Vec<Option<Flaw>> {
         let back = self.look().unwrap().back;
         let (centres, here) = (self.centres(), self.pose.point().cell());
@@ -254,7 +256,7 @@ impl Scene {
     }
 }
 
-/// What a look finds.
+/// The arms of a loop road up to where they meet, and the shield.
 struct Found {
     back: Vec<Cell>,
     front: Vec<Cell>,

@@ -157,8 +157,8 @@ impl Shield {
         }
     }
 
-    /// Returns its cells: where it stands, then to the left, then to the right. The last one of each
-    /// side is beyond the space.
+    /// Returns its cells: where it stands, then to the left, then to the right. The last one of
+    /// each side is beyond the space.
     pub(crate) fn cells(&self) -> impl Iterator<Item = Cell> + '_ {
         let side = |side: usize| self.ray(side).take(self.length(side));
         core::iter::once(self.at).chain(side(0)).chain(side(1))

@@ -9,7 +9,7 @@
 //!
 //! Departs from [Maffei14, IV]: centre cells near the robot and those in its pending visits are
 //! free. The robot is visiting them now; with the potential of the newest, p = 1, they would be a
-//! wall along the middle of its way.
+//! wall along the middle of its corridor.
 //!
 //! Units: window cells; shares of a goal's charge.
 

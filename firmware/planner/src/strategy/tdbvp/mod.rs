@@ -1,7 +1,7 @@
 //! Strategy *tdbvp*: time-driven rails [Maffei14, IV and V].
 //!
 //! The robot follows −∇p in a window in which every centre cell is charged: with the time since its
-//! last visit [eq. 3], or as the best goal if it was never visited. So the robot prefers the
+//! last visit (eq. 3), or as the best goal if it was never visited. So the robot prefers the
 //! unexplored to the visited and the oldest visit to the newest, turns to the side where it passed
 //! openings, and never comes to rest: when all is explored it patrols, for as long as the session
 //! asks.
@@ -11,14 +11,14 @@
 //! the robot is off it [Maffei14, VII: the nearest rail, else the unexplored, else the skeleton].
 //!
 //! Departs from the paper:
-//! - [IV] The unexplored is a goal only until [`Frontier`] drops it, and a robot that lingers
+//! - (IV) The unexplored is a goal only until [`Frontier`] drops it, and a robot that lingers
 //!   follows a path for a while. The paper has no rule for what cannot be seen: the robot would
 //!   stand before it.
-//! - [IV] A robot that has visited no new place for [`IMPATIENCE_MS`], while something is left to
+//! - (IV) A robot that has visited no new place for `IMPATIENCE_MS`, while something is left to
 //!   explore, follows a path. The paper relies on its rails to lead there in the end.
-//! - [IV] On patrol the robot follows a path to a rail that is overdue. The rails lead to the oldest
-//!   one in the window, and one beyond may wait for ever. With paths the age of the oldest is
-//!   bounded by a tour of everything and the way there.
+//! - (IV) On patrol the robot follows a path to a rail that is overdue. The rails lead to the
+//!   oldest one in the window, and one beyond may wait for ever. With paths the age of the oldest
+//!   is bounded by a tour of everything and the way there.
 //!
 //! Units: map cells, metres, milliseconds.
 
@@ -51,7 +51,7 @@ use crate::strategy::tdbvp::sides::SideVotes;
 const IMPATIENCE_MS: u32 = 15_000;
 /// A robot lingers if it stays within this distance, metres, …
 const LINGER_M: f32 = 1.0;
-/// … for longer than this time, milliseconds: on its way it drives the distance in some 2 s.
+/// … for longer than this time, milliseconds: some seven times what it takes to drive it.
 const LINGER_MS: u32 = 15_000;
 /// Distance from where the robot lingered within which centre cells count as visited, metres: the
 /// one that attracts it cannot be reached.

@@ -8,13 +8,14 @@
 //!
 //! Departs from [Maffei14, IV], where every centre cell has its own step: the skeleton changes all
 //! the time, so a *place* of 1.6 × 1.6 m of the map has one byte, a *stamp*, whatever centre cells
-//! are in it. Centre lines that a wall parts do not share a place. A stamp counts *ticks* of several
-//! steps. When the ticks run out, all stamps become lower by as much as the oldest allows, or are
-//! halved and the ticks become twice as long. So the robot can go on for ever.
+//! are in it. Centre lines that a wall parts do not share a place. A stamp counts *ticks* of
+//! several steps. When the ticks run out, all stamps become lower by as much as the oldest allows,
+//! or are halved and the ticks become twice as long. So the robot can go on for ever.
 //!
-//! Invariants: 0 is not visited; no stamp is later than now; the order of two visits never turns
-//! round. Slots are addressed as the map's are. Units: map cells; ticks of a growing number of
-//! steps.
+//! Invariants: 0 is not visited; no stamp is later than now; the order of two visits never
+//! reverses. Slots are addressed as the map's are.
+//!
+//! Units: map cells; ticks of a growing number of steps.
 
 use crate::geometry::Cell;
 use crate::grid::TileBox;

@@ -1,6 +1,7 @@
-//! Windows charged with rails, as pictures: where the robot goes from there.
+//! Windows charged with rails, as pictures: where the field leads the robot.
 //!
-//! `#` obstacle, `.` free, coarse cells of 20 cm; the first row of a picture is the least y. `>` is the robot, facing along x.
+//! A character is a coarse cell of 20 cm, row 0 (the least y) on top: `#` obstacle, `.` free, `>`
+//! the robot with its heading along x.
 
 use crate::field::local_grid::{LocalGrid, position};
 use crate::field::{SCRATCH_FLOATS, SIDE, SolverConfig, Window, descent, solve};
@@ -15,7 +16,7 @@ use crate::strategy::tdbvp::pending_visits::PendingVisits;
 use crate::strategy::tdbvp::rails::Rails;
 use crate::strategy::tdbvp::sides::Side;
 
-/// A corridor from the left that ends at one across.
+/// A corridor that ends at another one across.
 const FORK: &str = "
     ################
     ###########...##
@@ -44,18 +45,18 @@ const FORK: &str = "
 
 struct Scene {
     tiles: Tiles<16, 64>,
-    topology: Skeleton<64>,
+    skeleton: Skeleton<64>,
     rails: Rails<64>,
     pending: PendingVisits,
     robot: Cell,
 }
 
 impl Scene {
-    /// The robot came along the row that it is in.
+    /// The robot has driven along its row.
     fn new(picture: &str) -> Self {
         let mut scene = Self {
             tiles: Tiles::new(),
-            topology: Skeleton::new(),
+            skeleton: Skeleton::new(),
             rails: Rails::new((8, 8)),
             pending: PendingVisits::new(),
             robot: Cell::default(),
@@ -84,9 +85,9 @@ impl Scene {
                 }
             }
         }
-        scene.topology.reset(Space::KnownFree);
-        let disc = Footprint::new(0.1);
-        while !scene.topology.advance(&scene.tiles, &disc, u32::MAX) {}
+        scene.skeleton.reset(Space::KnownFree);
+        let footprint = Footprint::new(0.1);
+        while !scene.skeleton.advance(&scene.tiles, &footprint, u32::MAX) {}
         for x in 3..=scene.robot.x {
             let y = scene.robot.y;
             scene.pending.note(Cell { x, y });
@@ -96,12 +97,12 @@ impl Scene {
         scene
     }
 
-    /// Where the field leads from the robot: x and y of its heading.
+    /// The direction in which the field leads the robot: cosine and sine.
     fn heading(&self, side: Option<Side>) -> (f32, f32) {
-        let mut view = LocalGrid::new();
-        view.update(&self.tiles, &Footprint::new(0.1), self.robot, 1);
+        let mut grid = LocalGrid::new();
         let footprint = Footprint::new(0.1);
-        let centres = Centres::of(&self.topology, &self.tiles, &footprint).unwrap();
+        grid.update(&self.tiles, &footprint, self.robot, 1);
+        let centres = Centres::of(&self.skeleton, &self.tiles, &footprint).unwrap();
         let (mut window, least) = (Window::new(), self.robot);
         // The middle of the robot's coarse cell.
         let robot = Cell {
@@ -112,7 +113,7 @@ impl Scene {
         let dates = (&self.rails, &self.pending);
         charge_rails(
             &mut window,
-            &view,
+            &grid,
             dates,
             &centres,
             (robot, ROOM_M),
@@ -123,19 +124,19 @@ impl Scene {
                 .pending
                 .ahead(self.robot)
                 .expect("it came from somewhere");
-            prefer(&mut window, &view, robot, (side, ahead));
+            prefer(&mut window, &grid, robot, (side, ahead));
         }
         let config = SolverConfig {
             max_cycles: 100,
             ..SolverConfig::default()
         };
         solve(&mut window, &mut [0.0; SCRATCH_FLOATS], &config);
-        let (x, y) = position((view.origin, view.scale), robot);
+        let (x, y) = position((grid.origin, grid.scale), robot);
         let heading = descent::heading_at(&window, x, y).expect("the field is not flat");
         (heading.cos(), heading.sin())
     }
 
-    /// The robot was in the arm above or below its corridor, not before the last visits there.
+    /// The robot visits the upper or the lower arm of the corridor across.
     fn visit_arm(&mut self, up: bool) {
         for k in 0..19 {
             let y = if up { 26 + k } else { 2 + k };
@@ -145,7 +146,7 @@ impl Scene {
 }
 
 #[test]
-fn the_preferred_side_decides_at_a_fork_of_two_ways_as_good() {
+fn the_preferred_side_decides_at_a_fork_of_equal_arms() {
     let scene = Scene::new(FORK);
     let (_, left) = scene.heading(Some(Side::Left));
     let (_, right) = scene.heading(Some(Side::Right));
@@ -154,7 +155,7 @@ fn the_preferred_side_decides_at_a_fork_of_two_ways_as_good() {
 }
 
 #[test]
-fn the_way_that_was_not_visited_is_taken_whatever_side_is_preferred() {
+fn the_arm_not_visited_is_taken_whatever_side_is_preferred() {
     for up in [true, false] {
         let mut scene = Scene::new(FORK);
         scene.visit_arm(up);
@@ -169,7 +170,7 @@ fn the_way_that_was_not_visited_is_taken_whatever_side_is_preferred() {
 }
 
 #[test]
-fn where_all_was_visited_the_older_way_is_taken() {
+fn where_all_was_visited_the_older_arm_is_taken() {
     for up in [true, false] {
         let mut scene = Scene::new(FORK);
         scene.visit_arm(!up);

@@ -6,12 +6,12 @@
 //! ```
 //!
 //! An *opening* is a sudden increase of the mean range to one side, and a vote for that side. Two
-//! equal votes in a row set the preference. So a robot that passed two ways on its left turns left
-//! at the next fork, which closes a loop. Openings on both sides at once are no vote.
+//! equal votes in a row set the preference. So a robot that passed two openings on its left turns
+//! left at the next fork, which closes a loop. Openings on both sides at once are no vote.
 //!
-//! The paper gives neither ε nor the disc's radius. Measured on a symmetric T and a symmetric cross,
-//! 20 approaches each with openings on the left and 20 with openings on the right; how many turned
-//! to that side:
+//! The paper gives neither ε nor the disc's radius. Measured on a symmetric T and a symmetric
+//! cross, in 20 approaches each with openings on the left and 20 with openings on the right; how
+//! many turned to that side:
 //!
 //! | ε | T | cross |
 //! | --- | --- | --- |
@@ -22,7 +22,7 @@
 //! | 0.6 | 14, 12 | 14, 13 |
 //!
 //! With ε = 0.2 and 100 approaches, 100 and 100 turn at the T, 99 and 99 at the cross. A larger ε
-//! draws the robot past the ways.
+//! draws the robot past the arms.
 //!
 //! Departs from [Maffei14, V]: the preference acts only where the skeleton has a junction in the
 //! disc. In a corridor it drew the robot to a wall, turned the disc with it and made it swing: a

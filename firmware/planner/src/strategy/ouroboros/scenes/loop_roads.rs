@@ -1,4 +1,4 @@
-//! Which way a loop road goes; see [`super`].
+//! The course of loop roads; see [`super`].
 
 use std::vec::Vec;
 
@@ -7,7 +7,7 @@ use crate::roadmap::Residues;
 use crate::strategy::ouroboros::loop_road::{back_to_shield, build_shield};
 use crate::strategy::ouroboros::scenes::{Found, Memory, Scene, assert_picture};
 
-/// The same way, blocked below.
+/// A corridor round a block, closed below.
 const NO_LOOP: &str = "
     #########################
     #.......................#
@@ -25,7 +25,7 @@ const NO_LOOP: &str = "
     #........###............#
     #########################";
 
-/// Three ways to the robot.
+/// Three arms to the robot.
 const FORK: &str = "
     ###########################
     #.........................#
@@ -42,7 +42,7 @@ const FORK: &str = "
     #.........................#
     ###########################";
 
-/// A way that may lead round through the unexplored.
+/// A loop that may lead through the unexplored.
 const UNKNOWN_LOOP: &str = "
     ###############??????????
     #.............?.........?
@@ -127,7 +127,7 @@ const NOW: &str = "
     #########################################";
 
 #[test]
-fn without_a_second_way_to_the_tractor_point_there_is_no_loop() {
+fn without_a_second_arm_to_the_tractor_point_there_is_no_loop() {
     assert_picture(
         &Scene::parse(NO_LOOP).drawn(),
         "
@@ -170,7 +170,7 @@ fn a_loop_may_run_through_the_unexplored() {
 }
 
 #[test]
-fn of_several_ways_ahead_the_shortest_is_the_front() {
+fn of_several_arms_ahead_the_shortest_is_the_front() {
     assert_picture(
         &Scene::parse(FORK).drawn(),
         "
@@ -192,8 +192,8 @@ fn of_several_ways_ahead_the_shortest_is_the_front() {
 }
 
 #[test]
-fn a_loop_ends_where_its_ways_meet() {
-    // From there to the tractor point both go the same way, where no shield may stand.
+fn a_loop_ends_where_its_arms_meet() {
+    // From there to the tractor point both have the same cells, on which no shield may stand.
     assert_picture(
         &Scene::parse(LASSO).drawn(),
         "
@@ -274,11 +274,11 @@ fn a_loop_goes_on_by_the_previous_shield_though_another_is_shorter() {
         #..............=........................#
         #########################################",
     );
-    // With it, the back leads there, and there is the next shield.
+    // With it, the back leads there, and the next shield is on it.
     let mut scene = Scene::parse(NOW);
     let mut memory = Memory::new();
     let robot = scene.spread(stands_on, &mut memory);
-    let residues = Residues::new(scene.topology.frame().shape, &mut memory.residues).unwrap();
+    let residues = Residues::new(scene.skeleton.frame().shape, &mut memory.residues).unwrap();
     let centres = scene.centres();
     let back: Vec<Site> = back_to_shield(&centres, &residues, robot)
         .unwrap()

@@ -1,4 +1,4 @@
-//! Where a tractor point is made and where a shield stands; see [`super`].
+//! Places of tractor points and shields; see [`super`].
 
 use std::string::String;
 use std::vec::Vec;
@@ -7,7 +7,7 @@ use crate::strategy::ouroboros::Ouroboros;
 use crate::strategy::ouroboros::scenes::{Memory, Scene, assert_picture, at, pose_in};
 use crate::strategy::ouroboros::shield::{Flaw, Shield};
 
-/// A block, and the way round it.
+/// A block, and the corridor round it.
 const RING: &str = "
     #########################
     #.......................#
@@ -43,7 +43,7 @@ const STARTED: &str = "
     #.......................#
     #########################";
 
-/// It has come this way.
+/// It has driven along the `o`s.
 const VISITED: &str = "
     #########################
     #.......................#
@@ -61,7 +61,7 @@ const VISITED: &str = "
     #.......................#
     #########################";
 
-/// It has come this way and turned.
+/// It has driven along the `o`s and turned.
 const TURNED: &str = "
     #########################
     #.......................#
@@ -98,7 +98,7 @@ const UNEXPLORED_END: &str = "
     #.......................#
     #########################";
 
-/// A corridor, longer than a shield, leads off behind the robot.
+/// A side corridor behind the robot, longer than a shield.
 const SIDE_CORRIDOR: &str = "
     #######.....###############
     #######.....###############
@@ -119,7 +119,7 @@ const SIDE_CORRIDOR: &str = "
     #.........................#
     ###########################";
 
-/// A wide way with a post in it.
+/// A wide corridor with a post in it.
 const BRANCHES: &str = "
     #################################
     #...............................#
@@ -143,7 +143,7 @@ const BRANCHES: &str = "
     #...............................#
     #################################";
 
-/// The tractor point that is made for a robot that has come along the `o`s, from left to right.
+/// Asserts the tractor point made for a robot that has driven along the `o`s, left to right.
 #[track_caller]
 fn assert_tractor(picture: &str, expected: &str) {
     let mut scene = Scene::parse(picture);
@@ -165,8 +165,9 @@ fn assert_tractor(picture: &str, expected: &str) {
     assert_picture(&rows.collect::<Vec<String>>().join("\n"), expected);
 }
 
-/// The four cases of the paper's figure 2, as its text has them: only a tractor point in the visited space behind the robot, with a shield
-/// between that reaches from obstacle to obstacle, will do.
+/// The four cases of [Jorge15, figure 2], as its text describes them: the tractor point is valid
+/// only in the visited space behind the robot, with a shield between that extends from obstacle to
+/// obstacle.
 #[test]
 fn of_four_cases_only_one_is_valid() {
     // (a) Behind the robot nothing was visited.
