@@ -1,4 +1,5 @@
-//! Everything the robot is not: worlds, the 3-AT, its lasers and odometry, links, trials, metrics, pictures.
+//! Simulator of a Pioneer 3-AT for the Fieldline planner: worlds, the robot with lasers and
+//! odometry, links to the planner, runs, metrics, reports, pictures.
 #![forbid(unsafe_code)]
 
 pub mod baseline;

@@ -11,7 +11,7 @@ mod config;
 use fieldline_protocol::message::{Hull, LoopLimits, Observation, Start, Strategy, Twist};
 use fixed::types::I4F12;
 
-use crate::metrics::{Localization, Overlap, Ride, Safety};
+use crate::metrics::{Overlap, Ride, Safety};
 use crate::robot::{
     Contacts, Drive, Footprint, LaserScanner, Mishap, Odometry, Pose, Source, Velocity, laser,
     stand,
@@ -54,7 +54,6 @@ pub struct Simulator<'w> {
     loss: Option<Loss>,
     safety: Safety,
     ride: Ride,
-    localization: Localization,
     overlap: Overlap,
 }
 
@@ -106,7 +105,6 @@ impl<'w> Simulator<'w> {
             loss: None,
             safety: Safety::default(),
             ride: Ride::default(),
-            localization: Localization::default(),
             overlap: Overlap::default(),
         };
         simulator.overlap.add(pose.x_m, pose.y_m);
@@ -116,8 +114,6 @@ impl<'w> Simulator<'w> {
 
     /// Measures an observation. Every call draws new noise.
     pub fn observe(&mut self) -> Observation {
-        self.localization
-            .add(self.pose.distance_m(self.odometry.pose()));
         let mut observation = Observation {
             time_ms: self.time_ms,
             pose: self.above_start(self.odometry.pose()).to_wire(),
@@ -371,12 +367,6 @@ impl<'w> Simulator<'w> {
     #[must_use]
     pub fn overlap(&self) -> f64 {
         self.overlap.fraction()
-    }
-
-    /// The odometry's error so far.
-    #[must_use]
-    pub fn localization(&self) -> Localization {
-        self.localization
     }
 }
 

@@ -55,10 +55,11 @@ pub(super) struct ExploreArgs {
     /// Preferences of the field on uneven ground [default: both]
     #[arg(long, value_enum, value_name = "WHICH")]
     pub(super) preference: Option<PreferenceArg>,
-    /// Parameters of uneven ground, one or more [default:
-    /// h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005,climb=20,roll=20,step=0.07]
     #[arg(
         long,
+        help = "Parameters of uneven ground, one or more [default: h_obs=0.3, d_obs=1.5, \
+                h_hole=-0.6, eps_hmin=-0.5, eps_gmax=0.5, lambda_h=2, lambda_g=0.005, climb=20, \
+                roll=20, step=0.07]",
         alias = "terrain",
         value_name = "PARAMETERS",
         value_parser = ground_parameters

@@ -151,7 +151,7 @@ fn explore(args: &ExploreArgs, link: &LinkSpec, run: &Run, interrupt: &Interrupt
     };
     let album = Album::new(&run.world, &report, &record);
     folder::write(&run.folder, &report, &record, &album.end())?;
-    folder::write_snapshots(&run.folder, album.on_the_way())?;
+    folder::write_snapshots(&run.folder, album.during())?;
     print(args, &report, &record, &run.folder)?;
     Ok(report.explored())
 }

@@ -1,8 +1,9 @@
-//! The command line: what was asked for, done, and said.
+//! The command line.
 //!
-//! Exit status: 0 all that was asked for is done (every run finished explored), 1 a run ended otherwise, 2 the input was
-//! bad or nothing could begin. An error is one line on standard error that names the thing and the remedy. Standard output
-//! carries results only: text for people, or with `--json` one JSON object a line.
+//! Exit status: 0 if everything is done and every run ended explored, 1 if a run ended otherwise, 2
+//! if the input is bad or the run cannot begin. An error is one line on standard error that names
+//! the argument and the remedy. Standard output has results only: text, or with `--json` one JSON
+//! object a line.
 
 mod args;
 mod explore;
@@ -20,17 +21,17 @@ use clap::{CommandFactory as _, FromArgMatches as _};
 
 use args::{Cli, Command, ExploreArgs};
 
-/// What the program says of itself when a run ended otherwise than explored.
+/// Exit status if a run ended otherwise than explored.
 const UNFINISHED: u8 = 1;
-/// What it says of bad input.
+/// Exit status of bad input.
 const BAD_INPUT: u8 = 2;
 
-/// Reads the arguments, does the work, and tells how it went.
+/// Parses the arguments, runs the command, and returns the exit status.
 pub(crate) fn main() -> ExitCode {
     let cli = match parse(std::env::args_os()) {
         Ok(cli) => cli,
         Err(error) if !error.use_stderr() => {
-            // Help or version was asked for.
+            // The request for help or the version.
             let _ = say(&error.render().to_string());
             return ExitCode::SUCCESS;
         }
@@ -39,7 +40,7 @@ pub(crate) fn main() -> ExitCode {
     match run(&cli) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(UNFINISHED),
-        // Whoever read our output has had enough.
+        // The reader of standard output ended, as `head` does.
         Err(error) if is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => complain(&format!("{error:#}")),
     }
@@ -50,7 +51,7 @@ fn parse(arguments: impl Iterator<Item = std::ffi::OsString>) -> Result<Cli, cla
     Cli::from_arg_matches(&matches)
 }
 
-/// Whether all that was asked for is done.
+/// Runs the command; returns true if every run ended explored.
 fn run(cli: &Cli) -> Result<bool> {
     match &cli.command {
         None => explore::run(&ExploreArgs::default()),
@@ -60,7 +61,7 @@ fn run(cli: &Cli) -> Result<bool> {
     }
 }
 
-/// A line on standard output.
+/// Prints a line on standard output.
 fn say(line: &str) -> Result<()> {
     let mut out = io::stdout().lock();
     writeln!(out, "{}", line.trim_end())?;
@@ -68,7 +69,7 @@ fn say(line: &str) -> Result<()> {
     Ok(())
 }
 
-/// A line on standard error; nobody to hear it is no reason to fail.
+/// Prints a line on standard error. A failure to print is ignored.
 fn note(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
 }
@@ -79,7 +80,7 @@ fn complain(message: &str) -> ExitCode {
     ExitCode::from(BAD_INPUT)
 }
 
-/// What is wrong with the arguments, without the usage below it.
+/// Returns the first paragraph of an error in the arguments, without the usage.
 fn one_paragraph(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let first = text.split("\n\n").next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The pictures of a run: one of its end, and a series on its way.
+//! The pictures of a run: one of its end, and a series during it.
 
 use host_sim::picture::{Ground, Scene, run_png};
 use host_sim::report::Report;
@@ -7,7 +7,7 @@ use host_sim::trial::Record;
 use host_sim::trial::snapshot::Snapshot;
 use host_sim::world::World;
 
-/// A run whose pictures are wanted.
+/// The run that the pictures show.
 pub(super) struct Album<'a> {
     report: &'a Report,
     record: &'a Record,
@@ -16,7 +16,7 @@ pub(super) struct Album<'a> {
 }
 
 impl<'a> Album<'a> {
-    /// Of a run in a world.
+    /// Makes the album of a run in a world.
     pub(super) fn new(world: &'a World, report: &'a Report, record: &'a Record) -> Self {
         let start_z_m = report.true_ground.map_or(0.0, |ground| ground.start_z_m);
         let truth = record.ground.as_ref();
@@ -29,7 +29,7 @@ impl<'a> Album<'a> {
         }
     }
 
-    /// `run.png`.
+    /// Draws `run.png`.
     pub(super) fn end(&self) -> Vec<u8> {
         let left = self.report.outcome.residual_frontiers.iter();
         let residue: Vec<_> = left.map(|f| (f.x_m, f.y_m)).collect();
@@ -41,14 +41,14 @@ impl<'a> Album<'a> {
             window: self.record.window.as_ref(),
             relief: self.record.relief.as_ref(),
             residue: &residue,
-            route: Some(&self.record.route),
+            planned_path: Some(&self.record.planned_path),
             given_up: &self.given_up(u32::MAX),
             ground: self.ground,
             room_for: None,
         })
     }
 
-    /// Where loops were given up by then.
+    /// Returns the places where loops were given up until a time.
     fn given_up(&self, time_ms: u32) -> Vec<(f64, f64)> {
         let said = self
             .report
@@ -60,8 +60,8 @@ impl<'a> Album<'a> {
             .collect()
     }
 
-    /// The series, in order.
-    pub(super) fn on_the_way(&self) -> impl Iterator<Item = Vec<u8>> {
+    /// Draws the series, in order.
+    pub(super) fn during(&self) -> impl Iterator<Item = Vec<u8>> {
         let snapshots = self.record.snapshots.iter();
         snapshots.map(|snapshot| self.moment(snapshot))
     }
@@ -85,7 +85,7 @@ impl<'a> Album<'a> {
             window: snapshot.window.as_ref(),
             relief: snapshot.relief.as_ref(),
             residue: &[],
-            route: Some(&snapshot.route),
+            planned_path: Some(&snapshot.planned_path),
             given_up: &self.given_up(progress.time_ms),
             ground: self.ground,
             room_for: Some(&self.record.map),

@@ -1,4 +1,4 @@
-//! The line that lives while a run does, the pacer, and the interrupt key.
+//! The progress line during a run, the pacer, and the interrupt key.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::time::Duration;
@@ -10,19 +10,19 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use host_sim::trial::{Flow, Progress, Watch, wording};
 
-/// Ticks of the bar: tenths of a per cent.
+/// Ticks of the bar: tenths of a percent.
 const TICKS: u64 = 1_000;
 
-/// The interrupt key: the first press asks a run to end, the second ends the program.
+/// The interrupt key: the first press ends the run, the second ends the program.
 #[derive(Clone, Debug)]
 pub(super) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// From now on the key is ours.
+    /// Takes the key over.
     pub(super) fn listen() -> Result<Self> {
         let pressed = Arc::new(AtomicBool::new(false));
         for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-            // The order matters: a shutdown only if it was pressed before.
+            // The order matters: the shutdown must see only earlier presses.
             let second = Arc::clone(&pressed);
             signal_hook::flag::register_conditional_shutdown(signal, 130, second)
                 .context("cannot listen to the interrupt key")?;
@@ -32,24 +32,24 @@ impl Interrupt {
         Ok(Self(pressed))
     }
 
-    /// Whether it was pressed.
+    /// Returns true if it was pressed.
     pub(super) fn pressed(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// Looks on at one run.
+/// Watches one run.
 pub(super) struct Onlooker {
     bar: ProgressBar,
     interrupt: Interrupt,
-    /// When simulated time 0 was, if simulated time must not run ahead of the clock.
+    /// Real time of the start, if the run must be no faster than real time.
     began: Option<Instant>,
 }
 
 impl Onlooker {
-    /// Of the run named so.
+    /// Makes the watcher of a run; `name` is in its line.
     pub(super) fn new(name: &str, realtime: bool, interrupt: Interrupt) -> Self {
-        // Nothing is drawn where standard error is no terminal.
+        // Draws nothing if standard error is no terminal.
         let bar = ProgressBar::new(TICKS);
         let style = ProgressStyle::with_template("{prefix:.bold} {bar:24.cyan/black.dim} {msg}");
         if let Ok(style) = style {
@@ -64,7 +64,7 @@ impl Onlooker {
         }
     }
 
-    /// Takes the line away.
+    /// Removes the line.
     pub(super) fn finish(&self) {
         self.bar.finish_and_clear();
     }
@@ -97,7 +97,7 @@ fn message(progress: &Progress) -> String {
     )
 }
 
-/// The status, and loops where there is anything to say of them.
+/// Returns the status, and loops if there are any.
 fn doing(progress: &Progress) -> String {
     let mut words = wording::status(progress.status);
     let loops = progress.loops;
@@ -119,7 +119,7 @@ mod tests {
     use host_sim::trial::Progress;
 
     #[test]
-    fn the_line_tells_coverage_time_distance_and_status() {
+    fn the_line_has_coverage_time_distance_and_status() {
         let progress = Progress {
             time_ms: 83_400,
             coverage: 0.4567,

@@ -1,4 +1,4 @@
-//! `host-sim solve`: files in, field and answer out.
+//! `host-sim solve`: solves one window from a file; prints the answer and writes the field.
 
 use std::fs;
 use std::path::Path;

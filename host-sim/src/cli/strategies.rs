@@ -71,7 +71,8 @@ pub(super) fn check(strategy: &str, check_field: bool, faults: bool) -> Result<(
     match strategy {
         "tdbvp" if check_field => {
             bail!(
-                "--check-field has no reference for --strategy tdbvp, which charges rails; leave it out"
+                "--check-field has no reference for --strategy tdbvp, which charges rails; \
+                 leave --check-field out"
             )
         }
         name if on_device(name).is_some() => Ok(()),

@@ -1,4 +1,4 @@
-//! `host-sim worlds`: the built-in ones, with size and starts.
+//! `host-sim worlds`: lists the built-in worlds with size and starts.
 
 use anyhow::Result;
 use serde::Serialize;
@@ -7,7 +7,7 @@ use host_sim::world::{World, builtins};
 
 use super::say;
 
-/// A built-in world, in the order of the JSON line.
+/// A built-in world; the fields are in the order of the JSON line.
 #[derive(Serialize)]
 struct Listing {
     name: &'static str,
@@ -17,7 +17,7 @@ struct Listing {
     starts: Vec<[f64; 3]>,
 }
 
-/// Lists them.
+/// Lists the worlds.
 pub(super) fn run(json: bool) -> Result<()> {
     let listings: Vec<Listing> = builtins()
         .iter()

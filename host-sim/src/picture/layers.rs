@@ -25,7 +25,7 @@ pub(super) fn map(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
             let colour = match map.get(x, y) {
                 MapCell::Unknown => palette::UNKNOWN,
                 MapCell::Free if on_grid => palette::GRID,
-                MapCell::Free if map.is_marked(x, y) => palette::MARK,
+                MapCell::Free if map.is_in_closed_region(x, y) => palette::MARK,
                 MapCell::Free => palette::FREE,
                 MapCell::Obstacle => palette::OBSTACLE,
                 MapCell::NegativeObstacle => palette::NEGATIVE,

@@ -8,7 +8,7 @@ use super::canvas::{Canvas, Spot};
 use super::layers::{links, skeleton_middle};
 use super::{Frame, Scene, palette};
 use crate::report::GridMap;
-use crate::trial::route::{Route, middle_m};
+use crate::trial::planned_path::{PlannedPath, middle_m};
 
 /// Side of the tractor point's square, pixels.
 const TRACTOR_PX: f32 = 10.0;
@@ -17,12 +17,12 @@ const SHADES: u8 = 8;
 
 /// Draws the visited skeleton cells, the oldest first, so that the newest lie on top.
 pub(super) fn rails(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
-    let Some((oldest, newest)) = map.dates() else {
+    let Some((oldest, newest)) = map.visit_stamp_span() else {
         return;
     };
     let span = f32::from(newest - oldest).max(1.0);
     let shade = |(x, y): (i32, i32)| {
-        let date = map.date(2 * x, 2 * y)?;
+        let date = map.visit_stamp(2 * x, 2 * y)?;
         let age = f32::from(newest - date) / span;
         Some((age * f32::from(SHADES - 1)).round() as u8)
     };
@@ -38,17 +38,21 @@ pub(super) fn rails(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
 }
 
 /// Draws the path to the goal, and tractor point and shield of the loop that is being closed.
-pub(super) fn route(canvas: &mut Canvas, frame: &Frame, route: &Route) {
+pub(super) fn planned_path(canvas: &mut Canvas, frame: &Frame, planned_path: &PlannedPath) {
     let spot = |place| {
         let [x_m, y_m] = middle_m(place);
         frame.metres(x_m, y_m)
     };
-    let spots: Vec<Spot> = route.road.iter().map(|place| spot(*place)).collect();
+    let spots: Vec<Spot> = planned_path
+        .cells
+        .iter()
+        .map(|place| spot(*place))
+        .collect();
     path(canvas, &spots);
-    if let Some(ends) = route.shield {
+    if let Some(ends) = planned_path.shield {
         shield(canvas, ends.map(spot));
     }
-    if let Some(place) = route.tractor {
+    if let Some(place) = planned_path.tractor {
         tractor(canvas, spot(place));
     }
 }
@@ -99,26 +103,26 @@ pub(super) type Key = (fn(&mut Canvas, Spot), &'static str);
 /// Returns the keys of the marks in a scene.
 pub(super) fn keys(scene: &Scene<'_>) -> Vec<Key> {
     let mut keys: Vec<Key> = Vec::new();
-    if scene.map.has_marks() {
+    if scene.map.has_closed_regions() {
         keys.push((
             |canvas, spot| patch(canvas, spot, palette::MARK),
             "closed region",
         ));
     }
-    if scene.map.dates().is_some() {
+    if scene.map.visit_stamp_span().is_some() {
         keys.push((age_key, "rail, newest to oldest"));
     }
-    let route = scene.route;
-    if route.is_some_and(|route| !route.road.is_empty()) {
+    let planned_path = scene.planned_path;
+    if planned_path.is_some_and(|planned_path| !planned_path.cells.is_empty()) {
         keys.push((
             |canvas, (x, y)| path(canvas, &[(x - 13.0, y), (x + 13.0, y)]),
             "path to the goal",
         ));
     }
-    if route.is_some_and(|route| route.tractor.is_some()) {
+    if planned_path.is_some_and(|planned_path| planned_path.tractor.is_some()) {
         keys.push((tractor, "tractor point"));
     }
-    if route.is_some_and(|route| route.shield.is_some()) {
+    if planned_path.is_some_and(|planned_path| planned_path.shield.is_some()) {
         keys.push((
             |canvas, (x, y)| shield(canvas, [(x, y - 8.0), (x, y + 8.0)]),
             "shield",

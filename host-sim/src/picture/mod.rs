@@ -19,8 +19,8 @@ mod text;
 use crate::metrics::CellArea;
 use crate::report::GridMap;
 use crate::report::tum::Stamped;
+use crate::trial::planned_path::PlannedPath;
 use crate::trial::relief::Relief;
-use crate::trial::route::Route;
 use crate::trial::snapshot::Window;
 use canvas::{Canvas, Spot};
 use panels::Strip;
@@ -68,7 +68,7 @@ pub struct Scene<'a> {
     /// Residual frontiers, metres.
     pub residue: &'a [(f64, f64)],
     /// Path to the goal, tractor point and shield.
-    pub route: Option<&'a Route>,
+    pub planned_path: Option<&'a PlannedPath>,
     /// Places where loops were given up, metres.
     pub given_up: &'a [(f64, f64)],
     /// The true ground, in an uneven world.
@@ -230,8 +230,8 @@ fn robots_map(canvas: &mut Canvas, frame: &Frame, scene: &Scene<'_>) {
     }
     layers::path(canvas, frame, scene.path);
     layers::residue(canvas, frame, scene.residue);
-    if let Some(route) = scene.route {
-        loops::route(canvas, frame, route);
+    if let Some(planned_path) = scene.planned_path {
+        loops::planned_path(canvas, frame, planned_path);
     }
     loops::given_up(canvas, frame, scene.given_up);
     layers::ends(canvas, frame, scene.path);

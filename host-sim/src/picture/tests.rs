@@ -6,8 +6,8 @@ use crate::metrics::{Footing, GroundTruth};
 use crate::report::tum::Stamped;
 use crate::report::{GridMap, MapCell};
 use crate::robot::{Limits, RADIUS_M};
+use crate::trial::planned_path::PlannedPath;
 use crate::trial::relief::Relief;
-use crate::trial::route::Route;
 use crate::trial::snapshot::{Window, WindowCell};
 use crate::world::World;
 
@@ -29,7 +29,7 @@ fn scene_of(map: &GridMap) -> Scene<'_> {
         window: None,
         relief: None,
         residue: &[],
-        route: None,
+        planned_path: None,
         given_up: &[],
         ground: None,
         room_for: None,
@@ -251,15 +251,15 @@ fn pixels_and_spots_agree() {
 fn loops_and_rails_are_drawn_at_their_places() {
     let (mut map, path, _) = room();
     // Tile (-1, 0): its lower left region is closed, and its two lower places have dates.
-    map.overlay((-1, 0), 1, [3, 9, 0, 0]);
-    let route = Route {
+    map.set_strategy_data((-1, 0), 1, [3, 9, 0, 0]);
+    let planned_path = PlannedPath {
         tractor: Some((-40, -20)),
         shield: Some([(20, -30), (20, -20)]),
-        road: vec![(30, -10), (30, 0)],
+        cells: vec![(30, -10), (30, 0)],
     };
     let scene = Scene {
         path: &path[..1],
-        route: Some(&route),
+        planned_path: Some(&planned_path),
         given_up: &[(-2.0, -3.0)],
         ..scene_of(&map)
     };

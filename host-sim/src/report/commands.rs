@@ -1,7 +1,7 @@
-//! `commands.csv`: what was sensed of the pose and what was answered, one line a step.
+//! `commands.csv`: estimated pose and command, one line a step.
 //!
-//! Columns: `time_s, x_m, y_m, yaw_rad` (the estimate), `v_mps, w_radps` (the command), `heading_rad` (the direction that
-//! the field asks for), `cycles` (solver), `status`.
+//! Columns: `time_s, x_m, y_m, yaw_rad` (the estimate), `v_mps, w_radps` (the command),
+//! `heading_rad` (the field's direction), `cycles` (of the solver), `status`.
 
 use core::fmt::Write as _;
 
@@ -9,10 +9,10 @@ use fieldline_protocol::message::Command;
 
 use super::tum::Stamped;
 
-/// The columns' names.
+/// Names of the columns.
 pub const HEADER: &str = "time_s,x_m,y_m,yaw_rad,v_mps,w_radps,heading_rad,cycles,status";
 
-/// The file's text.
+/// Returns the text of the file.
 #[must_use]
 pub fn text<'a>(rows: impl Iterator<Item = (&'a Stamped, &'a Command)>) -> String {
     let mut out = format!("{HEADER}\n");

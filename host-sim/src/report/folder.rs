@@ -1,4 +1,4 @@
-//! The folder of a run: one call writes every file, and an error names the file and the remedy.
+//! The folder of a run. Errors name the file and the remedy.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,15 +6,15 @@ use std::path::{Path, PathBuf};
 use super::{Report, commands, ros_map, tum};
 use crate::trial::Record;
 
-/// The folder of the series of pictures.
+/// Folder of the pictures during the run.
 const SNAPSHOTS: &str = "snapshots";
 
-/// Why a file of the run could not be written.
+/// A file of the run could not be written.
 #[derive(Debug)]
 pub struct WriteError {
     /// The file or folder.
     pub path: PathBuf,
-    /// What the system said.
+    /// The system's error.
     pub source: std::io::Error,
 }
 
@@ -29,10 +29,10 @@ impl core::fmt::Display for WriteError {
     }
 }
 
-// No source: the message has it already.
+// No source: the message includes it.
 impl core::error::Error for WriteError {}
 
-/// Make `folder` if needed and prove that it takes files, before a run is spent on it.
+/// Makes `folder` and checks that files can be written to it.
 ///
 /// # Errors
 /// As [`WriteError`].
@@ -42,11 +42,11 @@ pub fn prepare(folder: &Path) -> Result<(), WriteError> {
         source,
     })?;
     remove_snapshots(folder)?;
-    // An empty report is what an interrupted run leaves, instead of the previous run's.
+    // If the run is killed, the folder has an empty report instead of an older run's.
     put(folder, "report.json", b"")
 }
 
-/// Write every file of a run into `folder`.
+/// Writes every file of a run into `folder`.
 ///
 /// # Errors
 /// As [`WriteError`], at the first file that cannot be written.
@@ -76,7 +76,7 @@ pub fn write(
     put(folder, "run.png", picture)
 }
 
-/// Write the series of pictures as `snapshots/001.png` and on; without one there is no such folder.
+/// Writes pictures as `snapshots/001.png` and on; makes no folder if there are none.
 ///
 /// # Errors
 /// As [`WriteError`], at the first file that cannot be written.
@@ -95,7 +95,7 @@ pub fn write_snapshots(
     Ok(())
 }
 
-/// The series of an earlier run must not be taken for part of this one; what else lies there stays.
+/// Removes the pictures of an earlier run. Other files in the folder stay.
 fn remove_snapshots(folder: &Path) -> Result<(), WriteError> {
     let folder = folder.join(SNAPSHOTS);
     for number in 1.. {
@@ -106,7 +106,7 @@ fn remove_snapshots(folder: &Path) -> Result<(), WriteError> {
             Err(source) => return Err(WriteError { path, source }),
         }
     }
-    // Only an empty folder goes.
+    // Fails if the folder is not empty.
     let _ = fs::remove_dir(&folder);
     Ok(())
 }
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_cannot_be_is_named() {
+    fn a_folder_that_cannot_be_made_is_named() {
         let file = tempfile::NamedTempFile::new().unwrap();
         let error = prepare(&file.path().join("sub")).unwrap_err().to_string();
         assert!(

@@ -1,26 +1,27 @@
 //! The robot's map as a rectangle of cells, put together from its tiles.
 //!
-//! Cells of 10 cm, row by row from the least y; `origin` is the map coordinate of the first cell, in the odometry frame. What a
-//! strategy knows of places lies over it: where loops were closed, and when places were visited.
+//! Cells of 10 cm, row by row from the least y; `origin` is the map coordinate of the first cell,
+//! in the odometry frame. Each tile also has the strategy's data: closed regions (one bit for 8 × 8
+//! cells) and visit stamps (one for 16 × 16 cells).
 
 use std::collections::BTreeMap;
 
 use fieldline_protocol::message::{TILE_STAMPS, Tile};
 
-/// Cells on a tile's side.
+/// Cells along a tile.
 pub const TILE_SIDE: i32 = 32;
 /// Side of a cell, metres.
 pub const CELL_M: f64 = 0.1;
 
-/// What the robot holds a cell for.
+/// Class of a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MapCell {
     /// Never measured.
     #[default]
     Unknown,
-    /// A beam went through.
+    /// A beam passed.
     Free,
-    /// A beam came back.
+    /// A beam ended.
     Obstacle,
     /// A hole or cliff.
     NegativeObstacle,
@@ -39,12 +40,12 @@ pub struct GridMap {
     pub height: usize,
     cells: Vec<MapCell>,
     skeleton: Vec<bool>,
-    /// Marks and dates of tiles that have any, as they were sent.
-    overlay: BTreeMap<(i16, i16), (u16, [u8; TILE_STAMPS])>,
+    /// Closed regions and visit stamps of tiles that have any, as sent.
+    strategy_data: BTreeMap<(i16, i16), (u16, [u8; TILE_STAMPS])>,
 }
 
 impl GridMap {
-    /// An unknown rectangle.
+    /// Makes an unknown rectangle.
     #[must_use]
     pub fn unknown(origin_x: i32, origin_y: i32, width: usize, height: usize) -> Self {
         Self {
@@ -54,11 +55,12 @@ impl GridMap {
             height,
             cells: vec![MapCell::Unknown; width * height],
             skeleton: vec![false; width * height],
-            overlay: BTreeMap::new(),
+            strategy_data: BTreeMap::new(),
         }
     }
 
-    /// The tiles side by side, cut to the known cells and a rim of one unknown cell; empty if nothing is known.
+    /// Puts tiles side by side, cut to the known cells and a rim of one unknown cell; empty if
+    /// nothing is known.
     #[must_use]
     pub fn from_tiles(tiles: &BTreeMap<(i16, i16), Tile>) -> Self {
         let span = |of: fn(&(i16, i16)) -> i16| {
@@ -75,7 +77,7 @@ impl GridMap {
         map.cropped(1)
     }
 
-    /// The cell at map coordinates; outside is unknown.
+    /// Returns the cell at map coordinates; outside it is unknown.
     #[must_use]
     pub fn get(&self, x: i32, y: i32) -> MapCell {
         self.index(x, y)
@@ -83,7 +85,7 @@ impl GridMap {
             .unwrap_or_default()
     }
 
-    /// Whether the cell at map coordinates lies on the skeleton.
+    /// Returns true if the cell at map coordinates is on the skeleton.
     #[must_use]
     pub fn on_skeleton(&self, x: i32, y: i32) -> bool {
         self.index(x, y)
@@ -91,68 +93,76 @@ impl GridMap {
             .unwrap_or(false)
     }
 
-    /// Whether a loop was closed near the cell at map coordinates.
+    /// Returns true if the cell at map coordinates is in a closed region.
     #[must_use]
-    pub fn is_marked(&self, x: i32, y: i32) -> bool {
-        let mark = part(x, y, 8);
-        self.overlaid(x, y)
-            .is_some_and(|(marks, _)| marks >> mark & 1 == 1)
+    pub fn is_in_closed_region(&self, x: i32, y: i32) -> bool {
+        self.strategy_data(x, y)
+            .is_some_and(|(regions, _)| regions >> square(x, y, 8) & 1 == 1)
     }
 
-    /// The date on which the place of a cell was last visited, the later the greater; `None` if never.
+    /// Returns the stamp of the last visit near a cell, later ones are greater; `None` if there was
+    /// none.
     #[must_use]
-    pub fn date(&self, x: i32, y: i32) -> Option<u8> {
-        let (_, dates) = self.overlaid(x, y)?;
-        dates.get(part(x, y, 16)).copied().filter(|date| *date > 0)
+    pub fn visit_stamp(&self, x: i32, y: i32) -> Option<u8> {
+        let (_, stamps) = self.strategy_data(x, y)?;
+        let stamp = stamps.get(square(x, y, 16)).copied();
+        stamp.filter(|stamp| *stamp > 0)
     }
 
-    /// The oldest and the newest date; `None` where no account is kept of visits.
+    /// Returns the oldest and the newest visit stamp; `None` if there are none.
     #[must_use]
-    pub fn dates(&self) -> Option<(u8, u8)> {
-        let dates = self.overlay.values().flat_map(|(_, dates)| *dates);
-        let visited = dates.filter(|date| *date > 0);
-        visited.fold(None, |span: Option<(u8, u8)>, date| {
-            let (oldest, newest) = span.unwrap_or((date, date));
-            Some((oldest.min(date), newest.max(date)))
+    pub fn visit_stamp_span(&self) -> Option<(u8, u8)> {
+        let stamps = self.strategy_data.values().flat_map(|(_, stamps)| *stamps);
+        let visited = stamps.filter(|stamp| *stamp > 0);
+        visited.fold(None, |span: Option<(u8, u8)>, stamp| {
+            let (oldest, newest) = span.unwrap_or((stamp, stamp));
+            Some((oldest.min(stamp), newest.max(stamp)))
         })
     }
 
-    /// Whether a loop was closed anywhere.
+    /// Returns true if there is a closed region.
     #[must_use]
-    pub fn has_marks(&self) -> bool {
-        self.overlay.values().any(|(marks, _)| *marks != 0)
+    pub fn has_closed_regions(&self) -> bool {
+        let mut tiles = self.strategy_data.values();
+        tiles.any(|(regions, _)| *regions != 0)
     }
 
-    /// Lay marks and dates over a tile.
-    pub fn overlay(&mut self, tile: (i16, i16), marks: u16, dates: [u8; TILE_STAMPS]) {
-        if marks != 0 || dates != [0; TILE_STAMPS] {
-            self.overlay.insert(tile, (marks, dates));
+    /// Sets closed regions and visit stamps of a tile.
+    pub fn set_strategy_data(
+        &mut self,
+        tile: (i16, i16),
+        closed_regions: u16,
+        visit_stamps: [u8; TILE_STAMPS],
+    ) {
+        if closed_regions != 0 || visit_stamps != [0; TILE_STAMPS] {
+            self.strategy_data
+                .insert(tile, (closed_regions, visit_stamps));
         }
     }
 
-    fn overlaid(&self, x: i32, y: i32) -> Option<(u16, [u8; TILE_STAMPS])> {
+    fn strategy_data(&self, x: i32, y: i32) -> Option<(u16, [u8; TILE_STAMPS])> {
         let tile = [x, y].map(|at| i16::try_from(at.div_euclid(TILE_SIDE)));
         let [Ok(x), Ok(y)] = tile else {
             return None;
         };
-        self.overlay.get(&(x, y)).copied()
+        self.strategy_data.get(&(x, y)).copied()
     }
 
-    /// Set a cell; outside is ignored.
+    /// Sets a cell; ignores cells outside.
     pub fn set(&mut self, x: i32, y: i32, cell: MapCell) {
         if let Some(slot) = self.index(x, y).and_then(|i| self.cells.get_mut(i)) {
             *slot = cell;
         }
     }
 
-    /// Put a cell on the skeleton; outside is ignored.
+    /// Puts a cell on the skeleton; ignores cells outside.
     pub fn set_skeleton(&mut self, x: i32, y: i32) {
         if let Some(slot) = self.index(x, y).and_then(|i| self.skeleton.get_mut(i)) {
             *slot = true;
         }
     }
 
-    /// The middles of the skeleton's cells of 20 cm that are free, metres.
+    /// Returns the middles of the skeleton's free roadmap cells of 20 cm, metres.
     pub fn rails(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let even = |least: i32, length: usize| {
             let end = least + i32::try_from(length).unwrap_or(i32::MAX - least);
@@ -164,7 +174,7 @@ impl GridMap {
             .map(|(x, y)| [x, y].map(|at| f64::from(at + 1) * CELL_M))
     }
 
-    /// Cells that are not unknown.
+    /// Counts the cells that are not unknown.
     #[must_use]
     pub fn known(&self) -> usize {
         let is_known = |cell: &&MapCell| **cell != MapCell::Unknown;
@@ -178,7 +188,7 @@ impl GridMap {
     }
 
     fn lay(&mut self, tile: &Tile) {
-        self.overlay((tile.x, tile.y), tile.closed_regions, tile.visit_stamps);
+        self.set_strategy_data((tile.x, tile.y), tile.closed_regions, tile.visit_stamps);
         let (left, bottom) = (i32::from(tile.x) * TILE_SIDE, i32::from(tile.y) * TILE_SIDE);
         for row in 0..TILE_SIDE {
             for column in 0..TILE_SIDE {
@@ -210,7 +220,7 @@ impl GridMap {
                 out.set_skeleton(x, y);
             }
         }
-        out.overlay.clone_from(&self.overlay);
+        out.strategy_data.clone_from(&self.strategy_data);
         out
     }
 
@@ -221,7 +231,7 @@ impl GridMap {
     }
 }
 
-/// Two bits a cell, row by row, least x in the low bits.
+/// Returns the class of a tile's cell: two bits a cell, row by row, least x in the low bits.
 fn cell_of(tile: &Tile, column: i32, row: i32) -> MapCell {
     let bit = 2 * (row * TILE_SIDE + column);
     let byte = tile.cells.get((bit / 8) as usize).copied().unwrap_or(0);
@@ -233,13 +243,14 @@ fn cell_of(tile: &Tile, column: i32, row: i32) -> MapCell {
     }
 }
 
-/// Which square of `side` cells of its tile a cell is in, row by row.
-fn part(x: i32, y: i32, side: i32) -> usize {
+/// Returns the number of a cell's square in its tile; squares of `side` cells, row by row.
+fn square(x: i32, y: i32, side: i32) -> usize {
     let [column, row] = [x, y].map(|at| at.rem_euclid(TILE_SIDE) / side);
     (row * (TILE_SIDE / side) + column) as usize
 }
 
-/// One bit a coarse cell of 2 × 2 cells, row by row, least x in the low bits.
+/// Returns true if a tile's cell is on the skeleton: one bit for 2 × 2 cells, row by row, least x
+/// in the low bits.
 fn skeleton_of(tile: &Tile, column: i32, row: i32) -> bool {
     let bit = (row / 2) * (TILE_SIDE / 2) + column / 2;
     let byte = tile.skeleton.get((bit / 8) as usize).copied().unwrap_or(0);
@@ -272,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn tiles_land_where_their_coordinates_say() {
+    fn tiles_are_placed_by_their_coordinates() {
         let tiles: BTreeMap<_, _> = [
             tile(-1, 0, &[(31, 6, 1), (30, 6, 2)]),
             tile(0, 0, &[(0, 6, 1), (3, 7, 3)]),
@@ -293,12 +304,12 @@ mod tests {
     }
 
     #[test]
-    fn marks_and_dates_lie_where_their_tile_does() {
+    fn closed_regions_and_visit_stamps_are_placed_by_their_tile() {
         let (_, mut known) = tile(-1, 2, &[(0, 0, 1)]);
         (known.closed_regions, known.visit_stamps) = (1 << 6, [0, 3, 9, 0]);
         let map = GridMap::from_tiles(&[((-1, 2), known)].into());
-        // Mark 6 is the third of the second row: 8 × 8 cells from (16, 8) on.
-        let marked = [
+        // Region 6 is the third of the second row: 8 × 8 cells from (16, 8) on.
+        let around = [
             (-16, 72),
             (-9, 79),
             (-17, 72),
@@ -306,18 +317,18 @@ mod tests {
             (-8, 72),
             (-16, 80),
         ];
-        let is_marked = marked.map(|(x, y)| map.is_marked(x, y));
-        assert_eq!(is_marked, [true, true, false, false, false, false]);
+        let is_in = around.map(|(x, y)| map.is_in_closed_region(x, y));
+        assert_eq!(is_in, [true, true, false, false, false, false]);
         let places = [(-32, 64), (-16, 64), (-1, 79), (-32, 80), (-1, 95), (0, 64)];
-        let dates = places.map(|(x, y)| map.date(x, y));
-        assert_eq!(dates, [None, Some(3), Some(3), Some(9), None, None]);
-        assert_eq!(map.dates(), Some((3, 9)));
-        assert!(map.has_marks() && !GridMap::default().has_marks());
-        assert_eq!(GridMap::default().dates(), None);
+        let stamps = places.map(|(x, y)| map.visit_stamp(x, y));
+        assert_eq!(stamps, [None, Some(3), Some(3), Some(9), None, None]);
+        assert_eq!(map.visit_stamp_span(), Some((3, 9)));
+        assert!(map.has_closed_regions() && !GridMap::default().has_closed_regions());
+        assert_eq!(GridMap::default().visit_stamp_span(), None);
     }
 
     #[test]
-    fn nothing_known_is_an_empty_map() {
+    fn tiles_without_known_cells_are_an_empty_map() {
         let map = GridMap::from_tiles(&[tile(4, 4, &[])].into());
         assert_eq!((map.width, map.height, map.known()), (0, 0, 0));
         assert_eq!(GridMap::from_tiles(&BTreeMap::new()), map);

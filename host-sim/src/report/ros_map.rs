@@ -1,15 +1,16 @@
-//! The map in the ROS `map_server` convention: a grey PGM, greatest y first, and the YAML that places it.
+//! The map in the ROS `map_server` convention: a grey PGM, greatest y first, and its YAML file.
 //!
-//! Trinary: 254 free, 0 occupied (obstacles of both kinds), 205 unknown; `origin` is the outer corner of the least cell.
+//! Trinary: 254 free, 0 occupied (obstacles of both kinds), 205 unknown. `origin` is the outer
+//! corner of the cell with least x and y.
 
 use core::fmt::Write as _;
 
 use super::grid_map::{CELL_M, GridMap, MapCell};
 
-/// Bytes of `map.pgm`: binary PGM (P5), 8 bits.
+/// Returns the bytes of `map.pgm`: binary PGM (P5), 8 bits.
 #[must_use]
 pub fn pgm(map: &GridMap) -> Vec<u8> {
-    // A picture has at least one pixel: an empty map is one unknown cell.
+    // A picture has at least one pixel, so an empty map is one unknown cell.
     let (width, height) = (map.width.max(1), map.height.max(1));
     let mut out = format!("P5\n{width} {height}\n255\n").into_bytes();
     for row in (0..height as i32).rev() {
@@ -19,7 +20,7 @@ pub fn pgm(map: &GridMap) -> Vec<u8> {
     out
 }
 
-/// Text of `map.yaml`, whose picture is `image`.
+/// Returns the text of `map.yaml`; `image` is the name of the picture.
 #[must_use]
 pub fn yaml(map: &GridMap, image: &str) -> String {
     let corner = |cell: i32| f64::from(cell) * CELL_M;
@@ -76,7 +77,7 @@ mod tests {
         assert_eq!(pgm(&GridMap::default()), b"P5\n1 1\n255\n\xcd");
     }
 
-    /// What a reader with these thresholds makes of the greys is what was meant.
+    /// A reader with these thresholds gets the classes back.
     #[test]
     fn greys_fall_on_the_right_side_of_the_thresholds() {
         let occupancy = |grey: u8| (255.0 - f64::from(grey)) / 255.0;

@@ -158,7 +158,8 @@ mod tests {
         assert_eq!(report.headline(), "office · frontier · seed 1");
         assert_eq!(
             report.to_text(),
-            "office · frontier · seed 1: explored, 99.1 % of 200 m² known after 5:12 min and 145.2 m\n\
+            "office · frontier · seed 1: \
+             explored, 99.1 % of 200 m² known after 5:12 min and 145.2 m\n\
              \x20 coverage  90 % after 3:21, 99 % after 5:00; driven again 31 %\n\
              \x20 safety    0 collisions, 0 falls, 0 tips; least clearance 0.080 m\n\
              \x20 planner   3125 steps, 0.41 ms each by loopback (p99 1.20)\n\

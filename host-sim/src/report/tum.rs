@@ -1,11 +1,12 @@
-//! Trajectories in the TUM format: `timestamp tx ty tz qx qy qz qw`, one pose a line, seconds and metres.
+//! Trajectories in the TUM format: `timestamp tx ty tz qx qy qz qw`, one pose a line, seconds and
+//! metres.
 //!
-//! The orientation is the unit quaternion of yaw about z, then pitch about the new y, then roll about the new x:
-//! `q = q_z(yaw) q_y(pitch) q_x(roll)`.
+//! The orientation is the unit quaternion of yaw about z, then pitch about the new y, then roll
+//! about the new x: `q = q_z(yaw) q_y(pitch) q_x(roll)`.
 
 use core::fmt::Write as _;
 
-/// A pose at a time, in the frame of the map.
+/// A pose with its time, in the frame of the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stamped {
     /// Simulated milliseconds.
@@ -24,7 +25,7 @@ pub struct Stamped {
     pub yaw_rad: f64,
 }
 
-/// The file's text, one line for each pose.
+/// Returns the text of the file, one line for each pose.
 #[must_use]
 pub fn text(poses: &[Stamped]) -> String {
     let mut out = String::with_capacity(poses.len() * 80);
@@ -81,7 +82,7 @@ mod tests {
         );
     }
 
-    /// The quaternion turns the forward axis to where yaw and pitch say that the robot looks.
+    /// The quaternion turns the forward axis to the direction given by yaw and pitch.
     #[test]
     fn the_quaternion_turns_the_forward_axis() {
         let pose = Stamped {

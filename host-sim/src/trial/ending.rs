@@ -1,4 +1,4 @@
-//! How a run ends, and the words for it.
+//! Ends of a run, and their words in the report.
 
 use fieldline_protocol::message::{Fault, Finish};
 
@@ -6,27 +6,27 @@ use super::wording;
 use crate::link::LinkError;
 use crate::sim::Loss;
 
-/// How a run ended.
+/// End of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Ending {
-    /// The planner says that it is done.
+    /// The planner finished.
     Finished(Finish),
-    /// The planner says that it cannot go on.
+    /// The planner cannot go on.
     Fault(Fault),
-    /// The link failed; the robot stopped by its own watchdog.
+    /// The link failed; the robot's own watchdog stopped it.
     Link(LinkError),
     /// The robot fell or tipped over.
     Lost(Loss),
-    /// The simulated time ran out.
+    /// The simulated time limit was reached.
     TimeLimit,
-    /// The robot neither moved nor turned for too long while it said that it explored.
+    /// The planner said that it explored, and the robot did not move or turn for a minute.
     Frozen,
     /// The user stopped it.
     Interrupted,
 }
 
 impl Ending {
-    /// `finished`, `fault`, `lost`, `time-limit`, `frozen` or `interrupted`.
+    /// Returns `finished`, `fault`, `lost`, `time-limit`, `frozen` or `interrupted`.
     #[must_use]
     pub fn status(&self) -> &'static str {
         match self {
@@ -39,7 +39,7 @@ impl Ending {
         }
     }
 
-    /// Which finish or fault; one word, from a closed list.
+    /// Returns the kind of finish or fault: one word from a closed list.
     #[must_use]
     pub fn reason(&self) -> &'static str {
         match self {
@@ -59,25 +59,28 @@ impl Ending {
         }
     }
 
-    /// One sentence for a person: what happened and what to do about it; `None` where all is well.
+    /// Returns a sentence with the cause and the remedy; `None` if everything is explored.
     #[must_use]
     pub fn advice(&self) -> Option<String> {
         let text = match self {
             Self::Finished(Finish::Explored) => return None,
-            Self::Finished(Finish::BoxedIn) => {
-                "the robot has no free way out of where it stands; start it elsewhere with --start or robots:".into()
-            }
+            Self::Finished(Finish::BoxedIn) => "the robot has no free way out of its place; \
+                 choose another start with --start or robots:"
+                .into(),
             Self::Finished(Finish::Stopped) => "the device was told to stop".into(),
             Self::Fault(why) => fault_advice(*why).into(),
             Self::Link(why) => why.to_string(),
-            Self::Lost(Loss::Fell) => {
-                "a wheel lost the ground; look at run.png, and at the failing limits in report.json".into()
-            }
-            Self::Lost(Loss::Tipped) => {
-                "the ground was too steep to stand on; look at run.png, and at the failing limits in report.json".into()
+            Self::Lost(why) => {
+                let what = match why {
+                    Loss::Fell => "a wheel lost the ground",
+                    Loss::Tipped => "the ground was too steep to stand on",
+                };
+                format!("{what}; see run.png, and the failing limits in report.json")
             }
             Self::TimeLimit => "the simulated time ran out; allow more with --time-limit".into(),
-            Self::Frozen => "the robot neither moved nor turned for a minute while exploring; look at run.png".into(),
+            Self::Frozen => "the robot did not move or turn for a minute while exploring; \
+                 see run.png"
+                .into(),
             Self::Interrupted => "stopped by the user".into(),
         };
         Some(text)
@@ -87,14 +90,15 @@ impl Ending {
 fn fault_advice(fault: Fault) -> &'static str {
     match fault {
         Fault::StartBlocked => {
-            "the start pose lies in an obstacle; move it in the world's robots: or choose another with --start"
+            "the start pose lies in an obstacle; \
+             change robots: of the world, or choose another --start"
         }
-        Fault::MapFull => "the device's map is full; a larger image or a smaller world is needed",
+        Fault::MapFull => "the device's map is full; use a larger image or a smaller world",
         Fault::OutOfBox => {
             "the world does not fit the map's box; choose its shape with --map-shape"
         }
-        Fault::BadObservation => "the device refused an observation that does not match its lasers",
-        Fault::Stuck => "the robot did not move although commanded; look at run.png",
+        Fault::BadObservation => "an observation did not match the lasers of the start message",
+        Fault::Stuck => "the robot did not move although it was commanded to; see run.png",
     }
 }
 

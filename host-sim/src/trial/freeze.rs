@@ -1,14 +1,15 @@
-//! Notices a robot that says it explores and does nothing.
+//! Detects a robot that does not move while its planner says that it explores.
 //!
-//! Frozen: for [`PATIENCE_MS`] of exploring, the true pose stayed within [`MOVED_M`] and [`TURNED_RAD`] of where it was.
+//! The robot is frozen if its true pose stays within [`MOVED_M`] and [`TURNED_RAD`] for
+//! [`FROZEN_AFTER_MS`] of exploring.
 
 use crate::report::tum::Stamped;
 
-/// Simulated time without motion that counts as frozen, milliseconds.
-pub const PATIENCE_MS: u32 = 60_000;
-/// A robot that went this far has moved, metres.
+/// Simulated time without motion after which the robot is frozen, milliseconds.
+pub const FROZEN_AFTER_MS: u32 = 60_000;
+/// Distance that counts as motion, metres.
 pub const MOVED_M: f64 = 0.1;
-/// A robot that turned this far has moved, radians.
+/// Angle that counts as motion, radians.
 pub const TURNED_RAD: f64 = 0.1;
 
 /// The last pose from which the robot has not moved.
@@ -18,14 +19,14 @@ pub struct FreezeDetector {
 }
 
 impl FreezeDetector {
-    /// Take a step's true pose; whether the robot is frozen now.
+    /// Takes a step's true pose; returns true if the robot is frozen.
     pub fn step(&mut self, pose: &Stamped, exploring: bool) -> bool {
         let held = self.anchor.filter(|a| exploring && !moved(a, pose));
         let Some(anchor) = held else {
             self.anchor = Some(*pose);
             return false;
         };
-        pose.time_ms.saturating_sub(anchor.time_ms) >= PATIENCE_MS
+        pose.time_ms.saturating_sub(anchor.time_ms) >= FROZEN_AFTER_MS
     }
 }
 
@@ -38,10 +39,10 @@ fn moved(a: &Stamped, b: &Stamped) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{FreezeDetector, PATIENCE_MS};
+    use super::{FROZEN_AFTER_MS, FreezeDetector};
     use crate::report::tum::Stamped;
 
-    /// The first time at which the detector fires, of poses 100 ms apart.
+    /// Returns the first time at which the detector fires; poses come every 100 ms.
     fn fires(pose_at: impl Fn(u32) -> (f64, f64), exploring: impl Fn(u32) -> bool) -> Option<u32> {
         let mut detector = FreezeDetector::default();
         (0..3_000).map(|i| i * 100).find(|&time_ms| {
@@ -57,25 +58,25 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_stands_is_frozen_after_a_minute() {
-        assert_eq!(fires(|_| (0.0, 0.0), |_| true), Some(PATIENCE_MS));
+    fn a_robot_at_rest_is_frozen_after_a_minute() {
+        assert_eq!(fires(|_| (0.0, 0.0), |_| true), Some(FROZEN_AFTER_MS));
     }
 
     #[test]
     fn trembling_is_not_moving() {
         let tremble = |t: u32| (0.04 * f64::from(t / 100 % 2), 0.05 * f64::from(t / 100 % 2));
-        assert_eq!(fires(tremble, |_| true), Some(PATIENCE_MS));
+        assert_eq!(fires(tremble, |_| true), Some(FROZEN_AFTER_MS));
     }
 
     #[test]
-    fn creeping_turning_and_pausing_are_fine() {
+    fn a_robot_that_creeps_turns_or_pauses_is_not_frozen() {
         assert_eq!(fires(|t| (f64::from(t) * 2e-6, 0.0), |_| true), None);
         assert_eq!(fires(|t| (0.0, f64::from(t) * 2e-5), |_| true), None);
         assert_eq!(fires(|_| (0.0, 0.0), |t| t % 50_000 != 0), None);
     }
 
     #[test]
-    fn half_a_turn_across_pi_is_a_turn() {
+    fn angles_are_compared_across_pi() {
         let flip = |t: u32| {
             (
                 0.0,
@@ -88,8 +89,8 @@ mod tests {
         };
         assert_eq!(
             fires(flip, |_| true),
-            Some(PATIENCE_MS),
-            "0.08 rad across the cut is no motion"
+            Some(FROZEN_AFTER_MS),
+            "0.08 rad across pi is no motion"
         );
     }
 }

@@ -1,7 +1,8 @@
-//! The planner's map, kept on the host from the same observations.
+//! The host's copy of the planner's map, made from the same observations.
 //!
-//! The planner is deterministic, so the host can know what the device knows at every step without reading it over the
-//! wire. At the end of a run the device's tiles are compared with it, cell for cell.
+//! The planner is deterministic, so the copy equals the device's map at every step and nothing need
+//! be read over the wire. At the end of a run it is compared with the device's tiles, cell for
+//! cell.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +15,7 @@ use fieldline_protocol::message::{Observation, Start, Status, Tile};
 use super::relief::Relief;
 use super::snapshot::Window;
 
-/// The map that a device must have.
+/// The copy of a device's map.
 #[derive(Debug)]
 pub struct Mirror {
     /// `None` if the device refuses the session's parameters. The map then stays empty.
@@ -24,7 +25,7 @@ pub struct Mirror {
 }
 
 impl Mirror {
-    /// The empty map of a session.
+    /// Makes the empty map of a session.
     #[must_use]
     pub fn new(start: &Start) -> Self {
         let config = convert::config(start, None).ok();
@@ -36,7 +37,8 @@ impl Mirror {
         Self { config, map, pose }
     }
 
-    /// Enter an observation to which the device answered with `status`; one that holds still does not plan.
+    /// Enters an observation that the device answered with `status`. A device that is idle, paused
+    /// or stopped enters none.
     pub fn observe(&mut self, observation: &Observation, status: Status) {
         let held = matches!(
             status,
@@ -55,22 +57,24 @@ impl Mirror {
         }
     }
 
-    /// Whether a cell has been measured.
+    /// Returns true if a cell has been measured.
     #[must_use]
     pub fn is_known(&self, cell: Cell) -> bool {
         self.map.class(cell) != Class::Unknown
     }
 
-    /// Heights and preferences in a window; `None` where the planner takes all ground for flat.
+    /// Returns heights and preferences in a window; `None` on flat ground.
     #[must_use]
     pub fn relief(&self, window: &Window) -> Option<Relief> {
         let terrain = self.config.as_ref()?.ground.as_ref()?;
         Some(Relief::of(&self.map.heights(), terrain, &self.pose, window))
     }
 
-    /// Whether these tiles are this map: all of it, and nothing else. On uneven ground the planner also gives up ground that it never
-    /// got to see, or trusts it, and the observations alone do not tell when: what it holds for a negative obstacle, what is unknown here and
-    /// what it trusts though it is negative here is not compared.
+    /// Returns true if these tiles are this map, complete and with nothing else.
+    ///
+    /// On uneven ground the planner also classifies cells that it never sees, and the observations
+    /// alone do not determine when. So three kinds of cells are not compared: negative obstacles of
+    /// the device, cells unknown here, and cells free on the device and negative here.
     #[must_use]
     pub fn equals(&self, tiles: &BTreeMap<(i16, i16), Tile>) -> bool {
         let reach = |of: fn(&(i16, i16)) -> i16| {
@@ -96,7 +100,8 @@ impl Mirror {
     }
 }
 
-/// Whether four cells of a device on uneven ground may be what they are, where these are ours.
+/// Returns true if four cells of a device on uneven ground, `theirs`, are allowed by the copy's,
+/// `ours`.
 const fn may_be(ours: u8, theirs: u8) -> bool {
     const LOW: u8 = 0x55;
     let known = (ours | ours >> 1) & LOW;
@@ -144,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn it_knows_what_the_lasers_saw() {
+    fn cells_that_the_lasers_saw_are_known() {
         let (mirror, _) = seen_from_the_start();
         // The office's start is at (12, 7) in the corridor.
         assert!(mirror.is_known(Cell { x: 130, y: 70 }));
@@ -152,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn one_changed_cell_or_one_lost_tile_is_noticed() {
+    fn one_changed_cell_or_one_lost_tile_is_a_difference() {
         let (mirror, tiles) = seen_from_the_start();
         assert!(tiles.len() > 3 && mirror.equals(&tiles));
         let mut changed = tiles.clone();
@@ -165,8 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn on_uneven_ground_a_device_may_give_up_what_it_knows_and_trust_what_is_negative_and_no_more()
-    {
+    fn on_uneven_ground_a_device_may_add_negative_cells_and_clear_them_and_no_more() {
         let classes = [
             Class::Unknown,
             Class::Free,
@@ -176,20 +180,20 @@ mod tests {
         for (place, ours) in (0..4).flat_map(|place| classes.map(|ours| (place, ours))) {
             for theirs in classes {
                 let at = |class: Class| (class as u8) << (2 * place);
-                let is_told = ours == theirs
+                let allowed = ours == theirs
                     || ours == Class::Unknown
                     || theirs == Class::Negative
                     || (ours == Class::Negative && theirs == Class::Free);
                 // The cells beside it are the same in both.
                 let beside = 0b01_10_11_01 & !(0b11 << (2 * place));
                 let may = may_be(beside | at(ours), beside | at(theirs));
-                assert_eq!(may, is_told, "{ours:?} {theirs:?} {place}");
+                assert_eq!(may, allowed, "{ours:?} {theirs:?} {place}");
             }
         }
     }
 
     #[test]
-    fn a_paused_device_learns_nothing() {
+    fn a_paused_device_enters_nothing() {
         let world = World::builtin("office").unwrap();
         let mut sim = Simulator::new(&world, SimConfig::default()).unwrap();
         let mut mirror = Mirror::new(&sim.start_message(Strategy::Frontier, (20, 20)));

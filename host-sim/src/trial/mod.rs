@@ -1,8 +1,9 @@
-//! One run: sense, ask, drive, until something ends it.
+//! One run: observe, plan, drive, until something ends it.
 //!
-//! The loop knows neither what plans (any [`Link`]: a device on a wire, a direct call, a host-only baseline) nor what
-//! drives (any [`Body`]). It is lockstep: simulated time passes only in [`Body::drive`], so that the commands do not depend
-//! on how long an answer takes; the wall clock is only measured. Same link, same body, same seed: same record.
+//! The planner is any [`Link`] (a device on a wire, a direct call, a baseline on the host); the
+//! robot is any [`Body`]. The loop is lockstep: simulated time passes only in [`Body::drive`], so
+//! commands do not depend on how long the planner takes. The same link, body and seed give the same
+//! record, except for measured times.
 
 mod account;
 mod body;
@@ -11,9 +12,9 @@ pub mod freeze;
 pub mod mirror;
 pub mod mission;
 pub mod oracle;
+pub mod planned_path;
 pub mod record;
 pub mod relief;
-pub mod route;
 pub mod series;
 pub mod shape;
 pub mod snapshot;
@@ -35,28 +36,29 @@ pub use body::Body;
 pub use ending::Ending;
 pub use record::{Record, Step};
 
-/// Time that the robot is given to come to rest after the last command, milliseconds: its watchdog's 500 ms and braking
-/// from full speed at 0.3 m/s².
+/// Time for the robot to come to rest after the last command, milliseconds: its watchdog's 500 ms,
+/// and braking from full speed at 0.3 m/s².
 const REST_MS: u32 = 3_000;
 
-/// Keeps account of what became known.
+/// Measures the coverage of a run.
 pub trait Survey {
-    /// Take an observation and what the planner answered; the fraction of the reachable world that is known now.
+    /// Takes an observation and the planner's status; returns the fraction of the explorable world
+    /// that is known now.
     fn note(&mut self, observation: &Observation, status: Status) -> f64;
 
-    /// What the ground is now in a window that the planner solved, where it heeds that.
+    /// Returns heights and preferences in a window that the planner solved; `None` on flat ground.
     fn relief(&self, _window: &Window) -> Option<Relief> {
         None
     }
 }
 
-/// Looks on, and may end the run: a progress line, a pacer, the interrupt key.
+/// Watches a run and may end it: a progress line, a pacer, the interrupt key.
 pub trait Watch {
-    /// After every step; whether to go on.
+    /// Called after every step; the answer says if the run goes on.
     fn step(&mut self, progress: &Progress) -> Flow;
 }
 
-/// What a [`Watch`] says.
+/// Answer of a [`Watch`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
     /// Go on.
@@ -65,48 +67,48 @@ pub enum Flow {
     Interrupt,
 }
 
-/// How far a run is.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// Simulated milliseconds.
     pub time_ms: u32,
-    /// Fraction of the reachable world that is known.
+    /// Fraction of the explorable world that is known.
     pub coverage: f64,
     /// Metres driven.
     pub path_m: f64,
-    /// What the planner is doing.
+    /// The planner's status.
     pub status: Status,
-    /// What became of loops.
+    /// Loops closed and given up.
     pub loops: Loops,
 }
 
-/// What stays the same during a run.
+/// Settings of a run.
 #[derive(Clone, Debug)]
 pub struct Setup {
-    /// What the device is told at the start.
+    /// The start message.
     pub start: Start,
     /// Simulated time after which the run ends, milliseconds.
     pub time_limit_ms: u32,
-    /// Compare every step's heading with that of the converged window.
+    /// Compare every heading with that of the converged window.
     pub check_field: bool,
-    /// How often map and window are read during the run, for pictures.
+    /// Number of pictures during the run; map and window are read for each.
     pub snapshots: usize,
 }
 
-/// Who takes part in a run.
+/// The parts of a run.
 #[expect(missing_debug_implementations, reason = "borrowed trait objects")]
 pub struct Cast<'a> {
-    /// What plans.
+    /// The planner.
     pub link: &'a mut dyn Link,
-    /// What drives.
+    /// The robot.
     pub body: &'a mut dyn Body,
-    /// What keeps account.
+    /// The coverage.
     pub survey: &'a mut dyn Survey,
-    /// What looks on.
+    /// The watcher.
     pub watch: &'a mut dyn Watch,
 }
 
-/// Run until something ends it. The record holds whatever was learnt, however it ended.
+/// Runs until something ends the run. The record is complete up to the end.
 pub fn run(setup: &Setup, cast: &mut Cast<'_>) -> Record {
     let mut record = Record::default();
     let mut series = Series::new(setup.snapshots);
@@ -162,7 +164,7 @@ fn explore(
     }
 }
 
-/// Whether anything ends the run after this step.
+/// Returns the reason that ends the run after this step, if there is one.
 fn ended(
     setup: &Setup,
     watch: &mut dyn Watch,
@@ -183,12 +185,12 @@ fn ended(
     }
 }
 
-/// After a broken link nobody tells the robot anything, and it drives on until its watchdog notices; otherwise it is
-/// stopped at once.
+/// Stops the robot. After a broken link it gets no command and drives on until its watchdog stops
+/// it.
 fn bring_to_rest(cast: &mut Cast<'_>, record: &Record) {
     let broken = matches!(record.ending, Ending::Link(_));
     if !broken && !matches!(record.ending, Ending::Finished(_)) {
-        // The ending stands whether or not the device hears this: its own stale limit stops it.
+        // If the device does not hear this, its own time limit stops it.
         let _ = cast.link.control(&Control::Stop);
     }
     let told = (!broken).then(Twist::default);
@@ -197,7 +199,7 @@ fn bring_to_rest(cast: &mut Cast<'_>, record: &Record) {
     }
 }
 
-/// Map, last window, residual frontiers and counters, as far as the link still answers.
+/// Reads map, last window, residual frontiers and counters, if the link still answers.
 fn read_out(cast: &mut Cast<'_>, record: &mut Record) {
     if !matches!(record.ending, Ending::Link(_))
         && let Err(error) = snapshot::read(cast.link, record)
@@ -218,7 +220,7 @@ fn check_field(
     command: &Command,
     record: &mut Record,
 ) -> Result<(), LinkError> {
-    // Without a cycle there was no window in this step: the one that could be read is an older one.
+    // A step without a cycle solved no window; the link would return an older one.
     if command.status != Status::Exploring || command.cost.cycles == 0 {
         return Ok(());
     }

@@ -1,23 +1,25 @@
 //! The converged window: q of the harmonic field, solved directly in f64.
 //!
-//! In every free cell q is the mean of its four neighbours, with 0 on obstacles and 1 on goals; the window's border is
-//! obstacle. That is a linear system whose matrix has rows of −1/4 and a diagonal of 1. It is eliminated in band form the way of
-//! Grassmann, Taksar and Heyman: a diagonal is never computed by subtraction but as the sum of what is left of its row,
-//! so that only positive numbers are added, and even a q of 1e-200 keeps its relative precision.
+//! In every free cell q is the mean of its four neighbours, with 0 on obstacles and 1 on goals;
+//! cells outside the window are obstacles. That is a linear system whose matrix has −1/4 beside a
+//! diagonal of 1. It is eliminated in band form by the method of Grassmann, Taksar and Heyman: a
+//! diagonal is the sum of the other entries of its row, never a difference. Only positive numbers
+//! are added, so even a q of 1e-200 keeps its relative precision.
 //!
-//! The heading is that of ∇q by central differences, interpolated bilinearly between cell centres as the planner does.
-//! Cost: n·w² for n free cells in a window of width w, about 14 million multiplications.
+//! The heading is that of ∇q by central differences, interpolated bilinearly between cell centres
+//! as in the planner. Cost: n·w² for n free cells in a window of width w, about 14 million
+//! multiplications.
 
 use fieldline_protocol::message::{Command, FIELD_SIDE, Pose};
 
 use super::snapshot::{Window, WindowCell};
 
 const SIDE: usize = FIELD_SIDE;
-/// Entries kept of a row beyond its diagonal: the farthest neighbour is one window row away.
+/// Entries of a row on each side of its diagonal: the farthest neighbour is one window row away.
 const BAND: usize = SIDE;
 
-/// Angle between the command's heading and that of the converged window at the robot's pose, degrees; `None` where the
-/// robot is outside the window or the field is flat there.
+/// Returns the angle between the command's heading and that of the converged window at the robot's
+/// pose, degrees; `None` if the robot is outside the window or the field is flat there.
 #[must_use]
 pub fn heading_error_deg(window: &Window, pose: &Pose, command: &Command) -> Option<f64> {
     let q = solve(&window.cells);
@@ -32,12 +34,11 @@ pub fn heading_error_deg(window: &Window, pose: &Pose, command: &Command) -> Opt
     Some(error.sin().atan2(error.cos()).abs().to_degrees())
 }
 
-/// q of every cell, row by row from the least y; cells that no goal can be reached from are 0.
-///
+/// Returns q of every cell, row by row from the least y. It is 0 in cells without a way to a goal.
 /// `cells` are the window's, `FIELD_SIDE` square.
 #[must_use]
 pub fn solve(cells: &[WindowCell]) -> Vec<f64> {
-    let unknowns = reached(cells);
+    let unknowns = connected(cells);
     let mut order = vec![None; SIDE * SIDE];
     for (i, &cell) in unknowns.iter().enumerate() {
         order[cell] = Some(i);
@@ -62,7 +63,8 @@ pub fn solve(cells: &[WindowCell]) -> Vec<f64> {
     q
 }
 
-/// Heading of ∇q at a point of the window, in cells; `None` where it is flat: in the point's own cell there must be a slope.
+/// Returns the heading of ∇q at a point of the window, in cells; `None` if the field is flat in the
+/// point's own cell.
 #[must_use]
 pub fn heading_at(q: &[f64], x: f64, y: f64) -> Option<f64> {
     let inside = |v: f64| (0.0..SIDE as f64).contains(&v);
@@ -90,7 +92,7 @@ pub fn heading_at(q: &[f64], x: f64, y: f64) -> Option<f64> {
     (gx != 0.0 || gy != 0.0).then(|| gy.atan2(gx))
 }
 
-/// Twice ∇q in a free cell that a goal can be reached from; nothing elsewhere.
+/// Returns twice ∇q in a free cell with a way to a goal; 0 in others.
 fn gradient(q: &[f64], x: isize, y: isize) -> (f64, f64) {
     let at = |x: isize, y: isize| {
         let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
@@ -107,7 +109,7 @@ fn gradient(q: &[f64], x: isize, y: isize) -> (f64, f64) {
     )
 }
 
-/// The four neighbours of a cell; `None` outside the window.
+/// Returns the four neighbours of a cell; `None` outside the window.
 fn neighbours(cell: usize) -> [Option<usize>; 4] {
     let (x, y) = (cell % SIDE, cell / SIDE);
     [
@@ -118,8 +120,8 @@ fn neighbours(cell: usize) -> [Option<usize>; 4] {
     ]
 }
 
-/// Free cells with a way to a goal, ascending.
-fn reached(cells: &[WindowCell]) -> Vec<usize> {
+/// Returns the free cells with a way to a goal, ascending.
+fn connected(cells: &[WindowCell]) -> Vec<usize> {
     let is = |cell: usize, kind| cells.get(cell) == Some(&kind);
     let mut seen = vec![false; SIDE * SIDE];
     let mut pending: Vec<usize> = (0..SIDE * SIDE)
@@ -136,7 +138,7 @@ fn reached(cells: &[WindowCell]) -> Vec<usize> {
     (0..SIDE * SIDE).filter(|&cell| seen[cell]).collect()
 }
 
-/// Weights to later and earlier unknowns, to obstacles and to goals, all positive.
+/// Weights of each unknown to other unknowns, to obstacles and to goals, all positive.
 struct System {
     /// `band[i][BAND + j − i]`: the weight from i to j.
     band: Vec<[f64; 2 * BAND + 1]>,
@@ -165,7 +167,7 @@ impl System {
         self.obstacle[i] += 1.0;
     }
 
-    /// Eliminate downwards, then substitute upwards.
+    /// Eliminates downwards, then substitutes upwards.
     fn solve(mut self) -> Vec<f64> {
         for k in 0..self.band.len() {
             let pivot = self.normalise(k);
@@ -182,7 +184,8 @@ impl System {
         q
     }
 
-    /// Divide row k by its diagonal, the sum of its weights to all but earlier unknowns, which are eliminated already.
+    /// Divides row k by its diagonal: the sum of its weights without those to earlier unknowns,
+    /// which are eliminated already. Returns its weights to later unknowns.
     fn normalise(&mut self, k: usize) -> [f64; BAND] {
         let later: f64 = self.band[k][BAND + 1..].iter().sum();
         let diagonal = later + self.obstacle[k] + self.goal[k];
@@ -196,7 +199,7 @@ impl System {
         pivot
     }
 
-    /// Replace row i's weight to k by row k's weights.
+    /// Replaces row i's weight to k by row k's weights.
     fn eliminate(&mut self, k: usize, i: usize, pivot: &[f64; BAND]) {
         let to_k = BAND + k - i;
         let weight = self.band[i][to_k];
@@ -206,7 +209,7 @@ impl System {
         for (slot, via) in self.band[i][to_k + 1..].iter_mut().zip(pivot) {
             *slot += weight * via;
         }
-        // A walk that comes back to i says nothing new: the row's weights keep their ratios without it.
+        // A walk back to i does not change the ratios of the row's weights.
         self.band[i][BAND] = 0.0;
         self.obstacle[i] += weight * self.obstacle[k];
         self.goal[i] += weight * self.goal[k];
@@ -221,7 +224,7 @@ mod tests {
         (0..SIDE * SIDE).map(|i| of(i % SIDE, i / SIDE)).collect()
     }
 
-    /// The oracle's oracle: plain relaxation until nothing changes.
+    /// Relaxes plainly until nothing changes: the reference for the direct solution.
     fn relaxed(cells: &[WindowCell]) -> Vec<f64> {
         let mut q: Vec<f64> = cells
             .iter()
@@ -259,8 +262,8 @@ mod tests {
         }
     }
 
-    /// In a corridor one cell wide every cell of the inside obeys q = (q⁻ + q⁺)/4, so that q falls by the root of
-    /// r² − 4r + 1, 2 − √3, a cell: 1e-33 at the far end, right to 12 digits.
+    /// In a corridor one cell wide every inner cell obeys q = (q⁻ + q⁺)/4. So q falls by 2 − √3, a
+    /// root of r² − 4r + 1, from cell to cell, to 1e-33 at the far end.
     #[test]
     fn the_far_end_of_a_corridor_keeps_its_digits() {
         let cells = window(|x, y| match (x, y) {

@@ -1,4 +1,4 @@
-//! What a run wrote down, step by step, and what was read from the device at its end.
+//! The record of a run: every step, and the data read from the device at the end.
 
 use std::collections::BTreeMap;
 
@@ -6,8 +6,8 @@ use fieldline_protocol::message::{
     Command, Cost, Loops, Observation, Pose, ResidualFrontier, Status, Tile,
 };
 
+use super::planned_path::PlannedPath;
 use super::relief::Relief;
-use super::route::Route;
 use super::snapshot::{Snapshot, Window};
 use super::{Ending, Progress, wording};
 use crate::link::digest::Digest;
@@ -20,52 +20,52 @@ use crate::report::{self, GridMap, Percentiles};
 /// One step.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// The pose that the planner was told.
+    /// The pose in the observation.
     pub estimate: Stamped,
     /// The true pose.
     pub truth: Stamped,
-    /// The answer.
+    /// The command.
     pub command: Command,
-    /// Microseconds until the answer.
+    /// Microseconds from observation to command.
     pub wall_us: f64,
 }
 
-/// Everything about a run.
+/// The record of a run.
 #[derive(Clone, Debug)]
 pub struct Record {
-    /// How it ended.
+    /// End of the run.
     pub ending: Ending,
     /// Every answered observation.
     pub steps: Vec<Step>,
     /// Fraction known after the last step.
     pub coverage: f64,
-    /// Metres driven, by the true pose.
+    /// Length of the true path, metres.
     pub path_m: f64,
     /// Sum of the changes of the true height from step to step, metres.
     pub height_change_m: f64,
-    /// Of the commands so far.
+    /// Digest of the commands so far.
     pub digest: Digest,
     /// The device's map.
     pub map: GridMap,
-    /// The same, as it was sent.
+    /// The device's map, as sent.
     pub tiles: BTreeMap<(i16, i16), Tile>,
     /// The last window's field.
     pub window: Option<Window>,
-    /// Where the planner was going.
-    pub route: Route,
-    /// Heights and preferences in it, where the planner heeds them.
+    /// The planner's path at the end.
+    pub planned_path: PlannedPath,
+    /// Heights and preferences in the window; `None` on flat ground.
     pub relief: Option<Relief>,
-    /// Frontiers that were left.
+    /// Residual frontiers.
     pub frontiers: Vec<ResidualFrontier>,
-    /// Map and window on the way, where that was asked for.
+    /// Map and window during the run, for pictures.
     pub snapshots: Vec<Snapshot>,
-    /// What the true ground is to the robot, in an uneven world.
+    /// The true ground, in an uneven world.
     pub ground: Option<GroundTruth>,
-    /// Angles between a step's heading and that of the converged window, where that was asked for.
+    /// Angles between headings and those of converged windows, with `check_field`.
     pub heading_errors_deg: Vec<f64>,
-    /// Both ends' counters.
+    /// Counters of the link, both ends.
     pub link_stats: LinkStats,
-    /// Why map and field could not be read, if so.
+    /// Reason why map and window could not be read, if so.
     pub read_out_error: Option<LinkError>,
 }
 
@@ -81,7 +81,7 @@ impl Default for Record {
             map: GridMap::default(),
             tiles: BTreeMap::new(),
             window: None,
-            route: Route::default(),
+            planned_path: PlannedPath::default(),
             relief: None,
             frontiers: Vec::new(),
             snapshots: Vec::new(),
@@ -94,7 +94,7 @@ impl Default for Record {
 }
 
 impl Step {
-    /// From what was sent and what came back.
+    /// Makes a step from an observation and its command.
     #[must_use]
     pub fn new(observation: &Observation, truth: Stamped, command: Command, wall_us: f64) -> Self {
         Self {
@@ -106,7 +106,7 @@ impl Step {
     }
 }
 
-/// A pose of the wire at a time.
+/// Converts a pose of the wire.
 #[must_use]
 pub fn stamped(time_ms: u32, pose: &Pose) -> Stamped {
     Stamped {
@@ -121,7 +121,7 @@ pub fn stamped(time_ms: u32, pose: &Pose) -> Stamped {
 }
 
 impl Record {
-    /// Take one more step and the coverage after it.
+    /// Adds a step and the coverage after it.
     pub fn push(&mut self, step: Step, coverage: f64) {
         if let Some(last) = self.steps.last() {
             let (dx, dy) = (
@@ -136,7 +136,7 @@ impl Record {
         self.steps.push(step);
     }
 
-    /// How far the run is.
+    /// Returns the progress after the last step.
     #[must_use]
     pub fn progress(&self) -> Progress {
         let last = self.steps.last();
@@ -149,7 +149,7 @@ impl Record {
         }
     }
 
-    /// The report's part on the ending.
+    /// Returns the report's part on the end.
     #[must_use]
     pub fn outcome(&self) -> report::Outcome {
         let residual = |frontier: &ResidualFrontier| report::ResidualFrontier {
@@ -194,7 +194,7 @@ impl Record {
         }
     }
 
-    /// The report's part on cost.
+    /// Returns the report's part on cost.
     #[must_use]
     pub fn planner(&self) -> report::Planner {
         let wall: Vec<f64> = self.steps.iter().map(|step| step.wall_us).collect();
@@ -224,7 +224,7 @@ impl Record {
         }
     }
 
-    /// The report's part on the windows.
+    /// Returns the report's part on the windows.
     #[must_use]
     pub fn field(&self) -> report::Field {
         let exhausted = |step: &&Step| step.command.cost.budget_exhausted;
@@ -237,6 +237,6 @@ impl Record {
 }
 
 fn centre_m(cell: i16) -> f64 {
-    // Rounded, so that the file shows 3.05 and not 3.0500000000000003.
+    // Rounded, so that the file has 3.05 instead of 3.0500000000000003.
     ((f64::from(cell) + 0.5) * 100.0 * report::grid_map::CELL_M).round() / 100.0
 }

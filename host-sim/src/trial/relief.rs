@@ -1,9 +1,10 @@
-//! What the ground around the robot is to the planner: heights of the last window's cells, and their preferences.
+//! Heights and preferences of the last window's cells, for pictures.
 //!
-//! Neither is on the wire. The heights are those of the mirror, which are the device's; the preferences follow from them by the
-//! planner's own code ([Maffei-UnevenGround, eqs. 3 to 5]), with the `p_diff` of the window that is shown. The device has used that of the field
-//! before it, and between 1e-10 and 1e-4 it knows whether heights count, where here they do. What a limit of the roll makes of ways across slopes is
-//! left out.
+//! Neither is on the wire. The heights are those of the host's copy of the map, which equal the
+//! device's. The preferences follow from them by the planner's own code \[Maffei20, eqs. 3 to 5\].
+//! They differ from the device's in three ways: `p_diff` is that of the window shown, the device
+//! used the field before it; heights count for every `p_diff`, the device has a hysteresis between
+//! 1e-10 and 1e-4; the effect of the roll limit is left out.
 //!
 //! Metres above the start; ε from −2 to 2.
 
@@ -17,31 +18,31 @@ use fieldline_protocol::message::FIELD_SIDE;
 use super::snapshot::{Window, WindowCell};
 use crate::report::grid_map::CELL_M;
 
-/// Heights and preferences, row by row from the least y, as the window's cells.
+/// Heights and preferences in the order of the window's cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relief {
-    /// Of the cells that were measured and lie near enough.
+    /// Heights of the cells; `None` if not measured or too far away.
     pub heights_m: Vec<Option<f32>>,
-    /// ε.
+    /// Preferences ε of the cells.
     pub preferences: Vec<f32>,
 }
 
 impl Relief {
-    /// Of a window, for a robot at `pose`.
+    /// Computes heights and preferences of a window, for a robot at `pose`.
     #[must_use]
-    pub fn of(heights: &Heights<'_>, terrain: &UnevenGround, pose: &Pose, window: &Window) -> Self {
+    pub fn of(heights: &Heights<'_>, ground: &UnevenGround, pose: &Pose, window: &Window) -> Self {
         let mut preferences = Preferences::new();
         if let Some(flatness) = p_diff(window, pose) {
             preferences.note(flatness);
         }
-        let global = preferences.global(terrain);
+        let global = preferences.global(ground);
         let indices = 0..FIELD_SIDE * FIELD_SIDE;
         let heights_m: Vec<Option<f32>> = indices
             .map(|index| heights.height_m(middle(window, index)))
             .collect();
         let epsilon = |height_m: &Option<f32>| {
             let difference_m = height_m.map(|height_m| height_m - pose.z_m);
-            preferences.of_cell(terrain, global, difference_m)
+            preferences.of_cell(ground, global, difference_m)
         };
         Self {
             preferences: heights_m.iter().map(epsilon).collect(),
@@ -50,12 +51,12 @@ impl Relief {
     }
 }
 
-/// Map cells along a window cell.
+/// Returns the number of map cells along a window cell.
 fn scale(window: &Window) -> i32 {
     (window.cell_m / CELL_M).round().max(1.0) as i32
 }
 
-/// The map cell in the middle of a window cell.
+/// Returns the map cell in the middle of a window cell.
 fn middle(window: &Window, index: usize) -> Cell {
     let scale = scale(window);
     let (x, y) = ((index % FIELD_SIDE) as i32, (index / FIELD_SIDE) as i32);
@@ -65,7 +66,8 @@ fn middle(window: &Window, index: usize) -> Cell {
     }
 }
 
-/// Mean of `|q − q_robot|` over the kernel's free cells with a way to a goal; `None` where the robot has none.
+/// Returns the mean of `|q − q_robot|` over the kernel's free cells with a way to a goal; `None` if
+/// the robot has none.
 fn p_diff(window: &Window, pose: &Pose) -> Option<f32> {
     let (robot, scale) = (pose.point().cell(), scale(window));
     let x = usize::try_from(robot.x.div_euclid(scale) - window.origin_x).ok()?;
@@ -91,7 +93,8 @@ mod tests {
     use super::*;
     use fieldline_planner::ground::elevation::{Elevation, WINDOW_CELLS};
 
-    /// A window at cell (10, −30) whose q halves with every column to the left of its last, which is a goal.
+    /// Makes a window at cell (10, −30). Its last column is a goal; q halves with every column to
+    /// the left.
     fn window() -> Window {
         let column = |index: usize| index % FIELD_SIDE;
         let cells = (0..FIELD_SIDE * FIELD_SIDE).map(|index| match column(index) {
@@ -127,12 +130,12 @@ mod tests {
             elevation.mark_wheel_contact(Cell { x, y: 3 }, height_m);
         }
         // The robot stands in column 40 of the window.
-        let (window, terrain) = (window(), UnevenGround::TABLE_I);
-        let relief = Relief::of(&elevation.read(), &terrain, &pose(5.05), &window);
+        let (window, ground) = (window(), UnevenGround::TABLE_I);
+        let relief = Relief::of(&elevation.read(), &ground, &pose(5.05), &window);
         let row = 33 * FIELD_SIDE;
         assert_eq!(relief.heights_m[row + 9], None);
         assert!((relief.heights_m[row + 11].unwrap() - 0.4).abs() < 0.002);
-        // Over columns 30 to 49 of 20 rows, less the robot's cell.
+        // Columns 30 to 49 of 20 rows, without the robot's cell.
         let q = |column: i32| 0.5_f64.powi(60 - column);
         let sum: f64 = (30..50)
             .map(|column| 20.0 * (q(column) - q(40)).abs())
@@ -145,13 +148,13 @@ mod tests {
             (12, global - 0.5),
         ] {
             let ours = f64::from(relief.preferences[row + column]);
-            // A height is stored in steps of 2 mm, and weighs twofold.
+            // A height is stored in steps of 2 mm and has the weight 2.
             assert!((ours - exact).abs() < 0.005, "{column}: {ours} {exact}");
         }
     }
 
     #[test]
-    fn a_robot_without_a_way_leaves_the_global_preference_out() {
+    fn without_a_way_to_a_goal_there_is_no_global_preference() {
         let (bytes, marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
         let heights = Heights::new(&bytes, &marks, Cell { x: 8, y: -32 });
         for x_m in [1.05, -3.0, 20.0] {

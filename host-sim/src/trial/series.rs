@@ -1,10 +1,11 @@
-//! So many moments of a run, evenly in simulated time, although nobody knows before how long it will last.
+//! Moments of a run, evenly in simulated time. The length of the run is not known before its end.
 //!
-//! The first moment is taken at 0, then one every interval. When there are twice as many as wanted, every other one is
-//! dropped and the interval doubles. Invariant: moment k was taken at the first step at or after k times the interval, so that
-//! with m of them after the start the i-th of n is number `round(i m / n)`. Milliseconds.
+//! The first moment is taken at 0, then one every interval. With more than twice as many as wanted,
+//! every other one is dropped and the interval doubles. Invariant: moment k was taken at the first
+//! step at or after k times the interval. So with m moments after the start, the i-th of n is
+//! number `round(i m / n)`. Milliseconds.
 
-/// The interval at first, milliseconds.
+/// First interval, milliseconds.
 const FIRST_MS: u32 = 2_000;
 
 /// Moments of a run.
@@ -16,7 +17,7 @@ pub struct Series<T> {
 }
 
 impl<T> Series<T> {
-    /// For so many moments; none are taken for 0.
+    /// Makes a series of `wanted` moments; 0 takes none.
     #[must_use]
     pub fn new(wanted: usize) -> Self {
         Self {
@@ -26,14 +27,14 @@ impl<T> Series<T> {
         }
     }
 
-    /// Whether a moment is to be taken at this time.
+    /// Returns true if a moment is to be taken at this time.
     #[must_use]
     pub fn is_due(&self, time_ms: u32) -> bool {
         let due_ms = self.taken.len() as u64 * u64::from(self.interval_ms);
         self.wanted > 0 && u64::from(time_ms) >= due_ms
     }
 
-    /// Take a moment that was due.
+    /// Takes a moment that is due.
     pub fn take(&mut self, moment: T) {
         self.taken.push(moment);
         if self.taken.len() > 2 * self.wanted {
@@ -46,7 +47,7 @@ impl<T> Series<T> {
         }
     }
 
-    /// The moments wanted, without the start; fewer if the run was too short for them.
+    /// Returns the moments wanted, without the start; fewer if the run was too short.
     #[must_use]
     pub fn pick(self) -> Vec<T> {
         let last = self.taken.len().saturating_sub(1);
@@ -68,7 +69,8 @@ impl<T> Series<T> {
 mod tests {
     use super::Series;
 
-    /// A run of so many steps of 100 ms: the times picked, and how many moments were ever taken.
+    /// Makes a run of `steps` steps of 100 ms; returns the times picked and the number of moments
+    /// taken.
     fn picked(wanted: usize, steps: u32) -> (Vec<u32>, usize) {
         let (mut series, mut taken) = (Series::new(wanted), 0);
         for time_ms in (0..steps).map(|k| k * 100) {
@@ -81,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn long_runs_give_as_many_as_wanted_evenly() {
+    fn long_runs_give_the_wanted_number_evenly() {
         for (wanted, steps) in [
             (1, 50),
             (4, 1_000),
@@ -94,7 +96,7 @@ mod tests {
             let end_ms = f64::from(steps) * 100.0;
             for (i, time) in times.iter().enumerate() {
                 let even_ms = end_ms * (i + 1) as f64 / wanted as f64;
-                // An interval at the most is missing at the end, and half of one by rounding.
+                // At most one interval is missing at the end, and half of one by rounding.
                 let interval_ms = end_ms / wanted as f64;
                 assert!(
                     (f64::from(*time) - even_ms).abs() <= 1.5 * interval_ms,
@@ -113,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn short_runs_give_what_there_is() {
+    fn short_runs_give_fewer() {
         assert_eq!(picked(10, 45).0, [2_000, 4_000]);
         assert_eq!(picked(10, 1).0, [0; 0]);
         assert_eq!(picked(0, 1_000), (Vec::new(), 0));

@@ -1,18 +1,19 @@
-//! The shape of the map's box: so many tiles across (an even number) and up, at least 4 each, at most the device's slots in all.
+//! The shape of the map's box in tiles: an even number across, at least 4 across and up, at most
+//! the device's slots in all.
 //!
-//! The box is toroidal: the known extent must fit it, wherever it lies. An extent that is not aligned with the tiles
-//! touches one tile more than its length says.
+//! The box is toroidal: the known extent must fit its size, at any position. An extent that is not
+//! aligned with the tiles touches one tile more than its length says.
 
 /// Side of a tile, metres.
 pub const TILE_M: f64 = 3.2;
-/// Tiles that a box has at the least, either way.
+/// Least number of tiles across and up.
 const LEAST: u32 = 4;
 
-/// The box for a world of this size: square where that holds the world, else as long as the world. Where not even that fits,
-/// square, and the run will say so.
+/// Returns the box for a world of this size: square if that holds the world, else as long as the
+/// world. If neither fits, the box is square, and the run ends with a fault.
 ///
-/// A world that is not aligned with the tiles touches one tile more than its length says; a box that has no slots
-/// for that is taken all the same, since walls at both ends are rarely touched.
+/// The first choice has a tile to spare for a world that is not aligned with the tiles. A box
+/// without it is the second choice, because walls at both ends are rarely touched.
 #[must_use]
 pub fn for_world(size_m: [f64; 2], slots: u16) -> (u8, u8) {
     let slots = u32::from(slots);
@@ -37,7 +38,7 @@ pub fn for_world(size_m: [f64; 2], slots: u16) -> (u8, u8) {
     (narrow(across), narrow(up))
 }
 
-/// The box of so many metres, rounded up to what a device can have; `None` if no device could.
+/// Returns the box of a size in metres, rounded up to whole tiles; `None` if no device can have it.
 #[must_use]
 pub fn of_metres(across_m: f64, up_m: f64) -> Option<(u8, u8)> {
     let possible = |metres: f64| metres > 0.0 && metres <= f64::from(u8::MAX - 1) * TILE_M;
@@ -47,7 +48,7 @@ pub fn of_metres(across_m: f64, up_m: f64) -> Option<(u8, u8)> {
     })
 }
 
-/// Tiles that a length takes.
+/// Returns the number of tiles along a length.
 fn tiles(metres: f64) -> u32 {
     (metres / TILE_M).ceil().max(1.0) as u32
 }
@@ -91,12 +92,12 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_gets_the_square() {
+    fn a_world_that_does_not_fit_gets_the_square() {
         assert_eq!(for_world([200.0, 200.0], 400), (20, 20));
     }
 
     #[test]
-    fn metres_round_up_to_what_a_device_can_have() {
+    fn metres_are_rounded_up_to_whole_tiles() {
         assert_eq!(of_metres(64.0, 64.0), Some((20, 20)));
         assert_eq!(of_metres(64.1, 3.0), Some((22, 4)));
         assert_eq!(of_metres(3.2, 812.8), Some((4, 254)));
@@ -106,7 +107,7 @@ mod tests {
         }
     }
 
-    /// Whatever the world, a device of the default image takes the box.
+    /// A device with the default image takes the box of any world.
     #[test]
     fn every_world_gets_a_box_that_the_device_takes() {
         for across in (1..2000).step_by(7) {

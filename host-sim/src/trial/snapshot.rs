@@ -1,20 +1,22 @@
-//! Reads map, field, route and residual frontiers over the link, at the end of a run and, where that was asked for, on its way.
+//! Reads map, window, path and residual frontiers over the link, at the end of a run and for
+//! pictures during it.
 //!
-//! The map is found by spreading from the start's tile: beams leave the robot, so that the touched tiles are connected
-//! through their eight neighbours. Cost: one request for each touched tile and for each tile around them.
+//! The map is searched from the start's tile. Beams leave the robot, so the touched tiles are
+//! connected through their eight neighbours. Cost: one request for each touched tile and each tile
+//! around them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use fieldline_protocol::message::{FIELD_SIDE, FieldRow, Tile};
 
+use super::planned_path::{self, PlannedPath};
 use super::relief::Relief;
-use super::route::{self, Route};
 use super::{Progress, Record};
 use crate::link::{Link, LinkError};
 use crate::report::GridMap;
 use crate::report::grid_map::{CELL_M, TILE_SIDE};
 
-/// What a window's cell is.
+/// Kind of a window's cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WindowCell {
     /// Part of the field.
@@ -41,61 +43,61 @@ pub struct Window {
     pub cells: Vec<WindowCell>,
 }
 
-/// A moment of a run.
+/// Map and window at a moment of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapshot {
-    /// How far the run was.
+    /// Progress at that moment.
     pub progress: Progress,
-    /// Steps up to then.
+    /// Number of steps until then.
     pub steps: usize,
     /// The device's map.
     pub map: GridMap,
     /// The last window's field.
     pub window: Option<Window>,
-    /// Where the planner is going.
-    pub route: Route,
-    /// Heights and preferences in it, where the planner heeds them.
+    /// The planner's path.
+    pub planned_path: PlannedPath,
+    /// Heights and preferences in the window; `None` on flat ground.
     pub relief: Option<Relief>,
 }
 
-/// Fill the record's map, window and frontiers; the map is sought from where the run began.
+/// Reads the record's map, window, path and frontiers.
 ///
 /// # Errors
-/// As [`LinkError`]; what was read before stays in the record.
+/// As [`LinkError`]; data read before it stays in the record.
 pub fn read(link: &mut dyn Link, record: &mut Record) -> Result<(), LinkError> {
     record.frontiers = link.frontiers()?;
     record.window = window(link)?;
-    record.route = route::read(link)?;
+    record.planned_path = planned_path::read(link)?;
     record.tiles = tiles(link, began_m(record))?;
     record.map = GridMap::from_tiles(&record.tiles);
     Ok(())
 }
 
-/// What is known now, after the record's last step.
+/// Reads map, window and path after the record's last step.
 ///
 /// # Errors
 /// As [`LinkError`].
 pub fn take(link: &mut dyn Link, record: &Record) -> Result<Snapshot, LinkError> {
-    let (window, route) = (window(link)?, route::read(link)?);
+    let (window, planned_path) = (window(link)?, planned_path::read(link)?);
     let tiles = tiles(link, began_m(record))?;
     Ok(Snapshot {
         progress: record.progress(),
         steps: record.steps.len(),
         map: GridMap::from_tiles(&tiles),
         window,
-        route,
+        planned_path,
         relief: None,
     })
 }
 
-/// Where the robot believed to be at first, metres.
+/// Returns the first estimated position, metres.
 fn began_m(record: &Record) -> [f64; 2] {
     let start = record.steps.first().map(|step| step.estimate);
     let start = start.unwrap_or_default();
     [start.x_m, start.y_m]
 }
 
-/// The last window's field; `None` before the first.
+/// Reads the last window's field; `None` before the first window.
 ///
 /// # Errors
 /// As [`LinkError`].

@@ -1,4 +1,4 @@
-//! Runs with a scripted device and a point robot: every ending, and what the record then holds.
+//! Runs with a scripted device and a point robot: every end, and the record after it.
 
 use fieldline_protocol::message::{
     Command, Control, Fault, FieldRow, Finish, Identity, Observation, Path, ResidualFrontier,
@@ -11,13 +11,13 @@ use crate::link::{Link, LinkError, LinkStats};
 use crate::report::tum::Stamped;
 use crate::sim::Loss;
 
-/// A point that drives along x.
+/// A point robot that drives along x.
 #[derive(Default)]
 struct Point {
     time_ms: u32,
     x_m: f64,
     driven: Vec<Option<Twist>>,
-    /// Beyond this it falls, if anywhere.
+    /// It falls beyond this x, if there is one.
     rim_m: Option<f64>,
 }
 
@@ -53,7 +53,7 @@ impl Body for Point {
     }
 }
 
-/// Answers from a script, then for ever with the last line.
+/// Answers from a script; the last line repeats.
 struct Script {
     answers: Vec<Result<Command, LinkError>>,
     asked: usize,
@@ -175,7 +175,7 @@ fn ends(answers: Vec<Result<Command, LinkError>>) -> (Record, Script, Point) {
 }
 
 #[test]
-fn moments_are_kept_evenly_on_the_way() {
+fn snapshots_are_taken_evenly_during_the_run() {
     let mut link = Script::new(vec![command(Status::Exploring, 0.5)]);
     let record = trial(&mut link, &mut Point::default(), 9_000);
     assert_eq!(record.ending, Ending::Interrupted);
@@ -191,7 +191,7 @@ fn moments_are_kept_evenly_on_the_way() {
 }
 
 #[test]
-fn a_finish_ends_the_run_and_everything_is_read() {
+fn a_finish_ends_the_run_and_all_data_is_read() {
     let (record, link, body) = ends(vec![
         command(Status::Exploring, 0.5),
         command(Status::Exploring, 0.5),
@@ -202,7 +202,11 @@ fn a_finish_ends_the_run_and_everything_is_read() {
     assert!((record.path_m - 0.1).abs() < 1e-3, "{}", record.path_m);
     assert!((record.coverage - 0.003).abs() < 1e-12);
     assert_eq!(record.link_stats.sent, 3);
-    assert_eq!(record.tiles.len(), 3, "found through the corners");
+    assert_eq!(
+        record.tiles.len(),
+        3,
+        "tiles that touch at a corner are found"
+    );
     assert_eq!(record.map.known(), 3 * 1024);
     assert_eq!(link.controls.len(), 1, "a finished device is not stopped");
     // The velocity that came with the finish is not driven.
@@ -262,7 +266,7 @@ fn height_change_is_the_sum_of_all_ups_and_downs() {
 }
 
 #[test]
-fn after_a_broken_link_the_robot_is_left_to_its_watchdog() {
+fn after_a_broken_link_the_robot_gets_no_command() {
     let (record, link, body) = ends(vec![
         command(Status::Exploring, 0.5),
         Err(LinkError::Silent),
@@ -270,12 +274,12 @@ fn after_a_broken_link_the_robot_is_left_to_its_watchdog() {
     assert_eq!(record.ending, Ending::Link(LinkError::Silent));
     assert!(body.driven[0].is_some_and(|twist| twist != Twist::default()));
     assert_eq!(body.driven[1..], [None; 30], "silence, not a command");
-    assert_eq!(link.controls.len(), 1, "a dead link is not spoken to");
+    assert_eq!(link.controls.len(), 1, "nothing is sent over a dead link");
     assert!(record.tiles.is_empty());
 }
 
 #[test]
-fn a_robot_that_stands_is_frozen_and_told_to_stop() {
+fn a_robot_at_rest_is_frozen_and_told_to_stop() {
     let (record, link, _) = ends(vec![command(Status::Exploring, 0.0)]);
     assert_eq!(record.ending, Ending::Frozen);
     assert_eq!(record.steps.last().unwrap().truth.time_ms, 60_000);

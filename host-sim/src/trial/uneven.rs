@@ -1,7 +1,8 @@
-//! The parameters of uneven ground as text: `h_obs=0.3,d_obs=1.5,h_hole=-0.6,eps_hmin=-0.5,eps_gmax=0.5,lambda_h=2,lambda_g=0.005`.
+//! The parameters of uneven ground as text, such as `h_obs=0.3,eps_gmax=0.5,roll=15`.
 //!
-//! The defaults are those of [Maffei-UnevenGround, Table I]; `climb` and `roll` (degrees) and `step` (metres) are the robot's own. Whoever is asked
-//! for a preference beyond 2 either way says why not: the relaxation of the field diverges.
+//! The names are those of \[Maffei20, Table I\], and so are the defaults; `climb` and `roll`
+//! (degrees) and `step` (metres) are the robot's own. A preference beyond ±2 is refused, because
+//! the relaxation of the field would diverge.
 
 use core::fmt;
 use core::str::FromStr;
@@ -9,7 +10,7 @@ use core::str::FromStr;
 use fieldline_protocol::message::{Preference, UnevenGround};
 use fixed::types::{I4F12, I16F16};
 
-/// What the paper's robot was given, and the 3-AT's limits.
+/// The values of \[Maffei20, Table I\], and the 3-AT's limits.
 pub const TABLE_I: UnevenGround = UnevenGround {
     preference: Preference::Both,
     obstacle: I4F12::lit("0.30"),
@@ -24,14 +25,15 @@ pub const TABLE_I: UnevenGround = UnevenGround {
     step: I4F12::lit("0.07"),
 };
 
-/// An angle in degrees as the wire has it, to the nearest step: so 20° are the default's 20°.
+/// Converts degrees to the wire's radians, rounded to the nearest step, so that 20° equal the
+/// default.
 #[must_use]
 pub fn radians(degrees: f64) -> I4F12 {
     let step = I4F12::DELTA.to_num::<f64>();
     I4F12::saturating_from_num((degrees.to_radians() / step).round() * step)
 }
 
-/// Why a text gives no parameters.
+/// Reason why a text is not a list of parameters.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParameterError(String);
 
@@ -44,9 +46,9 @@ impl fmt::Display for ParameterError {
 
 impl core::error::Error for ParameterError {}
 
-/// Least and greatest of a parameter, and why it ends there.
+/// Returns the least and the greatest value of a parameter, and the reason.
 fn bounds(name: &str) -> Option<([f64; 2], &'static str)> {
-    let diverges = "beyond 2 either way the potential leaves [0, 1] and the relaxation diverges";
+    let diverges = "beyond 2 the potential leaves [0, 1] and the relaxation diverges";
     Some(match name {
         "eps_hmin" => ([-2.0, 0.0], diverges),
         "eps_gmax" => ([0.0, 2.0], diverges),
@@ -61,11 +63,11 @@ fn bounds(name: &str) -> Option<([f64; 2], &'static str)> {
     })
 }
 
-/// These parameters with those changed that a text names.
+/// Returns these parameters with the changes that a text names.
 ///
 /// # Errors
-/// [`ParameterError`] for an unknown name, a text that is no number, and a number out of its bounds.
-pub fn changed(mut terrain: UnevenGround, text: &str) -> Result<UnevenGround, ParameterError> {
+/// [`ParameterError`] for an unknown name, a text that is no number, and a number out of range.
+pub fn changed(mut ground: UnevenGround, text: &str) -> Result<UnevenGround, ParameterError> {
     for part in text.split(',').map(str::trim) {
         let Some((name, number)) = part.split_once('=') else {
             return Err(ParameterError(format!("'{part}' is not name=number")));
@@ -81,19 +83,19 @@ pub fn changed(mut terrain: UnevenGround, text: &str) -> Result<UnevenGround, Pa
         }
         let short = I4F12::saturating_from_num(value);
         match name {
-            "eps_hmin" => terrain.least = short,
-            "eps_gmax" => terrain.most = short,
-            "h_obs" => terrain.obstacle = short,
-            "d_obs" => terrain.near = short,
-            "h_hole" => terrain.hole = short,
-            "lambda_h" => terrain.height_scale = short,
-            "lambda_g" => terrain.global_scale = I16F16::saturating_from_num(value),
-            "climb" => terrain.climb = radians(value),
-            "roll" => terrain.roll = radians(value),
-            _ => terrain.step = short,
+            "eps_hmin" => ground.least = short,
+            "eps_gmax" => ground.most = short,
+            "h_obs" => ground.obstacle = short,
+            "d_obs" => ground.near = short,
+            "h_hole" => ground.hole = short,
+            "lambda_h" => ground.height_scale = short,
+            "lambda_g" => ground.global_scale = I16F16::saturating_from_num(value),
+            "climb" => ground.climb = radians(value),
+            "roll" => ground.roll = radians(value),
+            _ => ground.step = short,
         }
     }
-    Ok(terrain)
+    Ok(ground)
 }
 
 #[cfg(test)]
@@ -102,16 +104,16 @@ mod tests {
     use fixed::types::{I4F12, I16F16};
 
     #[test]
-    fn text_changes_what_it_names() {
-        let terrain = changed(TABLE_I, "h_hole=-0.75, lambda_g=0.25,eps_gmax=2").unwrap();
-        assert_eq!(terrain.hole, I4F12::lit("-0.75"));
-        assert_eq!(terrain.global_scale, I16F16::lit("0.25"));
-        assert_eq!(terrain.most, I4F12::lit("2"));
-        assert_eq!(terrain.least, TABLE_I.least);
+    fn text_changes_the_named_parameters() {
+        let ground = changed(TABLE_I, "h_hole=-0.75, lambda_g=0.25,eps_gmax=2").unwrap();
+        assert_eq!(ground.hole, I4F12::lit("-0.75"));
+        assert_eq!(ground.global_scale, I16F16::lit("0.25"));
+        assert_eq!(ground.most, I4F12::lit("2"));
+        assert_eq!(ground.least, TABLE_I.least);
     }
 
     #[test]
-    fn a_roll_limit_as_large_as_the_climb_is_no_less() {
+    fn a_roll_limit_as_large_as_the_climb_is_the_default() {
         assert_eq!(TABLE_I.roll, TABLE_I.climb);
         assert_eq!(changed(TABLE_I, "climb=20,roll=20").unwrap(), TABLE_I);
         let limited = changed(TABLE_I, "roll=15").unwrap();
@@ -134,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn nonsense_is_named() {
+    fn the_bad_part_is_named() {
         for (text, word) in [
             ("", "''"),
             ("h_obs", "'h_obs'"),

@@ -35,7 +35,10 @@ fn by_call(strategy: &str) -> Record {
     );
     assert_eq!(call.snapshots.len(), SNAPSHOTS);
     assert_eq!(call.snapshots, bytes.snapshots);
-    assert_eq!((&call.map, &call.route), (&bytes.map, &bytes.route));
+    assert_eq!(
+        (&call.map, &call.planned_path),
+        (&bytes.map, &bytes.planned_path)
+    );
     call
 }
 
@@ -52,44 +55,51 @@ fn pictures_show_a_loop_being_closed_and_its_marks_later() {
         "no picture shows a loop that is being closed"
     );
     for snapshot in closing {
-        let route = &snapshot.route;
+        let planned_path = &snapshot.planned_path;
         assert!(
-            route.shield.is_some() && route.tractor.is_some(),
-            "{route:?}"
+            planned_path.shield.is_some() && planned_path.tractor.is_some(),
+            "{planned_path:?}"
         );
-        assert!(!route.road.is_empty());
+        assert!(!planned_path.cells.is_empty());
     }
     for snapshot in &record.snapshots {
         let loops = snapshot.progress.loops;
         let settled = loops.closed + loops.given_up > 0;
-        assert_eq!(snapshot.map.has_marks(), settled, "{loops:?}");
+        assert_eq!(snapshot.map.has_closed_regions(), settled, "{loops:?}");
     }
     let said = record.loop_closing();
     assert!(
         said.closed > 0 && said.closing_s > said.wasted_s,
         "{said:?}"
     );
-    assert!(record.map.has_marks());
-    assert_eq!(record.map.dates(), None, "it keeps no account of visits");
+    assert!(record.map.has_closed_regions());
+    assert_eq!(
+        record.map.visit_stamp_span(),
+        None,
+        "it keeps no account of visits"
+    );
     // In some picture the path fills more than one page.
     assert!(
         record
             .snapshots
             .iter()
-            .any(|snapshot| snapshot.route.road.len() > 32)
+            .any(|snapshot| snapshot.planned_path.cells.len() > 32)
     );
 }
 
 #[test]
 fn rails_have_ages_and_no_loops() {
     let record = by_call(TDBVP);
-    let (oldest, newest) = record.map.dates().expect("rails were visited");
+    let (oldest, newest) = record.map.visit_stamp_span().expect("rails were visited");
     assert!(oldest < newest);
-    assert!(!record.map.has_marks());
-    let routes = record.snapshots.iter().map(|snapshot| &snapshot.route);
+    assert!(!record.map.has_closed_regions());
+    let planned_paths = record
+        .snapshots
+        .iter()
+        .map(|snapshot| &snapshot.planned_path);
     assert!(
-        routes
+        planned_paths
             .clone()
-            .all(|route| route.tractor.is_none() && route.shield.is_none())
+            .all(|planned_path| planned_path.tractor.is_none() && planned_path.shield.is_none())
     );
 }
