@@ -93,21 +93,49 @@ impl Pose {
     /// Converts a point of the robot's frame to the odometry frame.
     #[must_use]
     pub fn to_map(&self, local: Point) -> Point {
-        let (sin, cos) = math::sin_cos(self.yaw_rad);
-        Point {
-            x_m: self.x_m + local.x_m * cos - local.y_m * sin,
-            y_m: self.y_m + local.x_m * sin + local.y_m * cos,
-        }
+        RobotFrame::of(self).to_map(local)
     }
 
     /// Converts a point of the odometry frame to the robot's frame.
     #[must_use]
     pub fn to_robot(&self, point: Point) -> Point {
-        let (sin, cos) = math::sin_cos(self.yaw_rad);
-        let (dx, dy) = (point.x_m - self.x_m, point.y_m - self.y_m);
+        RobotFrame::of(self).to_robot(point)
+    }
+}
+
+/// The robot's frame (x forward, y left) at a pose, for many points at the cost of one sine.
+#[derive(Clone, Copy, Debug)]
+pub struct RobotFrame {
+    origin: Point,
+    sin: f32,
+    cos: f32,
+}
+
+impl RobotFrame {
+    /// Returns the frame of a robot at `pose`.
+    #[must_use]
+    pub fn of(pose: &Pose) -> Self {
+        let (sin, cos) = math::sin_cos(pose.yaw_rad);
+        let origin = pose.point();
+        Self { origin, sin, cos }
+    }
+
+    /// Returns a point of this frame as a point of the map.
+    #[must_use]
+    pub fn to_map(&self, local: Point) -> Point {
         Point {
-            x_m: dx * cos + dy * sin,
-            y_m: dy * cos - dx * sin,
+            x_m: self.origin.x_m + local.x_m * self.cos - local.y_m * self.sin,
+            y_m: self.origin.y_m + local.x_m * self.sin + local.y_m * self.cos,
+        }
+    }
+
+    /// Returns a point of the map as a point of this frame.
+    #[must_use]
+    pub fn to_robot(&self, point: Point) -> Point {
+        let (dx, dy) = (point.x_m - self.origin.x_m, point.y_m - self.origin.y_m);
+        Point {
+            x_m: dx * self.cos + dy * self.sin,
+            y_m: dy * self.cos - dx * self.sin,
         }
     }
 }

@@ -19,7 +19,7 @@ use fieldline_device::session::{self, Boot};
 use fieldline_device::{SLOTS, TILES};
 use fieldline_planner::config::Config;
 use fieldline_planner::config::UnevenGround;
-use fieldline_planner::drive::{CollisionChecker, Drive, Ground, Place, recovery};
+use fieldline_planner::drive::{CollisionChecker, Drive, Place, SCRATCH_WORDS, SearchQuery};
 use fieldline_planner::geometry::{Cell, Point, Pose, Twist};
 use fieldline_planner::input::Input;
 use fieldline_planner::map::obstacle_points::{self, ObstaclePoints};
@@ -86,7 +86,7 @@ impl<S: Strategy> Session<S> {
             resolved: 0,
             drive: Drive::new(),
             chart: Chart::new(),
-            scratch: vec![0; recovery::SCRATCH_WORDS],
+            scratch: vec![0; SCRATCH_WORDS],
             calls: 0,
         }
     }
@@ -228,13 +228,13 @@ impl<S: Strategy> Session<S> {
             };
             let potential_there =
                 |place: Place| strategy.potential_at(&scene, to_map(&pose, place));
-            let ground = Ground {
-                surround: &checker,
+            let query = SearchQuery {
+                checker: &checker,
                 heading_at: heading_there,
                 potential_at: Some(&potential_there),
             };
             self.drive
-                .follow(config, &ground, input.velocity, &mut self.scratch)
+                .follow(config, &query, input.velocity, &mut self.scratch)
         } else {
             look_around(config, input, &checker)
         };

@@ -78,10 +78,30 @@ impl UnevenGround {
         roll: 0.364,
         step_m: 0.07,
     };
+
+    /// Returns the limit of the side slope, if some slope that may be climbed is too steep to cross.
+    #[must_use]
+    pub(crate) fn side_slope_limit(&self) -> Option<f32> {
+        (self.roll < self.climb).then_some(self.roll)
+    }
 }
 
 impl Default for UnevenGround {
     fn default() -> Self {
         Self::TABLE_I
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::UnevenGround;
+
+    #[test]
+    fn a_roll_limit_as_large_as_the_climb_is_none() {
+        let ground = UnevenGround::TABLE_I;
+        assert_eq!(ground.side_slope_limit(), None);
+        let roll = 0.268;
+        let limited = UnevenGround { roll, ..ground };
+        assert_eq!(limited.side_slope_limit(), Some(roll));
     }
 }

@@ -1,12 +1,14 @@
-//! The near field seen from the robot, and whether a motion touches it.
+//! The collision checker: obstacle points in the robot's frame, and the motions that touch none.
 //!
-//! The robot is its rectangle. A motion is clear if the rectangle, at places at most `CHECK_EVERY_M` apart for any part of it,
-//! keeps a margin from every near point; a point that is nearer than the margin already may hardly come nearer.
+//! The robot is its rectangle. A motion is clear if the rectangle keeps a margin from every
+//! obstacle point at places no part of it is more than [`CHECK_EVERY_M`] apart. A point that is
+//! nearer than the margin already may lose at most [`SLACK_M`] of its distance.
 //!
-//! Where the ground is too steep to be crossed, a place is not clear in which the robot leans too far aside ([`Incline`]): a boundary that depends on
-//! the heading.
+//! On ground too steep to cross, a place is clear only if the side slope there is within its limit
+//! ([`Incline`]): that bounds the heading.
 //!
-//! What stands behind the robot and was only seen from afar is no near point; there the map's obstacle cells count.
+//! An obstacle behind the robot that was only seen from afar is no obstacle point; there the map's
+//! obstacle cells count.
 //!
 //! Units: metres, seconds, radians; robot frame, x forward.
 
@@ -14,29 +16,36 @@ use heapless::Vec;
 
 use crate::config::Config;
 use crate::drive::incline::Incline;
-use crate::geometry::{CELL_M, Point, Pose, Twist};
+use crate::geometry::{CELL_M, Point, Pose, RobotFrame, Twist};
 use crate::map::obstacle_points::MAX_POINTS;
 use crate::math;
 use crate::robot::RobotShape;
 
-/// A place of the robot is checked every so many metres that any part of it moved.
+/// Distance between two checked places, of the part of the robot that moves most, metres.
 const CHECK_EVERY_M: f32 = 0.05;
-/// Cells of the map that count at the most.
+/// Capacity for map cells beside the obstacle points.
 const MOST_CELLS: usize = 64;
-/// A cell of the map with a near point this near to its middle is known better by that, metres: in the cell, or at its side.
+/// Distance of an obstacle point from a map cell's centre within which the point replaces the cell,
+/// metres: in the cell, or at its side.
 const KNOWN_M: f32 = 0.08;
-/// Cells farther ahead than this are in view of the level laser, metres.
+/// Map cells farther ahead than this are in view of the level laser, metres.
 const IN_VIEW_M: f32 = 0.1;
-/// Time step of the look ahead, seconds.
+/// A point deeper inside the hull is a false echo or a passing hand, metres: no motion avoids it.
+const FALSE_ECHO_M: f32 = 0.02;
+/// Time step of the prediction, seconds.
 const TICK_S: f32 = 0.1;
-/// Steps of it at the most: one period and the braking from full speed.
+/// Most steps of the prediction: one period and the braking from full speed.
 const MOST_TICKS: u32 = 40;
-/// What a point nearer than the margin may lose of its distance in one motion, metres.
+/// Greatest loss of distance in one motion, of a point nearer than the margin, metres.
 const SLACK_M: f32 = 0.004;
-/// Nothing may come nearer than this, however often it loses a little, metres.
+/// Least distance of any point after repeated losses, metres.
 const FLOOR_M: f32 = 0.01;
+/// Tolerance for the rounding of a distance, metres.
+const ROUNDING_M: f32 = 1e-5;
+/// A remaining time, speed or turn rate below this is zero: s, m/s, rad/s.
+const ZERO: f32 = 1e-3;
 
-/// A place of the robot relative to where it is now.
+/// A place of the robot relative to its present pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Place {
     /// Metres ahead.
@@ -48,9 +57,19 @@ pub struct Place {
 }
 
 impl Place {
-    /// This place after an arc of `length_m` (negative is backwards) that turns by `turn_rad`.
+    /// Returns the position in the robot's frame.
     #[must_use]
-    pub fn after(self, length_m: f32, turn_rad: f32) -> Self {
+    pub const fn point(self) -> Point {
+        Point {
+            x_m: self.x_m,
+            y_m: self.y_m,
+        }
+    }
+
+    /// Returns the place after an arc of `length_m` (negative is backwards) that turns by
+    /// `turn_rad`.
+    #[must_use]
+    pub(crate) fn after(self, length_m: f32, turn_rad: f32) -> Self {
         let (sin, cos) = math::sin_cos(self.yaw_rad + 0.5 * turn_rad);
         Self {
             x_m: self.x_m + length_m * cos,
@@ -60,24 +79,24 @@ impl Place {
     }
 }
 
-/// A near point, with its distance from the robot as it stands.
+/// An obstacle point, with its distance from the hull at the present pose.
 #[derive(Clone, Copy, Debug)]
 struct Threat {
     at: Point,
     clearance_m: f32,
 }
 
-/// What stands around the robot, in its frame.
+/// The obstacles around the robot, in its frame.
 #[derive(Debug)]
 pub struct CollisionChecker {
     robot: RobotShape,
     threats: Vec<Threat, { MAX_POINTS + MOST_CELLS }>,
     hull: Hull,
-    /// How the ground inclines, where that bounds the headings.
+    /// Slopes of the ground, where they bound the headings.
     incline: Option<Incline>,
 }
 
-/// What the robot covers seen from above, metres from its middle.
+/// The robot's outline seen from above, metres from its centre.
 #[derive(Clone, Copy, Debug)]
 struct Hull {
     front: f32,
@@ -87,7 +106,7 @@ struct Hull {
 }
 
 impl Hull {
-    /// On the level.
+    /// Returns the hull on level ground.
     const fn level(robot: &RobotShape) -> Self {
         Self {
             front: robot.half_length_m,
@@ -97,7 +116,7 @@ impl Hull {
         }
     }
 
-    /// Where it leans its top reaches out over what is downhill.
+    /// Returns the hull of a tilted robot: its top reaches out over the ground downhill.
     fn leaning(robot: &RobotShape, pose: &Pose) -> Self {
         let reach = |angle: f32| robot.height_m * math::sin_cos(angle).0;
         let (nose, right) = (reach(pose.pitch_rad), reach(pose.roll_rad));
@@ -109,7 +128,7 @@ impl Hull {
         }
     }
 
-    /// Distance of a point from it, by the larger overhang; negative inside.
+    /// Returns the distance of a point by the larger overhang; negative inside.
     fn overhang(&self, x_m: f32, y_m: f32) -> f32 {
         let along = x_m.abs() - if x_m < 0.0 { self.back } else { self.front };
         let across = y_m.abs() - if y_m < 0.0 { self.right } else { self.left };
@@ -117,43 +136,21 @@ impl Hull {
     }
 }
 
-/// The robot's frame.
-struct Frame {
-    origin: Point,
-    sin: f32,
-    cos: f32,
-}
-
-impl Frame {
-    fn of(pose: &Pose) -> Self {
-        let (sin, cos) = math::sin_cos(pose.yaw_rad);
-        let origin = pose.point();
-        Self { origin, sin, cos }
-    }
-
-    fn within(&self, point: Point) -> Point {
-        let (dx, dy) = (point.x_m - self.origin.x_m, point.y_m - self.origin.y_m);
-        Point {
-            x_m: dx * self.cos + dy * self.sin,
-            y_m: dy * self.cos - dx * self.sin,
-        }
-    }
-}
-
+/// Returns `from` moved towards `to` by at most `most`.
 fn towards(from: f32, to: f32, most: f32) -> f32 {
     from + (to - from).clamp(-most, most)
 }
 
 impl CollisionChecker {
-    /// The points as seen from `pose`.
+    /// Returns a checker of these obstacle points of the map, for a robot at `pose`.
     #[must_use]
     pub fn new(robot: &RobotShape, pose: &Pose, points: &[Point]) -> Self {
-        let mut surround = Self::empty(robot);
-        surround.see(pose, points);
-        surround
+        let mut checker = Self::empty(robot);
+        checker.see(pose, points);
+        checker
     }
 
-    /// Nothing around.
+    /// Returns a checker without obstacles.
     #[must_use]
     pub const fn empty(robot: &RobotShape) -> Self {
         Self {
@@ -164,98 +161,96 @@ impl CollisionChecker {
         }
     }
 
-    /// Stand on ground that inclines.
+    /// Sets the slopes that bound the headings.
     #[must_use]
-    pub fn on(mut self, incline: Option<Incline>) -> Self {
+    pub(crate) fn on(mut self, incline: Option<Incline>) -> Self {
         self.incline = incline;
         self
     }
 
-    /// Whether the ground bounds the headings.
+    /// Returns true if slopes bound the headings.
     #[must_use]
-    pub const fn inclines(&self) -> bool {
+    pub(crate) const fn bounds_headings(&self) -> bool {
         self.incline.is_some()
     }
 
-    /// Whether the robot stands on ground that it may not turn round on.
+    /// Returns true if the robot stands on ground too steep to turn fully.
     #[must_use]
-    pub fn is_steep(&self) -> bool {
+    pub(crate) fn is_steep(&self) -> bool {
         self.incline.as_ref().is_some_and(Incline::is_steep)
     }
 
-    /// See the points from `pose`.
-    pub fn see(&mut self, pose: &Pose, points: &[Point]) {
-        let frame = Frame::of(pose);
+    /// Replaces the obstacles by these points of the map, for a robot at `pose`.
+    pub(crate) fn see(&mut self, pose: &Pose, points: &[Point]) {
+        let frame = RobotFrame::of(pose);
         self.threats.clear();
         for &point in points {
-            let at = frame.within(point);
+            let at = frame.to_robot(point);
             let clearance_m = self.hull.overhang(at.x_m, at.y_m);
-            // A point well inside the robot is a false echo or a passing hand; it cannot be avoided any more.
-            if clearance_m > -0.02 {
-                // There are no more points than threats.
+            if clearance_m > -FALSE_ECHO_M {
+                // There is room for all points.
                 let _ = self.threats.push(Threat { at, clearance_m });
             }
         }
     }
 
-    /// Remember the obstacle cells (their middles) that are out of view and without a near point.
-    pub fn remember(&mut self, pose: &Pose, cells: impl Iterator<Item = Point>) {
-        let frame = Frame::of(pose);
+    /// Adds the obstacle cells of the map (their centres) that are out of view and have no obstacle
+    /// point.
+    pub(crate) fn remember(&mut self, pose: &Pose, cells: impl Iterator<Item = Point>) {
+        let frame = RobotFrame::of(pose);
         let seen = self.threats.len();
-        for at in cells.map(|cell| frame.within(cell)) {
+        for at in cells.map(|cell| frame.to_robot(cell)) {
             let clearance_m = self.hull.overhang(at.x_m, at.y_m);
-            let near = |threat: &Threat| {
-                let (dx, dy) = (threat.at.x_m - at.x_m, threat.at.y_m - at.y_m);
-                dx * dx + dy * dy < KNOWN_M * KNOWN_M
-            };
+            let near = |threat: &Threat| threat.at.distance2(at) < KNOWN_M * KNOWN_M;
             let points = self.threats.get(..seen).unwrap_or_default();
             if at.x_m < IN_VIEW_M && clearance_m > 0.0 && !points.iter().any(near) {
-                // What does not fit is not the only thing behind the robot.
+                // Cells beyond the capacity are dropped: others behind the robot remain.
                 let _ = self.threats.push(Threat { at, clearance_m });
             }
         }
     }
 
-    /// Keep off cells (their middles) on all sides, as the robot leans, by half a cell more than their middles say: any part of one may be what is not to be
-    /// touched; and by so much more as is said of each, metres.
+    /// Replaces the obstacles by cells of the map (their centres), each inflated by half a cell
+    /// plus its own margin in metres. The hull is that of the tilted robot.
     pub fn keep_off(&mut self, pose: &Pose, cells: impl Iterator<Item = (Point, f32)>) {
-        let frame = Frame::of(pose);
+        let frame = RobotFrame::of(pose);
         self.hull = Hull::leaning(&self.robot, pose);
         self.threats.clear();
-        for (cell, more_m) in cells {
-            let at = frame.within(cell);
-            let away = math::sqrt(at.x_m * at.x_m + at.y_m * at.y_m);
-            let part = ((away - 0.5 * CELL_M - more_m) / away.max(1e-3)).max(0.0);
+        for (cell, margin_m) in cells {
+            let at = frame.to_robot(cell);
+            let away = at.distance_m(Point::default());
+            let part = ((away - 0.5 * CELL_M - margin_m) / away.max(1e-3)).max(0.0);
             let at = Point {
                 x_m: at.x_m * part,
                 y_m: at.y_m * part,
             };
             let clearance_m = self.hull.overhang(at.x_m, at.y_m);
             if clearance_m > 0.0 {
-                // What does not fit is not the only thing around the robot.
+                // Cells beyond the capacity are dropped: others around the robot remain.
                 let _ = self.threats.push(Threat { at, clearance_m });
             }
         }
     }
 
-    /// How many points there are.
+    /// Returns the number of obstacle points.
     #[must_use]
-    pub fn points(&self) -> u32 {
+    pub(crate) fn points(&self) -> u32 {
         self.threats.len() as u32
     }
 
-    /// Distance of the nearest point from the robot, metres.
-    #[must_use]
-    pub fn clearance_m(&self) -> f32 {
+    /// Returns the distance of the nearest point from the hull, metres.
+    #[cfg(test)]
+    pub(crate) fn clearance_m(&self) -> f32 {
         self.threats
             .iter()
             .map(|threat| threat.clearance_m)
             .fold(f32::MAX, f32::min)
     }
 
-    /// Whether the robot at this place keeps `margin_m` from every point, and does not lean too far aside.
+    /// Returns true if the robot at this place keeps `margin_m` from every point and the side slope
+    /// is within its limit.
     #[must_use]
-    pub fn is_clear(&self, place: Place, margin_m: f32) -> bool {
+    pub(crate) fn is_clear(&self, place: Place, margin_m: f32) -> bool {
         let (sin, cos) = math::sin_cos(place.yaw_rad);
         let stands = |incline: &Incline| incline.admits(place, (sin, cos));
         if !self.incline.as_ref().is_none_or(stands) {
@@ -265,19 +260,26 @@ impl CollisionChecker {
             let (dx, dy) = (threat.at.x_m - place.x_m, threat.at.y_m - place.y_m);
             let now = self.hull.overhang(dx * cos + dy * sin, dy * cos - dx * sin);
             let least = (threat.clearance_m - SLACK_M).max(FLOOR_M.min(threat.clearance_m));
-            now >= margin_m.min(least - 1e-5)
+            now >= margin_m.min(least - ROUNDING_M)
         })
     }
 
-    /// Places at which the robot is checked on so long a way of any part of it.
+    /// Returns the number of places checked in a motion that moves some part of the robot
+    /// `moved_m`.
     #[must_use]
-    pub fn places_on(moved_m: f32) -> u32 {
+    pub(crate) fn places_on(moved_m: f32) -> u32 {
         math::floor(moved_m.abs() / CHECK_EVERY_M) as u32 + 1
     }
 
-    /// Whether an arc of `length_m` that turns by `turn_rad` is clear, from a place on.
+    /// Returns true if an arc of `length_m` from a place, with a turn of `turn_rad`, is clear.
     #[must_use]
-    pub fn is_arc_clear(&self, from: Place, length_m: f32, turn_rad: f32, margin_m: f32) -> bool {
+    pub(crate) fn is_arc_clear(
+        &self,
+        from: Place,
+        length_m: f32,
+        turn_rad: f32,
+        margin_m: f32,
+    ) -> bool {
         let moved = length_m.abs() + turn_rad.abs() * self.robot.half_diagonal_m;
         let parts = Self::places_on(moved);
         let (length, turn) = (length_m / parts as f32, turn_rad / parts as f32);
@@ -288,8 +290,8 @@ impl CollisionChecker {
         })
     }
 
-    /// Whether following `twist` for one period and braking after it is clear, from the velocity `now` and within the
-    /// robot's acceleration.
+    /// Returns true if the robot can follow `twist` for one period and then brake to a stop, from
+    /// the velocity `now` and within its acceleration limits, and keeps `margin_m` all the time.
     #[must_use]
     pub fn admits(&self, twist: Twist, now: Twist, config: &Config, margin_m: f32) -> bool {
         let (most_v, most_w) = (
@@ -301,7 +303,7 @@ impl CollisionChecker {
         let mut left_s = config.period_s;
         let mut since_m = 0.0;
         for _ in 0..MOST_TICKS {
-            let braking = left_s <= 1e-3;
+            let braking = left_s <= ZERO;
             let wanted = if braking { Twist::default() } else { twist };
             left_s -= TICK_S;
             let v_next = towards(v, wanted.linear_mps, most_v);
@@ -310,7 +312,7 @@ impl CollisionChecker {
             place = place.after(length, turn);
             (v, w) = (v_next, w_next);
             since_m += length.abs() + turn.abs() * self.robot.half_diagonal_m;
-            let stopped = left_s <= 1e-3 && v.abs() < 1e-3 && w.abs() < 1e-3;
+            let stopped = left_s <= ZERO && v.abs() < ZERO && w.abs() < ZERO;
             if stopped || since_m > CHECK_EVERY_M {
                 since_m = 0.0;
                 if !self.is_clear(place, margin_m) {
@@ -381,32 +383,32 @@ mod tests {
         assert!((place.x_m - 1.0).abs() < 1e-3 && (place.y_m - 1.0).abs() < 1e-3);
     }
 
-    /// A wall right behind, 0.1 m from the hull: met only in its left half, in the map whole.
+    /// A wall 0.1 m behind the hull: obstacle points in its left half, map cells in all of it.
     #[test]
-    fn what_the_map_knows_behind_the_robot_stops_it_where_no_point_does() {
+    fn map_cells_behind_the_robot_stop_it_where_there_is_no_point() {
         let back = -ROBOT.half_length_m - 0.1;
         let wall = |y: i32| Point {
             x_m: back,
             y_m: 0.1 * y as f32,
         };
         let half: std::vec::Vec<Point> = (1..4).map(wall).collect();
-        let mut surround = CollisionChecker::new(&ROBOT, &Pose::default(), &half);
-        surround.remember(&Pose::default(), (-3..4).map(wall));
-        assert_eq!(surround.points(), 3 + 4, "cells with a point are left out");
-        assert!(surround.is_arc_clear(Place::default(), -0.08, 0.0, 0.0));
-        assert!(!surround.is_arc_clear(Place::default(), -0.15, 0.0, 0.0));
+        let mut checker = CollisionChecker::new(&ROBOT, &Pose::default(), &half);
+        checker.remember(&Pose::default(), (-3..4).map(wall));
+        assert_eq!(checker.points(), 3 + 4, "cells with a point are left out");
+        assert!(checker.is_arc_clear(Place::default(), -0.08, 0.0, 0.0));
+        assert!(!checker.is_arc_clear(Place::default(), -0.15, 0.0, 0.0));
         let mut right = CollisionChecker::empty(&ROBOT);
         right.remember(&Pose::default(), (-3..0).map(wall));
         assert!(!right.is_arc_clear(Place::default(), -0.15, 0.0, 0.0));
     }
 
-    /// Ahead the laser sees for itself, and a cell that the robot stands on is none.
+    /// Map cells ahead are in view of the laser; a cell under the robot is no obstacle.
     #[test]
     fn cells_in_view_or_under_the_robot_are_not_remembered() {
-        let mut surround = CollisionChecker::empty(&ROBOT);
+        let mut checker = CollisionChecker::empty(&ROBOT);
         let at = |x_m, y_m| Point { x_m, y_m };
         let cells = [at(0.4, 0.0), at(0.15, 0.3), at(0.0, 0.2), at(-0.2, 0.0)];
-        surround.remember(&Pose::default(), cells.into_iter());
-        assert_eq!(surround.points(), 0);
+        checker.remember(&Pose::default(), cells.into_iter());
+        assert_eq!(checker.points(), 0);
     }
 }

@@ -1,72 +1,75 @@
-//! How the ground inclines around the robot, and how far it would lean aside there.
+//! Slopes of the ground around the robot, and the side slope at its places.
 //!
-//! Slopes are taken from the window of heights at places 0.3 m apart, once a step; a place of a motion has that of the nearest.
+//! Slopes are measured once per step, at points [`STEP_M`] apart; a place has the slope of the
+//! nearest point.
 //!
-//! Invariant: where the ground was not measured it is taken as level, and holds nothing up. Units: metres, tangents, radians; robot frame, x forward.
+//! Invariant: ground without measured heights counts as level and blocks nothing.
+//!
+//! Units: metres, tangents, radians; robot frame, x forward.
 
 use crate::config::UnevenGround;
 use crate::drive::collision::Place;
 use crate::drive::side_slope::{Hysteresis, Slope, SlopeDirection};
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Point, Pose, RobotFrame};
 use crate::ground::Heights;
 use crate::math;
 use crate::robot::RobotShape;
 
-/// From one place to the next, metres.
+/// Distance between two measured points, metres.
 const STEP_M: f32 = 0.3;
-/// Places to each side of the robot.
+/// Measured points to each side of the robot.
 const REACH: i32 = 2;
 const SIDE: usize = 2 * REACH as usize + 1;
-/// So far ahead of its front the robot turns to what comes, metres: the way in which it brakes from half its speed.
+/// Distance ahead of its front at which the robot turns for a slope, metres: its braking distance
+/// from half its speed.
 const BEFORE_M: f32 = 0.196;
-/// The part of the limit that a measured lean may take: on ground of 15° a slope is measured to about half a degree, and a robot that turns on the
-/// spot there leans by all of it.
-const SURE: f32 = 0.95;
+/// Part of the limit that a measured side slope may reach. On ground of 15° a slope is measured to
+/// about 0.5°, and a robot that turns on the spot there has all of it as side slope.
+const SURE_PART: f32 = 0.95;
 
-/// Slopes around the robot, and the greatest lean.
+/// Slopes around the robot, and the limit of the side slope.
 #[derive(Clone, Debug)]
-pub struct Incline {
+pub(crate) struct Incline {
     slopes: [[Slope; SIDE]; SIDE],
-    most: f32,
-    /// How far ahead of its centre the robot turns to what comes, metres.
+    limit: f32,
+    /// Distance ahead of its centre at which the robot turns for a slope, metres.
     ahead_m: f32,
-    /// A robot that leans more than that already may go on to lean as much.
-    now: f32,
+    /// Side slope at the robot's pose: a robot beyond the limit may keep this much.
+    present: f32,
 }
 
 impl Incline {
-    /// As seen from `pose`; `None` where everything that may be climbed may be crossed.
+    /// Measures the slopes around `pose`; `None` if every slope that may be climbed may be crossed.
     #[must_use]
-    pub fn new(
+    pub(crate) fn new(
         robot: &RobotShape,
-        terrain: &UnevenGround,
+        ground: &UnevenGround,
         heights: &Heights<'_>,
         pose: &Pose,
     ) -> Option<Self> {
-        let most = terrain.most_lean()?;
-        let (sin, cos) = math::sin_cos(pose.yaw_rad);
+        let limit = ground.side_slope_limit()?;
+        let frame = RobotFrame::of(pose);
         let slope = |row: usize, column: usize| {
             let metres = |index: usize| (index as i32 - REACH) as f32 * STEP_M;
-            let (x_m, y_m) = (metres(column), metres(row));
-            let at = Point {
-                x_m: pose.x_m + x_m * cos - y_m * sin,
-                y_m: pose.y_m + x_m * sin + y_m * cos,
-            };
+            let at = frame.to_map(Point {
+                x_m: metres(column),
+                y_m: metres(row),
+            });
             let slope = Slope::around(heights, at.cell()).unwrap_or_default();
             slope.turned(pose.yaw_rad)
         };
         let slopes = core::array::from_fn(|row| core::array::from_fn(|column| slope(row, column)));
         let mut incline = Self {
             slopes,
-            most,
+            limit,
             ahead_m: robot.half_length_m + BEFORE_M,
-            now: 0.0,
+            present: 0.0,
         };
-        incline.now = incline.lean(Place::default(), (0.0, 1.0));
+        incline.present = incline.side_slope(Place::default(), (0.0, 1.0));
         Some(incline)
     }
 
-    /// The slope at a place.
+    /// Returns the slope at a place.
     fn at(&self, place: Place) -> Slope {
         let index = |metres: f32| {
             let steps = math::floor(metres / STEP_M + 0.5).clamp(-REACH, REACH);
@@ -77,39 +80,42 @@ impl Incline {
         slope.copied().unwrap_or_default()
     }
 
-    fn lean(&self, place: Place, heading: (f32, f32)) -> f32 {
-        self.at(place).lean(heading).abs()
+    /// Returns the size of the side slope at a place, for the sine and cosine of a heading.
+    fn side_slope(&self, place: Place, heading: (f32, f32)) -> f32 {
+        self.at(place).side_slope(heading).abs()
     }
 
-    /// Whether the robot may stand at a place, by the sine and cosine of its heading there.
+    /// Returns true if the robot may stand at a place, by the sine and cosine of its heading there.
     #[must_use]
-    pub fn admits(&self, place: Place, heading: (f32, f32)) -> bool {
-        self.lean(place, heading) <= (SURE * self.most).max(self.now)
+    pub(crate) fn admits(&self, place: Place, heading: (f32, f32)) -> bool {
+        self.side_slope(place, heading) <= (SURE_PART * self.limit).max(self.present)
     }
 
-    /// Whether the robot stands on ground that it may not turn on.
+    /// Returns true if the robot stands on ground too steep to turn fully.
     #[must_use]
-    pub fn is_steep(&self) -> bool {
-        self.at(Place::default()).steepness() > SURE * self.most
+    pub(crate) fn is_steep(&self) -> bool {
+        self.at(Place::default()).steepness() > SURE_PART * self.limit
     }
 
-    /// The heading for one that is wanted at a place: turned towards the fall line of the slope there, or else of the slope ahead. In which
-    /// wedge it is, if there are wedges.
+    /// Returns the heading to drive at a place instead of `wanted_rad`: turned towards the fall
+    /// line of the slope ahead, and then of the slope at the place. Also returns its slope
+    /// direction, if one of the slopes is beyond the limit.
     #[must_use]
-    pub fn heading(
+    pub(crate) fn heading(
         &self,
         place: Place,
         wanted_rad: f32,
-        bias: Hysteresis,
+        hysteresis: Hysteresis,
     ) -> (f32, Option<SlopeDirection>) {
         let ahead = Place {
             yaw_rad: wanted_rad,
             ..place
         }
         .after(self.ahead_m, 0.0);
-        let (towards_rad, coming) = self.at(ahead).heading(wanted_rad, self.most, bias);
-        let (here_rad, wedge) = self.at(place).heading(towards_rad, self.most, bias);
-        (here_rad, wedge.or(coming))
+        let slope_ahead = self.at(ahead);
+        let (towards_rad, coming) = slope_ahead.heading(wanted_rad, self.limit, hysteresis);
+        let (here_rad, here) = self.at(place).heading(towards_rad, self.limit, hysteresis);
+        (here_rad, here.or(coming))
     }
 }
 
@@ -120,12 +126,13 @@ mod tests {
     use crate::ground::elevation::{Elevation, WINDOW_CELLS};
 
     /// 15° across, 20° up.
-    const TERRAIN: UnevenGround = UnevenGround {
+    const GROUND: UnevenGround = UnevenGround {
         roll: 0.268,
         ..UnevenGround::TABLE_I
     };
 
-    /// A robot at (0, 0), and ground that rises to the north by 0.34 from `y_m` on.
+    /// Returns the slopes around a robot at (0, 0), on ground that rises to the north by 0.34 m per
+    /// metre from `y_m` on.
     fn slope_from(y_m: f32, yaw_rad: f32) -> Incline {
         let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
         let mut origin = Cell::default();
@@ -142,7 +149,7 @@ mod tests {
             yaw_rad,
             ..Pose::default()
         };
-        Incline::new(&RobotShape::PIONEER_3AT, &TERRAIN, &window.read(), &pose).expect("a limit")
+        Incline::new(&RobotShape::PIONEER_3AT, &GROUND, &window.read(), &pose).expect("a limit")
     }
 
     fn facing(yaw_rad: f32) -> (f32, f32) {
@@ -151,7 +158,7 @@ mod tests {
 
     #[test]
     fn on_a_slope_the_robot_stands_up_and_down_and_not_across() {
-        // It faces north, so that what is wanted counts from there.
+        // It faces north, so headings count from there.
         let incline = slope_from(-9.0, 0.5 * math::PI);
         assert!(incline.is_steep());
         let stands = |degrees: f32| incline.admits(Place::default(), facing(degrees.to_radians()));
@@ -161,11 +168,11 @@ mod tests {
     }
 
     #[test]
-    fn ground_as_steep_as_the_limit_is_not_turned_on_and_ground_that_surely_is_less_is() {
+    fn the_robot_turns_on_ground_surely_below_the_limit_and_not_on_ground_near_it() {
         let ground = |part: f32| Incline {
             slopes: [[Slope {
                 x: 0.0,
-                y: part * TERRAIN.roll,
+                y: part * GROUND.roll,
             }; SIDE]; SIDE],
             ..slope_from(9.0, 0.0)
         };
@@ -177,8 +184,8 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_leans_too_far_may_lean_less_and_not_more() {
-        // It faces east by north-east, across.
+    fn a_robot_beyond_the_limit_may_reduce_its_side_slope_and_not_increase_it() {
+        // It faces east by north-east, across the slope.
         let incline = slope_from(-9.0, 0.3);
         let stands = |turn: f32| incline.admits(Place::default(), facing(turn));
         assert!(stands(0.0) && stands(0.3));
@@ -190,12 +197,12 @@ mod tests {
         let before = slope_from(0.35, 0.0);
         assert!(!before.is_steep());
         // North-east by east is wanted.
-        let (heading, wedge) = before.heading(Place::default(), 0.5, Hysteresis::default());
-        assert_eq!(wedge, None, "0.45 m that way the slope has not begun");
+        let (heading, direction) = before.heading(Place::default(), 0.5, Hysteresis::default());
+        assert_eq!(direction, None, "0.45 m ahead the slope has not begun");
         assert_eq!(heading, 0.5);
-        let (heading, wedge) =
+        let (heading, direction) =
             slope_from(0.1, 0.0).heading(Place::default(), 0.5, Hysteresis::default());
-        assert_eq!(wedge, Some(SlopeDirection::Up));
+        assert_eq!(direction, Some(SlopeDirection::Up));
         assert!(heading > 0.7 && heading < 0.9, "{heading}");
     }
 
@@ -205,7 +212,7 @@ mod tests {
         let heights = Heights::new(&heights, &marks, Cell::default());
         let incline = Incline::new(
             &RobotShape::PIONEER_3AT,
-            &TERRAIN,
+            &GROUND,
             &heights,
             &Pose::default(),
         )

@@ -1,36 +1,44 @@
 //! From the field's heading to a velocity of a skid-steer robot that touches nothing.
 //!
-//! The wish is: turn towards the heading with rate `k·error`, go forward with `v_max·cos²(error)`. The wish is then tried
-//! against the near field: a candidate (v, ω) is admissible if the robot's rectangle stays clear of every point while the
-//! robot, from its measured velocity and within its acceleration limits, follows the candidate for one period and then
-//! brakes to a stop. The first admissible one, in order of distance from the wish, is driven; where none is, the robot
-//! turns on the spot, and where it cannot, a [`manoeuvre`] leads out.
+//! The wish is to turn towards the heading at the rate `k·error` and to drive forward at
+//! `v_max·cos²(error)`. A candidate (v, ω) is admissible if the robot's rectangle stays clear of
+//! every obstacle point while the robot follows the candidate for one period and then brakes to a
+//! stop, from its measured velocity and within its acceleration limits. The drive takes the first
+//! admissible candidate, in order of distance from the wish. If there is none, the robot turns on
+//! the spot or drives straight back. If it cannot, a recovery leads out.
 //!
-//! Invariant: whatever is driven can be followed by a stop that touches nothing known, so the zero command is always safe.
+//! Invariant: after every commanded velocity a stop is possible that touches nothing known, so the
+//! zero command is always safe.
+//!
 //! Units: metres, seconds, radians; robot frame, x forward.
 
-pub mod collision;
-pub mod incline;
+mod collision;
+mod incline;
 mod motion;
 mod open_list;
-pub mod recovery;
+mod recovery;
 mod search_query;
-pub mod side_slope;
+pub(crate) mod side_slope;
 
 pub use collision::{CollisionChecker, Place};
-pub use incline::Incline;
-pub use recovery::{Attempt, Budget, Choice, Found, Ground, Leads, Plan, Search};
+pub(crate) use incline::Incline;
+pub use recovery::SCRATCH_WORDS;
+pub use search_query::SearchQuery;
 
 use crate::config::Config;
 use crate::geometry::Twist;
 use crate::math;
+use motion::{MotionSet, Recovery};
+use recovery::{Search, SearchBudget, SearchOutcome};
+use search_query::{Attempt, Leads};
 
-/// Clearance kept at speed, metres: three sigma of a range and one of the odometry between two scans.
+/// Clearance at speed, metres: three sigma of a range and one of the odometry between two scans.
 const MARGIN_M: f32 = 0.06;
-/// Clearance kept when creeping through a narrow place, metres: two sigma of a range.
+/// Clearance while creeping through a narrow place, metres: two sigma of a range.
 const CREEP_MARGIN_M: f32 = 0.025;
-/// What is asked of a manoeuvre, less and less. The nearest of many points of a wall is two sigma nearer than the wall, so there
-/// is more room than the narrower clearance says; the last attempt only wants the robot to stand elsewhere.
+/// Requirements on a recovery, each weaker than the one before. The nearest of many points of a
+/// wall is two sigma nearer than the wall, so the free space is wider than the smaller margin. The
+/// last attempt only moves the robot to another pose.
 const ATTEMPTS: [Attempt; 3] = [
     Attempt {
         margin_m: 0.03,
@@ -45,121 +53,138 @@ const ATTEMPTS: [Attempt; 3] = [
         leads: Leads::Elsewhere,
     },
 ];
-/// Clearance kept while a manoeuvre is driven, metres.
-const PLAN_KEPT_M: f32 = 0.008;
-/// Speed at and below which the robot creeps, metres a second.
+/// Clearance while a recovery is driven, metres.
+const RECOVERY_MARGIN_M: f32 = 0.008;
+/// Greatest speed that counts as creeping, and the speed of reversing, metres per second.
 const CREEP_MPS: f32 = 0.15;
-/// Turn rate wished for a radian of error, 1/s.
+/// Wished turn rate per radian of error, 1/s.
 const TURN_GAIN: f32 = 2.0;
-/// Beyond this error the robot turns on the spot, radians.
+/// Greatest wished turn rate, as a part of the robot's.
+const TURN_PART: f32 = 0.6;
+/// Slower turn rate that is tried next, as a part of the wished one.
+const SLOW_TURN_PART: f32 = 0.4;
+/// Least error for which the robot turns on the spot first, radians.
 const TURN_FIRST_RAD: f32 = 0.9;
-/// An error smaller than this is none, radians.
+/// Greatest error that needs no turn on the spot, radians.
 const ALIGNED_RAD: f32 = 0.12;
+/// Speeds of the candidates ahead, as parts of the wished one, in the order of trial.
+const SPEED_PARTS: [f32; 3] = [1.0, 0.5, 0.2];
+/// Turn rates of the candidates ahead beside the wished one, radians per second, in the order of
+/// trial for each speed.
+const TURN_OFFSETS_RADPS: [f32; 5] = [0.0, 0.25, -0.25, 0.6, -0.6];
 
-/// Turn rate of a robot that looks around, radians a second.
+/// Turn rate of a robot that looks around, radians per second.
 const LOOK_AROUND_RADPS: f32 = 0.6;
 
-/// Instalment of a search: what a step may look at.
-const SEARCH_BUDGET: Budget = Budget {
+/// Budget of a search in one step.
+const SEARCH_BUDGET: SearchBudget = SearchBudget {
     poses: 250,
     points: 60_000,
 };
-/// The first instalment: in its step a field was solved as well.
-const FIRST_BUDGET: Budget = Budget {
+/// Budget in the first step of a search: that step has solved a field as well.
+const FIRST_BUDGET: SearchBudget = SearchBudget {
     poses: SEARCH_BUDGET.poses / 3,
     points: SEARCH_BUDGET.points / 3,
 };
-/// Steps between a search that found nothing and the next, on ground that inclines: some two skeletons.
+/// Steps between a search that found nothing and the next one, where the ground bounds the
+/// headings: about the steps of two skeletons.
 const REST_STEPS: u8 = 20;
-/// Speed backwards where there is no room to turn, metres a second.
-const REVERSE_MPS: f32 = 0.15;
-/// An error this near to half a turn can be driven backwards, radians.
+/// Greatest difference of the error to half a turn for driving straight back, radians.
 const REVERSE_RAD: f32 = 0.35;
+/// Turn rate while reversing, per radian of that difference, 1/s.
+const REVERSE_GAIN: f32 = 0.5;
+/// Greatest speed of a robot that counts as standing, metres per second.
+const STANDING_MPS: f32 = 0.02;
+/// Greatest turn rate of a robot that counts as standing, radians per second.
+const STANDING_RADPS: f32 = 0.05;
 
-/// What the drive remembers: the manoeuvre in progress, or the search for one.
+/// The drive's state: the recovery in progress, or the search for one.
 #[derive(Debug, Default)]
 pub struct Drive {
-    plan: Plan,
+    recovery: Recovery,
     search: Option<Search>,
-    /// To which side it looks around.
+    /// The side to which it looks around.
     looks_right: bool,
-    /// Steps until the next search may begin, where one found nothing.
-    rest: u8,
+    /// Steps until the next search may begin, after one that found nothing.
+    rest_steps: u8,
 }
 
 impl Drive {
-    /// At rest.
+    /// Returns a drive at rest.
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            plan: Plan::new(),
+            recovery: Recovery::new(),
             search: None,
             looks_right: false,
-            rest: 0,
+            rest_steps: 0,
         }
     }
 
-    /// Whether a search is going on: its poses are in the scratch, which nobody else may use until it is over.
+    /// Returns true during a search. Its poses are in the scratch memory, which must not change
+    /// until the search ends.
     #[must_use]
     pub const fn is_searching(&self) -> bool {
         self.search.is_some()
     }
 
-    /// Whether the last search found nothing, and the next one has to wait.
+    /// Returns true if the last search found nothing and the next one has to wait.
     #[must_use]
-    pub const fn is_resting(&self) -> bool {
-        self.rest > 0
+    pub(crate) const fn is_resting(&self) -> bool {
+        self.rest_steps > 0
     }
 
-    /// The velocity for the heading that the field has at the robot's place, from the velocity `now`; zero where nothing is
-    /// admissible, and while a search goes on.
+    /// Returns the velocity that follows the field's heading at the robot's place, for a robot with
+    /// the velocity `now`; zero if no candidate is admissible, and during a search.
+    ///
+    /// `scratch` holds at least [`SCRATCH_WORDS`].
     pub fn follow<H: Fn(Place) -> Option<f32>>(
         &mut self,
         config: &Config,
-        ground: &Ground<'_, H>,
+        query: &SearchQuery<'_, H>,
         now: Twist,
         scratch: &mut [u32],
     ) -> Twist {
-        self.rest = self.rest.saturating_sub(1);
-        let surround = ground.surround;
+        self.rest_steps = self.rest_steps.saturating_sub(1);
+        let checker = query.checker;
+        let admits = |&twist: &Twist| checker.admits(twist, now, config, RECOVERY_MARGIN_M);
         let mut budget = SEARCH_BUDGET;
         if self.search.is_none() {
-            let planned = self.plan.next(config.period_s);
-            if let Some(twist) = planned.filter(|&t| surround.admits(t, now, config, PLAN_KEPT_M)) {
+            let planned = self.recovery.next(config.period_s);
+            if let Some(twist) = planned.filter(admits) {
                 return twist;
             }
-            self.plan.clear();
-            let Some(error) = (ground.heading_at)(Place::default()) else {
+            self.recovery.clear();
+            let Some(error) = (query.heading_at)(Place::default()) else {
                 return Twist::default();
             };
-            if let Some(twist) = directly(config, error, now, surround) {
+            if let Some(twist) = direct_candidate(config, error, now, checker) {
                 return twist;
             }
             if is_moving(now) || self.is_resting() {
                 return Twist::default();
             }
-            let first = Choice::of(config.period_s, |twist| {
-                surround.admits(twist, now, config, PLAN_KEPT_M)
-            });
+            let first = MotionSet::of(config.period_s, |twist| admits(&twist));
             self.search = Some(Search::start(ATTEMPTS[0], first, scratch));
             budget = FIRST_BUDGET;
         }
-        self.go_on_searching(ground, budget, scratch);
-        // Nothing else is planned while a search goes on, and in the open, held by the slope only, one would follow the other.
-        if self.search.is_none() && self.plan.is_empty() && surround.inclines() {
-            self.rest = REST_STEPS;
+        self.continue_search(query, budget, scratch);
+        // The planner does nothing else during a search. In open space, where only the slope holds
+        // the robot, one search would follow the other.
+        if self.search.is_none() && self.recovery.is_empty() && checker.bounds_headings() {
+            self.rest_steps = REST_STEPS;
         }
         Twist::default()
     }
 
-    /// Turn on the spot to see what is around, as far as there is room, to one side and then to the other.
-    pub fn look_around(
+    /// Turns on the spot to look around, as far as there is room: to one side, then to the other.
+    pub(crate) fn look_around(
         &mut self,
         config: &Config,
-        surround: &CollisionChecker,
+        checker: &CollisionChecker,
         now: Twist,
     ) -> Twist {
-        // A search is for where the robot stands.
+        // A search is valid only for the pose in which it began.
         self.search = None;
         for _ in 0..2 {
             let turn = Twist {
@@ -170,7 +195,7 @@ impl Drive {
                     LOOK_AROUND_RADPS
                 },
             };
-            if surround.admits(turn, now, config, CREEP_MARGIN_M) {
+            if checker.admits(turn, now, config, CREEP_MARGIN_M) {
                 return turn;
             }
             self.looks_right = !self.looks_right;
@@ -178,115 +203,98 @@ impl Drive {
         Twist::default()
     }
 
-    fn go_on_searching<H: Fn(Place) -> Option<f32>>(
+    /// Continues the search within `budget`, and begins the next attempt if this one fails.
+    fn continue_search<H: Fn(Place) -> Option<f32>>(
         &mut self,
-        ground: &Ground<'_, H>,
-        budget: Budget,
+        query: &SearchQuery<'_, H>,
+        budget: SearchBudget,
         scratch: &mut [u32],
     ) {
         let Some(search) = &mut self.search else {
             return;
         };
-        match search.advance(ground, budget, scratch) {
-            Found::Pending => {}
-            Found::Plan(plan) => {
-                self.plan = plan;
+        match search.advance(query, budget, scratch) {
+            SearchOutcome::Pending => {}
+            SearchOutcome::Found(recovery) => {
+                self.recovery = recovery;
                 self.search = None;
             }
-            Found::Nothing => {
-                let tried = ATTEMPTS
-                    .iter()
-                    .position(|&attempt| attempt == search.attempt());
-                let next = tried.and_then(|tried| ATTEMPTS.get(tried + 1));
-                let first = search.first();
-                self.search = next.map(|&attempt| Search::start(attempt, first, scratch));
+            SearchOutcome::Nothing => {
+                let mut attempts = ATTEMPTS.iter();
+                attempts.find(|&&attempt| attempt == search.attempt);
+                let first = search.first;
+                self.search = attempts
+                    .next()
+                    .map(|&attempt| Search::start(attempt, first, scratch));
             }
         }
     }
 }
 
 fn is_moving(now: Twist) -> bool {
-    now.linear_mps.abs() > 0.02 || now.angular_radps.abs() > 0.05
+    now.linear_mps.abs() > STANDING_MPS || now.angular_radps.abs() > STANDING_RADPS
 }
 
-/// What needs no manoeuvre: ahead, turning on the spot, or straight back.
-fn directly(config: &Config, error: f32, now: Twist, surround: &CollisionChecker) -> Option<Twist> {
+/// Returns the first admissible velocity that needs no recovery: ahead, a turn on the spot,
+/// straight back, or a turn of the robot's back towards the heading on a slope too steep to turn
+/// fully.
+fn direct_candidate(
+    config: &Config,
+    error: f32,
+    now: Twist,
+    checker: &CollisionChecker,
+) -> Option<Twist> {
     let admits = |&twist: &Twist| {
         let creeps = twist.linear_mps.abs() <= CREEP_MPS;
-        surround.admits(
-            twist,
-            now,
-            config,
-            if creeps { CREEP_MARGIN_M } else { MARGIN_M },
-        )
+        let margin_m = if creeps { CREEP_MARGIN_M } else { MARGIN_M };
+        checker.admits(twist, now, config, margin_m)
     };
-    let ahead = ahead(config, error).into_iter().flatten().find(admits);
-    // A turn that could not be finished would wedge the robot.
-    let turnable = || surround.is_arc_clear(Place::default(), 0.0, error, CREEP_MARGIN_M);
-    ahead
+    // A turn that the robot cannot finish would wedge it.
+    let can_turn = |turn| checker.is_arc_clear(Place::default(), 0.0, turn, CREEP_MARGIN_M);
+    let turn = |error| turns(config, error).into_iter().flatten().find(admits);
+    let opposite = math::wrap(error + math::PI);
+    ahead(config, error)
+        .find(admits)
+        .or_else(|| turn(error).filter(|_| can_turn(error)))
+        .or_else(|| back(opposite).filter(admits))
         .or_else(|| {
-            turns(config, error)
-                .into_iter()
-                .flatten()
-                .find(admits)
-                .filter(|_| turnable())
-        })
-        .or_else(|| back(error).filter(admits))
-        .or_else(|| {
-            turns_away(config, error, surround)
-                .into_iter()
-                .flatten()
-                .find(admits)
+            let turns_back = checker.is_steep() && can_turn(opposite);
+            turns_back.then(|| turn(opposite)).flatten()
         })
 }
 
-/// Turns that bring its back to where the robot goes, on a slope that it may not turn round on.
-fn turns_away(config: &Config, error: f32, surround: &CollisionChecker) -> [Option<Twist>; 2] {
-    let askew = math::wrap(error + math::PI);
-    if surround.is_steep() && surround.is_arc_clear(Place::default(), 0.0, askew, CREEP_MARGIN_M) {
-        turns(config, askew)
-    } else {
-        [None; 2]
-    }
-}
-
-/// Straight back, where the heading is behind.
-fn back(error: f32) -> Option<Twist> {
-    let askew = math::wrap(error + math::PI);
-    (askew.abs() < REVERSE_RAD).then_some(Twist {
-        linear_mps: -REVERSE_MPS,
-        angular_radps: 0.5 * askew,
+/// Returns the velocity straight back, if `opposite`, the error of the robot's back, is small.
+fn back(opposite: f32) -> Option<Twist> {
+    (opposite.abs() < REVERSE_RAD).then_some(Twist {
+        linear_mps: -CREEP_MPS,
+        angular_radps: REVERSE_GAIN * opposite,
     })
 }
 
-/// Ways forward, the wish first.
-fn ahead(config: &Config, error: f32) -> [Option<Twist>; 15] {
-    let wish_w = turn_rate(config, error);
+/// Returns the candidates ahead, the wish first; none if the robot has to turn first.
+fn ahead(config: &Config, error: f32) -> impl Iterator<Item = Twist> {
+    let wish_radps = turn_rate(config, error);
     let (_, cos) = math::sin_cos(error);
-    let wish_v = if error.abs() > TURN_FIRST_RAD {
+    let wish_mps = if error.abs() > TURN_FIRST_RAD {
         0.0
     } else {
         config.max_linear_mps * cos * cos
     };
-    core::array::from_fn(|i| {
-        let part = [1.0, 0.5, 0.2].get(i / 5).copied().unwrap_or(0.0);
-        let offset = [0.0, 0.25, -0.25, 0.6, -0.6]
-            .get(i % 5)
-            .copied()
-            .unwrap_or(0.0);
-        let most = config.max_angular_radps;
-        (wish_v > 0.0).then(|| Twist {
-            linear_mps: wish_v * part,
-            angular_radps: (wish_w + offset).clamp(-most, most),
+    let most = config.max_angular_radps;
+    let speeds = SPEED_PARTS.into_iter().filter(move |_| wish_mps > 0.0);
+    speeds.flat_map(move |part| {
+        TURN_OFFSETS_RADPS.map(|offset| Twist {
+            linear_mps: wish_mps * part,
+            angular_radps: (wish_radps + offset).clamp(-most, most),
         })
     })
 }
 
-/// Turns on the spot towards the heading, the quick one first.
-fn turns(config: &Config, error: f32) -> [Option<Twist>; 2] {
+/// Returns the turns on the spot towards the heading, the quick one first; none if it is aligned.
+fn turns(config: &Config, error: f32) -> Option<[Twist; 2]> {
     let quick = turn_rate(config, error);
-    [quick, 0.4 * quick].map(|angular_radps| {
-        (error.abs() > ALIGNED_RAD).then_some(Twist {
+    (error.abs() > ALIGNED_RAD).then(|| {
+        [quick, SLOW_TURN_PART * quick].map(|angular_radps| Twist {
             linear_mps: 0.0,
             angular_radps,
         })
@@ -294,6 +302,6 @@ fn turns(config: &Config, error: f32) -> [Option<Twist>; 2] {
 }
 
 fn turn_rate(config: &Config, error: f32) -> f32 {
-    let most = 0.6 * config.max_angular_radps;
+    let most = TURN_PART * config.max_angular_radps;
     (TURN_GAIN * error).clamp(-most, most)
 }

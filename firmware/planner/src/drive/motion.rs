@@ -1,14 +1,14 @@
-//! Short motions, and a manoeuvre made of them.
+//! Short motions, and the recovery made of them.
 //!
-//! Units: metres, radians; a motion takes a fixed number of periods.
+//! Units: metres, radians; a motion takes [`PERIODS`] periods.
 
 use heapless::Vec;
 
 use crate::geometry::Twist;
 use crate::math;
 
-/// Motions of a plan at the most; of a longer way the beginning is driven.
-pub const MOST_MOTIONS: usize = 64;
+/// Capacity of a recovery, motions; of a longer one the robot drives the beginning.
+const MOST_MOTIONS: usize = 64;
 /// Periods that a motion takes.
 const PERIODS: u8 = 2;
 /// Length of a straight or curved motion, metres.
@@ -18,7 +18,7 @@ pub(super) const TURN_RAD: f32 = math::PI / 24.0;
 /// Turn of a curved motion, radians.
 const CURVE_RAD: f32 = 0.1;
 
-/// A short motion: its length, its turn and what it costs; driving backwards is blind.
+/// A short motion: its length, its turn and its cost. Backward motions cost more: they are blind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Motion {
     pub(super) length_m: f32,
@@ -44,7 +44,7 @@ impl Motion {
     }
 }
 
-/// By number.
+/// All motions; a motion's number is its index here.
 pub(super) const MOTIONS: [Motion; 8] = [
     motion(0.0, TURN_RAD, 1.0),
     motion(0.0, -TURN_RAD, 1.0),
@@ -56,68 +56,63 @@ pub(super) const MOTIONS: [Motion; 8] = [
     motion(-LENGTH_M, -CURVE_RAD, 1.5),
 ];
 
-/// The straight ones, by number.
+/// Number of the straight motion forwards.
 pub(super) const FORWARD: u8 = 2;
+/// Number of the straight motion backwards.
 pub(super) const BACKWARD: u8 = 5;
 
-/// A set of motions, a bit each.
+/// A set of motions: bit k is motion k.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Choice(u8);
+pub(super) struct MotionSet(u8);
 
-impl Choice {
-    /// The motions whose velocity, driven for `period_s` and more, is admitted.
-    pub fn of(period_s: f32, admits: impl Fn(Twist) -> bool) -> Self {
+impl MotionSet {
+    /// Every motion.
+    #[cfg(test)]
+    pub(super) const ALL: Self = Self(u8::MAX);
+
+    /// Returns the motions whose velocity is admitted.
+    pub(super) fn of(period_s: f32, admits: impl Fn(Twist) -> bool) -> Self {
         let bit = |(number, motion): (usize, &Motion)| {
             u8::from(admits(motion.velocity(period_s))) << number
         };
-        Self(
-            MOTIONS
-                .iter()
-                .enumerate()
-                .map(bit)
-                .fold(0, |set, bit| set | bit),
-        )
+        let bits = MOTIONS.iter().enumerate().map(bit);
+        Self(bits.fold(0, |set, bit| set | bit))
     }
-
-    /// Every motion.
-    pub const ALL: Self = Self(u8::MAX);
 
     pub(super) const fn has(self, number: usize) -> bool {
         self.0 >> number & 1 == 1
     }
 }
 
-/// A manoeuvre in progress: motions by number, the next one last.
+/// A recovery in progress: motions by number, the next one last.
 #[derive(Clone, Debug, Default)]
-pub struct Plan {
+pub(super) struct Recovery {
     pub(super) motions: Vec<u8, MOST_MOTIONS>,
-    /// Periods of the present motion already driven.
+    /// Driven periods of the present motion.
     periods: u8,
 }
 
-impl Plan {
-    /// No manoeuvre.
-    #[must_use]
-    pub const fn new() -> Self {
+impl Recovery {
+    /// Returns a recovery without motions.
+    pub(super) const fn new() -> Self {
         Self {
             motions: Vec::new(),
             periods: 0,
         }
     }
 
-    /// Whether there is none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
+    /// Returns true if no motion is left.
+    pub(super) fn is_empty(&self) -> bool {
         self.motions.is_empty()
     }
 
-    /// Forget it.
-    pub fn clear(&mut self) {
+    /// Drops all motions.
+    pub(super) fn clear(&mut self) {
         *self = Self::new();
     }
 
-    /// The velocity of the next period, if the manoeuvre goes on.
-    pub fn next(&mut self, period_s: f32) -> Option<Twist> {
+    /// Returns the velocity of the next period; `None` at the end.
+    pub(super) fn next(&mut self, period_s: f32) -> Option<Twist> {
         let motion = MOTIONS.get(usize::from(*self.motions.last()?))?;
         self.periods += 1;
         if self.periods >= PERIODS {

@@ -1,15 +1,18 @@
-//! The poses of a search and its open list: a binary heap by rank, in lent words.
+//! The poses of a search and its open list: a binary heap by rank, in the caller's scratch memory.
 //!
-//! A node is five words; the heap holds node numbers. Invariant: the first `waiting` entries of the heap are a
-//! heap of open nodes, the least rank first; ties fall by place in the heap, the same on every machine.
+//! A node is five words; the heap holds node numbers.
+//!
+//! Invariant: the first `waiting` entries of the heap are a heap of open nodes, the least rank
+//! first. Ties are resolved by the place in the heap, the same on every machine.
 
 use crate::drive::collision::Place;
+use crate::grid::at;
 
-/// Poses that a search may find.
+/// Capacity of a search, poses.
 pub(super) const MOST_NODES: usize = 1100;
 const NODE_WORDS: usize = 5;
 
-/// Words that they need.
+/// Words that the nodes and the heap need.
 pub(super) const WORDS: usize = MOST_NODES * NODE_WORDS + MOST_NODES;
 
 /// A pose of the search.
@@ -18,16 +21,18 @@ pub(super) struct Node {
     pub(super) place: Place,
     /// Cost so far.
     pub(super) cost: f32,
-    /// Cost so far and what is hoped to remain.
+    /// Cost so far plus the estimate of the rest.
     pub(super) rank: f32,
-    /// Where it was reached from, and by which motion.
+    /// The node before it.
     pub(super) parent: u16,
+    /// The motion from there, by number.
     pub(super) motion: u8,
-    /// The search ends here, and no motion led here: the parent's pose under another rank.
+    /// The search ends here. No motion leads here: it is the parent's pose with another rank.
     pub(super) is_end: bool,
 }
 
 impl Node {
+    /// Returns the node of the robot's pose.
     pub(super) fn start() -> Self {
         Self {
             place: Place::default(),
@@ -40,7 +45,7 @@ impl Node {
     }
 
     fn words(self) -> [u32; NODE_WORDS] {
-        // Costs are sums of tenths; hundredths in 16 bits hold more than any way costs.
+        // Costs are sums of tenths; 16 bits of hundredths hold more than the cost of any recovery.
         let hundredths = |cost: f32| (cost * 100.0) as u16;
         [
             self.place.x_m.to_bits(),
@@ -69,14 +74,14 @@ impl Node {
     }
 }
 
-/// How many nodes there are, and how many of them wait.
+/// The open list: the number of nodes, and of those that wait.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Open {
+pub(super) struct OpenList {
     nodes: usize,
     waiting: usize,
 }
 
-/// The rank of a node, in hundredths.
+/// Returns the rank of a node, in hundredths.
 fn rank(words: &[u32], node: u32) -> u32 {
     words
         .get(node as usize * NODE_WORDS + 3)
@@ -87,8 +92,8 @@ const fn place_of(entry: usize) -> usize {
     MOST_NODES * NODE_WORDS + entry
 }
 
-fn entry(words: &[u32], at: usize) -> u32 {
-    words.get(place_of(at)).copied().unwrap_or(0)
+fn entry(words: &[u32], index: usize) -> u32 {
+    at(words, place_of(index))
 }
 
 fn swap(words: &mut [u32], one: usize, other: usize) {
@@ -100,8 +105,8 @@ fn swap(words: &mut [u32], one: usize, other: usize) {
     }
 }
 
-impl Open {
-    /// Add a node to those that wait; false when there is no room.
+impl OpenList {
+    /// Adds a node. Returns false if there is no room.
     pub(super) fn push(&mut self, words: &mut [u32], node: Node) -> bool {
         if self.nodes == MOST_NODES {
             return false;
@@ -116,21 +121,21 @@ impl Open {
         };
         *last = number as u32;
         self.nodes += 1;
-        self.rise(words, self.waiting);
+        self.sift_up(words, self.waiting);
         self.waiting += 1;
         true
     }
 
-    /// Take the waiting node of least rank.
+    /// Takes the waiting node of least rank.
     pub(super) fn pop(&mut self, words: &mut [u32]) -> Option<(u16, Node)> {
         self.waiting = self.waiting.checked_sub(1)?;
         let least = entry(words, 0);
         swap(words, 0, self.waiting);
-        self.sink(words);
+        self.sift_down(words);
         Some((least as u16, self.node(words, least as u16)?))
     }
 
-    /// A node by number.
+    /// Returns a node by number.
     pub(super) fn node(&self, words: &[u32], number: u16) -> Option<Node> {
         let from = usize::from(number) * NODE_WORDS;
         words
@@ -139,7 +144,7 @@ impl Open {
             .map(|&words| Node::from_words(words))
     }
 
-    fn rise(&self, words: &mut [u32], from: usize) {
+    fn sift_up(&self, words: &mut [u32], from: usize) {
         let mut at = from;
         while at > 0 {
             let above = (at - 1) / 2;
@@ -151,7 +156,7 @@ impl Open {
         }
     }
 
-    fn sink(&self, words: &mut [u32]) {
+    fn sift_down(&self, words: &mut [u32]) {
         let mut at = 0;
         loop {
             let mut least = at;
@@ -178,7 +183,7 @@ mod tests {
     #[test]
     fn nodes_come_out_by_rank_and_as_they_went_in() {
         let mut words = std::vec![0; WORDS];
-        let mut open = Open::default();
+        let mut open = OpenList::default();
         for k in 0..500_u16 {
             let rank = f32::from(k * 37 % 500) * 0.5;
             let place = Place {
@@ -211,7 +216,7 @@ mod tests {
     #[test]
     fn a_full_list_refuses() {
         let mut words = std::vec![0; WORDS];
-        let mut open = Open::default();
+        let mut open = OpenList::default();
         for _ in 0..MOST_NODES {
             assert!(open.push(&mut words, Node::start()));
         }

@@ -1,69 +1,77 @@
-//! A manoeuvre out of a narrow place: a search over short motions, forwards, backwards, curved and on the spot.
+//! Recovery out of a narrow place: a search over short motions, forwards, backwards, curved and on
+//! the spot.
 //!
-//! In a passage narrower than the robot's diagonal it cannot turn everywhere, and following the field alone wedges it. The
-//! search (A* over poses, in the manner of hybrid A*) starts where the robot stands and ends at a pose from which the field
-//! can be followed: aligned with the field's heading *there*, with `GO_ON_M` free ahead; or, dearer, aligned against it
-//! with as much free behind. The end must also be farther along the field than the start, or the robot would go to and fro
-//! before a tight corner. Poses are kept exactly; of those that fall into the same cell of 3 cm × 3 cm × 7.5° only the
-//! first is. It works in instalments while the robot stands, so no step takes long.
+//! In a passage narrower than its diagonal the robot cannot turn everywhere, and following the
+//! field alone wedges it. The search (A* over poses, similar to hybrid A*) starts at the robot's
+//! pose. It ends at a pose from which the robot can follow the field: aligned with the field's
+//! heading *there* with [`GO_ON_M`] free ahead, or, at a higher cost, aligned against it with as
+//! much free behind. The end must be farther along the field than the start; otherwise the robot
+//! oscillates before a tight corner. Poses are exact; of those in the same cell of 3 cm × 3 cm ×
+//! 7.5° only the first counts. The search runs in instalments while the robot stands, so every step
+//! is short.
 //!
-//! Invariant: every pose on the way keeps the margin. Units: metres, radians; robot frame at the start.
+//! Invariant: every pose of a recovery keeps the margin.
+//!
+//! Units: metres, radians; robot frame at the start.
 
 use crate::drive::collision::Place;
-use crate::drive::motion::{BACKWARD, FORWARD, LENGTH_M, MOTIONS, TURN_RAD};
-pub use crate::drive::motion::{Choice, MOST_MOTIONS, Plan};
-use crate::drive::open_list::{Node, Open};
-pub use crate::drive::search_query::{Attempt, Ground, Leads};
+use crate::drive::motion::{BACKWARD, FORWARD, LENGTH_M, MOTIONS, MotionSet, Recovery, TURN_RAD};
+use crate::drive::open_list::{Node, OpenList};
+use crate::drive::search_query::{Attempt, SearchQuery};
 use crate::math;
 
-/// Straight motions at the end, so that every manoeuvre leads somewhere.
+/// Straight motions at the end, so that every recovery moves the robot on.
 const GO_ON_MOTIONS: u8 = 8;
-/// What must be free ahead for them, metres.
+/// Free length that they need, metres.
 const GO_ON_M: f32 = GO_ON_MOTIONS as f32 * LENGTH_M;
-/// What it costs to end against the field, motions.
+/// Cost of an end against the field, in motions.
 const REVERSE_COST: f32 = 12.0;
-/// Cells to each side of the start, and directions, that a pose may fall into.
+/// Cells to each side of the start within which poses count, cells of [`LENGTH_M`].
 const REACH: i32 = 18;
 const SIDE: usize = 2 * REACH as usize + 1;
+/// Headings that are distinguished: a full turn in steps of [`TURN_RAD`].
 const DIRECTIONS: usize = 48;
 const VISITED_WORDS: usize = (SIDE * SIDE * DIRECTIONS).div_ceil(32);
 
-/// Words of scratch that a search needs.
+/// Words of scratch memory that a search needs.
 pub const SCRATCH_WORDS: usize = VISITED_WORDS + super::open_list::WORDS;
 
-/// How far a search came.
+/// The result of an instalment of a search.
 #[derive(Clone, Debug)]
-pub enum Found {
-    /// A way out.
-    Plan(Plan),
-    /// Not yet; go on with the next instalment.
+pub(super) enum SearchOutcome {
+    /// A recovery.
+    Found(Recovery),
+    /// None yet; the next instalment continues.
     Pending,
     /// There is none within reach.
     Nothing,
 }
 
-/// A search in progress; its poses are in the scratch that it was started with.
+/// A search in progress; its poses are in the scratch memory.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Search {
-    open: Open,
-    attempt: Attempt,
-    first: Choice,
+pub(super) struct Search {
+    open: OpenList,
+    /// The conditions on the recovery.
+    pub(super) attempt: Attempt,
+    /// The motions with which it may begin.
+    pub(super) first: MotionSet,
 }
 
-/// What an instalment of a search may look at; it ends with the pose that uses up either.
+/// Limits of an instalment; it ends with the pose that reaches either.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Budget {
+pub(super) struct SearchBudget {
     /// Poses taken from the open list.
-    pub poses: u32,
-    /// Near points, counted anew for each pose that is tried against all of them.
-    pub points: u32,
+    pub(super) poses: u32,
+    /// Obstacle points, counted once for each pose checked against all of them.
+    pub(super) points: u32,
 }
 
 impl Search {
-    /// Begin where the robot stands, with one of the motions `first`: those that it can really set out with, braking and all.
-    pub fn start(attempt: Attempt, first: Choice, scratch: &mut [u32]) -> Self {
+    /// Begins at the robot's pose, with one of the motions `first`: those that the robot can start
+    /// with from its present velocity.
+    pub(super) fn start(attempt: Attempt, first: MotionSet, scratch: &mut [u32]) -> Self {
         let mut search = Self {
-            open: Open::default(),
+            open: OpenList::default(),
             attempt,
             first,
         };
@@ -75,27 +83,15 @@ impl Search {
         search
     }
 
-    /// What is asked.
-    #[must_use]
-    pub const fn attempt(&self) -> Attempt {
-        self.attempt
-    }
-
-    /// What it may set out with.
-    #[must_use]
-    pub const fn first(&self) -> Choice {
-        self.first
-    }
-
-    /// Look at more poses.
-    pub fn advance<H: Fn(Place) -> Option<f32>>(
+    /// Runs one instalment.
+    pub(super) fn advance<H: Fn(Place) -> Option<f32>>(
         &mut self,
-        ground: &Ground<'_, H>,
-        budget: Budget,
+        query: &SearchQuery<'_, H>,
+        budget: SearchBudget,
         scratch: &mut [u32],
-    ) -> Found {
+    ) -> SearchOutcome {
         let Some((visited, nodes)) = scratch.split_at_mut_checked(VISITED_WORDS) else {
-            return Found::Nothing;
+            return SearchOutcome::Nothing;
         };
         let mut points = 0;
         for _ in 0..budget.poses {
@@ -103,15 +99,15 @@ impl Search {
                 break;
             }
             let Some((index, node)) = self.open.pop(nodes) else {
-                return Found::Nothing;
+                return SearchOutcome::Nothing;
             };
             if node.is_end {
-                return Found::Plan(self.trace(nodes, index, BACKWARD));
+                return SearchOutcome::Found(self.trace(nodes, index, BACKWARD));
             }
-            if ground.leads_on(node.place, GO_ON_M, self.attempt, &mut points) {
-                return Found::Plan(self.trace(nodes, index, FORWARD));
+            if query.leads_on(node.place, GO_ON_M, self.attempt, &mut points) {
+                return SearchOutcome::Found(self.trace(nodes, index, FORWARD));
             }
-            if ground.leads_on(node.place, -GO_ON_M, self.attempt, &mut points) {
+            if query.leads_on(node.place, -GO_ON_M, self.attempt, &mut points) {
                 let cost = node.cost + REVERSE_COST;
                 self.open.push(
                     nodes,
@@ -122,18 +118,19 @@ impl Search {
                     },
                 );
             }
-            let Some(tried) = self.expand(ground, (index, node), visited, nodes) else {
-                return Found::Nothing;
+            let Some(tried) = self.expand(query, (index, node), visited, nodes) else {
+                return SearchOutcome::Nothing;
             };
-            points += tried * ground.surround.points();
+            points += tried * query.checker.points();
         }
-        Found::Pending
+        SearchOutcome::Pending
     }
 
-    /// Enter the poses one motion away; how many were tried, or `None` when there is no room for more.
+    /// Adds the poses one motion away. Returns how many were tried, or `None` if the open list is
+    /// full.
     fn expand<H: Fn(Place) -> Option<f32>>(
         &mut self,
-        ground: &Ground<'_, H>,
+        query: &SearchQuery<'_, H>,
         (index, node): (u16, Node),
         visited: &mut [u32],
         nodes: &mut [u32],
@@ -148,17 +145,17 @@ impl Search {
                 continue;
             }
             tried += 1;
-            if !ground.surround.is_clear(place, self.attempt.margin_m) {
+            if !query.checker.is_clear(place, self.attempt.margin_m) {
                 continue;
             }
             let cost = node.cost + motion.cost;
-            let hope = ground
+            let estimate = query
                 .misalignment(place)
                 .map_or(0.0, |error| error.abs() / TURN_RAD);
             let next = Node {
                 place,
                 cost,
-                rank: cost + hope,
+                rank: cost + estimate,
                 parent: index,
                 motion: number as u8,
                 is_end: false,
@@ -170,29 +167,30 @@ impl Search {
         Some(tried)
     }
 
-    /// The motions from the start to a node and on from there, the first one last; of a way too long, its beginning.
-    fn trace(&self, nodes: &[u32], end: u16, go_on: u8) -> Plan {
-        let mut plan = Plan::new();
+    /// Returns the motions from the start to a node and the straight ones after it, the first one
+    /// last; of a recovery that is too long, its beginning.
+    fn trace(&self, nodes: &[u32], end: u16, go_on: u8) -> Recovery {
+        let mut recovery = Recovery::new();
         for _ in 0..GO_ON_MOTIONS {
-            // A new plan has room.
-            let _ = plan.motions.push(go_on);
+            // A new recovery has room.
+            let _ = recovery.motions.push(go_on);
         }
         let mut index = end;
         while let Some(node) = self.open.node(nodes, index).filter(|_| index != 0) {
             if !node.is_end {
-                if plan.motions.is_full() {
-                    plan.motions.remove(0);
+                if recovery.motions.is_full() {
+                    recovery.motions.remove(0);
                 }
                 // There is room now.
-                let _ = plan.motions.push(node.motion);
+                let _ = recovery.motions.push(node.motion);
             }
             index = node.parent;
         }
-        plan
+        recovery
     }
 }
 
-/// Mark the cell of a pose; false if it was marked, or is out of reach.
+/// Marks the cell of a pose. Returns false if it was marked already or is out of reach.
 fn visit(visited: &mut [u32], place: Place) -> bool {
     let cell = |at: f32| math::floor(at / LENGTH_M + 0.5);
     let (x, y) = (cell(place.x_m), cell(place.y_m));

@@ -1,62 +1,66 @@
-//! What a search for a manoeuvre runs on, and what it asks of the end of a way out.
+//! The query of a search for a recovery: its surroundings, and the conditions on its end.
 //!
 //! Units: metres, radians; robot frame at the start.
 
 use crate::drive::collision::{CollisionChecker, Place};
 use crate::math;
 
-/// Alignment with the field at the end, radians.
+/// Greatest angle to the field's heading at the end, radians.
 const ALIGNED_RAD: f32 = 0.2;
 
-/// What a search asks of a way out.
+/// Least factor by which q grows from the start to the end of a recovery. In a passage as wide as
+/// the robot, q doubles in 0.1 m.
+const PROGRESS: f32 = 1.3;
+
+/// The conditions on a recovery.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Attempt {
-    /// The clearance kept, metres.
-    pub margin_m: f32,
+pub(super) struct Attempt {
+    /// Clearance, metres.
+    pub(super) margin_m: f32,
     /// Where it must lead.
-    pub leads: Leads,
+    pub(super) leads: Leads,
 }
 
-/// Where a way out must lead. No value is zero: so an idle drive is all zeros, and takes no place in the image's flash.
+/// The condition on the end of a recovery.
+///
+/// No value is zero: so a drive without a search is all zeros and takes no flash.
 #[repr(u8)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Leads {
-    /// Elsewhere.
+pub(super) enum Leads {
+    /// Any other pose.
     #[default]
     Elsewhere = 1,
-    /// Farther along the field.
+    /// A place farther along the field.
     Farther = 2,
 }
 
-/// What a search runs on: what stands around, and the field's heading at a place, radians left of the robot's present one, or
-/// `None` where the field says nothing.
+/// The input of a search: the obstacles and the field around the robot.
 #[expect(missing_debug_implementations, reason = "it lends closures")]
-pub struct Ground<'a, H> {
-    /// What stands around.
-    pub surround: &'a CollisionChecker,
-    /// The field's heading.
+pub struct SearchQuery<'a, H> {
+    /// The obstacles.
+    pub checker: &'a CollisionChecker,
+    /// The field's heading at a place, radians to the left of the robot's present heading; `None`
+    /// where the field is flat.
     pub heading_at: H,
-    /// How far along the field a place is (q of its cell); `None` where that is not asked for.
+    /// q of a place's cell, which grows along the field; `None` if recoveries need no progress.
     pub potential_at: Option<&'a dyn Fn(Place) -> f32>,
 }
 
-/// By this factor q must grow from the start to the end of a manoeuvre. In a passage of the robot's width it doubles in 0.1 m.
-const PROGRESS: f32 = 1.3;
-
-impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
-    /// What the field asks a robot at a place to turn, radians.
+impl<H: Fn(Place) -> Option<f32>> SearchQuery<'_, H> {
+    /// Returns the turn of a robot at a place to the field's heading, radians.
     pub(super) fn misalignment(&self, place: Place) -> Option<f32> {
         (self.heading_at)(place).map(|heading| math::wrap(heading - place.yaw_rad))
     }
 
-    /// Whether a place is farther along the field than the robot.
+    /// Returns true if a place is farther along the field than the robot.
     fn is_progress(&self, place: Place) -> bool {
         self.potential_at
             .is_none_or(|q| q(place) > PROGRESS * q(Place::default()))
     }
 
-    /// Whether the field asks for `length_m` straight on from here: forwards, or against the alignment backwards.
-    fn asks_on(&self, place: Place, length_m: f32, attempt: Attempt) -> bool {
+    /// Returns true if the field leads `length_m` straight on from here: ahead, or backwards for a
+    /// negative length.
+    fn is_aligned(&self, place: Place, length_m: f32, attempt: Attempt) -> bool {
         let aligned = self.misalignment(place).is_some_and(|error| {
             let error = if length_m < 0.0 {
                 math::wrap(error + math::PI)
@@ -69,7 +73,8 @@ impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
             && (attempt.leads == Leads::Elsewhere || self.is_progress(place.after(length_m, 0.0)))
     }
 
-    /// Whether that can be followed. Looking costs as many points as there are, for each place on the way.
+    /// Returns true if the field leads `length_m` straight on and the robot can follow. Adds to
+    /// `points` the number of obstacle points for each checked place.
     pub(super) fn leads_on(
         &self,
         place: Place,
@@ -77,11 +82,11 @@ impl<H: Fn(Place) -> Option<f32>> Ground<'_, H> {
         attempt: Attempt,
         points: &mut u32,
     ) -> bool {
-        if !self.asks_on(place, length_m, attempt) {
+        if !self.is_aligned(place, length_m, attempt) {
             return false;
         }
-        *points += CollisionChecker::places_on(length_m) * self.surround.points();
-        self.surround
+        *points += CollisionChecker::places_on(length_m) * self.checker.points();
+        self.checker
             .is_arc_clear(place, length_m, 0.0, attempt.margin_m)
     }
 }

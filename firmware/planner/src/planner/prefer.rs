@@ -47,7 +47,10 @@ fn crossed(
     view: &LocalGrid,
 ) -> Rows {
     let mut rows = [0; SIDE];
-    let Some(most) = terrain.most_lean().filter(|_| terrain.mode.has_heights()) else {
+    let Some(most) = terrain
+        .side_slope_limit()
+        .filter(|_| terrain.mode.has_heights())
+    else {
         return rows;
     };
     for (y, row) in rows.iter_mut().enumerate() {

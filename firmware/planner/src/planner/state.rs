@@ -58,7 +58,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             "the reachability flood fits the scratch"
         );
         assert!(
-            drive::recovery::SCRATCH_WORDS <= SCRATCH,
+            drive::SCRATCH_WORDS <= SCRATCH,
             "a recovery search fits the scratch"
         );
     };

@@ -4,7 +4,7 @@
 
 use crate::config::Config;
 use crate::drive::side_slope::Hysteresis;
-use crate::drive::{Ground, Incline, Place};
+use crate::drive::{Incline, Place, SearchQuery};
 use crate::field::local_grid;
 use crate::field::{Window, descent};
 use crate::geometry::{Cell, Point, Pose, Twist};
@@ -47,9 +47,9 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     let goal = state.strategy.frontier.path().goal();
     let tiles = state.map.tiles();
     let hysteresis = Hysteresis {
-        before: state.slope_direction,
+        previous: state.slope_direction,
         goal: state.ground.direction_of(tiles, goal, input.pose.z_m),
-        shut: state.blocked_direction,
+        blocked: state.blocked_direction,
     };
     let headed = |place: Place| {
         let wanted = heading_at(window, (origin, scale), &input.pose, place)?;
@@ -68,18 +68,18 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
             .collision_checker(&config.robot, tiles, &input.pose, incline.clone());
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
-            let (x, y) = local_grid::position((origin, scale), ahead(&input.pose, place));
+            let (x, y) = local_grid::position((origin, scale), input.pose.to_map(place.point()));
             potential_at(window, x, y)
         };
-        let ground = Ground {
-            surround: &checker,
+        let query = SearchQuery {
+            checker: &checker,
             heading_at,
             potential_at: Some(&potential_at),
         };
         let rested = state.drive.is_resting();
         let velocity = state.drive.follow(
             config,
-            &ground,
+            &query,
             input.velocity,
             bytemuck::cast_slice_mut(scratch),
         );
@@ -180,17 +180,9 @@ fn potential_at(window: &Window, x: f32, y: f32) -> f32 {
     }
 }
 
-/// A place in the robot's frame as a point of the map.
-fn ahead(pose: &Pose, place: Place) -> Point {
-    pose.to_map(Point {
-        x_m: place.x_m,
-        y_m: place.y_m,
-    })
-}
-
 /// The field's heading at a place near the robot, radians to the left of the robot's own.
 fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Option<f32> {
-    let (x, y) = local_grid::position(at, ahead(pose, place));
+    let (x, y) = local_grid::position(at, pose.to_map(place.point()));
     descent::heading_at(window, x, y).map(|heading| math::wrap(heading - pose.yaw_rad))
 }
 

@@ -2,6 +2,7 @@
 
 use crate::drive::CollisionChecker;
 use crate::drive::recovery::*;
+use crate::drive::search_query::Leads;
 use crate::geometry::{Point, Pose};
 use crate::robot::RobotShape;
 
@@ -21,17 +22,17 @@ fn walls(segments: &[[f32; 4]]) -> std::vec::Vec<Point> {
     points
 }
 
-const BUDGET: Budget = Budget {
+const BUDGET: SearchBudget = SearchBudget {
     poses: 100,
     points: 2_000,
 };
 
-fn search(points: &[Point], pose: Pose, heading: f32) -> Option<(Plan, CollisionChecker)> {
+fn search(points: &[Point], pose: Pose, heading: f32) -> Option<(Recovery, CollisionChecker)> {
     let mut scratch = std::vec![0; SCRATCH_WORDS];
-    let surround = CollisionChecker::new(&RobotShape::PIONEER_3AT, &pose, points);
+    let checker = CollisionChecker::new(&RobotShape::PIONEER_3AT, &pose, points);
     let heading_at = |_: Place| Some(math::wrap(heading - pose.yaw_rad));
-    let ground = Ground {
-        surround: &surround,
+    let query = SearchQuery {
+        checker: &checker,
         heading_at,
         potential_at: None,
     };
@@ -40,25 +41,25 @@ fn search(points: &[Point], pose: Pose, heading: f32) -> Option<(Plan, Collision
             margin_m: 0.02,
             leads: Leads::Farther,
         },
-        Choice::ALL,
+        MotionSet::ALL,
         &mut scratch,
     );
     loop {
-        match search.advance(&ground, BUDGET, &mut scratch) {
-            Found::Plan(plan) => return Some((plan, surround)),
-            Found::Pending => {}
-            Found::Nothing => return None,
+        match search.advance(&query, BUDGET, &mut scratch) {
+            SearchOutcome::Found(recovery) => return Some((recovery, checker)),
+            SearchOutcome::Pending => {}
+            SearchOutcome::Nothing => return None,
         }
     }
 }
 
 /// Drives a plan as far as it goes; the pose at its end and the periods it took.
 fn drive_out(points: &[Point], pose: Pose, heading: f32) -> (Place, usize) {
-    let (mut plan, surround) = search(points, pose, heading).expect("a way out");
+    let (mut recovery, checker) = search(points, pose, heading).expect("a way out");
     let (mut place, mut periods) = (Place::default(), 0);
-    while let Some(twist) = plan.next(0.2) {
+    while let Some(twist) = recovery.next(0.2) {
         place = place.after(twist.linear_mps * 0.2, twist.angular_radps * 0.2);
-        assert!(surround.is_clear(place, 0.01), "touches at {place:?}");
+        assert!(checker.is_clear(place, 0.01), "touches at {place:?}");
         periods += 1;
     }
     (place, periods)
