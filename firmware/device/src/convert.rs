@@ -7,15 +7,11 @@
 //! the same bits on every machine.
 
 use fieldline_planner::{
-    Config, Input, LaserMount, LoopLimits, Parameter, Pose, PreferenceMode, Residue, RobotShape,
-    Strategy, Tuning, Twist, UnevenGround, math, status,
+    Cell, Config, Input, LaserMount, LoopCounts, LoopLimits, Parameter, Pose, PreferenceMode,
+    Residue, RobotShape, State, Strategy, Tuning, Twist, UnevenGround, status,
 };
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
-use fixed::types::I4F12;
-
-/// A right angle, radians, rounded down.
-const RIGHT_ANGLE: I4F12 = I4F12::lit("1.57");
 
 /// Returns a wire quantity as f32.
 fn float(quantity: impl LossyInto<f32>) -> f32 {
@@ -100,14 +96,6 @@ fn laser(laser: &wire::Laser) -> LaserMount {
 }
 
 fn uneven_ground(ground: &wire::UnevenGround) -> UnevenGround {
-    // Other angles repeat the tangents of these. The planner refuses what is not a number.
-    let tangent = |angle: I4F12| {
-        if !(I4F12::ZERO..RIGHT_ANGLE).contains(&angle) {
-            return f32::NAN;
-        }
-        let (sin, cos) = math::sin_cos(float(angle));
-        sin / cos
-    };
     UnevenGround {
         mode: match ground.preference {
             wire::Preference::Off => PreferenceMode::Off,
@@ -122,8 +110,8 @@ fn uneven_ground(ground: &wire::UnevenGround) -> UnevenGround {
         most_preference: float(ground.most),
         height_scale: float(ground.height_scale),
         global_scale: float(ground.global_scale),
-        climb: tangent(ground.climb),
-        roll: tangent(ground.roll),
+        climb: UnevenGround::slope(float(ground.climb)),
+        roll: UnevenGround::slope(float(ground.roll)),
         step_m: float(ground.step),
     }
 }
@@ -223,13 +211,46 @@ pub(crate) fn wire_status(status: status::Status) -> wire::Status {
     }
 }
 
+/// Converts the numbers of loops for the wire.
+pub(crate) const fn wire_loops(loops: LoopCounts) -> wire::Loops {
+    wire::Loops {
+        closing: loops.closing,
+        closed: loops.closed,
+        given_up: loops.given_up,
+    }
+}
+
+/// Converts tractor point, shield and path for the wire, without the first `from` cells of the path.
+pub(crate) fn wire_path<const TILES: usize, const SLOTS: usize>(
+    state: &State<TILES, SLOTS>,
+    from: u8,
+) -> wire::Path {
+    let cells = state.path();
+    let rest = cells.iter().skip(from.into());
+    wire::Path {
+        tractor: state.tractor().map(wire_cell),
+        shield: state.shield().map(|ends| ends.map(wire_cell)),
+        length: u8::try_from(cells.len()).unwrap_or(u8::MAX),
+        cells: rest
+            .take(wire::PATH_PAGE)
+            .map(|&cell| wire_cell(cell))
+            .collect(),
+    }
+}
+
+/// Converts a map cell for the wire. It saturates.
+fn wire_cell(cell: Cell) -> (i16, i16) {
+    let short = |at: i32| at.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
+    (short(cell.x), short(cell.y))
+}
+
 /// Converts a residual frontier for the wire.
 #[must_use]
 pub fn wire_frontier(frontier: &status::Frontier) -> wire::ResidualFrontier {
-    let short = |cell: i32| cell.clamp(i16::MIN.into(), i16::MAX.into()) as i16;
+    let (x, y) = wire_cell(frontier.cell);
     wire::ResidualFrontier {
-        x: short(frontier.cell.x),
-        y: short(frontier.cell.y),
+        x,
+        y,
         cells: frontier.cells,
         reason: match frontier.reason {
             Residue::Unreachable => wire::ResidualReason::Unreachable,

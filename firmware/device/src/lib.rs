@@ -17,7 +17,6 @@ extern crate std;
 pub mod convert;
 mod log;
 pub mod meter;
-mod overlay;
 pub mod pilot;
 pub mod port;
 pub mod ring;

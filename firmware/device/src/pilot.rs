@@ -16,9 +16,10 @@
 //! A pilot used directly is a link without bytes. The session calls the same functions, so both
 //! give the same commands.
 
-use fieldline_planner::field::SIDE;
-use fieldline_planner::planner::{self, CellKind, Output};
-use fieldline_planner::{BoxTooLarge, Config, StageTimer, State, Tuning, Workspace, step};
+use fieldline_planner::{
+    self as planner, BoxTooLarge, CellKind, Config, FIELD_SIDE as SIDE, Output, StageTimer, State,
+    Tuning, Workspace, step,
+};
 use fieldline_protocol::message::{
     Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS, MAX_SCANS,
     Observation, Path, Refusal, ResidualFrontier, Start, Status, Tile, Twist,
@@ -28,7 +29,6 @@ use heapless::Vec;
 use crate::STALE_MS;
 use crate::convert;
 use crate::log::{info, warning};
-use crate::overlay;
 
 // The planner's rows and scans must fit into the wire's bounded lists.
 const _: () = assert!(SIDE == FIELD_SIDE && MAX_SCANS == 2);
@@ -207,7 +207,7 @@ impl Pilot {
             info!("exploration ended");
         }
         Ok(Command {
-            loops: overlay::loops(memory.state),
+            loops: convert::wire_loops(memory.state.loops()),
             ..command(&output, self.planned)
         })
     }
@@ -226,8 +226,8 @@ impl Pilot {
             y,
             cells: cells.iter().copied().collect(),
             skeleton: rows.iter().flat_map(|row| row.to_le_bytes()).collect(),
-            closed_regions: overlay::closed_regions(memory.state, (x, y)),
-            visit_stamps: overlay::visit_stamps(memory.state, (x, y)),
+            closed_regions: memory.state.closed_regions(x, y),
+            visit_stamps: memory.state.visit_stamps(x, y),
         })
     }
 
@@ -250,7 +250,7 @@ impl Pilot {
         memory: &Memory<'_, TILES, SLOTS>,
         from: u8,
     ) -> Path {
-        overlay::path(memory.state, from)
+        convert::wire_path(memory.state, from)
     }
 
     /// Returns the first [`MAX_FRONTIERS`] residual frontiers.

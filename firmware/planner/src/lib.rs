@@ -5,6 +5,15 @@
 #![no_std]
 #![forbid(unsafe_code)]
 #![cfg_attr(
+    not(feature = "internals"),
+    allow(
+        dead_code,
+        unreachable_pub,
+        unused_imports,
+        reason = "some items are only for the simulator and the tests"
+    )
+)]
+#![cfg_attr(
     not(test),
     deny(
         clippy::unwrap_used,
@@ -17,31 +26,83 @@
 #[cfg(test)]
 extern crate std;
 
+// The rooms, from low to high. Feature `internals` opens them to this project's simulator and tests;
+// it promises nothing to others.
+#[cfg(not(feature = "internals"))]
+mod config;
+#[cfg(not(feature = "internals"))]
+mod drive;
+#[cfg(not(feature = "internals"))]
+mod field;
+#[cfg(not(feature = "internals"))]
+mod geometry;
+#[cfg(not(feature = "internals"))]
+mod grid;
+#[cfg(not(feature = "internals"))]
+mod ground;
+#[cfg(not(feature = "internals"))]
+mod input;
+#[cfg(not(feature = "internals"))]
+mod map;
+#[cfg(not(feature = "internals"))]
+mod math;
+#[cfg(not(feature = "internals"))]
+mod path;
+#[cfg(not(feature = "internals"))]
+mod planner;
+#[cfg(not(feature = "internals"))]
+mod profiling;
+#[cfg(not(feature = "internals"))]
+mod roadmap;
+#[cfg(not(feature = "internals"))]
+mod robot;
+#[cfg(not(feature = "internals"))]
+mod status;
+#[cfg(not(feature = "internals"))]
+mod strategy;
+
+#[cfg(feature = "internals")]
 pub mod config;
+#[cfg(feature = "internals")]
 pub mod drive;
+#[cfg(feature = "internals")]
 pub mod field;
+#[cfg(feature = "internals")]
 pub mod geometry;
+#[cfg(feature = "internals")]
 pub mod grid;
+#[cfg(feature = "internals")]
 pub mod ground;
+#[cfg(feature = "internals")]
 pub mod input;
+#[cfg(feature = "internals")]
 pub mod map;
+#[cfg(feature = "internals")]
 pub mod math;
+#[cfg(feature = "internals")]
 pub mod path;
+#[cfg(feature = "internals")]
 pub mod planner;
+#[cfg(feature = "internals")]
 pub mod profiling;
+#[cfg(feature = "internals")]
 pub mod roadmap;
+#[cfg(feature = "internals")]
 pub mod robot;
+#[cfg(feature = "internals")]
 pub mod status;
+#[cfg(feature = "internals")]
 pub mod strategy;
 
 pub use config::{
     BoxTooLarge, Config, ConfigBuilder, ConfigError, LoopLimits, Method, OuroborosTuning,
     Parameter, PreferenceMode, SolverConfig, Strategy, Tuned, Tuning, TuningError, UnevenGround,
 };
-pub use geometry::{Cell, Point, Pose, Twist};
+pub use field::SIDE as FIELD_SIDE;
+pub use geometry::{CELL_M, Cell, Point, Pose, Twist};
 pub use input::{INVALID_MM, Input, NO_RETURN_MM};
 pub use planner::{
-    Capacity, CellKind, F405, FieldRow, Memory, Output, Planner, State, Workspace, step,
+    Capacity, CellKind, F405, FieldRow, LoopCounts, Memory, Output, Planner, State, Workspace, step,
 };
 pub use profiling::{Stage, StageTimer};
 pub use robot::{LaserMount, MAX_BEAMS, RobotShape};

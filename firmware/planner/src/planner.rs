@@ -20,11 +20,13 @@ mod ground_model;
 mod memory;
 mod plan;
 mod prefer;
+mod readout;
 mod state;
 mod steer;
 mod workspace;
 
 pub use memory::{Capacity, F405, Memory, Planner};
+pub use readout::LoopCounts;
 pub use state::State;
 pub use workspace::{CellKind, FieldRow, Workspace};
 

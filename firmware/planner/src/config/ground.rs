@@ -2,6 +2,8 @@
 //!
 //! Units: metres; slopes are tangents; preferences are pure numbers.
 
+use crate::math::{PI, sin_cos};
+
 /// `K_n`, the width of the kernel, cells [Maffei20, Table I].
 pub const KERNEL_CELLS: usize = 20;
 
@@ -83,6 +85,27 @@ impl UnevenGround {
     #[must_use]
     pub(crate) fn side_slope_limit(&self) -> Option<f32> {
         (self.roll < self.climb).then_some(self.roll)
+    }
+}
+
+impl UnevenGround {
+    /// Returns the tangent of a slope of `angle_rad` radians, for [`Self::climb`] and
+    /// [`Self::roll`]. It is not a number below 0 and from a right angle on, and then
+    /// [`ConfigBuilder::build`](crate::ConfigBuilder::build) refuses it.
+    ///
+    /// ```
+    /// use fieldline_planner::UnevenGround;
+    ///
+    /// let ground = UnevenGround { climb: UnevenGround::slope(0.349), ..UnevenGround::TABLE_I };
+    /// assert!((ground.climb - 0.364).abs() < 1e-3);
+    /// ```
+    #[must_use]
+    pub fn slope(angle_rad: f32) -> f32 {
+        if !(0.0..0.5 * PI).contains(&angle_rad) {
+            return f32::NAN;
+        }
+        let (sin, cos) = sin_cos(angle_rad);
+        sin / cos
     }
 }
 

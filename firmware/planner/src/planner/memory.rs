@@ -187,7 +187,7 @@ mod sealed {
         }
 
         fn path(&self) -> &[Cell] {
-            Self::path(self).cells()
+            Self::path(self)
         }
 
         fn frontiers(&self) -> &[Frontier] {

@@ -10,14 +10,12 @@ use crate::drive::{self, Drive};
 use crate::field::preference::Preferences;
 use crate::geometry::Cell;
 use crate::map::{Map, Tiles};
-use crate::path::{Path, viewpoint};
+use crate::path::viewpoint;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability;
 use crate::roadmap::skeleton::Skeleton;
-use crate::status::{Frontier, Status};
+use crate::status::Status;
 use crate::strategy::Strategist;
-use crate::strategy::ouroboros::Ouroboros;
-use crate::strategy::tdbvp::Tdbvp;
 
 /// The planner's memory from step to step.
 ///
@@ -111,18 +109,6 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         Ok(())
     }
 
-    /// The map.
-    #[must_use]
-    pub const fn map(&self) -> &Map<TILES, SLOTS> {
-        &self.map
-    }
-
-    /// The centre cells.
-    #[must_use]
-    pub const fn skeleton(&self) -> &Skeleton<SLOTS> {
-        &self.skeleton
-    }
-
     /// The planner's status after the last step.
     #[must_use]
     pub const fn status(&self) -> Status {
@@ -136,59 +122,6 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         } else {
             config.robot_radius_m
         })
-    }
-
-    /// The path to the current goal.
-    #[must_use]
-    pub const fn path(&self) -> &Path {
-        self.strategy.frontier.path()
-    }
-
-    /// The memory of strategy Ouroboros, if the session uses it.
-    #[must_use]
-    pub const fn ouroboros(&self) -> Option<&Ouroboros<SLOTS>> {
-        self.strategy.ouroboros()
-    }
-
-    /// The memory of strategy TDBVP, if the session uses it.
-    #[must_use]
-    pub const fn tdbvp(&self) -> Option<&Tdbvp<SLOTS>> {
-        self.strategy.tdbvp()
-    }
-
-    /// The cells of a tile, two bits each: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle.
-    /// `None` if nothing in it was ever measured.
-    #[must_use]
-    pub fn tile(&self, x: i16, y: i16) -> Option<[u8; 256]> {
-        self.map.tiles().packed(i32::from(x), i32::from(y))
-    }
-
-    /// The skeleton of a tile: 16 rows of 16 coarse cells, least y first, least x in the lowest
-    /// bit.
-    #[must_use]
-    pub fn tile_skeleton(&self, x: i16, y: i16) -> [u16; 16] {
-        let frame = self.skeleton.frame();
-        let mut rows = [0; 16];
-        let Some(plane) = self.skeleton.skeleton() else {
-            return rows;
-        };
-        for (dy, row) in rows.iter_mut().enumerate() {
-            let cell = Cell {
-                x: i32::from(x) * 32,
-                y: i32::from(y) * 32 + 2 * dy as i32,
-            };
-            if let Some(site) = frame.site(cell) {
-                let word = plane.word(usize::from(site.y), usize::from(site.x / 32));
-                *row = (word >> (site.x & 16)) as u16;
-            }
-        }
-        rows
-    }
-
-    /// The residual frontiers, each with its reason.
-    #[must_use]
-    pub fn frontiers(&self) -> &[Frontier] {
-        self.strategy.frontier.dropped()
     }
 }
 
