@@ -1,7 +1,7 @@
 //! The wavefront, with a small queue and two bits a cell, against a plain breadth-first search.
 
 use fieldline_planner::grid::{Plane, PlaneMut, Site};
-use fieldline_planner::roadmap::{Barrier, Progress, Residues, WaveSpace, Wavefront};
+use fieldline_planner::roadmap::{Barrier, Residues, WaveSpace, Wavefront};
 use fieldline_tests::bitmap::{Map, any_map, site};
 use fieldline_tests::random::Random;
 
@@ -87,66 +87,8 @@ fn equals_a_plain_search_with_rings_of_all_sizes() {
         for seed in &seeds {
             wave.seed(&mut space, *seed);
         }
-        let progress = wave.advance(&mut space, None, u32::MAX);
-        assert!(matches!(progress, Progress::Done { .. }));
+        wave.run(&mut space, None);
         check(&map, &space.residues, &steps);
-    }
-}
-
-#[test]
-fn instalments_with_a_lost_ring_change_nothing() {
-    let mut random = Random::new(12);
-    for round in 0..300 {
-        let map = any_map(&mut random);
-        let seeds = some_seeds(&mut random, &map);
-        let steps = map.distances(&seeds);
-        let mut memory = Memory::new(&map, [2, 16, 256][round % 3]);
-        let mut wave = Wavefront::new();
-        wave.start(&mut memory.space(&map));
-        for seed in &seeds {
-            wave.seed(&mut memory.space(&map), *seed);
-        }
-        let largest = 1 + random.index(300);
-        loop {
-            let budget = random.index(largest + 1) as u32;
-            let progress = wave.advance(&mut memory.space(&map), None, budget);
-            if let Progress::Done { left } = progress {
-                assert!(left <= budget);
-                break;
-            }
-            if round % 2 == 0 {
-                wave.park(&memory.space(&map));
-                memory.ring = vec![0xdead_beef; random.index(64)];
-            }
-        }
-        check(&map, &memory.space(&map).residues, &steps);
-    }
-}
-
-#[test]
-fn seeds_of_a_word_equal_seeds_of_its_cells() {
-    let mut random = Random::new(13);
-    for _ in 0..100 {
-        let map = any_map(&mut random);
-        let mut memory = Memory::new(&map, 64);
-        let mut space = memory.space(&map);
-        let mut wave = Wavefront::new();
-        wave.start(&mut space);
-        let (row, word) = (
-            random.index(map.rows),
-            random.index(map.shape().words_per_row()),
-        );
-        let mask = random.word() as u32;
-        let seeds: Vec<Site> = (0..32)
-            .filter(|k| mask >> k & 1 == 1 && word * 32 + k < map.columns)
-            .map(|k| site(word * 32 + k, row))
-            .filter(|s| map.get(s.x as isize, s.y as isize))
-            .collect();
-        let new = wave.seed_word(&mut space, row, word, mask);
-        assert_eq!(new as usize, seeds.len());
-        assert_eq!(wave.seed_word(&mut space, row, word, mask), 0, "twice");
-        while wave.advance(&mut space, None, 10) == Progress::Pending {}
-        check(&map, &space.residues, &map.distances(&seeds));
     }
 }
 
@@ -166,7 +108,7 @@ fn a_stop_at_a_cell_leaves_its_descent_complete() {
         for seed in &seeds {
             wave.seed(&mut space, *seed);
         }
-        while wave.advance(&mut space, Some(until), 7) == Progress::Pending {}
+        wave.run(&mut space, Some(until));
         let expected = steps[usize::from(until.y) * map.columns + usize::from(until.x)];
         assert_eq!(space.residues.get(until).is_some(), expected.is_some());
         let walked = space.residues.descent(until).count();
@@ -178,7 +120,7 @@ fn a_stop_at_a_cell_leaves_its_descent_complete() {
             sites.filter(|at| s.get(*at).is_some()).count()
         };
         let early = reached(&space.residues);
-        while wave.advance(&mut space, None, 7) == Progress::Pending {}
+        wave.run(&mut space, None);
         check(&map, &space.residues, &steps);
         stopped_early += usize::from(early < reached(&space.residues));
     }
@@ -205,7 +147,7 @@ fn a_barrier_sends_the_wave_the_other_way_round() {
         let mut wave = Wavefront::new();
         wave.start(&mut space);
         assert!(wave.seed(&mut space, site(7, 1)));
-        while wave.advance(&mut space, None, 3) == Progress::Pending {}
+        wave.run(&mut space, None);
         let sites: Vec<Site> = space.residues.descent(from).collect();
         sites
     };

@@ -29,7 +29,7 @@ const ESCAPE_CELLS: usize = 4;
 
 /// The window's cells.
 #[derive(Clone, Debug)]
-pub struct LocalGrid {
+pub(crate) struct LocalGrid {
     /// Least map cell.
     pub origin: Cell,
     /// Map cells along a window cell; 0 before the first update.
@@ -61,7 +61,7 @@ fn parts(least: Cell) -> impl Iterator<Item = Cell> {
 impl LocalGrid {
     /// Returns an empty grid. It is all zeros, so a static one costs no flash.
     #[must_use]
-    pub const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         let origin = Cell { x: 0, y: 0 };
         Self {
             origin,
@@ -72,7 +72,7 @@ impl LocalGrid {
     }
 
     /// Reads the window around the map cell `centre` from the map.
-    pub fn update<const TILES: usize, const SLOTS: usize>(
+    pub(crate) fn update<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
         footprint: &Footprint,
@@ -115,7 +115,7 @@ impl LocalGrid {
 
     /// Returns the window cell of a map cell; `None` outside the window.
     #[must_use]
-    pub fn place(&self, cell: Cell) -> Option<(usize, usize)> {
+    pub(crate) fn place(&self, cell: Cell) -> Option<(usize, usize)> {
         let x = (cell.x - self.origin.x).checked_div_euclid(self.scale)?;
         let y = (cell.y - self.origin.y).checked_div_euclid(self.scale)?;
         let inside = |at: i32| (0..SIDE as i32).contains(&at);
@@ -124,7 +124,7 @@ impl LocalGrid {
 
     /// Returns the map cell in the middle of a window cell.
     #[must_use]
-    pub const fn cell(&self, x: usize, y: usize) -> Cell {
+    pub(crate) const fn cell(&self, x: usize, y: usize) -> Cell {
         let middle = self.scale / 2;
         Cell {
             x: self.origin.x + x as i32 * self.scale + middle,
@@ -134,12 +134,12 @@ impl LocalGrid {
 
     /// Returns true if a window cell is set in `rows`.
     #[must_use]
-    pub fn has(rows: &Rows, (x, y): (usize, usize)) -> bool {
+    pub(crate) fn has(rows: &Rows, (x, y): (usize, usize)) -> bool {
         rows.get(y).is_some_and(|row| row >> x & 1 == 1)
     }
 
     /// Sets a window cell in `rows`.
-    pub fn put(rows: &mut Rows, (x, y): (usize, usize)) {
+    pub(crate) fn put(rows: &mut Rows, (x, y): (usize, usize)) {
         if let Some(row) = rows.get_mut(y) {
             *row |= 1 << x;
         }
@@ -155,7 +155,7 @@ impl LocalGrid {
 
     /// Sets in `rows` the passable window cells of a coarse cell whose least map cell is `least`.
     /// Returns true if there are any.
-    pub fn mark(&self, rows: &mut Rows, least: Cell) -> bool {
+    pub(crate) fn mark(&self, rows: &mut Rows, least: Cell) -> bool {
         let mut any = false;
         for part in parts(least) {
             let passable = |place: &_| Self::has(&self.passable, *place);
@@ -168,7 +168,7 @@ impl LocalGrid {
     }
 
     /// Makes the coarse cell whose least map cell is `least` impassable.
-    pub fn block(&mut self, least: Cell) {
+    pub(crate) fn block(&mut self, least: Cell) {
         for part in parts(least) {
             if let Some((x, y)) = self.place(part)
                 && let Some(row) = self.passable.get_mut(y)
@@ -181,7 +181,7 @@ impl LocalGrid {
     /// Makes the footprint around each of `cells` (their centres) impassable, except cells at least
     /// as far from it as the robot is now: so the robot is never enclosed. Does nothing unless the
     /// scale is 1; a larger window cell does not resolve the distance.
-    pub fn keep_off(
+    pub(crate) fn keep_off(
         &mut self,
         robot: Cell,
         cells: impl Iterator<Item = Point>,
@@ -218,7 +218,7 @@ impl LocalGrid {
     /// than its radius, or the map is wrong by a cell. Within [`ESCAPE_CELLS`] every cell that
     /// touches no obstacle becomes passable; if the robot's own cell touches one, every cell that
     /// is none.
-    pub fn free_robot(&mut self, robot: Cell) {
+    pub(crate) fn free_robot(&mut self, robot: Cell) {
         let Some(place) = self.place(robot) else {
             return;
         };

@@ -73,12 +73,12 @@ impl BlockedPassages {
 pub(crate) fn first_unreachable<const TILES: usize, const SLOTS: usize>(
     path: &Path,
     context: &PlanningContext<'_, TILES, SLOTS>,
-    robot: Point,
     grid: &mut LocalGrid,
 ) -> Option<Cell> {
-    grid.update(context.tiles, context.disc, robot.cell(), 1);
-    grid.free_robot(robot.cell());
-    let reached = grid.reachable(robot.cell())?;
+    let robot = context.pose.point().cell();
+    grid.update(context.tiles, context.footprint, robot, 1);
+    grid.free_robot(robot);
+    let reached = grid.reachable(robot)?;
     let mut parts: Rows = [0; SIDE];
     path.cells().iter().copied().find(|&cell| {
         parts.fill(0);

@@ -16,7 +16,7 @@ const CAME_CELLS: i32 = 8;
 
 /// The last crumbs, in a ring.
 #[derive(Debug)]
-pub struct Crumbs {
+pub(crate) struct Crumbs {
     cells: [[i16; 2]; CRUMBS],
     /// Number of crumbs so far. At twice [`CRUMBS`] it restarts from [`CRUMBS`].
     dropped: u16,

@@ -72,7 +72,6 @@ impl Path {
 
     /// Returns the path prolonged straight to a place, which becomes the goal. The field finds the
     /// way round what stands between.
-    #[must_use]
     pub(crate) fn leading_to(mut self, place: Cell) -> Self {
         let from = self.goal;
         let goal = Cell {
@@ -92,7 +91,6 @@ impl Path {
     }
 
     /// Returns the path with so many more steps, which lead from the robot to its first cell.
-    #[must_use]
     pub(crate) const fn after(mut self, steps: u32) -> Self {
         self.steps += steps;
         self

@@ -18,7 +18,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> Centres<'a, TILES, SLOTS> {
     ) -> Option<Self> {
         Some(Self {
             tiles,
-            disc: footprint,
+            footprint,
             frame: skeleton.frame(),
             way: skeleton.skeleton()?,
         })
@@ -28,7 +28,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> Centres<'a, TILES, SLOTS> {
     /// cells: the rule by which the skeleton's space is loaded.
     pub(crate) fn is_open(&self, cell: Cell) -> bool {
         cell.quarters()
-            .any(|part| is_passable(self.tiles, self.disc, part))
+            .any(|part| is_passable(self.tiles, self.footprint, part))
     }
 
     /// Returns true if at most one of a coarse cell's four map cells was never measured: again the

@@ -1,59 +1,131 @@
-//! What a round of planning reads, the scratch that it works in, and what it says.
+//! The inputs of a planning round, with `moveToVoronoi` and `propagatePotential`, which
+//! [Jorge15, Algorithm 1] uses again and again; its scratch memory, and its outcome.
 //!
-//! Units: map cells.
+//! Invariant: the skeleton is whole again after each wave.
+//!
+//! Units: map cells, metres; steps along the skeleton.
 
+use crate::config::LoopLimits;
 use crate::field::local_grid::LocalGrid;
-use crate::grid::Plane;
+use crate::geometry::{CELL_M, Cell, Pose};
+use crate::grid::Site;
 use crate::map::Tiles;
+use crate::path::Path;
 use crate::path::height_levels::LevelCost;
 use crate::path::nearest::Centres;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::Skeleton;
+use crate::roadmap::{Barrier, Residues, WaveSpace, Wavefront};
 
-/// What is known of the space, for a round of planning.
+/// Length of a step along the skeleton, metres. A diagonal step counts the same.
+pub(crate) const STEP_M: f32 = 2.0 * CELL_M;
+/// Maximum number of cells that a blocker takes out of the skeleton: the robot's 3 × 3 surroundings.
+/// A shield ([Jorge15, step 5]) takes fewer.
+const MOST_BLOCKED: usize = 9;
+
+/// The inputs of a planning round on one published skeleton.
 #[derive(Debug)]
-pub struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
-    /// The published skeleton and its frontier.
-    pub topology: &'a Skeleton<SLOTS>,
+pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
+    /// The published skeleton. A wave cuts it for a while and makes it whole again.
+    pub(crate) skeleton: &'a mut Skeleton<SLOTS>,
     /// The map.
-    pub tiles: &'a Tiles<TILES, SLOTS>,
-    /// The robot's disc.
-    pub disc: &'a Footprint,
-    /// Which goals are preferred for their height, where any are.
-    pub levels: Option<LevelCost<'a, TILES>>,
+    pub(crate) tiles: &'a Tiles<TILES, SLOTS>,
+    /// The footprint that paths are planned for.
+    pub(crate) footprint: &'a Footprint,
+    /// The robot's pose.
+    pub(crate) pose: Pose,
+    /// The host's clock, milliseconds.
+    pub(crate) time_ms: u32,
+    /// The limits of a loop's length.
+    pub(crate) limits: &'a LoopLimits,
+    /// The cost of goals by height, where a preference is on.
+    pub(crate) levels: Option<LevelCost<'a, TILES>>,
 }
 
 impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {
-    /// Returns these centre cells, to search for the nearest one.
-    pub(crate) fn centres<'a>(&'a self, way: Plane<'a>) -> Centres<'a, TILES, SLOTS> {
-        Centres {
-            tiles: self.tiles,
-            disc: self.disc,
-            frame: self.topology.frame(),
-            way,
+    /// Returns the centre cells; `None` before the first skeleton.
+    pub(crate) fn centres(&self) -> Option<Centres<'_, TILES, SLOTS>> {
+        Centres::of(self.skeleton, self.tiles, self.footprint)
+    }
+
+    /// Returns the length of the frontier that is left, metres.
+    pub(crate) fn frontier_m(&self) -> Option<f32> {
+        Some(self.skeleton.frontier()?.count() as f32 * STEP_M)
+    }
+
+    /// Returns the centre cell nearest to a map cell: `moveToVoronoi`.
+    pub(crate) fn nearest(&self, from: Cell, scratch: &mut PlanningScratch<'_>) -> Option<Site> {
+        let centres = self.centres()?;
+        let here = centres.frame.site(from);
+        if let Some(site) = here.filter(|&site| centres.way.get(site)) {
+            return Some(site);
         }
+        let (site, _) = centres.nearest(from, scratch.local_grid, |_| true)?;
+        Some(site)
+    }
+
+    /// Spreads a wave from `goal` over the centre cells that are not blocked, as far as they go or
+    /// to `until`: `propagatePotential`.
+    pub(crate) fn propagate(
+        &mut self,
+        goal: Site,
+        blocked: impl Iterator<Item = Site>,
+        until: Option<Site>,
+        scratch: &mut PlanningScratch<'_>,
+    ) -> Option<()> {
+        let mut plane = self.skeleton.skeleton_mut()?;
+        let barrier = Barrier::<MOST_BLOCKED>::raise(&mut plane, blocked).ok()?;
+        let shape = plane.shape();
+        if let Ok(residues) = Residues::new(shape, &mut *scratch.residues) {
+            let mut space = WaveSpace {
+                way: plane.view(),
+                residues,
+                ring: &mut *scratch.queue,
+            };
+            let mut wave = Wavefront::new();
+            wave.start(&mut space);
+            wave.seed(&mut space, goal);
+            wave.run(&mut space, until);
+        }
+        barrier.lower(&mut plane);
+        Some(())
+    }
+
+    /// Returns the shortest path along the skeleton from the robot's centre cell to a goal, round
+    /// the blocked cells.
+    pub(crate) fn path(
+        &mut self,
+        [robot, goal]: [Site; 2],
+        blocked: impl Iterator<Item = Site>,
+        scratch: &mut PlanningScratch<'_>,
+    ) -> Option<Path> {
+        self.propagate(goal, blocked, Some(robot), scratch)?;
+        let frame = self.skeleton.frame();
+        let residues = Residues::new(frame.shape, scratch.residues).ok()?;
+        residues.get(robot)?;
+        Some(Path::down(core::iter::empty(), frame, &residues, robot))
     }
 }
 
-/// Scratch of a round of planning.
+/// The scratch memory of a planning round.
 #[derive(Debug)]
-pub struct PlanningScratch<'a> {
-    /// The wave's distances, a pair for each word of the plane.
-    pub residues: &'a mut [[u32; 2]],
+pub(crate) struct PlanningScratch<'a> {
+    /// The wave's distances, a pair for each word of the skeleton's plane.
+    pub(crate) residues: &'a mut [[u32; 2]],
     /// The wave's queue.
-    pub ring: &'a mut [u32],
-    /// The window in which the robot finds its centre cell.
-    pub view: &'a mut LocalGrid,
+    pub(crate) queue: &'a mut [u32],
+    /// The grid in which the nearest centre cell is searched for.
+    pub(crate) local_grid: &'a mut LocalGrid,
 }
 
-/// What a new round says.
+/// The outcome of a planning round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RoundOutcome {
-    /// There is a way to a frontier.
+pub(crate) enum RoundOutcome {
+    /// There is a path to a goal.
     Path,
-    /// None was found; the next round decides.
+    /// No path was found; the next round decides.
     Unsure,
-    /// No frontier can be reached, and the last viewpoint is done with.
+    /// No frontier can be reached, and there is nothing to see from the last viewpoint.
     Nothing,
     /// The robot cannot move, whatever the goal.
     Stuck,

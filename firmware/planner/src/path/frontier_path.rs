@@ -7,11 +7,12 @@
 //!
 //! Units: map cells, coarse steps of 20 cm.
 
-use crate::geometry::{Cell, Point};
+use crate::geometry::Cell;
 use crate::grid::{Plane, PlaneMut};
 use crate::map::Tiles;
 use crate::path::goal_cost::{GoalCost, PresentGoal};
 use crate::path::height_levels::LEVEL_STEPS;
+use crate::path::nearest::Centres;
 use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::search::PathSearch;
 use crate::path::{Path, PlanningContext, PlanningScratch};
@@ -30,20 +31,19 @@ pub(crate) fn path_to_frontier<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
     given_up: &ResidualFrontiers,
     present: Option<PresentGoal>,
-    robot: Point,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
-    let way = context.topology.skeleton()?;
-    let queue = scratch.ring.len().saturating_sub(CLASS_WORDS);
-    let (ring, memory) = scratch.ring.split_at_mut(queue);
+    let way = context.skeleton.skeleton()?;
+    let entries = scratch.queue.len().saturating_sub(CLASS_WORDS);
+    let (queue, memory) = scratch.queue.split_at_mut(entries);
     let cost = GoalCost::new(context, given_up, present, memory)?;
     let mut scratch = PlanningScratch {
         residues: &mut *scratch.residues,
-        ring,
-        view: &mut *scratch.view,
+        queue,
+        local_grid: &mut *scratch.local_grid,
     };
-    let path = path_along(way, &cost, robot, &mut scratch)?;
-    let level_path = path_on_level(&path, &cost, robot, &mut scratch);
+    let path = path_along(way, &cost, &mut scratch)?;
+    let level_path = path_on_level(&path, &cost, &mut scratch);
     level_path.or(Some(path))
 }
 
@@ -52,11 +52,10 @@ pub(crate) fn path_to_frontier<const TILES: usize, const SLOTS: usize>(
 fn path_on_level<const TILES: usize, const SLOTS: usize>(
     path: &Path,
     cost: &GoalCost<'_, TILES, SLOTS>,
-    robot: Point,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
     let PlanningContext {
-        topology,
+        skeleton,
         tiles,
         levels,
         ..
@@ -68,22 +67,22 @@ fn path_on_level<const TILES: usize, const SLOTS: usize>(
     let excess = most
         .checked_sub(least)
         .filter(|&excess| excess >= OTHER_LEVELS)?;
-    let frame = topology.frame();
+    let frame = skeleton.frame();
     // On a map so large that the plane does not fit behind the wave, the shortest path is taken.
     let (residues, spare) = scratch.residues.split_at_mut_checked(frame.shape.words())?;
     let mut on_level = PlaneMut::new(frame.shape, spare.as_flattened_mut()).ok()?;
     on_level.fill(0);
-    for site in topology.skeleton()?.sites() {
+    for site in skeleton.skeleton()?.sites() {
         if level(frame.cell(site)) <= least {
             on_level.set(site);
         }
     }
     let mut scratch = PlanningScratch {
         residues,
-        ring: &mut *scratch.ring,
-        view: &mut *scratch.view,
+        queue: &mut *scratch.queue,
+        local_grid: &mut *scratch.local_grid,
     };
-    let detour = path_along(on_level.view(), cost, robot, &mut scratch)?;
+    let detour = path_along(on_level.view(), cost, &mut scratch)?;
     (detour.steps() <= path.steps() + LEVEL_STEPS * excess).then_some(detour)
 }
 
@@ -91,29 +90,32 @@ fn path_on_level<const TILES: usize, const SLOTS: usize>(
 fn path_along<const TILES: usize, const SLOTS: usize>(
     way: Plane<'_>,
     cost: &GoalCost<'_, TILES, SLOTS>,
-    robot: Point,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
-    let mut search = PathSearch::open(cost.context.centres(way), scratch)?;
+    let centres = Centres {
+        way,
+        ..cost.context.centres()?
+    };
+    let mut search = PathSearch::open(centres, scratch)?;
     if !spread(&mut search.space, cost) {
         return None;
     }
-    let robot = robot.cell();
+    let robot = cost.context.pose.point().cell();
     let found = search.entry(robot);
     let PathSearch {
         centres,
         space,
-        view,
+        local_grid,
     } = search;
     let mut path = if let Some((entry, steps)) = found {
         let line = core::iter::empty();
         Path::down(line, centres.frame, &space.residues, entry).after(steps)
-    } else if centres.nearest(robot, view, |_| true).is_some() {
+    } else if centres.nearest(robot, local_grid, |_| true).is_some() {
         // No wave reached the centre cells near the robot.
         return None;
     } else {
         let is_reached = |site| space.residues.get(site).is_some();
-        let (entry, line) = centres.nearest_by_air(robot, is_reached)?;
+        let (entry, line) = centres.nearest_in_line(robot, is_reached)?;
         Path::down(line, centres.frame, &space.residues, entry)
     };
     path.extend(unexplored_beside(path.goal(), centres.tiles));
@@ -131,14 +133,13 @@ fn spread<const TILES: usize, const SLOTS: usize>(
     wave.start(space);
     let mut now = 0;
     for (class, delay) in cost.delays() {
-        wave.advance_levels(space, delay - now);
+        wave.run_levels(space, delay - now);
         now = delay;
         for site in cost.sites(class) {
             any |= wave.seed(space, site);
         }
     }
-    // Without a budget it always comes to its end.
-    let _ = wave.advance(space, None, u32::MAX);
+    wave.run(space, None);
     any
 }
 

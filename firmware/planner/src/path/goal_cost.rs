@@ -114,7 +114,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> GoalCost<'a, TILES, SLOTS> {
     ) -> Option<Self> {
         let mut cost = Self {
             context,
-            frontier: context.topology.frontier()?,
+            frontier: context.skeleton.frontier()?,
             given_up,
             present,
             classes: &[],
@@ -156,7 +156,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> GoalCost<'a, TILES, SLOTS> {
     }
 
     fn class(&self, site: Site) -> u32 {
-        let cell = self.context.topology.frame().cell(site);
+        let cell = self.context.skeleton.frame().cell(site);
         if self.given_up.is_given_up(cell) {
             return GIVEN_UP;
         }

@@ -49,22 +49,25 @@ pub(crate) const LEVEL_STEPS: u32 = 50;
 
 /// The map of heights, for a pool of `TILES` tiles.
 #[derive(Debug)]
-pub struct HeightLevels<const TILES: usize> {
+pub(crate) struct HeightLevels<const TILES: usize> {
     /// The blocks of each tile, by the tile's place in the pool.
     blocks: [[i8; BLOCKS]; TILES],
 }
 
 impl<const TILES: usize> HeightLevels<TILES> {
     /// Makes an empty map.
-    #[must_use]
-    pub const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self {
             blocks: [[NONE; BLOCKS]; TILES],
         }
     }
 
     /// Takes over the heights in the elevation window.
-    pub fn note<const SLOTS: usize>(&mut self, heights: &Heights<'_>, tiles: &Tiles<TILES, SLOTS>) {
+    pub(crate) fn note<const SLOTS: usize>(
+        &mut self,
+        heights: &Heights<'_>,
+        tiles: &Tiles<TILES, SLOTS>,
+    ) {
         let least = heights.origin();
         let blocks =
             |from: i32| from.div_euclid(BLOCK)..=(from + WINDOW_SIDE - 1).div_euclid(BLOCK);
@@ -109,8 +112,7 @@ impl<const TILES: usize> HeightLevels<TILES> {
     /// Returns the height of the ground around a cell, metres; where none was measured, the mean of
     /// the blocks beside that have one. A goal lies at the edge of the measured ground, and its own
     /// block often has no height: taken for level, it would draw the robot up a slope.
-    #[must_use]
-    pub fn height_around_m<const SLOTS: usize>(
+    pub(crate) fn height_around_m<const SLOTS: usize>(
         &self,
         tiles: &Tiles<TILES, SLOTS>,
         cell: Cell,
@@ -133,8 +135,7 @@ impl<const TILES: usize> HeightLevels<TILES> {
 
     /// Returns the height of the ground in a cell's block, metres; `None` where none was measured.
     /// In a compact tile it is the tile's height.
-    #[must_use]
-    pub fn height_m<const SLOTS: usize>(
+    pub(crate) fn height_m<const SLOTS: usize>(
         &self,
         tiles: &Tiles<TILES, SLOTS>,
         cell: Cell,
@@ -214,19 +215,18 @@ fn mean_m(heights: &Heights<'_>, corner: Cell) -> Option<f32> {
 
 /// The level of goals, where a preference for heights is on.
 #[derive(Clone, Copy, Debug)]
-pub struct LevelCost<'a, const TILES: usize> {
+pub(crate) struct LevelCost<'a, const TILES: usize> {
     /// The map of heights.
-    pub heights: &'a HeightLevels<TILES>,
+    pub(crate) heights: &'a HeightLevels<TILES>,
     /// The parameters of the preference.
-    pub ground: &'a UnevenGround,
+    pub(crate) ground: &'a UnevenGround,
     /// The height of the level ground that the robot stood on last, metres.
-    pub reference_m: f32,
+    pub(crate) reference_m: f32,
 }
 
 impl<const TILES: usize> LevelCost<'_, TILES> {
     /// Returns the levels from another reference height.
-    #[must_use]
-    pub const fn from(&self, reference_m: f32) -> Self {
+    pub(crate) const fn from(&self, reference_m: f32) -> Self {
         Self {
             reference_m,
             ..*self
@@ -234,8 +234,7 @@ impl<const TILES: usize> LevelCost<'_, TILES> {
     }
 
     /// Returns the level of a goal, at most [`MOST_LEVEL`]; 0 where its height is not known.
-    #[must_use]
-    pub fn of<const SLOTS: usize>(&self, tiles: &Tiles<TILES, SLOTS>, goal: Cell) -> u32 {
+    pub(crate) fn of<const SLOTS: usize>(&self, tiles: &Tiles<TILES, SLOTS>, goal: Cell) -> u32 {
         let Some(height_m) = self.heights.height_around_m(tiles, goal) else {
             return 0;
         };

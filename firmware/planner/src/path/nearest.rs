@@ -1,11 +1,12 @@
-//! The centre cell nearest to a place, by steps through passable cells [Jorge15, Algorithm 1, lines 4 and 6:
-//! `moveToVoronoi`].
+//! Centre cells, and the one nearest to a place by steps through passable cells
+//! [Jorge15, Algorithm 1, lines 4 and 6: `moveToVoronoi`].
 //!
-//! Not the nearest as the crow flies, which may lie behind a wall. The search grows its window until it finds one. Where the largest
-//! window (24 m) has none, as in the middle of a hall whose skeleton is all on one side, the way there is a straight line:
-//! walls that end or stand alone would have brought centre cells nearer.
+//! The nearest one in a straight line may lie behind a wall, so the search goes by steps. It grows
+//! its grid until it finds one. Where the largest grid (24 m) has none, as in the middle of a hall
+//! whose skeleton lies on one side, the way there is a straight line: walls that end or stand alone
+//! would have brought centre cells nearer.
 //!
-//! Units: map cells; sites of the topology's frame.
+//! Units: map cells; sites of the skeleton's plane.
 
 use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows, SCALES};
@@ -15,51 +16,56 @@ use crate::map::Tiles;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::Frame;
 
-/// Longest straight way to a centre cell, cells: no map is wider than 128 m but one that is a corridor.
-const MOST_BY_AIR: i32 = 1_280;
+/// Maximum length of a straight way to a centre cell, cells: 128 m. Only a corridor's map is wider.
+const MOST_LINE_CELLS: i32 = 1_280;
 
-/// Where centre cells are looked for.
+/// The centre cells of a skeleton, with the map under them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Centres<'a, const TILES: usize, const SLOTS: usize> {
+    /// The map.
     pub(crate) tiles: &'a Tiles<TILES, SLOTS>,
-    pub(crate) disc: &'a Footprint,
+    /// The robot's footprint.
+    pub(crate) footprint: &'a Footprint,
+    /// The place of the skeleton's plane.
     pub(crate) frame: Frame,
+    /// The centre cells.
     pub(crate) way: Plane<'a>,
 }
 
 impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
-    /// The centre cell nearest to `from` of those that `accepts` likes, and the coarse steps there; a robot at `from` is let
-    /// out.
+    /// Returns the nearest centre cell that `accepts` holds for, and the coarse steps there from a
+    /// robot at `from`, which may stand in an impassable cell.
     pub(crate) fn nearest(
         &self,
         from: Cell,
-        view: &mut LocalGrid,
+        grid: &mut LocalGrid,
         accepts: impl Fn(Site) -> bool,
     ) -> Option<(Site, u32)> {
         SCALES.iter().find_map(|&scale| {
-            view.update(self.tiles, self.disc, from, scale);
-            view.free_robot(from);
-            let targets = self.targets(view, &accepts);
+            grid.update(self.tiles, self.footprint, from, scale);
+            grid.free_robot(from);
+            let targets = self.targets(grid, &accepts);
             let mut seeds: Rows = [0; SIDE];
-            LocalGrid::put(&mut seeds, view.place(from)?);
-            let met = flood::nearest(&view.passable, &mut seeds, &targets)?;
+            LocalGrid::put(&mut seeds, grid.place(from)?);
+            let met = flood::nearest(&grid.passable, &mut seeds, &targets)?;
             let steps = u32::from(met.steps) * scale as u32 / 2;
-            Some((self.site_in(view, met.site, &accepts)?, steps))
+            Some((self.site_in(grid, met.site, &accepts)?, steps))
         })
     }
 
-    /// The centre cell that `accepts` likes nearest to `from` as the crow flies, with the coarse cells on the line there, its own not
-    /// among them.
-    pub(crate) fn nearest_by_air<A: Fn(Site) -> bool>(
+    /// Returns the centre cell nearest to `from` in a straight line that `accepts` holds for, with the
+    /// coarse cells on the line there, without the centre cell itself.
+    pub(crate) fn nearest_in_line<A: Fn(Site) -> bool>(
         &self,
         from: Cell,
         accepts: A,
     ) -> Option<(Site, impl Iterator<Item = Cell> + use<A, TILES, SLOTS>)> {
-        // A pose may be anywhere; what is farther off than a map is large is no way.
+        // A pose may be anywhere. What is farther off than a map is large has no way to it.
         let apart = |site: Site| {
             let to = self.frame.cell(site);
             let (dx, dy) = (to.x.checked_sub(from.x)?, to.y.checked_sub(from.y)?);
-            (dx.checked_abs()? < MOST_BY_AIR && dy.checked_abs()? < MOST_BY_AIR).then_some((dx, dy))
+            (dx.checked_abs()? < MOST_LINE_CELLS && dy.checked_abs()? < MOST_LINE_CELLS)
+                .then_some((dx, dy))
         };
         let (site, (dx, dy)) = self
             .way
@@ -75,12 +81,12 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         Some((site, line))
     }
 
-    /// The passable window cells that hold a centre cell.
-    fn targets(&self, view: &LocalGrid, accepts: impl Fn(Site) -> bool) -> Rows {
+    /// Returns the passable cells of the grid that hold a centre cell.
+    fn targets(&self, grid: &LocalGrid, accepts: impl Fn(Site) -> bool) -> Rows {
         let mut targets: Rows = [0; SIDE];
-        let least = (view.origin.y - self.frame.origin.y).div_euclid(2);
+        let least = (grid.origin.y - self.frame.origin.y).div_euclid(2);
         let first = least.max(0) as usize;
-        let last = (least + SIDE as i32 * view.scale / 2 + 1).max(0) as usize;
+        let last = (least + SIDE as i32 * grid.scale / 2 + 1).max(0) as usize;
         for y in first..last.min(self.frame.shape.rows()) {
             for word in 0..self.frame.shape.words_per_row() {
                 let mut bits = self.way.word(y, word);
@@ -89,7 +95,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
                     bits &= bits - 1;
                     let site = Site { x, y: y as u16 };
                     if accepts(site) {
-                        view.mark(&mut targets, self.frame.cell(site));
+                        grid.mark(&mut targets, self.frame.cell(site));
                     }
                 }
             }
@@ -97,18 +103,18 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         targets
     }
 
-    /// A centre cell in a window cell.
+    /// Returns a centre cell in a cell of the grid.
     fn site_in(
         &self,
-        view: &LocalGrid,
+        grid: &LocalGrid,
         place: Site,
         accepts: impl Fn(Site) -> bool,
     ) -> Option<Site> {
         let least = Cell {
-            x: view.origin.x + i32::from(place.x) * view.scale,
-            y: view.origin.y + i32::from(place.y) * view.scale,
+            x: grid.origin.x + i32::from(place.x) * grid.scale,
+            y: grid.origin.y + i32::from(place.y) * grid.scale,
         };
-        let coarse = (view.scale / 2).max(1);
+        let coarse = (grid.scale / 2).max(1);
         (0..coarse * coarse).find_map(|k| {
             let cell = Cell {
                 x: least.x + k % coarse * 2,

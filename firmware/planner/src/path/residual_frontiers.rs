@@ -6,7 +6,7 @@
 use heapless::Vec;
 
 use crate::geometry::Cell;
-use crate::path::PlanningContext;
+use crate::roadmap::skeleton::Skeleton;
 use crate::status::{Frontier as ResidualFrontier, Residue};
 
 /// Maximum number of residual frontiers.
@@ -71,15 +71,12 @@ impl ResidualFrontiers {
     }
 
     /// Lists the frontier cells that no path leads to, in groups, after the goals given up.
-    pub(crate) fn list_unreachable<const TILES: usize, const SLOTS: usize>(
-        &mut self,
-        context: &PlanningContext<'_, TILES, SLOTS>,
-    ) {
-        let Some(frontier) = context.topology.frontier() else {
+    pub(crate) fn list_unreachable<const SLOTS: usize>(&mut self, skeleton: &Skeleton<SLOTS>) {
+        let Some(frontier) = skeleton.frontier() else {
             return;
         };
         for site in frontier.sites() {
-            let cell = context.topology.frame().cell(site);
+            let cell = skeleton.frame().cell(site);
             self.count(cell, Residue::Unreachable);
         }
     }

@@ -4,7 +4,7 @@
 //! Units: map cells, coarse steps of 20 cm; sites of the skeleton's plane.
 
 use crate::field::local_grid::LocalGrid;
-use crate::geometry::{Cell, Point};
+use crate::geometry::Cell;
 use crate::grid::Site;
 use crate::path::nearest::Centres;
 use crate::path::{Path, PlanningContext, PlanningScratch};
@@ -16,7 +16,7 @@ use crate::roadmap::{Residues, WaveSpace, Wavefront};
 pub(crate) struct PathSearch<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) centres: Centres<'a, TILES, SLOTS>,
     pub(crate) space: WaveSpace<'a>,
-    pub(crate) view: &'a mut LocalGrid,
+    pub(crate) local_grid: &'a mut LocalGrid,
 }
 
 impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
@@ -29,12 +29,12 @@ impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
         let space = WaveSpace {
             way: centres.way,
             residues,
-            ring: &mut *scratch.ring,
+            ring: &mut *scratch.queue,
         };
         Some(Self {
             centres,
             space,
-            view: &mut *scratch.view,
+            local_grid: &mut *scratch.local_grid,
         })
     }
 
@@ -45,15 +45,14 @@ impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
         for site in sites {
             wave.seed(&mut self.space, site);
         }
-        // Without a budget it always comes to its end.
-        let _ = wave.advance(&mut self.space, None, u32::MAX);
+        wave.run(&mut self.space, None);
     }
 
     /// Returns the centre cell nearest to a place that the wave reached, and the coarse steps
     /// there.
     pub(crate) fn entry(&mut self, from: Cell) -> Option<(Site, u32)> {
         let is_reached = |site| self.space.residues.get(site).is_some();
-        self.centres.nearest(from, self.view, is_reached)
+        self.centres.nearest(from, self.local_grid, is_reached)
     }
 
     /// Returns the path from a place to where the wave began; `None` if no centre cell that the
@@ -69,12 +68,10 @@ impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
 pub(crate) fn path_to<const TILES: usize, const SLOTS: usize>(
     place: Cell,
     context: &PlanningContext<'_, TILES, SLOTS>,
-    robot: Point,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
-    let centres = context.centres(context.topology.skeleton()?);
-    let mut search = PathSearch::open(centres, scratch)?;
-    let (nearest, _) = search.centres.nearest(place, search.view, |_| true)?;
+    let mut search = PathSearch::open(context.centres()?, scratch)?;
+    let (nearest, _) = search.centres.nearest(place, search.local_grid, |_| true)?;
     search.spread(core::iter::once(nearest));
-    search.path(robot.cell())
+    search.path(context.pose.point().cell())
 }

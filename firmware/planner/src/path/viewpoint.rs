@@ -51,18 +51,18 @@ const EDGES_CELLS: i32 = 60;
 
 /// A place to look from, and what for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Viewpoint {
+pub(crate) struct Viewpoint {
     /// Where the robot stands.
-    pub stand: Cell,
+    pub(crate) stand: Cell,
     /// The gap: the last free cell.
-    pub gap: Cell,
+    pub(crate) gap: Cell,
     /// An unexplored cell behind the gap.
-    pub beyond: Cell,
+    pub(crate) beyond: Cell,
 }
 
 /// The result of an instalment of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Found {
+pub(crate) enum Found {
     /// The search needs another instalment.
     Pending,
     /// The viewpoint of the least cost.

@@ -6,7 +6,6 @@
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::Cell;
 use crate::map::tiles::NoRoom;
-use crate::path::PlanningContext;
 use crate::path::map_exits::missing_room;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
@@ -30,7 +29,7 @@ pub(super) fn finish<const TILES: usize, const SLOTS: usize>(
         return;
     }
     let missing = list_ways_out(state, workspace, footprint, robot);
-    list_leftovers(state, footprint);
+    state.strategy.frontier.list_unreachable(&state.skeleton);
     let status = conclude(state, &mut workspace.view, footprint, robot, missing);
     if status != DONE || !state.strategy.begin_patrol() {
         state.status = status;
@@ -49,20 +48,6 @@ fn list_ways_out<const TILES: usize, const SLOTS: usize>(
     missing_room(&state.map, footprint, robot, scratch, |cell| {
         state.strategy.frontier.list_map_exit(cell);
     })
-}
-
-/// List the frontiers that could never be reached.
-fn list_leftovers<const TILES: usize, const SLOTS: usize>(
-    state: &mut State<TILES, SLOTS>,
-    footprint: &Footprint,
-) {
-    let known = PlanningContext {
-        topology: &state.skeleton,
-        tiles: state.map.tiles(),
-        disc: footprint,
-        levels: None,
-    };
-    state.strategy.frontier.list_unreachable(&known);
 }
 
 /// The reason why no frontier can be reached.

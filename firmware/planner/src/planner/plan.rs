@@ -7,13 +7,12 @@ use crate::config::{Config, UnevenGround};
 use crate::geometry::{Point, Pose};
 use crate::input::Input;
 use crate::path::viewpoint::{Found, Inputs};
-use crate::path::{PlanningScratch, RoundOutcome};
+use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::planner::ending::finish;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 use crate::roadmap::configuration_space::Footprint;
 use crate::status::{Fault, Status};
-use crate::strategy::round::Round;
 
 /// Distance ahead of the robot's centre at which unmeasured ground stops it, metres: between its
 /// front and where the tilted beams meet level ground.
@@ -28,14 +27,14 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     input: &Input<'_>,
 ) -> bool {
     let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
-    let (residues, ring) = words.split_at_mut(SLOTS * 16);
+    let (residues, queue) = words.split_at_mut(SLOTS * 16);
     let (residues, _) = residues.as_chunks_mut::<2>();
     let scratch = PlanningScratch {
         residues,
-        ring,
-        view: &mut workspace.view,
+        queue,
+        local_grid: &mut workspace.view,
     };
-    let round = Round {
+    let context = PlanningContext {
         skeleton: &mut state.skeleton,
         tiles: state.map.tiles(),
         footprint,
@@ -44,7 +43,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         limits: &config.loops,
         levels: state.ground.level_cost(config, &state.preferences),
     };
-    let Some(outcome) = state.strategy.advance(round, scratch) else {
+    let Some(outcome) = state.strategy.advance(context, scratch) else {
         return false;
     };
     if let Some(ground) = &config.ground {

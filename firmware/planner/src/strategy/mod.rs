@@ -6,16 +6,14 @@
 //! | [`frontier`] | drive to the nearest frontier, until none can be reached |
 //! | [`ouroboros`] | close every loop on the way [Jorge15, Algorithm 1] |
 //! | [`tdbvp`] | follow rails of time, and patrol [Maffei14, IV and V] |
-//! | `round` | the inputs of a round, `moveToVoronoi` and `propagatePotential` [Jorge15, III-C] |
 //!
 //! Every strategy drives to frontiers in the end, so a `Strategist` always has a [`Frontier`].
 
-pub mod frontier;
+pub(crate) mod frontier;
 pub mod ouroboros;
-pub(crate) mod round;
 pub mod tdbvp;
 
-pub use frontier::Frontier;
+pub(crate) use frontier::Frontier;
 pub use ouroboros::Ouroboros;
 pub use tdbvp::Tdbvp;
 
@@ -24,11 +22,10 @@ use crate::field::Window;
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Point, Pose};
 use crate::path::nearest::Centres;
-use crate::path::{PlanningScratch, RoundOutcome};
+use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::roadmap::skeleton::Space;
 use crate::robot::LaserMount;
 use crate::strategy::ouroboros::Shield;
-use crate::strategy::round::Round;
 
 /// The session's strategy and its state. `SLOTS` as the map's.
 #[derive(Debug)]
@@ -148,18 +145,12 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     /// Continues a round on the published skeleton; `None` if it needs another call on it.
     pub(crate) fn advance<const TILES: usize>(
         &mut self,
-        round: Round<'_, TILES, SLOTS>,
+        round: PlanningContext<'_, TILES, SLOTS>,
         scratch: PlanningScratch<'_>,
     ) -> Option<RoundOutcome> {
         self.frontier.cut(round.skeleton);
         match &mut self.loops {
-            Loops::None => {
-                let (context, robot) = (round.context(), round.pose.point());
-                let outcome = self
-                    .frontier
-                    .replan(&context, robot, round.time_ms, scratch);
-                Some(outcome)
-            }
+            Loops::None => Some(self.frontier.replan(&round, scratch)),
             Loops::Ouroboros(ouroboros) => ouroboros.advance(&mut self.frontier, round, scratch),
             Loops::Tdbvp(tdbvp) => Some(tdbvp.advance(&mut self.frontier, round, scratch)),
         }

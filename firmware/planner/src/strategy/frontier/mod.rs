@@ -10,7 +10,7 @@
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
 
 use crate::field::local_grid::LocalGrid;
-use crate::geometry::{CELL_M, Cell, Point};
+use crate::geometry::{CELL_M, Cell};
 use crate::map::Class;
 use crate::math;
 use crate::path::blocked_passages::{BlockedPassages, ahead, first_unreachable};
@@ -36,7 +36,7 @@ const MOST_RETRIES: u8 = 2;
 
 /// The state of the strategy.
 #[derive(Debug)]
-pub struct Frontier {
+pub(crate) struct Frontier {
     path: Path,
     residual: ResidualFrontiers,
     blocked: BlockedPassages,
@@ -60,8 +60,7 @@ pub struct Frontier {
 
 impl Frontier {
     /// Makes the state at the start.
-    #[must_use]
-    pub const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self {
             path: Path::new(),
             residual: ResidualFrontiers::new(),
@@ -80,65 +79,59 @@ impl Frontier {
     }
 
     /// Forgets everything.
-    pub fn reset(&mut self) {
+    pub(crate) fn reset(&mut self) {
         *self = Self::new();
     }
 
     /// Returns the path to the present goal; empty if there is none.
-    #[must_use]
-    pub const fn path(&self) -> &Path {
+    pub(crate) const fn path(&self) -> &Path {
         &self.path
     }
 
     /// Returns the goals that were given up, with the reasons.
-    #[must_use]
-    pub fn dropped(&self) -> &[ResidualFrontier] {
+    pub(crate) fn dropped(&self) -> &[ResidualFrontier] {
         self.residual.as_slice()
     }
 
     /// Takes a goal that was reached and stayed unexplored off the list of those given up.
-    pub fn take_unobservable(&mut self) -> Option<Cell> {
+    pub(crate) fn take_unobservable(&mut self) -> Option<Cell> {
         self.residual.take_unobservable()
     }
 
     /// Returns true if the robot stalled since the last call.
-    pub const fn take_stalled(&mut self) -> bool {
+    pub(crate) const fn take_stalled(&mut self) -> bool {
         core::mem::replace(&mut self.stalled, false)
     }
 
     /// Returns the time since the robot last moved, milliseconds.
-    #[must_use]
-    pub const fn standing_ms(&self, time_ms: u32) -> u32 {
+    pub(crate) const fn standing_ms(&self, time_ms: u32) -> u32 {
         self.progress.standing_ms(time_ms)
     }
 
     /// Opens the passage that was blocked last.
-    pub fn open_last_passage(&mut self) {
+    pub(crate) fn open_last_passage(&mut self) {
         self.blocked.open_last();
     }
 
     /// Returns true if everything is tried a second time, with the narrower footprint.
-    #[must_use]
-    pub const fn is_second_chance(&self) -> bool {
+    pub(crate) const fn is_second_chance(&self) -> bool {
         self.second_chance
     }
 
     /// Cuts the published skeleton at the blocked passages.
-    pub fn cut<const SLOTS: usize>(&self, skeleton: &mut Skeleton<SLOTS>) {
+    pub(crate) fn cut<const SLOTS: usize>(&self, skeleton: &mut Skeleton<SLOTS>) {
         self.blocked.cut(skeleton);
     }
 
     /// Plans a round on a new skeleton: takes the path to the frontier of the least cost
     /// [Jorge15, Algorithm 1, lines 3, 4, 23].
-    pub fn replan<const TILES: usize, const SLOTS: usize>(
+    pub(crate) fn replan<const TILES: usize, const SLOTS: usize>(
         &mut self,
         context: &PlanningContext<'_, TILES, SLOTS>,
-        robot: Point,
-        time_ms: u32,
         mut scratch: PlanningScratch<'_>,
     ) -> RoundOutcome {
-        let path = self.find_path(context, robot, &mut scratch);
-        self.take(path, context, robot, time_ms, scratch)
+        let path = self.find_path(context, &mut scratch);
+        self.take(path, context, scratch)
     }
 
     /// Plans a round for a robot that follows its own potential while a frontier is left. Only a
@@ -147,22 +140,21 @@ impl Frontier {
     pub(super) fn glance<const TILES: usize, const SLOTS: usize>(
         &mut self,
         context: &PlanningContext<'_, TILES, SLOTS>,
-        robot: Point,
-        time_ms: u32,
         mut scratch: PlanningScratch<'_>,
         is_late: bool,
     ) -> (RoundOutcome, bool) {
-        let path = self.find_path(context, robot, &mut scratch);
+        let path = self.find_path(context, &mut scratch);
         let is_far = |path: &Path| path.steps() > GLANCE_STEPS;
         match path {
             Some(path) if !is_late && is_far(&path) => {
-                self.progress.note_motion(robot, time_ms);
+                self.progress
+                    .note_motion(context.pose.point(), context.time_ms);
                 self.choose(path, context);
                 (RoundOutcome::Path, true)
             }
             path => {
                 let is_free = !is_late && path.is_some();
-                (self.take(path, context, robot, time_ms, scratch), is_free)
+                (self.take(path, context, scratch), is_free)
             }
         }
     }
@@ -185,14 +177,13 @@ impl Frontier {
     fn find_path<const TILES: usize, const SLOTS: usize>(
         &self,
         context: &PlanningContext<'_, TILES, SLOTS>,
-        robot: Point,
         scratch: &mut PlanningScratch<'_>,
     ) -> Option<Path> {
         if self.only_looks {
             return None;
         }
         let present = self.present_goal();
-        path_to_frontier(context, &self.residual, present, robot, scratch)
+        path_to_frontier(context, &self.residual, present, scratch)
     }
 
     /// Follows a path to a frontier. The present height becomes the goal's reference if the goal is
@@ -218,27 +209,25 @@ impl Frontier {
         &mut self,
         path: Option<Path>,
         context: &PlanningContext<'_, TILES, SLOTS>,
-        robot: Point,
-        time_ms: u32,
         mut scratch: PlanningScratch<'_>,
     ) -> RoundOutcome {
-        self.progress.note_motion(robot, time_ms);
+        self.progress
+            .note_motion(context.pose.point(), context.time_ms);
         if let Some(path) = path {
             self.choose(path, context);
-        } else if let Some((viewpoint, path)) = self.path_to_viewpoint(context, robot, &mut scratch)
-        {
+        } else if let Some((viewpoint, path)) = self.path_to_viewpoint(context, &mut scratch) {
             let along_centre = path.steps();
             self.path = path.leading_to(viewpoint.stand);
-            return self.go_and_look(viewpoint, along_centre, robot, time_ms);
+            return self.go_and_look(viewpoint, along_centre, context);
         } else {
             return self.do_without(context.levels.is_some());
         }
         let (goal, steps) = (self.path.goal(), self.path.steps());
-        let verdict = self.progress.judge(goal, steps, time_ms);
+        let verdict = self.progress.judge(goal, steps, context.time_ms);
         if let Verdict::Drop(reason) = verdict {
             self.give_up(goal, reason);
         }
-        self.block_passage(verdict, context, robot, scratch.view);
+        self.block_passage(verdict, context, scratch.local_grid);
         self.go_on_or_retry(self.residual.is_full())
     }
 
@@ -248,16 +237,15 @@ impl Frontier {
         &mut self,
         path: Path,
         context: &PlanningContext<'_, TILES, SLOTS>,
-        robot: Point,
-        time_ms: u32,
         grid: &mut LocalGrid,
     ) -> RoundOutcome {
-        self.progress.note_motion(robot, time_ms);
+        self.progress
+            .note_motion(context.pose.point(), context.time_ms);
         self.empty_rounds = 0;
         self.path = path;
         let (goal, steps) = (self.path.goal(), self.path.steps());
-        let verdict = self.progress.judge(goal, steps, time_ms);
-        self.block_passage(verdict, context, robot, grid);
+        let verdict = self.progress.judge(goal, steps, context.time_ms);
+        self.block_passage(verdict, context, grid);
         self.go_on_or_retry(false)
     }
 
@@ -266,15 +254,14 @@ impl Frontier {
         &mut self,
         verdict: Verdict,
         context: &PlanningContext<'_, TILES, SLOTS>,
-        robot: Point,
         grid: &mut LocalGrid,
     ) {
         let passage = match verdict {
             Verdict::GoOn | Verdict::Drop(_) => return,
-            Verdict::BlockUnreachable => first_unreachable(&self.path, context, robot, grid),
+            Verdict::BlockUnreachable => first_unreachable(&self.path, context, grid),
             Verdict::BlockAhead => {
                 self.stalled = true;
-                ahead(&self.path, robot)
+                ahead(&self.path, context.pose.point())
             }
         };
         let goal = self.path.goal();
@@ -304,41 +291,38 @@ impl Frontier {
     }
 
     /// Returns true if the robot could not move at any of its chances.
-    #[must_use]
-    pub const fn is_stuck(&self) -> bool {
+    pub(crate) const fn is_stuck(&self) -> bool {
         self.immobile
     }
 
     /// Returns true if another viewpoint may be searched for.
-    #[must_use]
-    pub fn may_look(&self) -> bool {
+    pub(crate) fn may_look(&self) -> bool {
         self.viewpoints < MOST_VIEWPOINTS && !self.residual.is_full()
     }
 
     /// Returns true if the robot looked through a gap, or gave it up.
-    #[must_use]
-    pub fn is_gone(&self, gap: Cell) -> bool {
+    pub(crate) fn is_gone(&self, gap: Cell) -> bool {
         self.residual.is_given_up(gap)
     }
 
     /// Goes to a viewpoint next.
-    pub fn look_from(&mut self, viewpoint: Viewpoint) {
+    pub(crate) fn look_from(&mut self, viewpoint: Viewpoint) {
         self.viewpoint = Some(viewpoint);
         self.viewpoints = self.viewpoints.saturating_add(1);
     }
 
     /// Goes on towards a viewpoint, which is `along_centre` steps away along centre cells, then
     /// straight on.
-    fn go_and_look(
+    fn go_and_look<const TILES: usize, const SLOTS: usize>(
         &mut self,
         viewpoint: Viewpoint,
         along_centre: u32,
-        robot: Point,
-        time_ms: u32,
+        context: &PlanningContext<'_, TILES, SLOTS>,
     ) -> RoundOutcome {
+        let robot = context.pose.point();
         let straight_m = math::sqrt(viewpoint.stand.corner().distance2(robot));
         let steps = along_centre.max((straight_m / (2.0 * CELL_M)) as u32);
-        let reason = match self.progress.judge(viewpoint.stand, steps, time_ms) {
+        let reason = match self.progress.judge(viewpoint.stand, steps, context.time_ms) {
             Verdict::GoOn => return RoundOutcome::Path,
             Verdict::Drop(reason) => reason,
             Verdict::BlockUnreachable | Verdict::BlockAhead => Residue::Unreachable,
@@ -356,14 +340,13 @@ impl Frontier {
     fn path_to_viewpoint<const TILES: usize, const SLOTS: usize>(
         &mut self,
         context: &PlanningContext<'_, TILES, SLOTS>,
-        robot: Point,
         scratch: &mut PlanningScratch<'_>,
     ) -> Option<(Viewpoint, Path)> {
         let viewpoint = self.viewpoint.take()?;
         if context.tiles.class(viewpoint.beyond) != Class::Unknown {
             return None;
         }
-        let path = path_to(viewpoint.stand, context, robot, scratch);
+        let path = path_to(viewpoint.stand, context, scratch);
         if path.is_none() {
             self.give_up(viewpoint.gap, Residue::Unreachable);
         }
@@ -373,7 +356,7 @@ impl Frontier {
 
     /// Notes that the field is flat at the robot: the local grid has no way to the local goal,
     /// although the coarser skeleton has one.
-    pub fn note_flat(&mut self) {
+    pub(crate) fn note_flat(&mut self) {
         self.progress.note_flat();
     }
 
@@ -420,15 +403,12 @@ impl Frontier {
     }
 
     /// Lists the frontier cells that no path leads to, in groups, after the goals given up.
-    pub fn list_unreachable<const TILES: usize, const SLOTS: usize>(
-        &mut self,
-        context: &PlanningContext<'_, TILES, SLOTS>,
-    ) {
-        self.residual.list_unreachable(context);
+    pub(crate) fn list_unreachable<const SLOTS: usize>(&mut self, skeleton: &Skeleton<SLOTS>) {
+        self.residual.list_unreachable(skeleton);
     }
 
     /// Lists a cell beyond which the map has no room.
-    pub fn list_map_exit(&mut self, cell: Cell) {
+    pub(crate) fn list_map_exit(&mut self, cell: Cell) {
         self.residual.list_map_exit(cell);
     }
 }

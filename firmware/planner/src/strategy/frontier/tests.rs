@@ -1,11 +1,12 @@
-//! Which of two frontiers is gone to: a corridor with one at each end.
+//! The choice between two frontiers, in a corridor with one at each end, and the path to a frontier
+//! across other height levels.
 
 use std::boxed::Box;
 use std::vec;
 
-use crate::config::UnevenGround;
+use crate::config::{LoopLimits, UnevenGround};
 use crate::field::local_grid::LocalGrid;
-use crate::geometry::{Cell, Point};
+use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::ground::elevation::{Elevation, WINDOW_CELLS};
 use crate::map::{Class, Tiles};
@@ -19,7 +20,7 @@ use crate::strategy::frontier::Frontier;
 
 /// Half the width of the corridor, cells.
 const HALF: i32 = 8;
-/// Where it ends: nearer in the west.
+/// The ends of the corridor: the western one is nearer.
 const ENDS: [i32; 2] = [-40, 60];
 
 fn corridor() -> Box<Tiles<24, 64>> {
@@ -39,91 +40,141 @@ fn corridor() -> Box<Tiles<24, 64>> {
     tiles
 }
 
-/// Level ground, but for a slope that leads down from `x` = −10 to the west.
-fn storeys(tiles: &Tiles<24, 64>) -> Box<HeightLevels<24>> {
+/// Measures the heights of the cells in rows `ys`, from windows around `middle` in all columns.
+fn measured(
+    tiles: &Tiles<24, 64>,
+    middle: impl Iterator<Item = Cell>,
+    ys: core::ops::Range<i32>,
+    height_m: impl Fn(Cell) -> f32,
+) -> Box<HeightLevels<24>> {
     let (mut heights, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
     let mut origin = Cell::default();
-    let mut storeys = Box::<HeightLevels<24>>::default();
-    for middle in (-40..=60).step_by(20) {
+    let mut levels = Box::<HeightLevels<24>>::default();
+    for middle in middle {
         let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
-        window.follow(Cell { x: middle, y: 0 });
-        for x in middle - 32..middle + 32 {
-            for y in -HALF..=HALF {
-                let below = (-10 - x).max(0);
-                window.measure(Cell { x, y }, -0.03 * below as f32);
+        window.follow(middle);
+        for x in middle.x - 32..middle.x + 32 {
+            for y in ys.clone() {
+                let cell = Cell { x, y };
+                window.measure(cell, height_m(cell));
             }
         }
-        storeys.note(&window.read(), tiles);
+        levels.note(&window.read(), tiles);
     }
-    storeys
+    levels
 }
 
-/// The x of the goal that a robot at x = 0 takes, where its storey is so high; without heights for `None`.
-fn goal(storey_m: Option<f32>) -> i32 {
-    goals([storey_m])[0]
+/// Level ground, with a slope that leads down to the west from x = −10.
+fn slope(tiles: &Tiles<24, 64>) -> Box<HeightLevels<24>> {
+    let middles = (-40..=60).step_by(20).map(|x| Cell { x, y: 0 });
+    measured(tiles, middles, -HALF..HALF + 1, |cell| {
+        -0.03 * (-10 - cell.x).max(0) as f32
+    })
 }
 
-/// The x of the goals that it takes one after the other, if its storey changes.
-fn goals<const N: usize>(storeys_m: [Option<f32>; N]) -> [i32; N] {
-    let tiles = corridor();
-    let storeys = storeys(&tiles);
-    let disc = Footprint::new(0.3);
-    let mut topology = Box::new(Skeleton::<64>::new());
-    topology.reset(Space::KnownFree);
-    while !topology.advance(&tiles, &disc, u32::MAX) {}
-    let (mut residues, mut ring) = (vec![[0; 2]; 64 * 8], vec![0; 1024]);
-    let mut view = LocalGrid::new();
-    let mut frontier = Frontier::new();
-    let robot = Point {
-        x_m: 0.05,
-        y_m: 0.05,
-    };
-    storeys_m.map(|storey_m| {
-        let known = PlanningContext {
-            topology: &topology,
-            tiles: &tiles,
-            disc: &disc,
-            levels: storey_m.map(|storey_m| LevelCost {
-                heights: &storeys,
+/// Level ground, with a dip in the corridor.
+fn dip(tiles: &Tiles<24, 64>, dip_m: f32) -> Box<HeightLevels<24>> {
+    let middles = (0..=80).step_by(20).map(|x| Cell { x, y: 20 });
+    measured(tiles, middles, -8..48, |Cell { x, y }| {
+        let is_dip = (16..40).contains(&x) && y < 16;
+        if is_dip { -dip_m } else { 0.0 }
+    })
+}
+
+/// A map with its skeleton and heights, and a robot at x = y = 0.
+struct Scene {
+    tiles: Box<Tiles<24, 64>>,
+    heights: Box<HeightLevels<24>>,
+    skeleton: Box<Skeleton<64>>,
+    footprint: Footprint,
+    limits: LoopLimits,
+}
+
+impl Scene {
+    fn new(tiles: Box<Tiles<24, 64>>, heights: Box<HeightLevels<24>>) -> Self {
+        let footprint = Footprint::new(0.3);
+        let mut skeleton = Box::new(Skeleton::<64>::new());
+        skeleton.reset(Space::KnownFree);
+        while !skeleton.advance(&tiles, &footprint, u32::MAX) {}
+        Self {
+            tiles,
+            heights,
+            skeleton,
+            footprint,
+            limits: LoopLimits::default(),
+        }
+    }
+
+    /// The inputs of a round from a reference height; without height levels for `None`.
+    fn context(&mut self, reference_m: Option<f32>) -> PlanningContext<'_, 24, 64> {
+        PlanningContext {
+            skeleton: &mut self.skeleton,
+            tiles: &self.tiles,
+            footprint: &self.footprint,
+            pose: Pose {
+                x_m: 0.05,
+                y_m: 0.05,
+                ..Pose::default()
+            },
+            time_ms: 0,
+            limits: &self.limits,
+            levels: reference_m.map(|reference_m| LevelCost {
+                heights: &self.heights,
                 ground: &UnevenGround::TABLE_I,
-                reference_m: storey_m,
+                reference_m,
             }),
-        };
-        let lent = PlanningScratch {
+        }
+    }
+
+    /// Plans a round, with memory for so many pairs behind the wave.
+    fn replan(&mut self, frontier: &mut Frontier, reference_m: Option<f32>, pairs: usize) {
+        let context = self.context(reference_m);
+        let words = context.skeleton.frame().shape.words();
+        let (mut residues, mut queue) = (vec![[0; 2]; words + pairs], vec![0; 1024]);
+        let scratch = PlanningScratch {
             residues: &mut residues,
-            ring: &mut ring,
-            view: &mut view,
+            queue: &mut queue,
+            local_grid: &mut LocalGrid::new(),
         };
-        assert_eq!(frontier.replan(&known, robot, 0, lent), RoundOutcome::Path);
+        assert_eq!(frontier.replan(&context, scratch), RoundOutcome::Path);
+    }
+}
+
+/// The x of the goals that the robot takes one after the other, at these reference heights.
+fn goals<const N: usize>(references_m: [Option<f32>; N]) -> [i32; N] {
+    let tiles = corridor();
+    let heights = slope(&tiles);
+    let mut scene = Scene::new(tiles, heights);
+    let mut frontier = Frontier::new();
+    references_m.map(|reference_m| {
+        scene.replan(&mut frontier, reference_m, 64 * 8);
         frontier.path().goal().x
     })
 }
 
 #[test]
-fn the_nearer_goal_waits_if_it_lies_on_another_storey() {
+fn the_nearer_goal_waits_if_it_lies_on_another_level() {
     let [west, east] = ENDS;
-    let near = |x: i32, end: i32| (x - end).abs() <= 3;
-    assert!(near(goal(None), west), "nearest first");
-    assert!(
-        near(goal(Some(0.0)), east),
-        "0.9 m lower counts for 40 m of way"
-    );
-    assert!(near(goal(Some(-0.9)), west), "it is the robot's storey");
-    assert!(near(goal(Some(-0.45)), west), "as far off as the other one");
+    let goes_to = |reference_m, end: i32| (goals([reference_m])[0] - end).abs() <= 3;
+    assert!(goes_to(None, west), "nearest first");
+    assert!(goes_to(Some(0.0), east), "0.9 m lower counts as 40 m");
+    assert!(goes_to(Some(-0.9), west), "it is on the robot's level");
+    assert!(goes_to(Some(-0.45), west), "as far off as the other one");
 }
 
 #[test]
-fn a_goal_is_not_left_for_the_storeys_on_the_way_to_it() {
+fn a_goal_is_not_left_for_the_levels_on_the_way_to_it() {
     let [west, east] = ENDS;
     let all_near = |goals: [i32; 3], end: i32| goals.iter().all(|goal| (goal - end).abs() <= 3);
-    // To a fresh eye the second storey's goal is the other one each time.
+    // Without the present goal's reference, the second height's goal would be the other one.
     let from_above = goals([0.0, -0.45, 0.0].map(Some));
     assert!(all_near(from_above, east), "{from_above:?}");
     let from_below = goals([-0.9, 0.0, 0.0].map(Some));
     assert!(all_near(from_below, west), "{from_below:?}");
 }
 
-/// A corridor to the east, closed in the west, and a way round from x = 4 to 60 cells, 4 m to the north.
+/// A corridor to the east, closed in the west, and a way round from x = 4 to 60 cells, 4 m to the
+/// north.
 fn corridor_with_a_way_round() -> Box<Tiles<24, 64>> {
     let mut tiles = Box::<Tiles<24, 64>>::default();
     tiles.reset(8, 8);
@@ -145,65 +196,23 @@ fn corridor_with_a_way_round() -> Box<Tiles<24, 64>> {
     tiles
 }
 
-/// Level ground, but for a dip in the corridor.
-fn dip(tiles: &Tiles<24, 64>, dip_m: f32) -> Box<HeightLevels<24>> {
-    let (mut heights, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
-    let mut origin = Cell::default();
-    let mut storeys = Box::<HeightLevels<24>>::default();
-    for middle in (0..=80).step_by(20) {
-        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
-        window.follow(Cell { x: middle, y: 20 });
-        for (x, y) in (middle - 32..middle + 32).flat_map(|x| (-8..48).map(move |y| (x, y))) {
-            let is_dip = (16..40).contains(&x) && y < 16;
-            window.measure(Cell { x, y }, if is_dip { -dip_m } else { 0.0 });
-        }
-        storeys.note(&window.read(), tiles);
-    }
-    storeys
-}
-
-/// How far north the path to the frontier in the east leads, cells, with memory for so many pairs behind the wave.
+/// How far north the path to the frontier in the east leads, cells, with memory for so many pairs
+/// behind the wave.
 fn northmost(dip_m: f32, pairs: usize) -> i32 {
     let tiles = corridor_with_a_way_round();
-    let storeys = dip(&tiles, dip_m);
-    let disc = Footprint::new(0.3);
-    let mut topology = Box::new(Skeleton::<64>::new());
-    topology.reset(Space::KnownFree);
-    while !topology.advance(&tiles, &disc, u32::MAX) {}
-    let known = PlanningContext {
-        topology: &topology,
-        tiles: &tiles,
-        disc: &disc,
-        levels: Some(LevelCost {
-            heights: &storeys,
-            ground: &UnevenGround::TABLE_I,
-            reference_m: 0.0,
-        }),
-    };
-    let words = topology.frame().shape.words();
-    let (mut residues, mut ring) = (vec![[0; 2]; words + pairs], vec![0; 1024]);
-    let mut view = LocalGrid::new();
-    let lent = PlanningScratch {
-        residues: &mut residues,
-        ring: &mut ring,
-        view: &mut view,
-    };
-    let robot = Point {
-        x_m: 0.05,
-        y_m: 0.05,
-    };
+    let heights = dip(&tiles, dip_m);
     let mut frontier = Frontier::new();
-    assert_eq!(frontier.replan(&known, robot, 0, lent), RoundOutcome::Path);
+    Scene::new(tiles, heights).replan(&mut frontier, Some(0.0), pairs);
     assert!(frontier.path().goal().x >= 76, "the only frontier");
     let cells = frontier.path().cells().iter();
     cells.map(|cell| cell.y).max().expect("a path")
 }
 
 #[test]
-fn a_path_by_another_storey_gives_way_to_one_that_keeps_to_its_own() {
+fn a_path_across_other_levels_gives_way_to_one_on_the_goals() {
     let room = 64 * 8;
     assert!(northmost(0.0, room) < 8, "level ground: straight on");
-    assert!(northmost(0.5, room) < 8, "half a metre is no other storey");
+    assert!(northmost(0.5, room) < 8, "0.5 m is no other level");
     assert!(northmost(1.5, room) > 30, "round a dip of 1.5 m");
     assert!(northmost(1.5, 1) < 8, "no memory for a second way");
 }
@@ -211,21 +220,9 @@ fn a_path_by_another_storey_gives_way_to_one_that_keeps_to_its_own() {
 /// The frontier cells of each cost class with the class's delay, with a cache of so many words.
 fn costs(words: usize) -> vec::Vec<(u32, vec::Vec<Site>)> {
     let tiles = corridor();
-    let storeys = storeys(&tiles);
-    let disc = Footprint::new(0.3);
-    let mut topology = Box::new(Skeleton::<64>::new());
-    topology.reset(Space::KnownFree);
-    while !topology.advance(&tiles, &disc, u32::MAX) {}
-    let context = PlanningContext {
-        topology: &topology,
-        tiles: &tiles,
-        disc: &disc,
-        levels: Some(LevelCost {
-            heights: &storeys,
-            ground: &UnevenGround::TABLE_I,
-            reference_m: 0.0,
-        }),
-    };
+    let heights = slope(&tiles);
+    let mut scene = Scene::new(tiles, heights);
+    let context = scene.context(Some(0.0));
     let mut cache = vec![u32::MAX; words];
     let given_up = ResidualFrontiers::new();
     let cost = GoalCost::new(&context, &given_up, None, &mut cache).expect("it was published");

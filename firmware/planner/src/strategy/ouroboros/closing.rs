@@ -5,7 +5,8 @@
 
 use crate::geometry::Cell;
 use crate::grid::Site;
-use crate::path::{PlanningScratch, RoundOutcome};
+use crate::path::context::STEP_M;
+use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::roadmap::Residues;
 use crate::roadmap::branches::surroundings;
 use crate::strategy::Frontier;
@@ -13,13 +14,12 @@ use crate::strategy::ouroboros::loop_budget::LoopBudget;
 use crate::strategy::ouroboros::loop_road::{LoopRoad, back_to_shield, build_shield};
 use crate::strategy::ouroboros::tractor::{self, Fate};
 use crate::strategy::ouroboros::{LOST_ROUNDS, MOST_LOST, Ouroboros, Shield, Stage};
-use crate::strategy::round::{Round, STEP_M};
 
 impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// Runs lines 3 to 18: tractor point, loop road and shield.
     pub(super) fn look<const TILES: usize>(
         &mut self,
-        round: &mut Round<'_, TILES, SLOTS>,
+        round: &mut PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
     ) -> Option<RoundOutcome> {
         self.stage = Stage::Explore;
@@ -48,7 +48,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// Moves the tractor point to the new skeleton or disables it [lines 5 to 8].
     fn move_tractor<const TILES: usize>(
         &mut self,
-        round: &Round<'_, TILES, SLOTS>,
+        round: &PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
     ) {
         let is_open = |tractor: &Cell| {
@@ -84,7 +84,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// Returns a new tractor point, if there is a place for it [line 10].
     pub(super) fn generate_tractor<const TILES: usize>(
         &self,
-        round: &Round<'_, TILES, SLOTS>,
+        round: &PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
     ) -> Option<Cell> {
         let candidate = tractor::candidate(&self.crumbs, &self.regions, &round.pose)?;
@@ -97,7 +97,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// robot.
     fn begin<const TILES: usize>(
         &mut self,
-        round: &mut Round<'_, TILES, SLOTS>,
+        round: &mut PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
         [robot, tractor]: [Site; 2],
     ) -> Option<Shield> {
@@ -165,7 +165,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     pub(super) fn close<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,
-        round: &mut Round<'_, TILES, SLOTS>,
+        round: &mut PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
         robot: Site,
     ) -> Option<RoundOutcome> {
@@ -187,8 +187,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             self.give_up();
             return None;
         }
-        let (context, here) = (round.context(), round.pose.point());
-        Some(frontier.follow(path, &context, here, round.time_ms, scratch.view))
+        Some(frontier.follow(path, round, scratch.local_grid))
     }
 }
 
@@ -196,7 +195,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
 /// previous one if there is no better and it is still valid.
 fn renew<const TILES: usize, const SLOTS: usize>(
     mut previous: Shield,
-    round: &mut Round<'_, TILES, SLOTS>,
+    round: &mut PlanningContext<'_, TILES, SLOTS>,
     scratch: &mut PlanningScratch<'_>,
     robot: Site,
 ) -> Option<Shield> {

@@ -13,14 +13,13 @@ use std::vec::Vec;
 use crate::config::LoopLimits;
 use crate::geometry::{Cell, Pose};
 use crate::map::{Class, Tiles};
-use crate::path::RoundOutcome;
+use crate::path::{PlanningContext, RoundOutcome};
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
 use crate::strategy::Frontier;
 use crate::strategy::ouroboros::exploring::worlds::{ADJACENT, NESTED, ROOMS, THREE_LOOPS, TREES};
 use crate::strategy::ouroboros::scenes::{Memory, POINT_M, SLOTS, TILES, at, has_cell, pose_in};
 use crate::strategy::ouroboros::{Ouroboros, Tally};
-use crate::strategy::round::Round;
 
 /// Cells that the robot sees: the same share of these loops as 12 m of one of 70 m.
 const SIGHT: i32 = 8;
@@ -135,7 +134,7 @@ impl Exploration {
         let before = self.skeleton.skeleton().unwrap().words().to_vec();
         for calls in 1.. {
             assert!(calls <= 4, "a round that does not end");
-            let round = Round {
+            let round = PlanningContext {
                 skeleton: &mut self.skeleton,
                 tiles: &self.tiles,
                 footprint: &footprint,

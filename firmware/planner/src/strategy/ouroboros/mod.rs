@@ -3,12 +3,12 @@
 //! | lines | what they do | where |
 //! | --- | --- | --- |
 //! | 3 | update the Voronoi cells | [`roadmap`](crate::roadmap), the space without obstacles |
-//! | 4 | move the robot to the Voronoi | `Round::nearest` |
+//! | 4 | move the robot to the Voronoi | `PlanningContext::nearest` |
 //! | 5–10 | move, disable or generate the tractor point | `tractor`, `closed_regions` |
-//! | 12 | propagate from it, the robot as a blocker | `Round::propagate` |
+//! | 12 | propagate from it, the robot as a blocker | `PlanningContext::propagate` |
 //! | 13–16 | the loop road, past the previous shield if there is one | `loop_road` |
 //! | 18 | the shield | `shield` |
-//! | 20 | propagate from the tractor point, the shield as a blocker | `Round::path` |
+//! | 20 | propagate from the tractor point, the shield as a blocker | `PlanningContext::path` |
 //! | 23 | else propagate from the unexplored | `Frontier::replan` |
 //! | 25 | none is left: complete, unless a loop is open | `revisit` |
 //! | 26–28 | local goal, local potential, drive | [`planner`](crate::planner) |
@@ -46,11 +46,10 @@ pub use shield::Shield;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::path::breadcrumbs::Crumbs;
-use crate::path::{PlanningScratch, RoundOutcome};
+use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::strategy::Frontier;
 use crate::strategy::ouroboros::loop_budget::LoopBudget;
 use crate::strategy::ouroboros::revisit::Revisit;
-use crate::strategy::round::Round;
 
 /// Rounds in a row without loop road or shield after which a loop is lost: at some 0.8 s a round, a
 /// spur is gone by then.
@@ -174,7 +173,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     pub(crate) fn advance<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,
-        mut round: Round<'_, TILES, SLOTS>,
+        mut round: PlanningContext<'_, TILES, SLOTS>,
         mut scratch: PlanningScratch<'_>,
     ) -> Option<RoundOutcome> {
         match core::mem::replace(&mut self.stage, Stage::Look) {
@@ -184,8 +183,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
                 self.drive_to_revisit(frontier, &mut round, &mut scratch)
             }
             Stage::Explore => {
-                let robot = round.pose.point();
-                let outcome = frontier.replan(&round.context(), robot, round.time_ms, scratch);
+                let outcome = frontier.replan(&round, scratch);
                 if outcome == RoundOutcome::Nothing {
                     self.stage = Stage::Search;
                     return None;
@@ -199,7 +197,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// Looks for an open loop on some branches, after line 25.
     fn search<const TILES: usize>(
         &mut self,
-        round: &mut Round<'_, TILES, SLOTS>,
+        round: &mut PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
     ) -> Option<RoundOutcome> {
         self.stage = match revisit::find(round, &mut self.regions, scratch) {
@@ -217,12 +215,11 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     fn drive_to_revisit<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,
-        round: &mut Round<'_, TILES, SLOTS>,
+        round: &mut PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
     ) -> Option<RoundOutcome> {
         let mut revisit = self.revisit.take()?;
-        let here = round.pose.point();
-        let robot = round.nearest(here.cell(), scratch);
+        let robot = round.nearest(round.pose.point().cell(), scratch);
         let goal = robot.and_then(|_| round.nearest(revisit.goal, scratch));
         let path = robot
             .zip(goal)
@@ -233,8 +230,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         });
         if let Some(path) = path {
             self.revisit = Some(revisit);
-            let (context, time_ms) = (round.context(), round.time_ms);
-            return Some(frontier.follow(path, &context, here, time_ms, scratch.view));
+            return Some(frontier.follow(path, round, scratch.local_grid));
         }
         // No loop began on the drive here.
         revisit::settle(round, &mut self.regions, revisit.goal);

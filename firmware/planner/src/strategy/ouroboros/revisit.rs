@@ -14,14 +14,14 @@
 use crate::config::LoopLimits;
 use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
-use crate::path::PlanningScratch;
+use crate::path::context::STEP_M;
 use crate::path::nearest::Centres;
+use crate::path::{PlanningContext, PlanningScratch};
 use crate::roadmap::Residues;
 use crate::roadmap::branches::{Branch, Kind, kind, surroundings, ways};
 use crate::strategy::ouroboros::closed_regions::ClosedRegions;
 use crate::strategy::ouroboros::loop_budget::LoopBudget;
 use crate::strategy::ouroboros::tractor::LEAST_BEHIND_M;
-use crate::strategy::round::{Round, STEP_M};
 
 /// Steps to the middle of the stretch at which the revisit is done: 0.8 m, within what the goal's
 /// closed regions cover.
@@ -56,7 +56,7 @@ pub(super) enum Found {
 /// Looks for an open loop on the next branches with cells outside closed regions, with one wave at
 /// most.
 pub(super) fn find<const TILES: usize, const SLOTS: usize>(
-    round: &mut Round<'_, TILES, SLOTS>,
+    round: &mut PlanningContext<'_, TILES, SLOTS>,
     regions: &mut ClosedRegions<SLOTS>,
     scratch: &mut PlanningScratch<'_>,
 ) -> Found {
@@ -81,7 +81,7 @@ pub(super) fn find<const TILES: usize, const SLOTS: usize>(
 
 /// Closes the regions of a place and of its branch, so that neither is looked at again.
 pub(super) fn settle<const TILES: usize, const SLOTS: usize>(
-    round: &Round<'_, TILES, SLOTS>,
+    round: &PlanningContext<'_, TILES, SLOTS>,
     regions: &mut ClosedRegions<SLOTS>,
     place: Cell,
 ) {
@@ -101,7 +101,7 @@ pub(super) fn settle<const TILES: usize, const SLOTS: usize>(
 
 /// Returns the first open cell of a branch.
 fn first_open<const TILES: usize, const SLOTS: usize>(
-    round: &Round<'_, TILES, SLOTS>,
+    round: &PlanningContext<'_, TILES, SLOTS>,
     regions: &ClosedRegions<SLOTS>,
 ) -> Option<Site> {
     let centres = round.centres()?;
@@ -113,7 +113,7 @@ fn first_open<const TILES: usize, const SLOTS: usize>(
 /// Returns the middle of the longest stretch of open cells in a branch; `None` if all are shorter
 /// than [`LEAST_M`].
 fn middle_of_stretch<const TILES: usize, const SLOTS: usize>(
-    round: &Round<'_, TILES, SLOTS>,
+    round: &PlanningContext<'_, TILES, SLOTS>,
     regions: &ClosedRegions<SLOTS>,
     site: Site,
 ) -> Option<Site> {
@@ -155,7 +155,7 @@ fn end_of_branch(skeleton: Plane<'_>, site: Site) -> Option<(Site, Site)> {
 
 /// Returns the length of the shortest loop through a cell, metres; `None` if there is no loop.
 fn loop_m<const TILES: usize, const SLOTS: usize>(
-    round: &mut Round<'_, TILES, SLOTS>,
+    round: &mut PlanningContext<'_, TILES, SLOTS>,
     at: Site,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<f32> {

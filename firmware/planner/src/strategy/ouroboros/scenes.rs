@@ -18,15 +18,14 @@ use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::map::{Class, Tiles};
-use crate::path::PlanningScratch;
 use crate::path::nearest::Centres;
+use crate::path::{PlanningContext, PlanningScratch};
 use crate::roadmap::Residues;
 use crate::roadmap::branches::surroundings;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
 use crate::strategy::ouroboros::loop_road::{LoopRoad, build_shield};
 use crate::strategy::ouroboros::shield::{Flaw, Shield};
-use crate::strategy::round::Round;
 
 pub(super) const TILES: usize = 30;
 pub(super) const SLOTS: usize = 48;
@@ -85,24 +84,24 @@ fn behind(pose: &Pose, cells: i32) -> Cell {
 /// Memory of a wave.
 pub(super) struct Memory {
     residues: Vec<[u32; 2]>,
-    ring: Vec<u32>,
-    grid: LocalGrid,
+    queue: Vec<u32>,
+    local_grid: LocalGrid,
 }
 
 impl Memory {
     pub(super) fn new() -> Self {
         Self {
             residues: std::vec![[0; 2]; SLOTS * 8],
-            ring: std::vec![0; 256],
-            grid: LocalGrid::new(),
+            queue: std::vec![0; 256],
+            local_grid: LocalGrid::new(),
         }
     }
 
     pub(super) fn lend(&mut self) -> PlanningScratch<'_> {
         PlanningScratch {
             residues: &mut self.residues,
-            ring: &mut self.ring,
-            view: &mut self.grid,
+            queue: &mut self.queue,
+            local_grid: &mut self.local_grid,
         }
     }
 }
@@ -159,8 +158,8 @@ impl Scene {
             .map(|(x, y, _)| at(x, y))
     }
 
-    pub(super) fn round(&mut self) -> Round<'_, TILES, SLOTS> {
-        Round {
+    pub(super) fn round(&mut self) -> PlanningContext<'_, TILES, SLOTS> {
+        PlanningContext {
             skeleton: &mut self.skeleton,
             tiles: &self.tiles,
             footprint: &self.footprint,

@@ -37,10 +37,9 @@ use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::path::nearest::Centres;
 use crate::path::search::PathSearch;
-use crate::path::{Path, PlanningScratch, RoundOutcome};
+use crate::path::{Path, PlanningContext, PlanningScratch, RoundOutcome};
 use crate::robot::LaserMount;
 use crate::strategy::Frontier;
-use crate::strategy::round::Round;
 use crate::strategy::tdbvp::charges::{charge_rails, distance_m, has_fork, prefer, unexplored};
 use crate::strategy::tdbvp::pending_visits::{PendingVisits, VISIT_M};
 use crate::strategy::tdbvp::sides::SideVotes;
@@ -213,7 +212,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     pub(super) fn advance<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,
-        mut round: Round<'_, TILES, SLOTS>,
+        mut round: PlanningContext<'_, TILES, SLOTS>,
         mut scratch: PlanningScratch<'_>,
     ) -> RoundOutcome {
         if let Some(since_ms) = self.patrol_since_ms {
@@ -223,10 +222,8 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
             }
             return self.patrol(frontier, &mut round, &mut scratch, patrolled_ms);
         }
-        let robot = round.pose.point();
         let is_late = round.time_ms.wrapping_sub(self.new_place_ms) >= IMPATIENCE_MS;
-        let (outcome, is_free) =
-            frontier.glance(&round.context(), robot, round.time_ms, scratch, is_late);
+        let (outcome, is_free) = frontier.glance(&round, scratch, is_late);
         // What remains for the second chance is where the robot only just fits through.
         self.on_path = !is_free || frontier.is_second_chance();
         outcome
@@ -237,7 +234,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     fn patrol<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,
-        round: &mut Round<'_, TILES, SLOTS>,
+        round: &mut PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
         patrolled_ms: u32,
     ) -> RoundOutcome {
@@ -247,8 +244,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         let Some(path) = path else {
             return RoundOutcome::Unsure;
         };
-        let (context, robot) = (round.context(), round.pose.point());
-        match frontier.follow(path, &context, robot, round.time_ms, scratch.view) {
+        match frontier.follow(path, round, scratch.local_grid) {
             RoundOutcome::Path => RoundOutcome::Path,
             // There is always another rail.
             _ => {
@@ -262,7 +258,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     /// as a tour of all takes at least.
     fn oldest<const TILES: usize>(
         &self,
-        round: &Round<'_, TILES, SLOTS>,
+        round: &PlanningContext<'_, TILES, SLOTS>,
         patrolled_ms: u32,
     ) -> Option<(u8, bool)> {
         let centres = round.centres()?;
@@ -291,7 +287,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     fn path_to<const TILES: usize>(
         &self,
         stamp: u8,
-        round: &Round<'_, TILES, SLOTS>,
+        round: &PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
     ) -> Option<Path> {
         let centres = round.centres()?;
