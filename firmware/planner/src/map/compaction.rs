@@ -1,53 +1,59 @@
-//! Room in the pool: tiles that say little are kept in less than a page.
+//! Tile compaction: a tile with little content takes less than a page of the pool.
 //!
-//! | a tile | is kept |
+//! | content of a tile | storage |
 //! | --- | --- |
-//! | free from edge to edge | in its entry of the directory, as such |
-//! | without anything that stands in the way | as its low plane, half a page |
-//! | else | in a page: low plane, high plane |
+//! | free from edge to edge | its entry of the directory |
+//! | no obstacle | its low plane, half a page |
+//! | other | a page: low plane, high plane |
 //!
-//! Uneven ground shares the pool with the marks of its window, and open ground of 50 × 50 m has twice as many tiles as are left. So when
-//! pages run short, every tile away from the robot is *folded* as far as it can be, and *unfolded* before the robot's window comes to it.
-//! Reading sees no difference. A folded tile is not written, except that free stays free.
+//! Uneven ground shares the pool with the marks of its window. Open ground of 50 × 50 m then has
+//! twice as many tiles as there are pages. So when pages run short, the map *compacts* every tile
+//! away from the robot, and *expands* it before the robot's window reaches it. A compact tile reads
+//! as before. It cannot be written, except that a free tile accepts free cells.
 //!
-//! FreeList pages and spare halves are two lists: the first word of each holds the next one's number, plus 1. Two halves of a page that are
-//! both spare become a page again.
+//! Spare pages and spare halves are two lists: the first word of an element is the number of the
+//! next one, plus 1. Two spare halves of the same page become a spare page.
 //!
-//! Invariant: every page given out so far is in the directory once, or spare once, or two halves each of which is.
+//! Invariant: every page given out is in the directory once, or spare once, or it is two halves of
+//! which this is true.
+//!
+//! Units: pages of 256 bytes, halves of 128 bytes.
 
 use crate::geometry::Cell;
 use crate::map::tiles::{NoRoom, Plane, TILE_ROWS, TILE_SIDE, Tiles};
 
-/// The entry of a tile that is all free; its low byte is what its side_table left.
+/// Flag of the entry of a tile that is all free; the low byte is kept for the side table.
 const ALL_FREE_FLAG: u16 = 0x8000;
-/// The entry of a tile in half a page.
+/// Flag of the entry of a tile in half a page.
 const HALF_FLAG: u16 = 0x4000;
-/// With fewer pages than this tiles are compact: the window comes to nine at a time, and [`RESERVED_PAGES`] are no one's.
+/// With fewer spare pages than this, tiles are compacted. The window touches nine tiles at a time,
+/// and [`RESERVED_PAGES`] stay spare.
 const LOW_PAGES: usize = 24;
-/// Once there are folded tiles, so many pages are kept back for those that the robot comes to.
+/// Pages kept back, once there are compact tiles, to expand those that the robot reaches.
 const RESERVED_PAGES: usize = 10;
-/// Cells around the window in which tiles are unfolded: the window is there in a step or two.
+/// Margin around the window in which tiles are expanded, cells: the window is there in one or two
+/// steps.
 const EXPAND_MARGIN: i32 = 2;
 /// A plane of ones.
 pub(super) static ONES: Plane = [u32::MAX; TILE_ROWS];
 /// A plane of zeros.
 pub(super) static ZEROS: Plane = [0; TILE_ROWS];
 
-/// What the directory says of a tile.
+/// A tile's entry in the directory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Entry {
     /// Never touched.
     Untouched,
     /// Stored in this page.
     Page(usize),
-    /// Stored in this half: of page `h / 2`.
+    /// Stored in half `h`, of page `h / 2`.
     Half(usize),
-    /// All free; with a byte of the side_table's.
+    /// All free; with the byte of the side table.
     AllFree(i8),
 }
 
 impl Entry {
-    /// As stored.
+    /// Decodes a word of the directory.
     #[inline(always)]
     pub(super) const fn of(word: u16) -> Self {
         if word & ALL_FREE_FLAG != 0 {
@@ -61,6 +67,7 @@ impl Entry {
         }
     }
 
+    /// Encodes the entry as a word of the directory.
     pub(super) const fn word(self) -> u16 {
         match self {
             Self::Untouched => 0,
@@ -71,19 +78,19 @@ impl Entry {
     }
 }
 
-/// Whoever has something by the page of a tile, and a byte of it by what a tile is folded into.
+/// A table with data by page, of which a byte follows a tile through compaction.
 pub trait SideTable {
-    /// The page is given up: the byte to keep.
+    /// Called when a tile gives up its page. Returns the byte to keep.
     fn release_page(&mut self, page: usize) -> i8;
-    /// The tile is in a page again.
+    /// Called when a tile is in a page again.
     fn restore_page(&mut self, page: usize, kept: i8);
-    /// The tile is in this half of a page now.
+    /// Called when a tile moved to this half of a page.
     fn store_half(&mut self, half: usize, kept: i8);
-    /// The half is given up: what was kept.
+    /// Called when a tile gives up its half. Returns the byte that was kept.
     fn release_half(&mut self, half: usize) -> i8;
 }
 
-/// Nobody.
+/// No side table.
 impl SideTable for () {
     fn release_page(&mut self, _: usize) -> i8 {
         0
@@ -98,23 +105,23 @@ impl SideTable for () {
     }
 }
 
-/// What is spare, and how much is folded.
+/// The lists of spare pages and halves.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FreeList {
-    /// Pages given out so far, one after the other.
+    /// Pages given out so far, in order.
     pub(super) given: u16,
-    /// Pages on the list.
+    /// Number of spare pages.
     pages: u16,
-    /// The first of them, plus 1.
+    /// The first spare page, plus 1; 0 if there is none.
     page: u16,
-    /// The first half on its list, plus 1.
+    /// The first spare half, plus 1; 0 if there is none.
     half: u16,
-    /// Tiles that are folded.
+    /// Number of compact tiles.
     compact: u16,
 }
 
 impl FreeList {
-    /// Nothing was given out.
+    /// No page is given out.
     pub(super) const EMPTY: Self = Self {
         given: 0,
         pages: 0,
@@ -123,19 +130,19 @@ impl FreeList {
         compact: 0,
     };
 
-    /// Pages that something lies in.
+    /// Returns the number of pages in use.
     pub(super) const fn used(&self) -> usize {
         (self.given - self.pages) as usize
     }
 }
 
 impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
-    /// Pages that nothing lies in.
+    /// Returns the number of pages not in use.
     fn free_pages(&self) -> usize {
         self.capacity().saturating_sub(self.free.used())
     }
 
-    /// Whether a tile never touched may have a page.
+    /// Returns true if an untouched tile may take a page.
     pub(super) fn has_page(&self) -> bool {
         let kept_back = if self.free.compact > 0 {
             RESERVED_PAGES
@@ -145,7 +152,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.free_pages() > kept_back
     }
 
-    /// A page of any content.
+    /// Takes a page; its content is undefined.
     pub(super) fn take_page(&mut self) -> Result<usize, NoRoom> {
         if let Some(page) = self.free.page.checked_sub(1) {
             let page = usize::from(page);
@@ -165,7 +172,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.pool.get_mut(half / 2)?.get_mut(half % 2)
     }
 
-    /// What follows a half on its list.
+    /// Returns the link in the first word of a spare half or page.
     fn next(&self, half: usize) -> u16 {
         let plane = self.pool.get(half / 2).and_then(|page| page.get(half % 2));
         plane
@@ -185,7 +192,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.free.pages += 1;
     }
 
-    /// The half is spare; if the page's other one is too, the page is.
+    /// Returns a half to the list; if the other half of the page is spare, returns the page.
     fn return_half(&mut self, half: usize) {
         let other = (half ^ 1) as u16 + 1;
         let mut before = None;
@@ -205,7 +212,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.free.half = half as u16 + 1;
     }
 
-    /// Unfold the tiles around the square of `side` cells at `window`, and if pages run short fold all others.
+    /// Expands the tiles around the square of `side` cells at `window`. If pages run short,
+    /// compacts all others.
     pub(super) fn compact(&mut self, window: Cell, side: i32, side_table: &mut impl SideTable) {
         let is_short = self.free_pages() < LOW_PAGES;
         let Some(extent) = self.extent().filter(|_| is_short || self.free.compact > 0) else {
@@ -219,7 +227,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             for x in extent.least.0..=extent.greatest.0 {
                 let slot = self.slot(x, y);
                 if is_near(x, window.x) && is_near(y, window.y) {
-                    // Where there is no room it stays as it is, and is tried again.
+                    // Without room the tile stays compact until the next call.
                     let _ = self.expand_tile(slot, side_table);
                 } else if is_short {
                     self.compact_tile(slot, side_table);
@@ -251,7 +259,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.enter(slot, entry);
     }
 
-    /// The low plane of a page into a spare half, or where it is if there is none; the rest of the page is spare.
+    /// Moves the low plane of a page to a spare half, or leaves it in place if there is none. The
+    /// rest of the page becomes spare. Returns the half.
     fn move_low(&mut self, page: usize, low: Plane) -> usize {
         let Some(half) = self.free.half.checked_sub(1) else {
             self.return_half(2 * page + 1);
@@ -304,7 +313,7 @@ mod tests {
     const FAR: Cell = Cell { x: 0, y: 9_000 };
     type Small = Tiles<TILES, 400>;
 
-    /// Keeps the number of the tile by its page, and checks that nothing is in two places.
+    /// Keeps the number of the tile by its page, and checks that no tile is in two places.
     #[derive(Default)]
     struct Guest {
         pages: BTreeMap<usize, i8>,
@@ -375,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folded_tile_is_written_once_the_window_is_there() {
+    fn a_compact_tile_is_written_once_the_window_is_there() {
         let mut tiles = small();
         (0..30).for_each(|tile| free(&mut tiles, tile).unwrap());
         tiles.compact(FAR, 64, &mut ());
@@ -392,7 +401,7 @@ mod tests {
     }
 
     #[test]
-    fn pages_are_kept_back_for_folded_tiles() {
+    fn pages_are_kept_back_for_compact_tiles() {
         let mut tiles = small();
         (0..30).for_each(|tile| free(&mut tiles, tile).unwrap());
         tiles.compact(FAR, 64, &mut ());
@@ -404,8 +413,8 @@ mod tests {
         assert_eq!(around, [Ok(()); 4]);
     }
 
-    /// Random tiles are written, folded and unfolded while the window jumps about: the map is what was written, every page and half is
-    /// in one place, and everyone finds what he left.
+    /// Writes, compacts and expands random tiles while the window jumps about: the map is as
+    /// written, every page and half is in one place, and the side table keeps every byte.
     #[test]
     fn nothing_is_lost_or_in_two_places() {
         let (mut tiles, mut guest) = (small(), Guest::default());

@@ -1,8 +1,10 @@
-//! The map on uneven ground: the elevation window's memory, and its classes into the tiles.
+//! The map on uneven ground: the memory of the elevation window, and its classes into the tiles.
 //!
-//! Counts of hits and passes say nothing there, because beams pass over holes and end on slopes; so the window of heights takes their place,
-//! in their memory: 8 KB for 4,096 heights of two bytes, and 16 tiles of the pool for a byte of marks each. On flat ground all tiles are the
-//! map's.
+//! Counts of hits and passes mean nothing there, because beams pass over holes and end on slopes.
+//! So the elevation window uses their memory: 8 KB for 4,096 heights of two bytes. Its 4,096 marks
+//! of one byte use 16 pages of the pool. On flat ground the map has all pages.
+//!
+//! Units: map cells.
 
 use crate::config::Config;
 use crate::config::UnevenGround;
@@ -14,39 +16,42 @@ use crate::ground::elevation::{WINDOW_CELLS, WINDOW_SIDE};
 use crate::ground::survey::Survey;
 use crate::ground::{Elevation, Heights};
 use crate::input::Input;
-use crate::map::tiles::NoRoom;
 use crate::map::{Class, Map, SideTable, Tiles};
 use crate::robot::is_level;
 
-/// Tiles that hold the marks.
+/// Pages that hold the marks.
 const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::Cells>();
 
-/// Rows this near to the robot are classified in every step, others in every second one: farther off than it drives until it has stopped.
+/// Rows this near to the robot are classified in every step, others in every second step. It is
+/// more than the robot's stopping distance, cells.
 const NEAR_ROWS: i32 = 12;
-/// Of the beams into a room whose walls are known, every so many-th is looked at in a step.
+/// Phases of the beams through a doorway to a known wall: a step evaluates one phase, every fifth
+/// beam.
 const BEAM_PHASES: usize = 5;
-/// Cells written of in a step before what else is seen through doorways waits for the next one: a whole room at once is too much for a step.
+/// Number of doorway cells after which a step starts no further beam; the rest waits for the next
+/// step. A whole room at once takes too long for a step.
 const MAX_DOORWAY_CELLS: u32 = 5_000;
-/// About a step, milliseconds.
+/// Duration of a step, milliseconds. It only turns time into a phase.
 const STEP_MS: u32 = 200;
-/// Cells around a goal that are given up with it.
+/// Cells around a goal that are resolved with it.
 const RESOLVE_CELLS: i32 = 3;
-/// Cells around the place before a robot that cannot go on where it trusts the ground: behind a brow no less is out of its view.
+/// Cells around the place before a blocked robot in which gaps are freed: the ground hidden behind
+/// a brow is at least as wide.
 const FREE_GAP_CELLS: i32 = 5;
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
-    /// From here on the window of heights lies where the counts were.
+    /// Lends the pages that hold the marks to the elevation window.
     pub(super) fn lend_memory_to_elevation(&mut self) {
         self.tiles.lend(MARK_TILES);
     }
 
-    /// The elevation window; without a single height on flat ground.
+    /// Returns the elevation window; on flat ground it has no heights.
     #[must_use]
     pub fn heights(&self) -> Heights<'_> {
         Heights::new(self.evidence.bytes(), self.tiles.lent_bytes(), self.window)
     }
 
-    /// Scans and pose into the window, and the window into the map.
+    /// Enters scans and pose into the window, and the window's classes into the tiles.
     pub(super) fn update_elevation(
         &mut self,
         config: &Config,
@@ -73,14 +78,14 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         self.odd_rows = !self.odd_rows;
         let middle = self.window.y + WINDOW_SIDE / 2;
         for y in self.window.y..self.window.y + WINDOW_SIDE {
-            // Twice the work would be too much for a step, and what is far can wait for one.
+            // All rows would take too long for a step, and a far row can wait for one step.
             if (y - middle).abs() <= NEAR_ROWS || (y & 1 == 1) == self.odd_rows {
                 self.classify(&limits, y);
             }
         }
     }
 
-    /// What is seen through doorways, where nothing is known yet.
+    /// Enters what beams see through doorways into cells that are unknown.
     fn view_doorways(&mut self, config: &Config, ground: &UnevenGround, input: &Input<'_>) {
         let phase = (input.time_ms / STEP_MS) as usize % BEAM_PHASES;
         let mut written = 0;
@@ -92,7 +97,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             let mut from = 0;
             while let Some(beams) = view.next_doorway(&self.heights(), from) {
                 from = beams.end;
-                // Where a wall is known already, what lies before it mostly is: then a few beams a step will do.
+                // The cells before a known wall are mostly known, so a few beams per step suffice.
                 let is_due = |tiles: &Tiles<TILES, SLOTS>, number: usize| {
                     let is_new = |end: Cell| tiles.class(end) == Class::Unknown;
                     number % BEAM_PHASES == phase || view.end_cell(number).is_some_and(is_new)
@@ -109,36 +114,39 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    /// What is seen through a doorway counts where nothing else is known.
+    /// Stores a cell that a beam saw through a doorway, if it is unknown.
     fn set_if_unknown(&mut self, cell: Cell, part: Part) {
         if self.tiles.class(cell) == Class::Unknown {
             let class = match part {
                 Part::Floor => Class::Free,
                 Part::Wall => Class::Obstacle,
             };
-            // Where there is no room nothing is known in any case.
+            // Without room the cell stays unknown.
             let _ = self.tiles.set(cell, class);
         }
     }
 
-    /// Make room in the pool if it runs short ([`super::folding`]), after every survey.
+    /// Makes room in the pool if it runs short ([`super::compaction`]). Call it after every survey.
     pub fn compact(&mut self, side_table: &mut impl SideTable) {
         self.tiles.compact(self.window, WINDOW_SIDE, side_table);
     }
 
-    /// The robot stood by a cell, and neither it nor what is around it was measured. Behind a brow ground stays out of view: where what is
-    /// measured on both sides leads over it, it is taken for free, and else for gone.
+    /// Resolves the unknown cells around a goal that the robot reached without measuring them.
+    ///
+    /// Ground behind a brow stays out of view. Such a cell becomes free if the measured ground on
+    /// both sides spans the gap, otherwise negative.
     pub fn resolve_gaps(&mut self, ground: &UnevenGround, goal: Cell) {
         self.fill_gaps(ground, (goal, RESOLVE_CELLS), Some(Class::Negative));
     }
 
-    /// The robot cannot go on for ground around a cell that was never measured: what leads over it is taken for free. Whether
-    /// there was any.
+    /// Frees the unknown cells around the place before a blocked robot, if measured ground spans
+    /// them. Returns true if there were any.
     pub(crate) fn free_gaps(&mut self, ground: &UnevenGround, ahead: Cell) -> bool {
         self.fill_gaps(ground, (ahead, FREE_GAP_CELLS), None)
     }
 
-    /// Take ground around a cell that was never measured for free where it is led over, and else for `gone`; whether any is free now.
+    /// Makes the unknown cells in a square free if measured ground spans them, otherwise `gone`.
+    /// Returns true if any became free.
     fn fill_gaps(
         &mut self,
         ground: &UnevenGround,
@@ -146,7 +154,8 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         gone: Option<Class>,
     ) -> bool {
         let mut any = false;
-        // With an attitude that is not sure a rim beside it may have gone unnoticed: trusted, ground at two holes let the robot fall.
+        // If the attitude is not exact, a rim beside the cell may be unnoticed. With trust in such
+        // ground the robot fell at two holes.
         let is_sure = self.attitude.is_exact();
         for y in middle.y - reach..=middle.y + reach + 1 {
             for x in middle.x - reach..=middle.x + reach + 1 {
@@ -155,11 +164,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                     continue;
                 }
                 let spans_gap = is_sure && classify::spans_gap(&self.heights(), ground, cell, 0.0);
-                // What was glimpsed is there.
+                // Ground with a height of low confidence exists.
                 let gone = gone.filter(|_| self.heights().low_confidence_m(cell).is_none());
                 let class = if spans_gap { Some(Class::Free) } else { gone };
                 if let Some(class) = class {
-                    // Where there is no room nothing is known in any case.
+                    // Without room the cell stays unknown.
                     any |= self.tiles.set(cell, class).is_ok() && spans_gap;
                 }
             }
@@ -167,6 +176,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         any
     }
 
+    /// Classifies a row of the elevation window.
     fn classify(&mut self, limits: &RiseLimits, y: i32) {
         let x = self.window.x;
         let known = self.tiles.row(x, y);
@@ -182,11 +192,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         for (class, cells) in changed {
             for k in ones64(cells) {
                 let cell = Cell { x: x + k as i32, y };
-                match self.tiles.set(cell, class) {
-                    Ok(()) => {}
-                    Err(NoRoom::Box) => self.out_of_box = true,
-                    Err(NoRoom::Pool) => self.pool_full = true,
-                }
+                self.store(cell, class);
             }
         }
     }

@@ -1,11 +1,17 @@
 //! Evidence for and against an obstacle, in a rolling window of 128 × 128 cells around the robot.
 //!
-//! Four bits a cell: 0 = no evidence yet, else a count in 1..=15 that a hit raises by 3 and a pass lowers by 1.
-//! A cell is obstacle from 10 up and free from 7 down; between, it keeps the class it had (hysteresis). A free cell that
-//! was seen often (count 1) needs three hits to turn, so a single false echo does not block a way; a wall (15) needs
-//! eight passes. Outside the window the first impression stands until the robot comes near.
+//! ```text
+//! count = 0                                no evidence yet
+//! hit:   count ← min(count + 3, 15)        pass:  count ← max(count − 1, 1)
+//! class = obstacle if count ≥ 10, free if count ≤ 7, else as before (hysteresis)
+//! ```
 //!
-//! Invariant: a slot belongs to exactly one cell of the window (cell mod 128), and entering strips are cleared.
+//! A free cell that beams passed often (count 1) needs three hits to become an obstacle, so a
+//! single false echo blocks no passage. A wall (count 15) needs eight passes to become free.
+//! Outside the window a cell keeps its first class until the robot comes near.
+//!
+//! Invariant: every cell of the window has a slot of its own ([`Rolling`]), and cells that enter
+//! have no evidence.
 //! Units: map cells.
 
 use crate::geometry::Cell;
@@ -13,12 +19,16 @@ use crate::grid::{Class, Rolling, masked_mut, wrapped_mut};
 
 /// Cells along the window's side.
 pub(crate) const EVIDENCE_SIDE: i32 = 128;
-/// The window moves in steps of this many cells, so that it seldom does.
+/// The window moves in steps of this many cells, so that it moves seldom.
 const STRIDE: i32 = 16;
 
+/// A hit raises the count by this; a pass lowers it by 1.
 const HIT: u8 = 3;
+/// Least count of an obstacle.
 const OBSTACLE_MIN: u8 = 10;
+/// Greatest count of a free cell.
 const FREE_MAX: u8 = 7;
+/// Greatest count: all that four bits hold.
 const MAX_COUNT: u8 = 15;
 
 type Window = Rolling<EVIDENCE_SIDE, STRIDE>;
@@ -26,13 +36,13 @@ type Window = Rolling<EVIDENCE_SIDE, STRIDE>;
 /// The rolling window of counts.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Evidence {
-    /// Two cells a byte, row by row.
+    /// Two cells per byte, row by row.
     counts: [[u8; EVIDENCE_SIDE as usize / 2]; EVIDENCE_SIDE as usize],
     /// The window's least cell, a multiple of [`STRIDE`].
     origin: Cell,
 }
 
-/// Count that a cell of this class starts with.
+/// Returns the count that a cell of this class starts with.
 const fn initial(class: Class) -> u8 {
     match class {
         Class::Unknown => 8,
@@ -42,7 +52,7 @@ const fn initial(class: Class) -> u8 {
 }
 
 impl Evidence {
-    /// No evidence anywhere.
+    /// Creates a window without evidence.
     pub(crate) const fn new() -> Self {
         Self {
             counts: [[0; EVIDENCE_SIDE as usize / 2]; EVIDENCE_SIDE as usize],
@@ -50,18 +60,18 @@ impl Evidence {
         }
     }
 
-    /// Forget everything and centre on `centre`.
+    /// Clears the window and moves it to `centre`.
     pub(crate) fn reset(&mut self, centre: Cell) {
         self.counts.as_flattened_mut().fill(0);
         self.origin = Window::origin(centre);
     }
 
-    /// The memory of the counts, where there are none to be kept.
+    /// Returns the memory of the counts, which the elevation window uses on uneven ground.
     pub(super) fn bytes(&self) -> &[u8] {
         self.counts.as_flattened()
     }
 
-    /// The memory of the counts, where there are none to be kept.
+    /// Returns the memory of the counts, which the elevation window uses on uneven ground.
     pub(super) fn bytes_mut(&mut self) -> &mut [u8] {
         self.counts.as_flattened_mut()
     }
@@ -112,17 +122,17 @@ impl Evidence {
         }
     }
 
-    /// A beam ended in this cell, whose class was `class`; returns its class now.
+    /// Counts a beam that ended in this cell, whose class was `class`. Returns its class now.
     pub(crate) fn hit(&mut self, cell: Cell, class: Class) -> Class {
         self.update(cell, class, |count| (count + HIT).min(MAX_COUNT))
     }
 
-    /// A beam went through this cell, whose class was `class`; returns its class now.
+    /// Counts a beam that passed this cell, whose class was `class`. Returns its class now.
     pub(crate) fn pass(&mut self, cell: Cell, class: Class) -> Class {
         self.update(cell, class, |count| count.saturating_sub(1).max(1))
     }
 
-    /// A beam went through this cell, which is known to be free and stays so; most such cells were seen often.
+    /// Counts a beam that passed a free cell, which stays free. Most such cells have count 1.
     #[inline(always)]
     pub(crate) fn pass_free(&mut self, cell: Cell) {
         let (pair, shift) = self.pair(cell);

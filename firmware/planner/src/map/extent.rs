@@ -1,17 +1,17 @@
-//! Bounds of what is known, and why the map may have no room for more.
+//! The bounds of the tiles in use, and the reasons why a map refuses a cell.
 //!
 //! Units: tiles.
 
-/// A cell that the map has no room for.
+/// The reason why the map has no room for a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoRoom {
-    /// The known extent would outgrow the box.
+    /// The extent would outgrow the box.
     Box,
-    /// Every tile of the pool is in use.
+    /// Every page of the pool is in use.
     Pool,
 }
 
-/// Inclusive bounds in tiles.
+/// Inclusive bounds of the tiles in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Extent {
     /// Least tile column and row.
@@ -21,7 +21,7 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// With this tile inside.
+    /// Returns the extent with this tile inside.
     pub(super) const fn with(self, x: i32, y: i32) -> Self {
         Self {
             least: (min(self.least.0, x), min(self.least.1, y)),
@@ -29,13 +29,13 @@ impl Extent {
         }
     }
 
-    /// Tiles across.
+    /// Returns the number of tiles across.
     #[must_use]
     pub const fn width(self) -> i32 {
         self.greatest.0 - self.least.0 + 1
     }
 
-    /// Tiles up.
+    /// Returns the number of tiles up.
     #[must_use]
     pub const fn height(self) -> i32 {
         self.greatest.1 - self.least.1 + 1

@@ -1,15 +1,16 @@
-//! A scan into the map: every beam frees the cells it went through and marks the cell it ended in.
+//! Scan integration on flat ground: a beam frees the cells that it crosses and marks the cell in
+//! which it ends.
 //!
-//! The level laser carries occupancy: its beams run in the plane. The tilted laser marks what stands higher than
-//! `MIN_OBSTACLE_M` above the robot's ground, and frees nothing, because its beams run above the cells they cross.
-//! Cells are visited by Amanatides–Woo traversal.
+//! Beams of the level laser run in the plane, so they free and mark. Beams of the tilted laser run
+//! above the cells that they cross, so they free nothing; they mark ends higher than
+//! `MIN_OBSTACLE_M` above the robot's ground.
 //!
-//! Robustness, each rule with its reason:
-//! - a beam does not erode an obstacle within `GUARD_M` of its own end: at a grazing angle it runs through the wall's
-//!   own cells first;
-//! - a lone no-return between two returns is a dropout, and a no-return stops at the first obstacle: it must not tunnel;
-//! - near the robot beams are denser than cells, so only every second (fourth) frees cells there, and only every fourth beam is
-//!   evidence for what is free already.
+//! - A beam does not erode an obstacle within `GUARD_M` of its own end, because at a grazing angle
+//!   it crosses the wall's own cells first.
+//! - A lone no-return between two returns is a dropout and frees nothing.
+//! - A no-return stops at the first obstacle, so that it does not tunnel through a wall.
+//! - Near the robot beams are denser than cells. So only every second or fourth beam frees cells
+//!   there, and only every fourth beam is evidence for a cell that is free already.
 //!
 //! Units: metres, radians; ranges in millimetres.
 
@@ -25,36 +26,44 @@ use crate::math;
 use crate::robot::LaserMount;
 use crate::robot::is_level;
 
-/// An obstacle's least height above the robot's ground for the tilted laser, metres: above the 3-AT's ground clearance
-/// and three sigma of an attitude error of 1° at the tilted beam's reach.
+/// Least height of an obstacle above the robot's ground for the tilted laser, metres. It exceeds
+/// the ground clearance of a Pioneer 3-AT, and three sigma of an attitude error of 1° at the tilted
+/// beam's reach.
 pub(crate) const MIN_OBSTACLE_M: f32 = 0.15;
-/// Length before a beam's end in which it does not erode obstacles, metres.
+/// Length before a beam's end on which it does not erode obstacles, metres.
 const GUARD_M: f32 = 0.35;
 
-/// One beam in the plane.
+/// Range from which on every second beam frees cells, millimetres: nearer, every fourth one does.
+/// At 1° per beam, every fourth beam is one cell (0.1 m) from the next at 1.4 m.
+const SECOND_FROM_MM: u16 = 1_400;
+/// Range from which on every beam frees cells, millimetres: every second beam is one cell from the
+/// next there.
+const ODD_FROM_MM: u16 = 2 * SECOND_FROM_MM;
+
+/// A beam in the plane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Beam {
-    /// Where it starts.
+    /// The sensor's point.
     pub(crate) from: Point,
     /// Unit direction.
     pub(crate) direction: (f32, f32),
-    /// Its length, metres.
+    /// Length, metres.
     pub(crate) length_m: f32,
-    /// It ended on something.
+    /// True if the beam ended on something.
     pub(crate) hit: bool,
-    /// Which of the sweep it is.
+    /// Number in the sweep.
     pub(crate) number: usize,
-    /// Nearer than this another beam frees the cells, metres.
+    /// Length from which on the beam frees cells, metres; other beams free the nearer ones.
     free_from_m: f32,
 }
 
 impl Beam {
-    /// Its end.
+    /// Returns the beam's end.
     pub(crate) fn end(&self) -> Point {
         self.at(self.length_m)
     }
 
-    /// The point that far along it.
+    /// Returns the point at a length along the beam.
     fn at(&self, along_m: f32) -> Point {
         Point {
             x_m: self.from.x_m + self.direction.0 * along_m,
@@ -62,22 +71,22 @@ impl Beam {
         }
     }
 
-    /// Free cells are passed again and again; every fourth beam is witness enough.
+    /// Returns true if the beam is evidence for free cells. Every fourth beam is, because many
+    /// beams pass the same free cell.
     const fn is_counted(&self) -> bool {
         self.number & 3 == 0
     }
 }
 
-/// The sensor's place in the plane.
+/// Returns the sensor's point in the plane.
 pub(crate) fn sensor_point(pose: &Pose, laser: &LaserMount) -> Point {
-    let (sin, cos) = math::sin_cos(pose.yaw_rad);
-    Point {
-        x_m: pose.x_m + laser.x_m * cos - laser.y_m * sin,
-        y_m: pose.y_m + laser.x_m * sin + laser.y_m * cos,
-    }
+    pose.to_map(Point {
+        x_m: laser.x_m,
+        y_m: laser.y_m,
+    })
 }
 
-/// The level laser's beams that carry information.
+/// Returns the beams of the level laser that carry information.
 pub(crate) fn level_beams<'a>(
     pose: &Pose,
     laser: &'a LaserMount,
@@ -97,10 +106,11 @@ pub(crate) fn level_beams<'a>(
         } * 1e-3;
         let dense_to_mm = match i & 3 {
             0 => 0,
-            2 => 1_400,
-            _ => 2_800,
+            2 => SECOND_FROM_MM,
+            _ => ODD_FROM_MM,
         };
-        // A no-return goes through all its cells where a neighbour met something: one of them may be an obstacle, which ends it.
+        // If a neighbour met something nearer, a no-return may meet an obstacle there, which ends
+        // it. So it crosses all its cells.
         let beyond = |k: Option<usize>| {
             k.and_then(|k| ranges_mm.get(k))
                 .is_none_or(|&beside| beside > dense_to_mm)
@@ -123,7 +133,8 @@ pub(crate) fn level_beams<'a>(
 }
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
-    /// Enter one scan of `laser`, taken at `pose`. What there is no room for sets [`Map::out_of_box`] or [`Map::pool_full`].
+    /// Enters a scan of `laser`, taken at `pose`. A cell without room sets [`Map::out_of_box`] or
+    /// [`Map::pool_full`].
     pub(crate) fn integrate(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
         if is_level(laser) {
             for beam in level_beams(pose, laser, ranges_mm) {
@@ -139,7 +150,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    /// The robot stands here, so a disc of `radius_m` around it is free.
+    /// Frees the unknown cells in a disc of `radius_m` around the robot, because it stands there.
     pub(crate) fn free_footprint(&mut self, centre: Point, radius_m: f32) {
         let (middle, reach) = (centre.cell(), math::floor(radius_m / CELL_M) + 1);
         for y in middle.y - reach..=middle.y + reach {
@@ -200,14 +211,14 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    /// Store, remembering what there was no room for.
-    fn store(&mut self, cell: Cell, class: Class) {
+    /// Stores a class; records a lack of room.
+    pub(super) fn store(&mut self, cell: Cell, class: Class) {
         if let Err(no_room) = self.tiles.set(cell, class) {
             self.record_failure(no_room);
         }
     }
 
-    /// Remember what there was no room for; false, because there was none.
+    /// Records a lack of room. Returns false, so that a beam ends there.
     fn record_failure(&mut self, no_room: NoRoom) -> bool {
         match no_room {
             NoRoom::Box => self.out_of_box = true,
@@ -241,19 +252,19 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 }
 
-/// A beam that goes through a tile.
+/// The passage of a beam through a tile.
 struct TilePass<'a> {
     evidence: &'a mut Evidence,
     cells: TileMut<'a>,
     tile: (i32, i32),
-    /// From here on it does not erode obstacles.
+    /// Length from which on the beam does not erode obstacles, metres.
     guard_from_m: f32,
-    /// It met nothing, so an obstacle on its way is none of its business, and the end of it.
+    /// The beam met nothing, so it ends at the first obstacle and does not erode it.
     stops_at_obstacle: bool,
 }
 
 impl TilePass<'_> {
-    /// Free the cells of the tile; whether the beam goes on in the next.
+    /// Frees the cells of the tile. Returns true if the beam continues in the next tile.
     #[inline(never)]
     fn run<const COUNTS: bool>(mut self, traversal: &mut Traversal) -> bool {
         traversal.cross_tile(|row, bit, leaves_m| {
@@ -270,7 +281,7 @@ impl TilePass<'_> {
         })
     }
 
-    /// Note that the beam went through a cell not known to be free; whether it goes on.
+    /// Passes a cell that is not free. Returns true if the beam continues.
     #[inline(never)]
     fn pass(&mut self, row: usize, bit: u32, leaves_m: f32) -> bool {
         let class = self.cells.class(row, bit);
@@ -312,7 +323,7 @@ mod tests {
         }
     }
 
-    /// The slow twin of [`Map::free_along`]: cell by cell through the map's front door.
+    /// The slow twin of [`Map::free_along`]: cell by cell, with the map's public methods.
     fn free_slowly(map: &mut Plan, beam: &Beam) {
         let (start, length_m) = (beam.at(beam.free_from_m), beam.length_m - beam.free_from_m);
         let mut traversal = Traversal::new(start, beam.direction, length_m, beam.hit);
@@ -350,7 +361,7 @@ mod tests {
         *seed >> 8
     }
 
-    /// A scan of a messy room: walls at some distance, holes in them, noise.
+    /// Returns a scan of a messy room: walls with holes, and noise.
     fn scan(seed: &mut u32) -> [u16; 181] {
         let wall = 1_000 + random(seed) % 8_000;
         core::array::from_fn(|i| match random(seed) % 8 {
@@ -364,7 +375,7 @@ mod tests {
     #[test]
     fn going_by_tiles_is_going_by_cells() {
         let mut seed = 7;
-        // The small box is too small for the traversal: what there is no room for must not differ either.
+        // The small box has no room for all beams; the maps must agree on it too.
         for side in [6, 12] {
             let (mut fast, mut slow) = (Plan::new(), Plan::new());
             for map in [&mut fast, &mut slow] {
@@ -391,7 +402,7 @@ mod tests {
                 }
             }
             assert!(fast.tiles.used() > 9);
-            // What there is no room for has no evidence either; the slow twin keeps some, which never tells.
+            // The slow twin keeps evidence for cells without room, which has no effect.
             assert!(side == 6 || fast.evidence == slow.evidence);
             for tile in (-9..9).flat_map(|y| (-9..9).map(move |x| (x, y))) {
                 let of = |map: &Plan| map.tiles.packed(tile.0, tile.1);

@@ -1,7 +1,16 @@
-//! The map: occupancy of the known space, from scans.
+//! The map: the class of every known cell, from scans.
 //!
-//! [`tiles`] keeps the class of every cell for the whole run, [`evidence`] the counts around the robot, and
-//! [`integrate`] turns beams into both.
+//! | file | holds |
+//! | --- | --- |
+//! | [`tiles`], `tile`, `extent` | the class of every cell, for the whole run |
+//! | [`compaction`] | smaller storage for tiles with little content |
+//! | [`rows`] | rows of 32 and 64 cells, for all planning |
+//! | [`evidence`] | counts for and against an obstacle around the robot, on flat ground |
+//! | [`integrate`], `traversal` | beams into classes and counts |
+//! | `elevation_layer` | the elevation window into classes, on uneven ground |
+//! | [`obstacle_points`] | single returns near the robot, finer than cells |
+//!
+//! Units: map cells of [`CELL_M`](crate::geometry::CELL_M).
 
 pub(crate) mod compaction;
 mod elevation_layer;
@@ -27,22 +36,22 @@ use crate::geometry::Cell;
 use crate::ground::AttitudeFilter;
 use crate::input::Input;
 
-/// A robot that moved more cells than this between two observations was carried.
+/// A person carried the robot if it moved more cells than this between two observations.
 const MAX_STEP_CELLS: i32 = 10;
-/// The robot stands where it is, so this much around it is free, metres.
+/// Radius around the robot's centre that is free because the robot stands there, metres.
 const FOOTPRINT_M: f32 = 0.25;
 
-/// Everything known of the space. `TILES` tiles in the pool, `SLOTS` places in the box.
+/// The map, with `TILES` pages in the pool and `SLOTS` slots in the box.
 #[derive(Debug)]
 pub struct Map<const TILES: usize, const SLOTS: usize> {
     pub(crate) tiles: Tiles<TILES, SLOTS>,
     evidence: Evidence,
-    /// Where the robot was at the last observation.
+    /// The robot's cell at the last observation.
     last_cell: Option<Cell>,
-    /// The least cell of the elevation window, once there is one.
+    /// The least cell of the elevation window, on uneven ground.
     window: Cell,
     has_surveyed: bool,
-    /// Which of the rows far off were classified.
+    /// The last step classified the odd ones of the far rows.
     odd_rows: bool,
     attitude: AttitudeFilter,
     out_of_box: bool,
@@ -50,7 +59,7 @@ pub struct Map<const TILES: usize, const SLOTS: usize> {
 }
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
-    /// An empty map without a box.
+    /// Creates an empty map without a box.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -66,7 +75,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    /// Forget everything and begin a session.
+    /// Clears the map and begins a session.
     pub fn begin(&mut self, config: &Config) {
         self.reset(config.box_tiles.0, config.box_tiles.1);
         if config.ground.is_some() {
@@ -74,7 +83,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    /// Forget everything; the box is `width` × `height` tiles.
+    /// Clears the map; the box becomes `width` × `height` tiles.
     pub(crate) fn reset(&mut self, width: u8, height: u8) {
         self.tiles.reset(width, height);
         self.evidence.reset(Cell::default());
@@ -86,7 +95,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         self.pool_full = false;
     }
 
-    /// Enter everything that an input says of the space.
+    /// Enters an input's scans and pose.
     pub fn observe(&mut self, config: &Config, input: &Input<'_>) {
         let robot = input.pose.point();
         if let Some(ground) = &config.ground {
@@ -103,7 +112,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    /// Mark the way from the last cell, with no diagonal steps, so that the trail is connected by sides.
+    /// Marks the trail from the last cell without diagonal steps, so that its cells share sides.
     fn record_visit(&mut self, to: Cell) {
         let from = self.last_cell.unwrap_or(to);
         self.last_cell = Some(to);
@@ -128,25 +137,25 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    /// What is known of a cell.
+    /// Returns the class of a cell.
     #[must_use]
     pub fn class(&self, cell: Cell) -> Class {
         self.tiles.class(cell)
     }
 
-    /// The stored tiles.
+    /// Returns the tiles.
     #[must_use]
     pub const fn tiles(&self) -> &Tiles<TILES, SLOTS> {
         &self.tiles
     }
 
-    /// Something was seen that the box has no place for.
+    /// Returns true if a beam met a cell that the box has no slot for.
     #[must_use]
     pub const fn out_of_box(&self) -> bool {
         self.out_of_box
     }
 
-    /// Something was seen that the pool has no tile for.
+    /// Returns true if a beam met a cell that the pool has no page for.
     #[must_use]
     pub const fn pool_full(&self) -> bool {
         self.pool_full

@@ -1,17 +1,24 @@
-//! The near field: what the level laser met around the robot, exact where the map's cells are coarse.
+//! Obstacle points: returns of the level laser near the robot, finer than map cells.
 //!
-//! A door of 0.65 m leaves 8 cm beside a 3-AT, less than a map cell. So the points within `REACH_M` are kept, also those that
-//! have left the field of view. A point is the mean of the returns that fell on it,
+//! A door of 0.65 m leaves 8 cm on each side of a Pioneer 3-AT, less than a map cell. So the
+//! planner keeps points within `REACH_M`, also after they leave the field of view. A point is the
+//! mean of its returns:
 //!
 //! ```text
 //! p ← p + (r − p) / n,    n = min(returns so far, MAX_RETURNS)
 //! ```
 //!
-//! because of many single returns of a wall the nearest, which is the one that would count, is two or three sigma too near. It
-//! goes when a beam passes through its place, when the robot stands on it, and when it leaves the view with one return only:
-//! a false one, which nothing could disprove any more. Behind the robot, where it only turns and backs out, less is kept.
+//! Without the mean, the nearest of many returns of a wall would count, and it is two or three
+//! sigma too near. The planner removes a point
+//! - if a beam passes through its place;
+//! - if the robot stands on it;
+//! - if it leaves the view with one return only, because a false return could not be disproved
+//!   later;
+//! - if it is out of reach. The reach behind the robot is shorter, because the robot only turns and
+//!   backs out there.
 //!
-//! Invariant: at most [`MAX_POINTS`] points, the farthest give way; as many counts as points.
+//! Invariants: at most [`MAX_POINTS`] points, of which the farthest gives way; as many counts as
+//! points.
 //! Units: metres, odometry frame.
 
 use heapless::Vec;
@@ -25,37 +32,34 @@ use crate::map::{Class, Tiles};
 use crate::math;
 use crate::robot::{LaserMount, RobotShape};
 
-/// Points kept at the most.
+/// Greatest number of points.
 pub(crate) const MAX_POINTS: usize = 256;
-/// Distance from the robot's centre within which points ahead are kept, metres: half the robot and its braking distance.
+/// Reach for points ahead, from the robot's centre, metres: half the robot and its braking
+/// distance.
 pub(crate) const REACH_M: f32 = 1.2;
-/// The same to the sides and behind, metres: half its diagonal and the longest leg backwards.
+/// Reach for points behind, metres: half the robot's diagonal and its longest leg backwards.
 const REACH_BEHIND_M: f32 = 0.8;
-/// Returns this near to a point are returns of it, metres: two sigma of a range and some. What is rounded off a sharp corner is
-/// a third of it.
+/// A return nearer than this to a point is a return of it, metres: a little over two sigma of a
+/// range. The mean rounds a sharp corner by a third of this.
 const SAME_M: f32 = 0.025;
-/// Returns in a mean at the most; later ones count as much as the last of these.
+/// Greatest number of returns in a mean; later returns weigh as much as the last of these.
 const MAX_RETURNS: u8 = 8;
-/// A beam that ends this far behind a point went through its place, metres: five sigma of a range.
+/// A beam that ends this far behind a point passed through its place, metres: five sigma of a
+/// range.
 const THROUGH_M: f32 = 0.05;
-/// A point this far inside the robot's rectangle is none, metres: the robot stands there.
+/// A point this far inside the robot's rectangle is false, metres, because the robot stands there.
 const INSIDE_M: f32 = 0.01;
 
-/// What stands around the robot.
+/// The obstacle points around the robot.
 #[derive(Debug, Default)]
 pub struct ObstaclePoints {
     points: Vec<Point, MAX_POINTS>,
-    /// Returns of each point.
+    /// Number of returns of each point, up to [`MAX_RETURNS`].
     returns: Vec<u8, MAX_POINTS>,
 }
 
-fn distance2(a: Point, b: Point) -> f32 {
-    let (dx, dy) = (a.x_m - b.x_m, a.y_m - b.y_m);
-    dx * dx + dy * dy
-}
-
 impl ObstaclePoints {
-    /// Nothing around.
+    /// Creates an empty store.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -64,19 +68,19 @@ impl ObstaclePoints {
         }
     }
 
-    /// Forget everything.
+    /// Removes all points.
     pub fn clear(&mut self) {
         self.points.clear();
         self.returns.clear();
     }
 
-    /// The points.
+    /// Returns the points.
     #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
-    /// Enter the level laser's scan, taken at `pose`.
+    /// Enters a scan of the level laser, taken at `pose`.
     pub fn update(
         &mut self,
         robot: &RobotShape,
@@ -93,6 +97,7 @@ impl ObstaclePoints {
         }
     }
 
+    /// Removes the points that the scan or the robot disproves, and those out of reach.
     fn remove_stale(
         &mut self,
         robot: &RobotShape,
@@ -120,10 +125,10 @@ impl ObstaclePoints {
         }
     }
 
-    /// A return: of a point that is there, or a new point.
+    /// Enters a return: into the mean of the first point near it, or as a new point.
     fn add_return(&mut self, centre: Point, end: Point) {
         let near = |&&mut point: &&mut Point| {
-            (point.x_m - end.x_m).abs() < SAME_M && distance2(point, end) < SAME_M * SAME_M
+            (point.x_m - end.x_m).abs() < SAME_M && point.distance2(end) < SAME_M * SAME_M
         };
         let known = self.points.iter_mut().zip(&mut self.returns);
         let mut known = known.filter(|(point, _)| near(point));
@@ -137,26 +142,28 @@ impl ObstaclePoints {
         }
     }
 
+    /// Inserts a point; in a full store it replaces the farthest one, if that is farther.
     fn insert(&mut self, centre: Point, point: Point) {
         if self.points.is_full() {
             let farther = |best: (usize, f32), (k, &point): (usize, &Point)| {
-                let far = distance2(point, centre);
+                let far = point.distance2(centre);
                 if far > best.1 { (k, far) } else { best }
             };
             let (farthest, far) = self.points.iter().enumerate().fold((0, 0.0), farther);
-            if far < distance2(point, centre) {
+            if far < point.distance2(centre) {
                 return;
             }
             self.points.swap_remove(farthest);
             self.returns.swap_remove(farthest);
         }
-        // There is room now, so these cannot fail.
+        // There is room now.
         let _ = self.points.push(point);
         let _ = self.returns.push(1);
     }
 }
 
-/// The middles of the map's obstacle cells within reach behind the robot: what [`ObstaclePoints`] never met, or has forgotten.
+/// Returns the centres of the obstacle cells within the reach behind: [`ObstaclePoints`] may never
+/// have met them, or may have dropped them.
 pub(crate) fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
@@ -171,8 +178,8 @@ pub(crate) fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
     })
 }
 
-/// The middles of the cells around the robot that it must not touch on uneven ground, as far as they border on free cells:
-/// obstacles of either sign, and ground never measured.
+/// Returns the centres of the cells around the robot that it must not touch on uneven ground:
+/// obstacles, negative obstacles and unknown cells that border on free cells.
 pub(crate) fn border_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
@@ -185,7 +192,8 @@ pub(crate) fn border_cells<const TILES: usize, const SLOTS: usize>(
     cells_around(robot, rims).map(Cell::centre)
 }
 
-/// The same, each with how far before its cell what is there may begin, metres: as far as beams' ends are marked behind, where something stands.
+/// Returns the [`border_cells`], each with its own margin, metres. An obstacle may begin before its
+/// cell, because a hit is marked [`HIT_DEPTH_M`] behind the beam's end.
 pub fn inflated_border_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
@@ -196,7 +204,8 @@ pub fn inflated_border_cells<const TILES: usize, const SLOTS: usize>(
     })
 }
 
-/// The cells within reach behind the robot, and as far to all sides, that `of` has: bit k of `of(x, y)` is cell (x + k, y).
+/// Returns the cells that `of` sets in the square of the reach behind: bit k of `of(x, y)` is cell
+/// (x + k, y).
 fn cells_around(robot: Point, of: impl Fn(i32, i32) -> u64) -> impl Iterator<Item = Cell> {
     let reach = math::floor(REACH_BEHIND_M / CELL_M);
     let Cell { x, y } = robot.cell();
@@ -207,33 +216,31 @@ fn cells_around(robot: Point, of: impl Fn(i32, i32) -> u64) -> impl Iterator<Ite
     })
 }
 
+/// Returns true if a point is within reach of the robot.
 fn within_reach(pose: &Pose, point: Point) -> bool {
-    let far2 = distance2(point, pose.point());
-    let (sin, cos) = math::sin_cos(pose.yaw_rad);
-    let ahead = (point.x_m - pose.x_m) * cos + (point.y_m - pose.y_m) * sin > 0.0;
-    let reach = if ahead { REACH_M } else { REACH_BEHIND_M };
-    far2 < reach * reach
+    let is_ahead = pose.to_robot(point).x_m > 0.0;
+    let reach_m = if is_ahead { REACH_M } else { REACH_BEHIND_M };
+    point.distance2(pose.point()) < reach_m * reach_m
 }
 
-/// Whether the robot's rectangle covers a point, by more than the error of one.
+/// Returns true if a point lies inside the robot's rectangle by more than [`INSIDE_M`].
 fn is_inside(robot: &RobotShape, pose: &Pose, point: Point) -> bool {
-    let (sin, cos) = math::sin_cos(pose.yaw_rad);
-    let (dx, dy) = (point.x_m - pose.x_m, point.y_m - pose.y_m);
-    let (along, across) = (dx * cos + dy * sin, dy * cos - dx * sin);
-    along.abs() < robot.half_length_m - INSIDE_M && across.abs() < robot.half_width_m - INSIDE_M
+    let Point { x_m, y_m } = pose.to_robot(point);
+    x_m.abs() < robot.half_length_m - INSIDE_M && y_m.abs() < robot.half_width_m - INSIDE_M
 }
 
-/// What a scan says of the place of a point.
+/// The evidence of a scan about the place of a point.
 enum Visibility {
     /// A beam ended there.
     Hit,
-    /// A beam went through.
+    /// A beam passed through.
     Through,
-    /// Nothing: it is out of view, or hidden behind something nearer.
+    /// The place is out of view, or hidden behind something nearer.
     Unseen,
 }
 
-/// Judged by the two beams that pass the point on either side: at a corner one meets it, or nothing, and the other goes by.
+/// Returns the visibility of a point, from the two beams beside it. At a corner one beam may meet
+/// the point or nothing while the other passes.
 fn visibility(
     pose: &Pose,
     laser: &LaserMount,
@@ -299,7 +306,7 @@ mod tests {
         assert!(obstacles.points().is_empty());
     }
 
-    /// A scan that sees one thing, 4 beams wide, at a bearing (degrees) and range; nothing else.
+    /// Returns a scan that meets one thing, 4 beams wide, at a bearing (degrees) and a range.
     fn thing(bearing: i32, range_mm: u16) -> [u16; 181] {
         let mut scan = [NO_RETURN_MM; 181];
         for k in -2..2 {
@@ -353,7 +360,7 @@ mod tests {
         }
     }
 
-    /// The room between the robot and a row of cells across its way, the first that are not free.
+    /// Returns the clearance between the robot and a row of cells of a class across its path.
     fn room_before(class: Class) -> f32 {
         let mut tiles = Tiles::<16, 64>::new();
         tiles.reset(8, 8);
@@ -371,7 +378,7 @@ mod tests {
         checker.clearance_m()
     }
 
-    /// What stands begins where beams end, and its cell is that of so much behind.
+    /// A hit is marked behind the beam's end, so an obstacle begins before its cell.
     #[test]
     fn the_robot_keeps_three_centimetres_more_off_what_stands_than_off_what_is_gone() {
         let [stands_m, gone_m, unknown_m] =

@@ -1,6 +1,7 @@
-//! Rows of the map, 64 cells at a time, as everything that plans reads them.
+//! Rows of the map, 64 cells at a time. All planning reads the map this way.
 //!
-//! A reader goes up through the map, row by row; it looks tiles up once in 32 rows. Bit k of a word is column x + k.
+//! A reader goes up through the map row by row, so it looks tiles up once in 32 rows. Bit k of a
+//! word is column x + k.
 //!
 //! Units: map cells.
 
@@ -10,28 +11,28 @@ use crate::grid::masked;
 use crate::map::compaction::ZEROS;
 use crate::map::tiles::{Plane, TILE_ROWS, Tiles, Visited};
 
-/// Columns to the left of a [`Line`]'s own that its halo begins.
+/// Columns of the halo to the left of a [`Line`].
 pub(crate) const HALO: i32 = 16;
 
-/// 32 cells of a row, and what stands up to [`HALO`] columns beside them.
+/// 32 cells of a row, and the obstacles up to [`HALO`] columns beside them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Line {
-    /// Cells that stand in the way, [`HALO`] columns farther to the left: bit `HALO` is the first cell.
+    /// Obstacles; bit `HALO` is the line's first cell.
     pub(crate) around: u64,
     /// Cells never measured.
     pub(crate) unknown: u32,
-    /// Cells on or beside the robot's way so far.
+    /// Cells of the robot's trail.
     pub(crate) visited: u32,
 }
 
 impl Line {
-    /// Cells that stand in the way, of either sign.
+    /// Returns the obstacles, negative ones included.
     pub(crate) const fn obstacle(self) -> u32 {
         (self.around >> HALO) as u32
     }
 }
 
-/// A tile that a reader goes through.
+/// The tile of a reader's present rows.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Column<'a> {
     pub(super) low: &'a Plane,
@@ -40,27 +41,27 @@ pub(super) struct Column<'a> {
 }
 
 impl Column<'_> {
-    /// A tile that nothing is known of.
+    /// An untouched tile.
     const EMPTY: Self = Self {
         low: &ZEROS,
         high: &ZEROS,
         visited: &[0; TILE_ROWS / 2],
     };
 
-    /// Low and high bits of a row.
+    /// Returns the low and the high bits of a row.
     #[inline(always)]
     fn classes(&self, row: usize) -> [u32; 2] {
         [self.low, self.high].map(|plane| *masked(plane, row))
     }
 
-    /// Blocks of the trail in a row.
+    /// Returns the trail's blocks in a row.
     #[inline(always)]
     fn blocks(&self, row: usize) -> u16 {
         *masked(self.visited, row / 2)
     }
 }
 
-/// Reads rows one after another.
+/// A reader of rows, one after another.
 #[derive(Debug)]
 pub(crate) struct RowReader<'a, const TILES: usize, const SLOTS: usize> {
     tiles: &'a Tiles<TILES, SLOTS>,
@@ -70,7 +71,7 @@ pub(crate) struct RowReader<'a, const TILES: usize, const SLOTS: usize> {
 }
 
 impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
-    /// A reader from column `x` on.
+    /// Creates a reader from column `x` on.
     pub(super) const fn new(tiles: &'a Tiles<TILES, SLOTS>, x: i32) -> Self {
         Self {
             tiles,
@@ -80,7 +81,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
         }
     }
 
-    /// Look up the tiles of a row; its number in them, and by how much their columns are shifted.
+    /// Looks up the tiles of a row. Returns its number in them and the shift of their columns.
     #[inline(always)]
     fn tile_row(&mut self, y: i32) -> (usize, u32) {
         if y >> 5 != self.tile_y {
@@ -98,7 +99,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
         }
     }
 
-    /// The 64 cells of row `y`.
+    /// Returns the 64 cells of row `y`.
     pub(crate) fn row(&mut self, y: i32) -> Row {
         let (row, shift) = self.tile_row(y);
         let [first, second, third] = self.columns.map(|column| column.classes(row));
@@ -110,7 +111,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
         }
     }
 
-    /// The 32 cells of row `y` that begin [`HALO`] columns to the right of the reader.
+    /// Returns the 32 cells of row `y` that begin [`HALO`] columns to the right of the reader.
     #[inline(always)]
     pub(crate) fn line(&mut self, y: i32) -> Line {
         let (row, shift) = self.tile_row(y);
@@ -138,13 +139,13 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
     }
 }
 
-/// 64 bits from bit `shift` (below 32) of the first word on.
+/// Returns 64 bits from bit `shift` (below 32) of the first word on.
 #[inline(always)]
 const fn join(first: u32, second: u32, third: u32, shift: u32) -> u64 {
     (cut(second, third, shift) as u64) << 32 | cut(first, second, shift) as u64
 }
 
-/// 32 bits from bit `from` (below 32) of the first word on.
+/// Returns 32 bits from bit `from` (below 32) of the first word on.
 #[inline(always)]
 const fn cut(first: u32, second: u32, from: u32) -> u32 {
     first >> from | second << 1 << (31 - from)

@@ -1,13 +1,14 @@
-//! The global map: two bits a cell in a pool of 32 × 32-cell tiles, given out on first touch.
+//! The tile pool: two bits per cell in pages of 32 × 32 cells. A tile takes a page when its first
+//! cell is stored.
 //!
-//! A tile at tile coordinates (i, j) lives in slot (i mod w, j mod h) of a w × h box (toroidal addressing), so the map
-//! may start anywhere: only the *extent* of what is known has to fit the box. Each tile is two planes of a word a row: `low` and
-//! `high` bits of the class code, bit k = column k; a tile that says little takes less room ([`super::folding`]). Rows are read 64 cells at a time by everything that plans.
+//! The directory has a slot for every tile of a box with toroidal addresses ([`TileBox`]), so the
+//! map may start anywhere; only the *extent* of the stored tiles has to fit the box. A tile with
+//! little content takes less than a page ([`super::compaction`]).
 //!
-//! Beside them a *trail*, one bit for 2 × 2 cells: where the robot's centre has been. Noise may close a passage behind the robot
-//! that is as narrow as it is; the trail keeps it open, because where the robot has been it can be.
+//! The *trail* has one bit for 2 × 2 cells: the robot's centre was there. Noise may close a passage
+//! as narrow as the robot behind it. The trail keeps the passage open.
 //!
-//! Invariant: `extent` covers every tile in use and is at most w by h tiles, so no two tiles share a slot.
+//! Invariant: `extent` covers every tile in use and fits the box, so no two tiles share a slot.
 //! Units: cells of [`crate::geometry::CELL_M`].
 
 use crate::geometry::Cell;
@@ -22,25 +23,25 @@ pub const TILE_SIDE: i32 = 32;
 pub(super) const TILE_ROWS: usize = TILE_SIDE as usize;
 pub(super) type Visited = [u16; TILE_ROWS / 2];
 
-/// The tile pool and its directory. `TILES` tiles in the pool, `SLOTS` places in the box.
+/// The tile pool and its directory: `TILES` pages, `SLOTS` slots.
 #[derive(Debug)]
 pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     pub(super) pool: [Cells; TILES],
-    /// An [`Entry`] for the tile in a slot.
+    /// An [`Entry`] for the tile of each slot.
     pub(super) directory: [u16; SLOTS],
-    /// Where the robot has been in the tile of a slot: a row of 2 × 2-cell blocks each.
+    /// The trail in the tile of each slot: 16 rows of 16 blocks of 2 × 2 cells.
     visited: [Visited; SLOTS],
     pub(super) free: FreeList,
-    /// Tiles at the pool's end that are lent to something else.
+    /// Pages at the pool's end that are lent to the elevation window.
     lent: u16,
     slots: TileBox,
     extent: Option<Extent>,
-    /// Changes of any cell so far; wraps.
+    /// Number of changes of any cell; wraps.
     edits: u32,
 }
 
 impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
-    /// An empty map without a box; [`Self::reset`] gives it one.
+    /// Creates an empty pool without a box; [`Self::reset`] gives it one.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -55,8 +56,9 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// Whether a box of `width` × `height` tiles can be held: both at least 4, width even (the skeleton's words are
-    /// two tiles wide), product at most `SLOTS`.
+    /// Returns true if the pool can have a box of `width` × `height` tiles: both sides are at least
+    /// 4, the width is even (the skeleton's words are two tiles wide), and the product is at most
+    /// `SLOTS`.
     #[must_use]
     pub const fn fits(width: u8, height: u8) -> bool {
         width >= 4
@@ -65,7 +67,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             && width as usize * height as usize <= SLOTS
     }
 
-    /// Forget everything; the box becomes `width` × `height` tiles. A box that does not [`fit`](Self::fits) holds nothing.
+    /// Clears the map; the box becomes `width` × `height` tiles. A box that does not
+    /// [`fit`](Self::fits) has no slots.
     pub fn reset(&mut self, width: u8, height: u8) {
         self.directory.fill(0);
         self.visited.as_flattened_mut().fill(0);
@@ -83,45 +86,45 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.edits = self.edits.wrapping_add(1);
     }
 
-    /// Tiles of the pool that the map may use.
+    /// Returns the number of pages that the map may use.
     pub(super) const fn capacity(&self) -> usize {
         TILES - self.lent as usize
     }
 
-    /// Keep the pool's last tiles out of the map, until the next reset, and clear them; at most all. To be done before anything is
-    /// stored.
+    /// Lends the pool's last pages, at most all, until the next reset, and clears them. Call it
+    /// before the first cell is stored.
     pub(super) fn lend(&mut self, tiles: usize) {
         let tiles = if tiles < TILES { tiles } else { TILES };
         self.lent = tiles as u16;
         self.lent_bytes_mut().fill(0);
     }
 
-    /// The memory of the tiles that are lent.
+    /// Returns the memory of the lent pages.
     pub(super) fn lent_bytes(&self) -> &[u8] {
         let lent = self.pool.get(self.capacity()..).unwrap_or_default();
         bytemuck::cast_slice(lent)
     }
 
-    /// The memory of the tiles that are lent.
+    /// Returns the memory of the lent pages.
     pub(super) fn lent_bytes_mut(&mut self) -> &mut [u8] {
         let capacity = self.capacity();
         let lent = self.pool.get_mut(capacity..).unwrap_or_default();
         bytemuck::cast_slice_mut(lent)
     }
 
-    /// Bounds of the tiles in use.
+    /// Returns the bounds of the tiles in use.
     #[must_use]
     pub const fn extent(&self) -> Option<Extent> {
         self.extent
     }
 
-    /// Tiles across and up that the box holds.
+    /// Returns the width and the height of the box, tiles.
     #[must_use]
     pub const fn box_tiles(&self) -> (i32, i32) {
         (self.slots.width, self.slots.height)
     }
 
-    /// Whether anything was ever stored in this tile.
+    /// Returns true if a cell was ever stored in this tile.
     pub(crate) fn is_touched(&self, tile_x: i32, tile_y: i32) -> bool {
         self.entry(tile_x, tile_y) != Entry::Untouched
     }
@@ -132,7 +135,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.free.used()
     }
 
-    /// A number that changes whenever any cell does.
+    /// Returns a number that changes with every change of a cell.
     #[must_use]
     pub const fn edits(&self) -> u32 {
         self.edits
@@ -151,7 +154,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         })
     }
 
-    /// What the directory says of a tile.
+    /// Returns the directory's entry of a tile.
     pub(crate) fn entry(&self, tile_x: i32, tile_y: i32) -> Entry {
         if !self.in_extent(tile_x, tile_y) {
             return Entry::Untouched;
@@ -159,7 +162,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.entry_in(self.slot(tile_x, tile_y))
     }
 
-    /// What the directory says of a slot's tile.
+    /// Returns the directory's entry in a slot.
     pub(super) fn entry_in(&self, slot: usize) -> Entry {
         Entry::of(inside(&self.directory, slot))
     }
@@ -170,7 +173,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// Low and high plane of what the directory says, if it says anything.
+    /// Returns the low and the high plane of a tile; `None` if it is untouched.
     fn planes(&self, entry: Entry) -> Option<[&Plane; 2]> {
         match entry {
             Entry::Untouched => None,
@@ -180,7 +183,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// The extent with a tile outside it.
+    /// Returns the extent grown by a tile outside it.
     fn grown(&self, tile_x: i32, tile_y: i32) -> Result<Extent, NoRoom> {
         let grown = match self.extent {
             Some(extent) => extent.with(tile_x, tile_y),
@@ -198,10 +201,10 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// Whether a tile is stored, or could be.
+    /// Checks that a tile is stored or can be.
     ///
     /// # Errors
-    /// [`NoRoom`] where the box or the pool cannot hold it.
+    /// [`NoRoom`] if the box or the pool cannot hold it.
     pub(crate) fn room(&self, tile_x: i32, tile_y: i32) -> Result<(), NoRoom> {
         if self.is_touched(tile_x, tile_y) {
             Ok(())
@@ -214,7 +217,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// Pool index of the tile, taking a fresh one on first touch; a folded tile has none.
+    /// Returns the page of a tile; takes a fresh one on first touch. A compact tile has no page.
     fn touch(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
         if !self.in_extent(tile_x, tile_y) {
             self.extent = Some(self.grown(tile_x, tile_y)?);
@@ -232,7 +235,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// What is known of a cell.
+    /// Returns the class of a cell.
     #[must_use]
     pub fn class(&self, cell: Cell) -> Class {
         let Some(planes) = self.planes(self.entry(cell.x >> 5, cell.y >> 5)) else {
@@ -244,10 +247,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         Class::from_bits(low >> bit & 1, high >> bit & 1)
     }
 
-    /// Store what is known of a cell.
+    /// Stores the class of a cell. A compact tile that is free from edge to edge stays as it is if
+    /// the class is free.
     ///
     /// # Errors
-    /// [`NoRoom`] where the box or the pool cannot hold it; the map is then unchanged.
+    /// [`NoRoom`] if the box or the pool cannot hold it; the map is then unchanged.
     pub fn set(&mut self, cell: Cell, class: Class) -> Result<(), NoRoom> {
         let tile = (cell.x >> 5, cell.y >> 5);
         if class == Class::Free && matches!(self.entry(tile.0, tile.1), Entry::AllFree(_)) {
@@ -258,7 +262,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         Ok(())
     }
 
-    /// The robot's centre has been in this cell.
+    /// Marks a cell of the trail: the robot's centre was there.
     pub(crate) fn mark_visited(&mut self, cell: Cell) {
         if !self.in_extent(cell.x >> 5, cell.y >> 5) {
             return;
@@ -273,17 +277,17 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// The 64 cells from `x` on in row `y`.
+    /// Returns the 64 cells of row `y` from column `x` on.
     pub(crate) fn row(&self, x: i32, y: i32) -> Row {
         self.reader(x).row(y)
     }
 
-    /// A reader of rows of 64 cells from column `x` on.
+    /// Returns a reader of rows of 64 cells from column `x` on.
     pub(crate) const fn reader(&self, x: i32) -> RowReader<'_, TILES, SLOTS> {
         RowReader::new(self, x)
     }
 
-    /// The rows and the trail of a tile, if it is in the extent.
+    /// Returns the planes and the trail of a tile; `None` if it is untouched.
     pub(super) fn column(&self, tile_x: i32, tile_y: i32) -> Option<Column<'_>> {
         if !self.in_extent(tile_x, tile_y) {
             return None;
@@ -297,10 +301,10 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         })
     }
 
-    /// A tile to be read and written cell by cell, given out if it was not yet.
+    /// Opens a tile to read and write its cells; takes a page on first touch.
     ///
     /// # Errors
-    /// [`NoRoom`] where the box or the pool cannot hold it; the map is then unchanged.
+    /// [`NoRoom`] if the box or the pool cannot hold it; the map is then unchanged.
     pub(super) fn open(&mut self, (tile_x, tile_y): (i32, i32)) -> Result<TileMut<'_>, NoRoom> {
         let index = self.touch(tile_x, tile_y)?;
         Ok(TileMut {
@@ -309,8 +313,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         })
     }
 
-    /// A tile's cells, two bits each, row by row from the least y with the least x in the low bits; `None` where nothing
-    /// was ever seen.
+    /// Returns a tile's cells, two bits each, row by row from the least y, with the least x in the
+    /// lowest bits; `None` if the tile is untouched.
     #[must_use]
     pub fn packed(&self, tile_x: i32, tile_y: i32) -> Option<[u8; 256]> {
         let [low, high] = self.planes(self.entry(tile_x, tile_y))?;

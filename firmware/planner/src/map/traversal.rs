@@ -1,19 +1,19 @@
-//! A beam's way through the cells: Amanatides–Woo traversal, tile by tile.
+//! The cells that a beam crosses, by Amanatides–Woo traversal, tile by tile.
 //!
 //! ```text
-//! next.0, next.1    length of the beam where it leaves the present column, row
-//! the smaller one   length where it leaves the present cell
+//! next = (length at which the beam leaves the present column, length at which it leaves the row)
+//! min(next) = length at which it leaves the present cell
 //! ```
 //!
-//! Within a tile a cell is a row and a bit of it, so that a step is an addition and a shift, and the tile is looked up once in some
-//! thirty cells.
+//! Within a tile a cell is a row and a bit. So a step is an addition and a shift, and the traversal
+//! looks up a tile once in about thirty cells.
 //!
-//! Units: metres along the beam from where the walk starts; cells.
+//! Units: metres along the beam from the start of the traversal; map cells.
 
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::map::tiles::TILE_SIDE;
 
-/// A walk in progress.
+/// A traversal in progress.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Traversal {
     /// The tile that holds the present cell.
@@ -21,20 +21,22 @@ pub(super) struct Traversal {
     /// The present cell's row in it, and its column as a bit.
     row: i32,
     bit: u32,
-    /// Where the beam leaves the present column and row, and how far it is from one to the next.
+    /// Lengths at which the beam leaves the present column and row, metres.
     next: (f32, f32),
+    /// Lengths from one column and row to the next, metres.
     every: (f32, f32),
-    /// To the next column: by how much a bit moves up and down.
+    /// Shifts of the bit to the next column, up and down; one of them is 0.
     up: u32,
     down: u32,
-    /// To the next row.
+    /// Step to the next row: −1, 0 or 1.
     step: i32,
     length_m: f32,
-    /// The last cell holds something and is none to go through.
+    /// The beam ended on something in the last cell, so it does not cross that cell.
     excludes_end: bool,
 }
 
-/// Along one axis: the step from cell to cell, where the beam leaves the first one, and how far it is to the next.
+/// Returns, along one axis, the step from cell to cell, the length at which the beam leaves the
+/// first one, and the length from one to the next.
 fn axis(position: f32, index: i32, direction: f32) -> (i32, f32, f32) {
     if direction > 1e-6 {
         let border = (index + 1) as f32 * CELL_M;
@@ -48,7 +50,8 @@ fn axis(position: f32, index: i32, direction: f32) -> (i32, f32, f32) {
 }
 
 impl Traversal {
-    /// From `start` in the unit vector's direction for `length_m`; with the cell at its end, or without.
+    /// Creates a traversal from `start` along a unit vector for `length_m`, with or without the
+    /// cell at its end.
     pub(super) fn new(
         start: Point,
         direction: (f32, f32),
@@ -72,12 +75,12 @@ impl Traversal {
         }
     }
 
-    /// The tile that holds the next cell.
+    /// Returns the tile of the next cell.
     pub(super) const fn tile(&self) -> (i32, i32) {
         self.tile
     }
 
-    /// The map cell at a row and a bit of the present tile.
+    /// Returns the map cell at a row and a bit of a tile.
     pub(super) const fn cell(tile: (i32, i32), row: usize, bit: u32) -> Cell {
         Cell {
             x: tile.0 * TILE_SIDE + bit.trailing_zeros() as i32,
@@ -85,14 +88,16 @@ impl Traversal {
         }
     }
 
-    /// Whether no cell is left to visit.
+    /// Returns true if no cell is left.
     pub(super) fn is_over(&self) -> bool {
         let (x, y) = self.next;
         self.excludes_end && (if x < y { x } else { y }) >= self.length_m
     }
 
-    /// Visit the cells in the present tile, each by row and bit and with the length at which the beam leaves it, and come to the next
-    /// tile; false when the beam has ended or the visitor says so.
+    /// Visits the cells in the present tile and moves to the next tile.
+    ///
+    /// The visitor receives the row, the bit, and the length at which the beam leaves the cell; it
+    /// returns false to stop. Returns false if the beam ended or the visitor stopped it.
     #[inline(always)]
     pub(super) fn cross_tile(&mut self, mut visit: impl FnMut(usize, u32, f32) -> bool) -> bool {
         let Self {
@@ -138,7 +143,7 @@ impl Traversal {
         true
     }
 
-    /// Go over to the tile that holds the present cell.
+    /// Moves to the tile that holds the present cell.
     fn enter_next_tile(&mut self) {
         if self.bit == 0 {
             self.tile.0 += if self.up == 1 { 1 } else { -1 };
@@ -177,7 +182,7 @@ mod tests {
         }
     }
 
-    /// Every cell that the segment passes more than a hair inside of must be visited, by dense sampling.
+    /// Dense samples of the segment must all lie in visited cells, except those on a border.
     #[test]
     fn every_cell_of_the_segment_is_visited_in_order() {
         for k in 0..200 {
