@@ -7,8 +7,8 @@
 //! the same bits on every machine.
 
 use fieldline_planner::{
-    Cell, Config, Input, LaserMount, LoopCounts, LoopLimits, Parameter, Pose, PreferenceMode,
-    Residue, RobotShape, State, Strategy, Tuning, Twist, UnevenGround, status,
+    self as planner, Cell, Config, Input, LaserMount, LoopCounts, LoopLimits, Parameter, Pose,
+    PreferenceMode, Residue, RobotShape, State, Strategy, Tuning, Twist, UnevenGround,
 };
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
@@ -195,18 +195,18 @@ const fn wire_parameter(parameter: Parameter) -> wire::Parameter {
 }
 
 /// Converts the planner's status for the wire.
-pub(crate) fn wire_status(status: status::Status) -> wire::Status {
+pub(crate) fn wire_status(status: planner::Status) -> wire::Status {
     match status {
-        status::Status::Exploring => wire::Status::Exploring,
-        status::Status::Finished(finish) => wire::Status::Finished(match finish {
-            status::Finish::Explored => wire::Finish::Explored,
-            status::Finish::BoxedIn => wire::Finish::BoxedIn,
+        planner::Status::Exploring => wire::Status::Exploring,
+        planner::Status::Finished(finish) => wire::Status::Finished(match finish {
+            planner::Finish::Explored => wire::Finish::Explored,
+            planner::Finish::BoxedIn => wire::Finish::BoxedIn,
         }),
-        status::Status::Fault(fault) => wire::Status::Fault(match fault {
-            status::Fault::StartBlocked => wire::Fault::StartBlocked,
-            status::Fault::MapFull => wire::Fault::MapFull,
-            status::Fault::OutOfBox => wire::Fault::OutOfBox,
-            status::Fault::Stuck => wire::Fault::Stuck,
+        planner::Status::Fault(fault) => wire::Status::Fault(match fault {
+            planner::Fault::StartBlocked => wire::Fault::StartBlocked,
+            planner::Fault::MapFull => wire::Fault::MapFull,
+            planner::Fault::OutOfBox => wire::Fault::OutOfBox,
+            planner::Fault::Stuck => wire::Fault::Stuck,
         }),
     }
 }
@@ -246,7 +246,7 @@ fn wire_cell(cell: Cell) -> (i16, i16) {
 
 /// Converts a residual frontier for the wire.
 #[must_use]
-pub fn wire_frontier(frontier: &status::Frontier) -> wire::ResidualFrontier {
+pub fn wire_frontier(frontier: &planner::Frontier) -> wire::ResidualFrontier {
     let (x, y) = wire_cell(frontier.cell);
     wire::ResidualFrontier {
         x,

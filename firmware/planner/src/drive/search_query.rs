@@ -35,7 +35,7 @@ pub(super) enum Leads {
 }
 
 /// The input of a search: the obstacles and the field around the robot.
-#[expect(missing_debug_implementations, reason = "it lends closures")]
+#[allow(missing_debug_implementations, reason = "it lends closures")]
 pub struct SearchQuery<'a, H> {
     /// The obstacles.
     pub checker: &'a CollisionChecker,
