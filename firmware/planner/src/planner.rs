@@ -46,12 +46,12 @@ use steer::{look_about, steer};
 /// A range below this is inside the robot's own hull, metres.
 const BLOCKED_M: f32 = 0.12;
 
-/// The answer of a step.
+/// The output of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Output {
     /// The velocity to drive.
     pub velocity: Twist,
-    /// What the planner is doing.
+    /// The planner's status.
     pub status: Status,
     /// The field's heading at the robot, radians.
     pub heading_rad: f32,
@@ -62,7 +62,7 @@ pub struct Output {
 }
 
 impl Output {
-    /// Stand still.
+    /// Returns a zero velocity with a status.
     fn standing(status: Status) -> Self {
         Self {
             status,
@@ -71,7 +71,8 @@ impl Output {
     }
 }
 
-/// One step: from scans and odometry to a velocity. `timer` learns the end of each stage.
+/// Runs one step, from scans and odometry to a velocity, and marks the end of each stage on
+/// `timer`.
 pub fn step<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
@@ -130,8 +131,8 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     output
 }
 
-/// Plan on a new skeleton, or go on thinning the next one. A skeleton is planned on in the step
-/// after it is complete, so that no step does both. Returns true if this step planned.
+/// Plans on a new skeleton, or continues to thin the next one. Planning on a skeleton begins in the
+/// step after it is complete, so no step does both. Returns true if this step planned.
 fn advance_plan<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
@@ -154,7 +155,7 @@ fn advance_plan<const TILES: usize, const SLOTS: usize>(
     planned
 }
 
-/// The solver's budget: a step that planned a path has spent the time of half the cycles on it.
+/// Returns the solver's budget. A step that planned a path has spent the time of half the cycles.
 const fn budget(config: &Config, planned: bool) -> SolverConfig {
     let most = config.solver.max_cycles;
     SolverConfig {
@@ -163,7 +164,7 @@ const fn budget(config: &Config, planned: bool) -> SolverConfig {
     }
 }
 
-/// Enter scans and odometry into the map and the ground model.
+/// Enters scans and odometry into the map and the ground model.
 fn sense<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
@@ -184,7 +185,7 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         .observe(config, input, &mut state.map, &mut state.preferences);
 }
 
-/// The level lasers, each with its scan.
+/// Returns the level lasers, each with its scan.
 fn level_scans<'a>(
     config: &'a Config,
     input: &Input<'a>,

@@ -1,5 +1,4 @@
-//! Building a configuration: defaults, one method a parameter, and the one place that checks
-//! ranges.
+//! The builder of a configuration: defaults, one method per parameter, and all range checks.
 //!
 //! Units: as the names say.
 
@@ -27,7 +26,7 @@ const REST_S: f32 = 3.0;
 const MOUNT_M: f32 = 2.0;
 /// One turn, rounded up, radians.
 const TURN_RAD: f32 = 2.0 * PI + 1e-4;
-/// A tilted laser looks down by less than a right angle, radians.
+/// Pitches of a tilted laser, radians: down, by less than a right angle.
 const PITCHES_RAD: (f32, f32) = (0.0, 0.5 * PI - 3e-4);
 /// Steepest slope, a tangent: 45°.
 const STEEPEST: f32 = 1.0002;
@@ -43,7 +42,7 @@ pub struct ConfigBuilder {
 }
 
 impl ConfigBuilder {
-    /// The defaults for a robot.
+    /// Returns the defaults for a robot.
     pub(super) const fn new(robot: RobotShape) -> Self {
         Self {
             config: Config::new(robot, Vec::new()),
@@ -51,7 +50,8 @@ impl ConfigBuilder {
         }
     }
 
-    /// Add a laser: one or two. The first one is level; on uneven ground the second one looks down.
+    /// Adds a laser: one or two. The first one is level; on uneven ground the second one looks
+    /// down.
     #[must_use]
     pub fn laser(mut self, laser: LaserMount) -> Self {
         // A third one does not fit; `build` refuses it by the count.
@@ -60,35 +60,36 @@ impl ConfigBuilder {
         self
     }
 
-    /// Set the strategy. Default: [`Strategy::Frontier`].
+    /// Sets the strategy. Default: [`Strategy::Frontier`].
     #[must_use]
     pub const fn strategy(mut self, strategy: Strategy) -> Self {
         self.config.strategy = strategy;
         self
     }
 
-    /// Set which loops are worth closing, for [`Strategy::Ouroboros`].
+    /// Sets the limits of the loops to close, for [`Strategy::Ouroboros`].
     #[must_use]
     pub const fn loops(mut self, loops: LoopLimits) -> Self {
         self.config.loops = loops;
         self
     }
 
-    /// Measure heights and avoid slopes, edges and holes. Needs two lasers. Default: flat ground.
+    /// Makes the planner measure heights and avoid slopes, edges and holes. Needs two lasers.
+    /// Default: flat ground.
     #[must_use]
     pub const fn uneven_ground(mut self, ground: UnevenGround) -> Self {
         self.config.ground = Some(ground);
         self
     }
 
-    /// Set the map's box in tiles of 3.2 m, across and up. Default: 20 × 20, which is 64 × 64 m.
+    /// Sets the map's box in tiles of 3.2 m, across and up. Default: 20 × 20, which is 64 × 64 m.
     #[must_use]
     pub const fn box_tiles(mut self, across: u8, up: u8) -> Self {
         self.config.box_tiles = (across, up);
         self
     }
 
-    /// Set the radius of the disc that paths are planned for, metres: 0.05 to 0.6. Default:
+    /// Sets the radius of the disc that paths are planned for, metres: 0.05 to 0.6. Default:
     /// [`RobotShape::planning_radius_m`].
     #[must_use]
     pub const fn radius_m(mut self, radius_m: f32) -> Self {
@@ -96,7 +97,7 @@ impl ConfigBuilder {
         self
     }
 
-    /// Set the greatest speeds, metres and radians a second. Default: 0.7 m/s and 2.44 rad/s.
+    /// Sets the greatest speeds, metres and radians per second. Default: 0.7 m/s and 2.44 rad/s.
     #[must_use]
     pub const fn max_speed(mut self, linear_mps: f32, angular_radps: f32) -> Self {
         self.config.max_linear_mps = linear_mps;
@@ -104,7 +105,7 @@ impl ConfigBuilder {
         self
     }
 
-    /// Set the accelerations, metres and radians a second squared. They must stop the robot from
+    /// Sets the accelerations, metres and radians per second squared. They must stop the robot from
     /// its greatest speed within 3 s. Default: 0.3 m/s² and 1.75 rad/s².
     #[must_use]
     pub const fn acceleration(mut self, linear_mps2: f32, angular_radps2: f32) -> Self {
@@ -113,14 +114,14 @@ impl ConfigBuilder {
         self
     }
 
-    /// Set the time from one step to the next, seconds: 0.1 to 0.4. Default: 0.2.
+    /// Sets the time from one step to the next, seconds: 0.1 to 0.4. Default: 0.2.
     #[must_use]
     pub const fn period_s(mut self, period_s: f32) -> Self {
         self.config.period_s = period_s;
         self
     }
 
-    /// Set the window's solver. Default: 3 multigrid cycles a step.
+    /// Sets the window's solver. Default: 3 multigrid cycles per step.
     #[must_use]
     pub const fn solver(mut self, solver: SolverConfig) -> Self {
         self.config.solver = solver;
@@ -134,13 +135,13 @@ impl ConfigBuilder {
         self
     }
 
-    /// Checks every parameter.
+    /// Checks every parameter and returns the configuration.
     ///
-    /// On uneven ground the greatest speed becomes at most one map cell a period, so that two
+    /// On uneven ground the greatest speed becomes at most one map cell per period, so that two
     /// sweeps of the tilted laser leave no gap.
     ///
     /// # Errors
-    /// The first parameter that is out of its range.
+    /// [`ConfigError`] with the first parameter that is out of its range.
     pub fn build(mut self) -> Result<Config, ConfigError> {
         let config = &self.config;
         check(Parameter::Lasers, f32::from(self.lasers), (1.0, 2.0))?;
@@ -165,7 +166,7 @@ impl ConfigBuilder {
     }
 }
 
-/// Refuse a value outside its range, and what is not a number.
+/// Returns an error if a value is outside its range or not a number.
 fn check(parameter: Parameter, value: f32, (least, most): (f32, f32)) -> Result<(), ConfigError> {
     if value >= least && value <= most {
         return Ok(());
@@ -190,7 +191,7 @@ fn check_motion(config: &Config) -> Result<(), ConfigError> {
         .map_err(|error| per_rest(error, accel))
 }
 
-/// The error of an acceleration whose effect over [`REST_S`] was checked.
+/// Returns the error of an acceleration whose effect over [`REST_S`] was checked.
 fn per_rest(error: ConfigError, value: f32) -> ConfigError {
     ConfigError {
         value,
@@ -281,7 +282,7 @@ mod tests {
             .uneven_ground(ground)
     }
 
-    /// The parameter that a builder's `build` refuses.
+    /// Returns the parameter that a builder's `build` refuses.
     fn refused(builder: ConfigBuilder) -> Option<Parameter> {
         builder.build().err().map(|error| error.parameter)
     }

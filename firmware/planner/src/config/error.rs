@@ -1,4 +1,5 @@
-//! The error of a configuration: which parameter is out of which range.
+//! Errors of a configuration: the parameter that is out of its range, and the box that does not
+//! fit.
 
 use core::fmt;
 
@@ -31,13 +32,13 @@ pub enum Parameter {
     Height,
     /// Radius of the disc that paths are planned for, metres.
     Radius,
-    /// Greatest speed, metres a second.
+    /// Greatest speed, metres per second.
     MaxLinear,
-    /// Greatest turn rate, radians a second.
+    /// Greatest turn rate, radians per second.
     MaxAngular,
-    /// Acceleration, metres a second squared.
+    /// Acceleration, metres per second squared.
     LinearAccel,
-    /// Angular acceleration, radians a second squared.
+    /// Angular acceleration, radians per second squared.
     AngularAccel,
     /// Time from one step to the next, seconds.
     Period,

@@ -81,7 +81,8 @@ impl UnevenGround {
         step_m: 0.07,
     };
 
-    /// Returns the limit of the side slope, if some slope that may be climbed is too steep to cross.
+    /// Returns the limit of the side slope, if some slope that may be climbed is too steep to
+    /// cross.
     #[must_use]
     pub(crate) fn side_slope_limit(&self) -> Option<f32> {
         (self.roll < self.climb).then_some(self.roll)

@@ -1,22 +1,22 @@
-//! Which loops are worth closing.
+//! Limits of the loops that are worth closing.
 //!
 //! Units: metres.
 
-/// Bounds of a loop.
+/// Limits of a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopLimits {
-    /// A shorter loop is not worth closing: it corrects nothing. Default: 20, a round of 6.4 m
-    /// across, which lasers that see twice as far have in view all the way. At 10 a robot among
-    /// trees goes round most of them, and takes twice the time.
+    /// Least length that is worth closing, metres: a shorter loop corrects nothing. Default: 20, a
+    /// circle of 6.4 m diameter: a laser of twice that range has all of it in view. At 10 m a robot
+    /// among trees drives around most of them and takes twice the time.
     pub least_m: f32,
-    /// A longer loop is not worth closing when nothing else is left to explore. Default: 120.
+    /// Greatest length that is worth closing when no frontier is left, metres. Default: 120.
     pub most_m: f32,
-    /// Metres of loop that are worth closing more for each metre of frontier that is left. Default:
-    /// 10.
+    /// Additional length that is worth closing per metre of frontier that is left. Default: 10.
     pub most_per_frontier: f32,
-    /// Times the longest expected length that the robot may go. Default: 2.
+    /// Greatest driven distance on a loop, as a multiple of its longest expected length. Default:
+    /// 2.
     pub detour: f32,
-    /// Metres that it may go beside that. Default: 20.
+    /// Additional driven distance, metres. Default: 20.
     pub slack_m: f32,
 }
 
@@ -36,13 +36,14 @@ impl LoopLimits {
         slack_m: 20.0,
     };
 
-    /// Whether a loop of this expected length is too long, with so much frontier left.
+    /// Returns true if a loop of this expected length is too long for the length of frontier that
+    /// is left.
     #[must_use]
     pub fn is_too_long(&self, loop_m: f32, frontier_m: f32) -> bool {
         loop_m > self.most_m + self.most_per_frontier * frontier_m
     }
 
-    /// Whether it is worth beginning.
+    /// Returns true if a loop of this expected length is worth closing.
     #[must_use]
     pub fn is_worth(&self, loop_m: f32, frontier_m: f32) -> bool {
         loop_m >= self.least_m && !self.is_too_long(loop_m, frontier_m)

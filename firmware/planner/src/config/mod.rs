@@ -22,7 +22,7 @@ use heapless::Vec;
 
 use crate::robot::{LaserMount, RobotShape};
 
-/// What the session does.
+/// The exploration strategy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Strategy {
     /// Go to the nearest frontier along the skeleton.
@@ -32,12 +32,12 @@ pub enum Strategy {
     Ouroboros,
     /// Follow rails by the time of their last visit, and patrol on them [Maffei14].
     Tdbvp {
-        /// How long to patrol once all is explored, seconds.
+        /// Duration of the patrol after the exploration, seconds.
         patrol_s: u16,
     },
 }
 
-/// Everything that stays the same during a session.
+/// The parameters of a session.
 ///
 /// ```
 /// use fieldline_planner::{Config, LaserMount, RobotShape, Strategy};
@@ -51,9 +51,9 @@ pub enum Strategy {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Config {
-    /// What the session does. Default: the frontier.
+    /// The strategy. Default: the frontier.
     pub strategy: Strategy,
-    /// Which loops are worth closing, for the strategy that closes loops.
+    /// Limits of the loops to close, for [`Strategy::Ouroboros`].
     pub loops: LoopLimits,
     /// The robot's hull. Default: a Pioneer 3-AT.
     pub robot: RobotShape,
@@ -63,19 +63,19 @@ pub struct Config {
     pub box_tiles: (u8, u8),
     /// Radius of the disc that paths are planned for, metres.
     pub robot_radius_m: f32,
-    /// Greatest speed, metres a second. Default: 0.7 (Pioneer 3-AT).
+    /// Greatest speed, metres per second. Default: 0.7 (Pioneer 3-AT).
     pub max_linear_mps: f32,
-    /// Greatest turn rate, radians a second. Default: 2.44 (140°/s).
+    /// Greatest turn rate, radians per second. Default: 2.44 (140°/s).
     pub max_angular_radps: f32,
-    /// Acceleration and braking of the robot, metres a second squared. Default: 0.3 (Pioneer 3-AT).
+    /// Acceleration and braking, metres per second squared. Default: 0.3 (Pioneer 3-AT).
     pub linear_accel_mps2: f32,
-    /// Angular acceleration, radians a second squared. Default: 1.75 (100°/s²).
+    /// Angular acceleration, radians per second squared. Default: 1.75 (100°/s²).
     pub angular_accel_radps2: f32,
     /// Time from one step to the next, seconds. Default: 0.2.
     pub period_s: f32,
     /// The window's solver.
     pub solver: SolverConfig,
-    /// Thinning words a step. Default: 6,000.
+    /// Thinning budget of a step, words. Default: 6,000.
     pub topology_units: u32,
     /// The tuned constants. Default: [`Tuning::DEFAULT`].
     pub tuning: &'static Tuning,
@@ -91,13 +91,14 @@ impl Config {
     /// longer one leaves too little time for a retry before a command is stale.
     pub const PERIODS_S: (f32, f32) = (0.1, 0.4);
 
-    /// Begin with the defaults for a robot.
+    /// Returns a builder with the defaults for a robot.
     #[must_use]
     pub const fn builder(robot: RobotShape) -> ConfigBuilder {
         ConfigBuilder::new(robot)
     }
 
-    /// The defaults for a robot with these lasers, in the largest square box of the default image.
+    /// Returns the defaults for a robot with these lasers, in the largest square box of the default
+    /// image.
     const fn new(robot: RobotShape, lasers: Vec<LaserMount, 2>) -> Self {
         Self {
             strategy: Strategy::Frontier,
@@ -121,7 +122,7 @@ impl Config {
         }
     }
 
-    /// A Pioneer 3-AT with the given lasers, unchecked.
+    /// Returns the defaults for a Pioneer 3-AT with the given lasers, unchecked.
     #[must_use]
     pub const fn pioneer_3at(lasers: Vec<LaserMount, 2>) -> Self {
         Self::new(RobotShape::PIONEER_3AT, lasers)

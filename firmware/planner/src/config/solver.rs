@@ -2,13 +2,13 @@
 //!
 //! Units: multigrid cycles.
 
-/// How to solve.
+/// The method of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Multigrid where it works, Gauss–Seidel where it does not.
+    /// Multigrid; Gauss–Seidel where the multigrid is weak.
     #[default]
     Auto,
-    /// Multigrid, come what may.
+    /// Always multigrid.
     Multigrid,
     /// Gauss–Seidel from q = 0.
     GaussSeidel,
@@ -18,12 +18,12 @@ pub enum Method {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverConfig {
     /// Most multigrid cycles, each worth [`crate::field::solver::SWEEPS_PER_CYCLE`] sweeps.
-    /// Default: 12; a heading is right in 1 when warm, in 2 or 3 cold, and in 5 in all but one of
-    /// twenty cold windows.
+    /// Default: 12. A heading is right after 1 cycle in a warm window and after 2 or 3 in a cold
+    /// one; 5 cycles suffice in 19 of 20 cold windows.
     pub max_cycles: u16,
     /// max |x − 1| below which the multigrid stops. Default: 0.05.
     pub tolerance: f32,
-    /// How to solve. Default: [`Method::Auto`].
+    /// The method. Default: [`Method::Auto`].
     pub method: Method,
 }
 

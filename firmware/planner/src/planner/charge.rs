@@ -12,7 +12,7 @@ use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 use crate::roadmap::configuration_space::Footprint;
 
-/// Fill the local grid at the smallest scale that holds a local goal. Returns the goal's cells in
+/// Fills the local grid at the smallest scale that holds a local goal. Returns the goal's cells in
 /// it; `None` if there is no path, or no scale holds a goal.
 pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
@@ -37,14 +37,14 @@ pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
     })
 }
 
-/// The passable window cells of a coarse cell; `None` if it has none.
+/// Returns the passable window cells of a coarse cell; `None` if it has none.
 fn goal_cells(grid: &LocalGrid, cell: Cell) -> Option<Rows> {
     let mut rows: Rows = [0; SIDE];
     grid.mark(&mut rows, cell).then_some(rows)
 }
 
-/// Charge the window with the strategy's own boundary values. `None` if it has none, or they lead
-/// nowhere.
+/// Charges the window with the strategy's own boundary values. Returns `None` if it has none, or if
+/// the robot reaches none of them.
 pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
@@ -66,7 +66,7 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     state.strategy.charge(&centres, input.pose.point(), window)
 }
 
-/// Set the window's boundary values. The last field stays where the two windows overlap.
+/// Sets the window's boundary values. The last field stays where the two windows overlap.
 pub(super) fn charge(workspace: &mut Workspace, goal: &Rows) {
     slide(workspace);
     workspace
@@ -74,7 +74,7 @@ pub(super) fn charge(workspace: &mut Workspace, goal: &Rows) {
         .set_boundary(&workspace.view.passable, goal);
 }
 
-/// Move the window to the local grid's place, together with the field where they overlap.
+/// Moves the window to the local grid's place, together with the field where they overlap.
 fn slide(workspace: &mut Workspace) {
     let Workspace {
         window,

@@ -15,7 +15,7 @@ use crate::status::{Fault, Finish, Status};
 /// Below this room for its centre the robot is boxed in, cells: one square metre.
 const BOX_CELLS: u32 = 100;
 
-/// End the exploration: list the residual frontiers and set the status, or begin the patrol.
+/// Ends the exploration: lists the residual frontiers and sets the status, or begins the patrol.
 pub(super) fn finish<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
@@ -36,7 +36,7 @@ pub(super) fn finish<const TILES: usize, const SLOTS: usize>(
     }
 }
 
-/// List the reachable cells beyond which the map has no room. Returns which room is missing. Cells
+/// Lists the reachable cells beyond which the map has no room. Returns which room is missing. Cells
 /// beyond the map that cannot be reached do not count.
 fn list_ways_out<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
@@ -50,7 +50,7 @@ fn list_ways_out<const TILES: usize, const SLOTS: usize>(
     })
 }
 
-/// The reason why no frontier can be reached.
+/// Returns the status that tells why no frontier can be reached.
 fn conclude<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     view: &mut LocalGrid,
@@ -69,7 +69,7 @@ fn conclude<const TILES: usize, const SLOTS: usize>(
     }
 }
 
-/// Window cells that the robot's centre can reach.
+/// Returns the number of window cells that the robot's centre can reach.
 fn room_cells(view: &LocalGrid, robot: Cell) -> u32 {
     let reached = view.reachable(robot);
     reached.map_or(0, |rows| rows.iter().map(|row| row.count_ones()).sum())

@@ -49,12 +49,12 @@ pub(super) enum GroundModel<const TILES: usize> {
 }
 
 impl<const TILES: usize> GroundModel<TILES> {
-    /// The model of flat ground, empty.
+    /// Returns the empty model of flat ground.
     pub(super) const fn new() -> Self {
         Self::Flat(ObstaclePoints::new())
     }
 
-    /// The empty model for a session.
+    /// Returns the empty model for a session.
     pub(super) const fn of(config: &Config) -> Self {
         match config.ground {
             None => Self::new(),
@@ -62,12 +62,12 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
-    /// True if heights matter.
+    /// Returns true if heights matter.
     pub(super) const fn is_uneven(&self) -> bool {
         matches!(self, Self::Uneven(_))
     }
 
-    /// Take in one step's scans, after the map did.
+    /// Enters one step's scans, after the map did.
     pub(super) fn observe<const SLOTS: usize>(
         &mut self,
         config: &Config,
@@ -89,7 +89,7 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
-    /// The cost of goals by their height; `None` where heights do not choose goals.
+    /// Returns the cost of goals by their height; `None` where heights do not choose goals.
     pub(super) fn level_cost<'a>(
         &'a self,
         config: &'a Config,
@@ -106,8 +106,8 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
-    /// Block in the window what the drive keeps the hull clear of. Without this the field would
-    /// lead between two cells where the drive does not go.
+    /// Blocks in the window the rims that the drive keeps the hull clear of. Without this the field
+    /// would lead between two cells where the drive does not go.
     pub(super) fn block_rims<const SLOTS: usize>(
         &self,
         tiles: &Tiles<TILES, SLOTS>,
@@ -121,7 +121,7 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
-    /// What the hull must not touch around the robot.
+    /// Returns the obstacles that the hull must not touch around the robot.
     pub(super) fn collision_checker<const SLOTS: usize>(
         &self,
         robot: &RobotShape,
@@ -144,8 +144,8 @@ impl<const TILES: usize> GroundModel<TILES> {
         checker
     }
 
-    /// Up or down to the goal, if the goal is clearly higher or lower than the robot and its height
-    /// is known.
+    /// Returns the slope direction of the goal; `None` if the goal is level with the robot or its
+    /// height is unknown.
     pub(super) fn direction_of<const SLOTS: usize>(
         &self,
         tiles: &Tiles<TILES, SLOTS>,

@@ -52,7 +52,7 @@ pub struct Planner<M: Memory> {
 }
 
 impl<M: Memory> Planner<M> {
-    /// A planner at the beginning of a session.
+    /// Returns a planner at the beginning of a session.
     ///
     /// # Errors
     /// [`BoxTooLarge`] if the configuration's box does not fit the capacity.
@@ -66,23 +66,23 @@ impl<M: Memory> Planner<M> {
         Ok(planner)
     }
 
-    /// Forget everything and begin a session with another configuration.
+    /// Forgets everything and begins a session with another configuration.
     ///
     /// # Errors
-    /// [`BoxTooLarge`] if the configuration's box does not fit the capacity; the session goes on
-    /// then.
+    /// [`BoxTooLarge`] if the configuration's box does not fit the capacity. The present session
+    /// continues then.
     pub fn restart(&mut self, config: &Config) -> Result<(), BoxTooLarge> {
         sealed::Planning::reset(&mut self.state, config)?;
         self.config = config.clone();
         Ok(())
     }
 
-    /// One step: from scans and odometry to a velocity.
+    /// Runs one step: from scans and odometry to a velocity.
     pub fn step(&mut self, input: &Input<'_>) -> Output {
         self.step_timed(input, &mut ())
     }
 
-    /// One step; `timer` learns the end of each stage.
+    /// Runs one step and marks the end of each stage on `timer`.
     pub fn step_timed(&mut self, input: &Input<'_>, timer: &mut impl StageTimer) -> Output {
         sealed::Planning::step(
             &mut self.state,
@@ -93,35 +93,35 @@ impl<M: Memory> Planner<M> {
         )
     }
 
-    /// The configuration.
+    /// Returns the configuration.
     pub const fn config(&self) -> &Config {
         &self.config
     }
 
-    /// The status after the last step.
+    /// Returns the status after the last step.
     pub fn status(&self) -> Status {
         sealed::Planning::status(&self.state)
     }
 
-    /// The path to the current goal: coarse cells of 20 cm, each named by the least of its four map
-    /// cells, the robot's end first.
+    /// Returns the path to the current goal: coarse cells of 20 cm, each named by the least of its
+    /// four map cells, the robot's end first.
     pub fn path(&self) -> &[Cell] {
         sealed::Planning::path(&self.state)
     }
 
-    /// The residual frontiers, each with its reason.
+    /// Returns the residual frontiers, each with its reason.
     pub fn frontiers(&self) -> &[Frontier] {
         sealed::Planning::frontiers(&self.state)
     }
 
-    /// The 32 × 32 cells of the map tile in this column and row, two bits each, least x and y
-    /// first: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle. `None` if nothing in it was ever
-    /// measured.
+    /// Returns the 32 × 32 cells of the map tile in this column and row, two bits each, least x and
+    /// y first: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle. `None` if no cell of it was
+    /// ever measured.
     pub fn tile(&self, column: i16, row: i16) -> Option<[u8; 256]> {
         sealed::Planning::tile(&self.state, column, row)
     }
 
-    /// The scratch memory, which holds the last step's field.
+    /// Returns the scratch memory, which holds the last step's field.
     pub const fn workspace(&self) -> &Workspace {
         &self.workspace
     }

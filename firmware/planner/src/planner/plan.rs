@@ -18,7 +18,7 @@ use crate::status::{Fault, Status};
 /// front and where the tilted beams meet level ground.
 const FRONT_M: f32 = 0.8;
 
-/// Plan one round on a new skeleton. Returns false if the next step must continue the round.
+/// Plans one round on a new skeleton. Returns false if the next step must continue the round.
 pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
@@ -71,7 +71,7 @@ fn may_search_viewpoints<const TILES: usize, const SLOTS: usize>(
         && !state.strategy.is_patrolling()
 }
 
-/// Decide about ground that stayed unmeasured although the robot stood beside it.
+/// Decides about ground that stayed unmeasured although the robot stood beside it.
 fn resolve_unmeasured<const TILES: usize, const SLOTS: usize>(
     ground: &UnevenGround,
     state: &mut State<TILES, SLOTS>,
@@ -91,7 +91,7 @@ fn resolve_unmeasured<const TILES: usize, const SLOTS: usize>(
     }
 }
 
-/// Continue the search for viewpoints: go to the one that it found, or finish.
+/// Continues the search for viewpoints: goes to the one that it found, or finishes.
 pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,

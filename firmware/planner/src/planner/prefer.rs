@@ -13,7 +13,8 @@ use crate::input::Input;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 
-/// Add the preference of [Maffei20, eqs. 3 to 5] to the strategy's own in every cell of the window.
+/// Adds the preference of [Maffei20, eqs. 3 to 5] to the strategy's own in every cell of the
+/// window.
 pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
     terrain: &UnevenGround,
     state: &State<TILES, SLOTS>,
@@ -37,9 +38,9 @@ pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
     });
 }
 
-/// Cells in which the last field leads across a slope that must not be crossed. They repel as
-/// strongly as cells may: otherwise the height preference would draw the robot along its own
-/// height, across the slope. Not in [Maffei20].
+/// Returns the cells in which the last field leads across a slope that the robot must not cross.
+/// They repel with the least preference: otherwise the height preference would draw the robot along
+/// its own height, across the slope. Not in [Maffei20].
 fn crossed(
     terrain: &UnevenGround,
     heights: &Heights<'_>,
@@ -64,7 +65,7 @@ fn crossed(
     rows
 }
 
-/// Note how flat the solved field is around the robot: the next preferences depend on it.
+/// Notes how flat the solved field is around the robot: the next preferences depend on it.
 pub(super) fn note_flatness<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &Workspace,

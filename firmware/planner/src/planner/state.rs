@@ -1,6 +1,8 @@
 //! The planner's memory from step to step, and views of it.
 //!
-//! Invariant: only [`super::step`] and [`State::reset`] change it. Units: map cells.
+//! Invariant: only [`super::step`] and [`State::reset`] change it.
+//!
+//! Units: map cells.
 
 use super::ground_model::GroundModel;
 use super::workspace::{RING, SCRATCH};
@@ -61,7 +63,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         );
     };
 
-    /// An empty planner.
+    /// Returns an empty planner.
     #[must_use]
     pub const fn new() -> Self {
         let () = Self::CHECK;
@@ -109,13 +111,13 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         Ok(())
     }
 
-    /// The planner's status after the last step.
+    /// Returns the planner's status after the last step.
     #[must_use]
     pub const fn status(&self) -> Status {
         self.status
     }
 
-    /// The footprint that paths are planned for: narrower at the second chance.
+    /// Returns the footprint that paths are planned for: narrower at the second chance.
     pub(super) fn footprint(&self, config: &Config) -> Footprint {
         Footprint::new(if self.strategy.frontier.is_second_chance() {
             config.tight_radius_m()

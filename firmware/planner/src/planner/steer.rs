@@ -20,7 +20,7 @@ const LOOK_PERIOD_MS: u32 = 5_000;
 /// blocked.
 const STALLED_PERIODS: u32 = 5;
 
-/// Follow the window's field.
+/// Returns the velocity that follows the window's field.
 pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
@@ -109,7 +109,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     }
 }
 
-/// Without a local goal: stand, and look around once stalled.
+/// Returns the velocity without a local goal: zero, or a turn to look around once stalled.
 pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
@@ -141,7 +141,7 @@ fn is_stalled<const TILES: usize, const SLOTS: usize>(
         && periods % 2 == 1
 }
 
-/// Whole periods for which the robot has stood where it stands.
+/// Returns the whole periods for which the robot has stood at its place.
 fn standing_periods<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     time_ms: u32,
@@ -149,7 +149,7 @@ fn standing_periods<const TILES: usize, const SLOTS: usize>(
     state.strategy.frontier.standing_ms(time_ms) / LOOK_PERIOD_MS
 }
 
-/// Clamp a wish to the session's speeds; recovery motions do not know them.
+/// Clamps a wish to the session's speeds; recovery motions do not know them.
 fn within_limits(config: &Config, wish: Twist) -> Twist {
     let (linear, angular) = (config.max_linear_mps, config.max_angular_radps);
     Twist {
@@ -169,7 +169,7 @@ fn is_at_goal(window: &Window, (origin, scale): (Cell, i32), robot: Point) -> bo
     }
 }
 
-/// q of the window cell at a position in cells.
+/// Returns q of the window cell at a position in cells.
 fn potential_at(window: &Window, x: f32, y: f32) -> f32 {
     match (
         usize::try_from(math::floor(x)),
@@ -180,7 +180,7 @@ fn potential_at(window: &Window, x: f32, y: f32) -> f32 {
     }
 }
 
-/// The field's heading at a place near the robot, radians to the left of the robot's own.
+/// Returns the field's heading at a place near the robot, radians to the left of the robot's own.
 fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Option<f32> {
     let (x, y) = local_grid::position(at, pose.to_map(place.point()));
     descent::heading_at(window, x, y).map(|heading| math::wrap(heading - pose.yaw_rad))
@@ -195,7 +195,7 @@ mod tests {
     use crate::config::UnevenGround;
     use crate::field::{SIDE, solve};
 
-    /// Turn rates of a robot in a flat field, at these times since it last moved.
+    /// Returns the turn rates of a robot in a flat field, at these times since it last moved.
     fn turn_rates<const N: usize>(terrain: Option<UnevenGround>, times_ms: [u32; N]) -> [f32; N] {
         let config = Config {
             ground: terrain,
@@ -237,8 +237,8 @@ mod tests {
         assert_eq!(turn_rates(None, times_ms), [0.0; 10], "flat ground");
     }
 
-    /// The heading that a robot drives on a slope that rises to the north, degrees. The field leads
-    /// east, and the robot has stood for this time.
+    /// Returns the heading that a robot drives on a slope that rises to the north, degrees. The
+    /// field leads east, and the robot has stood for this time.
     fn heading_deg(roll: f32, standing_ms: u32) -> f32 {
         let config = Config {
             ground: Some(UnevenGround {

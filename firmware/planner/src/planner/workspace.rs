@@ -24,7 +24,7 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// Cleared.
+    /// Returns cleared memory.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -35,7 +35,7 @@ impl Workspace {
         }
     }
 
-    /// The last window's field.
+    /// Returns the last window's field.
     #[must_use]
     pub const fn window(&self) -> &Window {
         &self.window
@@ -74,8 +74,8 @@ pub enum CellKind {
 }
 
 impl Workspace {
-    /// One row of the last step's field; row 0 has the least y. `None` before the first window and
-    /// beyond the last row.
+    /// Returns one row of the last step's field; row 0 has the least y. `None` before the first
+    /// window and beyond the last row.
     #[must_use]
     pub fn field_row(&self, row: u8) -> Option<FieldRow> {
         let (origin, scale) = self.window_at?;
