@@ -171,10 +171,7 @@ impl Cell {
 
     /// Returns the four map cells of the coarse cell (20 cm) whose least map cell this is.
     pub fn quarters(self) -> impl Iterator<Item = Self> {
-        (0..4).map(move |k| Self {
-            x: self.x + (k & 1),
-            y: self.y + (k >> 1),
-        })
+        (0..4).map(move |k| self.offset(k & 1, k >> 1))
     }
 
     /// Returns the squared distance between the centres of two cells, square metres.

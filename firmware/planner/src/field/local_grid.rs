@@ -50,14 +50,6 @@ fn squeeze(word: u32, scale: i32) -> u64 {
     })
 }
 
-/// Returns the 2 × 2 map cells of a coarse cell whose least map cell is `least`.
-fn parts(least: Cell) -> impl Iterator<Item = Cell> {
-    (0..4).map(move |k| Cell {
-        x: least.x + (k & 1),
-        y: least.y + (k >> 1),
-    })
-}
-
 impl LocalGrid {
     /// Returns an empty grid. It is all zeros, so a static one costs no flash.
     #[must_use]
@@ -157,7 +149,7 @@ impl LocalGrid {
     /// Returns true if there are any.
     pub(crate) fn mark(&self, rows: &mut Rows, least: Cell) -> bool {
         let mut any = false;
-        for part in parts(least) {
+        for part in least.quarters() {
             let passable = |place: &_| Self::has(&self.passable, *place);
             if let Some(place) = self.place(part).filter(passable) {
                 Self::put(rows, place);
@@ -169,7 +161,7 @@ impl LocalGrid {
 
     /// Makes the coarse cell whose least map cell is `least` impassable.
     pub(crate) fn block(&mut self, least: Cell) {
-        for part in parts(least) {
+        for part in least.quarters() {
             if let Some((x, y)) = self.place(part)
                 && let Some(row) = self.passable.get_mut(y)
             {

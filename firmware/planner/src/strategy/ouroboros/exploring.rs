@@ -372,10 +372,7 @@ fn a_tractor_point_that_falls_on_an_obstacle_is_gone_and_its_loop_with_it() {
     let tractor = exploration.strategy.tractor().unwrap();
     // The map is replaced: at the tractor point there is an obstacle of 0.6 m now.
     for part in (-2..4).flat_map(|dy| (-2..4).map(move |dx| (dx, dy))) {
-        let cell = Cell {
-            x: tractor.x + part.0,
-            y: tractor.y + part.1,
-        };
+        let cell = tractor.offset(part.0, part.1);
         exploration.tiles.set(cell, Class::Obstacle).unwrap();
     }
     let _ = exploration.plan(time_ms + 800);

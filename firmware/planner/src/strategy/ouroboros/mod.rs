@@ -51,8 +51,8 @@ use crate::strategy::Frontier;
 use crate::strategy::ouroboros::loop_budget::LoopBudget;
 use crate::strategy::ouroboros::revisit::Revisit;
 
-/// Rounds in a row without loop road or shield after which a loop is lost: at some 0.8 s a round, a
-/// spur is gone by then.
+/// Rounds in a row without loop road or shield after which a loop is lost: a spur under the robot
+/// is gone by then.
 const LOST_ROUNDS: u8 = 3;
 /// Loops lost, since one was last closed or given up, after which the next one is given up.
 const MOST_LOST: u8 = 3;

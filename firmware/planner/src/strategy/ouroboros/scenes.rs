@@ -52,11 +52,7 @@ pub(super) fn at(x: usize, y: usize) -> Cell {
 
 /// A pose in the middle of a coarse cell.
 pub(super) fn pose_in(cell: Cell, yaw_rad: f32) -> Pose {
-    let middle = Cell {
-        x: cell.x + 1,
-        y: cell.y + 1,
-    }
-    .corner();
+    let middle = cell.offset(1, 1).corner();
     Pose {
         x_m: middle.x_m,
         y_m: middle.y_m,

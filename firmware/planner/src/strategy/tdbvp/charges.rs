@@ -17,7 +17,6 @@ use crate::field::local_grid::{LocalGrid, Rows};
 use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::map::Tiles;
-use crate::math;
 use crate::path::nearest::Centres;
 use crate::roadmap::branches::{Kind, kind};
 use crate::strategy::tdbvp::Rails;
@@ -165,5 +164,5 @@ pub(super) fn distance_m(cell: Cell, robot: Point) -> f32 {
         x_m: corner.x_m + CELL_M,
         y_m: corner.y_m + CELL_M,
     };
-    math::sqrt(middle.distance2(robot))
+    middle.distance_m(robot)
 }

@@ -60,7 +60,7 @@ const LINGER_VISIT_M: f32 = 2.0;
 /// of 20 robots drove straight on, at 1 m 10 of 100.
 const ROOM_M: f32 = 1.2;
 
-/// Period of the planner, milliseconds.
+/// Period of the planner that a patrol assumes, milliseconds.
 const STEP_MS: u32 = 200;
 /// Time for the 20 cm of a centre cell at 0.5 m/s, milliseconds.
 const CELL_MS: u32 = 400;

@@ -128,10 +128,7 @@ impl PendingVisits {
         self.pending.retain(|pending| {
             let left = pending.place;
             let (least, half) = (least_cell(left), PLACE_CELLS / 2);
-            let middle = Cell {
-                x: least.x + half,
-                y: least.y + half,
-            };
+            let middle = least.offset(half, half);
             if is_within(middle, robot, AWAY_M) {
                 return true;
             }

@@ -73,11 +73,7 @@ impl Scene {
                 } else {
                     Class::Free
                 };
-                for k in 0..4 {
-                    let part = Cell {
-                        x: least.x + (k & 1),
-                        y: least.y + (k >> 1),
-                    };
+                for part in least.quarters() {
                     scene.tiles.set(part, class).unwrap();
                 }
                 if c == '>' {
@@ -105,11 +101,7 @@ impl Scene {
         let centres = Centres::of(&self.skeleton, &self.tiles, &footprint).unwrap();
         let (mut window, least) = (Window::new(), self.robot);
         // The middle of the robot's coarse cell.
-        let robot = Cell {
-            x: least.x + 1,
-            y: least.y + 1,
-        }
-        .corner();
+        let robot = least.offset(1, 1).corner();
         let dates = (&self.rails, &self.pending);
         charge_rails(
             &mut window,
