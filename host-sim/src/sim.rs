@@ -377,7 +377,9 @@ fn start_pose(world: &World, config: &SimConfig) -> Result<Pose, WorldError> {
         return Err(WorldError::Start {
             file: world.name().to_owned(),
             index: config.start,
-            reason: format!("the world has only {count} starts; give a number below {count}"),
+            reason: format!(
+                "the world has only {count} starts; give --start a number below {count}"
+            ),
         });
     };
     world.check_start(world.name(), config.start, *start)?;

@@ -13,7 +13,7 @@ use host_sim::trial::uneven::{self, ParameterError};
 use super::strategies;
 
 /// Most pictures during a run. Each is read over the link and held until the end.
-const MOST_SNAPSHOTS: usize = 500;
+const MOST_SNAPSHOTS: u64 = 500;
 
 /// Explore simulated worlds with the Fieldline planner; without a command, explore the built-in
 /// office
@@ -73,7 +73,7 @@ pub(super) struct ExploreArgs {
         long,
         value_name = "N",
         default_value = "0",
-        value_parser = whole::<u64>,
+        value_parser = seed,
         allow_negative_numbers = true
     )]
     pub(super) seed: u64,
@@ -82,7 +82,7 @@ pub(super) struct ExploreArgs {
         long,
         value_name = "N",
         default_value = "0",
-        value_parser = whole::<usize>,
+        value_parser = start,
         allow_negative_numbers = true
     )]
     pub(super) start: usize,
@@ -117,7 +117,7 @@ pub(super) struct ExploreArgs {
         long,
         value_name = "S",
         default_value = "0",
-        value_parser = whole::<u16>,
+        value_parser = patrol_for,
         allow_negative_numbers = true
     )]
     pub(super) patrol_for: u16,
@@ -266,10 +266,30 @@ pub(super) enum SolverArg {
     GaussSeidel,
 }
 
-/// Parses a number without sign or point.
-fn whole<T: core::str::FromStr>(text: &str) -> Result<T, String> {
-    let number = text.parse();
-    number.map_err(|_| "give a whole number from 0 on".into())
+/// Parses a number without sign or point, at most `most`.
+fn whole(text: &str, most: u64) -> Result<u64, String> {
+    let number = text.parse().ok().filter(|number| *number <= most);
+    number.ok_or_else(|| format!("give a whole number from 0 to {most}"))
+}
+
+/// Parses a seed.
+fn seed(text: &str) -> Result<u64, String> {
+    whole(text, u64::MAX)
+}
+
+/// Parses the index of a start.
+fn start(text: &str) -> Result<usize, String> {
+    whole(text, u64::from(u16::MAX)).map(|number| number as usize)
+}
+
+/// Parses seconds of patrol.
+fn patrol_for(text: &str) -> Result<u16, String> {
+    whole(text, u64::from(u16::MAX)).map(|number| number as u16)
+}
+
+/// Parses a number of pictures.
+fn snapshots(text: &str) -> Result<usize, String> {
+    whole(text, MOST_SNAPSHOTS).map(|number| number as usize)
 }
 
 /// Parses seconds; returns milliseconds.
@@ -277,14 +297,6 @@ fn time_limit(text: &str) -> Result<u32, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds > 0.0 && seconds <= 4e6 => Ok((seconds * 1000.0).ceil() as u32),
         _ => Err("give simulated seconds above 0, at most 4000000".into()),
-    }
-}
-
-/// Parses a number of pictures.
-fn snapshots(text: &str) -> Result<usize, String> {
-    match text.parse::<usize>() {
-        Ok(number) if number <= MOST_SNAPSHOTS => Ok(number),
-        _ => Err(format!("give a whole number from 0 to {MOST_SNAPSHOTS}")),
     }
 }
 

@@ -80,13 +80,22 @@ fn complain(message: &str) -> ExitCode {
     ExitCode::from(BAD_INPUT)
 }
 
-/// Returns the first paragraph of an error in the arguments, without the usage.
+/// Returns the first paragraph of an error in the arguments, without the usage, and the place of
+/// the help.
 fn one_paragraph(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let first = text.split("\n\n").next().unwrap_or_default();
     let first = first.trim_start_matches("error: ");
     let first = first.trim_end();
-    format!("{first}; see host-sim --help")
+    let argument = std::env::args().nth(1);
+    let command = Cli::command()
+        .get_subcommands()
+        .map(|command| command.get_name().to_owned())
+        .find(|name| argument.as_ref() == Some(name));
+    match command {
+        Some(command) => format!("{first}; see host-sim {command} --help"),
+        None => format!("{first}; see host-sim --help"),
+    }
 }
 
 fn is_broken_pipe(error: &Error) -> bool {

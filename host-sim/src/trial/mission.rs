@@ -105,7 +105,7 @@ impl fmt::Display for MissionError {
             Self::Link(error) => error.fmt(f),
             Self::Box { across, up, slots } => write!(
                 f,
-                "a map of {across} x {up} tiles of {} m does not fit the device's {slots}; \
+                "a map of {across} x {up} tiles of {} m does not fit the device's {slots} tiles; \
                  choose a smaller --map-shape",
                 shape::TILE_M
             ),

@@ -169,7 +169,7 @@ fn bad_arguments_are_refused_in_one_line() {
         &["direct", "loopback"],
     );
     explore(&["--odometry", "gps"], &["gps", "truth, noisy"]);
-    explore(&["--start", "7"], &["robots[7]", "2 starts"]);
+    explore(&["--start", "7"], &["robots[7]", "2 starts", "--start"]);
     for bad in ["x", "-1", "1.5", "99999999999999999999"] {
         explore(&["--start", bad], &[bad, "whole number"]);
         explore(&["--seed", bad], &[bad, "whole number"]);
@@ -178,6 +178,7 @@ fn bad_arguments_are_refused_in_one_line() {
         explore(&["--time-limit", bad], &[bad, "above 0"]);
     }
     explore(&["--snapshots", "501"], &["'501'", "0 to 500"]);
+    explore(&["--patrol-for", "65536"], &["'65536'", "0 to 65535"]);
     explore(&["--imu-noise", "90"], &["'90'", "degrees from 0 to 20"]);
     explore(&["--laser-noise", "-1"], &["'-1'", "metres from 0 to 1"]);
     explore(
@@ -220,7 +221,10 @@ fn bad_arguments_are_refused_in_one_line() {
         &["--ground-parameters", "eps_gmax=3"],
         &["--ground-parameters", "eps_gmax", "from 0 to 2"],
     );
-    explore(&["--ground", "hilly"], &["hilly", "flat, uneven"]);
+    explore(
+        &["--ground", "hilly"],
+        &["hilly", "flat, uneven", "host-sim explore --help"],
+    );
     explore(
         &["--patrol-for", "9"],
         &["frontier", "leave --patrol-for out"],
