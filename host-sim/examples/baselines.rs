@@ -1,11 +1,13 @@
-//! The planner beside its baselines: worlds × strategies × seeds, medians over the seeds, as a Markdown table.
+//! Compares the planner with its baselines: worlds × strategies × seeds, as a Markdown table of the
+//! medians over the seeds.
 //!
 //! ```text
 //! cargo run --release -p host-sim --example baselines -- --seeds 5 WORLD.yaml… office cave
 //! ```
 //!
-//! Lasers are noisy and odometry is true, as in `host-sim explore`. T90 and T99 are simulated seconds until so much of what
-//! can be seen was seen; a run that never came so far counts as infinite. Below the table: what *bvp* cost.
+//! Lasers are noisy and odometry is true, as by default in `host-sim explore`. T90 and T99 are the
+//! simulated seconds until 90 % and 99 % of the reachable area is known; they are infinite in a run
+//! that does not get there. A second table has the cost of *bvp*.
 
 use clap::Parser;
 
@@ -19,12 +21,15 @@ use host_sim::trial::mission::{self, Mission};
 use host_sim::trial::{Flow, Progress, Watch};
 use host_sim::world::{World, builtins};
 
+/// Instructions of a cell update on a Cortex-M4F, by rough estimate.
+const INSTRUCTIONS_PER_UPDATE: f64 = 20.0;
+
 /// Compare the planner with its baselines.
 #[derive(Debug, Parser)]
 struct Args {
     /// World files or names of built-in worlds [default: all built-in worlds]
     worlds: Vec<String>,
-    /// Runs of each
+    /// Number of seeds of each strategy in each world
     #[arg(long, default_value_t = 5)]
     seeds: u64,
     /// Strategies to compare
@@ -37,11 +42,12 @@ struct Args {
     /// Simulated seconds after which a run ends
     #[arg(long, default_value_t = 3600)]
     time_limit: u32,
-    /// greedy-frontier's cost of a metre of way
+    /// Cost of a metre of path for greedy-frontier
     #[arg(long, default_value_t = Tuning::default().potential_scale)]
     potential_scale: f32,
 }
 
+/// Watches nothing.
 struct Nobody;
 
 impl Watch for Nobody {
@@ -50,7 +56,7 @@ impl Watch for Nobody {
     }
 }
 
-/// One run's report, and its cost where it is known.
+/// The report of a run, and its cost for bvp.
 struct Run {
     report: Report,
     work: Option<Work>,
@@ -98,7 +104,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// A row of the table.
+/// Formats a row of the table.
 fn row(world: &str, strategy: &str, runs: &[Run]) -> String {
     let reports = || runs.iter().map(|run| &run.report);
     let finished = reports().filter(|report| report.explored()).count();
@@ -116,7 +122,8 @@ fn row(world: &str, strategy: &str, runs: &[Run]) -> String {
         }
     };
     format!(
-        "| {world} | {strategy} | {finished}/{} {} | {:.4} | {} | {} | {:.1} | {:.1} | {} | {:.1} |",
+        "| {world} | {strategy} | {finished}/{} {} | {:.4} | {} | {} | {:.1} | {:.1} | {} \
+         | {:.1} |",
         runs.len(),
         reasons.join(" "),
         median(reports().map(|report| report.coverage.fraction)),
@@ -131,7 +138,7 @@ fn row(world: &str, strategy: &str, runs: &[Run]) -> String {
     )
 }
 
-/// What the full grid cost, and what it would ask of a chip.
+/// Formats the cost of bvp, and what it needs on a chip.
 fn cost(world: &str, runs: &[Run]) -> Option<String> {
     let works: Vec<Work> = runs.iter().filter_map(|run| run.work).collect();
     let of = |part: fn(&Work) -> u64| works.iter().map(part).sum::<u64>() as f64;
@@ -144,7 +151,7 @@ fn cost(world: &str, runs: &[Run]) -> Option<String> {
         4 * most(|work| work.box_cells)? / 1024,
         of(|work| work.cycles) / steps,
         updates / steps,
-        updates / steps * 20.0 / 1e6,
+        updates / steps * INSTRUCTIONS_PER_UPDATE / 1e6,
     ))
 }
 
@@ -154,7 +161,8 @@ fn main() -> anyhow::Result<()> {
         args.worlds = builtins().iter().map(|world| world.name.into()).collect();
     }
     println!(
-        "| world | strategy | explored | coverage | T90 s | T99 s | end s | path m | collisions | wall s |"
+        "| world | strategy | explored | coverage | T90 s | T99 s | end s | path m | collisions \
+         | wall s |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     let mut costs = Vec::new();
@@ -169,7 +177,8 @@ fn main() -> anyhow::Result<()> {
         }
     }
     println!(
-        "\n| world | free cells, mean | most | box as f32, KiB | cycles a step | cell updates a step | M instructions a step |"
+        "\n| world | free cells, mean | most | box as f32, KiB | cycles a step \
+         | cell updates a step | M instructions a step |"
     );
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     costs.iter().for_each(|line| println!("{line}"));

@@ -1,7 +1,6 @@
 //! The image in the emulator: the same commands as a direct call, exact costs, reboots and crashes.
 //!
-//! If QEMU or the thumb target is missing, these tests print what to install and pass. With
-//! `FIELDLINE_HIL=1` they fail instead, and with `FIELDLINE_HIL=0` they do nothing.
+//! Most of these tests need QEMU and the thumb target, so they are ignored by default.
 #![cfg(unix)]
 
 mod drive;
@@ -19,34 +18,20 @@ use host_sim::link::{Link, LinkError, image, serial};
 
 const STEPS: u32 = 60;
 
-/// The image, or `None` with a printed reason if it cannot be built or run here.
-fn available(built: impl FnOnce() -> Result<PathBuf, LinkError>) -> Option<PathBuf> {
-    let wanted = std::env::var("FIELDLINE_HIL").unwrap_or_default();
-    if wanted == "0" {
-        println!("skipped: FIELDLINE_HIL=0");
-        return None;
-    }
-    let tried = built().and_then(|image| qemu::open_line(&image).map(|_| image));
-    match tried {
-        Ok(image) => Some(image),
-        Err(error) if wanted == "1" => panic!("{error}"),
-        Err(error) => {
-            println!("skipped: {error}");
-            None
-        }
-    }
+/// Builds the image.
+fn image() -> PathBuf {
+    image::image().expect("the image builds")
 }
 
 fn board(image: &std::path::Path) -> Endpoint<QemuLine> {
-    let line = qemu::open_line(image).expect("it started before");
+    let line = qemu::open_line(image).expect("QEMU starts");
     Endpoint::new(line, RetryPolicy::LOCKSTEP, 1)
 }
 
 #[test]
+#[ignore = "needs QEMU and the thumb target"]
 fn the_emulated_chip_gives_the_same_commands_as_a_call() {
-    let Some(image) = available(image::image) else {
-        return;
-    };
+    let image = image();
     let mut link = board(&image);
     assert_eq!(
         digest_of(&mut link, STEPS),
@@ -61,10 +46,9 @@ fn the_emulated_chip_gives_the_same_commands_as_a_call() {
 }
 
 #[test]
+#[ignore = "needs QEMU and the thumb target"]
 fn a_pty_gives_the_same_commands_as_a_call() {
-    let Some(image) = available(image::image) else {
-        return;
-    };
+    let image = image();
     let board = PtyBoard::start(&image).unwrap();
     let mut link = serial::serial(board.device(), fieldline_protocol::BAUD).unwrap();
     assert_eq!(
@@ -74,10 +58,9 @@ fn a_pty_gives_the_same_commands_as_a_call() {
 }
 
 #[test]
+#[ignore = "needs QEMU and the thumb target"]
 fn byte_faults_to_the_emulated_chip_change_no_command() {
-    let Some(image) = available(image::image) else {
-        return;
-    };
+    let image = image();
     let faults = "drop=0.02,duplicate=0.02,corrupt=0.02,truncate=0.01,delay=0.05".parse();
     let line = Faulty::new(qemu::open_line(&image).unwrap(), faults.unwrap(), 7);
     // A lost frame costs wall-clock time here. On a loaded machine other frames are repeated too.
@@ -96,10 +79,9 @@ fn byte_faults_to_the_emulated_chip_change_no_command() {
 
 #[cfg(feature = "logs")]
 #[test]
+#[ignore = "needs QEMU and the thumb target"]
 fn the_log_is_decoded_with_the_image() {
-    let Some(image) = available(image::image) else {
-        return;
-    };
+    let image = image();
     let mut link = board(&image);
     Robot::new().run(&mut link, 1).unwrap();
     let mut decoder = host_sim::link::logs::Decoder::of(&image).unwrap();
@@ -118,10 +100,9 @@ fn the_log_is_decoded_with_the_image() {
 /// Two runs of the same observations cost the same instructions in every step: the emulator counts
 /// them.
 #[test]
+#[ignore = "needs QEMU and the thumb target"]
 fn costs_are_exact() {
-    let Some(image) = available(image::image) else {
-        return;
-    };
+    let image = image();
     let costs = || {
         let mut link = board(&image);
         let mut robot = Robot::new();
@@ -140,10 +121,9 @@ fn costs_are_exact() {
 }
 
 #[test]
+#[ignore = "needs QEMU and the thumb target"]
 fn a_reset_reboots_the_chip_and_is_counted() {
-    let Some(image) = available(image::image) else {
-        return;
-    };
+    let image = image();
     let mut link = board(&image);
     assert_eq!(link.hello().unwrap().boots, 1);
     assert_eq!(link.control(&Control::Reset).unwrap(), Status::Idle);
@@ -154,11 +134,10 @@ fn a_reset_reboots_the_chip_and_is_counted() {
 /// The test image crashes in its third step: first by a panic, then by a bus fault, then by a stack
 /// overflow.
 #[test]
+#[ignore = "needs QEMU and the thumb target"]
 fn every_crash_is_reported_and_remembered() {
     let arguments = ["--bin", "fieldline-crash-test", "--features", "crash-test"];
-    let Some(image) = available(|| image::build(&arguments)) else {
-        return;
-    };
+    let image = image::build(&arguments).expect("the test image builds");
     let mut line = qemu::open_line(&image).unwrap();
     for (boots, cause, words) in [
         (1, Cause::Panic, "panic at "),
@@ -195,10 +174,8 @@ fn a_missing_image_is_named() {
 
 /// QEMU ends on a file that it cannot run; the error has its last line.
 #[test]
+#[ignore = "needs QEMU and the thumb target"]
 fn an_emulator_that_ends_is_named() {
-    let Some(_) = available(image::image) else {
-        return;
-    };
     let nonsense = std::env::temp_dir().join(format!("fieldline-nonsense-{}", std::process::id()));
     std::fs::write(&nonsense, vec![0; 2_000_000]).unwrap();
     let opened = qemu::open_line(&nonsense);

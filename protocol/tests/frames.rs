@@ -49,8 +49,9 @@ proptest! {
 
     #[test]
     fn adjacent_frames_are_separated(requests_in in prop::collection::vec(request(), 0..6)) {
-        let bytes: Vec<u8> = requests_in.iter().flat_map(|request| request_frame(1, request)).collect();
-        let heard: Vec<Request> = requests(&bytes).0.into_iter().map(|(_, request)| request).collect();
+        let frames = requests_in.iter().flat_map(|request| request_frame(1, request));
+        let heard = requests(&frames.collect::<Vec<u8>>()).0.into_iter();
+        let heard: Vec<Request> = heard.map(|(_, request)| request).collect();
         prop_assert_eq!(heard, requests_in);
     }
 

@@ -1,7 +1,7 @@
 //! Tables of explorations of flat worlds, with the baselines beside.
 //!
-//! Units: seconds of simulated time, metres, per cent of what can be seen. T90 and T99 are the times
-//! at which 90 % and 99 % of it were known.
+//! Units: seconds of simulated time, metres, per cent of what can be seen. T90 and T99 are the
+//! times at which 90 % and 99 % of it were known.
 
 use host_sim::report::Report;
 

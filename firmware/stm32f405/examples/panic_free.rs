@@ -5,7 +5,7 @@
 //! command, the linker refuses this program:
 //!
 //! ```text
-//! cargo build --package fieldline-stm32f405 --profile firmware --target thumbv7em-none-eabihf --example panic_free
+//! cargo image --example panic_free
 //! ```
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

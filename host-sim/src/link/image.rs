@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn the_last_executable_in_cargos_messages_is_the_image() {
         let messages = concat!(
-            r#"{"reason":"compiler-artifact","target":{"name":"a"},"executable":null,"fresh":true}"#,
+            r#"{"reason":"compiler-artifact","target":{},"executable":null,"fresh":true}"#,
             "\n",
             r#"{"reason":"compiler-artifact","executable":"/t/fieldline-stm32f405","fresh":true}"#,
             "\n",

@@ -5,7 +5,7 @@
 //! | traversable | ground that the robot covers within its limits ([`Footing`]) |
 //! | obstacle | walls; steep ground or edges that rise from covered ground within `BESIDE_M` |
 //! | negative | holes; steep ground or edges that fall from covered ground within `BESIDE_M` |
-//! | either | steep ground or edges between covered ground above and below: obstacle from below, negative from above |
+//! | either | steep ground or edge with covered ground above and below it |
 //! | unjudged | anything else: ground that the robot cannot reach |
 
 use fieldline_planner::geometry::Cell;

@@ -10,8 +10,8 @@
 //! | `free_thresh` | below this occupancy is free; in between is unknown | 0.196 |
 //! | `mode` | `trinary`; `scale` is read the same way | `trinary` |
 //! | `wall_height` | metres above the ground | 1.5 |
-//! | `elevation` | `{image, z_min, z_max, no_data, bits, resolution, origin}`, see [`super::heights`] | flat |
-//! | `robots` | list of `[x, y, yaw]` | the origin of the frame if a robot fits there, else the widest place |
+//! | `elevation` | heights of the ground, see [`super::heights`] | flat |
+//! | `robots` | list of `[x, y, yaw]` | the origin of the frame, or else the widest place |
 //!
 //! Any other key is an error, so that a misspelt key is not a setting that is silently ignored.
 

@@ -5,10 +5,10 @@
 //!
 //! - Scenario 2, holes. The paper: the near rim is negative before the robot is within 0.5 m of it.
 //!   The table: cells of the rim within 0.5 m, and those that were negative by then.
-//! - Scenario 3, building. The paper: the interior is known without going in. The table: the robot's
-//!   place when the interior was known, and the share known when it went in.
-//! - Scenario 4, cliff. The paper: from below it is first an obstacle, from above first negative. The
-//!   table: cells of its face by their first class.
+//! - Scenario 3, building. The paper: the interior is known without going in. The table: the
+//!   robot's place when the interior was known, and the share known when it went in.
+//! - Scenario 4, cliff. The paper: from below it is first an obstacle, from above first negative.
+//!   The table: cells of its face by their first class.
 //!
 //! A cell of the cliff counts for the side from which the face around it, two cells on all sides,
 //! was first a barrier. It counts for neither if it became a barrier from the other side later,

@@ -137,8 +137,8 @@ fn a_wrong_observation_stops_the_robot_for_one_step() {
     assert_eq!(command.cost.stages.sense, 1000);
 }
 
-/// The schema hash covers the strategies, so a host of this schema cannot send another one. Its bytes are
-/// dropped like any other malformed body.
+/// The schema hash covers the strategies, so a host of this schema cannot send another one. Its
+/// bytes are dropped like any other malformed body.
 #[test]
 fn an_unknown_strategy_starts_no_session() {
     let mut talk = Talk::booted(Boot::default());
