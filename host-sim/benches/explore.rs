@@ -9,20 +9,10 @@
 use host_sim::link::direct::Direct;
 use host_sim::report::Report;
 use host_sim::trial::mission::{Mission, explore};
-use host_sim::trial::{Flow, Progress, Watch};
 use host_sim::world::World;
 
 /// Runs of each world; the fastest counts.
 const RUNS: usize = 5;
-
-/// Watches nothing.
-struct Unseen;
-
-impl Watch for Unseen {
-    fn step(&mut self, _: &Progress) -> Flow {
-        Flow::Continue
-    }
-}
 
 /// Processor time of this process, seconds.
 #[cfg(unix)]
@@ -45,7 +35,7 @@ fn processor_s() -> f64 {
 fn run(name: &str) -> anyhow::Result<(Report, f64)> {
     let began_s = processor_s();
     let world = World::open(name)?;
-    let (report, _) = explore(&Mission::default(), &world, &mut Direct::new(), &mut Unseen)?;
+    let (report, _) = explore(&Mission::default(), &world, &mut Direct::new(), &mut ())?;
     Ok((report, processor_s() - began_s))
 }
 

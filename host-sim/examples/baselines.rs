@@ -18,7 +18,6 @@ use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::report::Report;
 use host_sim::trial::mission::{self, Mission};
-use host_sim::trial::{Flow, Progress, Watch};
 use host_sim::world::{World, builtins};
 
 /// Instructions of a cell update on a Cortex-M4F, by rough estimate.
@@ -47,15 +46,6 @@ struct Args {
     potential_scale: f32,
 }
 
-/// Watches nothing.
-struct Nobody;
-
-impl Watch for Nobody {
-    fn step(&mut self, _progress: &Progress) -> Flow {
-        Flow::Continue
-    }
-}
-
 /// The report of a run, and its cost for bvp.
 struct Run {
     report: Report,
@@ -71,7 +61,7 @@ fn run(args: &Args, world: &World, strategy: &str, seed: u64) -> anyhow::Result<
         ..Mission::default()
     };
     let began = std::time::Instant::now();
-    let explore = |link: &mut dyn Link| mission::explore(&mission, world, link, &mut Nobody);
+    let explore = |link: &mut dyn Link| mission::explore(&mission, world, link, &mut ());
     let (report, work) = match strategy {
         "frontier" => (explore(&mut Direct::new())?.0, None),
         "bvp" => {

@@ -1,5 +1,4 @@
-//! Simulator of a Pioneer 3-AT for the Fieldline planner: worlds, the robot with lasers and
-//! odometry, links to the planner, runs, metrics, reports, pictures.
+#![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
 pub mod baseline;

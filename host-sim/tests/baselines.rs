@@ -4,20 +4,11 @@
 use host_sim::baseline::{Bvp, GreedyFrontier, Session};
 use host_sim::link::{Link, LinkError};
 use host_sim::report::Report;
+use host_sim::trial::Record;
 use host_sim::trial::mission::{self, Mission};
-use host_sim::trial::{Flow, Progress, Record, Watch};
 use host_sim::world::World;
 
 use fieldline_protocol::message::{Control, FIELD_SIDE, Finish, Observation, Status};
-
-/// Watches nothing.
-struct Nobody;
-
-impl Watch for Nobody {
-    fn step(&mut self, _progress: &Progress) -> Flow {
-        Flow::Continue
-    }
-}
 
 const BASELINES: [&str; 2] = ["bvp", "greedy-frontier"];
 
@@ -35,7 +26,7 @@ fn explore(name: &str, world: &str, seed: u64) -> (Report, Record) {
         ..Mission::default()
     };
     let world = World::builtin(world).expect("a built-in world");
-    mission::explore(&mission, &world, planner(name).as_mut(), &mut Nobody).expect("it begins")
+    mission::explore(&mission, &world, planner(name).as_mut(), &mut ()).expect("it begins")
 }
 
 #[test]

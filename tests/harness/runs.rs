@@ -11,8 +11,8 @@ use host_sim::baseline::{Bvp, GreedyFrontier, Session};
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::report::Report;
+use host_sim::trial::Record;
 use host_sim::trial::mission::{Mission, explore, on_device};
-use host_sim::trial::{Flow, Progress, Record, Watch};
 use host_sim::world::World;
 
 /// The device's usual strategy.
@@ -31,16 +31,6 @@ pub struct Run<'a> {
     pub seed: u64,
     /// Index of the start in the world.
     pub start: usize,
-}
-
-/// A run that nobody watches.
-#[derive(Clone, Copy, Debug)]
-pub struct Unseen;
-
-impl Watch for Unseen {
-    fn step(&mut self, _: &Progress) -> Flow {
-        Flow::Continue
-    }
 }
 
 impl<'a> Run<'a> {
@@ -85,7 +75,7 @@ impl<'a> Run<'a> {
 /// # Panics
 /// If it cannot begin.
 pub fn explored(mission: &Mission, world: &World, link: &mut dyn Link) -> (Report, Record) {
-    match explore(mission, world, link, &mut Unseen) {
+    match explore(mission, world, link, &mut ()) {
         Ok(run) => run,
         Err(error) => panic!("{} by {}: {error}", world.name(), mission.link),
     }

@@ -9,7 +9,7 @@
 use fieldline_protocol::message::{Command, Observation, Status};
 use fieldline_tests::digests::Digest;
 use fieldline_tests::loops::TDBVP;
-use fieldline_tests::runs::{self, Unseen, in_parallel};
+use fieldline_tests::runs::{self, in_parallel};
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::watched::Watched;
 use fieldline_tests::{golden, worlds};
@@ -79,7 +79,7 @@ fn patrol(start: usize) -> Patrol {
         Ok(())
     });
     let world = worlds::builtin(WORLD);
-    let run = explore(&mission, &world, &mut link, &mut Unseen);
+    let run = explore(&mission, &world, &mut link, &mut ());
     let (report, record) = run.expect("the start is free");
     let steps = usize::from(PATROL_S) * STEPS_PER_S;
     let flat = &flat[flat.len().saturating_sub(steps)..];

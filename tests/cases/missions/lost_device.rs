@@ -8,7 +8,7 @@ use host_sim::link::Link;
 use host_sim::report::tum::Stamped;
 use host_sim::robot::Velocity;
 use host_sim::sim::{SimConfig, Simulator};
-use host_sim::trial::{self, Body, Cast, Flow, Progress, Record, Setup, Survey, Watch};
+use host_sim::trial::{self, Body, Cast, Record, Setup, Survey};
 use host_sim::world::World;
 
 use crate::links::faulty;
@@ -47,18 +47,12 @@ impl Body for Witness<'_> {
     }
 }
 
-/// A survey and a watch that do nothing.
+/// A survey that does nothing.
 struct Nobody;
 
 impl Survey for Nobody {
     fn note(&mut self, _: &Observation, _: Status) -> f64 {
         0.0
-    }
-}
-
-impl Watch for Nobody {
-    fn step(&mut self, _: &Progress) -> Flow {
-        Flow::Continue
     }
 }
 
@@ -81,7 +75,7 @@ fn witnessed(link: &mut dyn Link, world: &World) -> (Record, Vec<Period>) {
             link,
             body: &mut body,
             survey: &mut Nobody,
-            watch: &mut Nobody,
+            watch: &mut (),
         },
     );
     assert_eq!(body.robot.safety().collisions, 0);

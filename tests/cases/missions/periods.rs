@@ -1,6 +1,5 @@
 //! The step period: 100 to 400 ms explore equally well; the device refuses others.
 
-use fieldline_tests::runs::Unseen;
 use fieldline_tests::worlds;
 use host_sim::link::direct::Direct;
 use host_sim::trial::mission::{Mission, MissionError, explore};
@@ -11,7 +10,7 @@ fn at(period_ms: u32) -> Result<host_sim::report::Report, MissionError> {
         ..Mission::default()
     };
     let world = worlds::builtin("narrow-doors");
-    explore(&mission, &world, &mut Direct::new(), &mut Unseen).map(|(report, _)| report)
+    explore(&mission, &world, &mut Direct::new(), &mut ()).map(|(report, _)| report)
 }
 
 #[test]

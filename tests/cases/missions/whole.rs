@@ -132,7 +132,7 @@ fn a_start_inside_a_wall_is_refused_by_name_and_remedy() {
     let plan: Occupancy = worlds::builtin("office").occupancy().clone();
     let world = World::flat("walled", plan, vec![wall]);
     let (mission, mut link) = (Mission::default(), Direct::new());
-    let error = explore(&mission, &world, &mut link, &mut runs::Unseen)
+    let error = explore(&mission, &world, &mut link, &mut ())
         .expect_err("the robot does not fit into a wall");
     let text = error.to_string();
     assert!(

@@ -1,11 +1,12 @@
-//! The potential over the whole known grid [Prestes02]: p = 1 on obstacles, p = 0 in every
+//! The potential over the whole known grid \[Prestes02\]: p = 1 on obstacles, p = 0 in every
 //! unexplored cell, ∇²p = 0 in between. It is solved for q = 1 − p, so that far cells stay precise.
 //!
 //! A goal holds q = 2^1000. This changes nothing, because the equation is homogeneous, and leaves
 //! 2074 binary orders of magnitude below it in f64.
 //!
-//! Departs from [Prestes02]: the paper relaxes p itself. There, all cells whose 1 − p is below the
-//! rounding of 1 are flat, which in a real building is most of them. The baseline can only gain.
+//! Departs from \[Prestes02\]: the paper relaxes p itself. There, all cells whose 1 − p is below
+//! the rounding of 1 are flat, which in a real building is most of them. The baseline can only
+//! gain.
 //!
 //! With preferences ([`Field::prefer`]) the equation is [Maffei20, eq. 2], |ε| ≤ 2.
 //!

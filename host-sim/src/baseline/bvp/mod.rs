@@ -1,4 +1,4 @@
-//! Baseline *bvp*: the boundary-value problem over the full grid [Prestes02], from which the
+//! Baseline *bvp*: the boundary-value problem over the full grid \[Prestes02\], from which the
 //! methods of all the other papers start.
 //!
 //! Obstacles hold p = 1, unexplored cells p = 0, and the free cells of the whole known grid are
@@ -12,7 +12,7 @@
 //! [`progress::DROP_RADIUS_M`] of it: from then on they are relaxed like free cells. The rule is in
 //! [`progress`].
 //!
-//! Departs from [Prestes02]: the field is solved for 1 − p, to convergence, by multigrid. A fixed
+//! Departs from \[Prestes02\]: the field is solved for 1 − p, to convergence, by multigrid. A fixed
 //! number of sweeps of p leaves it flat far from the frontiers, which ends runs. That failure of
 //! the method cannot occur here. The other failure, indecision between far goals, remains.
 //!

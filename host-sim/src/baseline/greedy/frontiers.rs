@@ -10,7 +10,7 @@
 //!
 //! As in the package, the search ignores inflation, so a door as wide as the minimum size counts;
 //! the global planner decides whether the robot fits through. The path to a frontier ends at most
-//! [`APPROACH_CELLS`] from one of its cells, the goal tolerance of ROS 2's default planner.
+//! 0.5 m from one of its cells, the goal tolerance of ROS 2's default planner.
 //!
 //! Units: metres; the size of a frontier is its number of cells times their side.
 

@@ -7,7 +7,7 @@
 //! beside it passable.
 //!
 //! Invariant: costs are integers, so the same map gives the same path on every machine. Units: a
-//! straight step of 10 cm is [`STRAIGHT`].
+//! straight step of 10 cm is 100.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
