@@ -1,7 +1,7 @@
 //! The bit-parallel thinning against the conditions of `[GuoHall89]`, cell by cell, and against
 //! `OpenCV`.
 
-use fieldline_planner::grid::{PlaneMut, Region, ShapeError};
+use fieldline_planner::grid::{PlaneMut, ShapeError};
 use fieldline_planner::roadmap::{Progress, Thinning, marks_for};
 use fieldline_tests::bitmap::{Map, any_anchors, any_map, discs, noise, rooms};
 use fieldline_tests::random::Random;
@@ -18,7 +18,7 @@ fn thin_around(map: &Map, anchors: &[u32]) -> (Map, u32) {
     let mut words = map.words();
     let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
     let mut thinning = AnyThinning::new();
-    thinning.start(map.shape(), map.shape().whole()).unwrap();
+    thinning.start(map.shape()).unwrap();
     let Progress::Done { left } = thinning.advance(&mut plane, anchors, u32::MAX) else {
         panic!("an endless budget was spent");
     };
@@ -115,7 +115,7 @@ fn instalments_change_nothing() {
         let (expected, work) = thin_around(&map, &anchors);
         let mut words = map.words();
         let mut thinning = AnyThinning::new();
-        thinning.start(map.shape(), map.shape().whole()).unwrap();
+        thinning.start(map.shape()).unwrap();
         let largest = 1 + random.index(200);
         let mut spent = 0;
         loop {
@@ -131,7 +131,6 @@ fn instalments_change_nothing() {
         }
         assert_eq!(spent, work, "the work must not depend on its division");
         assert_eq!(map.with_words(&words), expected);
-        assert!(thinning.is_done());
     }
 }
 
@@ -143,54 +142,13 @@ fn a_new_start_forgets_a_half_done_thinning() {
         let map = any_map(&mut random);
         let mut words = map.words();
         let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
-        thinning.start(map.shape(), map.shape().whole()).unwrap();
+        thinning.start(map.shape()).unwrap();
         if round % 3 == 0 {
             while thinning.advance(&mut plane, &[], 50) == Progress::Pending {}
             assert_eq!(map.with_words(&words), map.thinned(), "map {round}");
         } else {
             let _ = thinning.advance(&mut plane, &[], random.index(400) as u32);
         }
-    }
-}
-
-#[test]
-fn a_region_is_thinned_alone_and_the_rest_stays() {
-    let mut random = Random::new(4);
-    for _ in 0..300 {
-        let map = any_map(&mut random);
-        let shape = map.shape();
-        let (first_row, first_word) = (random.index(map.rows), random.index(shape.words_per_row()));
-        let region = Region {
-            first_row: first_row as u16,
-            rows: random.index(map.rows - first_row + 1) as u16,
-            first_word: first_word as u16,
-            words: 1 + random.index(shape.words_per_row() - first_word) as u16,
-        };
-        let columns = usize::from(region.words) * 32;
-        let mut alone = Map::new(columns, usize::from(region.rows), false);
-        for y in 0..alone.rows {
-            for x in 0..columns {
-                let (from_x, from_y) = (first_word * 32 + x, first_row + y);
-                alone.set(x, y, map.get(from_x as isize, from_y as isize));
-            }
-        }
-        let mut expected = map.clone();
-        let alone = alone.thinned();
-        for y in 0..alone.rows {
-            for x in 0..columns {
-                let value = alone.get(x as isize, y as isize);
-                expected.set(first_word * 32 + x, first_row + y, value);
-            }
-        }
-        let mut words = map.words();
-        let mut plane = PlaneMut::new(shape, &mut words).unwrap();
-        let mut thinning = AnyThinning::new();
-        thinning.start(shape, region).unwrap();
-        assert!(matches!(
-            thinning.advance(&mut plane, &[], u32::MAX),
-            Progress::Done { .. }
-        ));
-        assert_eq!(map.with_words(&words), expected);
     }
 }
 
@@ -234,7 +192,7 @@ fn wide_planes_do_not_wrap() {
         map.rect(columns - 3, 0, 3, 24, true);
         let mut words = map.words();
         let mut thinning = Thinning::<{ marks_for(31 * 24) }>::new();
-        thinning.start(map.shape(), map.shape().whole()).unwrap();
+        thinning.start(map.shape()).unwrap();
         let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
         while thinning.advance(&mut plane, &[], 1000) == Progress::Pending {}
         assert_eq!(map.with_words(&words), map.thinned(), "map {round}");
@@ -248,7 +206,7 @@ fn the_work_follows_the_outline_of_the_map() {
     let mut words = map.words();
     let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
     let mut thinning = Thinning::<100>::new();
-    thinning.start(map.shape(), map.shape().whole()).unwrap();
+    thinning.start(map.shape()).unwrap();
     let Progress::Done { left } = thinning.advance(&mut plane, &[], u32::MAX) else {
         panic!("an endless budget was spent");
     };
@@ -266,11 +224,9 @@ fn the_work_follows_the_outline_of_the_map() {
 }
 
 #[test]
-fn a_region_beyond_the_marks_is_refused() {
+fn a_plane_beyond_the_marks_is_refused() {
     let map = Map::new(64, 257, true);
-    let error = AnyThinning::new()
-        .start(map.shape(), map.shape().whole())
-        .unwrap_err();
+    let error = AnyThinning::new().start(map.shape()).unwrap_err();
     let expected = ShapeError::TooLarge {
         needs: 514,
         has: 512,

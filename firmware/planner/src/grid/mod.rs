@@ -32,7 +32,7 @@ pub(crate) use rolling::Rolling;
 pub(crate) use tile_box::TileBox;
 
 pub use class::{Class, Row};
-pub use shape::{MAX_ROWS, MAX_WORDS_PER_ROW, Region, Shape, ShapeError};
+pub use shape::{MAX_ROWS, MAX_WORDS_PER_ROW, Shape, ShapeError};
 pub use sites::{Site, Sites};
 
 /// A bit plane, read only.

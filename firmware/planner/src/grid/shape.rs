@@ -23,19 +23,6 @@ pub struct Shape {
     more_rows: u16,
 }
 
-/// A rectangle of whole words inside a plane.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Region {
-    /// First row.
-    pub first_row: u16,
-    /// Number of rows.
-    pub rows: u16,
-    /// First word in each row.
-    pub first_word: u16,
-    /// Number of words in each row.
-    pub words: u16,
-}
-
 /// The reason why a plane of this shape is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShapeError {
@@ -136,32 +123,6 @@ impl Shape {
         (site.x as usize) < self.columns() && (site.y as usize) < self.rows()
     }
 
-    /// Returns the region of the whole plane.
-    #[must_use]
-    pub const fn whole(self) -> Region {
-        Region {
-            first_row: 0,
-            rows: self.more_rows + 1,
-            first_word: 0,
-            words: self.more_words + 1,
-        }
-    }
-
-    /// Returns the smallest region that holds both corners; a corner outside moves to the border.
-    #[must_use]
-    pub fn region(self, one: Site, other: Site) -> Region {
-        let row = |y: u16| y.min(self.more_rows);
-        let word = |x: u16| (x / 32).min(self.more_words);
-        let (top, bottom) = (row(one.y.min(other.y)), row(one.y.max(other.y)));
-        let (left, right) = (word(one.x.min(other.x)), word(one.x.max(other.x)));
-        Region {
-            first_row: top,
-            rows: bottom - top + 1,
-            first_word: left,
-            words: right - left + 1,
-        }
-    }
-
     /// Returns the index of a word; `None` outside.
     #[inline]
     pub(crate) fn index(self, row: usize, word: usize) -> Option<usize> {
@@ -179,33 +140,11 @@ impl Shape {
     }
 }
 
-impl Region {
-    /// Returns the number of words in the region.
-    #[must_use]
-    pub const fn size(self) -> usize {
-        self.rows as usize * self.words as usize
-    }
-
-    /// Returns the part of the region that lies in a plane of this shape.
-    #[must_use]
-    pub(crate) fn within(self, shape: Shape) -> Self {
-        let (rows, words) = (shape.more_rows + 1, shape.more_words + 1);
-        let first_row = self.first_row.min(rows);
-        let first_word = self.first_word.min(words);
-        Self {
-            first_row,
-            rows: self.rows.min(rows - first_row),
-            first_word,
-            words: self.words.min(words - first_word),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::string::ToString;
 
-    use super::{Shape, ShapeError, Site};
+    use super::{Shape, ShapeError};
     use crate::grid::Plane;
 
     #[test]
@@ -217,14 +156,5 @@ mod tests {
         let error = Plane::new(shape, &[0; 5]).unwrap_err();
         assert_eq!(error, ShapeError::TooLarge { needs: 6, has: 5 });
         assert!(error.to_string().contains("6 words in memory of 5"));
-    }
-
-    #[test]
-    fn regions_cover_their_corners_in_whole_words() {
-        let shape = Shape::new(4, 50).unwrap();
-        let region = shape.region(Site { x: 70, y: 900 }, Site { x: 31, y: 7 });
-        assert_eq!((region.first_word, region.words), (0, 3));
-        assert_eq!((region.first_row, region.rows), (7, 43));
-        assert_eq!(shape.whole().size(), 200);
     }
 }

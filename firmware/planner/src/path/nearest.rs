@@ -1,5 +1,5 @@
-//! Centre cells, and the one nearest to a place by steps through passable cells
-//! [Jorge15, Algorithm 1, lines 4 and 6: `moveToVoronoi`].
+//! Centre cells, and the one nearest to a place by steps through passable cells [Jorge15, Algorithm
+//! 1, lines 4 and 6: `moveToVoronoi`].
 //!
 //! The nearest one in a straight line may lie behind a wall, so the search goes by steps. It grows
 //! its grid until it finds one. Where the largest grid (24 m) has none, as in the middle of a hall
@@ -53,8 +53,8 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         })
     }
 
-    /// Returns the centre cell nearest to `from` in a straight line that `accepts` holds for, with the
-    /// coarse cells on the line there, without the centre cell itself.
+    /// Returns the centre cell nearest to `from` in a straight line that `accepts` holds for, with
+    /// the coarse cells on the line there, without the centre cell itself.
     pub(crate) fn nearest_in_line<A: Fn(Site) -> bool>(
         &self,
         from: Cell,

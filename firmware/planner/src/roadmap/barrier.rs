@@ -1,13 +1,13 @@
-//! Cells taken out of a plane for a while.
+//! A barrier: cells taken out of a plane for a while.
 
 use heapless::Vec;
 
 use crate::grid::{PlaneMut, Site};
 
-/// A blocker on the wavefront's way: up to `N` cells of the skeleton that are cleared until it is lowered.
+/// A blocker for a wave: up to `N` cells of the skeleton, cleared until it is lowered.
 ///
-/// A wave cannot enter a cell that is not set, so the robot's cell or a wall across the path stops it [Jorge15, steps
-/// 3 and 5]. Invariant: every cell held was set before and is cleared now.
+/// A wave cannot enter a cell that is clear, so the robot's cells or a wall across the path stop it
+/// [Jorge15, steps 3 and 5]. Invariant: every cell of the barrier was set before and is clear now.
 #[derive(Debug)]
 #[must_use = "lower it, or the skeleton stays cut"]
 pub struct Barrier<const N: usize> {
@@ -15,10 +15,10 @@ pub struct Barrier<const N: usize> {
 }
 
 impl<const N: usize> Barrier<N> {
-    /// Clear `cells` in the plane. Those that are clear already, or outside, stay what they are.
+    /// Clears `cells` in the plane. Cells that are clear already, or outside, stay as they are.
     ///
     /// # Errors
-    /// When more than `N` of them are set; the plane is then as it was.
+    /// If more than `N` of them are set. The plane is then as it was.
     pub fn raise(
         plane: &mut PlaneMut<'_>,
         cells: impl IntoIterator<Item = Site>,
@@ -36,7 +36,7 @@ impl<const N: usize> Barrier<N> {
         Ok(barrier)
     }
 
-    /// Set them again.
+    /// Sets the cells again.
     pub fn lower(self, plane: &mut PlaneMut<'_>) {
         for cell in self.cleared {
             plane.set(cell);
@@ -44,13 +44,13 @@ impl<const N: usize> Barrier<N> {
     }
 }
 
-/// More cells than a barrier holds.
+/// The error of more cells than a barrier holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BarrierFull;
 
 impl core::fmt::Display for BarrierFull {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str("a barrier of more skeleton cells than it can hold: take a larger one")
+        f.write_str("a barrier has no room for so many skeleton cells: use a larger one")
     }
 }
 

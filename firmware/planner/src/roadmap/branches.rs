@@ -1,7 +1,7 @@
-//! The branches of a skeleton: what each cell is in it, and the way along a branch.
+//! The branches of a skeleton: the kind of each cell, and the way along a branch.
 //!
-//! Round a cell's eight neighbours, in circular order, the set ones form *runs*. The number of runs (Rutovitz's crossing
-//! number) says what the cell is:
+//! In circular order, the set ones of a cell's eight neighbours form *runs*. The number of runs,
+//! Rutovitz's crossing number, gives the cell's kind:
 //!
 //! ```text
 //! runs   0             1      2           3, 4
@@ -9,30 +9,32 @@
 //!        deep inside
 //! ```
 //!
-//! A branch is a chain of passages; it ends at an end or at a junction. Nothing is stored: a word's 32 cells are
-//! judged from three rows at a time, a branch is walked cell by cell.
+//! A branch is a chain of passages; it ends at an end or at a junction. Nothing is stored. The 32
+//! cells of a word are judged together from three rows; a branch is followed cell by cell.
 //!
-//! Units: sites of the plane, 8-connected. The corner of a spot two cells thick has one run too, and counts as an end;
-//! thinning leaves such spots only beside anchors.
+//! The corner of a spot two cells thick has one run as well, and counts as an end. Thinning leaves
+//! such spots only beside anchors.
 //!
-//! Rutovitz: D. Rutovitz, "Pattern recognition", Journal of the Royal Statistical Society A 129(4), 1966.
+//! Units: sites of the plane, 8-connected.
+//!
+//! D. Rutovitz, "Pattern recognition", Journal of the Royal Statistical Society A 129(4), 1966.
 
 use crate::grid::{Plane, Site};
 
-/// What a set cell is.
+/// The kind of a set cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// No neighbour is set, or all are.
     Alone,
     /// The last cell of a branch.
     End,
-    /// Between two others.
+    /// It lies between two others.
     Passage,
-    /// Where three or four ways meet.
+    /// Three or four ways meet in it.
     Junction,
 }
 
-/// What the set cells of a word are; those in none of the three are [`Kind::Alone`].
+/// The kinds of the set cells of a word. Those in none of the three are [`Kind::Alone`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Kinds {
     /// The [`Kind::End`]s.
@@ -43,7 +45,7 @@ pub struct Kinds {
     pub junctions: u32,
 }
 
-/// What the 32 cells of a word are.
+/// Returns the kinds of the 32 cells of a word.
 #[must_use]
 pub fn kinds(plane: Plane<'_>, row: usize, word: usize) -> Kinds {
     let here = plane.word(row, word);
@@ -58,7 +60,7 @@ pub fn kinds(plane: Plane<'_>, row: usize, word: usize) -> Kinds {
     }
 }
 
-/// What a cell is; `None` if it is not set.
+/// Returns the kind of a cell; `None` if it is not set.
 #[must_use]
 pub fn kind(plane: Plane<'_>, site: Site) -> Option<Kind> {
     if !plane.get(site) {
@@ -77,7 +79,7 @@ pub fn kind(plane: Plane<'_>, site: Site) -> Option<Kind> {
     })
 }
 
-/// The neighbours of a word's cells: north, north-east, and so on round.
+/// Returns the neighbours of a word's cells: north, north-east, and so on round.
 fn around(plane: Plane<'_>, row: usize, word: usize) -> [u32; 8] {
     let three = |row: usize| {
         let beside = |word: usize| plane.word(row, word);
@@ -96,7 +98,7 @@ fn around(plane: Plane<'_>, row: usize, word: usize) -> [u32; 8] {
     ]
 }
 
-/// Where round each cell a run of set neighbours begins.
+/// Returns for each direction the cells for which a run of set neighbours begins there.
 fn runs_begin(around: &[u32; 8]) -> impl Iterator<Item = u32> + '_ {
     let before = around.iter().cycle().skip(7);
     around
@@ -105,7 +107,7 @@ fn runs_begin(around: &[u32; 8]) -> impl Iterator<Item = u32> + '_ {
         .map(|(here, before)| here & !before)
 }
 
-/// How many words have each bit, up to four: as ones, twos and fours.
+/// Counts the words that have each bit, up to four: returns ones, twos and fours.
 fn count(words: impl Iterator<Item = u32>) -> (u32, u32, u32) {
     words.fold((0, 0, 0), |(ones, twos, fours), word| {
         let carry = ones & word;
@@ -113,19 +115,20 @@ fn count(words: impl Iterator<Item = u32>) -> (u32, u32, u32) {
     })
 }
 
-/// The cells of a branch, from the one after its first cell to the end or junction that it leads to; see [`Branch::new`].
+/// The cells of a branch, from the one after its first cell to the end or junction that it leads
+/// to; see [`Branch::new`].
 #[derive(Clone, Debug)]
 pub struct Branch<'a> {
     plane: Plane<'a>,
     first: Site,
     before: Site,
     next: Option<Site>,
-    /// Cells that may still come: a thick spot has no way through it, but rounds.
+    /// Maximum number of cells to come: in a thick spot the way may go round for ever.
     left: usize,
 }
 
 impl<'a> Branch<'a> {
-    /// The branch that leaves `first` by its neighbour `next`.
+    /// Returns the branch that leaves `first` by its neighbour `next`.
     #[must_use]
     pub fn new(plane: Plane<'a>, first: Site, next: Site) -> Self {
         Self {
@@ -137,12 +140,13 @@ impl<'a> Branch<'a> {
         }
     }
 
-    /// The neighbour of a passage that lies across from `before`: of its other run, a side rather than a corner.
+    /// Returns the neighbour of a passage across from `before`: in its other run, a side before a
+    /// corner.
     fn across(&self, here: Site, before: Site) -> Option<Site> {
         let ring = |k: usize| RING.get(k % 8).and_then(|&(dx, dy)| here.offset(dx, dy));
         let is_set = |k: usize| ring(k).is_some_and(|near| self.plane.get(near));
         let from = (0..8).find(|&k| ring(k) == Some(before))?;
-        // Out of the run that `before` is in, then as far as the next run goes.
+        // Leave the run that `before` is in, then find the next run.
         let gap = (from..from + 8).find(|&k| !is_set(k))?;
         let run = (gap..gap + 8).find(|&k| is_set(k))?;
         let end = (run..run + 8).find(|&k| !is_set(k))?;
@@ -150,7 +154,7 @@ impl<'a> Branch<'a> {
     }
 }
 
-/// Steps to the neighbours round a cell, from the north on: sides have even places.
+/// Steps to the neighbours round a cell, from the north on. Sides have even places.
 const RING: [(i8, i8); 8] = [
     (0, -1),
     (1, -1),
@@ -177,14 +181,16 @@ impl Iterator for Branch<'_> {
     }
 }
 
-/// Ways that leave a cell, at most.
+/// Maximum number of ways that leave a cell.
 pub const MOST_WAYS: usize = 8;
 
-/// The cells two steps from a cell through which the skeleton leaves its surroundings, one for each way.
+/// Returns the cells two steps from a cell through which the skeleton leaves its surroundings, one
+/// for each way.
 ///
-/// Taking the 3 × 3 cells around it out of the skeleton blocks all of these ways, also where the skeleton is a staircase or two
-/// cells thick, and a wave passes a single cell by. So a cell's *surroundings* block, and what remains of each way
-/// begins here. Cells that touch each other belong to one way.
+/// A wave passes by a single blocked cell where the skeleton is a staircase or two cells thick. So
+/// a blocker takes the 3 × 3 cells around it out, its *surroundings*; that blocks all ways, and
+/// what remains of each begins at one of these cells. Cells that touch each other belong to one
+/// way.
 #[must_use]
 pub fn ways(plane: Plane<'_>, site: Site) -> heapless::Vec<Site, MOST_WAYS> {
     let ring = |k: usize| {
@@ -196,9 +202,9 @@ pub fn ways(plane: Plane<'_>, site: Site) -> heapless::Vec<Site, MOST_WAYS> {
         |k: usize| ring(k).is_some_and(|far| plane.get(far) && touches_inside(plane, site, far));
     let mut ways = heapless::Vec::new();
     let mut last: Option<usize> = None;
-    // Begin behind a gap, so that no way is counted at both ends of the round.
+    // Begin after a gap, so that no way is counted at both ends of the round.
     let Some(gap) = (0..16).find(|&k| !leads_out(k) && !leads_out(k + 15)) else {
-        // It is set all round: no way is apart from another.
+        // The ring is set all round: no way is apart from another.
         return ways;
     };
     for k in gap + 1..gap + 16 {
@@ -209,7 +215,7 @@ pub fn ways(plane: Plane<'_>, site: Site) -> heapless::Vec<Site, MOST_WAYS> {
         let joined =
             last.is_some_and(|last| k - last == 1 || (k - last == 2 && (last + 1) % 4 == CORNER));
         if !joined && let Some(far) = ring(k) {
-            // Of sixteen cells, no more than eight are apart.
+            // At most eight of sixteen cells are apart.
             let _ = ways.push(far);
         }
         last = Some(k);
@@ -217,18 +223,18 @@ pub fn ways(plane: Plane<'_>, site: Site) -> heapless::Vec<Site, MOST_WAYS> {
     ways
 }
 
-/// The cells of [`ways`]' surroundings: nine, the cell itself first.
+/// Returns the nine cells of a cell's surroundings, the cell itself first; see [`ways`].
 pub fn surroundings(site: Site) -> impl Iterator<Item = Site> {
     core::iter::once(site).chain(site.neighbours())
 }
 
-/// Whether a cell two steps away touches a set neighbour of the cell.
+/// Returns true if a cell two steps away touches a set neighbour of the cell.
 fn touches_inside(plane: Plane<'_>, site: Site, far: Site) -> bool {
     let near = |a: Site, b: Site| a.x.abs_diff(b.x) <= 1 && a.y.abs_diff(b.y) <= 1;
     plane.neighbours(far).any(|inside| near(inside, site))
 }
 
-/// Steps to the cells at distance two, round from the north.
+/// Steps to the cells at distance two, round from the north on.
 const FAR_RING: [(i8, i8); 16] = [
     (0, -2),
     (1, -2),
@@ -247,7 +253,7 @@ const FAR_RING: [(i8, i8); 16] = [
     (-2, -2),
     (-1, -2),
 ];
-/// Places of the corners in it, modulo 4.
+/// The places of the corners in [`FAR_RING`], modulo 4.
 const CORNER: usize = 2;
 
 #[cfg(test)]
@@ -267,7 +273,7 @@ mod tests {
         (shape, words)
     }
 
-    /// The picture with what each cell is: `e`nd, `-` passage, `x` junction, `o` alone.
+    /// Draws the kind of each cell: `e`nd, `-` passage, `x` junction, `o` alone.
     fn kinds_of(picture: &str) -> Vec<String> {
         let (shape, words) = plane(picture);
         let plane = Plane::new(shape, &words).unwrap();

@@ -1,7 +1,7 @@
-//! From map cells of 10 cm to coarse cells of 20 cm, and the border between the explored and the unexplored.
+//! From map cells of 10 cm to coarse cells of 20 cm, and the border of the explored.
 //!
-//! A coarse cell is passable if any of its four map cells is; it is unexplored if two or more of them were never
-//! measured, else explored.
+//! A coarse cell is passable if any of its four map cells is. It is unexplored if two or more of
+//! them were never measured, else explored.
 //!
 //! Units: bits; bit k of a word is column k.
 
@@ -9,7 +9,8 @@ use crate::grid::bits::even;
 use crate::grid::{MAX_WORDS_PER_ROW, at};
 use crate::roadmap::configuration_space::Strip;
 
-/// Two rows of map cells as one row of coarse cells: the passable ones, explored and unexplored.
+/// Returns the passable coarse cells of two rows of map cells: the explored and the unexplored
+/// ones.
 pub(super) fn coarse(lower: Strip, upper: Strip) -> [u16; 2] {
     let (one, other) = (lower.unknown, upper.unknown);
     let one_in_each = (one | one >> 1) & (other | other >> 1);
@@ -19,69 +20,27 @@ pub(super) fn coarse(lower: Strip, upper: Strip) -> [u16; 2] {
     [even(passable & !unknown), even(passable & unknown)]
 }
 
-/// Where the explored meets the unexplored, and which side of it counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Border {
-    /// Explored cells with an unexplored cell at a side.
-    Explored,
-    /// Unexplored cells with an explored cell at a side or a corner: a skeleton that leaves the explored, be it by a
-    /// corner, enters one of them.
-    Unexplored,
-}
-
-/// Turn `marks` from the unexplored passable cells into those of the border, in place; `cells` holds at least the explored
-/// passable ones.
-pub(super) fn mark_border(border: Border, cells: &[u32], marks: &mut [u32], per_row: usize) {
-    let explored = |mark: u32, index| at(cells, index) & !mark;
-    match border {
-        Border::Explored => {
-            touching::<false>(marks, per_row, |mark, index| (mark, explored(mark, index)));
-        }
-        Border::Unexplored => {
-            touching::<true>(marks, per_row, |mark, index| (explored(mark, index), mark));
-        }
-    }
-}
-
-/// Replace every mark by the cells that touch one of the sources: `split` says of a mark and its index, as they were,
-/// which cells are sources and which may touch them. `CORNERS` count as touching too.
-fn touching<const CORNERS: bool>(
-    marks: &mut [u32],
-    per_row: usize,
-    split: impl Fn(u32, usize) -> (u32, u32),
-) {
-    // The sources of the row below, whose marks are replaced already.
+/// Replaces the unexplored passable cells in `marks` by the border: the explored ones with an
+/// unexplored cell at a side. `cells` holds at least the explored passable cells.
+pub(super) fn mark_border(cells: &[u32], marks: &mut [u32], per_row: usize) {
+    // The unexplored cells of the row below, whose marks are replaced already.
     let mut below = [0u32; MAX_WORDS_PER_ROW];
     for start in (0..marks.len()).step_by(per_row.max(1)) {
-        let source = |marks: &[u32], index: usize| split(at(marks, index), index).0;
-        // Three rows of sources at a word: the middle one, and all together.
-        let column = |marks: &[u32], below: &[u32], word: usize| {
-            if word == per_row {
-                return [0; 2];
-            }
-            let here = source(marks, start + word);
-            let beyond = start + word + per_row;
-            let above = if beyond < marks.len() {
-                source(marks, beyond)
+        let mut before = 0;
+        for (word, below) in below.iter_mut().enumerate().take(per_row) {
+            let index = start + word;
+            let here = at(marks, index);
+            let after = if word + 1 < per_row {
+                at(marks, index + 1)
             } else {
                 0
             };
-            [here, here | above | at(below, word)]
-        };
-        let mut before = [0; 2];
-        let mut here = column(marks, &below, 0);
-        for word in 0..per_row {
-            let after = column(marks, &below, word + 1);
-            let sides = |rows: [u32; 2]| if CORNERS { rows[1] } else { rows[0] };
-            let [west, middle, east] = [before, here, after].map(sides);
-            let beside = here[1] | middle << 1 | west >> 31 | middle >> 1 | east << 31;
-            if let Some(mark) = marks.get_mut(start + word) {
-                *mark = beside & split(*mark, start + word).1;
+            let sides = here << 1 | before >> 31 | here >> 1 | after << 31;
+            let beside = sides | *below | at(marks, index + per_row);
+            if let Some(mark) = marks.get_mut(index) {
+                *mark = beside & at(cells, index) & !here;
             }
-            if let Some(below) = below.get_mut(word) {
-                *below = here[0];
-            }
-            (before, here) = (here, after);
+            (before, *below) = (here, here);
         }
     }
 }
@@ -91,7 +50,7 @@ mod tests {
     use std::string::String;
     use std::vec::Vec;
 
-    use super::{Border, coarse, mark_border};
+    use super::{coarse, mark_border};
     use crate::roadmap::configuration_space::Strip;
 
     struct Random(u64);
@@ -126,8 +85,8 @@ mod tests {
         }
     }
 
-    /// Pictures of `.` explored, `?` unexplored, `#` obstacle as cells and marks of one word a row.
-    fn border(border: Border, picture: &str) -> String {
+    /// Marks the border in a picture of `.` explored, `?` unexplored, `#` obstacle, one word a row.
+    fn border(picture: &str) -> String {
         let rows: Vec<&str> = picture.split_whitespace().collect();
         let bits = |of: &str| -> Vec<u32> {
             let row = |row: &&str| {
@@ -139,7 +98,7 @@ mod tests {
             rows.iter().map(row).collect()
         };
         let mut marks = bits("?");
-        mark_border(border, &bits(".?"), &mut marks, 1);
+        mark_border(&bits(".?"), &mut marks, 1);
         let mut text = String::new();
         for (row, mark) in rows.iter().zip(marks) {
             for (k, c) in row.chars().enumerate() {
@@ -151,16 +110,9 @@ mod tests {
     }
 
     #[test]
-    fn the_border_is_on_the_explored_side_or_on_the_unexplored_one() {
+    fn the_border_is_on_the_explored_side() {
         let picture = "..... ..?.. .#??? ..##?";
-        assert_eq!(
-            border(Border::Explored, picture),
-            "..*.. .*?** .#??? ..##? "
-        );
-        assert_eq!(
-            border(Border::Unexplored, picture),
-            "..... ..*.. .#*** ..##? "
-        );
+        assert_eq!(border(picture), "..*.. .*?** .#??? ..##? ");
     }
 
     #[test]
@@ -176,40 +128,20 @@ mod tests {
             let explored: Vec<u32> = (open.iter().zip(&unexplored))
                 .map(|(open, unexplored)| open & !unexplored)
                 .collect();
-            for (border, cells) in [
-                (Border::Explored, &explored),
-                (Border::Explored, &open),
-                (Border::Unexplored, &open),
-            ] {
+            for cells in [&explored, &open] {
                 let mut marks = unexplored.clone();
-                mark_border(border, cells, &mut marks, per_row);
+                mark_border(cells, &mut marks, per_row);
                 let at = |words: &[u32], x: usize, y: usize| {
                     x < columns && y < rows && words[y * per_row + x / 32] >> (x % 32) & 1 == 1
                 };
                 for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))) {
                     let is_unexplored = |x, y| at(&unexplored, x, y);
                     let is_explored = |x, y| at(&explored, x, y);
-                    let near = [
-                        (0, 1),
-                        (2, 1),
-                        (1, 0),
-                        (1, 2),
-                        (0, 0),
-                        (0, 2),
-                        (2, 0),
-                        (2, 2),
-                    ]
-                    .map(|(dx, dy)| ((x + dx).wrapping_sub(1), (y + dy).wrapping_sub(1)));
-                    let expected = if border == Border::Explored {
-                        is_explored(x, y) && near[..4].iter().any(|&(x, y)| is_unexplored(x, y))
-                    } else {
-                        is_unexplored(x, y) && near.iter().any(|&(x, y)| is_explored(x, y))
-                    };
-                    assert_eq!(
-                        at(&marks, x, y),
-                        expected,
-                        "{border:?} {columns} x {rows} at {x} {y}"
-                    );
+                    let sides = [(0, 1), (2, 1), (1, 0), (1, 2)]
+                        .map(|(dx, dy)| ((x + dx).wrapping_sub(1), (y + dy).wrapping_sub(1)));
+                    let expected =
+                        is_explored(x, y) && sides.iter().any(|&(x, y)| is_unexplored(x, y));
+                    assert_eq!(at(&marks, x, y), expected, "{columns} x {rows} at {x} {y}");
                 }
             }
         }

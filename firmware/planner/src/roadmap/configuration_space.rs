@@ -1,8 +1,12 @@
-//! Where the robot fits: cells whose centre is at least its radius away from the centre of every obstacle cell.
+//! The configuration space: cells whose centre is at least the robot's radius away from the centre
+//! of every obstacle cell.
 //!
-//! A cell is *passable* if no obstacle cell lies in the disc of the robot's radius around it; unknown cells obstruct
-//! nothing. Everything that plans (skeleton, window) works on passable cells, so a gap the robot does not fit through is no
-//! way, and a door of 0.8 m keeps a lane of two or three cells. Where the robot has been is passable too. Bit-parallel: 32 columns at a time over rows of 64 bits.
+//! A cell is *passable* if no obstacle cell lies in the disc of the robot's radius around it, or if
+//! the robot has been there; unknown cells obstruct nothing. All planning (skeleton, local grid)
+//! works on passable cells. So a gap that the robot does not fit through is no way, and a door of
+//! 0.8 m keeps a lane of two or three cells.
+//!
+//! Bit-parallel: 32 columns at a time over rows of 64 bits.
 //!
 //! Units: map cells.
 
@@ -12,28 +16,30 @@ use crate::map::rows::{HALO, Line};
 use crate::map::{Class, Tiles};
 use crate::math;
 
-/// Greatest radius, cells; less than a line's halo.
+/// Greatest radius of a footprint, cells; less than a line's halo.
 pub const MOST_RADIUS: usize = 6;
-/// Rows kept at a time: those of a disc, rounded up so that a row's place is a mask away.
+/// Rows kept at a time: those of a disc, rounded up to a power of two.
 const RING: usize = (2 * MOST_RADIUS + 1).next_power_of_two();
 
-/// Rows of the map around the present one.
+/// The rows of the map around the present one.
 #[derive(Debug, Default)]
 struct Ring([Line; RING]);
 
-/// A disc as half widths: row dy covers columns −h..=h.
+/// The robot's footprint for planning: a disc. Its row dy covers the columns −h..=h.
 #[derive(Clone, Copy, Debug)]
 pub struct Footprint {
+    /// The half widths h, by |dy|.
     half_widths: [Option<u8>; MOST_RADIUS + 1],
     reach: i32,
 }
 
 impl Footprint {
-    /// The cells whose centre is nearer than `radius_m`, at most [`MOST_RADIUS`] cells.
+    /// Makes the disc of the cells whose centres are nearer than `radius_m`, at most
+    /// [`MOST_RADIUS`] cells.
     #[must_use]
     pub fn new(radius_m: f32) -> Self {
         let radius = (radius_m / CELL_M).clamp(0.5, MOST_RADIUS as f32);
-        // A hair is taken off so that 0.30 m is three cells and not a rounding error more.
+        // A little less, so that 0.30 m is three cells and not a rounding error more.
         let radius2 = radius * radius - 1e-3;
         let mut half_widths = [None; MOST_RADIUS + 1];
         let mut reach = 0;
@@ -47,13 +53,13 @@ impl Footprint {
         Self { half_widths, reach }
     }
 
-    /// How far up and down it reaches, cells.
+    /// Returns how far the disc reaches up and down, cells.
     #[must_use]
     pub const fn reach(&self) -> i32 {
         self.reach
     }
 
-    /// Half its width so many cells up or down; `None` beyond it.
+    /// Returns half the disc's width `dy` cells up or down; `None` beyond it.
     #[must_use]
     pub fn half_width(&self, dy: i32) -> Option<i32> {
         let row = usize::try_from(dy.abs()).ok()?;
@@ -72,12 +78,13 @@ impl Ring {
         *wrapped_mut(&mut self.0, row as usize) = line;
     }
 
-    /// The cells of a row whose disc holds an obstacle. From the middle of the disc outwards its rows are less and less
-    /// wide: what was found so far is widened by the difference, and the rest at the end.
+    /// Returns the cells of a row whose disc holds an obstacle. The disc's rows get narrower from
+    /// its middle outwards: the cells found so far are widened by the difference, and by the rest
+    /// at the end.
     #[inline(always)]
-    fn blocked(&self, row: i32, disc: &Footprint) -> u64 {
+    fn blocked(&self, row: i32, footprint: &Footprint) -> u64 {
         let (mut found, mut half) = (0, 0);
-        for (dy, &width) in (0..=disc.reach).zip(&disc.half_widths) {
+        for (dy, &width) in (0..=footprint.reach).zip(&footprint.half_widths) {
             let width = width.unwrap_or(0);
             found = widen(found, half.max(width) - width);
             half = width;
@@ -95,34 +102,34 @@ fn widen(row: u64, by: u8) -> u64 {
     (0..by).fold(row, |wide, _| wide | wide << 1 | wide >> 1)
 }
 
-/// 32 cells of a row.
+/// The classes of 32 cells of a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Strip {
-    /// The robot's centre may be here.
+    /// The robot's centre may be in the cell.
     pub passable: u32,
-    /// Never measured.
+    /// The cell was never measured.
     pub unknown: u32,
-    /// An obstacle of either sign.
+    /// The cell is an obstacle or a drop.
     pub obstacle: u32,
 }
 
-/// Visit rows `y..y + height` of the 32 columns from `x` on, in order.
+/// Calls `visit` with the rows `y..y + height` of the 32 columns from `x` on, in order.
 pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
-    disc: &Footprint,
+    footprint: &Footprint,
     (x, y): (i32, i32),
     height: i32,
     mut visit: impl FnMut(i32, Strip),
 ) {
     let mut reader = tiles.reader(x - HALO);
     let mut ring = Ring::default();
-    for row in y - disc.reach..y + disc.reach {
+    for row in y - footprint.reach..y + footprint.reach {
         ring.put(row, reader.line(row));
     }
     for row in y..y + height {
-        ring.put(row + disc.reach, reader.line(row + disc.reach));
+        ring.put(row + footprint.reach, reader.line(row + footprint.reach));
         let here = ring.get(row);
-        let blocked = (ring.blocked(row, disc) >> HALO) as u32;
+        let blocked = (ring.blocked(row, footprint) >> HALO) as u32;
         visit(
             row,
             Strip {
@@ -134,18 +141,18 @@ pub fn for_each_strip<const TILES: usize, const SLOTS: usize>(
     }
 }
 
-/// Whether the robot's centre may be in this cell; the slow twin of [`for_each_strip`].
+/// Returns true if the robot's centre may be in a cell: [`for_each_strip`] for one cell, slower.
 pub fn is_passable<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
-    disc: &Footprint,
+    footprint: &Footprint,
     cell: crate::geometry::Cell,
 ) -> bool {
     let stands = |cell| matches!(tiles.class(cell), Class::Obstacle | Class::Negative);
     if tiles.row(cell.x, cell.y).visited() & 1 == 1 {
         return !stands(cell);
     }
-    (-disc.reach..=disc.reach).all(|dy| {
-        let half = disc
+    (-footprint.reach..=footprint.reach).all(|dy| {
+        let half = footprint
             .half_widths
             .get(dy.unsigned_abs() as usize)
             .copied()
@@ -191,14 +198,14 @@ mod tests {
     fn strips_agree_with_the_cell_by_cell_twin() {
         let tiles = scattered();
         for radius in [0.1, 0.15, 0.2, 0.3, 0.35, 0.45] {
-            let disc = Footprint::new(radius);
+            let footprint = Footprint::new(radius);
             for x in [-40, -7, 32] {
-                for_each_strip(&tiles, &disc, (x, -31), 62, |y, strip| {
+                for_each_strip(&tiles, &footprint, (x, -31), 62, |y, strip| {
                     for k in 0..32 {
                         let cell = Cell { x: x + k, y };
                         assert_eq!(
                             strip.passable >> k & 1 == 1,
-                            is_passable(&tiles, &disc, cell),
+                            is_passable(&tiles, &footprint, cell),
                             "radius {radius}, {cell:?}"
                         );
                         assert_eq!(
@@ -211,7 +218,7 @@ mod tests {
         }
     }
 
-    /// A gap of n free cells between two walls leaves n − 4 lanes at the 3-AT's radius.
+    /// With the 3-AT's radius, a gap of n free cells between two walls leaves n − 4 lanes.
     #[test]
     fn doors_of_five_cells_and_more_stay_open() {
         for gap in 3..9 {

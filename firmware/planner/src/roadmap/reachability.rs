@@ -1,13 +1,13 @@
 //! Reachability: the explored passable cells, flooded from where the robot stands.
 //!
 //! ```text
-//! open    = coarse cells with a passable, free map cell     (at most one word for two tiles and row)
+//! open    = coarse cells with a passable, free map cell
 //! reached = the smallest set of open cells near the robot, or beside a reached cell at a side
 //! ```
 //!
 //! The flood runs in lent memory, and in instalments if that keeps its values. Loading a tile takes
-//! some 10,000 instructions, a sweep some 100,000. The flood needs a sweep for each time that its way
-//! turns from up to down.
+//! some 10,000 instructions, a sweep some 100,000. The flood needs a sweep for each time that its
+//! way turns from up to down.
 //!
 //! Units: coarse cells of 20 cm, 16 × 16 in a tile.
 
@@ -19,12 +19,12 @@ use crate::roadmap::configuration_space::{Footprint, for_each_strip};
 
 /// Side of a tile, coarse cells.
 const SIDE: usize = 16;
-/// Distance from the robot's cell at which the flood starts, coarse cells: the robot may stand nearer
-/// to an obstacle than its radius.
+/// Distance from the robot's cell at which the flood starts, coarse cells: the robot may stand
+/// nearer to an obstacle than its radius.
 const START_REACH: i32 = 2;
 
-/// Returns the words of memory that a flood needs in a box of `slots` tiles: two planes, with a word
-/// for two tiles side by side.
+/// Returns the words of memory that a flood needs in a box of `slots` tiles: two planes, with a
+/// word for two tiles side by side.
 #[must_use]
 pub const fn scratch_words(slots: usize) -> usize {
     SIDE * slots
@@ -130,8 +130,8 @@ impl<'a> Reachability<'a> {
         any != 0
     }
 
-    /// Spreads once up and once down the rows. Returns true if that reached something new; if not, the
-    /// flood is over.
+    /// Spreads once up and once down the rows. Returns true if that reached something new; if not,
+    /// the flood is over.
     pub(crate) fn sweep(&mut self) -> bool {
         let rows = self.open.len() / self.per_row.max(1);
         let mut changed = false;
@@ -144,8 +144,8 @@ impl<'a> Reachability<'a> {
         changed
     }
 
-    /// Reaches the open cells of a row beside reached ones of the row `beside`, and the runs that they
-    /// are in. Returns true if any were new.
+    /// Reaches the open cells of a row beside reached ones of the row `beside`, and the runs that
+    /// they are in. Returns true if any were new.
     fn spread(&mut self, row: usize, beside: Option<usize>) -> bool {
         let mut changed = false;
         let mut carry = false;
@@ -161,9 +161,9 @@ impl<'a> Reachability<'a> {
         changed
     }
 
-    /// Fills a word's runs from their reached cells and `seeds` towards the high end, in the order of
-    /// bits that `turn` gives. `carry` is true before if the run goes on from a reached cell of the
-    /// word before, and after if it goes on into the next word. Returns true if a cell was new.
+    /// Fills a word's runs from their reached cells and `seeds` towards the high end, in the order
+    /// of bits that `turn` gives. `carry` is true before if the run goes on from a reached cell of
+    /// the word before, and after if it goes on into the next word. Returns true if a cell was new.
     fn fill(
         &mut self,
         index: usize,

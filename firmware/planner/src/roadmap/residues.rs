@@ -1,18 +1,20 @@
 //! Distances modulo 3, two bits a cell, and the way down them.
 //!
-//! Neighbouring reached cells differ by at most one step, so the residue of a neighbour's distance tells whether it is
-//! nearer, as far, or farther: two bits hold what a descent needs, however long the way. 3 means not reached.
+//! The distances of neighbouring reached cells differ by at most one step. So the residue of a
+//! neighbour's distance says if it is nearer, as far, or farther, and two bits are enough for a
+//! descent of any length. 3 means not reached.
 //!
 //! Units: steps along the plane, a diagonal one counting as one.
 
 use crate::grid::{Shape, ShapeError, Site};
 
-/// The residue of a cell not reached.
+/// The residue of a cell that was not reached.
 const UNREACHED: u8 = 3;
 
-/// Distances modulo 3 of a plane's cells.
+/// The distances of a plane's cells modulo 3.
 ///
-/// Word i of the plane has the pair i: low bits, then high bits. Invariant: there are as many pairs as words.
+/// Word i of the plane has the pair i: low bits, then high bits. Invariant: there are as many pairs
+/// as words.
 #[derive(Debug)]
 pub struct Residues<'a> {
     shape: Shape,
@@ -20,10 +22,10 @@ pub struct Residues<'a> {
 }
 
 impl<'a> Residues<'a> {
-    /// Residues over the first pairs of `pairs`, which keep their values.
+    /// Makes residues over the first pairs of `pairs`, which keep their values.
     ///
     /// # Errors
-    /// When there are fewer pairs than the shape has words.
+    /// If there are fewer pairs than the shape has words.
     pub fn new(shape: Shape, pairs: &'a mut [[u32; 2]]) -> Result<Self, ShapeError> {
         let (needs, has) = (shape.words(), pairs.len());
         let pairs = pairs
@@ -32,13 +34,13 @@ impl<'a> Residues<'a> {
         Ok(Self { shape, pairs })
     }
 
-    /// Rows and words.
+    /// Returns the shape of the plane.
     #[must_use]
     pub const fn shape(&self) -> Shape {
         self.shape
     }
 
-    /// The distance modulo 3, or `None` where the wave did not come.
+    /// Returns the distance modulo 3; `None` if the wave did not reach the cell.
     #[must_use]
     pub fn get(&self, site: Site) -> Option<u8> {
         let index = self
@@ -50,8 +52,9 @@ impl<'a> Residues<'a> {
         (residue as u8 != UNREACHED).then_some(residue as u8)
     }
 
-    /// The neighbour one step nearer to the wave's seeds: of several the first in the order of
-    /// [`Site::neighbours`], which prefers sides to corners. `None` at a seed and where the wave did not come.
+    /// Returns the neighbour one step nearer to the wave's seeds: of several the first in the order
+    /// of [`Site::neighbours`], which has sides before corners. `None` at a seed, and if the wave
+    /// did not reach the cell.
     #[must_use]
     pub fn descend(&self, from: Site) -> Option<Site> {
         let nearer = (self.get(from)? + 2) % 3;
@@ -59,7 +62,7 @@ impl<'a> Residues<'a> {
             .find(|&near| self.get(near) == Some(nearer))
     }
 
-    /// The way from a cell down to a seed, without the cell itself.
+    /// Returns the way from a cell down to a seed, without the cell itself.
     #[must_use]
     pub fn descent(&self, from: Site) -> Descent<'_> {
         Descent {
@@ -68,25 +71,25 @@ impl<'a> Residues<'a> {
         }
     }
 
-    /// Nothing is reached.
+    /// Marks all cells as not reached.
     pub(super) fn clear(&mut self) {
         self.pairs.fill([u32::MAX; 2]);
     }
 
-    /// Low and high bits of a word; unreached outside.
+    /// Returns the low and high bits of a word; outside, those of cells not reached.
     #[inline(always)]
     pub(super) fn pair(&self, index: usize) -> [u32; 2] {
         self.pairs.get(index).copied().unwrap_or([u32::MAX; 2])
     }
 
-    /// The cells of a word that are not reached.
+    /// Returns the cells of a word that are not reached.
     #[inline(always)]
     pub(super) fn unreached(&self, index: usize) -> u32 {
         let [low, high] = self.pair(index);
         low & high
     }
 
-    /// Give the unreached cells of `mask` a residue.
+    /// Gives the cells of `mask` that are not reached a residue.
     #[inline(always)]
     pub(super) fn reach(&mut self, index: usize, mask: u32, residue: Residue) {
         if let Some([low, high]) = self.pairs.get_mut(index) {
@@ -95,7 +98,7 @@ impl<'a> Residues<'a> {
         }
     }
 
-    /// The cells of a word with a residue.
+    /// Returns the cells of a word with a residue.
     #[inline(always)]
     pub(super) fn with(&self, index: usize, residue: Residue) -> u32 {
         let [low, high] = self.pair(index);
@@ -103,7 +106,7 @@ impl<'a> Residues<'a> {
     }
 }
 
-/// A residue 0, 1 or 2, as the bits it clears from "unreached".
+/// A residue 0, 1 or 2, as the bits that it clears in the residue of a cell not reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Residue {
     clears_low: u32,
@@ -116,7 +119,7 @@ impl Residue {
         clears_high: u32::MAX,
     };
 
-    /// The residue of one step more.
+    /// Returns the residue of one step more.
     pub(super) const fn next(self) -> Self {
         // 0 = (0, 0) → 1 = (1, 0) → 2 = (0, 1) → 0.
         Self {
@@ -126,7 +129,7 @@ impl Residue {
     }
 }
 
-/// The cells of a way down; see [`Residues::descent`]. As many items as the start has steps to a seed.
+/// The cells of a way down, see [`Residues::descent`]: as many as the start has steps to a seed.
 #[derive(Clone, Debug)]
 pub struct Descent<'d> {
     residues: &'d Residues<'d>,

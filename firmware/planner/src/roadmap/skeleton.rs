@@ -1,8 +1,14 @@
-//! The topology: centre cells of the passable space at 20 cm, made anew in instalments.
+//! The skeleton: centre cells of the passable space at 20 cm, computed anew in instalments.
 //!
-//! A round loads the map's passable cells into a plane of half the resolution, thins it to the skeleton under a work
-//! budget, and is then published: [`Skeleton::skeleton`] and the frontier cells on it. [`Space`] says which cells are
-//! thinned, and what a frontier is.
+//! A round loads the map's passable cells into a plane of half the resolution, thins it under a
+//! work budget, and publishes the result: [`Skeleton::skeleton`], and the frontier cells on it.
+//! [`Space`] says which cells are thinned.
+//!
+//! The frontier cells (explored, with an unexplored cell at a side) are *anchors*: the thinning
+//! keeps them, so every frontier that the robot fits through is on the skeleton and has a way along
+//! it. Departs from [Jorge15, III-C], where only the unexplored cells that the thinning happens to
+//! leave are goals: an unexplored patch beside a wide way leaves none, and the exploration may end
+//! early.
 //!
 //! Units: coarse cells of 20 cm; a tile is 16 × 16 of them.
 
@@ -12,64 +18,38 @@ use crate::map::Tiles;
 use crate::map::tiles::Extent;
 use crate::math;
 use crate::roadmap::coarse;
-use crate::roadmap::coarse::Border;
 use crate::roadmap::configuration_space::{Footprint, Strip, for_each_strip};
 use crate::roadmap::{Progress, Thinning};
 
-/// Which cells are thinned, and what a frontier cell is.
+/// The space whose skeleton is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Space {
-    /// The explored passable cells. The frontier cells (explored, with an unexplored cell at a side) are *anchors*: the
-    /// thinning keeps them, so every frontier that the robot fits through is on the skeleton and has a way along it.
-    ///
-    /// Departs from [Jorge15, III-C], whose space is [`Self::NotObstacle`] without anchors: there only the unexplored
-    /// cells that the thinning happens to leave are goals, and an unexplored patch beside a wide way leaves none. Measured
-    /// with the same planner, 3 seeds on 7 built-in worlds and 2 on 13 buildings drawn by others:
-    ///
-    /// | | known free | not obstacle | not obstacle, anchored |
-    /// | --- | --- | --- | --- |
-    /// | declared complete in the first two seconds, 3 % known | 0 of 47 | 2 of 47 | 0 of 47 |
-    /// | explored, built-in worlds, mean | 99.99 % | 99.92 % | 99.99 % |
-    /// | sum of T99, built-in worlds | 2464 s | 2501 s | 2731 s |
-    /// | sum of T99, others, where all three have one | 2366 s | 2515 s | 2519 s |
-    /// | thinning of a round, office / cave / empty hall, words | 3.0 / 3.8 / 30 k | 11 / 16 / 39 k | 11 / 16 / 44 k |
-    ///
-    /// So the known free space is the default: no false end, no unknown cell to thin.
+    /// The explored passable cells. It has fewer cells to thin, and paths run on measured ground.
     #[default]
     KnownFree,
-    /// All passable cells, explored or not, from a box slightly larger than the known area, so that ways may run through
-    /// the unexplored [Jorge15, step 1]. The frontier cells are the unexplored cells beside an explored one that the thinning happens to leave, as in the paper.
+    /// All passable cells, explored or not, in a box slightly larger than the known area, so that
+    /// paths may run through the unexplored [Jorge15, step 1].
     NotObstacle,
-    /// [`Self::NotObstacle`], with the anchors of [`Self::KnownFree`].
-    AnchoredNotObstacle,
 }
 
-impl Space {
-    const fn border(self) -> Border {
-        match self {
-            Self::KnownFree | Self::AnchoredNotObstacle => Border::Explored,
-            Self::NotObstacle => Border::Unexplored,
-        }
-    }
-}
-
-/// Where a plane lies in the map.
+/// The place of a plane in the map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// Least map cell, a tile's corner.
+    /// The least map cell of the plane, a tile's corner.
     pub origin: Cell,
     /// Rows and words of the plane.
     pub shape: Shape,
 }
 
 impl Frame {
+    /// The frame of no plane.
     const NONE: Self = Self {
         origin: Cell { x: 0, y: 0 },
         shape: Shape::UNIT,
     };
 
-    /// The frame of a map's extent, a tile larger on every side where the box (in tiles) has room: paths may run
-    /// outside the known area.
+    /// Returns the frame of a map's extent, a tile larger on each side where the box (in tiles) has
+    /// room: paths may run outside the known area.
     fn around(extent: Extent, (width, height): (i32, i32)) -> Self {
         let widen = |least: i32, greatest: i32, most: i32| {
             let spare = most - (greatest - least + 1);
@@ -79,7 +59,7 @@ impl Frame {
         };
         let (x, across) = widen(extent.least.0, extent.greatest.0, width);
         let (y, up) = widen(extent.least.1, extent.greatest.1, height);
-        // Two tiles are a word across. Sides within the box are within the limits of a shape.
+        // A word is two tiles wide. Sides within the box are within the limits of a shape.
         let shape =
             Shape::new((across as usize).div_ceil(2), up as usize * 16).unwrap_or(Shape::UNIT);
         Self {
@@ -91,7 +71,7 @@ impl Frame {
         }
     }
 
-    /// The coarse cell of a map cell, if it is in the plane.
+    /// Returns the site of a map cell; `None` outside the plane.
     #[must_use]
     pub fn site(&self, cell: Cell) -> Option<Site> {
         let x = u16::try_from((cell.x - self.origin.x) >> 1).ok()?;
@@ -100,7 +80,7 @@ impl Frame {
         self.shape.contains(site).then_some(site)
     }
 
-    /// The least of a coarse cell's four map cells.
+    /// Returns the least of a site's four map cells.
     #[must_use]
     pub fn cell(&self, site: Site) -> Cell {
         Cell {
@@ -109,37 +89,39 @@ impl Frame {
         }
     }
 
-    /// Tiles across, counting the spare half of the last word.
+    /// Returns the number of tiles in a row, with the spare half of the last word.
     const fn tiles_across(&self) -> usize {
         self.shape.words_per_row() * 2
     }
 
+    /// Returns the number of tiles.
     const fn tiles(&self) -> usize {
         self.tiles_across() * (self.shape.rows() / 16)
     }
 }
 
-/// What a round is doing.
+/// The stage of a round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     /// Loading tile number n of the frame.
     Load(usize),
-    /// Thinning.
+    /// Thinning the plane.
     Thin,
 }
 
-/// Work that a round may do in a step, in units of a thinning word (about a hundred instructions).
+/// Cost of loading a tile, in units of a thinning: a word judged, about 100 instructions.
 const TILE_UNITS: u32 = 40;
 
 type Words<const SLOTS: usize> = [[u32; 8]; SLOTS];
 
-/// The planes and the round in progress. `SLOTS` tiles of 16 × 16 coarse cells.
+/// The published skeleton and the round in progress, for `SLOTS` tiles of 16 × 16 coarse cells.
 #[derive(Debug)]
 pub struct Skeleton<const SLOTS: usize> {
     /// The published skeleton.
     skeleton: Words<SLOTS>,
     frame: Frame,
-    /// The round in progress.
+    /// The planes of the round in progress. Between the rounds, `next_frontier` holds the frontier
+    /// cells of the published skeleton.
     next: Words<SLOTS>,
     next_frontier: Words<SLOTS>,
     next_frame: Frame,
@@ -149,7 +131,7 @@ pub struct Skeleton<const SLOTS: usize> {
 }
 
 impl<const SLOTS: usize> Skeleton<SLOTS> {
-    /// Nothing known.
+    /// Makes an empty skeleton.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -164,7 +146,7 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
         }
     }
 
-    /// Forget everything, and thin this space from now on.
+    /// Forgets everything, and thins this space from now on.
     pub fn reset(&mut self, space: Space) {
         self.space = space;
         self.skeleton.as_flattened_mut().fill(0);
@@ -172,24 +154,24 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
         self.stage = Stage::Load(0);
     }
 
-    /// Where the published planes lie.
+    /// Returns the place of the published plane.
     #[must_use]
     pub const fn frame(&self) -> Frame {
         self.frame
     }
 
-    /// The published skeleton.
+    /// Returns the centre cells of the published skeleton; `None` before the first one.
     #[must_use]
     pub fn skeleton(&self) -> Option<Plane<'_>> {
         Plane::new(self.frame.shape, self.skeleton.as_flattened()).ok()
     }
 
-    /// The published skeleton, to block a way for a while; see [`crate::roadmap::Barrier`].
+    /// Returns the published skeleton for a blocker; see [`crate::roadmap::Barrier`].
     pub fn skeleton_mut(&mut self) -> Option<PlaneMut<'_>> {
         PlaneMut::new(self.frame.shape, self.skeleton.as_flattened_mut()).ok()
     }
 
-    /// Take the cells within `radius_m` of a map cell out of the published skeleton.
+    /// Takes the cells within `radius_m` of a map cell out of the published skeleton.
     pub fn cut(&mut self, around: Cell, radius_m: f32) {
         let reach = math::floor(radius_m / (2.0 * CELL_M)) + 1;
         let frame = self.frame;
@@ -210,7 +192,8 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
         }
     }
 
-    /// The frontier cells of the published skeleton; `None` once the next round has begun, which needs their memory.
+    /// Returns the frontier cells of the published skeleton; `None` once the next round has begun,
+    /// which needs their memory.
     #[must_use]
     pub fn frontier(&self) -> Option<Plane<'_>> {
         if self.stage != Stage::Load(0) {
@@ -219,7 +202,8 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
         Plane::new(self.frame.shape, self.next_frontier.as_flattened()).ok()
     }
 
-    /// Go on with the round, `budget` units at the most; true when a skeleton was published.
+    /// Continues the round with at most `budget` units of work. Returns true if it published a
+    /// skeleton.
     pub fn advance<const TILES: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
@@ -246,7 +230,7 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
         self.thin(left)
     }
 
-    /// Load one tile; returns the units it took.
+    /// Loads one tile. Returns the units of work that it took.
     fn load<const TILES: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
@@ -259,7 +243,7 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
             frame.origin.x + across as i32 * 32,
             frame.origin.y + up as i32 * 32,
         );
-        // Where nothing was ever stored, everything is unexplored.
+        // A tile that was never touched is unexplored.
         let mut rows = [[0, u16::MAX]; 16];
         let seen = tiles.is_touched(corner.0 >> 5, corner.1 >> 5);
         if seen {
@@ -277,7 +261,7 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
             let index = (up * 16 + k) * frame.shape.words_per_row() + word;
             let cells = match self.space {
                 Space::KnownFree => explored,
-                Space::NotObstacle | Space::AnchoredNotObstacle => explored | unexplored,
+                Space::NotObstacle => explored | unexplored,
             };
             for (plane, half) in [
                 (&mut self.next, cells),
@@ -291,25 +275,22 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
         if seen { TILE_UNITS } else { 2 }
     }
 
-    /// Everything is loaded: turn the unexplored cells into frontier cells and begin to thin.
+    /// Turns the unexplored cells into frontier cells after the last tile, and begins to thin.
     fn begin_thinning(&mut self) {
         let shape = self.next_frame.shape;
         let cells = self.next.as_flattened();
         let marks = self.next_frontier.as_flattened_mut();
         let marks = marks.get_mut(..shape.words()).unwrap_or_default();
-        coarse::mark_border(self.space.border(), cells, marks, shape.words_per_row());
+        coarse::mark_border(cells, marks, shape.words_per_row());
         self.stage = Stage::Thin;
-        // The frame fits the box, so the marks suffice (checked at compile time).
-        let _ = self.thinning.start(shape, shape.whole());
+        // The frame fits the box, so the marks suffice.
+        let _ = self.thinning.start(shape);
     }
 
-    /// Go on thinning; true when done and published.
+    /// Continues the thinning. Returns true if it published the skeleton.
     fn thin(&mut self, budget: u32) -> bool {
         let shape = self.next_frame.shape;
-        let anchors = match self.space.border() {
-            Border::Explored => self.next_frontier.as_flattened(),
-            Border::Unexplored => &[],
-        };
+        let anchors = self.next_frontier.as_flattened();
         let Ok(mut plane) = PlaneMut::new(shape, self.next.as_flattened_mut()) else {
             return false;
         };

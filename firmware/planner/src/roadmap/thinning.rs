@@ -1,70 +1,75 @@
 //! Guo–Hall thinning, 32 cells at a time, in place and in instalments [GuoHall89].
 //!
-//! All cells of a subiteration are judged before any is deleted. North is towards row 0, so a plane is seen as an
-//! image with row 0 on top; `opencv_contrib`'s `THINNING_GUOHALL` does too, and gives the same bits. The two
-//! subiterations of the rule alternate until two in a row delete nothing.
+//! A subiteration judges all cells before it deletes any. North is towards row 0, as in an image
+//! with row 0 on top; `THINNING_GUOHALL` of `opencv_contrib` does the same and gives the same bits.
+//! The two subiterations of the rule alternate until two in a row delete nothing.
 //!
-//! Only words that may change are looked at: a word can delete only if a cell of it or next to it changed in one of the
-//! last two subiterations. Two bits a word, one for each subiteration, say where its last pass changed a cell of the
-//! word or one that touches the word from the left or the right; the rows above and below follow by a shift. The older
-//! bit has then served and gives its place to the new one, so nothing else is kept.
+//! A pass looks only at words that may change: a word can lose a cell only if a cell of it or next
+//! to it changed in one of the last two subiterations. Two bits a word, one for each subiteration,
+//! say if its last pass changed a cell of the word, or one that touches the word from the left or
+//! the right; the rows above and below follow by a shift. The older bit has then served, and the
+//! new one takes its place, so nothing else is kept.
 //!
-//! Deletions wait until no word reads the old values any more. Such readers are at most a row and a word ahead, that is
-//! 32 words, so what a group of 32 words loses is deleted when the next group but one begins.
+//! Deletions wait until no word reads the old values any more. Such readers are at most a row and a
+//! word ahead, that is 32 words. So a pass deletes the cells of a group of 32 words when the next
+//! group but one begins.
+//!
+//! Units: words of the plane, counted row by row.
 
-use crate::grid::{PlaneMut, Region, Shape, ShapeError};
+use crate::grid::{PlaneMut, Shape, ShapeError, at};
 use crate::roadmap::Progress;
-use crate::roadmap::thinning_rule::Patch;
+use crate::roadmap::thinning_rule::deletions;
 
-/// Words of marks that a [`Thinning`] needs for a plane of this many words.
+/// Returns the words of marks that a [`Thinning`] needs for a plane of this many words.
 #[must_use]
 pub const fn marks_for(words: usize) -> usize {
     words.div_ceil(32)
 }
 
-/// The state of a thinning; `M` is at least [`marks_for`] the region's words.
+/// The state of a thinning; `M` is at least [`marks_for`] the plane's words.
 ///
-/// The region's words are counted row by row; 32 of them share a word of marks and are a *group*.
+/// 32 words of the plane share a word of marks and are a *group*.
 ///
-/// Invariant between two calls: the words before the present one have been judged, and what they lose is deleted from
-/// the plane or waits.
+/// Invariant between two calls: the words before the present one are judged, and the cells that
+/// they lose are deleted from the plane or wait.
 #[derive(Clone, Debug)]
 pub struct Thinning<const M: usize> {
     shape: Shape,
-    patch: Patch,
-    /// Per subiteration: the words touched by its last pass; the groups behind the present pass, by this one.
+    /// Per subiteration, the words that its last pass touched; for the groups behind the present
+    /// pass, those that this one touched.
     marks: [[u32; M]; 2],
-    /// Which of the two subiterations is on.
+    /// The second subiteration is on.
     second: bool,
     window: Window,
-    /// Words of the present group still to be looked at.
+    /// Words of the present group that are still to be judged.
     todo: u32,
-    /// Whether the present group may be touched: it has words to look at, or the next field holds.
+    /// The present group may be touched: it has words to judge, or the next field is true.
     active: bool,
-    /// The first word of the present group is touched by the last one of the group before.
+    /// The last word of the group before touched the first one of the present group.
     touched_from_before: bool,
-    /// What the present group and the one before it lose, by the lowest bit of the group.
+    /// The losses of the present group and of the one before it, by the lowest bit of the group.
     losses: [Losses; 2],
-    /// Whether the present pass deleted anything, and whether the one before it did not.
+    /// The present pass deleted something, and the one before it nothing.
     deleted: bool,
     quiet_before: bool,
     passes: u16,
     running: bool,
 }
 
-/// What the words of a group lose, before it is deleted.
+/// The cells that the words of a group lose, before they are deleted.
 #[derive(Clone, Copy, Debug)]
 struct Losses {
     /// The words that lose cells.
     words: u32,
-    /// Those that lose their first cell, and those that lose their last one: the words beside are touched.
+    /// Those that lose their first cell, and those that lose their last one: they touch the words
+    /// beside.
     first_cells: u32,
     last_cells: u32,
     /// The cells lost by each word.
     cells: [u32; 32],
 }
 
-/// A sliding view of the marks of both subiterations, as they were before the present pass.
+/// A sliding window on the marks of both subiterations, as they were before the present pass.
 #[derive(Clone, Copy, Debug, Default)]
 struct Window {
     /// The next group.
@@ -75,12 +80,11 @@ struct Window {
 }
 
 impl<const M: usize> Thinning<M> {
-    /// A thinning with nothing to do.
+    /// Makes a thinning with nothing to do.
     #[must_use]
     pub const fn new() -> Self {
         Self {
             shape: Shape::UNIT,
-            patch: Patch::NONE,
             marks: [[0; M]; 2],
             second: false,
             window: Window {
@@ -99,49 +103,41 @@ impl<const M: usize> Thinning<M> {
         }
     }
 
-    /// Begin to thin `region` of a plane of this shape, as if nothing lay outside it. No other word is touched.
+    /// Starts to thin a plane of this shape.
     ///
     /// # Errors
-    /// When `M` marks are too few for the region.
-    pub fn start(&mut self, shape: Shape, region: Region) -> Result<(), ShapeError> {
-        let region = region.within(shape);
-        if marks_for(region.size()) > M {
-            return Err(ShapeError::TooLarge {
-                needs: region.size(),
-                has: M * 32,
-            });
+    /// If `M` words of marks are too few for the plane.
+    pub fn start(&mut self, shape: Shape) -> Result<(), ShapeError> {
+        let needs = shape.words();
+        if marks_for(needs) > M {
+            return Err(ShapeError::TooLarge { needs, has: M * 32 });
         }
-        (self.shape, self.patch) = (shape, Patch::new(shape, region));
+        self.shape = shape;
         self.losses.iter_mut().for_each(Losses::clear);
         (self.second, self.todo) = (false, 0);
         (self.deleted, self.quiet_before) = (false, false);
-        (self.passes, self.running) = (0, region.size() != 0);
+        (self.passes, self.running) = (0, true);
         for marks in &mut self.marks {
             for (group, mark) in marks.iter_mut().enumerate() {
-                *mark = words_of_group(region.size(), group);
+                *mark = words_of_group(needs, group);
             }
         }
         self.begin_pass();
         Ok(())
     }
 
-    /// Subiterations finished since the start.
+    /// Returns the number of subiterations since the start.
     #[must_use]
     pub const fn passes(&self) -> u16 {
         self.passes
     }
 
-    /// Whether the plane holds its skeleton.
-    #[must_use]
-    pub const fn is_done(&self) -> bool {
-        !self.running
-    }
-
-    /// Go on with at most `budget` units of work, on the plane that was started with and not written since. Cells set in
-    /// `anchors`, words as in the plane, are never deleted; an empty slice holds none.
+    /// Continues with at most `budget` units of work, on the plane that it was started with and
+    /// that nobody wrote to since. `anchors` has words as the plane; its cells are never deleted.
+    /// An empty slice has none.
     ///
-    /// A unit is a word looked at, or a group of 32 words gone through. The result does not depend on how the work is
-    /// divided into budgets.
+    /// A unit is a word judged, or a group of 32 words passed. The result does not depend on how
+    /// the work is divided into budgets.
     pub fn advance(&mut self, plane: &mut PlaneMut<'_>, anchors: &[u32], budget: u32) -> Progress {
         debug_assert_eq!(plane.shape(), self.shape, "another plane than at the start");
         let words = plane.words_mut();
@@ -159,7 +155,7 @@ impl<const M: usize> Thinning<M> {
         Progress::Done { left }
     }
 
-    /// One subiteration, as far as the budget lasts; whether it is through.
+    /// Runs a subiteration as far as the budget lasts. Returns true at its end.
     fn pass<const SECOND: bool>(
         &mut self,
         words: &mut [u32],
@@ -168,12 +164,12 @@ impl<const M: usize> Thinning<M> {
     ) -> bool {
         loop {
             if self.todo != 0 {
-                *left = self.look::<SECOND>(words, anchors, *left);
+                *left = self.judge::<SECOND>(words, anchors, *left);
                 if self.todo != 0 {
                     return false;
                 }
             }
-            if self.window.group == marks_for(self.patch.size()) {
+            if self.window.group == marks_for(self.shape.words()) {
                 break;
             }
             if *left == 0 {
@@ -186,9 +182,10 @@ impl<const M: usize> Thinning<M> {
         true
     }
 
-    /// Look at the words of the present group, as far as the budget lasts; what is left of it.
+    /// Judges the words of the present group as far as the budget lasts. Returns what is left of
+    /// it.
     #[inline(never)]
-    fn look<const SECOND: bool>(&mut self, words: &[u32], anchors: &[u32], mut left: u32) -> u32 {
+    fn judge<const SECOND: bool>(&mut self, words: &[u32], anchors: &[u32], mut left: u32) -> u32 {
         let group = self.window.group - 1;
         let losses = of_group(&mut self.losses, group);
         let mut todo = self.todo;
@@ -196,10 +193,10 @@ impl<const M: usize> Thinning<M> {
             left -= 1;
             let k = todo.trailing_zeros();
             todo &= todo - 1;
-            let place = group as u32 * 32 + k;
-            let mut lost = self.patch.deletions::<SECOND>(words, place);
+            let index = group as u32 * 32 + k;
+            let mut lost = deletions::<SECOND>(self.shape, words, index);
             if lost != 0 {
-                lost &= !anchors.get(self.patch.index(place)).copied().unwrap_or(0);
+                lost &= !at(anchors, index as usize);
             }
             if lost != 0 {
                 losses.add(k, lost);
@@ -209,7 +206,7 @@ impl<const M: usize> Thinning<M> {
         left
     }
 
-    /// Take the next group's words to be looked at.
+    /// Goes on to the next group's words.
     fn next_group(&mut self, words: &mut [u32]) {
         if self.active {
             self.note_touched();
@@ -218,14 +215,16 @@ impl<const M: usize> Thinning<M> {
         if of_group(&mut self.losses, group).words != 0 {
             self.delete(group - 2, words);
         }
-        let look = self.window.slide(&self.marks, self.patch.words_per_row());
+        let look = self
+            .window
+            .slide(&self.marks, self.shape.words_per_row() as u32);
         self.active = look != 0 || self.touched_from_before;
         if look != 0 {
-            self.todo = look & words_of_group(self.patch.size(), group);
+            self.todo = look & words_of_group(self.shape.words(), group);
         }
     }
 
-    /// Delete what the words of a group lose, one of the last two.
+    /// Deletes the cells that the words of a group lose, one of the last two.
     fn delete(&mut self, group: usize, words: &mut [u32]) {
         let losses = of_group(&mut self.losses, group);
         let mut todo = losses.words;
@@ -233,14 +232,14 @@ impl<const M: usize> Thinning<M> {
         while todo != 0 {
             let k = todo.trailing_zeros();
             todo &= todo - 1;
-            let index = self.patch.index(group as u32 * 32 + k);
-            if let (Some(word), Some(lost)) = (words.get_mut(index), losses.cells.get(k as usize)) {
+            let k = k as usize;
+            if let (Some(word), Some(lost)) = (words.get_mut(group * 32 + k), losses.cells.get(k)) {
                 *word &= !lost;
             }
         }
     }
 
-    /// Mark what the present group's words touched.
+    /// Marks the words that the present group's losses touch.
     fn note_touched(&mut self) {
         let Some(group) = self.window.group.checked_sub(1) else {
             return;
@@ -298,12 +297,12 @@ impl Losses {
         cells: [0; 32],
     };
 
-    /// Nothing is lost.
+    /// Clears the losses.
     fn clear(&mut self) {
         (self.words, self.first_cells, self.last_cells) = (0, 0, 0);
     }
 
-    /// Word `k` of the group loses these cells.
+    /// Adds the cells that word `k` of the group loses.
     #[inline(always)]
     fn add(&mut self, k: u32, lost: u32) {
         self.words |= 1 << k;
@@ -316,9 +315,8 @@ impl Losses {
 }
 
 impl Window {
-    /// The words of the next group that are marked, or lie under or over a marked word; the group is then behind.
-    ///
-    /// Rows of the region are `per_row` bits apart, at most 31.
+    /// Returns the words of the next group that are marked, or lie under or over a marked word, and
+    /// slides past the group. `per_row` is at most 31.
     fn slide<const M: usize>(&mut self, marks: &[[u32; M]; 2], per_row: u32) -> u32 {
         let Self {
             group,
@@ -337,7 +335,7 @@ impl Window {
     }
 }
 
-/// A bit for each word of the group in a region of `size` words.
+/// Returns a bit for each word of the group in a plane of `size` words.
 fn words_of_group(size: usize, group: usize) -> u32 {
     match size.saturating_sub(group * 32) {
         0 => 0,
@@ -346,13 +344,13 @@ fn words_of_group(size: usize, group: usize) -> u32 {
     }
 }
 
-/// The losses of a group, one of the last two.
+/// Returns the losses of a group, one of the last two.
 fn of_group([even, odd]: &mut [Losses; 2], group: usize) -> &mut Losses {
     if group.is_multiple_of(2) { even } else { odd }
 }
 
-/// The marks of both subiterations.
+/// Returns the marks of both subiterations.
 fn either<const M: usize>(marks: &[[u32; M]; 2], group: usize) -> u32 {
     let [first, second] = marks;
-    first.get(group).copied().unwrap_or(0) | second.get(group).copied().unwrap_or(0)
+    at(first, group) | at(second, group)
 }

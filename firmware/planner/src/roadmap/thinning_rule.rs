@@ -1,133 +1,72 @@
 //! The cells that a subiteration deletes, 32 at a time [GuoHall89].
 //!
-//! A set cell with neighbours p2 (north) … p9 (north-west, clockwise) is deleted when
+//! A set cell with neighbours p2 (north) … p9 (north-west, clockwise) is deleted if
 //!
 //! ```text
-//! C = ¬p2∧(p3∨p4) + ¬p4∧(p5∨p6) + ¬p6∧(p7∨p8) + ¬p8∧(p9∨p2) = 1        one way round it
+//! C = ¬p2∧(p3∨p4) + ¬p4∧(p5∨p6) + ¬p6∧(p7∨p8) + ¬p8∧(p9∨p2) = 1    one way round
 //! 2 ≤ min(N1, N2) ≤ 3,  N1 = (p9∨p2)+(p3∨p4)+(p5∨p6)+(p7∨p8),
-//!                       N2 = (p2∨p3)+(p4∨p5)+(p6∨p7)+(p8∨p9)            neither an end nor inside
-//! first subiteration:   (p6∨p7∨¬p9)∧p8 = 0                              on the west, or a corner there
-//! second subiteration:  (p2∨p3∨¬p5)∧p4 = 0                              on the east, or a corner there
+//!                       N2 = (p2∨p3)+(p4∨p5)+(p6∨p7)+(p8∨p9)   no end, not inside
+//! first subiteration:   (p6∨p7∨¬p9)∧p8 = 0                      in the west, or a corner there
+//! second subiteration:  (p2∨p3∨¬p5)∧p4 = 0                      in the east, or a corner there
 //! ```
 //!
-//! Counting with bit masks takes some 70 operations. The conjunction of all conditions is a function of eight bits with
-//! few true points; split by p8 and p4 it takes 31, written out in [`deletions`] and compared with the definition at
-//! all 256 neighbourhoods by the tests. The second subiteration is the first one turned by 180°.
+//! Counting with bit masks takes some 70 operations. The conjunction of all conditions is a
+//! function of eight bits with few true points. Split by p8 and p4 it takes 31 operations, see
+//! [`neighbourhoods_deleted`]; the tests compare it with the definition at all 256 neighbourhoods.
+//! The second subiteration is the first one turned by 180°.
 //!
 //! North is towards row 0, east towards greater columns.
 
-use core::num::NonZeroU32;
+use crate::grid::{Shape, triple};
 
-use crate::grid::{Region, Shape, triple};
-
-/// Where the words of a region are in its plane.
-///
-/// Words of the region are counted row by row. All numbers are below 2¹⁶, the most words a plane has.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Patch {
-    /// Index of the region's first word.
-    origin: u32,
-    /// Words in a row, less one: zeros are a patch of nothing.
-    more_per_row: u32,
-    rows: u32,
-    /// Words from a row to the next.
-    stride: u16,
+/// Returns the cells of a word that the first (or second) subiteration deletes.
+#[inline(always)]
+pub(super) fn deletions<const SECOND: bool>(shape: Shape, words: &[u32], index: u32) -> u32 {
+    let (per_row, rows) = (shape.words_per_row() as u32, shape.rows() as u32);
+    let row = index / per_row;
+    let sides = sides(index - row * per_row, per_row);
+    if row.wrapping_sub(1) < rows.wrapping_sub(2)
+        && let Some([above, here, below]) = rows_around(per_row, words, index)
+    {
+        return judge::<SECOND>(above, here, below, sides);
+    }
+    deletions_at_end::<SECOND>(shape, words, index, sides)
 }
 
-impl Patch {
-    /// Of nothing.
-    pub(super) const NONE: Self = Self {
-        origin: 0,
-        more_per_row: 0,
-        rows: 0,
-        stride: 0,
+/// Returns the three words around an index in each of three rows; `None` where memory ends.
+#[inline(always)]
+fn rows_around(per_row: u32, words: &[u32], index: u32) -> Option<[&[u32; 3]; 3]> {
+    let per_row = per_row as usize;
+    // The bound of the type lets the compiler see that the last row's check covers the others.
+    let from = usize::from(index as u16).checked_sub(per_row + 1)?;
+    let three = |from: usize| words.get(from..from + 3)?.first_chunk::<3>();
+    let below = three(from + 2 * per_row)?;
+    Some([three(from)?, three(from + per_row)?, below])
+}
+
+/// [`deletions`] for a word in the first or the last row, or at an end of memory.
+#[inline(never)]
+fn deletions_at_end<const SECOND: bool>(
+    shape: Shape,
+    words: &[u32],
+    index: u32,
+    sides: u32,
+) -> u32 {
+    let (index, per_row) = (index as usize, shape.words_per_row());
+    let triple = |index: usize| {
+        if index < shape.words() {
+            triple(words, index)
+        } else {
+            [0; 3]
+        }
     };
-
-    pub(super) const fn new(shape: Shape, region: Region) -> Self {
-        let stride = shape.words_per_row() as u16;
-        let (more_per_row, rows) = match (region.words as u32).checked_sub(1) {
-            Some(more) => (more, region.rows as u32),
-            None => (0, 0),
-        };
-        Self {
-            origin: region.first_row as u32 * stride as u32 + region.first_word as u32,
-            more_per_row,
-            rows,
-            stride,
-        }
-    }
-
-    pub(super) const fn words_per_row(&self) -> u32 {
-        self.per_row().get()
-    }
-
-    const fn per_row(&self) -> NonZeroU32 {
-        NonZeroU32::MIN.saturating_add(self.more_per_row)
-    }
-
-    /// Words in the region.
-    pub(super) const fn size(&self) -> usize {
-        (self.rows * self.per_row().get()) as usize
-    }
-
-    /// Where word number `count` is in the plane.
-    #[inline(always)]
-    pub(super) fn index(&self, count: u32) -> usize {
-        let gap = u32::from(self.stride) - self.per_row().get();
-        (self.origin + count + count / self.per_row() * gap) as usize
-    }
-
-    /// The cells of word number `count` that the first (or second) subiteration deletes.
-    #[inline(always)]
-    pub(super) fn deletions<const SECOND: bool>(&self, words: &[u32], count: u32) -> u32 {
-        let row = count / self.per_row();
-        let word = count - row * self.per_row().get();
-        let sides = sides(word, self.per_row().get());
-        let index = self.origin + word + row * u32::from(self.stride);
-        if row.wrapping_sub(1) < self.rows.wrapping_sub(2)
-            && let Some([above, here, below]) = self.rows_around(words, index)
-        {
-            return judge::<SECOND>(above, here, below, sides);
-        }
-        self.deletions_at_end::<SECOND>(words, row, word, sides)
-    }
-
-    /// The three words around an index, in three rows; `None` where memory ends.
-    #[inline(always)]
-    fn rows_around<'a>(&self, words: &'a [u32], index: u32) -> Option<[&'a [u32; 3]; 3]> {
-        let stride = usize::from(self.stride);
-        // The bound of the type lets the compiler see that the last row's check covers the others.
-        let from = usize::from(index as u16).checked_sub(stride + 1)?;
-        let three = |from: usize| words.get(from..from + 3)?.first_chunk::<3>();
-        let below = three(from + 2 * stride)?;
-        Some([three(from)?, three(from + stride)?, below])
-    }
-
-    /// The same for a word in the first or the last row, or at an end of memory.
-    #[inline(never)]
-    fn deletions_at_end<const SECOND: bool>(
-        &self,
-        words: &[u32],
-        row: u32,
-        word: u32,
-        sides: u32,
-    ) -> u32 {
-        let triple = |row: u32| {
-            if row < self.rows {
-                let index = self.origin + word + row * u32::from(self.stride);
-                triple(words, index as usize)
-            } else {
-                [0; 3]
-            }
-        };
-        let above = triple(row.wrapping_sub(1));
-        judge::<SECOND>(&above, &triple(row), &triple(row + 1), sides)
-    }
+    let above = triple(index.wrapping_sub(per_row));
+    judge::<SECOND>(&above, &triple(index), &triple(index + per_row), sides)
 }
 
 /// The eight neighbours of 32 cells.
 #[derive(Clone, Copy, Debug)]
-struct GroundModel {
+struct Neighbourhood {
     north: u32,
     north_east: u32,
     east: u32,
@@ -138,17 +77,18 @@ struct GroundModel {
     north_west: u32,
 }
 
-/// Bit 31 if word `word` of a row has one on its left, bit 0 if it has one on its right.
+/// Returns bit 31 if word `word` of a row has one on its left, and bit 0 if it has one on its
+/// right.
 #[inline(always)]
 const fn sides(word: u32, per_row: u32) -> u32 {
     let (left, right) = (word.wrapping_neg(), (word + 1).wrapping_sub(per_row));
     left & 1 << 31 | right >> 31
 }
 
-/// The cells of the middle word that the first (or second) subiteration deletes.
+/// Returns the cells of the middle word that the first (or second) subiteration deletes.
 ///
-/// The words on the left count if bit 31 of `sides` is set, those on the right if bit 0 is. A function apart, with few
-/// arguments: inlined, it runs out of registers.
+/// The words on the left count if bit 31 of `sides` is set, those on the right if bit 0 is. It is
+/// not inlined and has few arguments: inlined, it runs out of registers.
 #[inline(never)]
 fn judge<const SECOND: bool>(
     [above_left, north, above_right]: &[u32; 3],
@@ -165,7 +105,7 @@ fn judge<const SECOND: bool>(
     if here & !(north & south & east & west) == 0 {
         return 0;
     }
-    let around = GroundModel {
+    let around = Neighbourhood {
         north,
         north_east: eastern(north, above_right & sides),
         east,
@@ -176,26 +116,26 @@ fn judge<const SECOND: bool>(
         north_west: western(north, above_left & sides),
     };
     here & if SECOND {
-        deletions(around.turned())
+        neighbourhoods_deleted(around.turned())
     } else {
-        deletions(around)
+        neighbourhoods_deleted(around)
     }
 }
 
-/// Each cell's eastern neighbour.
+/// Returns each cell's eastern neighbour.
 #[inline(always)]
 const fn eastern(here: u32, right: u32) -> u32 {
     here >> 1 | right << 31
 }
 
-/// Each cell's western neighbour.
+/// Returns each cell's western neighbour.
 #[inline(always)]
 const fn western(here: u32, left: u32) -> u32 {
     here << 1 | left >> 31
 }
 
-impl GroundModel {
-    /// Seen from the other side: turned by 180°.
+impl Neighbourhood {
+    /// Returns the neighbourhood turned by 180°.
     #[inline(always)]
     const fn turned(self) -> Self {
         Self {
@@ -211,10 +151,10 @@ impl GroundModel {
     }
 }
 
-/// Where the first subiteration deletes a set cell.
+/// Returns the cells, if set, that the first subiteration deletes.
 #[inline(always)]
-const fn deletions(around: GroundModel) -> u32 {
-    let GroundModel {
+const fn neighbourhoods_deleted(around: Neighbourhood) -> u32 {
+    let Neighbourhood {
         north: n,
         north_east: ne,
         east: e,
@@ -240,9 +180,9 @@ const fn deletions(around: GroundModel) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{GroundModel, deletions, sides};
+    use super::{Neighbourhood, neighbourhoods_deleted, sides};
 
-    /// The definition, word for word; p[0] is p2.
+    /// The definition term by term; p\[0\] is p2.
     fn deletes(p: [bool; 8], second: bool) -> bool {
         let [p2, p3, p4, p5, p6, p7, p8, p9] = p;
         let c = [
@@ -276,7 +216,7 @@ mod tests {
         for code in 0..256_u32 {
             let p = core::array::from_fn(|k| code >> k & 1 == 1);
             let bit = |k: usize| if p[k] { u32::MAX } else { 0 };
-            let around = GroundModel {
+            let around = Neighbourhood {
                 north: bit(0),
                 north_east: bit(1),
                 east: bit(2),
@@ -288,11 +228,11 @@ mod tests {
             };
             let all = |yes: bool| if yes { u32::MAX } else { 0 };
             assert_eq!(
-                deletions(around),
+                neighbourhoods_deleted(around),
                 all(deletes(p, false)),
                 "first, {code:08b}"
             );
-            let turned = deletions(around.turned());
+            let turned = neighbourhoods_deleted(around.turned());
             assert_eq!(turned, all(deletes(p, true)), "second, {code:08b}");
         }
     }

@@ -4,10 +4,10 @@
 //! 8-connected, level by level. It leaves distances modulo 3 in [`Residues`]: on centre cells, the
 //! papers' potential of a point source amounts to these [Jorge15, steps 3 and 5].
 //!
-//! Cells wait for their turn in a ring. A cell that finds the ring full is reached all the same, and
-//! its row is *noted*. After the cells of a level, the wave scans the noted rows for open cells next
-//! to one of this level. That costs time and changes no distance, since a cell of an earlier level
-//! with the same residue has no open neighbour left.
+//! Cells wait for their turn in a ring. A cell that finds the ring full is reached all the same,
+//! and its row is *noted*. After the cells of a level, the wave scans the noted rows for open cells
+//! next to one of this level. That costs time and changes no distance, since a cell of an earlier
+//! level with the same residue has no open neighbour left.
 //!
 //! Invariant between two calls: every reached cell with an open neighbour is in the ring or in a
 //! noted row.
@@ -168,8 +168,8 @@ impl Wavefront {
         }
     }
 
-    /// Enters the open cells in the column `mask` of the word beside a cell, in its row and those above
-    /// and below.
+    /// Enters the open cells in the column `mask` of the word beside a cell, in its row and those
+    /// above and below.
     #[inline(never)]
     fn expand_into(&mut self, space: &mut WaveSpace<'_>, (row, word): (usize, usize), mask: u32) {
         for row in row.saturating_sub(1)..row + 2 {

@@ -75,7 +75,7 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     pub(crate) const fn space(strategy: Strategy) -> Space {
         match strategy {
             Strategy::Frontier | Strategy::Tdbvp { .. } => Space::KnownFree,
-            Strategy::Ouroboros => Space::AnchoredNotObstacle,
+            Strategy::Ouroboros => Space::NotObstacle,
         }
     }
 

@@ -2,10 +2,11 @@
 //! can be reached [Jorge15, Algorithm 1 without loop closing: lines 3, 4, 22–28].
 //!
 //! Goals are chosen by [`crate::path::goal_cost`]. The progress checker gives up a goal that is
-//! reached and stays unexplored, or that comes no nearer, and blocks a passage that cannot be driven;
-//! so no run hangs on a cell that cannot be seen. When no goal is left, everything gets a *second
-//! chance* with a narrower footprint: at 10 cm a cell, a gap that the robot just fits through may
-//! look closed. After that the robot looks from [`Viewpoint`]s at what it cannot drive to.
+//! reached and stays unexplored, or that comes no nearer, and blocks a passage that cannot be
+//! driven; so no run hangs on a cell that cannot be seen. When no goal is left, everything gets a
+//! *second chance* with a narrower footprint: at 10 cm a cell, a gap that the robot just fits
+//! through may look closed. After that the robot looks from [`Viewpoint`]s at what it cannot drive
+//! to.
 //!
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
 
@@ -123,8 +124,8 @@ impl Frontier {
         self.blocked.cut(skeleton);
     }
 
-    /// Plans a round on a new skeleton: takes the path to the frontier of the least cost
-    /// [Jorge15, Algorithm 1, lines 3, 4, 23].
+    /// Plans a round on a new skeleton: takes the path to the frontier of the least cost [Jorge15,
+    /// Algorithm 1, lines 3, 4, 23].
     pub(crate) fn replan<const TILES: usize, const SLOTS: usize>(
         &mut self,
         context: &PlanningContext<'_, TILES, SLOTS>,
@@ -135,8 +136,8 @@ impl Frontier {
     }
 
     /// Plans a round for a robot that follows its own potential while a frontier is left. Only a
-    /// goal that the robot has reached is given up. Returns true as well if the robot may follow its
-    /// own potential; false if it `is_late`.
+    /// goal that the robot has reached is given up. Returns true as well if the robot may follow
+    /// its own potential; false if it `is_late`.
     pub(super) fn glance<const TILES: usize, const SLOTS: usize>(
         &mut self,
         context: &PlanningContext<'_, TILES, SLOTS>,
@@ -362,9 +363,9 @@ impl Frontier {
 
     /// Decides what to try when no frontier is within reach.
     ///
-    /// On uneven ground, the ground ahead is measured from near by and often from one side only, and
-    /// one blocked passage may close the only way up. So there the passages are opened again up to
-    /// [`MOST_RETRIES`] times.
+    /// On uneven ground, the ground ahead is measured from near by and often from one side only,
+    /// and one blocked passage may close the only way up. So there the passages are opened again up
+    /// to [`MOST_RETRIES`] times.
     fn do_without(&mut self, is_uneven: bool) -> RoundOutcome {
         self.path.clear();
         if !self.second_chance {

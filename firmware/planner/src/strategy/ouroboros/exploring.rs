@@ -60,7 +60,7 @@ impl Exploration {
         let mut tiles = Tiles::new();
         tiles.reset(8, 6);
         let mut skeleton = Skeleton::new();
-        skeleton.reset(Space::AnchoredNotObstacle);
+        skeleton.reset(Space::NotObstacle);
         let strategy = Ouroboros::new(tiles.box_tiles());
         let mut robot = (0, 0);
         let mut turned = BTreeMap::new();

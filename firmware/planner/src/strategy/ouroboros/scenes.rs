@@ -135,7 +135,7 @@ impl Scene {
         }
         let footprint = Footprint::new(POINT_M);
         let mut skeleton = Skeleton::new();
-        skeleton.reset(Space::AnchoredNotObstacle);
+        skeleton.reset(Space::NotObstacle);
         while !skeleton.advance(&tiles, &footprint, u32::MAX) {}
         Self {
             picture,
