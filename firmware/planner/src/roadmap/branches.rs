@@ -23,7 +23,7 @@ use crate::grid::{Plane, Site};
 
 /// The kind of a set cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub(crate) enum Kind {
     /// No neighbour is set, or all are.
     Alone,
     /// The last cell of a branch.
@@ -36,18 +36,17 @@ pub enum Kind {
 
 /// The kinds of the set cells of a word. Those in none of the three are [`Kind::Alone`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Kinds {
+pub(crate) struct Kinds {
     /// The [`Kind::End`]s.
-    pub ends: u32,
+    pub(crate) ends: u32,
     /// The [`Kind::Passage`]s.
-    pub passages: u32,
+    pub(crate) passages: u32,
     /// The [`Kind::Junction`]s.
-    pub junctions: u32,
+    pub(crate) junctions: u32,
 }
 
 /// Returns the kinds of the 32 cells of a word.
-#[must_use]
-pub fn kinds(plane: Plane<'_>, row: usize, word: usize) -> Kinds {
+pub(crate) fn kinds(plane: Plane<'_>, row: usize, word: usize) -> Kinds {
     let here = plane.word(row, word);
     if here == 0 {
         return Kinds::default();
@@ -61,8 +60,7 @@ pub fn kinds(plane: Plane<'_>, row: usize, word: usize) -> Kinds {
 }
 
 /// Returns the kind of a cell; `None` if it is not set.
-#[must_use]
-pub fn kind(plane: Plane<'_>, site: Site) -> Option<Kind> {
+pub(crate) fn kind(plane: Plane<'_>, site: Site) -> Option<Kind> {
     if !plane.get(site) {
         return None;
     }
@@ -118,7 +116,7 @@ fn count(words: impl Iterator<Item = u32>) -> (u32, u32, u32) {
 /// The cells of a branch, from the one after its first cell to the end or junction that it leads
 /// to; see [`Branch::new`].
 #[derive(Clone, Debug)]
-pub struct Branch<'a> {
+pub(crate) struct Branch<'a> {
     plane: Plane<'a>,
     first: Site,
     before: Site,
@@ -129,8 +127,7 @@ pub struct Branch<'a> {
 
 impl<'a> Branch<'a> {
     /// Returns the branch that leaves `first` by its neighbour `next`.
-    #[must_use]
-    pub fn new(plane: Plane<'a>, first: Site, next: Site) -> Self {
+    pub(crate) fn new(plane: Plane<'a>, first: Site, next: Site) -> Self {
         Self {
             plane,
             first,
@@ -182,7 +179,7 @@ impl Iterator for Branch<'_> {
 }
 
 /// Maximum number of ways that leave a cell.
-pub const MOST_WAYS: usize = 8;
+pub(crate) const MOST_WAYS: usize = 8;
 
 /// Returns the cells two steps from a cell through which the skeleton leaves its surroundings, one
 /// for each way.
@@ -191,8 +188,7 @@ pub const MOST_WAYS: usize = 8;
 /// a blocker takes the 3 × 3 cells around it out, its *surroundings*; that blocks all ways, and
 /// what remains of each begins at one of these cells. Cells that touch each other belong to one
 /// way.
-#[must_use]
-pub fn ways(plane: Plane<'_>, site: Site) -> heapless::Vec<Site, MOST_WAYS> {
+pub(crate) fn ways(plane: Plane<'_>, site: Site) -> heapless::Vec<Site, MOST_WAYS> {
     let ring = |k: usize| {
         FAR_RING
             .get(k % 16)
@@ -224,7 +220,7 @@ pub fn ways(plane: Plane<'_>, site: Site) -> heapless::Vec<Site, MOST_WAYS> {
 }
 
 /// Returns the nine cells of a cell's surroundings, the cell itself first; see [`ways`].
-pub fn surroundings(site: Site) -> impl Iterator<Item = Site> {
+pub(crate) fn surroundings(site: Site) -> impl Iterator<Item = Site> {
     core::iter::once(site).chain(site.neighbours())
 }
 

@@ -12,7 +12,7 @@
 //!
 //! The *centre cells* are the skeleton of the space left by obstacles: of the known part of it, or
 //! of the unexplored as well, so that paths may run through it [Jorge15, step 1]; see
-//! [`skeleton::Space`]. Thinning [GuoHall89, two subiterations] keeps the space's pieces and holes:
+//! [`skeleton::Space`]. Thinning (`[GuoHall89]`, two subiterations) keeps the space's pieces and holes:
 //! between two places the skeleton has a way exactly where the space has one. Anchors, cells that
 //! are kept whatever the rule says, change neither.
 //!
@@ -25,15 +25,12 @@
 //! The thinning works under a budget: it stops when that is spent and continues later from exactly
 //! there, with the same result as without a stop. Neither it nor the wave knows how large a cell
 //! is.
-//!
-//! [GuoHall89]: Z. Guo, R. W. Hall, "Parallel thinning with two-subiteration algorithms",
-//! Communications of the ACM 32(3), 1989.
 
 mod barrier;
-pub mod branches;
+pub(crate) mod branches;
 pub(crate) mod coarse;
 pub mod configuration_space;
-pub mod reachability;
+pub(crate) mod reachability;
 mod residues;
 pub mod skeleton;
 mod thinning;

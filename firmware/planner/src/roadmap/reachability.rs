@@ -25,8 +25,7 @@ const START_REACH: i32 = 2;
 
 /// Returns the words of memory that a flood needs in a box of `slots` tiles: two planes, with a
 /// word for two tiles side by side.
-#[must_use]
-pub const fn scratch_words(slots: usize) -> usize {
+pub(crate) const fn scratch_words(slots: usize) -> usize {
     SIDE * slots
 }
 

@@ -11,10 +11,11 @@
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
 
 use crate::field::local_grid::LocalGrid;
-use crate::geometry::{CELL_M, Cell};
+use crate::geometry::Cell;
 use crate::map::Class;
 use crate::math;
 use crate::path::blocked_passages::{BlockedPassages, ahead, first_unreachable};
+use crate::path::context::STEP_M;
 use crate::path::frontier_path::path_to_frontier;
 use crate::path::goal_cost::{PresentGoal, level};
 use crate::path::progress::{ProgressChecker, Verdict};
@@ -322,7 +323,7 @@ impl Frontier {
     ) -> RoundOutcome {
         let robot = context.pose.point();
         let straight_m = math::sqrt(viewpoint.stand.corner().distance2(robot));
-        let steps = along_centre.max((straight_m / (2.0 * CELL_M)) as u32);
+        let steps = along_centre.max((straight_m / STEP_M) as u32);
         let reason = match self.progress.judge(viewpoint.stand, steps, context.time_ms) {
             Verdict::GoOn => return RoundOutcome::Path,
             Verdict::Drop(reason) => reason,
