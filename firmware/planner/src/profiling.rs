@@ -4,7 +4,7 @@
 //! instruction counter there. A host passes `()`, and the compiler removes the calls. The output of
 //! a step does not depend on the timer.
 
-/// A stage of a step; see [`crate::planner`].
+/// A stage of a step; see [`crate::step`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Enters scans and odometry into the map and the obstacle points.

@@ -11,7 +11,7 @@
 
 use core::ops::Range;
 
-use crate::grid::{Site, at};
+use crate::grid::{Site, at, inside_mut};
 
 /// Returns the seeds and all cells of `open` that a path of open cells joins to a seed.
 ///
@@ -29,7 +29,7 @@ pub(crate) fn reach<const N: usize>(open: &[u64; N], seeds: &[u64; N]) -> [u64; 
         let beside = at(&reached, y.wrapping_sub(1)) | at(&reached, y + 1);
         let seeds = here | (beside & open);
         let grown = seeds | fill(open, open & (seeds | seeds << 1 | seeds >> 1));
-        if let Some(row) = reached.get_mut(y)
+        if let Some(row) = inside_mut(&mut reached, y)
             && *row != grown
         {
             *row = grown;
@@ -103,7 +103,7 @@ fn grow<const N: usize>(
         let below = at(reached, y + 1);
         let grown = (above | below | here << 1 | here >> 1) & at(open, y) & !here;
         if grown != 0 {
-            if let Some(out) = reached.get_mut(y) {
+            if let Some(out) = inside_mut(reached, y) {
                 *out = here | grown;
             }
             changed = changed.start.min(y)..y + 1;

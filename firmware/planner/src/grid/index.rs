@@ -3,8 +3,8 @@
 //! | accessor | index | outside |
 //! | --- | --- | --- |
 //! | [`at`] | may lie outside | 0 by meaning: nothing is set beyond a plane |
-//! | [`inside`] | inside, the caller guarantees it | a bug: a test build panics |
-//! | [`masked`], [`masked_mut`] | inside an array of 2ᵏ elements | a bug: a test build panics |
+//! | [`inside`], [`inside_mut`] | inside, the caller guarantees it | `None`; a test build panics |
+//! | [`masked`], [`masked_mut`] | inside an array of 2ᵏ elements | taken mod 2ᵏ; a test build panics |
 //! | [`wrapped`], [`wrapped_mut`] | any; the array is a ring of 2ᵏ elements | taken mod 2ᵏ |
 
 /// Returns the element at an index, 0 outside.
@@ -16,9 +16,17 @@ pub(crate) fn at<T: Copy + Default>(slice: &[T], index: usize) -> T {
 /// Returns the element at an index inside the slice.
 #[inline(always)]
 #[track_caller]
-pub(crate) fn inside<T: Copy + Default>(slice: &[T], index: usize) -> T {
+pub(crate) fn inside<T>(slice: &[T], index: usize) -> Option<&T> {
     debug_assert!(index < slice.len(), "{index} of {}", slice.len());
-    at(slice, index)
+    slice.get(index)
+}
+
+/// Returns the element at an index inside the slice.
+#[inline(always)]
+#[track_caller]
+pub(crate) fn inside_mut<T>(slice: &mut [T], index: usize) -> Option<&mut T> {
+    debug_assert!(index < slice.len(), "{index} of {}", slice.len());
+    slice.get_mut(index)
 }
 
 /// Returns the element at an index inside an array whose length is a power of two.

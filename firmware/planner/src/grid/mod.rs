@@ -27,7 +27,7 @@ mod shape;
 mod sites;
 mod tile_box;
 
-pub(crate) use index::{at, inside, masked, masked_mut, triple, wrapped, wrapped_mut};
+pub(crate) use index::{at, inside, inside_mut, masked, masked_mut, triple, wrapped, wrapped_mut};
 pub(crate) use rolling::Rolling;
 pub(crate) use tile_box::TileBox;
 

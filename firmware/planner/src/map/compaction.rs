@@ -20,6 +20,7 @@
 //! Units: pages of 256 bytes, halves of 128 bytes.
 
 use crate::geometry::Cell;
+use crate::grid::{inside, inside_mut};
 use crate::map::tiles::{NoRoom, Plane, TILE_ROWS, TILE_SIDE, Tiles};
 
 /// Flag of the entry of a tile that is all free; the low byte is kept for the side table.
@@ -169,20 +170,17 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     fn plane_mut(&mut self, half: usize) -> Option<&mut Plane> {
-        self.pool.get_mut(half / 2)?.get_mut(half % 2)
+        inside_mut(self.pool.as_flattened_mut(), half)
     }
 
     /// Returns the link in the first word of a spare half or page.
     fn next(&self, half: usize) -> u16 {
-        let plane = self.pool.get(half / 2).and_then(|page| page.get(half % 2));
-        plane
-            .and_then(|plane| plane.first())
-            .map_or(0, |&word| word as u16)
+        inside(self.pool.as_flattened(), half).map_or(0, |[link, ..]| *link as u16)
     }
 
     fn set_next(&mut self, half: usize, next: u16) {
-        if let Some(word) = self.plane_mut(half).and_then(|plane| plane.first_mut()) {
-            *word = next.into();
+        if let Some([link, ..]) = self.plane_mut(half) {
+            *link = next.into();
         }
     }
 
@@ -240,7 +238,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         let Entry::Page(page) = self.entry_in(slot) else {
             return;
         };
-        let Some(&[low, high]) = self.pool.get(page) else {
+        let Some(&[low, high]) = inside(&self.pool, page) else {
             return;
         };
         if high != ZEROS {
@@ -289,7 +287,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         } else {
             kept
         };
-        if let Some(cells) = self.pool.get_mut(page) {
+        if let Some(cells) = inside_mut(&mut self.pool, page) {
             *cells = [low, ZEROS];
         }
         side_table.restore_page(page, kept);

@@ -126,7 +126,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    /// Makes room in the pool if it runs short ([`super::compaction`]). Call it after every survey.
+    /// Makes room in the pool if it runs short (`compaction`). Call it after every survey.
     pub fn compact(&mut self, side_table: &mut impl SideTable) {
         self.tiles.compact(self.window, WINDOW_SIDE, side_table);
     }

@@ -3,10 +3,10 @@
 //! | file | holds |
 //! | --- | --- |
 //! | [`tiles`], `tile`, `extent` | the class of every cell, for the whole run |
-//! | [`compaction`] | smaller storage for tiles with little content |
-//! | [`rows`] | rows of 32 and 64 cells, for all planning |
-//! | [`evidence`] | counts for and against an obstacle around the robot, on flat ground |
-//! | [`integrate`], `traversal` | beams into classes and counts |
+//! | `compaction` | smaller storage for tiles with little content |
+//! | `rows` | rows of 32 and 64 cells, for all planning |
+//! | `evidence` | counts for and against an obstacle around the robot, on flat ground |
+//! | `integrate`, `traversal` | beams into classes and counts |
 //! | `elevation_layer` | the elevation window into classes, on uneven ground |
 //! | [`obstacle_points`] | single returns near the robot, finer than cells |
 //!

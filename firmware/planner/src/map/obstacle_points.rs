@@ -17,7 +17,7 @@
 //! - if it is out of reach. The reach behind the robot is shorter, because the robot only turns and
 //!   backs out there.
 //!
-//! Invariants: at most [`MAX_POINTS`] points, of which the farthest gives way; as many counts as
+//! Invariants: at most `MAX_POINTS` points, of which the farthest gives way; as many counts as
 //! points.
 //! Units: metres, odometry frame.
 
@@ -192,8 +192,8 @@ pub(crate) fn border_cells<const TILES: usize, const SLOTS: usize>(
     cells_around(robot, rims).map(Cell::centre)
 }
 
-/// Returns the [`border_cells`], each with its own margin, metres. An obstacle may begin before its
-/// cell, because a hit is marked [`HIT_DEPTH_M`] behind the beam's end.
+/// Returns the `border_cells`, each with its own margin, metres. An obstacle may begin before its
+/// cell, because a hit is marked `HIT_DEPTH_M` behind the beam's end.
 pub fn inflated_border_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,

@@ -1,9 +1,9 @@
 //! The tile pool: two bits per cell in pages of 32 × 32 cells. A tile takes a page when its first
 //! cell is stored.
 //!
-//! The directory has a slot for every tile of a box with toroidal addresses ([`TileBox`]), so the
+//! The directory has a slot for every tile of a box with toroidal addresses (`TileBox`), so the
 //! map may start anywhere; only the *extent* of the stored tiles has to fit the box. A tile with
-//! little content takes less than a page ([`super::compaction`]).
+//! little content takes less than a page (`compaction`).
 //!
 //! The *trail* has one bit for 2 × 2 cells: the robot's centre was there. Noise may close a passage
 //! as narrow as the robot behind it. The trail keeps the passage open.
@@ -12,7 +12,7 @@
 //! Units: cells of [`crate::geometry::CELL_M`].
 
 use crate::geometry::Cell;
-use crate::grid::{Class, Row, TileBox, inside, masked};
+use crate::grid::{Class, Row, TileBox, inside, inside_mut, masked, masked_mut};
 use crate::map::compaction::{Entry, FreeList, ONES, ZEROS};
 pub use crate::map::extent::{Extent, NoRoom};
 use crate::map::rows::{Column, RowReader};
@@ -164,11 +164,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
 
     /// Returns the directory's entry in a slot.
     pub(super) fn entry_in(&self, slot: usize) -> Entry {
-        Entry::of(inside(&self.directory, slot))
+        inside(&self.directory, slot).map_or(Entry::Untouched, |&word| Entry::of(word))
     }
 
     pub(super) fn enter(&mut self, slot: usize, entry: Entry) {
-        if let Some(word) = self.directory.get_mut(slot) {
+        if let Some(word) = inside_mut(&mut self.directory, slot) {
             *word = entry.word();
         }
     }
@@ -177,8 +177,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     fn planes(&self, entry: Entry) -> Option<[&Plane; 2]> {
         match entry {
             Entry::Untouched => None,
-            Entry::Page(page) => self.pool.get(page).map(|[low, high]| [low, high]),
-            Entry::Half(half) => Some([self.pool.get(half / 2)?.get(half % 2)?, &ZEROS]),
+            Entry::Page(page) => inside(&self.pool, page).map(|[low, high]| [low, high]),
+            Entry::Half(half) => Some([inside(self.pool.as_flattened(), half)?, &ZEROS]),
             Entry::AllFree(_) => Some([&ONES, &ZEROS]),
         }
     }
@@ -223,11 +223,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             self.extent = Some(self.grown(tile_x, tile_y)?);
         }
         let slot = self.slot(tile_x, tile_y);
-        match Entry::of(*self.directory.get(slot).ok_or(NoRoom::Box)?) {
+        match self.entry_in(slot) {
             Entry::Page(page) => Ok(page),
             Entry::Untouched if self.has_page() => {
                 let page = self.take_page()?;
-                *self.pool.get_mut(page).ok_or(NoRoom::Pool)? = [ZEROS; 2];
+                *inside_mut(&mut self.pool, page).ok_or(NoRoom::Pool)? = [ZEROS; 2];
                 self.enter(slot, Entry::Page(page));
                 Ok(page)
             }
@@ -268,12 +268,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             return;
         }
         let slot = self.slot(cell.x >> 5, cell.y >> 5);
-        let row = self
-            .visited
-            .get_mut(slot)
-            .and_then(|rows| rows.get_mut((cell.y & 31) as usize / 2));
-        if let Some(row) = row {
-            *row |= 1 << ((cell.x & 31) / 2);
+        if let Some(rows) = inside_mut(&mut self.visited, slot) {
+            *masked_mut(rows, (cell.y & 31) as usize / 2) |= 1 << ((cell.x & 31) / 2);
         }
     }
 
@@ -293,11 +289,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             return None;
         }
         let slot = self.slot(tile_x, tile_y);
-        let [low, high] = self.planes(Entry::of(*self.directory.get(slot)?))?;
+        let [low, high] = self.planes(self.entry_in(slot))?;
         Some(Column {
             low,
             high,
-            visited: self.visited.get(slot)?,
+            visited: inside(&self.visited, slot)?,
         })
     }
 
@@ -308,7 +304,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     pub(super) fn open(&mut self, (tile_x, tile_y): (i32, i32)) -> Result<TileMut<'_>, NoRoom> {
         let index = self.touch(tile_x, tile_y)?;
         Ok(TileMut {
-            cells: self.pool.get_mut(index).ok_or(NoRoom::Pool)?,
+            cells: inside_mut(&mut self.pool, index).ok_or(NoRoom::Pool)?,
             edits: &mut self.edits,
         })
     }
