@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Here z is the height of the cell and h the first measured height on the line to the robot, d
-//! away over ground. The cell lies at most [`MAX_CELLS`] from the robot. On the line before h there is
-//! no obstacle and no drop.
+//! away over ground. The cell lies at most [`MAX_CELLS`] from the robot. On the line before h there
+//! is no obstacle and no drop.
 //!
 //! Behind a brow, tilted beams meet the ground only far off, until the robot itself tilts. If the
 //! attitude is noisy, nothing is measured there, and unmeasured ground stops the robot before its
