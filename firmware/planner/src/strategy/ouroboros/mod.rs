@@ -13,9 +13,9 @@
 //! | 25 | none is left: complete, unless a loop is open | `revisit` |
 //! | 26–28 | local goal, local potential, drive | [`planner`](crate::planner) |
 //!
-//! A round takes up to three calls of `advance` (more for line 25), each with one wave
-//! at most, all on the same published skeleton. Between two calls nothing of the wave is needed, so
-//! its memory is free for other uses.
+//! A round takes up to three calls of `advance` (more for line 25), each with one wave at most, all
+//! on the same published skeleton. Between two calls nothing of the wave is needed, so its memory
+//! is free for other uses.
 //!
 //! What is kept from round to round lies in cells of the map and not of the skeleton: tractor
 //! point, shield, closed regions and path outlast any number of skeletons.
@@ -32,7 +32,7 @@ mod closing;
 mod loop_budget;
 mod loop_road;
 mod revisit;
-pub(super) mod shield;
+mod shield;
 mod tractor;
 
 #[cfg(test)]

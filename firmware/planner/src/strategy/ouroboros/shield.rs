@@ -17,7 +17,7 @@ use crate::roadmap::branches::{Kind, kind};
 /// The longest shield to one side of the path, cells: 6.4 m.
 const MOST_REACH: u8 = 32;
 /// The most centre cells on a shield: those of one branch that crosses it at an angle.
-pub(in crate::strategy) const MOST_CUT: usize = 4;
+const MOST_CUT: usize = 4;
 /// Cells between the robot and the shield along at least one axis: with fewer, the wall is at the
 /// robot's own place in the window.
 const CLEAR_CELLS: i32 = 2;
