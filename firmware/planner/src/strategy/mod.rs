@@ -10,12 +10,12 @@
 //! Every strategy drives to frontiers in the end, so a `Strategist` always has a [`Frontier`].
 
 pub(crate) mod frontier;
-pub mod ouroboros;
-pub mod tdbvp;
+pub(crate) mod ouroboros;
+pub(crate) mod tdbvp;
 
 pub(crate) use frontier::Frontier;
-pub use ouroboros::Ouroboros;
-pub use tdbvp::Tdbvp;
+pub(crate) use ouroboros::Ouroboros;
+pub(crate) use tdbvp::Tdbvp;
 
 use crate::config::{Config, Strategy};
 use crate::field::Window;

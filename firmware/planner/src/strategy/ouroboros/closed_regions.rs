@@ -25,13 +25,13 @@ const NEAR_CELLS: i32 = 10;
 /// Side of a region as a power of two, cells.
 const REGION_SHIFT: i32 = 3;
 /// Side of a region, cells.
-pub const REGION_CELLS: i32 = 1 << REGION_SHIFT;
+pub(crate) const REGION_CELLS: i32 = 1 << REGION_SHIFT;
 /// Regions along a tile as a power of two: a tile's 4 × 4 regions fill a `u16`.
 const TILE_SHIFT: i32 = 2;
 
 /// Closed and pending regions in a box of tiles: 4 bytes for each of its `SLOTS` places.
 #[derive(Debug)]
-pub struct ClosedRegions<const SLOTS: usize> {
+pub(crate) struct ClosedRegions<const SLOTS: usize> {
     closed: [u16; SLOTS],
     pending: [u16; SLOTS],
     slots: TileBox,
@@ -49,7 +49,7 @@ impl<const SLOTS: usize> ClosedRegions<SLOTS> {
 
     /// Returns true if no new loop starts in the region of a map cell.
     #[must_use]
-    pub fn is_closed(&self, cell: Cell) -> bool {
+    pub(crate) fn is_closed(&self, cell: Cell) -> bool {
         let (slot, bit) = self.place(cell.x >> REGION_SHIFT, cell.y >> REGION_SHIFT);
         self.closed.get(slot).is_some_and(|tile| tile & bit != 0)
     }

@@ -40,8 +40,8 @@ mod exploring;
 #[cfg(test)]
 mod scenes;
 
-pub use closed_regions::{ClosedRegions, REGION_CELLS};
-pub use shield::Shield;
+pub(crate) use closed_regions::{ClosedRegions, REGION_CELLS};
+pub(crate) use shield::Shield;
 
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
@@ -72,7 +72,7 @@ enum Stage {
 
 /// The state of the strategy. `SLOTS` as the map's.
 #[derive(Debug)]
-pub struct Ouroboros<const SLOTS: usize> {
+pub(crate) struct Ouroboros<const SLOTS: usize> {
     /// `previousTractorPoint`, a coarse cell.
     tractor: Option<Cell>,
     /// `previousShield`: a loop is being closed.
@@ -95,11 +95,11 @@ pub struct Ouroboros<const SLOTS: usize> {
 
 /// The numbers of loops that are over.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
+pub(crate) struct Tally {
     /// Loops closed: the robot reached the tractor point by the front.
-    pub closed: u16,
+    pub(crate) closed: u16,
     /// Loops given up: not worth closing any more, too long without an end, or lost too often.
-    pub given_up: u16,
+    pub(crate) given_up: u16,
 }
 
 impl<const SLOTS: usize> Ouroboros<SLOTS> {
@@ -128,26 +128,26 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
 
     /// Returns the tractor point, a coarse cell.
     #[must_use]
-    pub const fn tractor(&self) -> Option<Cell> {
+    pub(crate) const fn tractor(&self) -> Option<Cell> {
         self.tractor
     }
 
     /// Returns the shield behind the robot. There is one while a loop is being closed, and its
     /// cells are obstacles of the window.
     #[must_use]
-    pub const fn shield(&self) -> Option<&Shield> {
+    pub(crate) const fn shield(&self) -> Option<&Shield> {
         self.shield.as_ref()
     }
 
     /// Returns the regions in which no new loop starts.
     #[must_use]
-    pub const fn closed_regions(&self) -> &ClosedRegions<SLOTS> {
+    pub(crate) const fn closed_regions(&self) -> &ClosedRegions<SLOTS> {
         &self.regions
     }
 
     /// Returns the numbers of loops that are over.
     #[must_use]
-    pub const fn tally(&self) -> Tally {
+    pub(crate) const fn tally(&self) -> Tally {
         self.tally
     }
 

@@ -24,7 +24,7 @@ const CLEAR_CELLS: i32 = 2;
 
 /// A wall across a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shield {
+pub(crate) struct Shield {
     /// The centre cell that it stands on.
     at: Cell,
     /// Its direction: that of the path, turned to the left.
@@ -166,7 +166,7 @@ impl Shield {
 
     /// Returns the last cell to the left and the last one to the right.
     #[must_use]
-    pub fn ends(&self) -> [Cell; 2] {
+    pub(crate) fn ends(&self) -> [Cell; 2] {
         let last = |side: usize| self.ray(side).take(self.length(side)).last();
         [0, 1].map(|side| last(side).unwrap_or(self.at))
     }

@@ -30,7 +30,7 @@ mod sides;
 #[cfg(test)]
 mod scenes;
 
-pub use rails::{PLACE_CELLS, Rails};
+pub(crate) use rails::{PLACE_CELLS, Rails};
 
 use crate::field::local_grid::LocalGrid;
 use crate::field::{Preference, SIDE, Window};
@@ -70,7 +70,7 @@ const STEPS_PER_CELL: u32 = CELL_MS / STEP_MS;
 
 /// The state of the strategy. `SLOTS` as the map's.
 #[derive(Debug)]
-pub struct Tdbvp<const SLOTS: usize> {
+pub(crate) struct Tdbvp<const SLOTS: usize> {
     rails: Rails<SLOTS>,
     pending: PendingVisits,
     votes: SideVotes,
@@ -110,7 +110,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
 
     /// Returns the stamps of the last visits.
     #[must_use]
-    pub const fn rails(&self) -> &Rails<SLOTS> {
+    pub(crate) const fn rails(&self) -> &Rails<SLOTS> {
         &self.rails
     }
 

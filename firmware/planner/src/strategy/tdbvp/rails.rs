@@ -23,7 +23,7 @@ use crate::grid::TileBox;
 /// Side of a place as a power of two, cells.
 const PLACE_SHIFT: i32 = 4;
 /// Side of a place, which has one stamp, cells.
-pub const PLACE_CELLS: i32 = 1 << PLACE_SHIFT;
+pub(crate) const PLACE_CELLS: i32 = 1 << PLACE_SHIFT;
 /// Steps in a tick at first: 0.8 s at 200 ms a step, in which the robot does not cross a place.
 const FIRST_TICK_STEPS: u16 = 4;
 /// Ticks by which the stamps must be lowered at least, or they are halved: a quarter of all, so
@@ -34,7 +34,7 @@ pub(super) const UNVISITED: f32 = -0.5;
 
 /// The stamps of a box of tiles: 4 bytes for each of its `SLOTS` places.
 #[derive(Debug)]
-pub struct Rails<const SLOTS: usize> {
+pub(crate) struct Rails<const SLOTS: usize> {
     stamps: [[u8; 4]; SLOTS],
     slots: TileBox,
     now: u8,
@@ -88,7 +88,7 @@ impl<const SLOTS: usize> Rails<SLOTS> {
     /// Returns the stamp of the last visit to a map cell's place; 0 if there was none. The older of
     /// two places has the lower stamp.
     #[must_use]
-    pub fn stamp(&self, cell: Cell) -> u8 {
+    pub(crate) fn stamp(&self, cell: Cell) -> u8 {
         let (slot, part) = self.place(cell);
         let tile = self.stamps.get(slot);
         tile.and_then(|tile| tile.get(part)).copied().unwrap_or(0)
