@@ -88,11 +88,11 @@ fn the_log_is_decoded_with_the_image() {
     let lines = decoder.lines(&link.take_log());
     let text = lines.join("\n");
     assert!(
-        text.contains("INFO boot 1 (firmware/device/src/session.rs:"),
+        text.contains("INFO boot number 1 (firmware/device/src/session.rs:"),
         "{text}"
     );
     assert!(
-        text.contains("INFO start: box 20 x 20 tiles, 2 lasers, radius 300 mm"),
+        text.contains("INFO session started: box 20 x 20 tiles, 2 lasers, radius 300 mm"),
         "{text}"
     );
 }

@@ -135,8 +135,8 @@ fn loop_limits(limits: &wire::LoopLimits) -> LoopLimits {
     }
 }
 
-/// Converts the parameters of a session from the wire. The planner checks them. Without `tuning` the
-/// tuned constants have their defaults.
+/// Converts the parameters of a session from the wire. The planner checks them. Without `tuning`
+/// the tuned constants have their defaults.
 ///
 /// # Errors
 /// [`wire::Parameter`]: the first parameter that is out of its range.
@@ -220,7 +220,8 @@ pub(crate) const fn wire_loops(loops: LoopCounts) -> wire::Loops {
     }
 }
 
-/// Converts tractor point, shield and path for the wire, without the first `from` cells of the path.
+/// Converts tractor point, shield and path for the wire, without the first `from` cells of the
+/// path.
 pub(crate) fn wire_path<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     from: u8,

@@ -1,7 +1,7 @@
 //! The layers of the planner: a room imports only itself and rooms above it in [`ROOMS`].
 //!
-//! The test reads the sources as text and looks at every `crate::` path. `super::` must not lead out of
-//! a room, so that no import hides from it.
+//! The test reads the sources as text and looks at every `crate::` path. `super::` must not lead
+//! out of a room, so that no import hides from it.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -15,9 +15,9 @@ pub fn cells() -> impl Iterator<Item = (usize, usize)> {
     (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y)))
 }
 
-/// Takes one step of the steepest ascent of q: to a neighbouring goal, or else to the neighbour with
-/// the greatest q if that is greater than q here. From any reachable cell of a solved window these
-/// steps lead to a goal.
+/// Takes one step of the steepest ascent of q: to a neighbouring goal, or else to the neighbour
+/// with the greatest q if that is greater than q here. From any reachable cell of a solved window
+/// these steps lead to a goal.
 pub fn ascend(window: &Window, x: usize, y: usize) -> Option<(usize, usize)> {
     if !window.is_reached(x, y) {
         return None;

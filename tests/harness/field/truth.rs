@@ -87,8 +87,8 @@ impl Truth {
         gy.atan2(gx)
     }
 
-    /// Returns `p_diff` at a cell: the mean of `|p − p_robot|` over the reachable cells of the kernel
-    /// from 10 cells before to 9 cells after.
+    /// Returns `p_diff` at a cell: the mean of `|p − p_robot|` over the reachable cells of the
+    /// kernel from 10 cells before to 9 cells after.
     #[must_use]
     pub fn p_diff(&self, x: usize, y: usize) -> f64 {
         let inside = |a: usize, b: usize| b + 10 >= a && b < a + 10;
