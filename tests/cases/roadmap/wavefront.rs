@@ -25,7 +25,7 @@ impl Memory {
 
     fn space(&mut self, map: &Map) -> WaveSpace<'_> {
         WaveSpace {
-            way: Plane::new(map.shape(), &self.way).unwrap(),
+            cells: Plane::new(map.shape(), &self.way).unwrap(),
             residues: Residues::new(map.shape(), &mut self.pairs).unwrap(),
             ring: &mut self.ring,
         }

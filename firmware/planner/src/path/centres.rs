@@ -20,7 +20,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> Centres<'a, TILES, SLOTS> {
             tiles,
             footprint,
             frame: skeleton.frame(),
-            way: skeleton.skeleton()?,
+            cells: skeleton.skeleton()?,
         })
     }
 
@@ -40,7 +40,9 @@ impl<'a, const TILES: usize, const SLOTS: usize> Centres<'a, TILES, SLOTS> {
 
     /// Returns true if a coarse cell is a centre cell.
     pub(crate) fn is_centre(&self, cell: Cell) -> bool {
-        self.frame.site(cell).is_some_and(|site| self.way.get(site))
+        self.frame
+            .site(cell)
+            .is_some_and(|site| self.cells.get(site))
     }
 
     /// Returns the coarse cell of a site.
@@ -61,12 +63,12 @@ impl<'a, const TILES: usize, const SLOTS: usize> Centres<'a, TILES, SLOTS> {
             let last = (from + half - origin).div_euclid(2).min(most as i32 - 1);
             least..=last
         };
-        let shape = self.way.shape();
+        let shape = self.cells.shape();
         for y in steps(middle.y, self.frame.origin.y, shape.rows()) {
             for x in steps(middle.x, self.frame.origin.x, shape.columns()) {
                 let (x, y) = (x as u16, y as u16);
                 let site = Site { x, y };
-                if self.way.get(site) {
+                if self.cells.get(site) {
                     visit(site, self.cell(site));
                 }
             }

@@ -57,7 +57,7 @@ impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {
     pub(crate) fn nearest(&self, from: Cell, scratch: &mut PlanningScratch<'_>) -> Option<Site> {
         let centres = self.centres()?;
         let here = centres.frame.site(from);
-        if let Some(site) = here.filter(|&site| centres.way.get(site)) {
+        if let Some(site) = here.filter(|&site| centres.cells.get(site)) {
             return Some(site);
         }
         let (site, _) = centres.nearest(from, scratch.local_grid, |_| true)?;
@@ -78,7 +78,7 @@ impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {
         let shape = plane.shape();
         if let Ok(residues) = Residues::new(shape, &mut *scratch.residues) {
             let mut space = WaveSpace {
-                way: plane.view(),
+                cells: plane.view(),
                 residues,
                 ring: &mut *scratch.queue,
             };

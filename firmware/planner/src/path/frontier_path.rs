@@ -33,7 +33,7 @@ pub(crate) fn path_to_frontier<const TILES: usize, const SLOTS: usize>(
     present: Option<PresentGoal>,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
-    let way = context.skeleton.skeleton()?;
+    let cells = context.skeleton.skeleton()?;
     let entries = scratch.queue.len().saturating_sub(CLASS_WORDS);
     let (queue, memory) = scratch.queue.split_at_mut(entries);
     let cost = GoalCost::new(context, given_up, present, memory)?;
@@ -42,7 +42,7 @@ pub(crate) fn path_to_frontier<const TILES: usize, const SLOTS: usize>(
         queue,
         local_grid: &mut *scratch.local_grid,
     };
-    let path = path_along(way, &cost, &mut scratch)?;
+    let path = path_along(cells, &cost, &mut scratch)?;
     let level_path = path_on_level(&path, &cost, &mut scratch);
     level_path.or(Some(path))
 }
@@ -88,12 +88,12 @@ fn path_on_level<const TILES: usize, const SLOTS: usize>(
 
 /// Returns the path to the frontier cell of the least cost along these centre cells.
 fn path_along<const TILES: usize, const SLOTS: usize>(
-    way: Plane<'_>,
+    cells: Plane<'_>,
     cost: &GoalCost<'_, TILES, SLOTS>,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
     let centres = Centres {
-        way,
+        cells,
         ..cost.context.centres()?
     };
     let mut search = PathSearch::open(centres, scratch)?;

@@ -29,7 +29,7 @@ pub(crate) struct Centres<'a, const TILES: usize, const SLOTS: usize> {
     /// The place of the skeleton's plane.
     pub(crate) frame: Frame,
     /// The centre cells.
-    pub(crate) way: Plane<'a>,
+    pub(crate) cells: Plane<'a>,
 }
 
 impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
@@ -68,7 +68,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
                 .then_some((dx, dy))
         };
         let (site, (dx, dy)) = self
-            .way
+            .cells
             .sites()
             .filter(|&site| accepts(site))
             .filter_map(|site| Some((site, apart(site)?)))
@@ -89,7 +89,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         let last = (least + SIDE as i32 * grid.scale / 2 + 1).max(0) as usize;
         for y in first..last.min(self.frame.shape.rows()) {
             for word in 0..self.frame.shape.words_per_row() {
-                let mut bits = self.way.word(y, word);
+                let mut bits = self.cells.word(y, word);
                 while bits != 0 {
                     let x = (word * 32) as u16 + bits.trailing_zeros() as u16;
                     bits &= bits - 1;
@@ -121,7 +121,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
                 y: least.y + k / coarse * 2,
             };
             let site = self.frame.site(cell)?;
-            (self.way.get(site) && accepts(site)).then_some(site)
+            (self.cells.get(site) && accepts(site)).then_some(site)
         })
     }
 }

@@ -27,7 +27,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
     ) -> Option<Self> {
         let residues = Residues::new(centres.frame.shape, &mut *scratch.residues).ok()?;
         let space = WaveSpace {
-            way: centres.way,
+            cells: centres.cells,
             residues,
             ring: &mut *scratch.queue,
         };

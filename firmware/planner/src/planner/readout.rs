@@ -71,7 +71,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// Returns the residual frontiers, each with its reason.
     #[must_use]
     pub fn frontiers(&self) -> &[Frontier] {
-        self.strategy.frontier.dropped()
+        self.strategy.frontier.residual_frontiers()
     }
 
     /// Returns the numbers of loops.

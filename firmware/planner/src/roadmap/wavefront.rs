@@ -24,8 +24,8 @@ use crate::roadmap::residues::{Residue, Residues};
 pub struct WaveSpace<'a> {
     /// The cells that the wave may enter: the skeleton. A blocker is a cell taken out of it, see
     /// [`super::Barrier`].
-    pub way: Plane<'a>,
-    /// The distances, in the shape of the way.
+    pub cells: Plane<'a>,
+    /// The distances, in the shape of the cells.
     pub residues: Residues<'a>,
     /// The queue, an entry a word. Any length will do; more than 1,000 entries are rare.
     pub ring: &'a mut [u32],
@@ -86,7 +86,11 @@ impl Wavefront {
 
     /// Starts anew: no cell is reached, and there is no seed.
     pub fn start(&mut self, space: &mut WaveSpace<'_>) {
-        debug_assert_eq!(space.way.shape(), space.residues.shape(), "unequal shapes");
+        debug_assert_eq!(
+            space.cells.shape(),
+            space.residues.shape(),
+            "unequal shapes"
+        );
         *self = Self::new();
         space.residues.clear();
     }
@@ -95,7 +99,7 @@ impl Wavefront {
     /// reached yet.
     pub fn seed(&mut self, space: &mut WaveSpace<'_>, site: Site) -> bool {
         let (row, word) = (usize::from(site.y), usize::from(site.x / 32));
-        let index = space.way.shape().index(row, word);
+        let index = space.cells.shape().index(row, word);
         index.is_some_and(|index| self.enter(space, index, site.bit(), (row, word)))
     }
 
@@ -135,8 +139,8 @@ impl Wavefront {
         if noted.is_empty() {
             return;
         }
-        for row in noted.widened(space.way.shape().rows()) {
-            for word in 0..space.way.shape().words_per_row() {
+        for row in noted.widened(space.cells.shape().rows()) {
+            for word in 0..space.cells.shape().words_per_row() {
                 self.enter_from_around(space, row, word);
             }
         }
@@ -148,7 +152,7 @@ impl Wavefront {
 
     /// Enters the open neighbours of a cell.
     fn expand(&mut self, space: &mut WaveSpace<'_>, site: Site) {
-        let shape = space.way.shape();
+        let shape = space.cells.shape();
         let (per_row, rows) = (shape.words_per_row(), shape.rows());
         let (row, word) = (usize::from(site.y), usize::from(site.x / 32));
         let bit = site.bit();
@@ -173,7 +177,7 @@ impl Wavefront {
     #[inline(never)]
     fn expand_into(&mut self, space: &mut WaveSpace<'_>, (row, word): (usize, usize), mask: u32) {
         for row in row.saturating_sub(1)..row + 2 {
-            if let Some(index) = space.way.shape().index(row, word) {
+            if let Some(index) = space.cells.shape().index(row, word) {
                 self.enter(space, index, mask, (row, word));
             }
         }
@@ -188,7 +192,7 @@ impl Wavefront {
         mask: u32,
         place: (usize, usize),
     ) -> bool {
-        let open = mask & at(space.way.words(), index) & space.residues.unreached(index);
+        let open = mask & at(space.cells.words(), index) & space.residues.unreached(index);
         if open != 0 {
             self.reach(space, index, open, place);
         }
@@ -238,9 +242,9 @@ impl Wavefront {
 
     /// Enters the open cells of a word that have a neighbour of the present level.
     fn enter_from_around(&mut self, space: &mut WaveSpace<'_>, row: usize, word: usize) {
-        let shape = space.way.shape();
+        let shape = space.cells.shape();
         let index = row * shape.words_per_row() + word;
-        if at(space.way.words(), index) & space.residues.unreached(index) == 0 {
+        if at(space.cells.words(), index) & space.residues.unreached(index) == 0 {
             return;
         }
         let mut near = 0;

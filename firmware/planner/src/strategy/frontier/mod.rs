@@ -27,7 +27,7 @@ use crate::roadmap::skeleton::Skeleton;
 use crate::status::{Frontier as ResidualFrontier, Residue};
 
 /// A robot that follows its own potential has reached a goal that is at most this many steps away.
-const GLANCE_STEPS: u32 = 4;
+const REACHED_STEPS: u32 = 4;
 /// Maximum number of viewpoints in a run.
 const MOST_VIEWPOINTS: u8 = 100;
 /// Rounds in a row that must find nothing before the exploration ends: noise may close a way for a
@@ -91,7 +91,7 @@ impl Frontier {
     }
 
     /// Returns the goals that were given up, with the reasons.
-    pub(crate) fn dropped(&self) -> &[ResidualFrontier] {
+    pub(crate) fn residual_frontiers(&self) -> &[ResidualFrontier] {
         self.residual.as_slice()
     }
 
@@ -139,14 +139,14 @@ impl Frontier {
     /// Plans a round for a robot that follows its own potential while a frontier is left. Only a
     /// goal that the robot has reached is given up. Returns true as well if the robot may follow
     /// its own potential; false if it `is_late`.
-    pub(super) fn glance<const TILES: usize, const SLOTS: usize>(
+    pub(super) fn replan_freely<const TILES: usize, const SLOTS: usize>(
         &mut self,
         context: &PlanningContext<'_, TILES, SLOTS>,
         mut scratch: PlanningScratch<'_>,
         is_late: bool,
     ) -> (RoundOutcome, bool) {
         let path = self.find_path(context, &mut scratch);
-        let is_far = |path: &Path| path.steps() > GLANCE_STEPS;
+        let is_far = |path: &Path| path.steps() > REACHED_STEPS;
         match path {
             Some(path) if !is_late && is_far(&path) => {
                 self.progress

@@ -73,7 +73,7 @@ impl LoopRoad {
         residues: &Residues<'_>,
         (robot, came): (Site, Cell),
     ) -> Option<Self> {
-        let heads = ways(centres.way, robot);
+        let heads = ways(centres.cells, robot);
         let reached = heads.iter().filter(|head| residues.get(**head).is_some());
         let arms: heapless::Vec<Arm, MOST_WAYS> = reached
             .map(|&head| Arm::measure(centres, residues, (robot, came), head))
@@ -157,7 +157,7 @@ pub(super) fn back_to_shield<'a, const TILES: usize, const SLOTS: usize>(
     residues: &'a Residues<'_>,
     robot: Site,
 ) -> Option<impl Iterator<Item = Site> + use<'a, TILES, SLOTS>> {
-    let heads = ways(centres.way, robot);
+    let heads = ways(centres.cells, robot);
     let reached = heads.iter().filter(|head| residues.get(**head).is_some());
     let back = reached.min_by_key(|head| steps_from(residues, **head))?;
     Some(descent(residues, *back))

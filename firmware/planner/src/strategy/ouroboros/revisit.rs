@@ -90,9 +90,9 @@ pub(super) fn settle<const TILES: usize, const SLOTS: usize>(
     regions.add_pending(place);
     if let Some(centres) = round.centres()
         && let Some(site) = centres.frame.site(place)
-        && let Some((end, before)) = end_of_branch(centres.way, site)
+        && let Some((end, before)) = end_of_branch(centres.cells, site)
     {
-        for site in core::iter::once(end).chain(Branch::new(centres.way, end, before)) {
+        for site in core::iter::once(end).chain(Branch::new(centres.cells, end, before)) {
             regions.add_pending(centres.cell(site));
         }
     }
@@ -105,8 +105,8 @@ fn first_open<const TILES: usize, const SLOTS: usize>(
     regions: &ClosedRegions<SLOTS>,
 ) -> Option<Site> {
     let centres = round.centres()?;
-    let is_passage = |site| kind(centres.way, site) == Some(Kind::Passage);
-    let mut sites = centres.way.sites();
+    let is_passage = |site| kind(centres.cells, site) == Some(Kind::Passage);
+    let mut sites = centres.cells.sites();
     sites.find(|&site| is_open(&centres, regions, site) && is_passage(site))
 }
 
@@ -118,17 +118,17 @@ fn middle_of_stretch<const TILES: usize, const SLOTS: usize>(
     site: Site,
 ) -> Option<Site> {
     let centres = round.centres()?;
-    let (end, before) = end_of_branch(centres.way, site)?;
+    let (end, before) = end_of_branch(centres.cells, site)?;
     // The stretch so far, cells; then length and last cell of the longest one.
     let (mut cells, mut longest) = (0, (0, 0));
-    for (k, site) in Branch::new(centres.way, end, before).enumerate() {
+    for (k, site) in Branch::new(centres.cells, end, before).enumerate() {
         let is_open = is_open(&centres, regions, site);
         cells = if is_open { cells + 1 } else { 0 };
         longest = longest.max((cells, k));
     }
     let (cells, last) = longest;
     let is_long = cells as f32 * STEP_M >= LEAST_M;
-    let middle = || Branch::new(centres.way, end, before).nth(last - cells / 2);
+    let middle = || Branch::new(centres.cells, end, before).nth(last - cells / 2);
     is_long.then(middle).flatten()
 }
 

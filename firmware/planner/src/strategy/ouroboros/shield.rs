@@ -59,7 +59,7 @@ impl Shield {
         robot: Cell,
     ) -> Result<Self, Flaw> {
         let site = centres.frame.site(at).ok_or(Flaw::OffBranch)?;
-        if kind(centres.way, site) != Some(Kind::Passage) {
+        if kind(centres.cells, site) != Some(Kind::Passage) {
             return Err(Flaw::OffBranch);
         }
         let half = |from: i32, to: i32| ((to - from) / 2).clamp(-16, 16) as i8;

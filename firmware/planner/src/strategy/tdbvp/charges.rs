@@ -126,7 +126,7 @@ pub(super) fn has_fork<const TILES: usize, const SLOTS: usize>(
     let mut has_fork = false;
     centres.for_each_in_square(robot.cell(), (DISC_M / CELL_M) as i32, |site, cell| {
         has_fork |=
-            distance_m(cell, robot) <= DISC_M && kind(centres.way, site) == Some(Kind::Junction);
+            distance_m(cell, robot) <= DISC_M && kind(centres.cells, site) == Some(Kind::Junction);
     });
     has_fork
 }

@@ -165,7 +165,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         let (room_m, goals) = if self.is_patrolling() {
             (VISIT_M, [0; SIDE])
         } else {
-            let dropped = frontier.dropped().iter().map(|goal| goal.cell);
+            let dropped = frontier.residual_frontiers().iter().map(|goal| goal.cell);
             (ROOM_M, unexplored(grid, centres.tiles, dropped))
         };
         let visits = (&self.rails, &self.pending);
@@ -223,7 +223,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
             return self.patrol(frontier, &mut round, &mut scratch, patrolled_ms);
         }
         let is_late = round.time_ms.wrapping_sub(self.new_place_ms) >= IMPATIENCE_MS;
-        let (outcome, is_free) = frontier.glance(&round, scratch, is_late);
+        let (outcome, is_free) = frontier.replan_freely(&round, scratch, is_late);
         // What remains for the second chance is where the robot only just fits through.
         self.on_path = !is_free || frontier.is_second_chance();
         outcome
@@ -262,11 +262,11 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         patrolled_ms: u32,
     ) -> Option<(u8, bool)> {
         let centres = round.centres()?;
-        let tour_steps = STEPS_PER_CELL * centres.way.count() as u32;
+        let tour_steps = STEPS_PER_CELL * centres.cells.count() as u32;
         // The never visited come first. Those not visited in a whole tour cannot be reached.
         let is_first_tour = patrolled_ms < tour_steps.saturating_mul(STEP_MS);
         let stamps = centres
-            .way
+            .cells
             .sites()
             .map(|site| self.stamp(centres.cell(site)));
         let oldest = stamps.filter(|&stamp| is_first_tour || stamp > 0).min()?;
@@ -293,7 +293,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         let centres = round.centres()?;
         let has_stamp = |site: &_| self.stamp(centres.cell(*site)) == stamp;
         let mut search = PathSearch::open(centres, scratch)?;
-        search.spread(centres.way.sites().filter(has_stamp));
+        search.spread(centres.cells.sites().filter(has_stamp));
         search.path(round.pose.point().cell())
     }
 }
