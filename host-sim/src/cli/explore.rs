@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
 
-use fieldline_protocol::message::UnevenGround;
+use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
@@ -33,7 +33,9 @@ pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     let link = strategies::link_of(&args.strategy, args.link.as_ref())?;
     strategies::check(&args.strategy, args.check_field, args.fault.is_some())?;
     strategies::check_patrol(&args.strategy, args.patrol_for)?;
-    let runs = runs(args, &mission(args, &link)?)?;
+    let mission = mission(args, &link)?;
+    check_reference(&mission)?;
+    let runs = runs(args, &mission)?;
     let interrupt = Interrupt::listen()?;
     let mut all_explored = true;
     for run in &runs {
@@ -184,6 +186,18 @@ fn uneven_ground(args: &ExploreArgs) -> Result<Option<UnevenGround>> {
         preference: args.preference.map_or(parameters.preference, Into::into),
         ..parameters
     }))
+}
+
+/// Refuses `--check-field` for a field with preferences, which the direct solution does not have.
+fn check_reference(mission: &Mission) -> Result<()> {
+    let preference = mission.uneven_ground.map(|ground| ground.preference);
+    if mission.check_field && preference.is_some_and(|which| which != Preference::Off) {
+        bail!(
+            "--check-field has no reference for a field with preferences; \
+             say --preference off, or leave --check-field out"
+        );
+    }
+    Ok(())
 }
 
 fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {

@@ -138,29 +138,10 @@ fn explore(
 ) -> Ending {
     let mut freeze = FreezeDetector::default();
     loop {
-        let (observation, truth) = (cast.body.observe(), cast.body.truth());
-        let asked = Instant::now();
-        let command = match cast.link.observe(&observation) {
+        let command = match step(setup, cast, record, series) {
             Ok(command) => command,
             Err(error) => return Ending::Link(error),
         };
-        let wall_us = asked.elapsed().as_secs_f64() * 1e6;
-        let coverage = cast.survey.note(&observation, command.status);
-        record.push(Step::new(&observation, truth, command, wall_us), coverage);
-        if setup.check_field
-            && let Err(error) = check_field(cast.link, &observation, &command, record)
-        {
-            return Ending::Link(error);
-        }
-        if series.is_due(observation.time_ms) {
-            match snapshot::take(cast.link, record) {
-                Ok(mut snapshot) => {
-                    snapshot.relief = relief(cast, snapshot.window.as_ref());
-                    series.take(snapshot);
-                }
-                Err(error) => return Ending::Link(error),
-            }
-        }
         if let Some(ending) = ended(setup, cast.watch, &mut freeze, record, &command) {
             return ending;
         }
@@ -169,6 +150,31 @@ fn explore(
             return Ending::Lost(loss);
         }
     }
+}
+
+/// Observes, asks the planner, and enters both in the record. Takes a snapshot if one is due.
+fn step(
+    setup: &Setup,
+    cast: &mut Cast<'_>,
+    record: &mut Record,
+    series: &mut Series<Snapshot>,
+) -> Result<Command, LinkError> {
+    let (observation, truth) = (cast.body.observe(), cast.body.truth());
+    let asked = Instant::now();
+    let command = cast.link.observe(&observation)?;
+    let round_trip_us = asked.elapsed().as_secs_f64() * 1e6;
+    let coverage = cast.survey.note(&observation, command.status);
+    let step = Step::new(&observation, truth, command, round_trip_us);
+    record.push(step, coverage);
+    if setup.check_field {
+        check_field(cast.link, &observation, &command, record)?;
+    }
+    if series.is_due(observation.time_ms) {
+        let mut snapshot = snapshot::take(cast.link, record)?;
+        snapshot.relief = relief(cast, snapshot.window.as_ref());
+        series.take(snapshot);
+    }
+    Ok(command)
 }
 
 /// Returns the reason that ends the run after this step, if there is one.

@@ -27,7 +27,7 @@ pub struct Step {
     /// The command.
     pub command: Command,
     /// Microseconds from observation to command.
-    pub wall_us: f64,
+    pub round_trip_us: f64,
 }
 
 /// The record of a run.
@@ -96,12 +96,17 @@ impl Default for Record {
 impl Step {
     /// Makes a step from an observation and its command.
     #[must_use]
-    pub fn new(observation: &Observation, truth: Stamped, command: Command, wall_us: f64) -> Self {
+    pub fn new(
+        observation: &Observation,
+        truth: Stamped,
+        command: Command,
+        round_trip_us: f64,
+    ) -> Self {
         Self {
             estimate: stamped(observation.time_ms, &observation.pose),
             truth,
             command,
-            wall_us,
+            round_trip_us,
         }
     }
 }
@@ -197,7 +202,7 @@ impl Record {
     /// Returns the report's part on cost.
     #[must_use]
     pub fn planner(&self) -> report::Planner {
-        let wall: Vec<f64> = self.steps.iter().map(|step| step.wall_us).collect();
+        let round_trips: Vec<f64> = self.steps.iter().map(|step| step.round_trip_us).collect();
         let costs = self.steps.iter().map(|step| step.command.cost);
         let counted: Vec<Cost> = costs.clone().filter(|cost| cost.instructions > 0).collect();
         let of = |part: fn(&Cost) -> u32| {
@@ -206,7 +211,7 @@ impl Record {
         };
         let all = |part| of(part).unwrap_or_default();
         report::Planner {
-            round_trip_us: Percentiles::of(&wall),
+            round_trip_us: Percentiles::of(&round_trips),
             instructions: of(|cost| cost.instructions),
             stage_instructions: (!counted.is_empty()).then(|| report::Stages {
                 session: all(|cost| cost.stages.session),

@@ -226,6 +226,10 @@ fn bad_arguments_are_refused_in_one_line() {
         &["hilly", "flat, uneven", "host-sim explore --help"],
     );
     explore(
+        &["--ground", "uneven", "--check-field"],
+        &["--check-field", "say --preference off"],
+    );
+    explore(
         &["--patrol-for", "9"],
         &["frontier", "leave --patrol-for out"],
     );
