@@ -384,6 +384,10 @@ fn start_pose(world: &World, config: &SimConfig) -> Result<Pose, WorldError> {
     };
     world.check_start(world.name(), config.start, *start)?;
     let planar = start.pose();
+    if config.footprint.overlaps(world, &planar) {
+        let reason = "the robot's hull overlaps a wall at this start";
+        return Err(world.bad_start(world.name(), config.start, reason));
+    }
     let pose = stand(world, &planar).unwrap_or(planar);
     if !config.failing.holds_attitude(pose.pitch_rad, pose.roll_rad) {
         let reason = format!(

@@ -10,6 +10,7 @@ use host_sim::link::spec::LinkSpec;
 use host_sim::robot::{Limits, LimitsError};
 use host_sim::trial::uneven::{self, ParameterError};
 
+use super::robot::RobotArgs;
 use super::strategies;
 
 /// Most pictures during a run. Each is read over the link and held until the end.
@@ -31,6 +32,12 @@ pub(super) enum Command {
     /// List the built-in worlds
     Worlds {
         /// Print one JSON object a line
+        #[arg(long)]
+        json: bool,
+    },
+    /// List the planner's tuned constants with meaning, unit, range and default
+    Tuning {
+        /// One JSON object a line
         #[arg(long)]
         json: bool,
     },
@@ -148,6 +155,8 @@ pub(super) struct ExploreArgs {
         allow_negative_numbers = true
     )]
     pub(super) snapshots: usize,
+    #[command(flatten)]
+    pub(super) robot: RobotArgs,
     /// Print only the reports, one JSON object a line
     #[arg(long)]
     pub(super) json: bool,
@@ -177,6 +186,7 @@ impl Default for ExploreArgs {
             map_shape: None,
             check_field: false,
             snapshots: 0,
+            robot: RobotArgs::default(),
             json: false,
         }
     }

@@ -30,7 +30,7 @@ struct Run {
 /// Explores every world; returns true if every run ended explored.
 pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     let args = &without_alias(args)?;
-    let link = strategies::link_of(&args.strategy, args.link.as_ref())?;
+    let link = strategies::link_of(&args.strategy, args.robot.link(args.link.as_ref()))?;
     strategies::check(&args.strategy, args.check_field, args.fault.is_some())?;
     strategies::check_patrol(&args.strategy, args.patrol_for)?;
     let mission = mission(args, &link)?;
@@ -137,6 +137,7 @@ fn explore(args: &ExploreArgs, link: &LinkSpec, run: &Run, interrupt: &Interrupt
             .map_or_else(Default::default, |f| f.faults),
         seed: args.seed,
         real_time: args.realtime,
+        tuning: args.robot.tuning(link)?,
     };
     let name = run.world.name();
     for text in run.world.notes() {
@@ -209,7 +210,7 @@ fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
              lower the first or raise the second"
         );
     }
-    Ok(Mission {
+    Ok(args.robot.applied(Mission {
         strategy: args.strategy.clone(),
         uneven_ground: uneven_ground(args)?,
         link: link.to_string(),
@@ -227,7 +228,7 @@ fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         check_field: args.check_field,
         snapshots: args.snapshots,
         ..Mission::default()
-    })
+    }))
 }
 
 /// Prints the report on standard output, and advice on standard error.

@@ -9,8 +9,10 @@ mod args;
 mod explore;
 mod pictures;
 mod progress;
+mod robot;
 mod solve;
 mod strategies;
+mod tuning;
 mod worlds;
 
 use std::io::{self, Write as _};
@@ -57,6 +59,7 @@ fn run(cli: &Cli) -> Result<bool> {
         None => explore::run(&ExploreArgs::default()),
         Some(Command::Explore(args)) => explore::run(args),
         Some(Command::Worlds { json }) => worlds::run(*json).map(|()| true),
+        Some(Command::Tuning { json }) => tuning::run(*json).map(|()| true),
         Some(Command::Solve(args)) => solve::run(args).map(|()| true),
     }
 }

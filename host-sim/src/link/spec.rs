@@ -3,6 +3,7 @@
 use core::fmt;
 use core::str::FromStr;
 
+use fieldline_planner::Tuning;
 use fieldline_protocol::BAUD;
 
 use super::direct::Direct;
@@ -118,6 +119,8 @@ pub struct Options {
     pub seed: u64,
     /// True if the robot moves while the host waits for an answer.
     pub real_time: bool,
+    /// The planner's tuned constants, for a direct link; the defaults if `None`.
+    pub tuning: Option<&'static Tuning>,
 }
 
 impl LinkSpec {
@@ -135,7 +138,10 @@ impl LinkSpec {
             }
         };
         match self {
-            Self::Direct if options.faults == Faults::default() => Ok(Box::new(Direct::new())),
+            Self::Direct if options.faults == Faults::default() => {
+                let tuning = options.tuning.unwrap_or(&Tuning::DEFAULT);
+                Ok(Box::new(Direct::tuned(tuning)))
+            }
             Self::Direct => Err(LinkError::Io(
                 "a direct link has no bytes for faults; use --link loopback with --fault".into(),
             )),

@@ -6,13 +6,13 @@
 
 use core::fmt;
 
-use fieldline_protocol::message::{self as wire, Preference, Strategy, UnevenGround};
+use fieldline_protocol::message::{self as wire, LoopLimits, Preference, Strategy, UnevenGround};
 
 use super::account::Account;
 use super::{Cast, Record, Setup, Watch, run, shape, summary};
 use crate::link::{Link, LinkError};
 use crate::report::Report;
-use crate::robot::{LaserNoise, Limits, OdometryModel, OdometryNoise};
+use crate::robot::{Footprint, LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M};
 use crate::sim::{SimConfig, Simulator};
 use crate::world::{World, WorldError};
 
@@ -38,6 +38,12 @@ pub struct Mission {
     pub imu_rad: Option<f64>,
     /// Standard deviation of ranges, metres; that of [`LaserNoise`] if `None`.
     pub laser_m: Option<f64>,
+    /// The robot's hull.
+    pub hull: Footprint,
+    /// Radius around the robot's centre that the planner keeps clear, metres.
+    pub radius_m: f64,
+    /// Limits of loops; for strategy ouroboros.
+    pub loops: LoopLimits,
     /// Limits within which the ground counts as reachable and traversable.
     pub working: Limits,
     /// Limits beyond which the robot is lost.
@@ -68,6 +74,9 @@ impl Default for Mission {
             noisy_odometry: false,
             imu_rad: None,
             laser_m: None,
+            hull: Footprint::PIONEER_3AT,
+            radius_m: RADIUS_M,
+            loops: LoopLimits::default(),
             working: Limits::WORKING,
             failing: Limits::FAILING,
             time_limit_ms: 3_600_000,
@@ -181,6 +190,8 @@ impl Mission {
                 sigma_m: self.laser_m.unwrap_or(lasers.sigma_m),
                 ..lasers
             },
+            footprint: self.hull,
+            radius_m: self.radius_m,
             working: self.working,
             failing: self.failing,
             ..SimConfig::default()
@@ -217,6 +228,7 @@ pub fn explore(
     let setup = Setup {
         start: wire::Start {
             uneven_ground: mission.uneven_ground,
+            loops: mission.loops,
             ..simulator.start_message(mission.strategy(), (across, up))
         },
         time_limit_ms: mission.time_limit_ms,

@@ -2,6 +2,7 @@
 
 use std::fs;
 
+use fieldline_planner::Tuning;
 use serde_json::Value;
 
 use crate::{folder, outcome, reports};
@@ -25,6 +26,23 @@ fn the_worlds_are_listed_with_their_names() {
     let (status, stdout, _) = outcome(&folder, &["worlds"]);
     assert_eq!(status, 0);
     assert!(names.iter().all(|name| stdout.contains(name.as_str())));
+}
+
+#[test]
+fn the_tuned_constants_are_listed_with_their_ranges() {
+    let folder = folder();
+    let (status, stdout, stderr) = outcome(&folder, &["tuning", "--json"]);
+    assert_eq!((status, stderr.as_str()), (0, ""));
+    let constants = reports(&stdout);
+    assert_eq!(constants.len(), Tuning::COUNT);
+    for constant in &constants {
+        let number = |key: &str| constant[key].as_f64().unwrap();
+        let range = number("least")..=number("most");
+        assert!(range.contains(&number("default")), "{constant}");
+        assert!(!constant["meaning"].as_str().unwrap().is_empty());
+    }
+    let (status, stdout, _) = outcome(&folder, &["tuning"]);
+    assert_eq!((status, stdout.lines().count()), (0, constants.len()));
 }
 
 #[test]

@@ -241,6 +241,21 @@ fn bad_arguments_are_refused_in_one_line() {
         &["--strategy", "bvp", "--link", "qemu"],
         &["bvp", "leave --link out"],
     );
+    explore(&["--hull", "0.9x0.6"], &["--hull", "0.9x0.6x0.4"]);
+    explore(&["--hull", "9x0.6x0.4"], &["--hull", "0.001 to 4 m"]);
+    explore(&["--radius", "0.7"], &["--radius", "0.05 to 0.6 m"]);
+    explore(&["--loops", "least=-1"], &["--loops", "0 to 32767"]);
+    explore(&["--loops", "longest=9"], &["longest", "least, most"]);
+    explore(
+        &["--tune", "ouroboros.none=1"],
+        &["none", "host-sim tuning"],
+    );
+    explore(&["--tune", "ouroboros.reached_m"], &["say NAME=VALUE"]);
+    explore(&["--tune", "ouroboros.reached_m=99"], &["within 0.2 and 5"]);
+    explore(
+        &["--tune", "ouroboros.reached_m=1", "--link", "loopback"],
+        &["--link direct"],
+    );
     refused(&folder, &["explore", ""], &["has no name", "office"]);
     explore(&["--map-shape", "500x500"], &["--map-shape", "400"]);
     fs::write(folder.path().join("file"), "").unwrap();

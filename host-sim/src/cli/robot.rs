@@ -1,0 +1,133 @@
+//! Arguments about the robot's hull, the loops that it closes, and the planner's tuned constants.
+
+use anyhow::{Context as _, Result, bail};
+use clap::Args;
+use fieldline_planner::{RobotShape, Tuning};
+use fieldline_protocol::message::LoopLimits;
+use fixed::types::I16F16;
+use host_sim::link::spec::LinkSpec;
+use host_sim::robot::Footprint;
+use host_sim::trial::mission::Mission;
+
+#[derive(Clone, Debug, Default, Args)]
+pub(super) struct RobotArgs {
+    /// Length, width and height of the robot's hull, metres [default: 0.508x0.497x0.277]
+    #[arg(long, value_name = "LxWxH", value_parser = hull)]
+    hull: Option<Footprint>,
+    /// Radius around the robot's centre that the planner keeps clear, metres: 0.05 to 0.6 [default:
+    /// half the hull's width and 0.05, rounded up to 0.01]
+    #[arg(long, value_name = "M", value_parser = radius)]
+    radius: Option<f64>,
+    /// Limits of the loops that ouroboros closes, metres, any of
+    /// [default: least=20,most=120,per_frontier=10,detour=2,slack=20]
+    #[arg(long, value_name = "LIMITS", value_parser = loops)]
+    loops: Option<LoopLimits>,
+    /// Sets a tuned constant of the planner, as in ground.blind_m=1.2; host-sim tuning lists them
+    #[arg(long, value_name = "NAME=VALUE")]
+    tune: Vec<String>,
+}
+
+impl RobotArgs {
+    /// Returns `mission` with this robot and these loops.
+    pub(super) fn applied(&self, mission: Mission) -> Mission {
+        let hull = self.hull.unwrap_or(mission.hull);
+        Mission {
+            hull,
+            radius_m: self.radius.unwrap_or_else(|| planning_radius_m(&hull)),
+            loops: self.loops.unwrap_or(mission.loops),
+            ..mission
+        }
+    }
+
+    /// Returns the link that was asked for: a direct one if only tuned constants ask for it.
+    pub(super) fn link<'a>(&self, link: Option<&'a LinkSpec>) -> Option<&'a LinkSpec> {
+        let is_tuned = !self.tune.is_empty();
+        link.or(is_tuned.then_some(&LinkSpec::Direct))
+    }
+
+    /// Returns the tuned constants; `None` if all have their defaults.
+    pub(super) fn tuning(&self, link: &LinkSpec) -> Result<Option<&'static Tuning>> {
+        if self.tune.is_empty() {
+            return Ok(None);
+        }
+        if *link != LinkSpec::Direct {
+            bail!("--tune changes a planner in this process only; say --link direct");
+        }
+        let mut tuning = Tuning::DEFAULT;
+        for text in &self.tune {
+            let (name, value) = text
+                .split_once('=')
+                .with_context(|| format!("--tune {text} has no value; say NAME=VALUE"))?;
+            let value = number(value).map_err(anyhow::Error::msg);
+            let set = tuning.set(
+                name,
+                value.with_context(|| format!("--tune {text}"))? as f32,
+            );
+            set.with_context(|| format!("--tune {text}; host-sim tuning lists the constants"))?;
+        }
+        Ok(Some(Box::leak(Box::new(tuning))))
+    }
+}
+
+/// Returns the radius that the planner gives a hull without another one.
+fn planning_radius_m(hull: &Footprint) -> f64 {
+    let shape = RobotShape::rectangle(0.0, 2.0 * hull.half_width_m as f32, 0.0);
+    f64::from(shape.planning_radius_m())
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| format!("'{text}' is not a number"))
+}
+
+fn hull(text: &str) -> Result<Footprint, String> {
+    let remedy = "say length, width and height in metres, as in 0.9x0.6x0.4";
+    let sides: Vec<f64> = text.split('x').map(number).collect::<Result<_, _>>()?;
+    let [length, width, height] = sides[..] else {
+        return Err(remedy.into());
+    };
+    let is_side = |side: f64| (0.001..=4.0).contains(&side);
+    if !is_side(length) || !is_side(width) || !(0.0..=2.0).contains(&height) {
+        return Err(format!(
+            "length and width must be 0.001 to 4 m and the height at most 2 m; {remedy}"
+        ));
+    }
+    Ok(Footprint {
+        half_length_m: 0.5 * length,
+        half_width_m: 0.5 * width,
+        height_m: height,
+    })
+}
+
+fn radius(text: &str) -> Result<f64, String> {
+    let radius = number(text)?;
+    if (0.05..=0.6).contains(&radius) {
+        return Ok(radius);
+    }
+    Err("the radius must be 0.05 to 0.6 m".into())
+}
+
+fn loops(text: &str) -> Result<LoopLimits, String> {
+    let mut limits = LoopLimits::default();
+    for part in text.split(',') {
+        let (name, value) = part
+            .split_once('=')
+            .ok_or_else(|| format!("'{part}' has no value; say least=20"))?;
+        let field = match name {
+            "least" => &mut limits.least,
+            "most" => &mut limits.most,
+            "per_frontier" => &mut limits.most_per_frontier,
+            "detour" => &mut limits.detour,
+            "slack" => &mut limits.slack,
+            _ => {
+                return Err(format!(
+                    "unknown limit '{name}'; use least, most, per_frontier, detour, slack"
+                ));
+            }
+        };
+        *field = I16F16::checked_from_num(number(value)?)
+            .filter(|limit| *limit >= I16F16::ZERO)
+            .ok_or_else(|| format!("{name} must be 0 to 32767"))?;
+    }
+    Ok(limits)
+}
