@@ -73,7 +73,7 @@ impl Point {
         dx * dx + dy * dy
     }
 
-    /// Distance to another point, metres.
+    /// Returns the distance to another point, metres.
     #[must_use]
     pub fn distance_m(self, other: Self) -> f32 {
         math::sqrt(self.distance2(other))
@@ -122,7 +122,7 @@ impl RobotFrame {
 
     /// Returns a point of this frame as a point of the map.
     #[must_use]
-    pub fn to_map(&self, local: Point) -> Point {
+    pub fn to_map(self, local: Point) -> Point {
         Point {
             x_m: self.origin.x_m + local.x_m * self.cos - local.y_m * self.sin,
             y_m: self.origin.y_m + local.x_m * self.sin + local.y_m * self.cos,
@@ -131,7 +131,7 @@ impl RobotFrame {
 
     /// Returns a point of the map as a point of this frame.
     #[must_use]
-    pub fn to_robot(&self, point: Point) -> Point {
+    pub fn to_robot(self, point: Point) -> Point {
         let (dx, dy) = (point.x_m - self.origin.x_m, point.y_m - self.origin.y_m);
         Point {
             x_m: dx * self.cos + dy * self.sin,

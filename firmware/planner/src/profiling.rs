@@ -17,7 +17,7 @@ pub enum Stage {
     Window,
     /// Solves the window's field.
     Solve,
-    /// Descends the field, chooses the velocity and searches recovery manoeuvres.
+    /// Descends the field, chooses the velocity and searches for a recovery.
     Drive,
 }
 

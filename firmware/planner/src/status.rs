@@ -8,7 +8,7 @@ use core::fmt;
 
 use crate::geometry::Cell;
 
-/// What the planner is doing.
+/// The activity of the planner.
 ///
 /// ```
 /// use fieldline_planner::{Fault, Finish, Status};
