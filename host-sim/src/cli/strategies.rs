@@ -17,7 +17,7 @@ pub(super) const FRONTIER: &str = "frontier";
 /// An alias: the default strategy on uneven ground.
 pub(super) const TERRAIN: &str = "terrain";
 
-/// The baseline that solves the boundary-value problem over the full grid [Prestes02].
+/// The baseline that solves the boundary-value problem over the full grid \[Prestes02\].
 const BVP: &str = "bvp";
 
 /// Constructor of a baseline.
