@@ -1,11 +1,13 @@
 //! The accessors that replace indexing. None of them can panic in the firmware.
 //!
-//! | accessor | index | outside |
-//! | --- | --- | --- |
-//! | [`at`] | may lie outside | 0 by meaning: nothing is set beyond a plane |
-//! | [`inside`], [`inside_mut`] | inside, the caller guarantees it | `None`; a test build panics |
-//! | [`masked`], [`masked_mut`] | inside an array of 2ᵏ elements | taken mod 2ᵏ; a test build panics |
-//! | [`wrapped`], [`wrapped_mut`] | any; the array is a ring of 2ᵏ elements | taken mod 2ᵏ |
+//! | accessor | outside |
+//! | --- | --- |
+//! | [`at`] | 0 by meaning: nothing is set beyond a plane |
+//! | [`inside`], [`inside_mut`] | a bug: `None`; a test build panics |
+//! | [`masked`], [`masked_mut`] | a bug: taken mod 2ᵏ; a test build panics |
+//! | [`wrapped`], [`wrapped_mut`] | taken mod 2ᵏ: the array is a ring |
+//!
+//! The arrays of the last two rows have 2ᵏ elements.
 
 /// Returns the element at an index, 0 outside.
 #[inline(always)]
