@@ -193,7 +193,7 @@ impl Pilot {
         laps: &mut impl StageTimer,
     ) -> Result<Command, Refusal> {
         let config = self.config.as_ref().ok_or(Refusal::NotStarted)?;
-        let Some(input) = convert::input(observation, &config.lasers) else {
+        let Some(input) = convert::input(observation, config.lasers()) else {
             warning!("the scans of an observation do not match the lasers");
             return Ok(stopped(Status::Fault(Fault::BadObservation)));
         };

@@ -100,7 +100,7 @@ impl<S: Strategy> Session<S> {
 
     fn start(&mut self, start: &Start) -> Result<(), Refusal> {
         let config = convert::config(start, None).map_err(Refusal::BadParameter)?;
-        let (across, up) = config.box_tiles;
+        let (across, up) = config.box_tiles();
         if !Tiles::<TILES, SLOTS>::fits(across, up) {
             return Err(Refusal::BadBox);
         }
@@ -125,7 +125,7 @@ impl<S: Strategy> Session<S> {
             return standing(self.status);
         }
         if !self.drive.is_searching() {
-            let footprint = Footprint::new(config.robot_radius_m);
+            let footprint = Footprint::new(config.radius_m());
             self.chart
                 .draw(self.map.tiles(), &footprint, input.pose.point());
             self.plan(config, input);
@@ -150,7 +150,7 @@ impl<S: Strategy> Session<S> {
                 }
             }
         }
-        if let Some(ground) = &config.ground {
+        if let Some(ground) = config.ground() {
             self.resolve_gaps(ground);
         }
     }
@@ -175,15 +175,15 @@ impl<S: Strategy> Session<S> {
             }
         }
         self.map.observe(config, input);
-        if config.ground.is_some() {
+        if config.ground().is_some() {
             self.heights.keep(&self.map.heights());
             self.map.compact(&mut ());
             return;
         }
-        for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
+        for (laser, ranges_mm) in config.lasers().iter().zip(input.scans) {
             if is_level(laser) {
                 self.obstacle_points
-                    .update(&config.robot, &input.pose, laser, ranges_mm);
+                    .update(config.robot(), &input.pose, laser, ranges_mm);
             }
         }
     }
@@ -205,10 +205,10 @@ impl<S: Strategy> Session<S> {
     ///
     /// On uneven ground level beams end on slopes, so the obstacles come from the map.
     fn collision_checker(&self, config: &Config, pose: &Pose) -> CollisionChecker {
-        if config.ground.is_none() {
-            return CollisionChecker::new(&config.robot, pose, self.obstacle_points.points());
+        if config.ground().is_none() {
+            return CollisionChecker::new(config.robot(), pose, self.obstacle_points.points());
         }
-        let mut checker = CollisionChecker::empty(&config.robot);
+        let mut checker = CollisionChecker::empty(config.robot());
         let borders = obstacle_points::inflated_border_cells(self.map.tiles(), pose.point());
         checker.keep_off(pose, borders);
         checker
@@ -263,7 +263,7 @@ fn scene<'a>(
         chart,
         pose: input.pose,
         time_ms: input.time_ms,
-        uneven: config.ground.as_ref().map(uneven),
+        uneven: config.ground().map(uneven),
     }
 }
 
@@ -326,7 +326,7 @@ impl<S: Strategy> Link for Session<S> {
         let Some(config) = self.config.take() else {
             return Err(refused(Refusal::NotStarted));
         };
-        let command = match convert::input(observation, &config.lasers) {
+        let command = match convert::input(observation, config.lasers()) {
             None => standing(Status::Fault(Fault::BadObservation)),
             Some(input) if self.status() == Status::Exploring => self.step(&config, &input),
             Some(_) => standing(self.status()),

@@ -47,12 +47,12 @@ impl Mirror {
         let Some(config) = self.config.as_ref().filter(|_| !held) else {
             return;
         };
-        let Some(input) = convert::input(observation, &config.lasers) else {
+        let Some(input) = convert::input(observation, config.lasers()) else {
             return;
         };
         self.pose = input.pose;
         self.map.observe(config, &input);
-        if config.ground.is_some() {
+        if config.ground().is_some() {
             self.map.compact(&mut ());
         }
     }
@@ -66,7 +66,7 @@ impl Mirror {
     /// Returns heights and preferences in a window; `None` on flat ground.
     #[must_use]
     pub fn relief(&self, window: &Window) -> Option<Relief> {
-        let terrain = self.config.as_ref()?.ground.as_ref()?;
+        let terrain = self.config.as_ref()?.ground()?;
         Some(Relief::of(&self.map.heights(), terrain, &self.pose, window))
     }
 
@@ -83,7 +83,7 @@ impl Mirror {
             least.saturating_sub(1)..=most.saturating_add(1)
         };
         let config = self.config.as_ref();
-        let is_uneven = config.is_some_and(|config| config.ground.is_some());
+        let is_uneven = config.is_some_and(|config| config.ground().is_some());
         reach(|key| key.1).all(|y| {
             reach(|key| key.0).all(|x| {
                 let ours = self.map.tiles().packed(i32::from(x), i32::from(y));

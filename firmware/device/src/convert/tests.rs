@@ -327,16 +327,16 @@ fn a_session_takes_its_limits_from_the_host() {
         ..Start::default()
     };
     let config = config(&start, None).expect("valid");
-    assert_eq!(config.robot, RobotShape::rectangle(0.9, 0.6, 0.4));
-    assert_eq!(config.box_tiles, (30, 12));
+    assert_eq!(*config.robot(), RobotShape::rectangle(0.9, 0.6, 0.4));
+    assert_eq!(config.box_tiles(), (30, 12));
     assert_eq!(
         [
-            config.robot_radius_m,
-            config.max_linear_mps,
-            config.max_angular_radps,
-            config.linear_accel_mps2,
-            config.angular_accel_radps2,
-            config.period_s,
+            config.radius_m(),
+            config.max_speed().linear_mps,
+            config.max_speed().angular_radps,
+            config.acceleration().0,
+            config.acceleration().1,
+            config.period_s(),
         ],
         [0.25, 0.5, 1.5, 0.25, 0.75, 0.125]
     );

@@ -20,6 +20,7 @@ pub use tuning::{OuroborosTuning, Tuned, Tuning, TuningError};
 
 use heapless::Vec;
 
+use crate::geometry::Twist;
 use crate::robot::{LaserMount, RobotShape};
 
 /// The exploration strategy.
@@ -52,35 +53,35 @@ pub enum Strategy {
 #[derive(Clone, Debug)]
 pub struct Config {
     /// The strategy. Default: the frontier.
-    pub strategy: Strategy,
+    pub(crate) strategy: Strategy,
     /// Limits of the loops to close, for [`Strategy::Ouroboros`].
-    pub loops: LoopLimits,
+    pub(crate) loops: LoopLimits,
     /// The robot's hull. Default: a Pioneer 3-AT.
-    pub robot: RobotShape,
+    pub(crate) robot: RobotShape,
     /// The laser scanners; the first one is level.
-    pub lasers: Vec<LaserMount, 2>,
+    pub(crate) lasers: Vec<LaserMount, 2>,
     /// The map's box in tiles of 3.2 m, across and up.
-    pub box_tiles: (u8, u8),
+    pub(crate) box_tiles: (u8, u8),
     /// Radius of the disc that paths are planned for, metres.
-    pub robot_radius_m: f32,
+    pub(crate) robot_radius_m: f32,
     /// Greatest speed, metres per second. Default: 0.7 (Pioneer 3-AT).
-    pub max_linear_mps: f32,
+    pub(crate) max_linear_mps: f32,
     /// Greatest turn rate, radians per second. Default: 2.44 (140°/s).
-    pub max_angular_radps: f32,
+    pub(crate) max_angular_radps: f32,
     /// Acceleration and braking, metres per second squared. Default: 0.3 (Pioneer 3-AT).
-    pub linear_accel_mps2: f32,
+    pub(crate) linear_accel_mps2: f32,
     /// Angular acceleration, radians per second squared. Default: 1.75 (100°/s²).
-    pub angular_accel_radps2: f32,
+    pub(crate) angular_accel_radps2: f32,
     /// Time from one step to the next, seconds. Default: 0.2.
-    pub period_s: f32,
+    pub(crate) period_s: f32,
     /// The window's solver.
-    pub solver: SolverConfig,
+    pub(crate) solver: SolverConfig,
     /// Thinning budget of a step, words. Default: 6,000.
-    pub topology_units: u32,
+    pub(crate) topology_units: u32,
     /// The tuned constants. Default: [`Tuning::DEFAULT`].
-    pub tuning: &'static Tuning,
+    pub(crate) tuning: &'static Tuning,
     /// Parameters of uneven ground; `None` on flat ground, where lasers only see obstacles.
-    pub ground: Option<UnevenGround>,
+    pub(crate) ground: Option<UnevenGround>,
 }
 
 impl Config {
@@ -123,9 +124,72 @@ impl Config {
     }
 
     /// Returns the defaults for a Pioneer 3-AT with the given lasers, unchecked.
-    #[must_use]
-    pub const fn pioneer_3at(lasers: Vec<LaserMount, 2>) -> Self {
+    #[cfg(test)]
+    pub(crate) const fn pioneer_3at(lasers: Vec<LaserMount, 2>) -> Self {
         Self::new(RobotShape::PIONEER_3AT, lasers)
+    }
+
+    /// Returns the strategy.
+    #[must_use]
+    pub const fn strategy(&self) -> Strategy {
+        self.strategy
+    }
+
+    /// Returns the robot's hull.
+    #[must_use]
+    pub const fn robot(&self) -> &RobotShape {
+        &self.robot
+    }
+
+    /// Returns the lasers: one or two, the first one level.
+    #[must_use]
+    pub fn lasers(&self) -> &[LaserMount] {
+        &self.lasers
+    }
+
+    /// Returns the map's box in tiles of 3.2 m, across and up.
+    #[must_use]
+    pub const fn box_tiles(&self) -> (u8, u8) {
+        self.box_tiles
+    }
+
+    /// Returns the radius of the disc that paths are planned for, metres.
+    #[must_use]
+    pub const fn radius_m(&self) -> f32 {
+        self.robot_radius_m
+    }
+
+    /// Returns the greatest speeds. On uneven ground the linear one is at most a map cell a period.
+    #[must_use]
+    pub const fn max_speed(&self) -> Twist {
+        Twist {
+            linear_mps: self.max_linear_mps,
+            angular_radps: self.max_angular_radps,
+        }
+    }
+
+    /// Returns the accelerations, metres and radians per second squared.
+    #[must_use]
+    pub const fn acceleration(&self) -> (f32, f32) {
+        (self.linear_accel_mps2, self.angular_accel_radps2)
+    }
+
+    /// Returns the time from one step to the next, seconds.
+    #[must_use]
+    pub const fn period_s(&self) -> f32 {
+        self.period_s
+    }
+
+    /// Returns the parameters of uneven ground; `None` on flat ground.
+    #[must_use]
+    pub const fn ground(&self) -> Option<&UnevenGround> {
+        self.ground.as_ref()
+    }
+
+    /// Returns the tuned constants.
+    #[must_use]
+    pub const fn tuning(&self) -> &'static Tuning {
+        self.tuning
     }
 
     /// Returns the radius at the second chance, metres. The 3-AT's is 0.22 of 0.30: half its width
