@@ -117,7 +117,12 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     }
     timer.mark(Stage::Window);
     let solver = budget(config, planned);
-    let solution = solve(&mut workspace.window, &mut workspace.scratch, &solver);
+    let solution = solve(
+        &mut workspace.window,
+        &mut workspace.scratch,
+        &solver,
+        &config.tuning.field,
+    );
     if state.ground.is_uneven() {
         note_flatness(state, workspace, &input);
     }

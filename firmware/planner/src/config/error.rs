@@ -42,9 +42,9 @@ pub enum Parameter {
     AngularAccel,
     /// Time from one step to the next, seconds.
     Period,
-    /// Least preference ε_hmin.
+    /// Least preference `ε_hmin`.
     LeastPreference,
-    /// Greatest preference ε_gmax.
+    /// Greatest preference `ε_gmax`.
     MostPreference,
     /// Another parameter of [`UnevenGround`](crate::UnevenGround).
     UnevenGround,

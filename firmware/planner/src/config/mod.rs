@@ -16,7 +16,7 @@ pub use error::{BoxTooLarge, ConfigError, Parameter};
 pub use ground::{KERNEL_CELLS, PreferenceMode, UnevenGround};
 pub use loops::LoopLimits;
 pub use solver::{Method, SolverConfig};
-pub use tuning::{OuroborosTuning, Tuned, Tuning, TuningError};
+pub use tuning::{FieldTuning, OuroborosTuning, Tuned, Tuning, TuningError};
 
 use heapless::Vec;
 

@@ -17,9 +17,10 @@ pub enum Method {
 /// Parameters of a solve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverConfig {
-    /// Most multigrid cycles, each worth [`crate::field::solver::SWEEPS_PER_CYCLE`] sweeps.
-    /// Default: 12. A heading is right after 1 cycle in a warm window and after 2 or 3 in a cold
-    /// one; 5 cycles suffice in 19 of 20 cold windows.
+    /// Most multigrid cycles; a cycle is worth
+    /// [`FieldTuning::sweeps_per_cycle`](crate::FieldTuning::sweeps_per_cycle) sweeps. Default: 12.
+    /// A heading is right after 1 cycle in a warm window and after 2 or 3 in a cold one; 5 cycles
+    /// suffice in 19 of 20 cold windows.
     pub max_cycles: u16,
     /// max |x − 1| below which the multigrid stops. Default: 0.05.
     pub tolerance: f32,

@@ -89,7 +89,11 @@ macro_rules! tuning {
         pub struct $name {
             $(
                 $(#[doc = $meaning])+
-                #[doc = concat!("\n\nUnit: ", $unit, ". Range: ", stringify!($least), " to ", stringify!($most), ". Default: ", stringify!($default), ".")]
+                #[doc = concat!(
+                    "\n\nUnit: ", $unit,
+                    ". Range: ", stringify!($least), " to ", stringify!($most),
+                    ". Default: ", stringify!($default), "."
+                )]
                 pub $field: $type,
             )*
         }
@@ -102,7 +106,14 @@ macro_rules! tuning {
             pub const COUNT: usize = 0 $(+ { let _ = stringify!($field); 1 })*;
 
             /// Calls `visit` with each constant and its description.
-            pub(super) fn visit(&mut self, visit: &mut dyn FnMut(&mut dyn $crate::config::tuning::value::Value, $crate::config::tuning::Tuned)) {
+            pub(super) fn visit(
+                &mut self,
+                visit: &mut dyn FnMut(
+                    &mut dyn $crate::config::tuning::value::Value,
+                    $crate::config::tuning::Tuned,
+                ),
+            ) {
+                use $crate::config::tuning::value::Value;
                 $(
                     let description = $crate::config::tuning::Tuned {
                         room: $room,
@@ -111,8 +122,8 @@ macro_rules! tuning {
                         unit: $unit,
                         least: $least as f32,
                         most: $most as f32,
-                        default: $crate::config::tuning::value::Value::get(&Self::DEFAULT.$field),
-                        value: $crate::config::tuning::value::Value::get(&self.$field),
+                        default: Value::get(&Self::DEFAULT.$field),
+                        value: Value::get(&self.$field),
                     };
                     visit(&mut self.$field, description);
                 )*
@@ -155,6 +166,7 @@ macro_rules! rooms {
 }
 
 rooms! {
+    field: FieldTuning, "The window's field and its solver.";
     ouroboros: OuroborosTuning, "Loop closing [Jorge15].";
 }
 

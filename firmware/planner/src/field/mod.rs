@@ -62,7 +62,7 @@ pub mod preference;
 pub mod solver;
 pub mod window;
 
-pub use crate::config::{Method, SolverConfig};
+pub use crate::config::{FieldTuning, Method, SolverConfig};
 pub use multigrid::SCRATCH_FLOATS;
 pub use solver::{Solution, Stop, solve};
 pub use window::{GOAL, Preference, Rows, SIDE, Window};

@@ -21,7 +21,7 @@
 //!
 //! Units: heights in metres; ε and `p_diff` are pure numbers.
 
-use crate::config::{KERNEL_CELLS, PreferenceMode, UnevenGround};
+use crate::config::{FieldTuning, KERNEL_CELLS, PreferenceMode, UnevenGround};
 use crate::field::window::{GOAL, SIDE, Window};
 use crate::geometry::Pose;
 use crate::math;
@@ -30,9 +30,6 @@ use crate::math;
 const TOO_FLAT: f32 = 1e-10;
 /// `p_diff` above which they count again [Maffei20, III-C].
 const STEEP_AGAIN: f32 = 1e-4;
-
-/// Greatest roll and pitch of a robot on level ground, radians.
-const LEVEL_RAD: f32 = 0.1;
 
 /// Returns `p_diff` at cell (x, y), from 0 to 1; 0 if the cell reaches no goal or is alone in its
 /// kernel.
@@ -93,8 +90,9 @@ impl Preferences {
     }
 
     /// Notes the height of the ground if the robot stands on it about level.
-    pub(crate) fn note_pose(&mut self, pose: &Pose) {
-        if pose.roll_rad.abs() < LEVEL_RAD && pose.pitch_rad.abs() < LEVEL_RAD {
+    pub(crate) fn note_pose(&mut self, pose: &Pose, tuning: &FieldTuning) {
+        let is_level = |angle_rad: f32| angle_rad.abs() < tuning.level_rad;
+        if is_level(pose.roll_rad) && is_level(pose.pitch_rad) {
             self.reference_m = pose.z_m;
         }
     }
@@ -146,7 +144,7 @@ mod tests {
     use super::{
         PreferenceMode, Preferences, STEEP_AGAIN, TOO_FLAT, of_flatness, of_height, p_diff,
     };
-    use crate::config::UnevenGround;
+    use crate::config::{FieldTuning, UnevenGround};
     use crate::field::{GOAL, Preference, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, solve};
 
     /// Pseudorandom numbers in [0, 1).
@@ -176,7 +174,7 @@ mod tests {
             ..SolverConfig::default()
         };
         assert_eq!(
-            solve(&mut window, &mut scratch, &config).stop,
+            solve(&mut window, &mut scratch, &config, &FieldTuning::DEFAULT).stop,
             Stop::Converged
         );
         window

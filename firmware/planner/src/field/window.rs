@@ -361,7 +361,7 @@ mod tests {
     /// field, between the two.
     #[test]
     fn goals_keep_the_share_that_they_are_charged_with() {
-        use crate::field::{Method, SCRATCH_FLOATS, SolverConfig, solve};
+        use crate::field::{FieldTuning, Method, SCRATCH_FLOATS, SolverConfig, solve};
 
         let solved = |method| {
             let (mut free, mut goal) = ([0; SIDE], [0; SIDE]);
@@ -378,7 +378,8 @@ mod tests {
                 tolerance: 1e-4,
                 method,
             };
-            solve(&mut window, &mut [0.0; SCRATCH_FLOATS], &config);
+            let scratch = &mut [0.0; SCRATCH_FLOATS];
+            solve(&mut window, scratch, &config, &FieldTuning::DEFAULT);
             window
         };
         let [fast, slow] = [Method::Multigrid, Method::GaussSeidel].map(solved);

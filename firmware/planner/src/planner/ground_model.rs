@@ -82,7 +82,7 @@ impl<const TILES: usize> GroundModel<TILES> {
                 }
             }
             Self::Uneven(levels) => {
-                preferences.note_pose(&input.pose);
+                preferences.note_pose(&input.pose, &config.tuning.field);
                 levels.note(&map.heights(), map.tiles());
                 map.compact(levels);
             }

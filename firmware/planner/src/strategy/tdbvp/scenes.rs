@@ -4,7 +4,7 @@
 //! the robot with its heading along x.
 
 use crate::field::local_grid::{LocalGrid, position};
-use crate::field::{SCRATCH_FLOATS, SIDE, SolverConfig, Window, descent, solve};
+use crate::field::{FieldTuning, SCRATCH_FLOATS, SIDE, SolverConfig, Window, descent, solve};
 use crate::geometry::Cell;
 use crate::map::{Class, Tiles};
 use crate::path::nearest::Centres;
@@ -122,7 +122,12 @@ impl Scene {
             max_cycles: 100,
             ..SolverConfig::default()
         };
-        solve(&mut window, &mut [0.0; SCRATCH_FLOATS], &config);
+        solve(
+            &mut window,
+            &mut [0.0; SCRATCH_FLOATS],
+            &config,
+            &FieldTuning::DEFAULT,
+        );
         let (x, y) = position((grid.origin, grid.scale), robot);
         let heading = descent::heading_at(&window, x, y).expect("the field is not flat");
         (heading.cos(), heading.sin())
