@@ -13,6 +13,14 @@ use crate::math;
 pub const CELL_M: f32 = 0.1;
 
 /// A planar point, metres.
+///
+/// ```
+/// use fieldline_planner::{CELL_M, Cell, Point};
+///
+/// let cell = Point { x_m: 1.23, y_m: -0.04 }.cell();
+/// assert_eq!(cell, Cell { x: 12, y: -1 });
+/// assert_eq!(cell.corner().x_m, 12.0 * CELL_M);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Point {
     /// Metres east, or forward in the robot's frame.
@@ -50,9 +58,9 @@ pub struct Twist {
 /// A cell of the map, by column and row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cell {
-    /// Column; grows with x.
+    /// Column of the cell; grows with x.
     pub x: i32,
-    /// Row; grows with y.
+    /// Row of the cell; grows with y.
     pub y: i32,
 }
 

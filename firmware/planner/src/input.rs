@@ -4,14 +4,30 @@
 
 use crate::geometry::{Pose, Twist};
 
-/// Range code: nothing came back, so the beam was free up to the range limit.
+/// Range code in place of millimetres: nothing came back, so the beam was free up to the range limit.
 pub const NO_RETURN_MM: u16 = 16_383;
-/// Range code: the beam carries no information.
+/// Range code in place of millimetres: the beam carries no information.
 pub const INVALID_MM: u16 = 0;
 /// Two adjacent beams whose ranges differ by less than this hit the same thing, millimetres.
 const SAME_THING_MM: u16 = 250;
 
 /// The input of a step.
+///
+/// ```
+/// use fieldline_planner::{INVALID_MM, Input, MAX_BEAMS, NO_RETURN_MM, Pose, Twist};
+///
+/// // A wall 3 m away; the first beam is broken, and the last one saw nothing.
+/// let mut ranges_mm = [3_000; MAX_BEAMS as usize];
+/// ranges_mm[0] = INVALID_MM;
+/// ranges_mm[180] = NO_RETURN_MM;
+/// let input = Input {
+///     time_ms: 200,
+///     pose: Pose { x_m: 0.1, ..Pose::default() },
+///     velocity: Twist { linear_mps: 0.5, angular_radps: 0.0 },
+///     scans: [&ranges_mm, &[]],
+/// };
+/// # assert_eq!(input.scans[0].len(), 181);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a> {
     /// The host's clock, milliseconds.

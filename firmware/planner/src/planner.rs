@@ -55,7 +55,7 @@ pub struct Output {
     pub status: Status,
     /// The field's heading at the robot, radians.
     pub heading_rad: f32,
-    /// Multigrid cycles (or Gauss–Seidel sweeps) spent on the window.
+    /// Number of multigrid cycles (or Gauss–Seidel sweeps) spent on the window.
     pub cycles: u16,
     /// True if the solver's budget ran out before its stop rule held.
     pub budget_exhausted: bool,
@@ -73,6 +73,33 @@ impl Output {
 
 /// Runs one step, from scans and odometry to a velocity, and marks the end of each stage on
 /// `timer`.
+///
+/// A chip with split memory holds state and workspace itself. Other programs use [`Planner`].
+///
+/// ```
+/// use fieldline_planner::{
+///     Config, Input, LaserMount, Output, Pose, RobotShape, State, Twist, Workspace, step,
+/// };
+///
+/// let config = Config::builder(RobotShape::PIONEER_3AT)
+///     .laser(LaserMount::level(0.10, 0.40))
+///     .box_tiles(8, 8)
+///     .build()?;
+/// // 16 tiles of memory in a box of at most 64 tiles.
+/// let mut state = Box::new(State::<16, 64>::new());
+/// let mut workspace = Box::new(Workspace::new());
+/// state.reset(&config)?;
+/// let ranges_mm = [2_000; 181];
+/// let input = Input {
+///     time_ms: 0,
+///     pose: Pose::default(),
+///     velocity: Twist::default(),
+///     scans: [&ranges_mm, &[]],
+/// };
+/// let output: Output = step(&config, &mut state, &mut workspace, input, &mut ());
+/// assert!(output.velocity.linear_mps.abs() <= config.max_speed().linear_mps);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn step<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,

@@ -22,6 +22,19 @@ pub enum Stage {
 }
 
 /// Receives the ends of stages.
+///
+/// ```
+/// use fieldline_planner::{Stage, StageTimer};
+///
+/// /// Counts the solves of a session.
+/// struct Solves(u32);
+///
+/// impl StageTimer for Solves {
+///     fn mark(&mut self, stage: Stage) {
+///         self.0 += u32::from(stage == Stage::Solve);
+///     }
+/// }
+/// ```
 pub trait StageTimer {
     /// Ends `stage`, which began at the last mark or at the begin of the step. A step may mark a
     /// stage several times or never.

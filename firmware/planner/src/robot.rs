@@ -84,7 +84,7 @@ pub struct LaserMount {
     pub first_bearing_rad: f32,
     /// Radians from one beam to the next.
     pub bearing_step_rad: f32,
-    /// Beams in a sweep.
+    /// Number of beams in a sweep.
     pub beams: u16,
     /// Range limit, millimetres: a beam beyond it returned from nothing.
     pub range_limit_mm: u16,

@@ -5,7 +5,8 @@
 use heapless::Vec;
 
 use crate::config::{
-    Config, ConfigError, LoopLimits, Parameter, SolverConfig, Strategy, Tuning, UnevenGround,
+    Config, ConfigError, GoalLevel, LoopLimits, Parameter, SolverConfig, Strategy, Tuning,
+    UnevenGround,
 };
 use crate::geometry::CELL_M;
 use crate::input::NO_RETURN_MM;
@@ -34,6 +35,16 @@ const STEEPEST: f32 = 1.0002;
 const STRONGEST: f32 = 2.0;
 
 /// Builds a [`Config`]; made by [`Config::builder`].
+///
+/// ```
+/// use fieldline_planner::{Config, ConfigBuilder, LaserMount, RobotShape};
+///
+/// let slow: ConfigBuilder = Config::builder(RobotShape::round(0.5, 0.3))
+///     .laser(LaserMount::level(0.10, 0.40))
+///     .max_speed(0.3, 1.0);
+/// assert_eq!(slow.build()?.max_speed().linear_mps, 0.3);
+/// # Ok::<(), fieldline_planner::ConfigError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct ConfigBuilder {
     config: Config,
@@ -125,6 +136,14 @@ impl ConfigBuilder {
     #[must_use]
     pub const fn solver(mut self, solver: SolverConfig) -> Self {
         self.config.solver = solver;
+        self
+    }
+
+    /// Sets a user's own order of goals, for every strategy. Default: only the path counts, with a
+    /// head start for the present goal and for large frontiers.
+    #[must_use]
+    pub const fn goal_level(mut self, level: GoalLevel) -> Self {
+        self.config.goal_level = Some(level);
         self
     }
 

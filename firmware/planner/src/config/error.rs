@@ -101,11 +101,11 @@ impl fmt::Display for Parameter {
 pub struct ConfigError {
     /// The parameter.
     pub parameter: Parameter,
-    /// Its value.
+    /// Its value, in its unit.
     pub value: f32,
-    /// The least value that it may have.
+    /// The least value that it may have, in its unit.
     pub least: f32,
-    /// The greatest value that it may have.
+    /// The greatest value that it may have, in its unit.
     pub most: f32,
 }
 
@@ -131,7 +131,7 @@ impl core::error::Error for ConfigError {}
 pub struct BoxTooLarge {
     /// The box in tiles, across and up.
     pub box_tiles: (u8, u8),
-    /// Tile places of the capacity.
+    /// Number of tile places of the capacity.
     pub slots: usize,
 }
 

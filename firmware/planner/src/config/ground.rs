@@ -7,7 +7,13 @@ use crate::math::{PI, sin_cos};
 /// `K_n`, the width of the kernel, cells [Maffei20, Table I].
 pub const KERNEL_CELLS: usize = 20;
 
-/// The preferences in use [Maffei20, III-C].
+/// The preferences in use \[Maffei20, III-C\].
+///
+/// ```
+/// use fieldline_planner::{PreferenceMode, UnevenGround};
+///
+/// let ground = UnevenGround { mode: PreferenceMode::Height, ..UnevenGround::TABLE_I };
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PreferenceMode {
     /// No preference.
@@ -47,7 +53,7 @@ pub struct UnevenGround {
     pub hole_m: f32,
     /// `ε_hmin`, the least preference: −2 to 0. Default: −0.5.
     pub least_preference: f32,
-    /// `ε_gmax`, the greatest preference: 0 to 2. Default: 0.5.
+    /// `ε_gmax`, the greatest preference, a pure number: 0 to 2. Default: 0.5.
     pub most_preference: f32,
     /// `λ_h`, preference lost per metre of height; at least 0. Default: 2.0.
     pub height_scale: f32,

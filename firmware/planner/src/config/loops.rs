@@ -2,7 +2,16 @@
 //!
 //! Units: metres.
 
-/// Limits of a loop.
+/// Limits of a loop, for [`Strategy::Ouroboros`](crate::Strategy::Ouroboros).
+///
+/// ```
+/// use fieldline_planner::LoopLimits;
+///
+/// // Only loops of 40 to 200 m, however much frontier is left.
+/// let limits =
+///     LoopLimits { least_m: 40.0, most_m: 200.0, most_per_frontier: 0.0, ..LoopLimits::DEFAULT };
+/// # assert_eq!(limits.detour, 2.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopLimits {
     /// Least length that is worth closing, metres: a shorter loop corrects nothing. Default: 20, a
@@ -13,7 +22,7 @@ pub struct LoopLimits {
     pub most_m: f32,
     /// Additional length that is worth closing per metre of frontier that is left. Default: 10.
     pub most_per_frontier: f32,
-    /// Greatest driven distance on a loop, as a multiple of its longest expected length. Default:
+    /// Greatest driven distance on a loop, a factor of its longest expected length. Default:
     /// 2.
     pub detour: f32,
     /// Additional driven distance, metres. Default: 20.
@@ -39,13 +48,13 @@ impl LoopLimits {
     /// Returns true if a loop of this expected length is too long for the length of frontier that
     /// is left.
     #[must_use]
-    pub fn is_too_long(&self, loop_m: f32, frontier_m: f32) -> bool {
+    pub(crate) fn is_too_long(&self, loop_m: f32, frontier_m: f32) -> bool {
         loop_m > self.most_m + self.most_per_frontier * frontier_m
     }
 
     /// Returns true if a loop of this expected length is worth closing.
     #[must_use]
-    pub fn is_worth(&self, loop_m: f32, frontier_m: f32) -> bool {
+    pub(crate) fn is_worth(&self, loop_m: f32, frontier_m: f32) -> bool {
         loop_m >= self.least_m && !self.is_too_long(loop_m, frontier_m)
     }
 }

@@ -6,6 +6,7 @@
 
 mod builder;
 mod error;
+mod goal;
 mod ground;
 mod loops;
 mod solver;
@@ -13,6 +14,7 @@ mod tuning;
 
 pub use builder::ConfigBuilder;
 pub use error::{BoxTooLarge, ConfigError, Parameter};
+pub use goal::{Goal, GoalLevel};
 pub use ground::{KERNEL_CELLS, PreferenceMode, UnevenGround};
 pub use loops::LoopLimits;
 pub use solver::{Method, SolverConfig};
@@ -56,6 +58,8 @@ pub struct Config {
     pub(crate) strategy: Strategy,
     /// Limits of the loops to close, for [`Strategy::Ouroboros`].
     pub(crate) loops: LoopLimits,
+    /// The user's own order of goals.
+    pub(crate) goal_level: Option<GoalLevel>,
     /// The robot's hull. Default: a Pioneer 3-AT.
     pub(crate) robot: RobotShape,
     /// The laser scanners; the first one is level.
@@ -104,6 +108,7 @@ impl Config {
         Self {
             strategy: Strategy::Frontier,
             loops: LoopLimits::DEFAULT,
+            goal_level: None,
             robot,
             lasers,
             box_tiles: (20, 20),

@@ -15,14 +15,24 @@ pub enum Method {
 }
 
 /// Parameters of a solve.
+///
+/// ```
+/// use fieldline_planner::{Config, LaserMount, Method, RobotShape, SolverConfig};
+///
+/// let config = Config::builder(RobotShape::PIONEER_3AT)
+///     .laser(LaserMount::level(0.10, 0.40))
+///     .solver(SolverConfig { method: Method::GaussSeidel, ..SolverConfig::DEFAULT })
+///     .build()?;
+/// # Ok::<(), fieldline_planner::ConfigError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverConfig {
-    /// Most multigrid cycles; a cycle is worth
+    /// Greatest number of multigrid cycles; a cycle is worth
     /// [`FieldTuning::sweeps_per_cycle`](crate::FieldTuning::sweeps_per_cycle) sweeps. Default: 12.
     /// A heading is right after 1 cycle in a warm window and after 2 or 3 in a cold one; 5 cycles
     /// suffice in 19 of 20 cold windows.
     pub max_cycles: u16,
-    /// max |x − 1| below which the multigrid stops. Default: 0.05.
+    /// Greatest |x − 1|, a pure number, below which the multigrid stops. Default: 0.05.
     pub tolerance: f32,
     /// The method. Default: [`Method::Auto`].
     pub method: Method,

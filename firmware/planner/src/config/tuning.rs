@@ -23,13 +23,13 @@ pub struct Tuned {
     pub meaning: &'static str,
     /// The unit; `1` for a pure number.
     pub unit: &'static str,
-    /// The least accepted value.
+    /// The least accepted value, in its unit.
     pub least: f32,
-    /// The greatest accepted value.
+    /// The greatest accepted value, in its unit.
     pub most: f32,
-    /// The default.
+    /// The default, in its unit.
     pub default: f32,
-    /// The active value.
+    /// The active value, in its unit.
     pub value: f32,
 }
 
@@ -141,11 +141,11 @@ macro_rules! rooms {
         /// All tuned constants.
         ///
         /// ```
-        /// use fieldline_planner::Tuning;
+        /// use fieldline_planner::{Tuned, Tuning, TuningError};
         ///
         /// let mut tuning = Tuning::DEFAULT;
-        /// assert!(tuning.set("no.such", 1.0).is_err());
-        /// tuning.parameters(|tuned| println!("{tuned}: {} [{}]", tuned.meaning, tuned.unit));
+        /// assert_eq!(tuning.set("no.such", 1.0), Err(TuningError::Unknown));
+        /// tuning.parameters(|tuned: Tuned| println!("{tuned}: {} {}", tuned.meaning, tuned.unit));
         /// ```
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Tuning {

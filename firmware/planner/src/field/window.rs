@@ -15,7 +15,7 @@ use crate::field::multigrid::Origin;
 use crate::field::runs::Runs;
 use crate::grid::flood;
 
-/// Cells along a side of the window [Jorge15, Table I].
+/// Number of cells along a side of the window \[Jorge15, Table I\].
 pub const SIDE: usize = 61;
 
 /// A set of window cells as bit rows: bit x of row y is cell (x, y).

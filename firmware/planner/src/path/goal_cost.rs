@@ -11,6 +11,9 @@
 //!
 //! Units: coarse steps of 20 cm; sites of the skeleton's plane.
 
+use heapless::Vec;
+
+use crate::config::Goal;
 use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
 use crate::path::PlanningContext;
@@ -43,6 +46,17 @@ const RANKS: u32 = RANK_STEPS.len() as u32;
 /// Bits of a cost class, and classes in a word.
 const BITS: usize = 5;
 const PER_WORD: usize = u32::BITS as usize / BITS;
+/// The eight neighbours of a cell.
+const NEIGHBOURS: [(i16, i16); 8] = [
+    (1, 0),
+    (1, 1),
+    (0, 1),
+    (-1, 1),
+    (-1, 0),
+    (-1, -1),
+    (0, -1),
+    (1, -1),
+];
 /// The class of a frontier cell that was given up.
 const GIVEN_UP: u32 = (1 << BITS) - 1;
 const _CHECKS: () = assert!(
@@ -155,6 +169,14 @@ impl<'a, const TILES: usize, const SLOTS: usize> GoalCost<'a, TILES, SLOTS> {
         all.filter_map(move |of| (class_of(of) == class).then_some(of.1))
     }
 
+    /// Returns the level that the user's own order gives a frontier cell.
+    fn user_level(&self, site: Site, cell: Cell) -> u32 {
+        self.context.goal_level.map_or(0, |level| {
+            let cells = connected_cells(self.frontier, site);
+            level(&Goal { cell, cells }).into()
+        })
+    }
+
     fn class(&self, site: Site) -> u32 {
         let cell = self.context.skeleton.frame().cell(site);
         if self.given_up.is_given_up(cell) {
@@ -165,8 +187,33 @@ impl<'a, const TILES: usize, const SLOTS: usize> GoalCost<'a, TILES, SLOTS> {
         } else {
             1 + u32::from(!is_large(self.frontier, site))
         };
-        level(self.context, self.present, cell) * RANKS + rank
+        let level = level(self.context, self.present, cell) + self.user_level(site, cell);
+        level.min(MOST_LEVEL) * RANKS + rank
     }
+}
+
+/// Returns the number of frontier cells that are connected with one, counted up to
+/// [`Goal::MAX_CELLS`].
+fn connected_cells(frontier: Plane<'_>, first: Site) -> u16 {
+    let mut found: Vec<Site, { Goal::MAX_CELLS as usize }> = Vec::new();
+    let _ = found.push(first);
+    let mut next = 0;
+    while let Some(&site) = found.get(next) {
+        next += 1;
+        for (dx, dy) in NEIGHBOURS {
+            let beside = site
+                .x
+                .checked_add_signed(dx)
+                .zip(site.y.checked_add_signed(dy));
+            let Some(beside) = beside.map(|(x, y)| Site { x, y }) else {
+                continue;
+            };
+            if frontier.get(beside) && !found.contains(&beside) && found.push(beside).is_err() {
+                return Goal::MAX_CELLS;
+            }
+        }
+    }
+    found.len() as u16
 }
 
 /// Returns true if the 5 × 5 cells around a frontier cell hold at least [`LARGE_CELLS`] others.

@@ -12,6 +12,22 @@ use crate::status::{Frontier, Status};
 
 /// The capacity of a planner: `TILES` map tiles of 3.2 × 3.2 m in the pool, and a box of `SLOTS`
 /// tile places that they may lie in.
+///
+/// ```
+/// use fieldline_planner::{BoxTooLarge, Capacity, Config, LaserMount, Memory, Planner, RobotShape};
+///
+/// type Small = Capacity<16, 64>;
+///
+/// fn places<M: Memory>(config: &Config) -> Result<(), BoxTooLarge> {
+///     Planner::<M>::new(config).map(drop)
+/// }
+/// let config = Config::builder(RobotShape::PIONEER_3AT)
+///     .laser(LaserMount::level(0.10, 0.40))
+///     .build()?;
+/// // The default box has 20 x 20 tiles.
+/// assert_eq!(places::<Small>(&config), Err(BoxTooLarge { box_tiles: (20, 20), slots: 64 }));
+/// # Ok::<(), fieldline_planner::ConfigError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Capacity<const TILES: usize, const SLOTS: usize>;
 

@@ -41,6 +41,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         pose: input.pose,
         time_ms: input.time_ms,
         limits: &config.loops,
+        goal_level: config.goal_level,
         levels: state.ground.level_cost(config, &state.preferences),
     };
     let Some(outcome) = state.strategy.advance(context, scratch) else {

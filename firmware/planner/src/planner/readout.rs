@@ -20,13 +20,20 @@ const REGIONS: i32 = (TILE_SIDE / REGION_CELLS) * (TILE_SIDE / REGION_CELLS);
 const _: () = assert!(REGIONS == 16 && PLACES == 4);
 
 /// The numbers of loops of a session with [`Strategy::Ouroboros`](crate::Strategy::Ouroboros).
+///
+/// ```
+/// use fieldline_planner::{LoopCounts, State};
+///
+/// let state = Box::new(State::<4, 64>::new());
+/// assert_eq!(state.loops(), LoopCounts::default());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LoopCounts {
     /// True while the robot closes a loop.
     pub closing: bool,
-    /// Loops closed.
+    /// Number of loops closed.
     pub closed: u16,
-    /// Loops given up.
+    /// Number of loops given up.
     pub given_up: u16,
 }
 

@@ -49,6 +49,18 @@ impl Default for Workspace {
 }
 
 /// One row of the last step's window.
+///
+/// ```
+/// use fieldline_planner::{CellKind, FIELD_SIDE, FieldRow, Workspace};
+///
+/// /// Returns the number of goal cells in a row.
+/// fn goals(row: &FieldRow) -> usize {
+///     row.kinds.iter().filter(|&&kind| kind == CellKind::Goal).count()
+/// }
+/// // Before the first step there is no window.
+/// let workspace = Box::new(Workspace::new());
+/// assert!((0..FIELD_SIDE as u8).all(|row| workspace.field_row(row).is_none()));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldRow {
     /// Least map cell of the window.

@@ -118,6 +118,7 @@ impl Scene {
             },
             time_ms: 0,
             limits: &self.limits,
+            goal_level: None,
             levels: reference_m.map(|reference_m| LevelCost {
                 heights: &self.heights,
                 ground: &UnevenGround::TABLE_I,

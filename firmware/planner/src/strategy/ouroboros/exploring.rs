@@ -141,6 +141,7 @@ impl Exploration {
                 pose: self.pose,
                 time_ms,
                 limits: &self.limits,
+                goal_level: None,
                 levels: None,
             };
             let outcome = self

@@ -162,6 +162,7 @@ impl Scene {
             pose: self.pose,
             time_ms: 0,
             limits: &self.limits,
+            goal_level: None,
             levels: None,
         }
     }
