@@ -1,4 +1,4 @@
-//! Seeded bit maps, and oracles over them: thinning by `[GuoHall89]` and search, cell by cell.
+//! Seeded bit maps, and oracles over them: thinning by \[GuoHall89\] and search, cell by cell.
 
 use std::collections::VecDeque;
 
@@ -160,7 +160,7 @@ impl Map {
         pieces
     }
 
-    /// Thins the map, cell by cell, from the conditions of `[GuoHall89]`.
+    /// Thins the map, cell by cell, from the conditions of \[GuoHall89\].
     #[must_use]
     pub fn thinned(&self) -> Self {
         self.thinned_around(&Self::new(self.columns, self.rows, false))

@@ -16,7 +16,7 @@ pub const TDBVP: &str = "tdbvp";
 pub const BVP: &str = "bvp";
 
 /// Ratios from the papers: world, strategy, and its mean time over that of the BVP exploration.
-/// [Maffei14] gives steps instead of seconds.
+/// \[Maffei14\] gives steps instead of seconds.
 const PAPERS: [(&str, &str, f64); 6] = [
     ("ouroboros-a", OUROBOROS, 4399.3 / 4881.9),
     ("ouroboros-b", OUROBOROS, 5231.7 / 8585.4),

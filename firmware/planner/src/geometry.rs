@@ -9,7 +9,7 @@
 
 use crate::math;
 
-/// Side of a map cell, metres [Maffei20, Table I].
+/// Side of a map cell, metres \[Maffei20, Table I\].
 pub const CELL_M: f32 = 0.1;
 
 /// A planar point, metres.

@@ -4,7 +4,8 @@
 
 use crate::geometry::{Pose, Twist};
 
-/// Range code in place of millimetres: nothing came back, so the beam was free up to the range limit.
+/// Range code in place of millimetres: nothing came back, so the beam was free up to the range
+/// limit.
 pub const NO_RETURN_MM: u16 = 16_383;
 /// Range code in place of millimetres: the beam carries no information.
 pub const INVALID_MM: u16 = 0;

@@ -22,12 +22,16 @@
         clippy::indexing_slicing
     )
 )]
+#![allow(
+    rustdoc::private_intra_doc_links,
+    reason = "the documentation of a room names its private files too"
+)]
 
 #[cfg(test)]
 extern crate std;
 
-// The rooms, from low to high. Feature `internals` opens them to this project's simulator and tests;
-// it promises nothing to others.
+// The rooms, from low to high. Feature `internals` opens them to this project's simulator and
+// tests; it promises nothing to others.
 #[cfg(not(feature = "internals"))]
 mod config;
 #[cfg(not(feature = "internals"))]

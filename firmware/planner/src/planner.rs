@@ -1,4 +1,4 @@
-//! One step of the exploration, the papers' algorithm box [Jorge15, Algorithm 1]:
+//! One step of the exploration, the papers' algorithm box \[Jorge15, Algorithm 1\]:
 //!
 //! ```text
 //! sense:   scans + odometry → map, ground model

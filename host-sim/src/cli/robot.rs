@@ -18,11 +18,11 @@ pub(super) struct RobotArgs {
     /// half the hull's width and 0.05, rounded up to 0.01]
     #[arg(long, value_name = "M", value_parser = radius)]
     radius: Option<f64>,
-    /// Limits of the loops that ouroboros closes, metres, any of
-    /// [default: least=20,most=120,per_frontier=10,detour=2,slack=20]
+    /// Limits of the loops that ouroboros closes, metres: any of
+    /// `least=20,most=120,per_frontier=10,detour=2,slack=20`, the defaults
     #[arg(long, value_name = "LIMITS", value_parser = loops)]
     loops: Option<LoopLimits>,
-    /// Sets a tuned constant of the planner, as in ground.blind_m=1.2; host-sim tuning lists them
+    /// Sets a tuned constant, as in `ground.blind_m=1.2`; `host-sim tuning` lists them
     #[arg(long, value_name = "NAME=VALUE")]
     tune: Vec<String>,
 }

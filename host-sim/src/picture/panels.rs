@@ -1,4 +1,4 @@
-//! The last window on uneven ground in four panels, as in [Maffei20, fig. 3]: measured heights,
+//! The last window on uneven ground in four panels, as in \[Maffei20, fig. 3\]: measured heights,
 //! classes of the map, preferences, potential.
 //!
 //! A window cell is a square of whole pixels. Heights have the colours of the true ground, from the

@@ -99,7 +99,7 @@ fn a_walled_in_robot_and_a_window_without_goals_are_flat() {
     );
 }
 
-/// Attraction raises q everywhere and repulsion lowers it [Maffei20, III].
+/// Attraction raises q everywhere and repulsion lowers it \[Maffei20, III\].
 #[test]
 fn preferences_attract_and_repel() {
     let sheet = Sheet::parse("..........\n.R.......G\n..........").unwrap();

@@ -1,5 +1,5 @@
 //! Patrols of the nested loops: every rail is visited again and again, and the field at the robot
-//! is never flat [Maffei14, IV]. True odometry.
+//! is never flat \[Maffei14, IV\]. True odometry.
 //!
 //! `golden/patrol.txt` has two starts, `patrol-full.txt` all 15. A rail's age is judged on the true
 //! path (`host_sim::metrics::patrol`). The window's field is read after every step that solved one.

@@ -3,7 +3,7 @@
 //!
 //! There are two worlds, symmetric about the corridor that the robot comes along: a T, and a cross.
 //! Slits beside the corridor are openings for the lasers and too narrow for the robot. Two slits on
-//! one side give the two votes of a preference [Maffei14, V]; without slits there is none. The
+//! one side give the two votes of a preference \[Maffei14, V\]; without slits there is none. The
 //! robot comes from the four directions of the grid in turn, each time from another place with
 //! other noise.
 

@@ -1,4 +1,4 @@
-//! The bit-parallel thinning against the conditions of `[GuoHall89]`, cell by cell, and against
+//! The bit-parallel thinning against the conditions of \[GuoHall89\], cell by cell, and against
 //! `OpenCV`.
 
 use fieldline_planner::grid::{PlaneMut, ShapeError};

@@ -1,4 +1,4 @@
-//! The map over time in scenarios 2, 3 and 4 of [Maffei20, IV].
+//! The map over time in scenarios 2, 3 and 4 of \[Maffei20, IV\].
 //!
 //! `golden/scenarios.txt` has two starts of each, `scenarios-full.txt` all ten. A property that
 //! holds in every run is asserted; the tables show the rest.

@@ -11,8 +11,8 @@ use crate::random::Random;
 pub enum Pull {
     /// No preference anywhere.
     None,
-    /// Preferences from heights of rolling ground, and a global one up to 0.1 [Maffei20, eqs. 3,
-    /// 5].
+    /// Preferences from heights of rolling ground, and a global one up to 0.1 \[Maffei20, eqs. 3,
+    /// 5\].
     Heights,
 }
 
@@ -166,7 +166,7 @@ impl Ground {
         self.0.iter().map(wave).sum()
     }
 
-    /// Sets preferences by [Maffei20, eqs. 3, 5] in a window whose cell (0, 0) lies at `corner`,
+    /// Sets preferences by \[Maffei20, eqs. 3, 5\] in a window whose cell (0, 0) lies at `corner`,
     /// for a robot in its cell `robot`.
     pub fn prefer(
         &self,

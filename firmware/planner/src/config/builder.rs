@@ -31,7 +31,7 @@ const TURN_RAD: f32 = 2.0 * PI + 1e-4;
 const PITCHES_RAD: (f32, f32) = (0.0, 0.5 * PI - 3e-4);
 /// Steepest slope, a tangent: 45°.
 const STEEPEST: f32 = 1.0002;
-/// Strongest preference: beyond it the relaxation diverges [Maffei20, III-C].
+/// Strongest preference: beyond it the relaxation diverges \[Maffei20, III-C\].
 const STRONGEST: f32 = 2.0;
 
 /// Builds a [`Config`]; made by [`Config::builder`].

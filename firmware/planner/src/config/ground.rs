@@ -4,7 +4,7 @@
 
 use crate::math::{PI, sin_cos};
 
-/// `K_n`, the width of the kernel, cells [Maffei20, Table I].
+/// `K_n`, the width of the kernel, cells \[Maffei20, Table I\].
 pub const KERNEL_CELLS: usize = 20;
 
 /// The preferences in use \[Maffei20, III-C\].
@@ -35,7 +35,7 @@ impl PreferenceMode {
     }
 }
 
-/// Parameters of uneven ground [Maffei20, Table I], and the robot's limits on it.
+/// Parameters of uneven ground \[Maffei20, Table I\], and the robot's limits on it.
 ///
 /// [`Config::builder`](crate::Config::builder) checks the ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,7 +72,7 @@ pub struct UnevenGround {
 }
 
 impl UnevenGround {
-    /// The parameters of [Maffei20, Table I], and the limits of a Pioneer 3-AT.
+    /// The parameters of \[Maffei20, Table I\], and the limits of a Pioneer 3-AT.
     pub const TABLE_I: Self = Self {
         mode: PreferenceMode::Both,
         obstacle_m: 0.30,

@@ -31,9 +31,9 @@ pub enum Strategy {
     /// Go to the nearest frontier along the skeleton.
     #[default]
     Frontier,
-    /// Close loops on the way [Jorge15].
+    /// Close loops on the way \[Jorge15\].
     Ouroboros,
-    /// Follow rails by the time of their last visit, and patrol on them [Maffei14].
+    /// Follow rails by the time of their last visit, and patrol on them \[Maffei14\].
     Tdbvp {
         /// Duration of the patrol after the exploration, seconds.
         patrol_s: u16,

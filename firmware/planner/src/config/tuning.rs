@@ -80,7 +80,8 @@ macro_rules! tuning {
         $room:literal $name:ident {
             $(
                 $(#[doc = $meaning:literal])+
-                $field:ident: $type:ty = $default:expr, $least:literal..=$most:literal, $unit:literal;
+                $field:ident: $type:ty = $default:expr,
+                $least:literal..=$most:literal, $unit:literal;
             )*
         }
     ) => {
@@ -167,7 +168,7 @@ macro_rules! rooms {
 
 rooms! {
     field: FieldTuning, "The window's field and its solver.";
-    ouroboros: OuroborosTuning, "Loop closing [Jorge15].";
+    ouroboros: OuroborosTuning, "Loop closing.";
 }
 
 impl Tuning {

@@ -10,8 +10,8 @@
 //! The robot may climb slopes head-on that it may not cross. On a slope steeper than its limit `r`
 //! two intervals of headings remain, around uphill and around downhill, and the robot cannot turn
 //! from one to the other. So it follows a path in one slope direction, forwards or backwards, until
-//! the path leads clearly into the other; a path straight across becomes a zigzag. [Maffei20] names
-//! this problem as open.
+//! the path leads clearly into the other; a path straight across becomes a zigzag. \[Maffei20\]
+//! names this problem as open.
 //!
 //! Units: tangents, metres, radians.
 

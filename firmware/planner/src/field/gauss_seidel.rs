@@ -1,4 +1,4 @@
-//! Gauss–Seidel: one sweep in row order, the papers' method [Prestes02; Maffei20, eq. 2], for
+//! Gauss–Seidel: one sweep in row order, the papers' method \[Prestes02; Maffei20, eq. 2\], for
 //! q = 1 − p:
 //!
 //! ```text

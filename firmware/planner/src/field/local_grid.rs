@@ -1,7 +1,7 @@
 //! The local grid: passable cells and obstacles of the window, 61 × 61 cells around the robot.
 //!
 //! A window cell is `scale` × `scale` map cells (1, 2 or 4). If no centre cell is near, the window
-//! grows [Jorge15, III-B] by a larger scale, at the same memory and time. At scales 1 and 2 a
+//! grows \[Jorge15, III-B\] by a larger scale, at the same memory and time. At scales 1 and 2 a
 //! window cell is passable if any of its map cells is: passable cells on the two sides of a wall
 //! are five cells apart, so no wall is lost at 20 cm. At 40 cm a wall could be lost, so at scale 4
 //! all map cells must be passable. That closes doors; a window of this scale is only used in open

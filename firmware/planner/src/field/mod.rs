@@ -1,7 +1,7 @@
 //! The potential in the local window, and its descent.
 //!
-//! Obstacles hold p = 1 and goals p = 0. Every free cell that a goal reaches satisfies [Prestes02;
-//! Maffei20, eq. 1]
+//! Obstacles hold p = 1 and goals p = 0. Every free cell that a goal reaches satisfies \[Prestes02;
+//! Maffei20, eq. 1\]
 //!
 //! ```text
 //! ∇²p − ε (|∂p/∂x| + |∂p/∂y|) = 0          ε: the cell's preference, |ε| ≤ 2

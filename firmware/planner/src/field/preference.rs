@@ -1,4 +1,4 @@
-//! Preferences on uneven ground: ε of every cell of the window [Maffei20, III-C].
+//! Preferences on uneven ground: ε of every cell of the window \[Maffei20, III-C\].
 //!
 //! ```text
 //! ε_height(x, y) = max(−λ_h |h(x_r, y_r) − h(x, y)|, ε_hmin)     (eq. 3; 0 for an unknown height)
@@ -26,9 +26,9 @@ use crate::field::window::{GOAL, SIDE, Window};
 use crate::geometry::Pose;
 use crate::math;
 
-/// `p_diff` below which heights no longer count [Maffei20, III-C].
+/// `p_diff` below which heights no longer count \[Maffei20, III-C\].
 const TOO_FLAT: f32 = 1e-10;
-/// `p_diff` above which they count again [Maffei20, III-C].
+/// `p_diff` above which they count again \[Maffei20, III-C\].
 const STEEP_AGAIN: f32 = 1e-4;
 
 /// Returns `p_diff` at cell (x, y), from 0 to 1; 0 if the cell reaches no goal or is alone in its

@@ -20,8 +20,8 @@
 //! neighbours of factor i are i ± 1 and i ± side without a test: a factor read across a border has
 //! a coupling of zero.
 //!
-//! The constants below belong to the method and are not tuned for a world: bounds keep the arithmetic
-//! finite, and the cycles converge only near these values.
+//! The constants below belong to the method and are not tuned for a world: bounds keep the
+//! arithmetic finite, and the cycles converge only near these values.
 //!
 //! Invariants: 0 ≤ x ≤ [`MOST`]; D ≥ 0.7 (ΣA + b) ≥ 0.7 [`FAINT`]. So nothing divides by zero.
 //! Nothing overflows: from one level to the next A grows at most 8-fold and D 16-fold, from 2¹⁰²

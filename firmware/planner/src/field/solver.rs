@@ -6,8 +6,8 @@
 //! stop converging.
 //!
 //! The budget is in multigrid cycles, a hard bound on time: Gauss–Seidel spends
-//! [`FieldTuning::sweeps_per_cycle`] sweeps per cycle. If the budget runs out, the field stays in the window and
-//! the next call continues from it.
+//! [`FieldTuning::sweeps_per_cycle`] sweeps per cycle. If the budget runs out, the field stays in
+//! the window and the next call continues from it.
 
 use crate::config::{FieldTuning, Method, SolverConfig};
 use crate::field::gauss_seidel;

@@ -1,7 +1,7 @@
 //! The local window: 61 × 61 cells of the field q, their boundary and their preferences.
 //!
 //! Cell (x, y), 0 ≤ x, y < [`SIDE`]: x to the right, y up. A cell that is neither free nor a goal
-//! is an obstacle, as is everything outside the window [Jorge15: 61 × 61 cells].
+//! is an obstacle, as is everything outside the window \[Jorge15: 61 × 61 cells\].
 //!
 //! Invariants: q is [`GOAL`] on goals (or their share of it), 0 on obstacles, outside, and on free
 //! cells from which no goal is reachable; elsewhere 0 ≤ q ≤ `GOAL`. A new reachable cell has q = 0
@@ -41,7 +41,7 @@ pub(super) const fn index(x: usize, y: usize) -> usize {
 /// The preference ε of a cell, within ±2: positive attracts, negative repels.
 ///
 /// Within ±2 every neighbour's weight (1 ± ε/2)/4 is non-negative and the maximum principle holds;
-/// beyond, the relaxation diverges [Maffei20, §III]. Resolution 2⁻¹³.
+/// beyond, the relaxation diverges \[Maffei20, §III\]. Resolution 2⁻¹³.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Preference(I3F13);
 
@@ -148,7 +148,7 @@ impl Window {
     /// Gives the goal (x, y) a share of a goal's charge, from 0 to 1, until the next boundary. A
     /// cell that is no goal does not change.
     ///
-    /// With shares, p has boundary values between 0 and 1 [Maffei14, IV].
+    /// With shares, p has boundary values between 0 and 1 \[Maffei14, IV\].
     pub fn charge(&mut self, x: usize, y: usize, share: f32) {
         if !self.is_goal(x, y) {
             return;

@@ -19,7 +19,7 @@ pub enum Class {
     Free = 1,
     /// Something stands in it.
     Obstacle = 2,
-    /// A hole, cliff or downward slope [Maffei20, III-B].
+    /// A hole, cliff or downward slope \[Maffei20, III-B\].
     Negative = 3,
 }
 

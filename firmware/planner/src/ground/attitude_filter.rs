@@ -17,7 +17,7 @@
 //! smoothed, and no height is measured beyond the reach; the robot measures again from nearer.
 //! Below [`EXACT_SIGMA`] the attitude is used unchanged and the reach is infinite.
 //!
-//! Departs from [Maffei20, III-B]: the paper measures attitude without error.
+//! Departs from \[Maffei20, III-B\]: the paper measures attitude without error.
 //!
 //! Units: slopes are tangents; metres, radians.
 

@@ -12,7 +12,7 @@
 //! A cell is too high by an edge or by a slope, see [`mod@super::steepness`]. An obstacle of the
 //! map becomes free only if at least six of the eight cells around it are measured too.
 //!
-//! Departs from [Maffei20, III-B]: only the upper side of an edge is an obstacle, and the lower
+//! Departs from \[Maffei20, III-B\]: only the upper side of an edge is an obstacle, and the lower
 //! side stays free. The paper's mean over a kernel of 2 m blurs edges, and makes every edge an
 //! obstacle that is one metre deep.
 //!

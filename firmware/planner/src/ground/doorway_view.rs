@@ -1,5 +1,5 @@
-//! Doorway view: the part of a room that the level laser sees through a doorway [Maffei20, IV,
-//! scenario 3].
+//! Doorway view: the part of a room that the level laser sees through a doorway \[Maffei20, IV,
+//! scenario 3\].
 //!
 //! ```text
 //!      room             beams between the jambs J all end on something that stands

@@ -21,7 +21,7 @@
 //!   side.
 //! - If the attitude is noisy, a possible drop is worth no more than a rim.
 //!
-//! Departs from [Maffei20, III-B]: the paper marks all undetected ground on the ray to the robot.
+//! Departs from \[Maffei20, III-B\]: the paper marks all undetected ground on the ray to the robot.
 //!
 //! Units: metres, map cells.
 

@@ -1,5 +1,5 @@
 //! The elevation window: 64 × 64 cells around the robot, each with the running mean of the heights
-//! measured in it [Maffei20, III-B].
+//! measured in it \[Maffei20, III-B\].
 //!
 //! ```text
 //! h ← h + (z − h) / n,    n = min(measurements so far, MAX_COUNT)

@@ -15,7 +15,7 @@
 //! a gentle slope leads to it from the measured ground before it. It never becomes a measured
 //! height, because its errors would make edges beside measured heights.
 //!
-//! Departs from [Maffei20, III-B]: the paper measures attitude without error.
+//! Departs from \[Maffei20, III-B\]: the paper measures attitude without error.
 //!
 //! Units: metres, map cells; slopes are tangents.
 

@@ -1,5 +1,5 @@
 //! Uneven ground: heights around the robot, and the cells that the robot can drive on.
-//! Source: [Maffei20, III-B].
+//! Source: \[Maffei20, III-B\].
 //!
 //! ```text
 //! both scans + pose (z, roll, pitch, yaw) → elevation → classes → the map's tiles      each step

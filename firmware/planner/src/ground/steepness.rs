@@ -17,7 +17,7 @@
 //! no slope. No error of a cell enters both axes, so a diagonal is as accurate as an axis. The last
 //! rule for edges finds the upper end of an edge that the beams smeared over several cells.
 //!
-//! Departs from [Maffei20, III-B]: the paper compares a cell only with the mean of the kernel.
+//! Departs from \[Maffei20, III-B\]: the paper compares a cell only with the mean of the kernel.
 //!
 //! Units: map cells, heights in steps of [`fixed::types::I7F9`].
 

@@ -18,7 +18,7 @@
 //! `dh < h_hole`), where P gets neither a height nor a mark. A P that rises too steeply before a
 //! known obstacle is the obstacle's foot, and its height goes to the obstacle's cell.
 //!
-//! Departs from [Maffei20, III-B] in three ways:
+//! Departs from \[Maffei20, III-B\] in three ways:
 //!
 //! 1. Obstacle (a) must also be steep, because level beams meet every slope that rises.
 //! 2. The paper's rule for holes, `h − h_robot < h_hole`, makes a hole of everything behind the

@@ -1,8 +1,8 @@
 //! The path: the way down a wave from the robot's centre cell to a goal, and the local goals on it.
 //!
-//! The local goal is the last cell of the path within 2 m of the robot [Jorge15, III-C, sixth step]
-//! and within [`MOST_STEPS_AHEAD`] steps along it: with the distance alone, a long way round inside
-//! the window would make the field underflow.
+//! The local goal is the last cell of the path within 2 m of the robot \[Jorge15, III-C, sixth
+//! step\] and within [`MOST_STEPS_AHEAD`] steps along it: with the distance alone, a long way round
+//! inside the window would make the field underflow.
 //!
 //! Units: coarse cells of 20 cm, named by the least of their four map cells.
 
@@ -16,7 +16,7 @@ use crate::roadmap::skeleton::Frame;
 /// Maximum number of cells that a path keeps, 19 m. The next path is planned long before the robot
 /// has used them up.
 const PATH_CELLS: usize = 96;
-/// Radius of the circle around the robot that holds the local goal, metres [Jorge15, III-C].
+/// Radius of the circle around the robot that holds the local goal, metres \[Jorge15, III-C\].
 pub(crate) const LOCAL_GOAL_M: f32 = 2.0;
 /// Maximum number of steps along the path to the local goal: twice the radius.
 const MOST_STEPS_AHEAD: usize = 20;

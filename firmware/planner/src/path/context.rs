@@ -1,5 +1,5 @@
-//! The inputs of a planning round, with `moveToVoronoi` and `propagatePotential`, which [Jorge15,
-//! Algorithm 1] uses again and again; its scratch memory, and its outcome.
+//! The inputs of a planning round, with `moveToVoronoi` and `propagatePotential`, which \[Jorge15,
+//! Algorithm 1\] uses again and again; its scratch memory, and its outcome.
 //!
 //! Invariant: the skeleton is whole again after each wave.
 //!
@@ -20,7 +20,7 @@ use crate::roadmap::{Barrier, Residues, WaveSpace, Wavefront};
 /// Length of a step along the skeleton, metres. A diagonal step counts the same.
 pub(crate) const STEP_M: f32 = 2.0 * CELL_M;
 /// Maximum number of cells that a blocker takes out of the skeleton: the robot's 3 × 3
-/// surroundings. A shield ([Jorge15, step 5]) takes fewer.
+/// surroundings. A shield (\[Jorge15, step 5\]) takes fewer.
 const MOST_BLOCKED: usize = 9;
 
 /// The inputs of a planning round on one published skeleton.

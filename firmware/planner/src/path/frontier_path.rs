@@ -1,6 +1,6 @@
 //! The path to a frontier: a wave from every frontier cell, each delayed by its cost
-//! ([`crate::path::goal_cost`]), and the way down it from the robot [Jorge15, Algorithm 1, lines 3,
-//! 4, 23].
+//! ([`crate::path::goal_cost`]), and the way down it from the robot \[Jorge15, Algorithm 1, lines
+//! 3, 4, 23\].
 //!
 //! Where goals have height levels, a path that crosses other levels gives way to one that stays on
 //! the goal's, if that is longer by no more than the delay of a goal so many levels off.
@@ -19,7 +19,7 @@ use crate::path::{Path, PlanningContext, PlanningScratch};
 use crate::roadmap::{WaveSpace, Wavefront};
 
 /// A path crosses other levels if it lies this many levels farther off than its goal: 1 m with the
-/// parameters of [Maffei20, Table I].
+/// parameters of \[Maffei20, Table I\].
 const OTHER_LEVELS: u32 = 4;
 /// Words at the end of the wave's queue that cache cost classes. A wave rarely has so many cells
 /// waiting.

@@ -6,7 +6,7 @@
 //! delay       = LEVEL_STEPS · level
 //! ```
 //!
-//! Departs from [Maffei20, III-C]. There one field over the whole grid both bends the way and
+//! Departs from \[Maffei20, III-C\]. There one field over the whole grid both bends the way and
 //! chooses the goal: a goal behind n cells of ε attracts e^(nε) times less. Here the field's window
 //! is 6 m wide, and the wave along the skeleton chooses the goal; so the preference acts there as
 //! well. Along a slope n grows with the height, so the level has no limit where eq. 3 has `ε_hmin`.
@@ -43,8 +43,8 @@ const NONE: i8 = i8::MIN;
 const SAMPLED: usize = 2;
 /// Greatest level of a goal.
 pub(crate) const MOST_LEVEL: u32 = 8;
-/// Delay of a goal for each level, coarse steps. With the parameters of [Maffei20, Table I], 0.25 m
-/// of height count as 10 m of way.
+/// Delay of a goal for each level, coarse steps. With the parameters of \[Maffei20, Table I\], 0.25
+/// m of height count as 10 m of way.
 pub(crate) const LEVEL_STEPS: u32 = 50;
 
 /// The map of heights, for a pool of `TILES` tiles.

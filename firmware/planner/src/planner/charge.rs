@@ -1,5 +1,5 @@
 //! Charging the window around the robot: with a local goal on the path, or with the strategy's own
-//! boundary values [Jorge15, Algorithm 1, lines 26 and 27].
+//! boundary values \[Jorge15, Algorithm 1, lines 26 and 27\].
 //!
 //! Units: map cells.
 

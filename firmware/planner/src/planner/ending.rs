@@ -1,5 +1,5 @@
-//! The end of an exploration: the residual frontiers and the reason [Jorge15, Algorithm 1, line
-//! 26].
+//! The end of an exploration: the residual frontiers and the reason \[Jorge15, Algorithm 1, line
+//! 26\].
 //!
 //! Units: map cells.
 

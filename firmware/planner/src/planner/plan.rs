@@ -1,5 +1,5 @@
 //! Planning on a new skeleton: one round of the strategy, and the search for viewpoints once no
-//! frontier can be reached [Jorge15, Algorithm 1, lines 4 and 23].
+//! frontier can be reached \[Jorge15, Algorithm 1, lines 4 and 23\].
 //!
 //! Units: metres, map cells.
 

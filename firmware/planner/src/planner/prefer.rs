@@ -1,5 +1,5 @@
 //! Uneven ground in the window: the preference of each cell before the field is solved, and the
-//! field's flatness after it [Maffei20, eqs. 3 to 5].
+//! field's flatness after it \[Maffei20, eqs. 3 to 5\].
 //!
 //! Units: metres; preferences are pure numbers.
 
@@ -13,7 +13,7 @@ use crate::input::Input;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 
-/// Adds the preference of [Maffei20, eqs. 3 to 5] to the strategy's own in every cell of the
+/// Adds the preference of \[Maffei20, eqs. 3 to 5\] to the strategy's own in every cell of the
 /// window.
 pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
     terrain: &UnevenGround,
@@ -40,7 +40,7 @@ pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
 
 /// Returns the cells in which the last field leads across a slope that the robot must not cross.
 /// They repel with the least preference: otherwise the height preference would draw the robot along
-/// its own height, across the slope. Not in [Maffei20].
+/// its own height, across the slope. Not in \[Maffei20\].
 fn crossed(
     terrain: &UnevenGround,
     heights: &Heights<'_>,

@@ -95,13 +95,13 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         }
     }
 
-    /// Returns the tractor point of the loop that is being closed, a coarse cell [Jorge15].
+    /// Returns the tractor point of the loop that is being closed, a coarse cell \[Jorge15\].
     #[must_use]
     pub fn tractor(&self) -> Option<Cell> {
         self.strategy.ouroboros().and_then(Ouroboros::tractor)
     }
 
-    /// Returns the two end cells of the shield behind the robot [Jorge15].
+    /// Returns the two end cells of the shield behind the robot \[Jorge15\].
     #[must_use]
     pub fn shield(&self) -> Option<[Cell; 2]> {
         let shield = self.strategy.ouroboros().and_then(Ouroboros::shield)?;
@@ -123,7 +123,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     }
 
     /// Returns the stamps of the last visits to the four places of a tile, row by row: 0 for a
-    /// place that was never visited [Maffei14].
+    /// place that was never visited \[Maffei14\].
     #[must_use]
     pub fn visit_stamps(&self, column: i16, row: i16) -> [u8; PLACES] {
         let Some(tdbvp) = self.strategy.tdbvp() else {
@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn a_planner_without_a_session_shows_nothing() {
-        let state: Box<State<4, 400>> = Box::new(State::new());
+        let state = Box::<State<4, 400>>::default();
         assert_eq!(state.loops(), LoopCounts::default());
         assert_eq!(state.closed_regions(0, 0), 0);
         assert_eq!(state.visit_stamps(3, -1), [0; 4]);

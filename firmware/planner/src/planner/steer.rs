@@ -1,4 +1,4 @@
-//! Following the window's field without touching anything [Jorge15, Algorithm 1, line 28].
+//! Following the window's field without touching anything \[Jorge15, Algorithm 1, line 28\].
 //!
 //! Units: metres, seconds, radians; milliseconds where a name says so.
 

@@ -7,7 +7,8 @@ use crate::grid::{PlaneMut, Site};
 /// A blocker for a wave: up to `N` cells of the skeleton, cleared until it is lowered.
 ///
 /// A wave cannot enter a cell that is clear, so the robot's cells or a wall across the path stop it
-/// [Jorge15, steps 3 and 5]. Invariant: every cell of the barrier was set before and is clear now.
+/// \[Jorge15, steps 3 and 5\]. Invariant: every cell of the barrier was set before and is clear
+/// now.
 #[derive(Debug)]
 #[must_use = "lower it, or the skeleton stays cut"]
 pub struct Barrier<const N: usize> {

@@ -11,12 +11,12 @@
 //! | [`reachability`] | the explored cells that the robot can reach |
 //!
 //! The *centre cells* are the skeleton of the space left by obstacles: of the known part of it, or
-//! of the unexplored as well, so that paths may run through it [Jorge15, step 1]; see
-//! [`skeleton::Space`]. Thinning (`[GuoHall89]`, two subiterations) keeps the space's pieces and
+//! of the unexplored as well, so that paths may run through it \[Jorge15, step 1\]; see
+//! [`skeleton::Space`]. Thinning (\[GuoHall89\], two subiterations) keeps the space's pieces and
 //! holes: between two places the skeleton has a way exactly where the space has one. Anchors, cells
 //! that are kept whatever the rule says, change neither.
 //!
-//! Departs from [Jorge15, step 1]: the plane that is thinned has cells of 20 cm, one for 2 × 2
+//! Departs from \[Jorge15, step 1\]: the plane that is thinned has cells of 20 cm, one for 2 × 2
 //! cells of the map, and holds the configuration space instead of the space itself. The skeleton
 //! charges the window and does not steer within it, so it need not be finer than the robot. A
 //! quarter of the cells and half the passes make it affordable on the microcontroller, and a way in

@@ -6,9 +6,9 @@
 //!
 //! The frontier cells (explored, with an unexplored cell at a side) are *anchors*: the thinning
 //! keeps them, so every frontier that the robot fits through is on the skeleton and has a way along
-//! it. Departs from [Jorge15, III-C], where only the unexplored cells that the thinning happens to
-//! leave are goals: an unexplored patch beside a wide way leaves none, and the exploration may end
-//! early.
+//! it. Departs from \[Jorge15, III-C\], where only the unexplored cells that the thinning happens
+//! to leave are goals: an unexplored patch beside a wide way leaves none, and the exploration may
+//! end early.
 //!
 //! Units: coarse cells of 20 cm; a tile is 16 × 16 of them.
 
@@ -28,7 +28,7 @@ pub enum Space {
     #[default]
     KnownFree,
     /// All passable cells, explored or not, in a box slightly larger than the known area, so that
-    /// paths may run through the unexplored [Jorge15, step 1].
+    /// paths may run through the unexplored \[Jorge15, step 1\].
     NotObstacle,
 }
 

@@ -1,4 +1,4 @@
-//! Guo–Hall thinning, 32 cells at a time, in place and in instalments `[GuoHall89]`.
+//! Guo–Hall thinning, 32 cells at a time, in place and in instalments \[GuoHall89\].
 //!
 //! A subiteration judges all cells before it deletes any. North is towards row 0, as in an image
 //! with row 0 on top; `THINNING_GUOHALL` of `opencv_contrib` does the same and gives the same bits.

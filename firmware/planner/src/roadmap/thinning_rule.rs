@@ -1,4 +1,4 @@
-//! The cells that a subiteration deletes, 32 at a time `[GuoHall89]`.
+//! The cells that a subiteration deletes, 32 at a time \[GuoHall89\].
 //!
 //! A set cell with neighbours p2 (north) … p9 (north-west, clockwise) is deleted if
 //!

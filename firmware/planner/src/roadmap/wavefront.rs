@@ -2,7 +2,7 @@
 //!
 //! The wave starts from any number of seeds at once and enters the set cells of the way,
 //! 8-connected, level by level. It leaves distances modulo 3 in [`Residues`]: on centre cells, the
-//! papers' potential of a point source amounts to these [Jorge15, steps 3 and 5].
+//! papers' potential of a point source amounts to these \[Jorge15, steps 3 and 5\].
 //!
 //! Cells wait for their turn in a ring. A cell that finds the ring full is reached all the same,
 //! and its row is *noted*. After the cells of a level, the wave scans the noted rows for open cells

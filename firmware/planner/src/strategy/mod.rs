@@ -4,8 +4,8 @@
 //! | file | what it holds |
 //! | --- | --- |
 //! | [`frontier`] | drive to the nearest frontier, until none can be reached |
-//! | [`ouroboros`] | close every loop on the way [Jorge15, Algorithm 1] |
-//! | [`tdbvp`] | follow rails of time, and patrol [Maffei14, IV and V] |
+//! | [`ouroboros`] | close every loop on the way \[Jorge15, Algorithm 1\] |
+//! | [`tdbvp`] | follow rails of time, and patrol \[Maffei14, IV and V\] |
 //!
 //! Every strategy drives to frontiers in the end, so a `Strategist` always has a [`Frontier`].
 

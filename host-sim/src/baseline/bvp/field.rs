@@ -8,7 +8,7 @@
 //! the rounding of 1 are flat, which in a real building is most of them. The baseline can only
 //! gain.
 //!
-//! With preferences ([`Field::prefer`]) the equation is [Maffei20, eq. 2], |ε| ≤ 2.
+//! With preferences ([`Field::prefer`]) the equation is \[Maffei20, eq. 2\], |ε| ≤ 2.
 //!
 //! Units: cells of the chart; headings in radians, counter-clockwise from x.
 

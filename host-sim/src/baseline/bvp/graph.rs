@@ -18,10 +18,10 @@
 //! are sums of positive numbers only, so they keep their precision over any range of x. A group is
 //! a connected part of a block of 2 × 2 places: it never joins the two sides of a wall.
 //!
-//! Preferences [Maffei20, eq. 2] tilt the flows of the finest level. Of two opposite neighbours the
-//! greater x flows in by 1 + ε/2 and the smaller by 1 − ε/2, with x as it is at the time. The loss
-//! `w_j = 4 − Σ_k f_kj` may then be slightly negative. So a factor is limited to twice what the
-//! neighbours and goals of its group ask for.
+//! Preferences \[Maffei20, eq. 2\] tilt the flows of the finest level. Of two opposite neighbours
+//! the greater x flows in by 1 + ε/2 and the smaller by 1 − ε/2, with x as it is at the time. The
+//! loss `w_j = 4 − Σ_k f_kj` may then be slightly negative. So a factor is limited to twice what
+//! the neighbours and goals of its group ask for.
 
 use core::cmp::Ordering;
 

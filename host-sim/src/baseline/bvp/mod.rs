@@ -16,9 +16,9 @@
 //! number of sweeps of p leaves it flat far from the frontiers, which ends runs. That failure of
 //! the method cannot occur here. The other failure, indecision between far goals, remains.
 //!
-//! On uneven ground ([`UnevenScene`]) it has the planner's preferences [Maffei20, eqs. 3 to 5] over
-//! the whole grid, with every height measured so far. The planner has them in a window around the
-//! robot.
+//! On uneven ground ([`UnevenScene`]) it has the planner's preferences \[Maffei20, eqs. 3 to 5\]
+//! over the whole grid, with every height measured so far. The planner has them in a window around
+//! the robot.
 //!
 //! # Cost
 //! See [`Work`]: the grid grows with the building, so this baseline runs on the host only.

@@ -1,5 +1,5 @@
-//! Worlds of corridors 2 m wide that close loops, of published sizes: A and B [Jorge15, IV], and
-//! adjacent loops, nested loops and a floor [Maffei14]. The papers give the lengths of the loops;
+//! Worlds of corridors 2 m wide that close loops, of published sizes: A and B \[Jorge15, IV\], and
+//! adjacent loops, nested loops and a floor \[Maffei14\]. The papers give the lengths of the loops;
 //! this file chooses their places.
 //!
 //! A loop runs along the middle of the corridor around a block: a block of w × h metres makes a

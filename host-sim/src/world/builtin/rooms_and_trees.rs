@@ -1,4 +1,4 @@
-//! Two worlds without loops of corridors, of published sizes [Jorge15, IV]: C has rooms along
+//! Two worlds without loops of corridors, of published sizes \[Jorge15, IV\]: C has rooms along
 //! corridors that close no loop, D is a square with small round obstacles like trees.
 //!
 //! The paper gives their sizes and describes them; this file chooses the rest.

@@ -1,5 +1,5 @@
 //! Cost of a step against the known area: constant for the planner, growing for a BVP exploration
-//! over the full grid [Jorge15, Fig. 6].
+//! over the full grid \[Jorge15, Fig. 6\].
 //!
 //! The planner's cost is counted in instructions on the emulated chip: skeleton, plan, window,
 //! field. The full grid does not fit the chip. Its work is counted on the host in cells times
@@ -29,7 +29,7 @@ use host_sim::trial::mission::{Mission, explore};
 use host_sim::trial::{Flow, Progress, Step, Watch};
 use host_sim::world::World;
 
-/// The environments of [Jorge15].
+/// The environments of \[Jorge15\].
 const WORLDS: [&str; 4] = ["ouroboros-a", "ouroboros-b", "ouroboros-c", "ouroboros-d"];
 /// Width of a bin of known area, square metres.
 const BIN_M2: f64 = 40.0;

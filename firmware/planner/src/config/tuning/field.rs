@@ -1,6 +1,7 @@
 //! Tuned constants of the window's field and of its solver.
 //!
-//! The constants of the multigrid itself stay in `field`: beyond narrow bounds it does not converge.
+//! The constants of the multigrid itself stay in `field`: beyond narrow bounds it does not
+//! converge.
 
 tuning! {
     /// Tuned constants of the window's field and of its solver.

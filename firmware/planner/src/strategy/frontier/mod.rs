@@ -1,5 +1,5 @@
 //! Strategy *frontier*: drive to the nearest unexplored centre cell along the skeleton, until none
-//! can be reached [Jorge15, Algorithm 1 without loop closing: lines 3, 4, 22–28].
+//! can be reached \[Jorge15, Algorithm 1 without loop closing: lines 3, 4, 22–28\].
 //!
 //! Goals are chosen by [`crate::path::goal_cost`]. The progress checker gives up a goal that is
 //! reached and stays unexplored, or that comes no nearer, and blocks a passage that cannot be
@@ -125,8 +125,8 @@ impl Frontier {
         self.blocked.cut(skeleton);
     }
 
-    /// Plans a round on a new skeleton: takes the path to the frontier of the least cost [Jorge15,
-    /// Algorithm 1, lines 3, 4, 23].
+    /// Plans a round on a new skeleton: takes the path to the frontier of the least cost \[Jorge15,
+    /// Algorithm 1, lines 3, 4, 23\].
     pub(crate) fn replan<const TILES: usize, const SLOTS: usize>(
         &mut self,
         context: &PlanningContext<'_, TILES, SLOTS>,

@@ -1,13 +1,13 @@
 //! Closed regions: the surroundings of loops, in which no new tractor point is made
-//! [Jorge15, III-A: "the next tractor point must be placed in an unmarked area"].
+//! \[Jorge15, III-A: "the next tractor point must be placed in an unmarked area"\].
 //!
 //! A region is 0.8 × 0.8 m of the map and has two bits. *Pending*: the path of the current loop
 //! comes near. *Closed*: a loop came near that is over. Pending regions become closed at the end of
 //! the loop, or are dropped when the loop turns out to be none. Slots are addressed as the map's
 //! are, so the regions need no skeleton and outlast a map that is replaced under them.
 //!
-//! Departs from [Jorge15, III-A], which marks only loops that were closed: loops that were given up
-//! and places of a finished revisit become closed regions too, or the robot would begin the same
+//! Departs from \[Jorge15, III-A\], which marks only loops that were closed: loops that were given
+//! up and places of a finished revisit become closed regions too, or the robot would begin the same
 //! loop again.
 //!
 //! Invariant: what is known fits the box, so its tiles have slots of their own. A region in a tile

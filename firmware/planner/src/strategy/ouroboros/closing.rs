@@ -1,5 +1,5 @@
 //! Closing a loop: tractor point, loop road and shield, and the drive to the tractor point
-//! [Jorge15, Algorithm 1, lines 3 to 20].
+//! \[Jorge15, Algorithm 1, lines 3 to 20\].
 //!
 //! Units: map cells, metres.
 

@@ -4,7 +4,7 @@
 //! driven ≤ slack + detour · longest expected length
 //! ```
 //!
-//! Departs from [Jorge15, V], which leaves open how long to try ("utility metrics to avoid …
+//! Departs from \[Jorge15, V\], which leaves open how long to try ("utility metrics to avoid …
 //! staying in a long loop for long time or taking too long to detect a non-existent loop"): a loop
 //! road through the unexplored may not exist. A loop is worth closing while its expected length is
 //! within [`LoopLimits`], whose upper limit shrinks with the frontier that is left. The robot gives

@@ -1,5 +1,5 @@
 //! The loop road: two arms along the skeleton, from the robot to the tractor point
-//! [Jorge15, III-C, third step].
+//! \[Jorge15, III-C, third step\].
 //!
 //! A wave has spread from the tractor point with the robot's surroundings as a blocker. If it
 //! reaches the robot from at least two directions, there is a loop. The *back* is the arm that the
@@ -12,7 +12,7 @@
 //!   shield. Without that, a robot among adjacent loops may change from one to the next and close
 //!   none.
 //!
-//! Departs from [Jorge15, III-C]:
+//! Departs from \[Jorge15, III-C\]:
 //!
 //! - The blocker is the robot's cell with its eight neighbours, and the heads are the cells just
 //!   outside. A skeleton that is a staircase or two cells thick leads past a single cell.
@@ -163,7 +163,8 @@ pub(super) fn back_to_shield<'a, const TILES: usize, const SLOTS: usize>(
     Some(descent(residues, *back))
 }
 
-/// Returns the first valid shield across the back, from the robot on [Jorge15, III-C, fourth step].
+/// Returns the first valid shield across the back, from the robot on \[Jorge15, III-C, fourth
+/// step\].
 ///
 /// `None` if the back ends, or [`MOST_TRIED`] cells were tried, without one.
 pub(super) fn build_shield<const TILES: usize, const SLOTS: usize>(

@@ -1,4 +1,4 @@
-//! Strategy *ouroboros*: explore, and close every loop on the way [Jorge15, Algorithm 1].
+//! Strategy *ouroboros*: explore, and close every loop on the way \[Jorge15, Algorithm 1\].
 //!
 //! | lines | what they do | where |
 //! | --- | --- | --- |
@@ -20,8 +20,8 @@
 //! What is kept from round to round lies in cells of the map and not of the skeleton: tractor
 //! point, shield, closed regions and path outlast any number of skeletons.
 //!
-//! Departs from [Jorge15, Algorithm 1, line 17], where a missing loop road ends the loop at once: a
-//! loop is lost only after `LOST_ROUNDS` rounds in a row without loop road or shield, since a
+//! Departs from \[Jorge15, Algorithm 1, line 17\], where a missing loop road ends the loop at once:
+//! a loop is lost only after `LOST_ROUNDS` rounds in a row without loop road or shield, since a
 //! skeleton may grow a spur under the robot for a moment. After `MOST_LOST` lost loops the next one
 //! is given up, or the robot might begin and lose the same loop for ever.
 //!

@@ -4,8 +4,8 @@
 //! that the robot saw from afar, and the exploration would end with that loop open. So the robot
 //! drives to the middle of the stretch, and a tractor point is made behind it as anywhere else.
 //!
-//! Departs from [Jorge15, Algorithm 1, line 25], where the exploration is complete; [Jorge15, V]
-//! names "revisiting in fully explored maps" as open. Whatever the result of a revisit is, its
+//! Departs from \[Jorge15, Algorithm 1, line 25\], where the exploration is complete; \[Jorge15,
+//! V\] names "revisiting in fully explored maps" as open. Whatever the result of a revisit is, its
 //! stretch becomes a closed region, so there is an end of revisits; and a revisit has the budget of
 //! a loop.
 //!

@@ -1,5 +1,5 @@
 //! The shield: a virtual wall across the loop road, behind the robot
-//! [Jorge15, III-A and III-C, fourth step].
+//! \[Jorge15, III-A and III-C, fourth step\].
 //!
 //! It stands on a centre cell and extends to both sides at a right angle to the path, until the
 //! space ends. A shield is valid if both ends are at obstacles and it cuts exactly one branch of

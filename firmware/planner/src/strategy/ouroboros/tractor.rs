@@ -1,12 +1,12 @@
 //! The tractor point: a place behind the robot, to which it is to return by another way
-//! [Jorge15, III-A and III-C, second step].
+//! \[Jorge15, III-A and III-C, second step\].
 //!
 //! It is made on the robot's own path, so it is visited and reachable. It lies behind the robot and
-//! in no closed region. On each new skeleton it moves to the nearest centre cell [Jorge15,
-//! Algorithm 1, line 6]. It is disabled when the robot reaches it [line 8], or when the map has an
+//! in no closed region. On each new skeleton it moves to the nearest centre cell \[Jorge15,
+//! Algorithm 1, line 6\]. It is disabled when the robot reaches it [line 8], or when the map has an
 //! obstacle there.
 //!
-//! Departs from [Jorge15, Algorithm 1, line 5], which keeps a tractor point until it is reached:
+//! Departs from \[Jorge15, Algorithm 1, line 5\], which keeps a tractor point until it is reached:
 //! one that is far behind while no loop is being closed is made again nearer by. The robot would
 //! have to drive all that way back in the first loop that it meets.
 //!
@@ -17,8 +17,8 @@ use crate::math;
 use crate::path::breadcrumbs::Crumbs;
 use crate::strategy::ouroboros::closed_regions::ClosedRegions;
 
-/// The distance at which the robot has reached it, metres: `Threshold` of [Jorge15, Algorithm 1,
-/// line 7]. The paper gives no value; this is half a corridor.
+/// The distance at which the robot has reached it, metres: `Threshold` of \[Jorge15, Algorithm 1,
+/// line 7\]. The paper gives no value; this is half a corridor.
 const REACHED_M: f32 = 1.0;
 /// The least distance behind the robot, metres: a shield must find room between.
 pub(super) const LEAST_BEHIND_M: f32 = 2.5;

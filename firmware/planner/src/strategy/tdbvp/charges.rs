@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! q = (1 − p) / 1.5      p = −0.5 has a goal's whole charge
-//!     not visited 1,   unexplored 2/3,   visited (1 − p) · 2/3       [Maffei14, IV, eq. 3]
+//!     not visited 1,   unexplored 2/3,   visited (1 − p) · 2/3       \[Maffei14, IV, eq. 3\]
 //! ```
 //!
 //! Every centre cell in the window is charged, frontier anchors of the skeleton included.
 //!
-//! Departs from [Maffei14, IV]: centre cells near the robot and those in its pending visits are
+//! Departs from \[Maffei14, IV\]: centre cells near the robot and those in its pending visits are
 //! free. The robot is visiting them now; with the potential of the newest, p = 1, they would be a
 //! wall along the middle of its corridor.
 //!
@@ -27,7 +27,7 @@ use crate::strategy::tdbvp::sides::{DISC_M, EPSILON, Side};
 /// Distance from a dropped goal, along either axis, within which the unexplored is no goal, cells:
 /// the 0.5 m in which no other goal is taken, and the frontier's own coarse cell.
 const DROPPED_CELLS: i32 = 7;
-/// Potential of the unexplored [Maffei14, IV].
+/// Potential of the unexplored \[Maffei14, IV\].
 const UNEXPLORED: f32 = 0.0;
 
 /// Returns a potential as a share of a goal's charge.

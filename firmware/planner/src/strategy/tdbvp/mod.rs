@@ -1,4 +1,4 @@
-//! Strategy *tdbvp*: time-driven rails [Maffei14, IV and V].
+//! Strategy *tdbvp*: time-driven rails \[Maffei14, IV and V\].
 //!
 //! The robot follows −∇p in a window in which every centre cell is charged: with the time since its
 //! last visit (eq. 3), or as the best goal if it was never visited. So the robot prefers the
@@ -8,7 +8,7 @@
 //!
 //! If a rail ends in the window, or none attracts the robot, it follows a *path*: to the nearest
 //! unexplored cell along the skeleton, on patrol to the oldest rail, and to the skeleton itself if
-//! the robot is off it [Maffei14, VII: the nearest rail, else the unexplored, else the skeleton].
+//! the robot is off it \[Maffei14, VII: the nearest rail, else the unexplored, else the skeleton\].
 //!
 //! Departs from the paper:
 //! - (IV) The unexplored is a goal only until [`Frontier`] drops it, and a robot that lingers

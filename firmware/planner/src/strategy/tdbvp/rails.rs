@@ -1,14 +1,14 @@
 //! Rails: when the robot last visited the centre cells, and the potential that follows
-//! [Maffei14, eq. 3].
+//! \[Maffei14, eq. 3\].
 //!
 //! ```text
 //! p = (s − s_oldest) / (s_newest − s_oldest)     visited in step s: the newest 1, the oldest 0
 //! p = −0.5                                       not visited yet
 //! ```
 //!
-//! Departs from [Maffei14, IV], where every centre cell has its own step: the skeleton changes all
-//! the time, so a *place* of 1.6 × 1.6 m of the map has one byte, a *stamp*, whatever centre cells
-//! are in it. Centre lines that a wall parts do not share a place. A stamp counts *ticks* of
+//! Departs from \[Maffei14, IV\], where every centre cell has its own step: the skeleton changes
+//! all the time, so a *place* of 1.6 × 1.6 m of the map has one byte, a *stamp*, whatever centre
+//! cells are in it. Centre lines that a wall parts do not share a place. A stamp counts *ticks* of
 //! several steps. When the ticks run out, all stamps become lower by as much as the oldest allows,
 //! or are halved and the ticks become twice as long. So the robot can go on for ever.
 //!
@@ -99,7 +99,7 @@ impl<const SLOTS: usize> Rails<SLOTS> {
         self.stamp(cell) != 0
     }
 
-    /// Returns the potential of a centre cell [Maffei14, eq. 3], −0.5 or 0 to 1; 1 where all are
+    /// Returns the potential of a centre cell \[Maffei14, eq. 3\], −0.5 or 0 to 1; 1 where all are
     /// equally old.
     pub(super) fn potential(&self, cell: Cell) -> f32 {
         match (self.stamp(cell), self.now - self.oldest) {

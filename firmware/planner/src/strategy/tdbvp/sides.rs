@@ -1,5 +1,5 @@
 //! Side preference: at a fork the robot turns to the side where it last passed openings
-//! [Maffei14, V].
+//! \[Maffei14, V\].
 //!
 //! ```text
 //! ε = +EPSILON on the preferred side, −EPSILON on the other        in the half disc ahead
@@ -24,7 +24,7 @@
 //! With ε = 0.2 and 100 approaches, 100 and 100 turn at the T, 99 and 99 at the cross. A larger ε
 //! draws the robot past the arms.
 //!
-//! Departs from [Maffei14, V]: the preference acts only where the skeleton has a junction in the
+//! Departs from \[Maffei14, V\]: the preference acts only where the skeleton has a junction in the
 //! disc. In a corridor it drew the robot to a wall, turned the disc with it and made it swing: a
 //! third of the time went into turns on the spot.
 //!

@@ -1,4 +1,4 @@
-//! Worlds with uneven ground: the four scenarios of [Maffei20, fig. 4], drawn from their
+//! Worlds with uneven ground: the four scenarios of \[Maffei20, fig. 4\], drawn from their
 //! descriptions, and five courses.
 //!
 //! The ground is a function of x and y, sampled every 5 cm at the centres of the plan's cells; so a

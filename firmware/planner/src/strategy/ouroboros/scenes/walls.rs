@@ -165,7 +165,7 @@ fn assert_tractor(picture: &str, expected: &str) {
     assert_picture(&rows.collect::<Vec<String>>().join("\n"), expected);
 }
 
-/// The four cases of [Jorge15, figure 2], as its text describes them: the tractor point is valid
+/// The four cases of \[Jorge15, figure 2\], as its text describes them: the tractor point is valid
 /// only in the visited space behind the robot, with a shield between that extends from obstacle to
 /// obstacle.
 #[test]
