@@ -52,6 +52,7 @@ fn place(cell: Cell) -> ((i32, i32), usize) {
 #[cfg(test)]
 mod tests {
     use super::HeightGrid;
+    use fieldline_planner::GroundTuning;
     use fieldline_planner::geometry::Cell;
     use fieldline_planner::ground::elevation::{Elevation, WINDOW_CELLS};
 
@@ -61,7 +62,8 @@ mod tests {
         let mut origin = Cell { x: -32, y: -32 };
         let mut grid = HeightGrid::default();
         let (here, far) = (Cell { x: -5, y: 7 }, Cell { x: 300, y: 7 });
-        let mut elevation = Elevation::new(&mut bytes, &mut marks, &mut origin);
+        let mut elevation =
+            Elevation::new(&mut bytes, &mut marks, &mut origin, &GroundTuning::DEFAULT);
         elevation.mark_wheel_contact(here, 0.5);
         grid.keep(&elevation.read());
         elevation.follow(far);

@@ -18,7 +18,6 @@ use fieldline_device::convert;
 use fieldline_device::session::{self, Boot};
 use fieldline_device::{SLOTS, TILES};
 use fieldline_planner::config::Config;
-use fieldline_planner::config::UnevenGround;
 use fieldline_planner::drive::{CollisionChecker, Drive, Place, SCRATCH_WORDS, SearchQuery};
 use fieldline_planner::geometry::{Cell, Point, Pose, Twist};
 use fieldline_planner::input::Input;
@@ -150,18 +149,18 @@ impl<S: Strategy> Session<S> {
                 }
             }
         }
-        if let Some(ground) = config.ground() {
-            self.resolve_gaps(ground);
+        if config.ground().is_some() {
+            self.resolve_gaps(config);
         }
     }
 
     /// Marks the gaps of the ground at goals that were dropped as unobservable, as the planner
     /// does.
-    fn resolve_gaps(&mut self, ground: &UnevenGround) {
+    fn resolve_gaps(&mut self, config: &Config) {
         let dropped = self.strategy.dropped();
         let new = dropped.iter().skip(self.resolved);
         for frontier in new.filter(|frontier| frontier.reason == Residue::Unobservable) {
-            self.map.resolve_gaps(ground, frontier.cell);
+            self.map.resolve_gaps(config, frontier.cell);
         }
         self.resolved = dropped.len();
     }
@@ -209,7 +208,8 @@ impl<S: Strategy> Session<S> {
             return CollisionChecker::new(config.robot(), pose, self.obstacle_points.points());
         }
         let mut checker = CollisionChecker::empty(config.robot());
-        let borders = obstacle_points::inflated_border_cells(self.map.tiles(), pose.point());
+        let (tiles, robot) = (self.map.tiles(), pose.point());
+        let borders = obstacle_points::inflated_border_cells(tiles, robot, config.tuning());
         checker.keep_off(pose, borders);
         checker
     }

@@ -91,6 +91,7 @@ fn p_diff(window: &Window, pose: &Pose) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fieldline_planner::GroundTuning;
     use fieldline_planner::ground::elevation::{Elevation, WINDOW_CELLS};
 
     /// Makes a window at cell (10, −30). Its last column is a goal; q halves with every column to
@@ -125,7 +126,8 @@ mod tests {
     fn preferences_are_the_formulas() {
         let (mut bytes, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
         let mut origin = Cell { x: 8, y: -32 };
-        let mut elevation = Elevation::new(&mut bytes, &mut marks, &mut origin);
+        let mut elevation =
+            Elevation::new(&mut bytes, &mut marks, &mut origin, &GroundTuning::DEFAULT);
         for (x, height_m) in [(20, 0.5), (21, 0.4), (22, 2.0)] {
             elevation.mark_wheel_contact(Cell { x, y: 3 }, height_m);
         }

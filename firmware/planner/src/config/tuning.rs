@@ -167,6 +167,7 @@ macro_rules! rooms {
 }
 
 rooms! {
+    ground: GroundTuning, "Uneven ground.";
     field: FieldTuning, "The window's field and its solver.";
     ouroboros: OuroborosTuning, "Loop closing.";
 }

@@ -122,6 +122,7 @@ impl Incline {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::GroundTuning;
     use crate::geometry::Cell;
     use crate::ground::elevation::{Elevation, WINDOW_CELLS};
 
@@ -136,7 +137,12 @@ mod tests {
     fn slope_from(y_m: f32, yaw_rad: f32) -> Incline {
         let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
         let mut origin = Cell::default();
-        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+        let mut window = Elevation::new(
+            &mut heights,
+            &mut marks,
+            &mut origin,
+            &GroundTuning::DEFAULT,
+        );
         window.follow(Cell::default());
         for x in -20..20 {
             for y in -20..20 {

@@ -2,10 +2,10 @@
 //! measured.
 //!
 //! ```text
-//! j      ← j + (|g − 2 g' + g''| − j) / n    n = min(steps so far, MAX_STEPS)
+//! j      ← j + (|g − 2 g' + g''| − j) / n    n = min(steps so far, noise_steps)
 //! sigma  = j / SECOND_DIFFERENCE_RATIO       standard deviation of g
-//! ĝ      ← ĝ + GAIN (g − ĝ)                  while |g − ĝ| < MOTION_SIGMAS sigma, else ĝ ← g
-//! reach  = MAX_ERROR_M / (SMOOTHED_RATIO sigma)
+//! ĝ      ← ĝ + attitude_gain (g − ĝ)         while |g − ĝ| < motion_sigmas sigma, else ĝ ← g
+//! reach  = max_height_sigma_m / (smoothed_ratio sigma)
 //! ```
 //!
 //! Here g, g' and g'' are the slopes of the robot's plane in the world, now and one and two steps
@@ -15,34 +15,19 @@
 //! 5 cm, and two sweeps that meet there make a false edge. A mean over many sweeps would remove the
 //! edge, but a robot in motion has only one or two sweeps over a cell. Therefore the attitude is
 //! smoothed, and no height is measured beyond the reach; the robot measures again from nearer.
-//! Below [`EXACT_SIGMA`] the attitude is used unchanged and the reach is infinite.
+//! Below `exact_sigma` the attitude is used unchanged and the reach is infinite.
 //!
 //! Departs from \[Maffei20, III-B\]: the paper measures attitude without error.
 //!
 //! Units: slopes are tangents; metres, radians.
 
+use crate::config::GroundTuning;
 use crate::geometry::Pose;
 use crate::ground::ray::Attitude;
 use crate::math;
 
-/// Share of a deviation that the filter corrects in one step.
-const GAIN: f32 = 0.5;
-/// Standard deviation of the filtered slope over that of one slope: √(GAIN / (2 − GAIN)).
-const SMOOTHED_RATIO: f32 = 0.577;
 /// Mean of |g − 2 g' + g''| over the standard deviation of g: √6 √(2/π), for normal noise.
 const SECOND_DIFFERENCE_RATIO: f32 = 1.954;
-/// Steps that the mean of the second differences remembers: 20 s at 5 Hz.
-const MAX_STEPS: u8 = 100;
-/// Standard deviation of a slope below which the attitude counts as exact, a tangent: 0.15°.
-const EXACT_SIGMA: f32 = 0.0026;
-/// Standard deviation of a height at the reach, metres.
-const MAX_ERROR_M: f32 = 0.03;
-/// Two standard deviations of the difference of two heights at the reach, metres.
-const SLACK_M: f32 = 2.0 * core::f32::consts::SQRT_2 * MAX_ERROR_M;
-/// Standard deviations of one slope beyond which a deviation is motion. They are 4.3 standard
-/// deviations of the deviation itself, √(1 + `SMOOTHED_RATIO`²). At 3 one step in fifty would count
-/// as motion and pass unfiltered: exactly the steps with the largest errors.
-const MOTION_SIGMAS: f32 = 5.0;
 
 /// The filter of the attitude.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -68,17 +53,19 @@ impl AttitudeFilter {
     }
 
     /// Takes the pose of this step and returns it with the filtered pitch and roll.
-    pub(crate) fn update(&mut self, pose: &Pose) -> Pose {
+    pub(crate) fn update(&mut self, pose: &Pose, tuning: &GroundTuning) -> Pose {
         let attitude = Attitude::of(pose);
         let slope = [attitude.rise(1.0, 0.0), attitude.rise(0.0, 1.0)];
-        self.estimate_noise(slope);
+        self.estimate_noise(slope, tuning.noise_steps);
         let sigma = self.sigma();
         let off = [slope[0] - self.slope[0], slope[1] - self.slope[1]];
-        let is_motion = off.iter().any(|off| off.abs() > MOTION_SIGMAS * sigma);
-        let gain = if self.is_exact() || is_motion {
+        let is_motion = off
+            .iter()
+            .any(|off| off.abs() > tuning.motion_sigmas * sigma);
+        let gain = if self.is_exact(tuning) || is_motion {
             1.0
         } else {
-            GAIN
+            tuning.attitude_gain
         };
         for (filtered, off) in self.slope.iter_mut().zip(off) {
             *filtered += gain * off;
@@ -91,22 +78,27 @@ impl AttitudeFilter {
     }
 
     /// Returns true if the attitude has no noise worth filtering.
-    pub(crate) fn is_exact(&self) -> bool {
-        self.sigma() < EXACT_SIGMA
+    pub(crate) fn is_exact(&self, tuning: &GroundTuning) -> bool {
+        self.sigma() < tuning.exact_sigma
     }
 
     /// Returns the distance from the robot within which heights are measured, metres.
-    pub(super) fn reach_m(&self) -> f32 {
-        if self.is_exact() {
+    pub(super) fn reach_m(&self, tuning: &GroundTuning) -> f32 {
+        if self.is_exact(tuning) {
             f32::INFINITY
         } else {
-            MAX_ERROR_M / (SMOOTHED_RATIO * self.sigma())
+            tuning.max_height_sigma_m / (tuning.smoothed_ratio * self.sigma())
         }
     }
 
-    /// Returns the difference of two heights that errors of the attitude alone explain, metres.
-    pub(super) fn slack_m(&self) -> f32 {
-        if self.is_exact() { 0.0 } else { SLACK_M }
+    /// Returns the difference of two heights that errors of the attitude alone explain, metres: two
+    /// standard deviations of the difference at the reach.
+    pub(super) fn slack_m(&self, tuning: &GroundTuning) -> f32 {
+        if self.is_exact(tuning) {
+            0.0
+        } else {
+            2.0 * core::f32::consts::SQRT_2 * tuning.max_height_sigma_m
+        }
     }
 
     /// Returns the standard deviation of one slope, a tangent.
@@ -114,10 +106,13 @@ impl AttitudeFilter {
         self.noise / SECOND_DIFFERENCE_RATIO
     }
 
-    fn estimate_noise(&mut self, slope: [f32; 2]) {
+    fn estimate_noise(&mut self, slope: [f32; 2], max_steps: u8) {
         let [one, two] = self.last;
         self.last = [slope, one];
-        self.steps = self.steps.saturating_add(1).min(MAX_STEPS + 2);
+        self.steps = self
+            .steps
+            .saturating_add(1)
+            .min(max_steps.saturating_add(2));
         // The first two steps have no second difference.
         let Some(count) = self.steps.checked_sub(2).filter(|&count| count > 0) else {
             return;
@@ -144,9 +139,12 @@ impl AttitudeFilter {
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::{AttitudeFilter, EXACT_SIGMA, MAX_ERROR_M, SMOOTHED_RATIO};
+    use super::AttitudeFilter;
+    use crate::config::GroundTuning;
     use crate::geometry::Pose;
     use crate::ground::ray::Attitude;
+
+    const TUNING: GroundTuning = GroundTuning::DEFAULT;
 
     /// Returns a number that is about normal: the sum of twelve uniform numbers of variance 1/12.
     pub(in crate::ground) fn normal(seed: &mut u64) -> f32 {
@@ -187,8 +185,8 @@ pub(super) mod tests {
         let mut filter = AttitudeFilter::new();
         for step in 0..500 {
             let pose = on_a_slope(step);
-            assert_eq!(filter.update(&pose), pose);
-            assert_eq!(filter.reach_m(), f32::INFINITY);
+            assert_eq!(filter.update(&pose, &TUNING), pose);
+            assert_eq!(filter.reach_m(&TUNING), f32::INFINITY);
         }
     }
 
@@ -200,7 +198,7 @@ pub(super) mod tests {
         for step in 0..2_000 {
             let truth = on_a_slope(step);
             let pose = noisy(truth, sigma, &mut seed);
-            let filtered = filter.update(&pose);
+            let filtered = filter.update(&pose, &TUNING);
             if step > 100 {
                 // The error 3 m to the robot's left.
                 let rise = |pose: &Pose| {
@@ -210,7 +208,8 @@ pub(super) mod tests {
                 before += (rise(&pose) - rise(&truth)).powi(2);
                 after += (rise(&filtered) - rise(&truth)).powi(2);
                 count += 1.0;
-                let ratio = filter.reach_m() / (MAX_ERROR_M / (SMOOTHED_RATIO * sigma));
+                let ratio = filter.reach_m(&TUNING)
+                    / (TUNING.max_height_sigma_m / (TUNING.smoothed_ratio * sigma));
                 assert!((0.7..1.3).contains(&ratio), "{ratio}");
             }
         }
@@ -226,14 +225,14 @@ pub(super) mod tests {
         let (mut filter, mut seed) = (AttitudeFilter::new(), 11);
         let mut worst = 0.0_f32;
         for step in 0..5_000 {
-            let filtered = filter.update(&noisy(Pose::default(), sigma, &mut seed));
+            let filtered = filter.update(&noisy(Pose::default(), sigma, &mut seed), &TUNING);
             if step > 100 {
                 worst = worst.max(filtered.roll_rad.abs().max(filtered.pitch_rad.abs()));
             }
         }
         // The largest of 10,000 normal numbers is about 3.9 standard deviations.
         assert!(
-            worst < 4.5 * SMOOTHED_RATIO * sigma,
+            worst < 4.5 * TUNING.smoothed_ratio * sigma,
             "{}",
             worst.to_degrees()
         );
@@ -244,13 +243,16 @@ pub(super) mod tests {
         let sigma = 0.5_f32.to_radians();
         let (mut filter, mut seed) = (AttitudeFilter::new(), 9);
         for _ in 0..200 {
-            filter.update(&noisy(Pose::default(), sigma, &mut seed));
+            filter.update(&noisy(Pose::default(), sigma, &mut seed), &TUNING);
         }
         let up = Pose {
             pitch_rad: -0.15,
             ..Pose::default()
         };
-        assert_eq!(filter.update(&up), up);
-        assert!(filter.reach_m() < MAX_ERROR_M / (SMOOTHED_RATIO * EXACT_SIGMA));
+        assert_eq!(filter.update(&up, &TUNING), up);
+        assert!(
+            filter.reach_m(&TUNING)
+                < TUNING.max_height_sigma_m / (TUNING.smoothed_ratio * TUNING.exact_sigma)
+        );
     }
 }

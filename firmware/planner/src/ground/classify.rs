@@ -20,34 +20,14 @@
 
 use fixed::types::I7F9;
 
-use crate::config::UnevenGround;
+use crate::config::{GroundTuning, UnevenGround};
 use crate::geometry::{CELL_M, Cell};
 use crate::grid::Row;
 use crate::ground::elevation::{GroundState, Heights, WINDOW_SIDE};
 use crate::ground::{low_confidence, steepness};
 
-/// Error of the difference of two mean heights, metres: two standard deviations, for means of four
-/// heights with a standard deviation of 0.01 m each.
-const NOISE_M: f32 = 0.015;
-/// Share of the climb that an edge to the next cell may add to the step.
-const ONE_CELL_CLIMB_SHARE: f32 = 0.25;
-/// Share of the climb that an edge to a cell two cells away may add to the step.
-const TWO_CELLS_CLIMB_SHARE: f32 = 0.5;
-/// Share of the greatest rise over four cells that each half must have, for a slope or an edge.
-const HALF_SHARE: f32 = 0.3;
-/// Share of the greatest rise over four cells that the ends of a bridge may differ by.
-const BRIDGE_SHARE: f32 = 0.7;
 /// Distances to the two ends of a bridge, cells: the ends are at most four cells apart.
 const BRIDGES: [(i32, i32); 6] = [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 1)];
-/// Distance to either side within which the ground beside a gap is looked for, cells.
-const MAX_GAP_CELLS: i32 = 10;
-/// Directions, of four, in which ground must span a gap. At the corner of a hole only one does.
-const MIN_DIRECTIONS: i32 = 3;
-/// Difference between the grade across a gap and the grades beside it, a tangent. A gap higher than
-/// an edge must blend in: a kerb in a gap is steep between two level grounds.
-const MAX_BLEND: f32 = 0.1;
-/// Measured cells, of the eight around, that free an obstacle of the map.
-const MIN_MEASURED_AROUND: u32 = 6;
 
 /// Limits for ground that spans a gap. They depend on the attitude of the measurements beside it.
 struct GapLimits {
@@ -68,16 +48,18 @@ impl GapLimits {
     };
     /// For an attitude with errors: distant cells were measured in another attitude, and a rim
     /// casts a shadow as steep as the tilted beams.
-    const NOISY: Self = Self {
-        climb_share: 0.75,
-        grade_cells: &[3, 4, 2],
-        trusts_single: true,
-    };
+    const fn noisy(tuning: &GroundTuning) -> Self {
+        Self {
+            climb_share: tuning.noisy_climb_share,
+            grade_cells: &[3, 4, 2],
+            trusts_single: true,
+        }
+    }
 }
 
 /// Greatest rises from a cell near by to a cell that is free, in steps of a height.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct RiseLimits {
+pub(crate) struct RiseLimits<'a> {
     /// An edge from the next cell.
     pub(super) one: i32,
     /// An edge from two cells away along an axis.
@@ -91,23 +73,28 @@ pub(crate) struct RiseLimits {
     /// Between the ends of a bridge.
     bridge: i32,
     /// Steepest slope, a tangent.
-    climb: f32,
+    pub(super) climb: f32,
+    /// Highest edge, metres.
+    step_m: f32,
+    pub(super) tuning: &'a GroundTuning,
 }
 
-impl RiseLimits {
+impl<'a> RiseLimits<'a> {
     /// The limits of a robot on uneven ground.
-    pub(crate) fn new(ground: &UnevenGround) -> Self {
+    pub(crate) fn new(ground: &UnevenGround, tuning: &'a GroundTuning) -> Self {
         let steps = |metres: f32| i32::from(I7F9::saturating_from_num(metres).to_bits());
         let rise = |cells: f32| ground.climb * cells * CELL_M;
-        let edge = ground.step_m + NOISE_M;
+        let edge = ground.step_m + tuning.mean_noise_m;
         Self {
-            one: steps(ONE_CELL_CLIMB_SHARE * rise(1.0) + edge),
-            two: steps(TWO_CELLS_CLIMB_SHARE * rise(2.0) + edge),
-            two_corner: steps(TWO_CELLS_CLIMB_SHARE * rise(2.83) + edge),
-            four: steps(rise(4.0) + NOISE_M),
-            half: steps(HALF_SHARE * rise(4.0)),
-            bridge: steps(BRIDGE_SHARE * rise(4.0)),
+            one: steps(tuning.one_cell_climb_share * rise(1.0) + edge),
+            two: steps(tuning.two_cells_climb_share * rise(2.0) + edge),
+            two_corner: steps(tuning.two_cells_climb_share * rise(2.83) + edge),
+            four: steps(rise(4.0) + tuning.mean_noise_m),
+            half: steps(tuning.half_share * rise(4.0)),
+            bridge: steps(tuning.bridge_share * rise(4.0)),
             climb: ground.climb,
+            step_m: ground.step_m,
+            tuning,
         }
     }
 }
@@ -124,21 +111,21 @@ pub(crate) struct Classes {
 }
 
 /// Classifies row `y` of the window; `known` is the row in the map.
-pub(crate) fn row(heights: &Heights<'_>, limits: &RiseLimits, y: i32, known: Row) -> Classes {
+pub(crate) fn row(heights: &Heights<'_>, limits: &RiseLimits<'_>, y: i32, known: Row) -> Classes {
     let mut classes = Classes::default();
-    let origin = heights.origin();
+    let (origin, tuning) = (heights.origin(), limits.tuning);
     for k in 0..WINDOW_SIDE {
         let cell = Cell { x: origin.x + k, y };
         let bit = 1_u64 << k;
         let near = |dx: i32, dy: i32| height_steps(heights, cell.offset(dx, dy));
-        if heights.is_obstacle(cell) {
+        if heights.is_obstacle(cell, tuning) {
             classes.obstacle |= bit;
         } else if let Some(height) = near(0, 0) {
             if let Some(steepness) = steepness::steepness(limits, height, near) {
                 if steepness::is_confirmed(heights, cell, steepness) {
                     classes.obstacle |= bit;
                 }
-            } else if known.obstacle() & bit == 0 || is_well_measured(near) {
+            } else if known.obstacle() & bit == 0 || is_well_measured(tuning, near) {
                 classes.free |= bit;
             }
         } else if heights.is_drop(cell) {
@@ -148,7 +135,7 @@ pub(crate) fn row(heights: &Heights<'_>, limits: &RiseLimits, y: i32, known: Row
             }
         } else if known.unknown() & bit != 0
             && (is_bridged(heights, limits, cell)
-                || low_confidence::is_usable(heights, limits.climb, cell))
+                || low_confidence::is_usable(heights, limits, cell))
         {
             classes.free |= bit;
         }
@@ -164,34 +151,34 @@ fn height_steps(heights: &Heights<'_>, cell: Cell) -> Option<i32> {
         .map(|height| i32::from(height.to_bits()))
 }
 
-/// Returns true if at least [`MIN_MEASURED_AROUND`] cells around a measured cell are measured too.
-fn is_well_measured(near: impl Fn(i32, i32) -> Option<i32>) -> bool {
+/// Returns true if enough cells around a measured cell are measured too.
+fn is_well_measured(tuning: &GroundTuning, near: impl Fn(i32, i32) -> Option<i32>) -> bool {
     let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
     let measured = around.filter(|&(dx, dy)| near(dx, dy).is_some()).count() as u32;
     // The cell itself is one of them.
-    measured > MIN_MEASURED_AROUND
+    measured > tuning.min_measured_around
 }
 
 /// Returns true if measured ground on both sides spans a cell that was never measured.
 ///
-/// Ground must span the cell in at least [`MIN_DIRECTIONS`] of the four directions, and no
+/// Ground must span the cell in at least `min_directions` of the four directions, and no
 /// direction may refuse it. `slack_m` is the difference of two heights that errors of the attitude
 /// alone explain, metres.
 pub(crate) fn spans_gap(
     heights: &Heights<'_>,
-    ground: &UnevenGround,
+    rises: &RiseLimits<'_>,
     cell: Cell,
     slack_m: f32,
 ) -> bool {
     let gap = Gap {
         heights,
-        ground,
+        rises,
         cell,
         slack_m,
         limits: if slack_m > 0.0 {
-            &GapLimits::NOISY
+            GapLimits::noisy(rises.tuning)
         } else {
-            &GapLimits::EXACT
+            GapLimits::EXACT
         },
     };
     let mut directions = 0;
@@ -202,16 +189,16 @@ pub(crate) fn spans_gap(
             None => {}
         }
     }
-    directions >= MIN_DIRECTIONS
+    directions >= rises.tuning.min_directions
 }
 
 /// A cell of a gap, and the ground around it.
 struct Gap<'a> {
     heights: &'a Heights<'a>,
-    ground: &'a UnevenGround,
+    rises: &'a RiseLimits<'a>,
     cell: Cell,
     slack_m: f32,
-    limits: &'a GapLimits,
+    limits: GapLimits,
 }
 
 impl Gap<'_> {
@@ -227,8 +214,8 @@ impl Gap<'_> {
             return Some(false);
         };
         let (rise_m, gap_m) = (high - low, (ahead + behind) as f32 * direction.step_m());
-        let max_rise_m = self.limits.climb_share * self.ground.climb * gap_m + self.slack_m;
-        let is_low = rise_m.abs() <= self.ground.step_m + self.slack_m;
+        let max_rise_m = self.limits.climb_share * self.rises.climb * gap_m + self.slack_m;
+        let is_low = rise_m.abs() <= self.rises.step_m + self.slack_m;
         let blends = || self.blends(direction, (ahead, behind), rise_m / gap_m);
         if rise_m.abs() <= max_rise_m && (is_low || blends()) {
             return Some(true);
@@ -240,22 +227,22 @@ impl Gap<'_> {
 
     /// Returns the nearest known cell to one side: its distance in cells, and its state.
     fn end(&self, direction: Direction, sign: i32) -> Option<(i32, GroundState)> {
-        (1..=MAX_GAP_CELLS).find_map(|cells| {
+        (1..=self.rises.tuning.max_gap_cells).find_map(|cells| {
             let cell = direction.cell(self.cell, sign * cells);
-            let state = self.heights.ground_state(cell)?;
+            let state = self.heights.ground_state(cell, self.rises.tuning)?;
             (state != GroundState::Uncertain).then_some((cells, state))
         })
     }
 
     /// Returns true if the grade across the gap lies between those beside it, give or take
-    /// [`MAX_BLEND`].
+    /// `max_blend`.
     fn blends(&self, direction: Direction, (ahead, behind): (i32, i32), grade: f32) -> bool {
         let beside = self.grade_beside(direction, ahead, 1);
         let Some((a, b)) = beside.zip(self.grade_beside(direction, -behind, -1)) else {
             return false;
         };
         let longest = self.limits.grade_cells.iter().copied().max().unwrap_or(1) as f32;
-        let max_blend = MAX_BLEND + self.slack_m / (longest * direction.step_m());
+        let max_blend = self.rises.tuning.max_blend + self.slack_m / (longest * direction.step_m());
         (a.min(b) - max_blend..=a.max(b) + max_blend).contains(&grade)
     }
 
@@ -298,7 +285,7 @@ impl Direction {
 
 /// Returns true if measured cells on both sides along an axis, at most four cells apart, bridge a
 /// cell: their heights differ by less than a climbable slope.
-pub(super) fn is_bridged(heights: &Heights<'_>, limits: &RiseLimits, cell: Cell) -> bool {
+pub(super) fn is_bridged(heights: &Heights<'_>, limits: &RiseLimits<'_>, cell: Cell) -> bool {
     let near = |dx: i32, dy: i32| height_steps(heights, cell.offset(dx, dy));
     let bridges = |a: Option<i32>, b: Option<i32>| {
         a.zip(b)

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!      room             beams between the jambs J all end on something that stands
-//!   ___J     J___       |J J| is at most MAX_DOORWAY_M; both jambs are near and stand
+//!   ___J     J___       |J J| is at most max_doorway_m; both jambs are near and stand
 //!        \ /            then the cells that the beams cross are floor, and their ends are wall
 //!       robot
 //! ```
@@ -21,7 +21,7 @@
 
 use core::ops::Range;
 
-use crate::config::UnevenGround;
+use crate::config::{GroundTuning, UnevenGround};
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::ground::elevation::Heights;
 use crate::ground::ray::{Attitude, Mount, Ray};
@@ -29,22 +29,6 @@ use crate::input::INVALID_MM;
 use crate::math;
 use crate::robot::LaserMount;
 
-/// Greatest width of a doorway, metres.
-const MAX_DOORWAY_M: f32 = 2.0;
-/// Least width of a doorway, metres: a narrower gap shows too little.
-const MIN_DOORWAY_M: f32 = 0.6;
-/// Difference of range between a jamb and the next beam, millimetres; the jamb is nearer.
-const JAMB_STEP_MM: u16 = 100;
-/// Least depth behind the threshold of every beam's end, metres.
-const RECESS_M: f32 = 0.08;
-/// Least depth behind the threshold of the deepest end, metres: a shallower space is a niche.
-const MIN_DEPTH_M: f32 = 1.0;
-/// Range below which a beam's end can be a jamb, millimetres: inside the elevation window.
-const MAX_JAMB_MM: u16 = 3_000;
-/// Greatest slope of the robot along x and y, a tangent: 2.9°.
-const MAX_TILT: f32 = 0.05;
-/// Distance between the ends of neighbouring beams on one wall, metres.
-const MAX_WALL_GAP_M: f32 = 0.7;
 /// Distance between interpolated beams at their ends, metres: they miss no cell.
 const STRIDE_M: f32 = 0.5 * CELL_M;
 /// Least sine of the angle between two beams: a smaller one counts as this.
@@ -67,27 +51,30 @@ pub(crate) struct DoorwayView<'a> {
     /// Height of the ground under the robot, metres.
     ground_m: f32,
     ground: &'a UnevenGround,
+    tuning: &'a GroundTuning,
     laser: &'a LaserMount,
     ranges_mm: &'a [u16],
 }
 
 impl<'a> DoorwayView<'a> {
-    /// Creates the view from a pose; `None` if the robot is tilted more than [`MAX_TILT`].
+    /// Creates the view from a pose; `None` if the robot is tilted more than `max_doorway_tilt`.
     pub(crate) fn new(
         pose: &Pose,
         ground: &'a UnevenGround,
+        tuning: &'a GroundTuning,
         laser: &'a LaserMount,
         ranges_mm: &'a [u16],
     ) -> Option<Self> {
         let attitude = Attitude::of(pose);
         let is_tilted = [(1.0, 0.0), (0.0, 1.0)]
             .into_iter()
-            .any(|(x, y)| attitude.rise(x, y).abs() > MAX_TILT);
+            .any(|(x, y)| attitude.rise(x, y).abs() > tuning.max_doorway_tilt);
         (!is_tilted).then(|| Self {
             attitude,
             mount: Mount::new(&attitude, laser),
             ground_m: pose.z_m,
             ground,
+            tuning,
             laser,
             ranges_mm,
         })
@@ -123,7 +110,9 @@ impl<'a> DoorwayView<'a> {
     /// Returns true if a beam ends near the robot, and nearer than the beam beside it.
     fn is_jamb(&self, jamb: usize, beside: usize) -> bool {
         match (self.range(jamb), self.range(beside)) {
-            (Some(jamb), Some(beside)) => jamb < MAX_JAMB_MM && beside > jamb + JAMB_STEP_MM,
+            (Some(jamb), Some(beside)) => {
+                jamb < self.tuning.max_jamb_mm && beside > jamb + self.tuning.jamb_step_mm
+            }
             _ => false,
         }
     }
@@ -134,10 +123,11 @@ impl<'a> DoorwayView<'a> {
         let (Some(a), Some(b)) = (self.ray(first), self.ray(second)) else {
             return false;
         };
-        let (from, to) = (a.end(), b.end());
+        let (from, to, tuning) = (a.end(), b.end(), self.tuning);
         let width_m = from.distance_m(to);
-        let stands = |ray: &Ray| heights.is_obstacle(ray.hit_cell());
-        if !(MIN_DOORWAY_M..=MAX_DOORWAY_M).contains(&width_m) || !stands(&a) || !stands(&b) {
+        let stands = |ray: &Ray| heights.is_obstacle(ray.hit_cell(tuning.hit_depth_m), tuning);
+        let widths_m = tuning.min_doorway_m..=tuning.max_doorway_m;
+        if !widths_m.contains(&width_m) || !stands(&a) || !stands(&b) {
             return false;
         }
         let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
@@ -151,15 +141,16 @@ impl<'a> DoorwayView<'a> {
                 let depth_m = depth_m(ray.end());
                 deepest_m = deepest_m.max(depth_m);
                 let over_m = ray.height_m(ray.length_m) - self.ground_m;
-                depth_m > RECESS_M && over_m > self.ground.obstacle_m
+                depth_m > tuning.min_recess_m && over_m > self.ground.obstacle_m
             })
         });
-        all && deepest_m > MIN_DEPTH_M
+        all && deepest_m > tuning.min_room_depth_m
     }
 
     /// Returns the cell of what a beam hit.
     pub(crate) fn end_cell(&self, number: usize) -> Option<Cell> {
-        self.ray(number).map(|ray| ray.hit_cell())
+        self.ray(number)
+            .map(|ray| ray.hit_cell(self.tuning.hit_depth_m))
     }
 
     /// Calls `found` for the cells that a beam sees, and for those between it and the beam before:
@@ -170,61 +161,60 @@ impl<'a> DoorwayView<'a> {
             return;
         };
         if let Some(before) = number.checked_sub(1).and_then(|before| self.ray(before)) {
-            cells_between(&before, &ray, &mut found);
+            self.cells_between(&before, &ray, &mut found);
         }
-        cells_of_ray(&ray, 0.0, &mut found);
+        self.cells_of_ray(&ray, 0.0, &mut found);
     }
-}
+    /// Calls `found` for the cells between two neighbouring beams that end on one wall.
+    /// Interpolated beams run to points on the line between the two ends.
+    fn cells_between(&self, one: &Ray, other: &Ray, found: &mut impl FnMut(Cell, Part)) {
+        let (from, to) = (one.end(), other.end());
+        let gap_m = from.distance_m(to);
+        if gap_m > self.tuning.max_wall_gap_m {
+            return;
+        }
+        let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
+        let count = math::floor(gap_m / STRIDE_M);
+        // Up to here the two beams themselves cross all cells between them.
+        let (ux, uy) = one.along;
+        let (vx, vy) = other.along;
+        let sine = (ux * vy - uy * vx).abs();
+        let from_m = one
+            .length_m
+            .min(other.length_m)
+            .min(STRIDE_M / sine.max(MIN_SINE));
+        for k in 1..=count {
+            let part = k as f32 / (count + 1) as f32;
+            let (x, y) = (
+                from.x_m + part * dx - one.from.x_m,
+                from.y_m + part * dy - one.from.y_m,
+            );
+            let length_m = math::sqrt(x * x + y * y);
+            if length_m > 0.0 {
+                let along = (x / length_m, y / length_m);
+                let ray = Ray {
+                    along,
+                    length_m,
+                    ..*one
+                };
+                self.cells_of_ray(&ray, from_m, found);
+            }
+        }
+    }
 
-/// Calls `found` for the cells between two neighbouring beams that end on one wall. Interpolated
-/// beams run to points on the line between the two ends.
-fn cells_between(one: &Ray, other: &Ray, found: &mut impl FnMut(Cell, Part)) {
-    let (from, to) = (one.end(), other.end());
-    let gap_m = from.distance_m(to);
-    if gap_m > MAX_WALL_GAP_M {
-        return;
-    }
-    let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
-    let count = math::floor(gap_m / STRIDE_M);
-    // Up to here the two beams themselves cross all cells between them.
-    let (ux, uy) = one.along;
-    let (vx, vy) = other.along;
-    let sine = (ux * vy - uy * vx).abs();
-    let from_m = one
-        .length_m
-        .min(other.length_m)
-        .min(STRIDE_M / sine.max(MIN_SINE));
-    for k in 1..=count {
-        let part = k as f32 / (count + 1) as f32;
-        let (x, y) = (
-            from.x_m + part * dx - one.from.x_m,
-            from.y_m + part * dy - one.from.y_m,
-        );
-        let length_m = math::sqrt(x * x + y * y);
-        if length_m > 0.0 {
-            let along = (x / length_m, y / length_m);
-            let ray = Ray {
-                along,
-                length_m,
-                ..*one
-            };
-            cells_of_ray(&ray, from_m, found);
+    /// Calls `found` for the cells of a beam from length `from_m` on.
+    fn cells_of_ray(&self, ray: &Ray, from_m: f32, found: &mut impl FnMut(Cell, Part)) {
+        let wall = ray.hit_cell(self.tuning.hit_depth_m);
+        let mut s_m = from_m;
+        while s_m < ray.length_m {
+            let cell = ray.at(s_m).cell();
+            if cell != wall {
+                found(cell, Part::Floor);
+            }
+            s_m += CELL_M;
         }
+        found(wall, Part::Wall);
     }
-}
-
-/// Calls `found` for the cells of a beam from length `from_m` on.
-fn cells_of_ray(ray: &Ray, from_m: f32, found: &mut impl FnMut(Cell, Part)) {
-    let wall = ray.hit_cell();
-    let mut s_m = from_m;
-    while s_m < ray.length_m {
-        let cell = ray.at(s_m).cell();
-        if cell != wall {
-            found(cell, Part::Floor);
-        }
-        s_m += CELL_M;
-    }
-    found(wall, Part::Wall);
 }
 
 #[cfg(test)]
@@ -233,7 +223,7 @@ mod tests {
     use std::vec::Vec;
 
     use super::{DoorwayView, Part};
-    use crate::config::UnevenGround;
+    use crate::config::{GroundTuning, UnevenGround};
     use crate::geometry::{Cell, Point, Pose};
     use crate::ground::elevation::tests::OwnedWindow;
     use crate::input::NO_RETURN_MM;
@@ -298,7 +288,13 @@ mod tests {
         }
         assert!(is_level(&LASER));
         let mut cells = BTreeMap::new();
-        if let Some(view) = DoorwayView::new(&pose, &UnevenGround::TABLE_I, &LASER, ranges_mm) {
+        if let Some(view) = DoorwayView::new(
+            &pose,
+            &UnevenGround::TABLE_I,
+            &GroundTuning::DEFAULT,
+            &LASER,
+            ranges_mm,
+        ) {
             let mut from = 0;
             while let Some(beams) = view.next_doorway(&window.read(), from) {
                 from = beams.end;

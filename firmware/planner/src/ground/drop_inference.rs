@@ -1,7 +1,7 @@
 //! Drop inference: marks drops near the robot that no beam saw.
 //!
 //! ```text
-//! inferred:  a possible drop, or a cell on a rim; within NEAR_M of the robot; no ground spans it
+//! inferred:  a possible drop, or a cell on a rim; near the robot; no ground spans it
 //! on a rim:  no beam ever met it, and of the eight cells around one is a drop and one is measured
 //! ```
 //!
@@ -26,14 +26,9 @@
 //! Units: metres, map cells.
 
 use crate::config::UnevenGround;
-use crate::geometry::{CELL_M, Cell};
+use crate::geometry::Cell;
 use crate::ground::classify::{RiseLimits, is_bridged, spans_gap};
 use crate::ground::elevation::Elevation;
-use crate::math;
-
-/// Distance from the robot within which unmeasured ground stays unmeasured, metres. The steep beams
-/// meet level ground farther off (1.39 m), and would have met a slope.
-const NEAR_M: f32 = 0.9;
 
 /// Infers drops around the robot's cell. `slack_m` is the difference of two heights that errors of
 /// the attitude alone explain, metres.
@@ -43,13 +38,15 @@ pub(super) fn infer_drops(
     robot: Cell,
     slack_m: f32,
 ) {
-    let reach = math::floor(NEAR_M / CELL_M);
+    let tuning = elevation.tuning;
+    let reach = tuning.near_cells;
     let side = 2 * reach + 1;
     let near = |k: i32| robot.offset(k % side - reach, k / side - reach);
     let all = 0..side * side;
+    let limits = RiseLimits::new(ground, tuning);
     for cell in all.clone().map(near) {
         let heights = elevation.read();
-        if heights.is_possible_drop(cell) && !spans_gap(&heights, ground, cell, slack_m) {
+        if heights.is_possible_drop(cell) && !spans_gap(&heights, &limits, cell, slack_m) {
             // Errors of the attitude make possible drops of ground that was measured well before.
             if slack_m > 0.0 {
                 elevation.infer_drop(cell);
@@ -58,13 +55,12 @@ pub(super) fn infer_drops(
             }
         }
     }
-    let limits = RiseLimits::new(ground);
     // Forwards and backwards, so that a rim continues in both directions.
     for cell in all.clone().chain(all.rev()).map(near) {
         let heights = elevation.read();
         if heights.is_on_rim(cell)
             && !is_bridged(&heights, &limits, cell)
-            && !spans_gap(&heights, ground, cell, slack_m)
+            && !spans_gap(&heights, &limits, cell, slack_m)
         {
             elevation.infer_drop(cell);
         }
@@ -76,7 +72,7 @@ mod tests {
     use std::string::String;
 
     use super::infer_drops;
-    use crate::config::UnevenGround;
+    use crate::config::{GroundTuning, UnevenGround};
     use crate::geometry::Cell;
     use crate::grid::{Class, Row};
     use crate::ground::classify::{self, RiseLimits};
@@ -201,7 +197,7 @@ mod tests {
         window.mark_drop(Cell { x: 5, y: 9 });
         window.mark_possible_drop(Cell { x: 7, y: 9 });
         window.confirm_drop(Cell { x: 7, y: 9 });
-        let limits = RiseLimits::new(&UnevenGround::TABLE_I);
+        let limits = RiseLimits::new(&UnevenGround::TABLE_I, &GroundTuning::DEFAULT);
         classify::row(&window.read(), &limits, 9, known).negative
     }
 

@@ -2,7 +2,7 @@
 //! measured in it \[Maffei20, III-B\].
 //!
 //! ```text
-//! h ← h + (z − h) / n,    n = min(measurements so far, MAX_COUNT)
+//! h ← h + (z − h) / n,    n = min(measurements so far, 15)
 //! ```
 //!
 //! A height is an [`I7F9`]: ±64 m around the start in steps of 2 mm. Beside it lies a mark of one
@@ -22,6 +22,7 @@
 
 use fixed::types::I7F9;
 
+use crate::config::GroundTuning;
 use crate::geometry::Cell;
 pub(super) use crate::ground::heights::GroundState;
 use crate::ground::heights::{
@@ -29,31 +30,34 @@ use crate::ground::heights::{
 };
 pub use crate::ground::heights::{Heights, WINDOW_CELLS, WINDOW_SIDE};
 
-/// Measurements that a mean remembers. Range: 1 to 15, as many as [`COUNT`] holds.
-const MAX_COUNT: u8 = 15;
-/// A height farther than this from the mean may be a false return: 0.15 m, in steps of a height.
-const OUTLIER_STEPS: i32 = I7F9::lit("0.15").to_bits() as i32;
-/// Score of a hit of something that stands: two points. A measurement of ground takes one away.
-const HIT_SCORE: u8 = 2 * SCORE_POINT;
-
 /// The elevation window, for writing.
 #[derive(Debug)]
 pub struct Elevation<'a> {
     heights: &'a mut [[u8; 2]],
     marks: &'a mut [u8],
     origin: &'a mut Cell,
+    pub(super) tuning: &'a GroundTuning,
+    /// `outlier_m` in steps of a height.
+    outlier_steps: i32,
 }
 
 impl<'a> Elevation<'a> {
     /// Creates the window over memory for [`WINDOW_CELLS`] cells: two bytes of height and one mark
     /// each, all zeros at first. `origin` is the window's least cell.
     #[must_use]
-    pub fn new(heights: &'a mut [u8], marks: &'a mut [u8], origin: &'a mut Cell) -> Self {
+    pub fn new(
+        heights: &'a mut [u8],
+        marks: &'a mut [u8],
+        origin: &'a mut Cell,
+        tuning: &'a GroundTuning,
+    ) -> Self {
         let (heights, _) = heights.as_chunks_mut();
         Self {
             heights,
             marks,
             origin,
+            tuning,
+            outlier_steps: I7F9::saturating_from_num(tuning.outlier_m).to_bits().into(),
         }
     }
 
@@ -104,8 +108,8 @@ impl<'a> Elevation<'a> {
     /// Adds a measured height to a cell's mean, metres; ignores cells outside the window.
     ///
     /// The cell is then no drop, and its obstacle score falls by one point. A height more than
-    /// 15 cm off the mean may be a false return: the mean stays and its count falls, until the mean
-    /// gives way. Of two first heights that differ so much, the lower one stays.
+    /// `outlier_m` off the mean may be a false return: the mean stays and its count falls, until the
+    /// mean gives way. Of two first heights that differ so much, the lower one stays.
     pub fn measure(&mut self, cell: Cell, height_m: f32) {
         self.discard_low_confidence(cell);
         self.average(cell, height_m);
@@ -131,10 +135,11 @@ impl<'a> Elevation<'a> {
     }
 
     fn average(&mut self, cell: Cell, height_m: f32) {
+        let outlier_steps = self.outlier_steps;
         let Some((mark, stored)) = self.stored_mut(cell) else {
             return;
         };
-        let count = (*mark & COUNT).saturating_add(1).min(MAX_COUNT);
+        let count = (*mark & COUNT).saturating_add(1).min(COUNT);
         let height = I7F9::saturating_from_num(if height_m.is_nan() { 0.0 } else { height_m });
         let mean = i32::from(if count == 1 {
             height.to_bits()
@@ -143,7 +148,7 @@ impl<'a> Elevation<'a> {
         });
         let off = i32::from(height.to_bits()) - mean;
         let n = i32::from(count);
-        if off.abs() > OUTLIER_STEPS {
+        if off.abs() > outlier_steps {
             *mark = *mark & !COUNT | count.saturating_sub(2).max(1);
             if count == 2 && off < 0 {
                 *stored = height.to_le_bytes();
@@ -160,8 +165,9 @@ impl<'a> Elevation<'a> {
     /// Marks a hit of something that stands in a cell. The second hit makes it an obstacle.
     pub(super) fn mark_obstacle(&mut self, cell: Cell) {
         self.discard_low_confidence(cell);
+        let hit = self.tuning.hit_score * SCORE_POINT;
         if let Some(mark) = self.mark_mut(cell) {
-            let score = (*mark & SCORE).saturating_add(HIT_SCORE);
+            let score = (*mark & SCORE).saturating_add(hit);
             *mark = *mark & COUNT | score.min(SCORE);
         }
     }

@@ -15,6 +15,7 @@
 
 use fixed::types::I7F9;
 
+use crate::config::GroundTuning;
 use crate::geometry::Cell;
 use crate::grid::Rolling;
 
@@ -32,8 +33,6 @@ pub(super) const SCORE: u8 = 0x70;
 pub(super) const SCORE_POINT: u8 = 0x10;
 /// Bit of a mark: the ground is gone, or the height has low confidence.
 pub(super) const DROP: u8 = 0x80;
-/// Least score of an obstacle, points. A hit adds two: one hit may be a false return.
-const MIN_OBSTACLE_SCORE: u8 = 3;
 /// Stored height of a possible drop, and of a drop confirmed from one. It is no mean.
 pub(super) const POSSIBLE_DROP: [u8; 2] = [1, 0];
 /// Stored height of a drop inferred from its surroundings. It is no mean.
@@ -73,8 +72,8 @@ const fn is_drop(mark: u8) -> bool {
 
 /// Returns true if the mark has the score of an obstacle.
 #[inline(always)]
-const fn is_obstacle(mark: u8) -> bool {
-    mark & SCORE >= MIN_OBSTACLE_SCORE * SCORE_POINT
+const fn is_obstacle(mark: u8, tuning: &GroundTuning) -> bool {
+    mark & SCORE >= tuning.obstacle_score * SCORE_POINT
 }
 
 /// Returns the number of measurements in a mark, without those of low confidence.
@@ -162,9 +161,9 @@ impl<'a> Heights<'a> {
 
     /// Returns the state of a cell's ground; `None` if nothing is known of it.
     #[inline(always)]
-    pub(super) fn ground_state(&self, cell: Cell) -> Option<GroundState> {
+    pub(super) fn ground_state(&self, cell: Cell, tuning: &GroundTuning) -> Option<GroundState> {
         let (mark, stored) = self.stored(cell).filter(|&(mark, _)| mark != 0)?;
-        if is_obstacle(mark) {
+        if is_obstacle(mark, tuning) {
             Some(GroundState::Blocked)
         } else if is_drop(mark) {
             Some(if stored == POSSIBLE_DROP || stored == INFERRED_DROP {
@@ -183,8 +182,8 @@ impl<'a> Heights<'a> {
     }
 
     /// Returns true if something stands in a cell.
-    pub(super) fn is_obstacle(&self, cell: Cell) -> bool {
-        is_obstacle(self.mark(cell))
+    pub(super) fn is_obstacle(&self, cell: Cell, tuning: &GroundTuning) -> bool {
+        is_obstacle(self.mark(cell), tuning)
     }
 
     /// Returns true if the ground of a cell is gone: seen, confirmed or inferred.

@@ -2,11 +2,11 @@
 //! filter](super::attitude_filter), and when it counts as free.
 //!
 //! ```text
-//! usable:  |z − h| ≤ TOLERANCE_M + CLIMB_SHARE climb d
+//! usable:  |z − h| ≤ low_confidence_tolerance_m + noisy_climb_share climb d
 //! ```
 //!
 //! Here z is the height of the cell and h the first measured height on the line to the robot, d
-//! away over ground. The cell lies at most [`MAX_CELLS`] from the robot. On the line before h there
+//! away over ground. The cell lies at most `near_cells` from the robot. On the line before h there
 //! is no obstacle and no drop.
 //!
 //! Behind a brow, tilted beams meet the ground only far off, until the robot itself tilts. If the
@@ -20,37 +20,32 @@
 //! Units: metres, map cells; slopes are tangents.
 
 use crate::geometry::Cell;
+use crate::ground::classify::RiseLimits;
 use crate::ground::elevation::{Heights, WINDOW_SIDE};
 
-/// Greatest distance from the robot along an axis, cells. Tilted beams meet level ground farther
-/// off (1.39 m) and measure it there.
-const MAX_CELLS: i32 = 9;
-/// Error of a mean height of low confidence, metres.
-const TOLERANCE_M: f32 = 0.10;
-/// Share of the climb by which ground may rise or fall on the way to the cell.
-const CLIMB_SHARE: f32 = 0.75;
-
-/// Returns true if a cell with a height of low confidence counts as free. `climb` is the steepest
-/// slope that the robot climbs. The robot is in the middle of the window.
-pub(super) fn is_usable(heights: &Heights<'_>, climb: f32, cell: Cell) -> bool {
+/// Returns true if a cell with a height of low confidence counts as free. The robot is in the
+/// middle of the window.
+pub(super) fn is_usable(heights: &Heights<'_>, limits: &RiseLimits<'_>, cell: Cell) -> bool {
     let Some(low_confidence_m) = heights.low_confidence_m(cell) else {
         return false;
     };
+    let (climb, tuning) = (limits.climb, limits.tuning);
     let robot = heights.origin().offset(WINDOW_SIDE / 2, WINDOW_SIDE / 2);
     let (dx, dy) = (robot.x - cell.x, robot.y - cell.y);
     let steps = dx.abs().max(dy.abs());
-    if steps > MAX_CELLS {
+    if steps > tuning.near_cells {
         return false;
     }
     let distance_m = cell.distance_m(robot);
     for k in 1..=steps {
         let on = cell.offset(rounded(k * dx, steps), rounded(k * dy, steps));
-        if heights.is_obstacle(on) || heights.is_drop(on) {
+        if heights.is_obstacle(on, tuning) || heights.is_drop(on) {
             return false;
         }
         if let Some(height_m) = heights.height_m(on) {
             let d_m = distance_m * k as f32 / steps as f32;
-            return (low_confidence_m - height_m).abs() <= TOLERANCE_M + CLIMB_SHARE * climb * d_m;
+            return (low_confidence_m - height_m).abs()
+                <= tuning.low_confidence_tolerance_m + tuning.noisy_climb_share * climb * d_m;
         }
     }
     false
@@ -64,11 +59,12 @@ const fn rounded(a: i32, b: i32) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::is_usable;
+    use crate::config::{GroundTuning, UnevenGround};
     use crate::geometry::Cell;
+    use crate::ground::classify::RiseLimits;
     use crate::ground::elevation::Elevation;
     use crate::ground::elevation::tests::OwnedWindow;
 
-    const CLIMB: f32 = 0.36;
     /// Three cells ahead of the measured ground around the robot.
     const CELL: Cell = Cell { x: 6, y: 2 };
 
@@ -83,7 +79,12 @@ mod tests {
         }
         window.measure_low_confidence(CELL, low_confidence_m);
         before(&mut window);
-        is_usable(&window.read(), CLIMB, CELL)
+        let ground = UnevenGround {
+            climb: 0.36,
+            ..UnevenGround::TABLE_I
+        };
+        let limits = RiseLimits::new(&ground, &GroundTuning::DEFAULT);
+        is_usable(&window.read(), &limits, CELL)
     }
 
     #[test]

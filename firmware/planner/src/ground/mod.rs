@@ -24,7 +24,7 @@
 //! Words: a *drop* is a cell whose ground is gone; a *rim* is the border of a drop; a *brow* is the
 //! upper end of a slope; the *climb* is the steepest slope that the robot drives on.
 //!
-//! A constant without a source or a derivation in its documentation is tuned on simulated worlds.
+//! The tuned constants are in [`GroundTuning`](crate::GroundTuning).
 //!
 //! Units: metres; slopes are tangents; heights count from the start.
 

@@ -12,9 +12,6 @@ use crate::geometry::{Cell, Point, Pose};
 use crate::math;
 use crate::robot::LaserMount;
 
-/// Depth behind a beam's end at which an obstacle is marked, metres: three standard deviations of a
-/// range (0.01 m), so that the cell belongs to what was hit and not to the ground before it.
-pub(crate) const HIT_DEPTH_M: f32 = 0.03;
 /// Least cosine between the robot's up axis and the vertical: 84°. A steeper robot has no plane.
 const MIN_UPRIGHT: f32 = 0.1;
 /// Least cosine between a beam and the horizontal: 87°. A steeper beam has no direction.
@@ -61,9 +58,9 @@ impl Ray {
         self.at(self.length_m)
     }
 
-    /// Returns the cell of what the beam hit, [`HIT_DEPTH_M`] behind its end.
-    pub(crate) fn hit_cell(&self) -> Cell {
-        self.at(self.length_m + HIT_DEPTH_M).cell()
+    /// Returns the cell of what the beam hit, `depth_m` behind its end.
+    pub(crate) fn hit_cell(&self, depth_m: f32) -> Cell {
+        self.at(self.length_m + depth_m).cell()
     }
 }
 

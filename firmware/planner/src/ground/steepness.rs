@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Here h(n) is the height n cells away, `climb` the rise of the steepest slope over one cell, and
-//! `half` 0.3 of its rise over four cells; [`RiseLimits`] holds all limits.
+//! `half` a share of its rise over four cells; [`RiseLimits`] holds all limits.
 //!
 //! A slope uses an axis only if both of its half-segments rise in the same direction; the slope is
 //! then the gradient's magnitude, whatever its direction. An edge lies in one half only, so it is
@@ -45,7 +45,7 @@ pub(super) enum Steepness {
 /// height at an offset, `None` where none was measured.
 #[inline(always)]
 pub(super) fn steepness(
-    limits: &RiseLimits,
+    limits: &RiseLimits<'_>,
     height: i32,
     near: impl Fn(i32, i32) -> Option<i32>,
 ) -> Option<Steepness> {
@@ -79,7 +79,7 @@ pub(super) fn steepness(
 /// Returns true if the ground is steeper than the climb. The arguments are the falls from the cell
 /// to the cells [`TWO`] away.
 #[inline(always)]
-fn is_too_steep(limits: &RiseLimits, [east, north, west, south]: [Option<i32>; 4]) -> bool {
+fn is_too_steep(limits: &RiseLimits<'_>, [east, north, west, south]: [Option<i32>; 4]) -> bool {
     // The fall from the cell and the fall to it, capped so that no square overflows.
     let halves = |one: Option<i32>, other: Option<i32>| {
         let (one, other) = one.zip(other).unwrap_or_default();
@@ -106,7 +106,7 @@ pub(super) fn is_confirmed(heights: &Heights<'_>, cell: Cell, steepness: Steepne
 
 #[cfg(test)]
 mod tests {
-    use crate::config::UnevenGround;
+    use crate::config::{GroundTuning, UnevenGround};
     use crate::geometry::{Cell, Point};
     use crate::grid::Row;
     use crate::ground::attitude_filter::tests::normal;
@@ -136,7 +136,7 @@ mod tests {
                 }
             }
         }
-        let limits = RiseLimits::new(&UnevenGround::TABLE_I);
+        let limits = RiseLimits::new(&UnevenGround::TABLE_I, &GroundTuning::DEFAULT);
         core::array::from_fn(|k| row(&window.read(), &limits, k as i32 - 32, Row::default()))
     }
 
@@ -231,10 +231,11 @@ mod tests {
             window.measure(Cell { x, y }, height_m);
             window.measure(Cell { x, y }, height_m);
         }
-        let limits = RiseLimits::new(&UnevenGround {
+        let ground = UnevenGround {
             step_m: 9.0,
             ..UnevenGround::TABLE_I
-        });
+        };
+        let limits = RiseLimits::new(&ground, &GroundTuning::DEFAULT);
         let of = |y: i32| row(&window.read(), &limits, y, Row::default());
         assert_eq!(of(0).obstacle, 0);
         // The third cell from the left is the first with two measured cells on both sides.

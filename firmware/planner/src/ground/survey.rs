@@ -12,7 +12,7 @@
 //! | P is below the slope at K, carried on, and a steep beam just passes over K | drop behind K |
 //! | the same, with a possible brow at K and an exact attitude | possible drop behind K |
 //!
-//! A drop is marked on the unmeasured cells behind K, over at most [`DROP_DEPTH_M`], and it ends
+//! A drop is marked on the unmeasured cells behind K, over at most `drop_depth_m`, and it ends
 //! before P. Then P is measured as ground if K is near enough. Three cases do not measure P: an
 //! obstacle, a rise of a level beam that is too steep for ground, and a hole (a drop with
 //! `dh < h_hole`), where P gets neither a height nor a mark. A P that rises too steeply before a
@@ -35,7 +35,7 @@
 
 use core::iter;
 
-use crate::config::{Config, KERNEL_CELLS, UnevenGround};
+use crate::config::{Config, GroundTuning, KERNEL_CELLS, UnevenGround};
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::ground::attitude_filter::AttitudeFilter;
 use crate::ground::drop_inference;
@@ -45,56 +45,8 @@ use crate::input::{Input, has_company, informative_range_mm};
 use crate::math;
 use crate::robot::{LaserMount, is_level};
 
-/// Radius around the start that the tilted beams never see, metres. They meet level ground 1.39 m
-/// from the robot's centre.
-const BLIND_RADIUS_M: f32 = 1.35;
-/// Radius around the robot's centre in which the ground carries the wheels, metres.
-const WHEEL_RADIUS_M: f32 = 0.25;
-/// Error of a height, metres: from the attitude, the range and the extent of the cell.
-const HEIGHT_TOLERANCE_M: f32 = 0.10;
-/// Rise above the steepest slope from which P is the foot of an obstacle and no ground, metres.
-const WALL_FOOT_M: f32 = 0.03;
 /// Least distance from the robot to the window's border, metres.
 const WINDOW_RADIUS_M: f32 = (WINDOW_SIDE / 2 - 1) as f32 * CELL_M;
-/// Greatest gap between K and the ground that a level beam measures, metres. Beyond it, the beam
-/// may have hit a wall.
-const MAX_GROUND_GAP_M: f32 = 0.45;
-/// Least depth of a drop, metres.
-const MIN_DROP_M: f32 = 0.08;
-/// Least gap between K and P for a drop between them, metres.
-const MIN_DROP_GAP_M: f32 = 1.5 * CELL_M;
-/// Greatest height above K at which a beam just passes over it, metres.
-const GRAZING_M: f32 = 0.15;
-/// The same height for a possible drop, metres. K was measured long before, and from elsewhere.
-const POSSIBLE_GRAZING_M: f32 = 0.3;
-/// Length before K over which the slope at K is measured, metres.
-const SLOPE_BASE_M: f32 = 0.3;
-/// Greatest slope at K, as a share of the climb, if it is not measured but taken from the robot's
-/// plane.
-const ASSUMED_SLOPE_SHARE: f32 = 0.9;
-/// Greatest change of the slope between K and P on a brow, a tangent.
-const MAX_BEND: f32 = 0.15;
-/// Share of the climb from which a beam comes down steeply enough to tell a rim from a slope.
-const STEEP_SHARE: f32 = 0.85;
-/// Share of the climb from which the line from K to P is steep enough for a possible drop.
-const POSSIBLE_STEEP_SHARE: f32 = 0.3;
-/// Least gap between K and P for a brow between them, metres. Behind the brow of a climbable slope,
-/// nearer ground is not as low as a drop.
-const MIN_BROW_GAP_M: f32 = 0.45;
-/// Greatest length marked as a drop behind K, metres. Farther ground may be seen from elsewhere.
-const DROP_DEPTH_M: f32 = 0.6;
-/// Least distance from the laser at which K is looked for, metres.
-const MIN_GROUND_M: f32 = 0.2;
-/// Distance from the laser at which the ground under the robot stands for K, metres.
-const ROBOT_GROUND_M: f32 = 0.1;
-/// Least slope between a beam and the robot's plane for the beam to meet the ground, a tangent.
-const MIN_CLOSING: f32 = 0.1;
-/// Reach of heights of low confidence over the reach of measured heights.
-const LOW_CONFIDENCE_REACH: f32 = 2.0;
-/// Cells from one sample of the kernel to the next, along both axes.
-const KERNEL_STRIDE: usize = 2;
-/// Divisor of the kernel's samples: one in so many must be measured for the mean to count.
-const KERNEL_SHARE: u16 = 8;
 
 /// The measured ground nearest before the end of a beam, K.
 #[derive(Clone, Copy, Debug)]
@@ -109,6 +61,7 @@ struct LastGround {
 pub(crate) struct Survey<'a, 'm> {
     elevation: &'a mut Elevation<'m>,
     ground: &'a UnevenGround,
+    tuning: &'m GroundTuning,
     attitude: Attitude,
     robot: Point,
     robot_z_m: f32,
@@ -127,6 +80,7 @@ impl<'a, 'm> Survey<'a, 'm> {
     ) -> Self {
         elevation.follow(input.pose.point().cell());
         Self {
+            tuning: elevation.tuning,
             elevation,
             ground,
             attitude: Attitude::of(&input.pose),
@@ -139,17 +93,17 @@ impl<'a, 'm> Survey<'a, 'm> {
 
     /// Sets the reach and the slack from the attitude filter.
     pub(crate) fn with_attitude(mut self, filter: &AttitudeFilter) -> Self {
-        self.reach_m = filter.reach_m();
-        self.slack_m = filter.slack_m();
+        self.reach_m = filter.reach_m(self.tuning);
+        self.slack_m = filter.slack_m(self.tuning);
         self
     }
 
     /// Enters both scans. `is_first` marks the first survey of a session.
     pub(crate) fn run(&mut self, config: &Config, input: &Input<'_>, is_first: bool) {
         if is_first {
-            self.mark_robot_plane(BLIND_RADIUS_M);
+            self.mark_robot_plane(self.tuning.blind_radius_m);
         }
-        self.mark_robot_plane(WHEEL_RADIUS_M);
+        self.mark_robot_plane(self.tuning.wheel_radius_m);
         // The level laser is judged by the ground that the tilted laser measures.
         for level in [false, true] {
             for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
@@ -202,10 +156,11 @@ impl<'a, 'm> Survey<'a, 'm> {
         let z_m = ray.height_m(ray.length_m);
         let last = self.last_ground(ray, ray.length_m);
         let (gap_m, rise_m) = (ray.length_m - last.s_m, z_m - last.height_m);
-        if rise_m > self.ground.climb * gap_m + HEIGHT_TOLERANCE_M {
+        if rise_m > self.ground.climb * gap_m + self.tuning.height_tolerance_m {
             let is_obstacle = self.is_obstacle(ray, z_m);
             if is_obstacle && has_company {
-                self.elevation.mark_obstacle(ray.hit_cell());
+                self.elevation
+                    .mark_obstacle(ray.hit_cell(self.tuning.hit_depth_m));
             }
             if is_obstacle || is_level {
                 return;
@@ -215,7 +170,8 @@ impl<'a, 'm> Survey<'a, 'm> {
         } else if self.is_rim(ray, &last, gap_m, rise_m) {
             let is_hole = rise_m < self.ground.hole_m;
             // A brow that bends as quickly looks the same until the slope behind it is measured.
-            let may_be_brow = gap_m > MIN_BROW_GAP_M && -rise_m < self.ground.climb * gap_m;
+            let may_be_brow =
+                gap_m > self.tuning.min_brow_gap_m && -rise_m < self.ground.climb * gap_m;
             if is_hole || !may_be_brow || self.slack_m > 0.0 {
                 self.mark_drops(ray, &last, ray.length_m);
             } else {
@@ -231,18 +187,19 @@ impl<'a, 'm> Survey<'a, 'm> {
     /// Measures P as ground if K is near enough, or if a tilted beam met a climbable slope.
     fn measure(&mut self, ray: &Ray, is_level: bool, gap_m: f32, rise_m: f32) {
         let climb_m = self.ground.climb * gap_m;
-        let is_linked = gap_m <= MAX_GROUND_GAP_M || (!is_level && rise_m.abs() <= climb_m);
+        let is_linked =
+            gap_m <= self.tuning.max_ground_gap_m || (!is_level && rise_m.abs() <= climb_m);
         if !is_linked {
             return;
         }
-        let foot = (rise_m > climb_m + WALL_FOOT_M)
+        let foot = (rise_m > climb_m + self.tuning.wall_foot_m)
             .then(|| self.wall_foot(ray))
             .flatten();
         let cell = foot.unwrap_or_else(|| ray.end().cell());
         let z_m = ray.height_m(ray.length_m);
         if ray.length_m < self.reach_m {
             self.elevation.measure(cell, z_m);
-        } else if ray.length_m < LOW_CONFIDENCE_REACH * self.reach_m {
+        } else if ray.length_m < self.tuning.low_confidence_reach * self.reach_m {
             self.elevation.measure_low_confidence(cell, z_m);
         }
     }
@@ -256,12 +213,12 @@ impl<'a, 'm> Survey<'a, 'm> {
         }
         let closing = self.attitude.rise(ux, uy) - ray.slope;
         let above_m = ray.from_z_m - self.attitude.plane_m(ray.from);
-        if closing < MIN_CLOSING || above_m > closing * WINDOW_RADIUS_M {
+        if closing < self.tuning.min_closing || above_m > closing * WINDOW_RADIUS_M {
             return;
         }
         let expected_m = above_m / closing;
-        let last = self.last_ground(ray, expected_m + DROP_DEPTH_M);
-        if self.is_grazing(ray, &last, GRAZING_M) {
+        let last = self.last_ground(ray, expected_m + self.tuning.drop_depth_m);
+        if self.is_grazing(ray, &last, self.tuning.grazing_m) {
             self.mark_drops(ray, &last, f32::INFINITY);
         }
     }
@@ -272,7 +229,7 @@ impl<'a, 'm> Survey<'a, 'm> {
         let heights = self.elevation.read();
         let end = ray.at(end_m).cell();
         let mut s_m = end_m.min(window_m(ray)) - 0.5 * CELL_M;
-        while s_m > MIN_GROUND_M {
+        while s_m > self.tuning.min_ground_m {
             let cell = ray.at(s_m).cell();
             if cell != end
                 && let Some(height_m) = heights.height_m(cell)
@@ -282,7 +239,7 @@ impl<'a, 'm> Survey<'a, 'm> {
             s_m -= CELL_M;
         }
         LastGround {
-            s_m: ROBOT_GROUND_M,
+            s_m: self.tuning.robot_ground_m,
             height_m: self.robot_z_m,
         }
     }
@@ -291,9 +248,10 @@ impl<'a, 'm> Survey<'a, 'm> {
     /// foot, which must not raise the ground before it.
     fn wall_foot(&self, ray: &Ray) -> Option<Cell> {
         let heights = self.elevation.read();
-        let hit = ray.hit_cell();
+        let hit = ray.hit_cell(self.tuning.hit_depth_m);
         let next = ray.at(ray.length_m + CELL_M).cell();
-        (heights.is_obstacle(hit) || heights.is_obstacle(next)).then_some(hit)
+        (heights.is_obstacle(hit, self.tuning) || heights.is_obstacle(next, self.tuning))
+            .then_some(hit)
     }
 
     /// Returns true if a steep P is obstacle (a) or (b).
@@ -308,9 +266,10 @@ impl<'a, 'm> Survey<'a, 'm> {
     fn kernel_mean(&self, cell: Cell) -> Option<f32> {
         let heights = self.elevation.read();
         let half = KERNEL_CELLS as i32 / 2;
+        let stride = self.tuning.kernel_stride_cells;
         let (mut sum_m, mut count, mut all) = (0.0, 0_u16, 0_u16);
-        for dy in (-half..half).step_by(KERNEL_STRIDE) {
-            for dx in (-half..half).step_by(KERNEL_STRIDE) {
+        for dy in (-half..half).step_by(stride) {
+            for dx in (-half..half).step_by(stride) {
                 all += 1;
                 if let Some(height_m) = heights.height_m(cell.offset(dx, dy)) {
                     sum_m += height_m;
@@ -318,31 +277,36 @@ impl<'a, 'm> Survey<'a, 'm> {
                 }
             }
         }
-        (count * KERNEL_SHARE >= all).then(|| sum_m / f32::from(count))
+        (count * self.tuning.kernel_divisor >= all).then(|| sum_m / f32::from(count))
     }
 
     /// Returns true if there is a rim at K: the beam just passes over K, and P lies lower than the
     /// slope at K predicts.
     fn is_rim(&self, ray: &Ray, last: &LastGround, gap_m: f32, rise_m: f32) -> bool {
-        if rise_m > -MIN_DROP_M || gap_m < MIN_DROP_GAP_M || !self.is_steep(ray) {
+        if rise_m > -self.tuning.min_drop_m
+            || gap_m < self.tuning.min_drop_gap_m
+            || !self.is_steep(ray)
+        {
             return false;
         }
-        if rise_m < self.ground.hole_m && -rise_m > STEEP_SHARE * self.ground.climb * gap_m {
+        if rise_m < self.ground.hole_m
+            && -rise_m > self.tuning.steep_share * self.ground.climb * gap_m
+        {
             return self.elevation.read().count(ray.at(last.s_m).cell()) > 1;
         }
         let slope = self.slope_at(ray, last);
         // An obstacle rises steeply up to K and casts a shadow behind it.
         slope < self.ground.climb
-            && rise_m < slope * gap_m - MIN_DROP_M - MAX_BEND * gap_m
-            && self.is_grazing(ray, last, GRAZING_M)
+            && rise_m < slope * gap_m - self.tuning.min_drop_m - self.tuning.max_bend * gap_m
+            && self.is_grazing(ray, last, self.tuning.grazing_m)
     }
 
     /// Returns true if there may be a rim at K, and the beam is too gentle to tell it from a slope.
     fn may_be_rim(&self, ray: &Ray, last: &LastGround, gap_m: f32, rise_m: f32) -> bool {
         rise_m < self.ground.hole_m
             && !self.is_steep(ray)
-            && -rise_m > POSSIBLE_STEEP_SHARE * self.ground.climb * gap_m
-            && self.is_grazing(ray, last, POSSIBLE_GRAZING_M)
+            && -rise_m > self.tuning.possible_steep_share * self.ground.climb * gap_m
+            && self.is_grazing(ray, last, self.tuning.possible_grazing_m)
     }
 
     /// Returns true if K was measured more than once and the beam passes less than `limit_m` above
@@ -355,18 +319,18 @@ impl<'a, 'm> Survey<'a, 'm> {
     /// Returns true if the beam comes down so steeply that ground hidden behind K must be too steep
     /// to drive on. A gentler beam also passes over slopes.
     fn is_steep(&self, ray: &Ray) -> bool {
-        -ray.slope > STEEP_SHARE * self.ground.climb
+        -ray.slope > self.tuning.steep_share * self.ground.climb
     }
 
     /// Returns the slope of the ground along the beam up to K, at least the steepest descent.
     fn slope_at(&self, ray: &Ray, last: &LastGround) -> f32 {
-        let back = ray.at(last.s_m - SLOPE_BASE_M).cell();
+        let back = ray.at(last.s_m - self.tuning.slope_base_m).cell();
         let climb = self.ground.climb;
         let slope = match self.elevation.read().height_m(back) {
-            Some(height_m) => (last.height_m - height_m) / SLOPE_BASE_M,
+            Some(height_m) => (last.height_m - height_m) / self.tuning.slope_base_m,
             None => {
                 let plane = self.attitude.rise(ray.along.0, ray.along.1);
-                plane.min(ASSUMED_SLOPE_SHARE * climb)
+                plane.min(self.tuning.assumed_slope_share * climb)
             }
         };
         slope.max(-climb)
@@ -374,25 +338,28 @@ impl<'a, 'm> Survey<'a, 'm> {
 
     /// Marks possible drops on the unmeasured cells behind K.
     fn mark_possible_drops(&mut self, ray: &Ray, last: &LastGround) {
-        for cell in cells_behind(ray, last, ray.length_m) {
+        for cell in cells_behind(ray, last, ray.length_m, self.tuning.drop_depth_m) {
             self.elevation.mark_possible_drop(cell);
         }
     }
 
     /// Marks drops on the unmeasured cells behind K and before the length `end_m`.
     fn mark_drops(&mut self, ray: &Ray, last: &LastGround, end_m: f32) {
-        for cell in cells_behind(ray, last, end_m) {
+        for cell in cells_behind(ray, last, end_m, self.tuning.drop_depth_m) {
             self.elevation.mark_drop(cell);
         }
     }
 }
 
-/// Returns the cells of a beam behind K, over at most [`DROP_DEPTH_M`], in the window and before
-/// the length `end_m`.
-fn cells_behind(ray: &Ray, last: &LastGround, end_m: f32) -> impl Iterator<Item = Cell> {
-    let to_m = (last.s_m + DROP_DEPTH_M)
-        .min(end_m - CELL_M)
-        .min(window_m(ray));
+/// Returns the cells of a beam behind K, over at most `depth_m`, in the window and before the
+/// length `end_m`.
+fn cells_behind(
+    ray: &Ray,
+    last: &LastGround,
+    end_m: f32,
+    depth_m: f32,
+) -> impl Iterator<Item = Cell> {
+    let to_m = (last.s_m + depth_m).min(end_m - CELL_M).min(window_m(ray));
     iter::successors(Some(last.s_m + CELL_M), |s_m| Some(s_m + CELL_M))
         .take_while(move |&s_m| s_m <= to_m)
         .map(|s_m| ray.at(s_m).cell())

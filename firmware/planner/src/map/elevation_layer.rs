@@ -58,23 +58,25 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         ground: &UnevenGround,
         input: &Input<'_>,
     ) {
+        let tuning = &config.tuning.ground;
         let input = &Input {
-            pose: self.attitude.update(&input.pose),
+            pose: self.attitude.update(&input.pose, tuning),
             ..*input
         };
         let mut elevation = Elevation::new(
             self.evidence.bytes_mut(),
             self.tiles.lent_bytes_mut(),
             &mut self.window,
+            tuning,
         );
         Survey::new(&mut elevation, ground, input)
             .with_attitude(&self.attitude)
             .run(config, input, !self.has_surveyed);
         self.has_surveyed = true;
-        if self.attitude.is_exact() {
+        if self.attitude.is_exact(tuning) {
             self.view_doorways(config, ground, input);
         }
-        let limits = RiseLimits::new(ground);
+        let limits = RiseLimits::new(ground, tuning);
         self.odd_rows = !self.odd_rows;
         let middle = self.window.y + WINDOW_SIDE / 2;
         for y in self.window.y..self.window.y + WINDOW_SIDE {
@@ -90,7 +92,8 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         let phase = (input.time_ms / STEP_MS) as usize % BEAM_PHASES;
         let mut written = 0;
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
-            let view = DoorwayView::new(&input.pose, ground, laser, ranges_mm);
+            let tuning = &config.tuning.ground;
+            let view = DoorwayView::new(&input.pose, ground, tuning, laser, ranges_mm);
             let Some(view) = view.filter(|_| is_level(laser)) else {
                 continue;
             };
@@ -135,35 +138,40 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     ///
     /// Ground behind a brow stays out of view. Such a cell becomes free if the measured ground on
     /// both sides spans the gap, otherwise negative.
-    pub fn resolve_gaps(&mut self, ground: &UnevenGround, goal: Cell) {
-        self.fill_gaps(ground, (goal, RESOLVE_CELLS), Some(Class::Negative));
+    pub fn resolve_gaps(&mut self, config: &Config, goal: Cell) {
+        self.fill_gaps(config, (goal, RESOLVE_CELLS), Some(Class::Negative));
     }
 
     /// Frees the unknown cells around the place before a blocked robot, if measured ground spans
     /// them. Returns true if there were any.
-    pub(crate) fn free_gaps(&mut self, ground: &UnevenGround, ahead: Cell) -> bool {
-        self.fill_gaps(ground, (ahead, FREE_GAP_CELLS), None)
+    pub(crate) fn free_gaps(&mut self, config: &Config, ahead: Cell) -> bool {
+        self.fill_gaps(config, (ahead, FREE_GAP_CELLS), None)
     }
 
     /// Makes the unknown cells in a square free if measured ground spans them, otherwise `gone`.
     /// Returns true if any became free.
     fn fill_gaps(
         &mut self,
-        ground: &UnevenGround,
+        config: &Config,
         (middle, reach): (Cell, i32),
         gone: Option<Class>,
     ) -> bool {
+        let Some(ground) = &config.ground else {
+            return false;
+        };
+        let tuning = &config.tuning.ground;
+        let limits = RiseLimits::new(ground, tuning);
         let mut any = false;
         // If the attitude is not exact, a rim beside the cell may be unnoticed. With trust in such
         // ground the robot fell at two holes.
-        let is_sure = self.attitude.is_exact();
+        let is_sure = self.attitude.is_exact(tuning);
         for y in middle.y - reach..=middle.y + reach + 1 {
             for x in middle.x - reach..=middle.x + reach + 1 {
                 let cell = Cell { x, y };
                 if self.tiles.class(cell) != Class::Unknown {
                     continue;
                 }
-                let spans_gap = is_sure && classify::spans_gap(&self.heights(), ground, cell, 0.0);
+                let spans_gap = is_sure && classify::spans_gap(&self.heights(), &limits, cell, 0.0);
                 // Ground with a height of low confidence exists.
                 let gone = gone.filter(|_| self.heights().low_confidence_m(cell).is_none());
                 let class = if spans_gap { Some(Class::Free) } else { gone };
@@ -177,7 +185,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     }
 
     /// Classifies a row of the elevation window.
-    fn classify(&mut self, limits: &RiseLimits, y: i32) {
+    fn classify(&mut self, limits: &RiseLimits<'_>, y: i32) {
         let x = self.window.x;
         let known = self.tiles.row(x, y);
         let classes = classify::row(&self.heights(), limits, y, known);
@@ -210,6 +218,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             self.evidence.bytes_mut(),
             self.tiles.lent_bytes_mut(),
             &mut self.window,
+            &crate::config::GroundTuning::DEFAULT,
         );
         elevation.follow(middle);
         let half = WINDOW_SIDE / 2;
@@ -230,24 +239,29 @@ mod tests {
     use std::vec::Vec;
 
     use super::{Class, Config, FREE_GAP_CELLS, RiseLimits, UnevenGround};
+    use crate::config::GroundTuning;
     use crate::geometry::Cell;
     use crate::map::Map;
 
     /// Columns of a ditch that no beam met.
     const DITCH: core::ops::RangeInclusive<i32> = 30..=33;
 
-    /// A map of level ground with the ditch in it.
-    fn with_a_ditch(far_side_m: f32) -> Box<Map<152, 400>> {
-        let config = Config {
+    fn config() -> Config {
+        Config {
             ground: Some(UnevenGround::TABLE_I),
             ..Config::pioneer_3at(heapless::Vec::new())
-        };
+        }
+    }
+
+    /// A map of level ground with the ditch in it.
+    fn with_a_ditch(far_side_m: f32) -> Box<Map<152, 400>> {
         let mut map = Box::new(Map::new());
-        map.begin(&config);
+        map.begin(&config());
         map.set_ground_heights(Cell { x: 32, y: 32 }, |cell| {
             (!DITCH.contains(&cell.x)).then_some(if cell.x > 33 { far_side_m } else { 0.0 })
         });
-        (0..64).for_each(|y| map.classify(&RiseLimits::new(&UnevenGround::TABLE_I), y));
+        let limits = RiseLimits::new(&UnevenGround::TABLE_I, &GroundTuning::DEFAULT);
+        (0..64).for_each(|y| map.classify(&limits, y));
         map
     }
 
@@ -265,22 +279,19 @@ mod tests {
     fn ground_is_trusted_half_a_metre_around_the_place_that_stops_the_robot_and_no_farther() {
         let mut map = with_a_ditch(0.0);
         let ahead = Cell { x: 31, y: 30 };
-        assert!(map.free_gaps(&UnevenGround::TABLE_I, ahead));
+        assert!(map.free_gaps(&config(), ahead));
         let rows: Vec<i32> = (30 - FREE_GAP_CELLS..=31 + FREE_GAP_CELLS).collect();
         assert_eq!(free_rows(&map), rows);
-        assert!(
-            !map.free_gaps(&UnevenGround::TABLE_I, ahead),
-            "there was any"
-        );
+        assert!(!map.free_gaps(&config(), ahead), "there was any");
     }
 
     #[test]
     fn ground_that_lies_higher_behind_a_gap_is_not_trusted_but_given_up() {
         let mut map = with_a_ditch(0.2);
         let ahead = Cell { x: 31, y: 30 };
-        assert!(!map.free_gaps(&UnevenGround::TABLE_I, ahead));
+        assert!(!map.free_gaps(&config(), ahead));
         assert_eq!(map.tiles().class(ahead), Class::Unknown);
-        map.resolve_gaps(&UnevenGround::TABLE_I, ahead);
+        map.resolve_gaps(&config(), ahead);
         assert_eq!(map.tiles().class(ahead), Class::Negative);
     }
 }

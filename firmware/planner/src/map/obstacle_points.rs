@@ -23,9 +23,9 @@
 
 use heapless::Vec;
 
+use crate::config::Tuning;
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::grid::bits::ones;
-use crate::ground::ray::HIT_DEPTH_M;
 use crate::input::{has_company, informative_range_mm};
 use crate::map::integrate::{level_beams, sensor_point};
 use crate::map::{Class, Tiles};
@@ -193,13 +193,15 @@ pub(crate) fn border_cells<const TILES: usize, const SLOTS: usize>(
 }
 
 /// Returns the `border_cells`, each with its own margin, metres. An obstacle may begin before its
-/// cell, because a hit is marked `HIT_DEPTH_M` behind the beam's end.
+/// cell, because a hit is marked `hit_depth_m` behind the beam's end.
 pub fn inflated_border_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
-) -> impl Iterator<Item = (Point, f32)> + '_ {
-    border_cells(tiles, robot).map(|at| match tiles.class(at.cell()) {
-        Class::Obstacle => (at, HIT_DEPTH_M),
+    tuning: &Tuning,
+) -> impl Iterator<Item = (Point, f32)> {
+    let hit_depth_m = tuning.ground.hit_depth_m;
+    border_cells(tiles, robot).map(move |at| match tiles.class(at.cell()) {
+        Class::Obstacle => (at, hit_depth_m),
         _ => (at, 0.0),
     })
 }
@@ -374,7 +376,10 @@ mod tests {
             ..Pose::default()
         };
         let mut checker = CollisionChecker::empty(&ROBOT);
-        checker.keep_off(&pose, inflated_border_cells(&tiles, pose.point()));
+        checker.keep_off(
+            &pose,
+            inflated_border_cells(&tiles, pose.point(), &Tuning::DEFAULT),
+        );
         checker.clearance_m()
     }
 

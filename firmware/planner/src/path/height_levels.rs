@@ -252,7 +252,7 @@ mod tests {
     use std::boxed::Box;
 
     use super::{BLOCK, HeightLevels, LevelCost, MOST_LEVEL};
-    use crate::config::UnevenGround;
+    use crate::config::{GroundTuning, UnevenGround};
     use crate::geometry::Cell;
     use crate::ground::elevation::{Elevation, WINDOW_CELLS};
     use crate::map::{Class, Tiles};
@@ -277,7 +277,12 @@ mod tests {
         let mut origin = Cell::default();
         let mut map = HeightLevels::new();
         for robot in (0..=100).step_by(5) {
-            let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+            let mut window = Elevation::new(
+                &mut heights,
+                &mut marks,
+                &mut origin,
+                &GroundTuning::DEFAULT,
+            );
             window.follow(at(robot, 0));
             for x in robot - 32..robot + 32 {
                 for y in -20..20 {
@@ -368,7 +373,12 @@ mod tests {
         tiles.set(at(1, 1), Class::Free).expect("room");
         let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
         let mut origin = Cell::default();
-        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+        let mut window = Elevation::new(
+            &mut heights,
+            &mut marks,
+            &mut origin,
+            &GroundTuning::DEFAULT,
+        );
         window.follow(at(0, 0));
         for k in 0..64 {
             window.measure(at(k % 8, k / 8), -40.0);

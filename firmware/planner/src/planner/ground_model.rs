@@ -24,7 +24,6 @@ use crate::map::obstacle_points::ObstaclePoints;
 use crate::map::{Map, Tiles, obstacle_points};
 use crate::path::height_levels::{HeightLevels, LevelCost};
 use crate::roadmap::configuration_space::Footprint;
-use crate::robot::RobotShape;
 
 use crate::planner::level_scans;
 
@@ -124,12 +123,12 @@ impl<const TILES: usize> GroundModel<TILES> {
     /// Returns the obstacles that the hull must not touch around the robot.
     pub(super) fn collision_checker<const SLOTS: usize>(
         &self,
-        robot: &RobotShape,
+        config: &Config,
         tiles: &Tiles<TILES, SLOTS>,
         pose: &Pose,
         incline: Option<Incline>,
     ) -> CollisionChecker {
-        let mut checker = CollisionChecker::empty(robot).on(incline);
+        let mut checker = CollisionChecker::empty(&config.robot).on(incline);
         match self {
             Self::Flat(points) => {
                 checker.see(pose, points.points());
@@ -137,7 +136,8 @@ impl<const TILES: usize> GroundModel<TILES> {
                 checker.remember(pose, cells);
             }
             Self::Uneven(_) => {
-                let rims = obstacle_points::inflated_border_cells(tiles, pose.point());
+                let rims =
+                    obstacle_points::inflated_border_cells(tiles, pose.point(), config.tuning);
                 checker.keep_off(pose, rims);
             }
         }

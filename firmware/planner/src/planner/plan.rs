@@ -3,7 +3,7 @@
 //!
 //! Units: metres, map cells.
 
-use crate::config::{Config, UnevenGround};
+use crate::config::Config;
 use crate::geometry::{Point, Pose};
 use crate::input::Input;
 use crate::path::viewpoint::{Found, Inputs};
@@ -47,8 +47,8 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     let Some(outcome) = state.strategy.advance(context, scratch) else {
         return false;
     };
-    if let Some(ground) = &config.ground {
-        resolve_unmeasured(ground, state, &input.pose);
+    if config.ground.is_some() {
+        resolve_unmeasured(config, state, &input.pose);
     }
     match outcome {
         RoundOutcome::Nothing if may_search_viewpoints(state) => {
@@ -74,19 +74,19 @@ fn may_search_viewpoints<const TILES: usize, const SLOTS: usize>(
 
 /// Decides about ground that stayed unmeasured although the robot stood beside it.
 fn resolve_unmeasured<const TILES: usize, const SLOTS: usize>(
-    ground: &UnevenGround,
+    config: &Config,
     state: &mut State<TILES, SLOTS>,
     pose: &Pose,
 ) {
     while let Some(cell) = state.strategy.frontier.take_unobservable() {
-        state.map.resolve_gaps(ground, cell);
+        state.map.resolve_gaps(config, cell);
     }
     if state.strategy.frontier.take_stalled() {
         let front = Point {
             x_m: FRONT_M,
             y_m: 0.0,
         };
-        if state.map.free_gaps(ground, pose.to_map(front).cell()) {
+        if state.map.free_gaps(config, pose.to_map(front).cell()) {
             state.strategy.frontier.open_last_passage();
         }
     }

@@ -62,10 +62,9 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     let here = headed(Place::default());
     state.slope_direction = here.and_then(|(_, direction)| direction);
     let here = here.map(|(heading, _)| heading);
-    let checker =
-        state
-            .ground
-            .collision_checker(&config.robot, tiles, &input.pose, incline.clone());
+    let checker = state
+        .ground
+        .collision_checker(config, tiles, &input.pose, incline.clone());
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
             let (x, y) = local_grid::position((origin, scale), input.pose.to_map(place.point()));
@@ -118,10 +117,9 @@ pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
     if !is_stalled(state, Twist::default(), input.time_ms) {
         return Twist::default();
     }
-    let checker =
-        state
-            .ground
-            .collision_checker(&config.robot, state.map.tiles(), &input.pose, None);
+    let checker = state
+        .ground
+        .collision_checker(config, state.map.tiles(), &input.pose, None);
     let wish = state.drive.look_around(config, &checker, input.velocity);
     within_limits(config, wish)
 }

@@ -215,7 +215,7 @@ mod tests {
     use crate::baseline::chart::{Chart, sketch::chart};
     use crate::baseline::heights::HeightGrid;
     use crate::baseline::strategy::{Outcome, Scene, Strategy, UnevenScene};
-    use fieldline_planner::config::UnevenGround;
+    use fieldline_planner::config::{GroundTuning, UnevenGround};
     use fieldline_planner::geometry::{Cell, Point, Pose};
     use fieldline_planner::ground::elevation::{Elevation, WINDOW_CELLS};
     use fieldline_protocol::message::FIELD_SIDE;
@@ -320,7 +320,8 @@ mod tests {
         let (chart, robot) = chart(&rows);
         let (mut bytes, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
         let mut origin = Cell { x: -20, y: -20 };
-        let mut elevation = Elevation::new(&mut bytes, &mut marks, &mut origin);
+        let mut elevation =
+            Elevation::new(&mut bytes, &mut marks, &mut origin, &GroundTuning::DEFAULT);
         for (x, y) in (0..17).flat_map(|x| (0..13).map(move |y| (x, y))) {
             let height_m = if y < 4 { -0.6 } else { 0.0 };
             elevation.mark_wheel_contact(Cell { x, y }, height_m);

@@ -1,8 +1,14 @@
 //! Tests of gaps of unmeasured ground: which of them the ground on both sides spans.
 
-use crate::config::UnevenGround;
+use crate::config::{GroundTuning, UnevenGround};
 use crate::geometry::Cell;
+use crate::ground::classify::RiseLimits;
 use crate::ground::elevation::tests::OwnedWindow;
+
+/// The limits of a robot with the default parameters.
+fn limits() -> RiseLimits<'static> {
+    RiseLimits::new(&UnevenGround::TABLE_I, &GroundTuning::DEFAULT)
+}
 
 /// At the corner of a hole ground lies on two sides of a cell, but it spans only one direction.
 #[test]
@@ -17,7 +23,7 @@ fn ground_spans_a_gap_and_not_the_corner_of_a_hole() {
             window.measure(cell, 0.0);
         }
         let cell = Cell { x: 2, y: 2 };
-        let spans = super::spans_gap(&window.read(), &UnevenGround::TABLE_I, cell, 0.0);
+        let spans = super::spans_gap(&window.read(), &limits(), cell, 0.0);
         assert_eq!(spans, expected, "corner: {corner}");
     }
 }
@@ -32,7 +38,7 @@ fn spans_gap(slack_m: f32, height_m: impl Fn(f32) -> f32) -> bool {
         window.measure(cell, height_m(cell.centre().x_m));
     }
     let middle = Cell { x: 4, y: 2 };
-    super::spans_gap(&window.read(), &UnevenGround::TABLE_I, middle, slack_m)
+    super::spans_gap(&window.read(), &limits(), middle, slack_m)
 }
 
 /// Across the gap a brow and a kerb look alike: 0.2 m down. The ground beside the gap differs.
@@ -69,7 +75,7 @@ fn spans_beside_a_false_height(slack_m: f32, again: u32) -> bool {
         window.measure(wrong, 0.5);
     }
     let middle = Cell { x: 4, y: 4 };
-    super::spans_gap(&window.read(), &UnevenGround::TABLE_I, middle, slack_m)
+    super::spans_gap(&window.read(), &limits(), middle, slack_m)
 }
 
 #[test]

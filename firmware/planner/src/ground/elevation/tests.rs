@@ -2,8 +2,11 @@
 
 use std::boxed::Box;
 
+use crate::config::GroundTuning;
 use crate::geometry::Cell;
 use crate::ground::elevation::{Elevation, Heights, WINDOW_CELLS};
+
+const TUNING: GroundTuning = GroundTuning::DEFAULT;
 
 /// An elevation window with its memory.
 pub(crate) struct OwnedWindow {
@@ -26,7 +29,12 @@ impl OwnedWindow {
 
     /// The window, for writing.
     pub(crate) fn write(&mut self) -> Elevation<'_> {
-        Elevation::new(&mut self.heights, &mut self.marks, &mut self.origin)
+        Elevation::new(
+            &mut self.heights,
+            &mut self.marks,
+            &mut self.origin,
+            &TUNING,
+        )
     }
 
     /// The window, for reading.
@@ -149,12 +157,12 @@ fn an_obstacle_or_a_wheel_discards_a_height_of_low_confidence() {
     owned.write().measure_low_confidence(CELL, 0.0);
     owned.write().mark_obstacle(CELL);
     owned.write().mark_obstacle(CELL);
-    assert!(owned.read().is_obstacle(CELL));
+    assert!(owned.read().is_obstacle(CELL, &TUNING));
     assert_eq!(owned.read().height_m(CELL), None);
     owned.write().measure_low_confidence(CELL, 0.0);
     owned.write().mark_wheel_contact(CELL, 0.125);
     assert_eq!(owned.read().height_m(CELL), Some(0.125));
-    assert!(!owned.read().is_obstacle(CELL));
+    assert!(!owned.read().is_obstacle(CELL, &TUNING));
 }
 
 #[test]
@@ -168,13 +176,13 @@ fn measured_ground_removes_marks() {
     assert!(!owned.read().is_drop(CELL));
     owned.write().mark_obstacle(CELL);
     assert!(
-        !owned.read().is_obstacle(CELL),
+        !owned.read().is_obstacle(CELL, &TUNING),
         "one hit may be a false return"
     );
     owned.write().mark_obstacle(CELL);
-    assert!(owned.read().is_obstacle(CELL));
+    assert!(owned.read().is_obstacle(CELL, &TUNING));
     for _ in 0..2 {
         owned.write().measure(CELL, 0.0);
     }
-    assert!(!owned.read().is_obstacle(CELL));
+    assert!(!owned.read().is_obstacle(CELL, &TUNING));
 }

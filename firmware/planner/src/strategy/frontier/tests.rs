@@ -4,7 +4,7 @@
 use std::boxed::Box;
 use std::vec;
 
-use crate::config::{LoopLimits, UnevenGround};
+use crate::config::{GroundTuning, LoopLimits, UnevenGround};
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
@@ -51,7 +51,12 @@ fn measured(
     let mut origin = Cell::default();
     let mut levels = Box::<HeightLevels<24>>::default();
     for middle in middle {
-        let mut window = Elevation::new(&mut heights, &mut marks, &mut origin);
+        let mut window = Elevation::new(
+            &mut heights,
+            &mut marks,
+            &mut origin,
+            &GroundTuning::DEFAULT,
+        );
         window.follow(middle);
         for x in middle.x - 32..middle.x + 32 {
             for y in ys.clone() {
