@@ -16,6 +16,7 @@
 //! | [`worlds`] | the built-in worlds by kind; worlds drawn by others |
 //! | [`places`] | pits and a building, found in a world's definition |
 //! | [`starts`] | starts drawn at random in a flat world |
+//! | [`ablation`] | every tuned constant at half and at double its default |
 //! | [`bitmap`] | seeded bit maps; thinning and search cell by cell, as oracles |
 //! | [`field`] | seeded windows of the field, and their solution in f64 |
 //! | [`wilcoxon`] | the signed-rank test of paired runs |
@@ -28,6 +29,7 @@
 //! names the folder with worlds drawn by others. Cases that take hours, or that need what a machine
 //! may lack, are `#[ignore]`d with the reason; `tests/README.md` says how to run them.
 
+pub mod ablation;
 pub mod bitmap;
 pub mod costs;
 pub mod digests;

@@ -1,0 +1,216 @@
+//! Ablation of the tuned constants: does the robot drive otherwise, or worse, if a constant is half
+//! or double its default?
+//!
+//! | module | content |
+//! | --- | --- |
+//! | [`rooms`] | the runs that judge each room's constants |
+//! | [`share`] | half and double of a constant, within its range |
+//! | [`effect`] | a changed set of runs against the runs with the defaults, and the verdict |
+//! | [`store`] | outcomes on the disk, so that an interrupted ablation goes on |
+//! | [`page`] | the tables of `docs/ABLATION.md` |
+//!
+//! Every run has two limits of simulated time: one hour with the defaults, and
+//! [`MOST_TIMES`] times the default's time with a changed constant. A run that reaches a limit, or
+//! whose planner panics, did not explore.
+
+pub mod effect;
+pub mod page;
+pub mod rooms;
+pub mod share;
+pub mod store;
+
+use core::panic::AssertUnwindSafe;
+use std::collections::BTreeMap;
+use std::panic::catch_unwind;
+
+use fieldline_planner::{Tuned, Tuning};
+use host_sim::link::direct::Direct;
+use host_sim::report::Report;
+use host_sim::world::World;
+
+use crate::runs::{explored, in_parallel};
+use crate::worlds::builtin;
+use effect::{Effect, Figures, Outcome};
+use rooms::{Room, Run};
+use share::{DOUBLE, HALF, scaled};
+use store::Store;
+
+/// Longest time of a run with a changed constant, as a multiple of the default's.
+const MOST_TIMES: f64 = 2.0;
+/// Time limit of a run with the defaults, milliseconds.
+const MOST_MS: u32 = 3_600_000;
+/// Seeds of the noise that only measure the spread of the figures. The ablation itself has seed 0.
+const OTHER_SEEDS: core::ops::Range<u64> = 1..5;
+
+/// A changed constant.
+#[derive(Clone, Debug)]
+pub struct Change {
+    /// The value.
+    pub value: f32,
+    /// Its effect on the runs of its room.
+    pub effect: Effect,
+}
+
+/// The result of a constant.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// The constant.
+    pub tuned: Tuned,
+    /// The changes to half and to double; `None` if the range does not allow it.
+    pub changes: [Option<Change>; 2],
+}
+
+/// The result of a room.
+#[derive(Clone, Debug)]
+pub struct Findings {
+    /// The outcomes of the runs with the defaults.
+    pub defaults: Vec<Outcome>,
+    /// The spread of the figures over other seeds, root mean square.
+    pub noise: Figures,
+    /// A row for each constant.
+    pub rows: Vec<Row>,
+}
+
+/// A run with its tuning.
+struct Job {
+    run: usize,
+    name: String,
+    tuning: &'static Tuning,
+    seed: u64,
+    limit_ms: u32,
+}
+
+/// Makes all runs of a room: the defaults, other seeds of them, and half and double of every
+/// constant. Outcomes that `store` has are not made again.
+///
+/// # Panics
+/// If a run cannot begin, or the store cannot be written.
+#[must_use]
+pub fn of(room: &Room, store: &Store) -> Findings {
+    let bench = Bench::new(room, store);
+    let defaults = bench.go(&bench.jobs("default", &Tuning::DEFAULT, 0, &|_| MOST_MS));
+    let limit_ms = |run: usize| (1000.0 * MOST_TIMES * defaults[run].end_s) as u32;
+    let seeds: Vec<Job> = OTHER_SEEDS
+        .flat_map(|seed| bench.jobs("default", &Tuning::DEFAULT, seed, &|_| MOST_MS))
+        .collect();
+    let spread: Vec<Figures> = bench
+        .go(&seeds)
+        .chunks(room.runs.len())
+        .map(|outcomes| Effect::of(&defaults, outcomes).figures)
+        .collect();
+    let constants = constants(room.name);
+    let changed: Vec<(usize, f32, Tuning)> = (0..2 * constants.len())
+        .filter_map(|k| {
+            let (value, tuning) = scaled(&constants[k / 2], [HALF, DOUBLE][k % 2])?;
+            Some((k, value, tuning))
+        })
+        .collect();
+    let jobs: Vec<Job> = changed
+        .iter()
+        .flat_map(|(k, value, tuning)| {
+            let name = format!("{}={value}", constants[k / 2].name);
+            bench.jobs(&name, Box::leak(Box::new(*tuning)), 0, &limit_ms)
+        })
+        .collect();
+    let outcomes = bench.go(&jobs);
+    let mut rows: Vec<Row> = constants.iter().map(Row::unchanged).collect();
+    for ((k, value, _), outcomes) in changed.iter().zip(outcomes.chunks(room.runs.len())) {
+        let effect = Effect::of(&defaults, outcomes);
+        let value = *value;
+        rows[k / 2].changes[k % 2] = Some(Change { value, effect });
+    }
+    let noise = Figures::root_mean_square(&spread);
+    Findings {
+        defaults,
+        noise,
+        rows,
+    }
+}
+
+impl Row {
+    fn unchanged(tuned: &Tuned) -> Self {
+        let (tuned, changes) = (*tuned, [None, None]);
+        Self { tuned, changes }
+    }
+}
+
+/// Returns the constants of a room.
+fn constants(room: &str) -> Vec<Tuned> {
+    let mut constants = Vec::new();
+    Tuning::DEFAULT.parameters(|tuned| {
+        if tuned.room == room {
+            constants.push(tuned);
+        }
+    });
+    constants
+}
+
+/// What the runs of a room share.
+struct Bench<'a> {
+    room: &'a Room,
+    store: &'a Store,
+    worlds: BTreeMap<&'static str, World>,
+}
+
+impl<'a> Bench<'a> {
+    fn new(room: &'a Room, store: &'a Store) -> Self {
+        let world = |run: &Run| (run.world, builtin(run.world));
+        let worlds = room.runs.iter().map(world).collect();
+        Self {
+            room,
+            store,
+            worlds,
+        }
+    }
+
+    /// Lists every run of the room with one tuning.
+    fn jobs(
+        &self,
+        name: &str,
+        tuning: &'static Tuning,
+        seed: u64,
+        limit_ms: &dyn Fn(usize) -> u32,
+    ) -> Vec<Job> {
+        let job = |run| Job {
+            run,
+            name: name.into(),
+            tuning,
+            seed,
+            limit_ms: limit_ms(run),
+        };
+        (0..self.room.runs.len()).map(job).collect()
+    }
+
+    fn go(&self, jobs: &[Job]) -> Vec<Outcome> {
+        in_parallel(jobs, |job| {
+            let run = &self.room.runs[job.run];
+            let key = format!("{}:{}:{}:{}", self.room.name, run.key(), job.seed, job.name);
+            self.store.get_or(&key, || self.outcome(run, job))
+        })
+    }
+
+    fn outcome(&self, run: &Run, job: &Job) -> Outcome {
+        let mission = run.mission(job.seed, job.limit_ms);
+        let world = &self.worlds[run.world];
+        let mut link = Direct::tuned(job.tuning);
+        let go = || explored(&mission, world, &mut link).0;
+        let report = catch_unwind(AssertUnwindSafe(go)).ok();
+        report.map_or_else(Outcome::panicked, |report: Report| {
+            Outcome::of(&report, run)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rooms::ROOMS;
+    use fieldline_planner::Tuning;
+
+    #[test]
+    fn every_constant_has_a_room_with_runs() {
+        Tuning::DEFAULT.parameters(|tuned| {
+            let room = ROOMS.iter().find(|room| room.name == tuned.room);
+            assert!(room.is_some_and(|room| !room.runs.is_empty()), "{tuned}");
+        });
+    }
+}
