@@ -7,7 +7,7 @@
 
 mod world;
 
-use std::error::Error;
+use core::error::Error;
 
 use fieldline_planner::{Config, Goal, GoalLevel, LaserMount, RobotShape};
 

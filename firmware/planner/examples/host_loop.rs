@@ -7,12 +7,12 @@
 
 mod world;
 
-use std::error::Error;
+use core::error::Error;
 
 use fieldline_planner::{Config, F405, LaserMount, Planner, RobotShape};
 
 /// Tiles around the start that the map is printed of: least and greatest column and row.
-const TILES: std::ops::RangeInclusive<i16> = -2..=1;
+const TILES: core::ops::RangeInclusive<i16> = -2..=1;
 
 /// Returns the map as text, a character a cell: `.` free, `#` obstacle, blank unknown.
 fn drawn(planner: &Planner<F405>) -> String {
