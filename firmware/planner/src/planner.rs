@@ -129,7 +129,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     if state.status != Status::Exploring {
         return Output::standing(state.status);
     }
-    if charge_rails(state, workspace, &footprint, &input).is_none() {
+    if charge_rails(state, workspace, &footprint, &input, config.tuning).is_none() {
         let Some(goal) = local_goal(state, &footprint, &input, &mut workspace.view) else {
             timer.mark(Stage::Window);
             return Output {
@@ -211,7 +211,9 @@ fn sense<const TILES: usize, const SLOTS: usize>(
     }
     state.map.observe(config, input);
     let level = level_scans(config, input).find(|(_, ranges_mm)| !ranges_mm.is_empty());
-    state.strategy.note(&input.pose, input.time_ms, level);
+    state
+        .strategy
+        .note(&input.pose, input.time_ms, level, config.tuning);
     state
         .ground
         .observe(config, input, &mut state.map, &mut state.preferences);

@@ -18,7 +18,9 @@ pub use goal::{Goal, GoalLevel};
 pub use ground::{KERNEL_CELLS, PreferenceMode, UnevenGround};
 pub use loops::LoopLimits;
 pub use solver::{Method, SolverConfig};
-pub use tuning::{FieldTuning, GroundTuning, OuroborosTuning, Tuned, Tuning, TuningError};
+pub use tuning::{
+    FieldTuning, GroundTuning, OuroborosTuning, TdbvpTuning, Tuned, Tuning, TuningError,
+};
 
 use heapless::Vec;
 

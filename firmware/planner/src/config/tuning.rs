@@ -169,6 +169,7 @@ macro_rules! rooms {
 rooms! {
     ground: GroundTuning, "Uneven ground.";
     field: FieldTuning, "The window's field and its solver.";
+    tdbvp: TdbvpTuning, "Rails of time.";
     ouroboros: OuroborosTuning, "Loop closing.";
 }
 

@@ -3,6 +3,7 @@
 //!
 //! Units: map cells.
 
+use crate::config::Tuning;
 use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows, SCALES};
 use crate::geometry::Cell;
@@ -50,6 +51,7 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     workspace: &mut Workspace,
     footprint: &Footprint,
     input: &Input<'_>,
+    tuning: &Tuning,
 ) -> Option<()> {
     state.strategy.tdbvp()?;
     let robot = input.pose.point().cell();
@@ -63,7 +65,9 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     slide(workspace);
     let centres = Centres::of(&state.skeleton, tiles, footprint)?;
     let window = (&mut workspace.window, &workspace.view);
-    state.strategy.charge(&centres, input.pose.point(), window)
+    state
+        .strategy
+        .charge(&centres, input.pose.point(), window, tuning)
 }
 
 /// Sets the window's boundary values. The last field stays where the two windows overlap.

@@ -42,6 +42,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         time_ms: input.time_ms,
         limits: &config.loops,
         goal_level: config.goal_level,
+        tuning: config.tuning,
         levels: state.ground.level_cost(config, &state.preferences),
     };
     let Some(outcome) = state.strategy.advance(context, scratch) else {

@@ -17,7 +17,7 @@ pub(crate) use frontier::Frontier;
 pub(crate) use ouroboros::Ouroboros;
 pub(crate) use tdbvp::Tdbvp;
 
-use crate::config::{Config, Strategy};
+use crate::config::{Config, Strategy, Tuning};
 use crate::field::Window;
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Point, Pose};
@@ -67,7 +67,9 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         self.loops = match config.strategy {
             Strategy::Frontier => Loops::None,
             Strategy::Ouroboros => Loops::Ouroboros(Ouroboros::new(box_tiles)),
-            Strategy::Tdbvp { patrol_s } => Loops::Tdbvp(Tdbvp::new(box_tiles, patrol_s)),
+            Strategy::Tdbvp { patrol_s } => {
+                Loops::Tdbvp(Tdbvp::new(box_tiles, patrol_s, &config.tuning.tdbvp))
+            }
         };
     }
 
@@ -101,11 +103,17 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     }
 
     /// Records the robot's pose, and the scan of the level laser; called in every step.
-    pub(crate) fn note(&mut self, pose: &Pose, time_ms: u32, scan: Option<(&LaserMount, &[u16])>) {
+    pub(crate) fn note(
+        &mut self,
+        pose: &Pose,
+        time_ms: u32,
+        scan: Option<(&LaserMount, &[u16])>,
+        tuning: &Tuning,
+    ) {
         match &mut self.loops {
             Loops::None => {}
             Loops::Ouroboros(ouroboros) => ouroboros.note_pose(pose),
-            Loops::Tdbvp(tdbvp) => tdbvp.note(pose, time_ms, scan),
+            Loops::Tdbvp(tdbvp) => tdbvp.note(pose, time_ms, scan, &tuning.tdbvp),
         }
     }
 
@@ -116,11 +124,12 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         centres: &Centres<'_, TILES, SLOTS>,
         robot: Point,
         window: (&mut Window, &LocalGrid),
+        tuning: &Tuning,
     ) -> Option<()> {
         match &mut self.loops {
             Loops::None | Loops::Ouroboros(_) => None,
             Loops::Tdbvp(tdbvp) => tdbvp
-                .charge(&self.frontier, centres, robot, window)
+                .charge(&self.frontier, centres, robot, window, &tuning.tdbvp)
                 .then_some(()),
         }
     }

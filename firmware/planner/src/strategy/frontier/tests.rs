@@ -4,7 +4,7 @@
 use std::boxed::Box;
 use std::vec;
 
-use crate::config::{GroundTuning, LoopLimits, UnevenGround};
+use crate::config::{GroundTuning, LoopLimits, Tuning, UnevenGround};
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
@@ -124,6 +124,7 @@ impl Scene {
             time_ms: 0,
             limits: &self.limits,
             goal_level: None,
+            tuning: &Tuning::DEFAULT,
             levels: reference_m.map(|reference_m| LevelCost {
                 heights: &self.heights,
                 ground: &UnevenGround::TABLE_I,

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::string::String;
 use std::vec::Vec;
 
-use crate::config::LoopLimits;
+use crate::config::{LoopLimits, Tuning};
 use crate::geometry::{Cell, Pose};
 use crate::map::{Class, Tiles};
 use crate::path::{PlanningContext, RoundOutcome};
@@ -142,6 +142,7 @@ impl Exploration {
                 time_ms,
                 limits: &self.limits,
                 goal_level: None,
+                tuning: &Tuning::DEFAULT,
                 levels: None,
             };
             let outcome = self

@@ -13,7 +13,7 @@ use core::f32::consts::{FRAC_PI_2, PI};
 use std::string::String;
 use std::vec::Vec;
 
-use crate::config::LoopLimits;
+use crate::config::{LoopLimits, Tuning};
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
@@ -163,6 +163,7 @@ impl Scene {
             time_ms: 0,
             limits: &self.limits,
             goal_level: None,
+            tuning: &Tuning::DEFAULT,
             levels: None,
         }
     }

@@ -13,6 +13,7 @@
 //!
 //! Units: window cells; shares of a goal's charge.
 
+use crate::config::TdbvpTuning;
 use crate::field::local_grid::{LocalGrid, Rows};
 use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point};
@@ -22,11 +23,8 @@ use crate::roadmap::branches::{Kind, kind};
 use crate::strategy::tdbvp::Rails;
 use crate::strategy::tdbvp::pending_visits::PendingVisits;
 use crate::strategy::tdbvp::rails::UNVISITED;
-use crate::strategy::tdbvp::sides::{DISC_M, EPSILON, Side};
+use crate::strategy::tdbvp::sides::Side;
 
-/// Distance from a dropped goal, along either axis, within which the unexplored is no goal, cells:
-/// the 0.5 m in which no other goal is taken, and the frontier's own coarse cell.
-const DROPPED_CELLS: i32 = 7;
 /// Potential of the unexplored \[Maffei14, IV\].
 const UNEXPLORED: f32 = 0.0;
 
@@ -35,20 +33,20 @@ fn share(potential: f32) -> f32 {
     (1.0 - potential) / (1.0 - UNVISITED)
 }
 
-/// Charges the window with the rails beyond `room_m` from the robot, and with the unexplored goals.
+/// Charges the window with the rails beyond `free_m` from the robot, and with the unexplored goals.
 /// The local grid has the window's cells.
 pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     window: &mut Window,
     grid: &LocalGrid,
     (rails, pending): (&Rails<SLOTS>, &PendingVisits),
     centres: &Centres<'_, TILES, SLOTS>,
-    (robot, room_m): (Point, f32),
+    (robot, free_m): (Point, f32),
     unexplored: &Rows,
 ) {
     let half = SIDE as i32 / 2 + 1;
     let for_each = |visit: &mut dyn FnMut((usize, usize), f32)| {
         centres.for_each_in_square(robot.cell(), half, |_, cell| {
-            if distance_m(cell, robot) > room_m && !pending.holds(cell) {
+            if distance_m(cell, robot) > free_m && !pending.holds(cell) {
                 let share = share(rails.potential(cell));
                 let places = cell.quarters().filter_map(|part| grid.place(part));
                 places
@@ -79,12 +77,13 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     });
 }
 
-/// Returns the passable window cells of unexplored coarse cells, without those around dropped
-/// goals.
+/// Returns the passable window cells of unexplored coarse cells, without those within
+/// `dropped_cells` of dropped goals.
 pub(super) fn unexplored<const TILES: usize, const SLOTS: usize>(
     grid: &LocalGrid,
     tiles: &Tiles<TILES, SLOTS>,
     dropped: impl Iterator<Item = Cell>,
+    dropped_cells: i32,
 ) -> Rows {
     let mut goal: Rows = [0; SIDE];
     let (x, y) = (grid.origin.x & !1, grid.origin.y & !1);
@@ -105,10 +104,10 @@ pub(super) fn unexplored<const TILES: usize, const SLOTS: usize>(
     for cell in dropped {
         let column = cell.x - grid.origin.x;
         let columns = (0..SIDE as i32)
-            .filter(|x| (x - column).abs() <= DROPPED_CELLS)
+            .filter(|x| (x - column).abs() <= dropped_cells)
             .fold(0, |columns, x| columns | 1u64 << x);
         let middle = cell.y - grid.origin.y;
-        for row in middle - DROPPED_CELLS..=middle + DROPPED_CELLS {
+        for row in middle - dropped_cells..=middle + dropped_cells {
             let row = usize::try_from(row).ok().and_then(|row| goal.get_mut(row));
             if let Some(row) = row {
                 *row &= !columns;
@@ -118,15 +117,16 @@ pub(super) fn unexplored<const TILES: usize, const SLOTS: usize>(
     goal
 }
 
-/// Returns true if the skeleton has a junction in the disc around the robot.
+/// Returns true if the skeleton has a junction within `disc_m` of the robot.
 pub(super) fn has_fork<const TILES: usize, const SLOTS: usize>(
     centres: &Centres<'_, TILES, SLOTS>,
     robot: Point,
+    disc_m: f32,
 ) -> bool {
     let mut has_fork = false;
-    centres.for_each_in_square(robot.cell(), (DISC_M / CELL_M) as i32, |site, cell| {
+    centres.for_each_in_square(robot.cell(), (disc_m / CELL_M) as i32, |site, cell| {
         has_fork |=
-            distance_m(cell, robot) <= DISC_M && kind(centres.cells, site) == Some(Kind::Junction);
+            distance_m(cell, robot) <= disc_m && kind(centres.cells, site) == Some(Kind::Junction);
     });
     has_fork
 }
@@ -141,13 +141,15 @@ pub(super) fn prefer(
     grid: &LocalGrid,
     robot: Point,
     (side, [cos, sin]): (Side, [f32; 2]),
+    tuning: &TdbvpTuning,
 ) {
-    let [attracts, repels] = [EPSILON, -EPSILON].map(Preference::nearest);
+    let (epsilon, disc_m) = (tuning.side_preference, tuning.disc_m);
+    let [attracts, repels] = [epsilon, -epsilon].map(Preference::nearest);
     window.set_preferences(|x, y| {
         let at = grid.cell(x, y).corner();
         let (dx, dy) = (at.x_m - robot.x_m, at.y_m - robot.y_m);
         let (ahead, left) = (dx * cos + dy * sin, dy * cos - dx * sin);
-        if ahead <= 0.0 || at.distance2(robot) > DISC_M * DISC_M {
+        if ahead <= 0.0 || at.distance2(robot) > disc_m * disc_m {
             Preference::NONE
         } else if (left > 0.0) == (side == Side::Left) {
             attracts

@@ -14,7 +14,7 @@
 //! - (IV) The unexplored is a goal only until [`Frontier`] drops it, and a robot that lingers
 //!   follows a path for a while. The paper has no rule for what cannot be seen: the robot would
 //!   stand before it.
-//! - (IV) A robot that has visited no new place for `IMPATIENCE_MS`, while something is left to
+//! - (IV) A robot that has visited no new place for `impatience_ms`, while something is left to
 //!   explore, follows a path. The paper relies on its rails to lead there in the end.
 //! - (IV) On patrol the robot follows a path to a rail that is overdue. The rails lead to the
 //!   oldest one in the window, and one beyond may wait for ever. With paths the age of the oldest
@@ -32,6 +32,7 @@ mod scenes;
 
 pub(crate) use rails::{PLACE_CELLS, Rails};
 
+use crate::config::TdbvpTuning;
 use crate::field::local_grid::LocalGrid;
 use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point, Pose};
@@ -41,32 +42,11 @@ use crate::path::{Path, PlanningContext, PlanningScratch, RoundOutcome};
 use crate::robot::LaserMount;
 use crate::strategy::Frontier;
 use crate::strategy::tdbvp::charges::{charge_rails, distance_m, has_fork, prefer, unexplored};
-use crate::strategy::tdbvp::pending_visits::{PendingVisits, VISIT_M};
+use crate::strategy::tdbvp::pending_visits::PendingVisits;
 use crate::strategy::tdbvp::sides::SideVotes;
-
-/// Time without a new place after which a robot follows a path to what is left to explore,
-/// milliseconds. With 60 s, three adjacent loops took 378 s instead of 343 s (means of four
-/// starts), and rooms without a loop 810 s instead of 584 s.
-const IMPATIENCE_MS: u32 = 15_000;
-/// A robot lingers if it stays within this distance, metres, …
-const LINGER_M: f32 = 1.0;
-/// … for longer than this time, milliseconds: some seven times what it takes to drive it.
-const LINGER_MS: u32 = 15_000;
-/// Distance from where the robot lingered within which centre cells count as visited, metres: the
-/// one that attracts it cannot be reached.
-const LINGER_VISIT_M: f32 = 2.0;
-/// Distance from an exploring robot within which centre cells are free, metres, so that the nearest
-/// rail attracts from there. At 0.5 m the half disc has no room for a preferred side: at a cross 10
-/// of 20 robots drove straight on, at 1 m 10 of 100.
-const ROOM_M: f32 = 1.2;
 
 /// Period of the planner that a patrol assumes, milliseconds.
 const STEP_MS: u32 = 200;
-/// Time for the 20 cm of a centre cell at 0.5 m/s, milliseconds.
-const CELL_MS: u32 = 400;
-/// Steps that a centre cell adds to a tour of all. A rail that was not visited for that long is
-/// overdue on patrol.
-const STEPS_PER_CELL: u32 = CELL_MS / STEP_MS;
 
 /// The state of the strategy. `SLOTS` as the map's.
 #[derive(Debug)]
@@ -92,9 +72,9 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     /// The state at the start, for a map in a box of (width, height) tiles and a patrol of
     /// `patrol_s` seconds.
     #[must_use]
-    pub(crate) const fn new(box_tiles: (i32, i32), patrol_s: u16) -> Self {
+    pub(crate) const fn new(box_tiles: (i32, i32), patrol_s: u16, tuning: &TdbvpTuning) -> Self {
         Self {
-            rails: Rails::new(box_tiles),
+            rails: Rails::new(box_tiles, tuning.first_tick_steps),
             pending: PendingVisits::new(),
             votes: SideVotes::NEW,
             on_path: false,
@@ -132,17 +112,23 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     }
 
     /// Records the robot's pose, and the scan of the level laser; called in every step.
-    pub(super) fn note(&mut self, pose: &Pose, time_ms: u32, scan: Option<(&LaserMount, &[u16])>) {
+    pub(super) fn note(
+        &mut self,
+        pose: &Pose,
+        time_ms: u32,
+        scan: Option<(&LaserMount, &[u16])>,
+        tuning: &TdbvpTuning,
+    ) {
         self.now_ms = time_ms;
         self.rails.step();
         if let Some((laser, ranges_mm)) = scan {
-            self.votes.note(laser, ranges_mm);
+            self.votes.note(laser, ranges_mm, tuning);
         }
         let here = pose.point();
         self.pending.note(here.cell());
-        if here.distance2(self.stay) > LINGER_M * LINGER_M {
+        if here.distance2(self.stay) > tuning.linger_m * tuning.linger_m {
             (self.stay, self.stay_ms) = (here, time_ms);
-        } else if time_ms.wrapping_sub(self.stay_ms) > LINGER_MS {
+        } else if time_ms.wrapping_sub(self.stay_ms) > tuning.linger_ms {
             self.stay_ms = time_ms;
             self.lingers = true;
         }
@@ -156,39 +142,47 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         centres: &Centres<'_, TILES, SLOTS>,
         robot: Point,
         (window, grid): (&mut Window, &LocalGrid),
+        tuning: &TdbvpTuning,
     ) -> bool {
-        self.visit(centres, robot);
+        self.visit(centres, robot, tuning);
         window.set_preferences(|_, _| Preference::NONE);
         if self.on_path {
             return false;
         }
-        let (room_m, goals) = if self.is_patrolling() {
-            (VISIT_M, [0; SIDE])
+        let (free_m, goals) = if self.is_patrolling() {
+            (tuning.visit_m, [0; SIDE])
         } else {
             let dropped = frontier.residual_frontiers().iter().map(|goal| goal.cell);
-            (ROOM_M, unexplored(grid, centres.tiles, dropped))
+            let goals = unexplored(grid, centres.tiles, dropped, tuning.dropped_cells);
+            (tuning.free_m, goals)
         };
         let visits = (&self.rails, &self.pending);
-        charge_rails(window, grid, visits, centres, (robot, room_m), &goals);
-        let ahead = self.pending.ahead(robot.cell());
+        charge_rails(window, grid, visits, centres, (robot, free_m), &goals);
+        let ahead = self.pending.ahead(robot.cell(), tuning.disc_m);
         let preferred = self.votes.preferred().zip(ahead);
-        if let Some(preferred) = preferred.filter(|_| has_fork(centres, robot)) {
-            prefer(window, grid, robot, preferred);
+        if let Some(preferred) = preferred.filter(|_| has_fork(centres, robot, tuning.disc_m)) {
+            prefer(window, grid, robot, preferred, tuning);
         }
         grid.place(robot.cell())
             .is_some_and(|(x, y)| window.is_reached(x, y))
     }
 
     /// Visits the centre cells beside the robot.
-    fn visit<const TILES: usize>(&mut self, centres: &Centres<'_, TILES, SLOTS>, robot: Point) {
+    fn visit<const TILES: usize>(
+        &mut self,
+        centres: &Centres<'_, TILES, SLOTS>,
+        robot: Point,
+        tuning: &TdbvpTuning,
+    ) {
         let radius_m = if self.lingers {
-            LINGER_VISIT_M
+            tuning.linger_visit_m
         } else {
-            VISIT_M
+            tuning.visit_m
         };
         let is_patrolling = self.is_patrolling();
         let (rails, pending) = (&mut self.rails, &mut self.pending);
-        pending.leave(robot.cell(), rails, is_patrolling, |middle, half, visit| {
+        let robot_away = (robot.cell(), tuning.away_m);
+        pending.leave(robot_away, rails, is_patrolling, |middle, half, visit| {
             centres.for_each_in_square(middle, half, |_, cell| visit(cell));
         });
         let mut is_new = false;
@@ -200,7 +194,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         });
         if self.lingers {
             pending.write_all(rails);
-            self.new_place_ms = self.now_ms.wrapping_sub(IMPATIENCE_MS);
+            self.new_place_ms = self.now_ms.wrapping_sub(tuning.impatience_ms);
             self.lingers = false;
         } else if is_new {
             self.new_place_ms = self.now_ms;
@@ -222,7 +216,8 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
             }
             return self.patrol(frontier, &mut round, &mut scratch, patrolled_ms);
         }
-        let is_late = round.time_ms.wrapping_sub(self.new_place_ms) >= IMPATIENCE_MS;
+        let is_late =
+            round.time_ms.wrapping_sub(self.new_place_ms) >= round.tuning.tdbvp.impatience_ms;
         let (outcome, is_free) = frontier.replan_freely(&round, scratch, is_late);
         // What remains for the second chance is where the robot only just fits through.
         self.on_path = !is_free || frontier.is_second_chance();
@@ -262,7 +257,8 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         patrolled_ms: u32,
     ) -> Option<(u8, bool)> {
         let centres = round.centres()?;
-        let tour_steps = STEPS_PER_CELL * centres.cells.count() as u32;
+        let steps_per_cell = round.tuning.tdbvp.tour_cell_ms / STEP_MS;
+        let tour_steps = steps_per_cell * centres.cells.count() as u32;
         // The never visited come first. Those not visited in a whole tour cannot be reached.
         let is_first_tour = patrolled_ms < tour_steps.saturating_mul(STEP_MS);
         let stamps = centres

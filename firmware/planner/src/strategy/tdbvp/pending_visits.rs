@@ -2,7 +2,7 @@
 //!
 //! A stamp is for 1.6 × 1.6 m. Written when the robot enters, it would make the centre cells ahead
 //! in the same place visited, and the robot would stop before them. So a place is *pending* until
-//! the robot is [`AWAY_M`] from it. Meanwhile only those of its centre cells are visited that the
+//! the robot is `away_m` from it. Meanwhile only those of its centre cells are visited that the
 //! robot came near to.
 //!
 //! A place that is left with other centre cells was visited *in part*. For the exploration that is
@@ -18,17 +18,8 @@ use heapless::Vec;
 use crate::geometry::Cell;
 use crate::path::breadcrumbs::Crumbs;
 use crate::strategy::tdbvp::rails::{PLACE_CELLS, Rails};
-use crate::strategy::tdbvp::sides::DISC_M;
 
-/// Distance from the robot within which centre cells are visited, metres: half a corridor of 2 m
-/// less a quarter of a centre cell, so that no wall is looked through.
-pub(super) const VISIT_M: f32 = 0.95;
-/// Distance from the robot at which a place is done, metres: most of the way to the window's edge.
-const AWAY_M: f32 = 2.4;
-/// Metres of the last way that give the direction ahead: the radius of the preferred side's disc,
-/// so that the disc does not turn with a robot that turns into it.
-const AHEAD_M: f32 = DISC_M;
-/// Most pending places: those within [`AWAY_M`] of a robot on its way, and some more.
+/// Most pending places: those within `away_m` of a robot on its way, and some more.
 const MOST_PENDING: usize = 12;
 /// Most places visited in part that are remembered. Those that were left longer ago have older
 /// stamps anyway.
@@ -119,7 +110,7 @@ impl PendingVisits {
     /// visited whole. `centre_cells(middle, half, visit)` visits those in a square.
     pub(super) fn leave<const SLOTS: usize>(
         &mut self,
-        robot: Cell,
+        (robot, away_m): (Cell, f32),
         rails: &mut Rails<SLOTS>,
         is_patrolling: bool,
         centre_cells: impl Fn(Cell, i32, &mut dyn FnMut(Cell)),
@@ -129,7 +120,7 @@ impl PendingVisits {
             let left = pending.place;
             let (least, half) = (least_cell(left), PLACE_CELLS / 2);
             let middle = least.offset(half, half);
-            if is_within(middle, robot, AWAY_M) {
+            if is_within(middle, robot, away_m) {
                 return true;
             }
             let mut is_whole = true;
@@ -171,11 +162,11 @@ impl PendingVisits {
         is_new
     }
 
-    /// Returns the direction of the last [`AHEAD_M`] driven, map cells. The robot's heading is not
-    /// it while the robot turns on the spot.
-    pub(super) fn ahead(&self, robot: Cell) -> Option<[f32; 2]> {
+    /// Returns the direction of the last `disc_m` driven, map cells. The robot's heading is not it
+    /// while the robot turns on the spot.
+    pub(super) fn ahead(&self, robot: Cell, disc_m: f32) -> Option<[f32; 2]> {
         let mut crumbs = self.crumbs.newest_first();
-        let came = crumbs.find(|&crumb| !is_within(crumb, robot, AHEAD_M))?;
+        let came = crumbs.find(|&crumb| !is_within(crumb, robot, disc_m))?;
         Some([robot.x - came.x, robot.y - came.y].map(|along| along as f32))
     }
 
@@ -200,6 +191,7 @@ mod tests {
     use std::vec::Vec;
 
     use super::PendingVisits;
+    use crate::config::TdbvpTuning;
     use crate::geometry::Cell;
     use crate::strategy::tdbvp::rails::{Rails, UNVISITED};
 
@@ -214,7 +206,7 @@ mod tests {
     }
 
     fn rails() -> Rails<16> {
-        Rails::new((4, 4))
+        Rails::new((4, 4), TdbvpTuning::DEFAULT.first_tick_steps)
     }
 
     /// The robot drives from one centre cell to another, and visits those within `near`.
@@ -228,7 +220,8 @@ mod tests {
         for &x in stops {
             rails.step();
             pending.note(at(x));
-            pending.leave(at(x), rails, is_patrolling, line);
+            let robot = (at(x), TdbvpTuning::DEFAULT.away_m);
+            pending.leave(robot, rails, is_patrolling, line);
             for near in (x - near..=x + near).filter(|x| x % 2 == 0) {
                 pending.visit(at(near), rails);
             }

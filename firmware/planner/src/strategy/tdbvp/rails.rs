@@ -24,10 +24,8 @@ use crate::grid::TileBox;
 const PLACE_SHIFT: i32 = 4;
 /// Side of a place, which has one stamp, cells.
 pub(crate) const PLACE_CELLS: i32 = 1 << PLACE_SHIFT;
-/// Steps in a tick at first: 0.8 s at 200 ms a step, in which the robot does not cross a place.
-const FIRST_TICK_STEPS: u16 = 4;
 /// Ticks by which the stamps must be lowered at least, or they are halved: a quarter of all, so
-/// that this is rare.
+/// that this is rare. A bound of the stamps' range, not tuned.
 const LEAST_ROOM: u8 = u8::MAX / 4;
 /// Potential of a centre cell that was not visited yet.
 pub(super) const UNVISITED: f32 = -0.5;
@@ -45,14 +43,15 @@ pub(crate) struct Rails<const SLOTS: usize> {
 }
 
 impl<const SLOTS: usize> Rails<SLOTS> {
-    /// No place is visited, in a box of (width, height) tiles.
-    pub(crate) const fn new((width, height): (i32, i32)) -> Self {
+    /// No place is visited, in a box of (width, height) tiles. A tick has `tick_steps` steps at
+    /// first.
+    pub(crate) const fn new((width, height): (i32, i32), tick_steps: u16) -> Self {
         Self {
             stamps: [[0; 4]; SLOTS],
             slots: TileBox { width, height },
             now: 1,
             oldest: 1,
-            tick_steps: FIRST_TICK_STEPS,
+            tick_steps,
             steps: 0,
         }
     }
@@ -155,6 +154,7 @@ impl<const SLOTS: usize> Rails<SLOTS> {
 #[cfg(test)]
 mod tests {
     use super::{Rails, UNVISITED};
+    use crate::config::TdbvpTuning;
     use crate::geometry::Cell;
 
     fn place(k: i32) -> Cell {
@@ -165,7 +165,7 @@ mod tests {
     }
 
     fn rails() -> Rails<16> {
-        Rails::new((4, 4))
+        Rails::new((4, 4), TdbvpTuning::DEFAULT.first_tick_steps)
     }
 
     #[test]
@@ -195,7 +195,7 @@ mod tests {
             let tick = u32::from(rails.tick_steps);
             assert!(age.abs_diff(steps) <= tick, "{age} after {steps} steps");
         }
-        let is_longer = rails.tick_steps > super::FIRST_TICK_STEPS;
+        let is_longer = rails.tick_steps > TdbvpTuning::DEFAULT.first_tick_steps;
         assert!(is_longer, "the stamps were halved");
     }
 
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn in_a_box_without_area_nothing_is_visited() {
-        let mut rails: Rails<16> = Rails::new((0, 0));
+        let mut rails: Rails<16> = Rails::new((0, 0), 4);
         assert!(!rails.visit(place(0)));
         assert_eq!(rails.potential(place(0)), UNVISITED);
     }

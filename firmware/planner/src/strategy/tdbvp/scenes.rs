@@ -3,6 +3,7 @@
 //! A character is a coarse cell of 20 cm, row 0 (the least y) on top: `#` obstacle, `.` free, `>`
 //! the robot with its heading along x.
 
+use crate::config::TdbvpTuning;
 use crate::field::local_grid::{LocalGrid, position};
 use crate::field::{FieldTuning, SCRATCH_FLOATS, SIDE, SolverConfig, Window, descent, solve};
 use crate::geometry::Cell;
@@ -10,7 +11,6 @@ use crate::map::{Class, Tiles};
 use crate::path::nearest::Centres;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
-use crate::strategy::tdbvp::ROOM_M;
 use crate::strategy::tdbvp::charges::{charge_rails, prefer};
 use crate::strategy::tdbvp::pending_visits::PendingVisits;
 use crate::strategy::tdbvp::rails::Rails;
@@ -57,7 +57,7 @@ impl Scene {
         let mut scene = Self {
             tiles: Tiles::new(),
             skeleton: Skeleton::new(),
-            rails: Rails::new((8, 8)),
+            rails: Rails::new((8, 8), TdbvpTuning::DEFAULT.first_tick_steps),
             pending: PendingVisits::new(),
             robot: Cell::default(),
         };
@@ -108,15 +108,16 @@ impl Scene {
             &grid,
             dates,
             &centres,
-            (robot, ROOM_M),
+            (robot, TdbvpTuning::DEFAULT.free_m),
             &[0; SIDE],
         );
         if let Some(side) = side {
             let ahead = self
                 .pending
-                .ahead(self.robot)
+                .ahead(self.robot, TdbvpTuning::DEFAULT.disc_m)
                 .expect("it came from somewhere");
-            prefer(&mut window, &grid, robot, (side, ahead));
+            let preferred = (side, ahead);
+            prefer(&mut window, &grid, robot, preferred, &TdbvpTuning::DEFAULT);
         }
         let config = SolverConfig {
             max_cycles: 100,

@@ -2,7 +2,7 @@
 //! \[Maffei14, V\].
 //!
 //! ```text
-//! ε = +EPSILON on the preferred side, −EPSILON on the other        in the half disc ahead
+//! ε = +`side_preference` on the preferred side, minus that on the other   in the half disc ahead
 //! ```
 //!
 //! An *opening* is a sudden increase of the mean range to one side, and a vote for that side. Two
@@ -30,22 +30,10 @@
 //!
 //! Units: metres, radians.
 
-use crate::path::cell_path::LOCAL_GOAL_M;
-use crate::robot::LaserMount;
+use core::f32::consts::FRAC_PI_2;
 
-/// Greatest range that counts, metres: what is farther is open anyway.
-const FARTHEST_M: f32 = 4.0;
-/// Increase of the mean range that is an opening, metres: half the width of a corridor.
-const OPENING_M: f32 = 1.0;
-/// Share of that increase below which the opening is over: without hysteresis noise would repeat
-/// the vote.
-const CLOSED_SHARE: f32 = 0.5;
-/// Bearings of the beams to a side, radians from straight ahead: 69° to 90°.
-const SECTOR_RAD: (f32, f32) = (1.2, core::f32::consts::FRAC_PI_2);
-/// Radius of the half disc with the preferred side, metres: that of the local goal.
-pub(super) const DISC_M: f32 = LOCAL_GOAL_M;
-/// Preference ε of the preferred side, and minus that of the other; see the table above.
-pub(super) const EPSILON: f32 = 0.2;
+use crate::config::TdbvpTuning;
+use crate::robot::LaserMount;
 
 /// Left or right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,10 +60,10 @@ impl OpeningDetector {
     };
 
     /// Takes the present mean range. Returns true if an opening begins.
-    fn note(&mut self, mean_m: f32) -> bool {
-        let opens = mean_m > self.least_m + OPENING_M;
+    fn note(&mut self, mean_m: f32, tuning: &TdbvpTuning) -> bool {
+        let opens = mean_m > self.least_m + tuning.opening_m;
         let begins = opens && !self.is_open;
-        if self.is_open && mean_m < self.least_m + CLOSED_SHARE * OPENING_M {
+        if self.is_open && mean_m < self.least_m + tuning.closed_share * tuning.opening_m {
             *self = Self::NEW;
         }
         self.is_open |= begins;
@@ -114,10 +102,11 @@ impl SideVotes {
     }
 
     /// Takes a scan of the level laser.
-    pub(super) fn note(&mut self, laser: &LaserMount, ranges_mm: &[u16]) {
+    pub(super) fn note(&mut self, laser: &LaserMount, ranges_mm: &[u16], tuning: &TdbvpTuning) {
         let [left, right] = &mut self.detectors;
         let opens = |detector: &mut OpeningDetector, side| {
-            mean_range_m(laser, ranges_mm, side).is_some_and(|mean_m| detector.note(mean_m))
+            mean_range_m(laser, ranges_mm, side, tuning)
+                .is_some_and(|mean_m| detector.note(mean_m, tuning))
         };
         match (opens(left, Side::Left), opens(right, Side::Right)) {
             (true, false) => self.vote(Side::Left),
@@ -127,21 +116,26 @@ impl SideVotes {
     }
 }
 
-/// Returns the mean of the ranges to a side, each at most [`FARTHEST_M`]; `None` without a valid
-/// beam there.
-fn mean_range_m(laser: &LaserMount, ranges_mm: &[u16], side: Side) -> Option<f32> {
+/// Returns the mean of the ranges to a side, each at most `farthest_m`; `None` without a valid beam
+/// there.
+fn mean_range_m(
+    laser: &LaserMount,
+    ranges_mm: &[u16],
+    side: Side,
+    tuning: &TdbvpTuning,
+) -> Option<f32> {
     let is_beside = |bearing: f32| {
         let to_side = match side {
             Side::Left => bearing,
             Side::Right => -bearing,
         };
-        (SECTOR_RAD.0..=SECTOR_RAD.1).contains(&to_side)
+        (tuning.beside_rad..=FRAC_PI_2).contains(&to_side)
     };
     let (mut sum_m, mut beams) = (0.0, 0.0);
     for (k, &range_mm) in ranges_mm.iter().enumerate() {
         let bearing = laser.first_bearing_rad + k as f32 * laser.bearing_step_rad;
         if range_mm != crate::input::INVALID_MM && is_beside(bearing) {
-            sum_m += (f32::from(range_mm) * 1e-3).min(FARTHEST_M);
+            sum_m += (f32::from(range_mm) * 1e-3).min(tuning.farthest_m);
             beams += 1.0;
         }
     }
@@ -151,6 +145,7 @@ fn mean_range_m(laser: &LaserMount, ranges_mm: &[u16], side: Side) -> Option<f32
 #[cfg(test)]
 mod tests {
     use super::{Side, SideVotes};
+    use crate::config::TdbvpTuning;
     use crate::robot::LaserMount;
 
     const LASER: LaserMount = LaserMount {
@@ -176,10 +171,10 @@ mod tests {
         let mut votes = SideVotes::NEW;
         for &side in passed {
             for _ in 0..5 {
-                votes.note(&LASER, &scan(&[]));
+                votes.note(&LASER, &scan(&[]), &TdbvpTuning::DEFAULT);
             }
             for _ in 0..9 {
-                votes.note(&LASER, &scan(&[side]));
+                votes.note(&LASER, &scan(&[side]), &TdbvpTuning::DEFAULT);
             }
         }
         votes.preferred()
@@ -201,8 +196,12 @@ mod tests {
     fn openings_to_both_sides_at_once_are_no_vote() {
         let mut votes = SideVotes::NEW;
         for _ in 0..4 {
-            votes.note(&LASER, &scan(&[]));
-            votes.note(&LASER, &scan(&[Side::Left, Side::Right]));
+            votes.note(&LASER, &scan(&[]), &TdbvpTuning::DEFAULT);
+            votes.note(
+                &LASER,
+                &scan(&[Side::Left, Side::Right]),
+                &TdbvpTuning::DEFAULT,
+            );
         }
         assert_eq!((votes.last_vote, votes.preferred()), (None, None));
     }
@@ -210,10 +209,10 @@ mod tests {
     #[test]
     fn an_opening_votes_once_and_noise_does_not() {
         let mut votes = SideVotes::NEW;
-        votes.note(&LASER, &scan(&[]));
+        votes.note(&LASER, &scan(&[]), &TdbvpTuning::DEFAULT);
         for k in 0..50 {
             let ranges = scan(&[Side::Left]).map(|range| range.min(3_000) + k * 17 % 90);
-            votes.note(&LASER, &ranges);
+            votes.note(&LASER, &ranges, &TdbvpTuning::DEFAULT);
         }
         assert_eq!(votes.preferred(), None, "one long opening is one vote");
         assert_eq!(votes.last_vote, Some(Side::Left));
