@@ -112,7 +112,7 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     ) {
         match &mut self.loops {
             Loops::None => {}
-            Loops::Ouroboros(ouroboros) => ouroboros.note_pose(pose),
+            Loops::Ouroboros(ouroboros) => ouroboros.note_pose(pose, &tuning.ouroboros),
             Loops::Tdbvp(tdbvp) => tdbvp.note(pose, time_ms, scan, &tuning.tdbvp),
         }
     }

@@ -19,9 +19,6 @@
 use crate::geometry::Cell;
 use crate::grid::TileBox;
 
-/// Distance from the path, along either axis, within which regions are closed with it, cells: 1 m,
-/// half the width of a corridor.
-const NEAR_CELLS: i32 = 10;
 /// Side of a region as a power of two, cells.
 const REGION_SHIFT: i32 = 3;
 /// Side of a region, cells.
@@ -54,9 +51,10 @@ impl<const SLOTS: usize> ClosedRegions<SLOTS> {
         self.closed.get(slot).is_some_and(|tile| tile & bit != 0)
     }
 
-    /// Makes the regions near a cell of the loop's path pending.
-    pub(crate) fn add_pending(&mut self, cell: Cell) {
-        let span = |at: i32| (at - NEAR_CELLS) >> REGION_SHIFT..=(at + NEAR_CELLS) >> REGION_SHIFT;
+    /// Makes the regions within `near_cells` of a cell of the loop's path pending, along either
+    /// axis.
+    pub(crate) fn add_pending(&mut self, cell: Cell, near_cells: i32) {
+        let span = |at: i32| (at - near_cells) >> REGION_SHIFT..=(at + near_cells) >> REGION_SHIFT;
         for y in span(cell.y) {
             for x in span(cell.x) {
                 let (slot, bit) = self.place(x, y);
@@ -89,25 +87,28 @@ impl<const SLOTS: usize> ClosedRegions<SLOTS> {
 #[cfg(test)]
 mod tests {
     use super::ClosedRegions;
+    use crate::config::OuroborosTuning;
     use crate::geometry::Cell;
+
+    const NEAR_CELLS: i32 = OuroborosTuning::DEFAULT.near_cells;
 
     #[test]
     fn regions_along_a_path_are_closed_with_its_loop_and_not_before() {
         let mut regions: ClosedRegions<12> = ClosedRegions::new((0, 0));
-        regions.add_pending(Cell { x: 0, y: 0 });
+        regions.add_pending(Cell { x: 0, y: 0 }, NEAR_CELLS);
         regions.close_pending();
         let is_closed = regions.is_closed(Cell { x: 0, y: 0 });
         assert!(!is_closed, "the box has no area");
         let mut regions: ClosedRegions<12> = ClosedRegions::new((4, 3));
         for x in -40..20 {
-            regions.add_pending(Cell { x, y: -3 });
+            regions.add_pending(Cell { x, y: -3 }, NEAR_CELLS);
         }
         assert!(!regions.is_closed(Cell { x: -20, y: -3 }));
         regions.drop_pending();
         regions.close_pending();
         let is_closed = regions.is_closed(Cell { x: -20, y: -3 });
         assert!(!is_closed, "it was dropped");
-        regions.add_pending(Cell { x: -20, y: -3 });
+        regions.add_pending(Cell { x: -20, y: -3 }, NEAR_CELLS);
         regions.close_pending();
         let shifted = |(dx, dy)| Cell {
             x: -20 + dx,

@@ -3,6 +3,7 @@
 //!
 //! Units: map cells, metres.
 
+use crate::config::OuroborosTuning;
 use crate::geometry::Cell;
 use crate::grid::Site;
 use crate::path::context::STEP_M;
@@ -13,7 +14,7 @@ use crate::strategy::Frontier;
 use crate::strategy::ouroboros::loop_budget::LoopBudget;
 use crate::strategy::ouroboros::loop_road::{LoopRoad, back_to_shield, build_shield};
 use crate::strategy::ouroboros::tractor::{self, Fate};
-use crate::strategy::ouroboros::{LOST_ROUNDS, MOST_LOST, Ouroboros, Shield, Stage};
+use crate::strategy::ouroboros::{Ouroboros, Shield, Stage};
 
 impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// Runs lines 3 to 18: tractor point, loop road and shield.
@@ -39,7 +40,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
                 self.shield = Some(shield);
                 self.stage = Stage::Close(robot);
             }
-            None if self.shield.is_some() => return self.lose(),
+            None if self.shield.is_some() => return self.lose(&round.tuning.ouroboros),
             None => {}
         }
         None
@@ -61,7 +62,8 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             .and_then(|tractor| round.nearest(tractor, scratch))
             .map(|site| round.skeleton.frame().cell(site));
         let is_closing = self.shield.is_some();
-        match centre.map(|centre| tractor::fate(centre, &round.pose, is_closing)) {
+        let tuning = &round.tuning.ouroboros;
+        match centre.map(|centre| tractor::fate(centre, &round.pose, is_closing, tuning)) {
             Some(Fate::Stays) => self.tractor = centre,
             Some(Fate::Reached) if is_closing => {
                 self.tally.closed += 1;
@@ -87,10 +89,11 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         round: &PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
     ) -> Option<Cell> {
-        let candidate = tractor::candidate(&self.crumbs, &self.regions, &round.pose)?;
+        let tuning = &round.tuning.ouroboros;
+        let candidate = tractor::candidate(&self.crumbs, &self.regions, &round.pose, tuning)?;
         let site = round.nearest(candidate, scratch)?;
         let centre = round.skeleton.frame().cell(site);
-        tractor::suits(centre, candidate, &self.regions, &round.pose).then_some(centre)
+        tractor::suits(centre, candidate, &self.regions, &round.pose, tuning).then_some(centre)
     }
 
     /// Begins a loop that is worth closing [lines 12, 16 and 18]: returns the shield behind the
@@ -102,6 +105,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         [robot, tractor]: [Site; 2],
     ) -> Option<Shield> {
         round.propagate(tractor, surroundings(robot), None, scratch)?;
+        let tuning = &round.tuning.ouroboros;
         let centres = round.centres()?;
         let residues = Residues::new(centres.frame.shape, scratch.residues).ok()?;
         let here = round.pose.point().cell();
@@ -110,11 +114,11 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         let meet = centres.cell(road.meet);
         let loop_m = road.steps() as f32 * STEP_M;
         if !round.limits.is_worth(loop_m, round.frontier_m()?)
-            || !tractor::may_be_at(meet, &self.regions, &round.pose)
+            || !tractor::may_be_at(meet, &self.regions, &round.pose, tuning)
         {
             return None;
         }
-        let shield = build_shield(&centres, road.back(&residues), here)?;
+        let shield = build_shield(&centres, road.back(&residues), here, tuning)?;
         self.tractor = Some(meet);
         self.loop_m = loop_m;
         self.back_m = road.back(&residues).count() as f32 * STEP_M;
@@ -124,7 +128,8 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         // The loop's surroundings are those of the back, and of the way that the robot will drive.
         self.regions.drop_pending();
         for site in road.back(&residues) {
-            self.regions.add_pending(centres.cell(site));
+            self.regions
+                .add_pending(centres.cell(site), tuning.near_cells);
         }
         Some(shield)
     }
@@ -145,14 +150,14 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
 
     /// Counts a round without loop road or shield while a loop is being closed. For some rounds the
     /// robot keeps its path; then the loop is lost.
-    fn lose(&mut self) -> Option<RoundOutcome> {
+    fn lose(&mut self, tuning: &OuroborosTuning) -> Option<RoundOutcome> {
         self.lost_rounds += 1;
-        if self.lost_rounds < LOST_ROUNDS {
+        if self.lost_rounds < tuning.lost_rounds {
             self.stage = Stage::Look;
             return Some(RoundOutcome::Path);
         }
         self.lost_loops += 1;
-        if self.lost_loops > MOST_LOST {
+        if self.lost_loops > tuning.most_lost_loops {
             self.give_up();
         } else {
             (self.shield, self.lost_rounds) = (None, 0);
@@ -177,7 +182,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         });
         let Some(path) = path else {
             self.stage = Stage::Explore;
-            return self.lose();
+            return self.lose(&round.tuning.ouroboros);
         };
         self.lost_rounds = 0;
         self.loop_m = self.back_m + path.steps() as f32 * STEP_M;
@@ -206,6 +211,10 @@ fn renew<const TILES: usize, const SLOTS: usize>(
     let centres = round.centres()?;
     let residues = Residues::new(centres.frame.shape, scratch.residues).ok()?;
     let back = back_to_shield(&centres, &residues, robot)?;
-    let next = build_shield(&centres, back, round.pose.point().cell());
-    next.or_else(|| previous.stretch(&centres).is_ok().then_some(previous))
+    let tuning = &round.tuning.ouroboros;
+    let next = build_shield(&centres, back, round.pose.point().cell(), tuning);
+    next.or_else(|| {
+        let is_valid = previous.stretch(&centres, tuning).is_ok();
+        is_valid.then_some(previous)
+    })
 }

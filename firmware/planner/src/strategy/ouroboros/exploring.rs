@@ -18,7 +18,9 @@ use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
 use crate::strategy::Frontier;
 use crate::strategy::ouroboros::exploring::worlds::{ADJACENT, NESTED, ROOMS, THREE_LOOPS, TREES};
-use crate::strategy::ouroboros::scenes::{Memory, POINT_M, SLOTS, TILES, at, has_cell, pose_in};
+use crate::strategy::ouroboros::scenes::{
+    Memory, POINT_M, SLOTS, TILES, TUNING, at, has_cell, pose_in,
+};
 use crate::strategy::ouroboros::{Ouroboros, Tally};
 
 /// Cells that the robot sees: the same share of these loops as 12 m of one of 70 m.
@@ -128,7 +130,7 @@ impl Exploration {
     /// Plans a whole round on a new skeleton.
     fn plan(&mut self, time_ms: u32) -> RoundOutcome {
         let footprint = Footprint::new(POINT_M);
-        self.strategy.note_pose(&self.pose);
+        self.strategy.note_pose(&self.pose, &TUNING);
         while !self.skeleton.advance(&self.tiles, &footprint, u32::MAX) {}
         self.frontier.cut(&mut self.skeleton);
         let before = self.skeleton.skeleton().unwrap().words().to_vec();
@@ -197,7 +199,7 @@ impl Exploration {
         self.robot = to;
         let yaw_rad = (dy as f32).atan2(dx as f32);
         self.pose = pose_in(at(to.0 as usize, to.1 as usize), yaw_rad);
-        self.strategy.note_pose(&self.pose);
+        self.strategy.note_pose(&self.pose, &TUNING);
         self.path.push(to);
         self.see();
     }

@@ -26,6 +26,7 @@
 //!
 //! Units: steps along the skeleton, 20 cm each; a diagonal step counts the same.
 
+use crate::config::OuroborosTuning;
 use crate::geometry::Cell;
 use crate::grid::Site;
 use crate::math;
@@ -166,22 +167,22 @@ pub(super) fn back_to_shield<'a, const TILES: usize, const SLOTS: usize>(
 /// Returns the first valid shield across the back, from the robot on \[Jorge15, III-C, fourth
 /// step\].
 ///
-/// `None` if the back ends, or [`MOST_TRIED`] cells were tried, without one.
+/// `None` if the back ends, or `most_tried_cells` cells were tried, without one.
 pub(super) fn build_shield<const TILES: usize, const SLOTS: usize>(
     centres: &Centres<'_, TILES, SLOTS>,
     back: impl Iterator<Item = Site>,
     robot: Cell,
+    tuning: &OuroborosTuning,
 ) -> Option<Shield> {
     let mut span = [None; SPAN];
-    back.take(MOST_TRIED + SPAN - 1).find_map(|site| {
+    let most = tuning.most_tried_cells + SPAN - 1;
+    back.take(most).find_map(|site| {
         span.rotate_left(1);
         span[SPAN - 1] = Some(centres.cell(site));
         let [near, at, far] = [span[0]?, span[SPAN / 2]?, span[SPAN - 1]?];
-        Shield::build(centres, at, [far, near], robot).ok()
+        Shield::build(centres, at, [far, near], robot, tuning).ok()
     })
 }
 
 /// Consecutive cells of the back from which the direction at the middle one is taken.
 const SPAN: usize = 5;
-/// Cells of the back that are tried: the nearest 8 m. It bounds the cost of the search.
-const MOST_TRIED: usize = 40;

@@ -21,9 +21,9 @@
 //! point, shield, closed regions and path outlast any number of skeletons.
 //!
 //! Departs from \[Jorge15, Algorithm 1, line 17\], where a missing loop road ends the loop at once:
-//! a loop is lost only after `LOST_ROUNDS` rounds in a row without loop road or shield, since a
-//! skeleton may grow a spur under the robot for a moment. After `MOST_LOST` lost loops the next one
-//! is given up, or the robot might begin and lose the same loop for ever.
+//! a loop is lost only after `lost_rounds` rounds in a row without loop road or shield, since a
+//! skeleton may grow a spur under the robot for a moment. After `most_lost_loops` lost loops the
+//! next one is given up, or the robot might begin and lose the same loop for ever.
 //!
 //! Units: map cells, metres, milliseconds.
 
@@ -43,6 +43,7 @@ mod scenes;
 pub(crate) use closed_regions::{ClosedRegions, REGION_CELLS};
 pub(crate) use shield::Shield;
 
+use crate::config::OuroborosTuning;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::path::breadcrumbs::Crumbs;
@@ -50,12 +51,6 @@ use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::strategy::Frontier;
 use crate::strategy::ouroboros::loop_budget::LoopBudget;
 use crate::strategy::ouroboros::revisit::Revisit;
-
-/// Rounds in a row without loop road or shield after which a loop is lost: a spur under the robot
-/// is gone by then.
-const LOST_ROUNDS: u8 = 3;
-/// Loops lost, since one was last closed or given up, after which the next one is given up.
-const MOST_LOST: u8 = 3;
 
 /// The next part of Algorithm 1 in a round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,13 +147,13 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     }
 
     /// Records the robot's pose; called in every step.
-    pub(crate) fn note_pose(&mut self, pose: &Pose) {
+    pub(crate) fn note_pose(&mut self, pose: &Pose, tuning: &OuroborosTuning) {
         let robot = pose.point().cell();
         self.crumbs.note(robot);
         let last = self.robot.replace(robot);
         let stride_m = last.map_or(0.0, |last| last.distance_m(robot));
         if self.shield.is_some() {
-            self.regions.add_pending(robot);
+            self.regions.add_pending(robot, tuning.near_cells);
             self.budget.note(stride_m, self.loop_m);
         } else if let Some(revisit) = &mut self.revisit {
             revisit.budget.note(stride_m, 0.0);
@@ -226,7 +221,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             .and_then(|(robot, goal)| round.path([robot, goal], core::iter::empty(), scratch));
         let path = path.filter(|path| {
             let is_over = revisit.is_over(path.steps(), round.limits);
-            path.steps() > revisit::DONE_STEPS && !is_over
+            path.steps() > round.tuning.ouroboros.done_steps && !is_over
         });
         if let Some(path) = path {
             self.revisit = Some(revisit);

@@ -21,17 +21,6 @@ use crate::roadmap::Residues;
 use crate::roadmap::branches::{Branch, Kind, kind, surroundings, ways};
 use crate::strategy::ouroboros::closed_regions::ClosedRegions;
 use crate::strategy::ouroboros::loop_budget::LoopBudget;
-use crate::strategy::ouroboros::tractor::LEAST_BEHIND_M;
-
-/// Steps to the middle of the stretch at which the revisit is done: 0.8 m, within what the goal's
-/// closed regions cover.
-pub(super) const DONE_STEPS: u32 = 4;
-/// The shortest stretch, metres: up to its middle there is room for a tractor point behind the
-/// robot, and as much again.
-const LEAST_M: f32 = 4.0 * LEAST_BEHIND_M;
-
-/// Branches that a call looks at. Those with too short a stretch cost no wave.
-const MOST_BRANCHES: usize = 12;
 
 /// A drive to an open loop.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +49,7 @@ pub(super) fn find<const TILES: usize, const SLOTS: usize>(
     regions: &mut ClosedRegions<SLOTS>,
     scratch: &mut PlanningScratch<'_>,
 ) -> Found {
-    for _ in 0..MOST_BRANCHES {
+    for _ in 0..round.tuning.ouroboros.most_branches {
         let Some(site) = first_open(round, regions) else {
             return Found::None;
         };
@@ -85,15 +74,16 @@ pub(super) fn settle<const TILES: usize, const SLOTS: usize>(
     regions: &mut ClosedRegions<SLOTS>,
     place: Cell,
 ) {
+    let near_cells = round.tuning.ouroboros.near_cells;
     regions.drop_pending();
     // The skeleton may have left the place, or the walk along the branch may miss it.
-    regions.add_pending(place);
+    regions.add_pending(place, near_cells);
     if let Some(centres) = round.centres()
         && let Some(site) = centres.frame.site(place)
         && let Some((end, before)) = end_of_branch(centres.cells, site)
     {
         for site in core::iter::once(end).chain(Branch::new(centres.cells, end, before)) {
-            regions.add_pending(centres.cell(site));
+            regions.add_pending(centres.cell(site), near_cells);
         }
     }
     regions.close_pending();
@@ -110,8 +100,9 @@ fn first_open<const TILES: usize, const SLOTS: usize>(
     sites.find(|&site| is_open(&centres, regions, site) && is_passage(site))
 }
 
-/// Returns the middle of the longest stretch of open cells in a branch; `None` if all are shorter
-/// than [`LEAST_M`].
+/// Returns the middle of the longest stretch of open cells in a branch; `None` if all are too
+/// short: up to the middle there must be room for a tractor point behind the robot, and as much
+/// again.
 fn middle_of_stretch<const TILES: usize, const SLOTS: usize>(
     round: &PlanningContext<'_, TILES, SLOTS>,
     regions: &ClosedRegions<SLOTS>,
@@ -127,7 +118,8 @@ fn middle_of_stretch<const TILES: usize, const SLOTS: usize>(
         longest = longest.max((cells, k));
     }
     let (cells, last) = longest;
-    let is_long = cells as f32 * STEP_M >= LEAST_M;
+    let least_m = 4.0 * round.tuning.ouroboros.least_behind_m;
+    let is_long = cells as f32 * STEP_M >= least_m;
     let middle = || Branch::new(centres.cells, end, before).nth(last - cells / 2);
     is_long.then(middle).flatten()
 }

@@ -13,7 +13,7 @@ use core::f32::consts::{FRAC_PI_2, PI};
 use std::string::String;
 use std::vec::Vec;
 
-use crate::config::{LoopLimits, Tuning};
+use crate::config::{LoopLimits, OuroborosTuning, Tuning};
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
@@ -29,6 +29,8 @@ use crate::strategy::ouroboros::shield::{Flaw, Shield};
 
 pub(super) const TILES: usize = 30;
 pub(super) const SLOTS: usize = 48;
+/// The defaults.
+pub(super) const TUNING: OuroborosTuning = OuroborosTuning::DEFAULT;
 /// Radius of a robot that is a point.
 pub(super) const POINT_M: f32 = 0.05;
 
@@ -193,7 +195,7 @@ impl Scene {
         Some(Found {
             back: until_meet(walk(road.back)),
             front: until_meet(walk(road.front)),
-            shield: build_shield(&centres, road.back(&residues), pose.point().cell()),
+            shield: build_shield(&centres, road.back(&residues), pose.point().cell(), &TUNING),
         })
     }
 
@@ -215,8 +217,9 @@ impl Scene {
     fn flaws(&mut self) -> Vec<Option<Flaw>> {
         let back = self.look().unwrap().back;
         let (centres, here) = (self.centres(), self.pose.point().cell());
-        let judge =
-            |span: &[Cell]| Shield::build(&centres, span[2], [span[4], span[0]], here).err();
+        let judge = |span: &[Cell]| {
+            Shield::build(&centres, span[2], [span[4], span[0]], here, &TUNING).err()
+        };
         let mut flaws: Vec<_> = back.windows(5).map(judge).collect();
         let valid = flaws.iter().position(Option::is_none);
         flaws.truncate(valid.map_or(flaws.len(), |valid| valid + 1));

@@ -10,17 +10,10 @@
 //!
 //! Units: coarse cells of 20 cm, each named by its map cell with the least x and y.
 
+use crate::config::OuroborosTuning;
 use crate::geometry::Cell;
 use crate::path::nearest::Centres;
 use crate::roadmap::branches::{Kind, kind};
-
-/// The longest shield to one side of the path, cells: 6.4 m.
-const MOST_REACH: u8 = 32;
-/// The most centre cells on a shield: those of one branch that crosses it at an angle.
-const MOST_CUT: usize = 4;
-/// Cells between the robot and the shield along at least one axis: with fewer, the wall is at the
-/// robot's own place in the window.
-const CLEAR_CELLS: i32 = 2;
 
 /// A wall across a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,6 +50,7 @@ impl Shield {
         at: Cell,
         [behind, ahead]: [Cell; 2],
         robot: Cell,
+        tuning: &OuroborosTuning,
     ) -> Result<Self, Flaw> {
         let site = centres.frame.site(at).ok_or(Flaw::OffBranch)?;
         if kind(centres.cells, site) != Some(Kind::Passage) {
@@ -72,9 +66,9 @@ impl Shield {
         if shield.along == (0, 0) {
             return Err(Flaw::OffBranch);
         }
-        shield.stretch(centres)?;
+        shield.stretch(centres, tuning)?;
         let touches = |cell: Cell| {
-            let far = |a: i32, b: i32| ((a >> 1) - (b >> 1)).abs() > CLEAR_CELLS;
+            let far = |a: i32, b: i32| ((a >> 1) - (b >> 1)).abs() > tuning.clear_cells;
             !(far(cell.x, robot.x) || far(cell.y, robot.y))
         };
         if shield.cells().any(touches) {
@@ -90,27 +84,30 @@ impl Shield {
     pub(super) fn stretch<const TILES: usize, const SLOTS: usize>(
         &mut self,
         centres: &Centres<'_, TILES, SLOTS>,
+        tuning: &OuroborosTuning,
     ) -> Result<(), Flaw> {
         for side in [0, 1] {
-            let reach = self.reach_obstacle(centres, side).ok_or(Flaw::OpenEnd)?;
+            let reach = self.reach_obstacle(centres, side, tuning.most_reach_cells);
+            let reach = reach.ok_or(Flaw::OpenEnd)?;
             if let Some(place) = self.reach.get_mut(side) {
                 *place = reach;
             }
         }
-        self.check_cut(centres)
+        self.check_cut(centres, tuning.most_cut_cells)
     }
 
     /// Returns the cells to one side up to the first one that is not open; `None` if there is none
-    /// within reach, or a cell before it was never measured.
+    /// among the first `most_cells`, or a cell before it was never measured.
     fn reach_obstacle<const TILES: usize, const SLOTS: usize>(
         &self,
         centres: &Centres<'_, TILES, SLOTS>,
         side: usize,
+        most_cells: u8,
     ) -> Option<u8> {
         (1_u8..).zip(self.ray(side)).find_map(|(reach, cell)| {
             if !centres.is_open(cell) {
                 Some(Some(reach))
-            } else if reach == MOST_REACH || !centres.is_explored(cell) {
+            } else if reach == most_cells || !centres.is_explored(cell) {
                 Some(None)
             } else {
                 None
@@ -118,10 +115,11 @@ impl Shield {
         })?
     }
 
-    /// Checks that only the branch that it stands on has cells on it.
+    /// Checks that only the branch that it stands on has cells on it, `most_cells` of them at most.
     fn check_cut<const TILES: usize, const SLOTS: usize>(
         &self,
         centres: &Centres<'_, TILES, SLOTS>,
+        most_cells: usize,
     ) -> Result<(), Flaw> {
         let mut cut = 1;
         for side in [0, 1] {
@@ -136,7 +134,7 @@ impl Shield {
                 is_joined &= is_centre;
             }
         }
-        if cut > MOST_CUT {
+        if cut > most_cells {
             return Err(Flaw::CutsMore);
         }
         Ok(())

@@ -12,22 +12,11 @@
 //!
 //! Units: metres; map cells.
 
+use crate::config::OuroborosTuning;
 use crate::geometry::{Cell, Pose};
 use crate::math;
 use crate::path::breadcrumbs::Crumbs;
 use crate::strategy::ouroboros::closed_regions::ClosedRegions;
-
-/// The distance at which the robot has reached it, metres: `Threshold` of \[Jorge15, Algorithm 1,
-/// line 7\]. The paper gives no value; this is half a corridor.
-const REACHED_M: f32 = 1.0;
-/// The least distance behind the robot, metres: a shield must find room between.
-pub(super) const LEAST_BEHIND_M: f32 = 2.5;
-/// The most that a centre cell may lie aside of the robot's path, metres: beyond it the robot did
-/// not visit the place.
-const MOST_ASIDE_M: f32 = 1.5;
-/// The distance beyond which a tractor point without a loop is made again, metres: four times the
-/// least distance.
-const FAR_M: f32 = 10.0;
 
 /// The outcome for a tractor point on a new skeleton.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,11 +30,11 @@ pub(super) enum Fate {
 }
 
 /// Decides about the tractor point at `at`; `is_closing` says that a loop is being closed to it.
-pub(super) fn fate(at: Cell, robot: &Pose, is_closing: bool) -> Fate {
+pub(super) fn fate(at: Cell, robot: &Pose, is_closing: bool, tuning: &OuroborosTuning) -> Fate {
     let distance_m = at.distance_m(robot.point().cell());
-    if distance_m < REACHED_M {
+    if distance_m < tuning.reached_m {
         Fate::Reached
-    } else if distance_m > FAR_M && !is_closing {
+    } else if distance_m > tuning.far_m && !is_closing {
         Fate::Stale
     } else {
         Fate::Stays
@@ -57,10 +46,11 @@ pub(super) fn candidate<const SLOTS: usize>(
     crumbs: &Crumbs,
     regions: &ClosedRegions<SLOTS>,
     robot: &Pose,
+    tuning: &OuroborosTuning,
 ) -> Option<Cell> {
     crumbs
         .newest_first()
-        .find(|&crumb| is_behind(crumb, robot) && !regions.is_closed(crumb))
+        .find(|&crumb| is_behind(crumb, robot, tuning) && !regions.is_closed(crumb))
 }
 
 /// Returns true if a tractor point may be at a centre cell, the one nearest to a candidate.
@@ -69,9 +59,10 @@ pub(super) fn suits<const SLOTS: usize>(
     candidate: Cell,
     regions: &ClosedRegions<SLOTS>,
     robot: &Pose,
+    tuning: &OuroborosTuning,
 ) -> bool {
-    centre.distance_m(candidate) <= MOST_ASIDE_M
-        && is_behind(centre, robot)
+    centre.distance_m(candidate) <= tuning.most_aside_m
+        && is_behind(centre, robot, tuning)
         && !regions.is_closed(centre)
 }
 
@@ -80,13 +71,14 @@ pub(super) fn may_be_at<const SLOTS: usize>(
     cell: Cell,
     regions: &ClosedRegions<SLOTS>,
     robot: &Pose,
+    tuning: &OuroborosTuning,
 ) -> bool {
-    cell.distance_m(robot.point().cell()) >= LEAST_BEHIND_M && !regions.is_closed(cell)
+    cell.distance_m(robot.point().cell()) >= tuning.least_behind_m && !regions.is_closed(cell)
 }
 
-fn is_behind(cell: Cell, robot: &Pose) -> bool {
+fn is_behind(cell: Cell, robot: &Pose, tuning: &OuroborosTuning) -> bool {
     let (sin, cos) = math::sin_cos(robot.yaw_rad);
     let at = robot.point().cell();
     let ahead = (cell.x - at.x) as f32 * cos + (cell.y - at.y) as f32 * sin;
-    ahead < 0.0 && cell.distance_m(at) >= LEAST_BEHIND_M
+    ahead < 0.0 && cell.distance_m(at) >= tuning.least_behind_m
 }

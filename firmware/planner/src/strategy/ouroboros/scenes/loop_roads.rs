@@ -5,7 +5,7 @@ use std::vec::Vec;
 use crate::grid::Site;
 use crate::roadmap::Residues;
 use crate::strategy::ouroboros::loop_road::{back_to_shield, build_shield};
-use crate::strategy::ouroboros::scenes::{Found, Memory, Scene, assert_picture};
+use crate::strategy::ouroboros::scenes::{Found, Memory, Scene, TUNING, assert_picture};
 
 /// A corridor round a block, closed below.
 const NO_LOOP: &str = "
@@ -285,7 +285,7 @@ fn a_loop_goes_on_by_the_previous_shield_though_another_is_shorter() {
         .collect();
     let here = scene.pose.point().cell();
     let found = Found {
-        shield: build_shield(&centres, back.iter().copied(), here),
+        shield: build_shield(&centres, back.iter().copied(), here, &TUNING),
         back: back.iter().map(|site| centres.frame.cell(*site)).collect(),
         front: Vec::new(),
     };

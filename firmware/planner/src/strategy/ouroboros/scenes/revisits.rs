@@ -6,7 +6,7 @@ use crate::config::LoopLimits;
 use crate::geometry::Cell;
 use crate::strategy::ouroboros::closed_regions::ClosedRegions;
 use crate::strategy::ouroboros::revisit::{self, Found, Revisit};
-use crate::strategy::ouroboros::scenes::{Memory, SLOTS, Scene, at};
+use crate::strategy::ouroboros::scenes::{Memory, SLOTS, Scene, TUNING, at};
 
 /// Two loops side by side, and a corridor that ends; the left loop was closed.
 const RIGHT_LOOP_OPEN: &str = "
@@ -84,7 +84,7 @@ fn regions(scene: &Scene) -> ClosedRegions<SLOTS> {
     for (y, row) in scene.picture.iter().enumerate() {
         for (x, &character) in row.iter().enumerate() {
             if matches!(character, 'o' | '>') && centres.is_centre(at(x, y)) {
-                regions.add_pending(at(x, y));
+                regions.add_pending(at(x, y), TUNING.near_cells);
             }
         }
     }

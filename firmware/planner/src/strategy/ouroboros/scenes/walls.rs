@@ -4,7 +4,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use crate::strategy::ouroboros::Ouroboros;
-use crate::strategy::ouroboros::scenes::{Memory, Scene, assert_picture, at, pose_in};
+use crate::strategy::ouroboros::scenes::{Memory, Scene, TUNING, assert_picture, at, pose_in};
 use crate::strategy::ouroboros::shield::{Flaw, Shield};
 
 /// A block, and the corridor round it.
@@ -153,9 +153,9 @@ fn assert_tractor(picture: &str, expected: &str) {
         let cells = scene.picture[y].iter().enumerate();
         cells.filter(|(_, c)| **c == 'o')
     }) {
-        strategy.note_pose(&pose_in(at(x, row.unwrap()), 0.0));
+        strategy.note_pose(&pose_in(at(x, row.unwrap()), 0.0), &TUNING);
     }
-    strategy.note_pose(&scene.pose);
+    strategy.note_pose(&scene.pose, &TUNING);
     let round = scene.round();
     let tractor = strategy.generate_tractor(&round, &mut Memory::new().lend());
     let rows = scene.picture.iter().enumerate().map(|(y, row)| {
@@ -265,7 +265,7 @@ fn no_shield_hangs_in_the_open() {
     );
     let (mouth, path) = (at(10, 7), [at(8, 7), at(12, 7)]);
     let here = scene.pose.point().cell();
-    let flaw = Shield::build(&scene.centres(), mouth, path, here).unwrap_err();
+    let flaw = Shield::build(&scene.centres(), mouth, path, here, &TUNING).unwrap_err();
     assert_eq!(flaw, Flaw::OpenEnd);
     assert_eq!(scene.flaws(), [Some(Flaw::AtRobot), None]);
 }
