@@ -111,6 +111,7 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         period_ms: u16::MAX,
         uneven_ground: Some(UnevenGround {
             preference: Preference::Both,
+            levels: true,
             obstacle: far,
             near: far,
             hole: far,

@@ -10,7 +10,7 @@ use host_sim::metrics::{MapScore as Truth, crossings};
 use host_sim::report::Report;
 use host_sim::trial::Record;
 use host_sim::trial::mission::Mission;
-use host_sim::trial::uneven::{TABLE_I, radians};
+use host_sim::trial::uneven::{TABLE_I, has_levels, radians};
 use host_sim::trial::wording;
 use host_sim::world::World;
 
@@ -75,6 +75,7 @@ impl<'a> UnevenRun<'a> {
             strategy: FRONTIER.into(),
             uneven_ground: Some(UnevenGround {
                 preference: self.preference,
+                levels: has_levels(self.preference),
                 roll: self.roll_deg.map_or(TABLE_I.roll, radians),
                 ..TABLE_I
             }),

@@ -103,6 +103,7 @@ fn uneven_ground(ground: &wire::UnevenGround) -> UnevenGround {
             wire::Preference::Global => PreferenceMode::Global,
             wire::Preference::Both => PreferenceMode::Both,
         },
+        levels: ground.levels,
         obstacle_m: float(ground.obstacle),
         near_m: float(ground.near),
         hole_m: float(ground.hole),

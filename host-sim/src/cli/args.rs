@@ -55,13 +55,17 @@ pub(super) struct ExploreArgs {
     /// greedy-frontier
     #[arg(long, default_value = strategies::FRONTIER, value_parser = strategies::parse)]
     pub(super) strategy: String,
-    /// Ground that the planner expects [default: flat; uneven if --preference or
+    /// Ground that the planner expects [default: flat; uneven if --preference, --levels or
     /// --ground-parameters is given]
     #[arg(long, value_enum)]
     pub(super) ground: Option<GroundArg>,
     /// Preferences of the field on uneven ground [default: both]
     #[arg(long, value_enum, value_name = "WHICH")]
     pub(super) preference: Option<PreferenceArg>,
+    /// Height levels of goals on uneven ground: a goal on another level waits [default: on with
+    /// --preference height or both, off with off or global]
+    #[arg(long, value_enum, value_name = "on|off", hide_possible_values = true)]
+    pub(super) levels: Option<SwitchArg>,
     #[arg(
         long,
         help = "Parameters of uneven ground, one or more [default: h_obs=0.3, d_obs=1.5, \
@@ -169,6 +173,7 @@ impl Default for ExploreArgs {
             strategy: strategies::FRONTIER.into(),
             ground: None,
             preference: None,
+            levels: None,
             ground_parameters: None,
             link: None,
             seed: 0,
@@ -228,6 +233,12 @@ pub(super) enum PreferenceArg {
     Global,
     /// The sum of both
     Both,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum SwitchArg {
+    On,
+    Off,
 }
 
 impl From<PreferenceArg> for Preference {

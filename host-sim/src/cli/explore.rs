@@ -10,11 +10,11 @@ use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
 use host_sim::trial::Record;
-use host_sim::trial::mission::{self, Mission, MissionError};
+use host_sim::trial::mission::{self, Mission, MissionError, on_device};
 use host_sim::trial::uneven;
 use host_sim::world::World;
 
-use super::args::{ExploreArgs, GroundArg, OdometryArg};
+use super::args::{ExploreArgs, GroundArg, OdometryArg, SwitchArg};
 use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
 use super::strategies::{self, FRONTIER, TERRAIN};
@@ -161,15 +161,16 @@ fn explore(args: &ExploreArgs, link: &LinkSpec, run: &Run, interrupt: &Interrupt
 
 /// Returns the parameters of uneven ground; `None` on flat ground.
 fn uneven_ground(args: &ExploreArgs) -> Result<Option<UnevenGround>> {
-    let implied = args.preference.is_some() || args.ground_parameters.is_some();
+    let implied =
+        args.preference.is_some() || args.levels.is_some() || args.ground_parameters.is_some();
     let flat = match args.ground {
         Some(ground) => ground == GroundArg::Flat,
         None => !implied,
     };
     if flat && implied {
         bail!(
-            "--ground flat has no preferences and no parameters; say --ground uneven, \
-             or leave --preference and --ground-parameters out"
+            "--ground flat has no preferences, levels and parameters; say --ground uneven, \
+             or leave --preference, --levels and --ground-parameters out"
         );
     }
     if flat {
@@ -178,13 +179,24 @@ fn uneven_ground(args: &ExploreArgs) -> Result<Option<UnevenGround>> {
     if !strategies::knows_uneven_ground(&args.strategy) {
         bail!(
             "--strategy {} takes all ground for flat; \
-             leave --ground, --preference and --ground-parameters out",
+             leave --ground, --preference, --levels and --ground-parameters out",
+            args.strategy
+        );
+    }
+    if args.levels.is_some() && on_device(&args.strategy).is_none() {
+        bail!(
+            "--strategy {} has no height levels; leave --levels out",
             args.strategy
         );
     }
     let parameters = args.ground_parameters.unwrap_or(uneven::TABLE_I);
+    let preference = args.preference.map_or(parameters.preference, Into::into);
     Ok(Some(UnevenGround {
-        preference: args.preference.map_or(parameters.preference, Into::into),
+        preference,
+        levels: args.levels.map_or_else(
+            || uneven::has_levels(preference),
+            |switch| switch == SwitchArg::On,
+        ),
         ..parameters
     }))
 }

@@ -37,6 +37,8 @@ pub struct Report {
     pub ground: String,
     /// Preferences of the field on uneven ground: `off`, `height`, `global` or `both`.
     pub preference: Option<String>,
+    /// True if goals on other height levels cost more; `null` on flat ground and for baselines.
+    pub levels: Option<bool>,
     /// Link to the planner, as given to `--link`.
     pub link: String,
     /// Seed of every random number of the run.

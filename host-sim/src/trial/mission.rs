@@ -168,6 +168,12 @@ impl Mission {
         self.uneven_ground.map(|ground| ground.preference)
     }
 
+    /// Returns true if goals have height levels; `None` on flat ground, and for a baseline.
+    pub(super) fn levels(&self) -> Option<bool> {
+        let ground = self.uneven_ground?;
+        on_device(&self.strategy).map(|_| ground.levels)
+    }
+
     /// Returns the simulator's configuration.
     fn sim_config(&self) -> SimConfig {
         let lasers = LaserNoise::default();

@@ -36,6 +36,7 @@ pub(super) fn report(
         preference: mission
             .preference()
             .map(|it| wording::preference(it).into()),
+        levels: mission.levels(),
         link: mission.link.clone(),
         seed: mission.seed,
         odometry: odometry.into(),

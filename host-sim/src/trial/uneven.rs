@@ -13,6 +13,7 @@ use fixed::types::{I4F12, I16F16};
 /// The values of \[Maffei20, Table I\], and the 3-AT's limits.
 pub const TABLE_I: UnevenGround = UnevenGround {
     preference: Preference::Both,
+    levels: has_levels(Preference::Both),
     obstacle: I4F12::lit("0.30"),
     near: I4F12::lit("1.5"),
     hole: I4F12::lit("-0.60"),
@@ -24,6 +25,12 @@ pub const TABLE_I: UnevenGround = UnevenGround {
     roll: I4F12::lit("0.349"),
     step: I4F12::lit("0.07"),
 };
+
+/// Returns true if goals have height levels by default: with a preference for heights.
+#[must_use]
+pub const fn has_levels(preference: Preference) -> bool {
+    matches!(preference, Preference::Height | Preference::Both)
+}
 
 /// Converts degrees to the wire's radians, rounded to the nearest step, so that 20° equal the
 /// default.

@@ -206,13 +206,22 @@ fn bad_arguments_are_refused_in_one_line() {
         &["--strategy", "greedy-frontier", "--preference", "off"],
         &[
             "greedy-frontier",
-            "leave --ground, --preference and --ground-parameters out",
+            "leave --ground, --preference, --levels and --ground-parameters out",
         ],
     );
     explore(
         &["--ground", "flat", "--preference", "off"],
         &["--ground flat", "say --ground uneven"],
     );
+    explore(
+        &["--ground", "flat", "--levels", "off"],
+        &["--ground flat", "leave --preference, --levels"],
+    );
+    explore(
+        &["--strategy", "bvp", "--levels", "on"],
+        &["bvp has no height levels", "leave --levels out"],
+    );
+    explore(&["--levels", "maybe"], &["maybe", "on, off"]);
     explore(
         &["--strategy", "terrain", "--ground", "flat"],
         &["means --strategy frontier", "leave --ground flat out"],

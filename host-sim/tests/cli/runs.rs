@@ -187,6 +187,21 @@ fn the_alias_terrain_is_frontier_on_uneven_ground() {
         (Some("flat"), None)
     );
     assert_ne!(flat["digest"], alias["digest"]);
+    for (arguments, levels) in [
+        (&["--ground", "flat"][..], None),
+        (&["--preference", "height"], Some(true)),
+        (&["--preference", "off"], Some(false)),
+        (&["--preference", "global"], Some(false)),
+        (&["--preference", "off", "--levels", "on"], Some(true)),
+        (&["--levels", "off"], Some(false)),
+        (&["--strategy", "bvp", "--preference", "both"], None),
+    ] {
+        assert_eq!(
+            run(arguments).0["levels"].as_bool(),
+            levels,
+            "{arguments:?}"
+        );
+    }
 }
 
 #[test]

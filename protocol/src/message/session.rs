@@ -67,6 +67,8 @@ pub enum Preference {
 pub struct UnevenGround {
     /// The preferences in use.
     pub preference: Preference,
+    /// True if goals on other height levels cost more; independent of the preferences.
+    pub levels: bool,
     /// Height above the surrounding ground from which a cell is an obstacle, metres.
     pub obstacle: I4F12,
     /// Distance within which a return of the level laser over unmeasured ground is an obstacle,

@@ -19,6 +19,7 @@ fn request_hello() {
 fn request_control_start_on_uneven_ground() {
     let uneven_ground = UnevenGround {
         preference: Preference::Global,
+        levels: true,
         obstacle: short(0.25),
         near: short(1.5),
         hole: short(-0.5),
@@ -42,7 +43,7 @@ fn request_control_start_on_uneven_ground() {
             0, // no lasers
             0xfc, 0x03, 0xf1, 0x03, 0x95, 0x02, // hull of the 3-AT
             0, 0, 0, 0, 0, 0, // radius, speeds, accelerations, period
-            1, 2, // uneven ground: some, global
+            1, 2, 1, // uneven ground: some, global, levels on
             0x80, 0x10, // obstacle 0.25 m = 1024/4096
             0x80, 0x60, // near 1.5 m = 6144/4096
             0xff, 0x1f, // hole -0.5 m = -2048/4096, zigzag 4095

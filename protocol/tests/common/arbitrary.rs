@@ -68,11 +68,12 @@ fn uneven_ground() -> impl Strategy<Value = UnevenGround> {
     ];
     let heights = [short(), short(), short(), short()];
     let preferences = [short(), short(), short(), short(), short()];
-    (preference, heights, preferences, long()).prop_map(
-        |(preference, [obstacle, near, hole, step], preferences, global_scale)| {
+    (preference, any::<bool>(), heights, preferences, long()).prop_map(
+        |(preference, levels, [obstacle, near, hole, step], preferences, global_scale)| {
             let [least, most, height_scale, climb, roll] = preferences;
             UnevenGround {
                 preference,
+                levels,
                 obstacle,
                 near,
                 hole,

@@ -42,6 +42,11 @@ impl PreferenceMode {
 pub struct UnevenGround {
     /// The preferences in use. Default: both.
     pub mode: PreferenceMode,
+    /// True if goals on other height levels cost more: a goal waits longer, the more its height
+    /// differs from that of the level ground that the robot stood on last. The cost uses
+    /// `height_scale` and `least_preference`. It is independent of `mode`, and not in \[Maffei20\].
+    /// Default: true.
+    pub levels: bool,
     /// `h_obs`: height above the mean ground around from which a return is an obstacle, metres;
     /// positive. Default: 0.30.
     pub obstacle_m: f32,
@@ -75,6 +80,7 @@ impl UnevenGround {
     /// The parameters of \[Maffei20, Table I\], and the limits of a Pioneer 3-AT.
     pub const TABLE_I: Self = Self {
         mode: PreferenceMode::Both,
+        levels: true,
         obstacle_m: 0.30,
         near_m: 1.5,
         hole_m: -0.60,

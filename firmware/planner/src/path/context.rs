@@ -42,8 +42,10 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) goal_level: Option<GoalLevel>,
     /// The tuned constants.
     pub(crate) tuning: &'a Tuning,
-    /// The cost of goals by height, where a preference is on.
+    /// The cost of goals by height, where height levels are on.
     pub(crate) levels: Option<LevelCost<'a, TILES>>,
+    /// True if blocked passages are opened again when no goal can be reached.
+    pub(crate) reopens_passages: bool,
 }
 
 impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {

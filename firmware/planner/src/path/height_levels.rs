@@ -213,7 +213,7 @@ fn mean_m(heights: &Heights<'_>, corner: Cell) -> Option<f32> {
     (count > 0).then(|| sum_m / f32::from(count))
 }
 
-/// The level of goals, where a preference for heights is on.
+/// The level of goals, where height levels are on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LevelCost<'a, const TILES: usize> {
     /// The map of heights.

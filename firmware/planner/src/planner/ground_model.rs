@@ -30,6 +30,9 @@ use crate::planner::level_scans;
 /// A goal whose height differs by less lies level with the robot, metres: twice the rounding of a
 /// block of heights.
 const LEVEL_M: f32 = 0.2;
+/// True if blocked passages are opened again on all uneven ground. While it is false, they are
+/// opened again only if the height preference is on.
+const REOPENS_ON_ALL_UNEVEN_GROUND: bool = false;
 
 /// What the planner keeps of the space beside the map.
 ///
@@ -88,6 +91,12 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
+    /// Returns true if blocked passages are opened again when no goal can be reached.
+    pub(super) fn reopens_passages(config: &Config) -> bool {
+        let ground = config.ground.as_ref();
+        ground.is_some_and(|it| REOPENS_ON_ALL_UNEVEN_GROUND || it.mode.has_heights())
+    }
+
     /// Returns the cost of goals by their height; `None` where heights do not choose goals.
     pub(super) fn level_cost<'a>(
         &'a self,
@@ -96,7 +105,7 @@ impl<const TILES: usize> GroundModel<TILES> {
     ) -> Option<LevelCost<'a, TILES>> {
         let terrain = config.ground.as_ref()?;
         match self {
-            Self::Uneven(heights) if terrain.mode.has_heights() => Some(LevelCost {
+            Self::Uneven(heights) if terrain.levels => Some(LevelCost {
                 heights,
                 ground: terrain,
                 reference_m: preferences.reference_m(),
@@ -163,5 +172,46 @@ impl<const TILES: usize> GroundModel<TILES> {
         } else {
             Some(SlopeDirection::Down)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::boxed::Box;
+
+    use super::GroundModel;
+    use crate::config::{Config, PreferenceMode, UnevenGround};
+    use crate::field::preference::Preferences;
+
+    #[test]
+    fn levels_are_independent_of_the_preference() {
+        for (mode, has_heights) in [
+            (PreferenceMode::Off, false),
+            (PreferenceMode::Height, true),
+            (PreferenceMode::Global, false),
+            (PreferenceMode::Both, true),
+        ] {
+            for levels in [false, true] {
+                let config = Config {
+                    ground: Some(UnevenGround {
+                        mode,
+                        levels,
+                        ..UnevenGround::TABLE_I
+                    }),
+                    ..Config::pioneer_3at(heapless::Vec::new())
+                };
+                let model = Box::new(GroundModel::<24>::of(&config));
+                let cost = model.level_cost(&config, &Preferences::new());
+                assert_eq!(cost.is_some(), levels, "{mode:?}");
+                assert_eq!(GroundModel::<24>::reopens_passages(&config), has_heights);
+            }
+        }
+        let flat = Config::pioneer_3at(heapless::Vec::new());
+        assert!(
+            GroundModel::<24>::of(&flat)
+                .level_cost(&flat, &Preferences::new())
+                .is_none()
+        );
+        assert!(!GroundModel::<24>::reopens_passages(&flat));
     }
 }

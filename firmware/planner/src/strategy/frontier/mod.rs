@@ -222,7 +222,7 @@ impl Frontier {
             self.path = path.leading_to(viewpoint.stand);
             return self.go_and_look(viewpoint, along_centre, context);
         } else {
-            return self.do_without(context.levels.is_some());
+            return self.do_without(context.reopens_passages);
         }
         let (goal, steps) = (self.path.goal(), self.path.steps());
         let verdict = self.progress.judge(goal, steps, context.time_ms);
@@ -367,12 +367,12 @@ impl Frontier {
     /// On uneven ground, the ground ahead is measured from near by and often from one side only,
     /// and one blocked passage may close the only way up. So there the passages are opened again up
     /// to [`MOST_RETRIES`] times.
-    fn do_without(&mut self, is_uneven: bool) -> RoundOutcome {
+    fn do_without(&mut self, reopens_passages: bool) -> RoundOutcome {
         self.path.clear();
         if !self.second_chance {
             return self.begin_second_chance();
         }
-        if is_uneven && !self.blocked.is_empty() && self.retries < MOST_RETRIES {
+        if reopens_passages && !self.blocked.is_empty() && self.retries < MOST_RETRIES {
             self.retries += 1;
             return self.begin_second_chance();
         }

@@ -130,6 +130,7 @@ impl Scene {
                 ground: &UnevenGround::TABLE_I,
                 reference_m,
             }),
+            reopens_passages: reference_m.is_some(),
         }
     }
 

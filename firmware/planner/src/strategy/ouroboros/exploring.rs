@@ -146,6 +146,7 @@ impl Exploration {
                 goal_level: None,
                 tuning: &Tuning::DEFAULT,
                 levels: None,
+                reopens_passages: false,
             };
             let outcome = self
                 .strategy

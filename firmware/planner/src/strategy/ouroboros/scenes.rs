@@ -167,6 +167,7 @@ impl Scene {
             goal_level: None,
             tuning: &Tuning::DEFAULT,
             levels: None,
+            reopens_passages: false,
         }
     }
 
