@@ -8,7 +8,7 @@
 
 use fieldline_planner::{
     self as planner, Cell, Config, Input, LaserMount, LoopCounts, LoopLimits, Parameter, Pose,
-    PreferenceMode, Residue, RobotShape, State, Strategy, Tuning, Twist, UnevenGround,
+    PreferenceMode, ResidualReason, RobotShape, State, Strategy, Tuning, Twist, UnevenGround,
 };
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
@@ -248,17 +248,17 @@ fn wire_cell(cell: Cell) -> (i16, i16) {
 
 /// Converts a residual frontier for the wire.
 #[must_use]
-pub fn wire_frontier(frontier: &planner::Frontier) -> wire::ResidualFrontier {
+pub fn wire_frontier(frontier: &planner::ResidualFrontier) -> wire::ResidualFrontier {
     let (x, y) = wire_cell(frontier.cell);
     wire::ResidualFrontier {
         x,
         y,
         cells: frontier.cells,
         reason: match frontier.reason {
-            Residue::Unreachable => wire::ResidualReason::Unreachable,
-            Residue::Unobservable => wire::ResidualReason::Unobservable,
-            Residue::OutOfBounds => wire::ResidualReason::OutOfBounds,
-            Residue::NoProgress => wire::ResidualReason::NoProgress,
+            ResidualReason::Unreachable => wire::ResidualReason::Unreachable,
+            ResidualReason::Unobservable => wire::ResidualReason::Unobservable,
+            ResidualReason::OutOfBounds => wire::ResidualReason::OutOfBounds,
+            ResidualReason::NoProgress => wire::ResidualReason::NoProgress,
         },
     }
 }

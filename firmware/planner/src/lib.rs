@@ -111,4 +111,4 @@ pub use planner::{
 };
 pub use profiling::{Stage, StageTimer};
 pub use robot::{LaserMount, MAX_BEAMS, RobotShape};
-pub use status::{Fault, Finish, Frontier, Residue, Status};
+pub use status::{Fault, Finish, ResidualFrontier, ResidualReason, Status};

@@ -52,7 +52,7 @@ pub enum Fault {
 
 /// The reason why a frontier was left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Residue {
+pub enum ResidualReason {
     /// No path for the robot's radius leads there.
     Unreachable,
     /// The robot was there and could not see it.
@@ -66,19 +66,20 @@ pub enum Residue {
 /// A residual frontier: cells that border on unexplored space and that the exploration left.
 ///
 /// ```
-/// use fieldline_planner::{Cell, Frontier, Residue};
+/// use fieldline_planner::{Cell, ResidualFrontier, ResidualReason};
 ///
-/// let left = Frontier { cell: Cell { x: 12, y: -3 }, cells: 4, reason: Residue::Unreachable };
+/// let reason = ResidualReason::Unreachable;
+/// let left = ResidualFrontier { cell: Cell { x: 12, y: -3 }, cells: 4, reason };
 /// assert_eq!(left.to_string(), "4 cells at (1.2, -0.3) m: unreachable");
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Frontier {
+pub struct ResidualFrontier {
     /// One of its cells.
     pub cell: Cell,
     /// The number of its cells.
     pub cells: u16,
     /// Why it was left.
-    pub reason: Residue,
+    pub reason: ResidualReason,
 }
 
 impl fmt::Display for Status {
@@ -111,7 +112,7 @@ impl fmt::Display for Fault {
     }
 }
 
-impl fmt::Display for Residue {
+impl fmt::Display for ResidualReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Unreachable => "unreachable",
@@ -122,7 +123,7 @@ impl fmt::Display for Residue {
     }
 }
 
-impl fmt::Display for Frontier {
+impl fmt::Display for ResidualFrontier {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let corner = self.cell.corner();
         write!(

@@ -27,7 +27,7 @@ use fieldline_planner::math;
 use fieldline_planner::planner::starts_blocked;
 use fieldline_planner::roadmap::configuration_space::Footprint;
 use fieldline_planner::robot::is_level;
-use fieldline_planner::status::Residue;
+use fieldline_planner::status::ResidualReason;
 use fieldline_protocol::message::{
     Command, Control, Cost, Fault, FieldRow, Finish, Identity, MAX_FRONTIERS, Observation, Path,
     Refusal, ResidualFrontier, Start, Status, TILE_SKELETON_BYTES, TILE_STAMPS, Tile,
@@ -159,7 +159,7 @@ impl<S: Strategy> Session<S> {
     fn resolve_gaps(&mut self, config: &Config) {
         let dropped = self.strategy.dropped();
         let new = dropped.iter().skip(self.resolved);
-        for frontier in new.filter(|frontier| frontier.reason == Residue::Unobservable) {
+        for frontier in new.filter(|frontier| frontier.reason == ResidualReason::Unobservable) {
             self.map.resolve_gaps(config, frontier.cell);
         }
         self.resolved = dropped.len();

@@ -2,7 +2,7 @@
 
 use fieldline_planner::config::UnevenGround;
 use fieldline_planner::geometry::{Point, Pose};
-use fieldline_planner::status::Frontier;
+use fieldline_planner::status::ResidualFrontier;
 use fieldline_protocol::message::FieldRow;
 
 use super::chart::Chart;
@@ -60,7 +60,7 @@ pub trait Strategy {
     fn potential_at(&self, scene: &Scene<'_>, point: Point) -> f32;
 
     /// Returns the goals that were given up, each with its reason.
-    fn dropped(&self) -> Vec<Frontier>;
+    fn dropped(&self) -> Vec<ResidualFrontier>;
 
     /// Returns the solver cycles of the last plan.
     fn cycles(&self) -> u16 {

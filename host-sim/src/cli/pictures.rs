@@ -32,7 +32,7 @@ impl<'a> Album<'a> {
     /// Draws `run.png`.
     pub(super) fn end(&self) -> Vec<u8> {
         let left = self.report.outcome.residual_frontiers.iter();
-        let residue: Vec<_> = left.map(|f| (f.x_m, f.y_m)).collect();
+        let residual: Vec<_> = left.map(|f| (f.x_m, f.y_m)).collect();
         run_png(&Scene {
             title: &self.report.headline(),
             subtitle: &self.report.in_short(),
@@ -40,7 +40,7 @@ impl<'a> Album<'a> {
             path: &self.path,
             window: self.record.window.as_ref(),
             relief: self.record.relief.as_ref(),
-            residue: &residue,
+            residual: &residual,
             planned_path: Some(&self.record.planned_path),
             given_up: &self.given_up(u32::MAX),
             ground: self.ground,
@@ -84,7 +84,7 @@ impl<'a> Album<'a> {
             path: &self.path[..snapshot.steps.min(self.path.len())],
             window: snapshot.window.as_ref(),
             relief: snapshot.relief.as_ref(),
-            residue: &[],
+            residual: &[],
             planned_path: Some(&snapshot.planned_path),
             given_up: &self.given_up(progress.time_ms),
             ground: self.ground,

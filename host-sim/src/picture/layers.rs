@@ -190,8 +190,8 @@ pub(super) fn path(canvas: &mut Canvas, frame: &Frame, path: &[Stamped]) {
 }
 
 /// Draws a diamond on every residual frontier.
-pub(super) fn residue(canvas: &mut Canvas, frame: &Frame, residue: &[(f64, f64)]) {
-    for &(x_m, y_m) in residue {
+pub(super) fn residual(canvas: &mut Canvas, frame: &Frame, residual: &[(f64, f64)]) {
+    for &(x_m, y_m) in residual {
         diamond(canvas, frame.metres(x_m, y_m));
     }
 }

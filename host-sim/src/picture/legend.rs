@@ -97,7 +97,7 @@ pub(super) fn panel(canvas: &mut Canvas, left: i32, scene: &Scene<'_>) {
     layers::head(canvas, (mid, y), 0.0, 9.0);
     label(canvas, left, y, "end");
     y += LINE;
-    if !scene.residue.is_empty() {
+    if !scene.residual.is_empty() {
         layers::diamond(canvas, (mid, y));
         label(canvas, left, y, "frontier left");
         y += LINE;

@@ -66,7 +66,7 @@ pub struct Scene<'a> {
     /// Heights and preferences in it.
     pub relief: Option<&'a Relief>,
     /// Residual frontiers, metres.
-    pub residue: &'a [(f64, f64)],
+    pub residual: &'a [(f64, f64)],
     /// Path to the goal, tractor point and shield.
     pub planned_path: Option<&'a PlannedPath>,
     /// Places where loops were given up, metres.
@@ -229,7 +229,7 @@ fn robots_map(canvas: &mut Canvas, frame: &Frame, scene: &Scene<'_>) {
         layers::arrows(canvas, frame, window);
     }
     layers::path(canvas, frame, scene.path);
-    layers::residue(canvas, frame, scene.residue);
+    layers::residual(canvas, frame, scene.residual);
     if let Some(planned_path) = scene.planned_path {
         loops::planned_path(canvas, frame, planned_path);
     }

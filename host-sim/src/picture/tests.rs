@@ -28,7 +28,7 @@ fn scene_of(map: &GridMap) -> Scene<'_> {
         path: &[],
         window: None,
         relief: None,
-        residue: &[],
+        residual: &[],
         planned_path: None,
         given_up: &[],
         ground: None,
@@ -88,7 +88,7 @@ fn colours_are_where_the_map_says() {
     let scene = Scene {
         path: &path,
         window: Some(&window),
-        residue: &[(-2.0, -3.0)],
+        residual: &[(-2.0, -3.0)],
         ..scene_of(&map)
     };
     let png = run_png(&scene);

@@ -3,7 +3,7 @@
 use std::string::ToString;
 use std::vec::Vec;
 
-use fieldline_planner::{Cell, Frontier, LaserMount, Residue, RobotShape, Twist};
+use fieldline_planner::{Cell, LaserMount, ResidualFrontier, ResidualReason, RobotShape, Twist};
 use fieldline_protocol::message as wire;
 use fieldline_protocol::message::{
     Control, Hull, Laser, LoopLimits, Observation, Parameter, Refusal, Scan, Start, UnevenGround,
@@ -377,13 +377,13 @@ fn quantities_saturate_and_nan_becomes_zero() {
 
 #[test]
 fn distant_cells_saturate() {
-    let frontier = Frontier {
+    let frontier = ResidualFrontier {
         cell: Cell {
             x: 40_000,
             y: -40_000,
         },
         cells: 7,
-        reason: Residue::OutOfBounds,
+        reason: ResidualReason::OutOfBounds,
     };
     assert_eq!(
         wire_frontier(&frontier),

@@ -13,7 +13,7 @@
 use heapless::Vec;
 
 use crate::geometry::{Cell, Point};
-use crate::status::Residue;
+use crate::status::ResidualReason;
 
 /// Time without progress after which a goal is given up, milliseconds.
 const NO_PROGRESS_MS: u32 = 12_000;
@@ -61,7 +61,7 @@ pub(crate) enum Verdict {
     /// Go on.
     GoOn,
     /// Give it up.
-    Drop(Residue),
+    Drop(ResidualReason),
     /// Block the first cell of the path that the local grid has no way to.
     BlockUnreachable,
     /// Block the path ahead of the robot.
@@ -159,16 +159,16 @@ impl ProgressChecker {
             self.stood_ms = time_ms;
             self.stood_passages += u8::from(!reached);
             return if reached {
-                Verdict::Drop(Residue::Unobservable)
+                Verdict::Drop(ResidualReason::Unobservable)
             } else {
                 Verdict::BlockAhead
             };
         }
         let moves = stood_ms <= NO_PROGRESS_MS / 2;
         if reached && idle_ms > LOOK_MS {
-            Verdict::Drop(Residue::Unobservable)
+            Verdict::Drop(ResidualReason::Unobservable)
         } else if moves && idle_ms > NO_PROGRESS_MS {
-            Verdict::Drop(Residue::NoProgress)
+            Verdict::Drop(ResidualReason::NoProgress)
         } else {
             Verdict::GoOn
         }
@@ -235,14 +235,14 @@ mod tests {
     #[test]
     fn a_goal_that_comes_no_nearer_is_dropped() {
         let (when_ms, last) = verdict(|_| (FAR, 40));
-        assert_eq!(last, Verdict::Drop(Residue::NoProgress));
+        assert_eq!(last, Verdict::Drop(ResidualReason::NoProgress));
         assert_eq!(when_ms, NO_PROGRESS_MS + 500);
     }
 
     #[test]
     fn a_goal_that_is_reached_is_looked_at_and_dropped() {
         let (when_ms, last) = verdict(|_| (NEAR, 2));
-        assert_eq!(last, Verdict::Drop(Residue::Unobservable));
+        assert_eq!(last, Verdict::Drop(ResidualReason::Unobservable));
         assert_eq!(when_ms, LOOK_MS + 500);
     }
 
@@ -253,7 +253,7 @@ mod tests {
             0 => (NEAR, 30 - k % 4),
             _ => (FAR, 30 - k % 4),
         });
-        assert_eq!(last, Verdict::Drop(Residue::NoProgress));
+        assert_eq!(last, Verdict::Drop(ResidualReason::NoProgress));
         assert!(when_ms < 3 * NO_PROGRESS_MS, "{when_ms} ms");
     }
 

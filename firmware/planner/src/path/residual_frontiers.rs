@@ -7,7 +7,7 @@ use heapless::Vec;
 
 use crate::geometry::Cell;
 use crate::roadmap::skeleton::Skeleton;
-use crate::status::{Frontier as ResidualFrontier, Residue};
+use crate::status::{ResidualFrontier, ResidualReason};
 
 /// Maximum number of residual frontiers.
 const MOST_RESIDUAL: usize = 32;
@@ -45,7 +45,7 @@ impl ResidualFrontiers {
     }
 
     /// Gives up a goal. A full list loses its oldest one.
-    pub(crate) fn give_up(&mut self, cell: Cell, reason: Residue) {
+    pub(crate) fn give_up(&mut self, cell: Cell, reason: ResidualReason) {
         if self.list.is_full() {
             self.list.remove(0);
         }
@@ -60,12 +60,13 @@ impl ResidualFrontiers {
     /// Takes the goals back that were given up because the robot came no nearer.
     pub(crate) fn retry_without_progress(&mut self) {
         self.list
-            .retain(|residual| residual.reason != Residue::NoProgress);
+            .retain(|residual| residual.reason != ResidualReason::NoProgress);
     }
 
     /// Takes a goal off the list that was reached and stayed unexplored.
     pub(crate) fn take_unobservable(&mut self) -> Option<Cell> {
-        let unobservable = |residual: &ResidualFrontier| residual.reason == Residue::Unobservable;
+        let unobservable =
+            |residual: &ResidualFrontier| residual.reason == ResidualReason::Unobservable;
         let place = self.list.iter().position(unobservable)?;
         Some(self.list.remove(place).cell)
     }
@@ -77,20 +78,20 @@ impl ResidualFrontiers {
         };
         for site in frontier.sites() {
             let cell = skeleton.frame().cell(site);
-            self.count(cell, Residue::Unreachable);
+            self.count(cell, ResidualReason::Unreachable);
         }
     }
 
     /// Lists a cell beyond which the map has no room. A group beside it has the same reason.
     pub(crate) fn list_map_exit(&mut self, cell: Cell) {
-        if let Some(group) = self.count(cell, Residue::OutOfBounds) {
-            group.reason = Residue::OutOfBounds;
+        if let Some(group) = self.count(cell, ResidualReason::OutOfBounds) {
+            group.reason = ResidualReason::OutOfBounds;
         }
     }
 
     /// Counts a cell to the first group near it, or begins a group. Returns the group; `None` if
     /// the list is full.
-    fn count(&mut self, cell: Cell, reason: Residue) -> Option<&mut ResidualFrontier> {
+    fn count(&mut self, cell: Cell, reason: ResidualReason) -> Option<&mut ResidualFrontier> {
         let is_group = |residual: &ResidualFrontier| is_near(residual.cell, cell, GROUP_RADIUS_M);
         if let Some(k) = self.list.iter().position(is_group) {
             let group = self.list.get_mut(k)?;

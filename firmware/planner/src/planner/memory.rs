@@ -8,7 +8,7 @@ use crate::geometry::Cell;
 use crate::input::Input;
 use crate::planner::{Output, State, Workspace, step};
 use crate::profiling::StageTimer;
-use crate::status::{Frontier, Status};
+use crate::status::{ResidualFrontier, Status};
 
 /// The capacity of a planner: `TILES` map tiles of 3.2 × 3.2 m in the pool, and a box of `SLOTS`
 /// tile places that they may lie in.
@@ -126,7 +126,7 @@ impl<M: Memory> Planner<M> {
     }
 
     /// Returns the residual frontiers, each with its reason.
-    pub fn frontiers(&self) -> &[Frontier] {
+    pub fn frontiers(&self) -> &[ResidualFrontier] {
         sealed::Planning::frontiers(&self.state)
     }
 
@@ -148,8 +148,8 @@ mod sealed {
     use core::fmt::Debug;
 
     use super::{
-        BoxTooLarge, Capacity, Cell, Config, Frontier, Input, Output, StageTimer, State, Status,
-        Workspace, step,
+        BoxTooLarge, Capacity, Cell, Config, Input, Output, ResidualFrontier, StageTimer, State,
+        Status, Workspace, step,
     };
 
     /// A capacity.
@@ -175,7 +175,7 @@ mod sealed {
         ) -> Output;
         fn status(&self) -> Status;
         fn path(&self) -> &[Cell];
-        fn frontiers(&self) -> &[Frontier];
+        fn frontiers(&self) -> &[ResidualFrontier];
         fn tile(&self, column: i16, row: i16) -> Option<[u8; 256]>;
     }
 
@@ -206,7 +206,7 @@ mod sealed {
             Self::path(self)
         }
 
-        fn frontiers(&self) -> &[Frontier] {
+        fn frontiers(&self) -> &[ResidualFrontier] {
             Self::frontiers(self)
         }
 

@@ -9,7 +9,7 @@
 use crate::geometry::Cell;
 use crate::map::tiles::TILE_SIDE;
 use crate::planner::state::State;
-use crate::status::Frontier;
+use crate::status::ResidualFrontier;
 use crate::strategy::ouroboros::{Ouroboros, REGION_CELLS};
 use crate::strategy::tdbvp::PLACE_CELLS;
 
@@ -77,7 +77,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 
     /// Returns the residual frontiers, each with its reason.
     #[must_use]
-    pub fn frontiers(&self) -> &[Frontier] {
+    pub fn frontiers(&self) -> &[ResidualFrontier] {
         self.strategy.frontier.residual_frontiers()
     }
 

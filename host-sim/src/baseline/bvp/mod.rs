@@ -34,7 +34,7 @@ use fieldline_planner::config::PreferenceMode;
 use fieldline_planner::field::preference::Preferences;
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::math;
-use fieldline_planner::status::Frontier;
+use fieldline_planner::status::ResidualFrontier;
 use fieldline_protocol::message::{FIELD_SIDE, FieldRow};
 
 use super::strategy::{Outcome, Scene, Strategy, UnevenScene};
@@ -164,7 +164,7 @@ impl Strategy for Bvp {
         (self.field.q(point.cell()) / here.max(f64::MIN_POSITIVE)) as f32
     }
 
-    fn dropped(&self) -> Vec<Frontier> {
+    fn dropped(&self) -> Vec<ResidualFrontier> {
         self.progress.dropped().to_vec()
     }
 

@@ -18,7 +18,7 @@
 //! Units: milliseconds; map cells.
 
 use fieldline_planner::geometry::{CELL_M, Cell, Point};
-use fieldline_planner::status::{Frontier, Residue};
+use fieldline_planner::status::{ResidualFrontier, ResidualReason};
 
 /// Time without progress after which a robot that moves drops its goal, milliseconds.
 pub const PROGRESS_MS: u32 = 12_000;
@@ -49,7 +49,7 @@ struct Pursuit {
 /// The progress checker.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ProgressChecker {
-    dropped: Vec<Frontier>,
+    dropped: Vec<ResidualFrontier>,
     pursuit: Option<Pursuit>,
     /// Place and time of the last motion, and the number of goals dropped since.
     stood: Point,
@@ -66,7 +66,7 @@ fn near(a: Cell, b: Cell, radius_m: f32) -> bool {
 
 impl ProgressChecker {
     /// Returns the dropped goals, each with its reason.
-    pub(super) fn dropped(&self) -> &[Frontier] {
+    pub(super) fn dropped(&self) -> &[ResidualFrontier] {
         &self.dropped
     }
 
@@ -88,7 +88,7 @@ impl ProgressChecker {
         if !self.second_chance {
             self.second_chance = true;
             self.dropped
-                .retain(|goal| goal.reason != Residue::NoProgress);
+                .retain(|goal| goal.reason != ResidualReason::NoProgress);
         }
         self.dropped.len() < before
     }
@@ -124,13 +124,13 @@ impl ProgressChecker {
             self.stood_ms = time_ms;
             self.stood_drops += 1;
         }
-        self.dropped.push(Frontier {
+        self.dropped.push(ResidualFrontier {
             cell: pursuit.goal,
             cells: 1,
             reason: if reached {
-                Residue::Unobservable
+                ResidualReason::Unobservable
             } else {
-                Residue::NoProgress
+                ResidualReason::NoProgress
             },
         });
         self.pursuit = None;
@@ -141,13 +141,16 @@ impl ProgressChecker {
 mod tests {
     use super::ProgressChecker;
     use fieldline_planner::geometry::{Cell, Point};
-    use fieldline_planner::status::Residue;
+    use fieldline_planner::status::ResidualReason;
 
     const GOAL: Cell = Cell { x: 40, y: 0 };
 
     /// Returns the second in which the first goal is dropped, and the reason. In second t the robot
     /// is at x = `x_m(t)`, `steps(t)` cells from its goal.
-    fn dropped_s(x_m: impl Fn(u32) -> f32, steps: impl Fn(u32) -> u32) -> Option<(u32, Residue)> {
+    fn dropped_s(
+        x_m: impl Fn(u32) -> f32,
+        steps: impl Fn(u32) -> u32,
+    ) -> Option<(u32, ResidualReason)> {
         let mut checker = ProgressChecker::default();
         (0..200).find_map(|t| {
             let at = Point {
@@ -162,9 +165,18 @@ mod tests {
     #[test]
     fn goals_without_progress_are_dropped_sooner_by_a_robot_that_moves() {
         let circling = |t: u32| if t.is_multiple_of(2) { 0.0 } else { 1.0 };
-        assert_eq!(dropped_s(circling, |_| 30), Some((13, Residue::NoProgress)));
-        assert_eq!(dropped_s(|_| 0.0, |_| 30), Some((25, Residue::NoProgress)));
-        assert_eq!(dropped_s(|_| 0.0, |_| 3), Some((6, Residue::Unobservable)));
+        assert_eq!(
+            dropped_s(circling, |_| 30),
+            Some((13, ResidualReason::NoProgress))
+        );
+        assert_eq!(
+            dropped_s(|_| 0.0, |_| 30),
+            Some((25, ResidualReason::NoProgress))
+        );
+        assert_eq!(
+            dropped_s(|_| 0.0, |_| 3),
+            Some((6, ResidualReason::Unobservable))
+        );
         assert_eq!(dropped_s(|_| 0.0, |t| 1000 - t), None, "it comes nearer");
     }
 

@@ -32,7 +32,7 @@ pub mod pursuit;
 pub mod tuning;
 
 use fieldline_planner::geometry::{Cell, Point};
-use fieldline_planner::status::{Frontier as Residual, Residue};
+use fieldline_planner::status::{ResidualFrontier, ResidualReason};
 
 use super::chart::Chart;
 use super::strategy::{Outcome, Scene, Strategy};
@@ -67,7 +67,7 @@ pub struct GreedyFrontier {
     goal: Option<Goal>,
     path: Vec<Point>,
     inflation: Inflation,
-    blacklist: Vec<Residual>,
+    blacklist: Vec<ResidualFrontier>,
     /// Frontiers without a path at the last choice.
     unreachable: Vec<(Cell, usize)>,
     chosen_ms: u32,
@@ -97,7 +97,7 @@ impl GreedyFrontier {
         let found = frontiers::search(chart, paths, robot, &self.tuning);
         self.unreachable = found.unreachable;
         for frontier in found.frontiers {
-            let listed = |black: &Residual| same(black.cell, frontier.goal);
+            let listed = |black: &ResidualFrontier| same(black.cell, frontier.goal);
             if !self.blacklist.iter().any(listed) && self.pursue(chart, &frontier, time_ms) {
                 return;
             }
@@ -132,11 +132,11 @@ impl GreedyFrontier {
     /// Blacklists the goal.
     fn give_up(&mut self, goal: Goal) {
         let reason = if self.reached {
-            Residue::Unobservable
+            ResidualReason::Unobservable
         } else {
-            Residue::NoProgress
+            ResidualReason::NoProgress
         };
-        self.blacklist.push(Residual {
+        self.blacklist.push(ResidualFrontier {
             cell: goal.cell,
             cells: u16::try_from(goal.cells).unwrap_or(u16::MAX),
             reason,
@@ -192,12 +192,15 @@ impl Strategy for GreedyFrontier {
         libm::exp2f(ahead_m / DOUBLES_IN_M)
     }
 
-    fn dropped(&self) -> Vec<Residual> {
-        let unreachable = self.unreachable.iter().map(|&(cell, cells)| Residual {
-            cell,
-            cells: u16::try_from(cells).unwrap_or(u16::MAX),
-            reason: Residue::Unreachable,
-        });
+    fn dropped(&self) -> Vec<ResidualFrontier> {
+        let unreachable = self
+            .unreachable
+            .iter()
+            .map(|&(cell, cells)| ResidualFrontier {
+                cell,
+                cells: u16::try_from(cells).unwrap_or(u16::MAX),
+                reason: ResidualReason::Unreachable,
+            });
         self.blacklist.iter().copied().chain(unreachable).collect()
     }
 }

@@ -24,7 +24,7 @@ use crate::path::search::path_to;
 use crate::path::viewpoint::Viewpoint;
 use crate::path::{Path, PlanningContext, PlanningScratch, RoundOutcome};
 use crate::roadmap::skeleton::Skeleton;
-use crate::status::{Frontier as ResidualFrontier, Residue};
+use crate::status::{ResidualFrontier, ResidualReason};
 
 /// A robot that follows its own potential has reached a goal that is at most this many steps away.
 const REACHED_STEPS: u32 = 4;
@@ -269,7 +269,7 @@ impl Frontier {
         let goal = self.path.goal();
         match self.blocked.block(passage.unwrap_or(goal)) {
             Ok(()) => self.forget_path(),
-            Err(_) => self.give_up(goal, Residue::NoProgress),
+            Err(_) => self.give_up(goal, ResidualReason::NoProgress),
         }
     }
 
@@ -327,7 +327,7 @@ impl Frontier {
         let reason = match self.progress.judge(viewpoint.stand, steps, context.time_ms) {
             Verdict::GoOn => return RoundOutcome::Path,
             Verdict::Drop(reason) => reason,
-            Verdict::BlockUnreachable | Verdict::BlockAhead => Residue::Unreachable,
+            Verdict::BlockUnreachable | Verdict::BlockAhead => ResidualReason::Unreachable,
         };
         self.give_up(viewpoint.gap, reason);
         self.viewpoint = None;
@@ -350,7 +350,7 @@ impl Frontier {
         }
         let path = path_to(viewpoint.stand, context, scratch);
         if path.is_none() {
-            self.give_up(viewpoint.gap, Residue::Unreachable);
+            self.give_up(viewpoint.gap, ResidualReason::Unreachable);
         }
         self.viewpoint = path.is_some().then_some(viewpoint);
         Some((viewpoint, path?))
@@ -399,7 +399,7 @@ impl Frontier {
     }
 
     /// Gives up a goal: no other one is taken near it.
-    fn give_up(&mut self, goal: Cell, reason: Residue) {
+    fn give_up(&mut self, goal: Cell, reason: ResidualReason) {
         self.residual.give_up(goal, reason);
         self.forget_path();
     }
