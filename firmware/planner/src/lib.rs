@@ -100,8 +100,8 @@ pub mod strategy;
 
 pub use config::{
     BoxTooLarge, Config, ConfigBuilder, ConfigError, FieldTuning, Goal, GoalLevel, GroundTuning,
-    LoopLimits, Method, OuroborosTuning, Parameter, PreferenceMode, SolverConfig, Strategy,
-    TdbvpTuning, Tuned, Tuning, TuningError, UnevenGround,
+    LoopLimits, MapTuning, Method, OuroborosTuning, Parameter, PreferenceMode, SolverConfig,
+    Strategy, TdbvpTuning, Tuned, Tuning, TuningError, UnevenGround,
 };
 pub use field::SIDE as FIELD_SIDE;
 pub use geometry::{CELL_M, Cell, Point, Pose, Twist};

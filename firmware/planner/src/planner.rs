@@ -129,8 +129,8 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     if state.status != Status::Exploring {
         return Output::standing(state.status);
     }
-    if charge_rails(state, workspace, &footprint, &input, config.tuning).is_none() {
-        let Some(goal) = local_goal(state, &footprint, &input, &mut workspace.view) else {
+    if charge_rails(config, state, workspace, &footprint, &input).is_none() {
+        let Some(goal) = local_goal(config, state, &footprint, &input, &mut workspace.view) else {
             timer.mark(Stage::Window);
             return Output {
                 velocity: look_about(config, state, &input),

@@ -182,7 +182,7 @@ impl<S: Strategy> Session<S> {
         for (laser, ranges_mm) in config.lasers().iter().zip(input.scans) {
             if is_level(laser) {
                 self.obstacle_points
-                    .update(config.robot(), &input.pose, laser, ranges_mm);
+                    .update(config, &input.pose, laser, ranges_mm);
             }
         }
     }

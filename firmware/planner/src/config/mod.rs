@@ -19,7 +19,7 @@ pub use ground::{KERNEL_CELLS, PreferenceMode, UnevenGround};
 pub use loops::LoopLimits;
 pub use solver::{Method, SolverConfig};
 pub use tuning::{
-    FieldTuning, GroundTuning, OuroborosTuning, TdbvpTuning, Tuned, Tuning, TuningError,
+    FieldTuning, GroundTuning, MapTuning, OuroborosTuning, TdbvpTuning, Tuned, Tuning, TuningError,
 };
 
 use heapless::Vec;

@@ -168,6 +168,7 @@ macro_rules! rooms {
 
 rooms! {
     ground: GroundTuning, "Uneven ground.";
+    map: MapTuning, "The map.";
     field: FieldTuning, "The window's field and its solver.";
     tdbvp: TdbvpTuning, "Rails of time.";
     ouroboros: OuroborosTuning, "Loop closing.";

@@ -108,8 +108,8 @@ impl<'a> Elevation<'a> {
     /// Adds a measured height to a cell's mean, metres; ignores cells outside the window.
     ///
     /// The cell is then no drop, and its obstacle score falls by one point. A height more than
-    /// `outlier_m` off the mean may be a false return: the mean stays and its count falls, until the
-    /// mean gives way. Of two first heights that differ so much, the lower one stays.
+    /// `outlier_m` off the mean may be a false return: the mean stays and its count falls, until
+    /// the mean gives way. Of two first heights that differ so much, the lower one stays.
     pub fn measure(&mut self, cell: Cell, height_m: f32) {
         self.discard_low_confidence(cell);
         self.average(cell, height_m);

@@ -103,7 +103,7 @@ impl<'a, 'm> Survey<'a, 'm> {
         if is_first {
             self.mark_robot_plane(self.tuning.blind_radius_m);
         }
-        self.mark_robot_plane(self.tuning.wheel_radius_m);
+        self.mark_robot_plane(config.tuning.map.stand_radius_m);
         // The level laser is judged by the ground that the tilted laser measures.
         for level in [false, true] {
             for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {

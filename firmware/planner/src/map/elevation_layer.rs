@@ -22,22 +22,8 @@ use crate::robot::is_level;
 /// Pages that hold the marks.
 const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::Cells>();
 
-/// Rows this near to the robot are classified in every step, others in every second step. It is
-/// more than the robot's stopping distance, cells.
-const NEAR_ROWS: i32 = 12;
-/// Phases of the beams through a doorway to a known wall: a step evaluates one phase, every fifth
-/// beam.
-const BEAM_PHASES: usize = 5;
-/// Number of doorway cells after which a step starts no further beam; the rest waits for the next
-/// step. A whole room at once takes too long for a step.
-const MAX_DOORWAY_CELLS: u32 = 5_000;
 /// Duration of a step, milliseconds. It only turns time into a phase.
 const STEP_MS: u32 = 200;
-/// Cells around a goal that are resolved with it.
-const RESOLVE_CELLS: i32 = 3;
-/// Cells around the place before a blocked robot in which gaps are freed: the ground hidden behind
-/// a brow is at least as wide.
-const FREE_GAP_CELLS: i32 = 5;
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Lends the pages that hold the marks to the elevation window.
@@ -79,9 +65,10 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         let limits = RiseLimits::new(ground, tuning);
         self.odd_rows = !self.odd_rows;
         let middle = self.window.y + WINDOW_SIDE / 2;
+        let near_rows = config.tuning.map.near_rows;
         for y in self.window.y..self.window.y + WINDOW_SIDE {
             // All rows would take too long for a step, and a far row can wait for one step.
-            if (y - middle).abs() <= NEAR_ROWS || (y & 1 == 1) == self.odd_rows {
+            if (y - middle).abs() <= near_rows || (y & 1 == 1) == self.odd_rows {
                 self.classify(&limits, y);
             }
         }
@@ -89,7 +76,8 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 
     /// Enters what beams see through doorways into cells that are unknown.
     fn view_doorways(&mut self, config: &Config, ground: &UnevenGround, input: &Input<'_>) {
-        let phase = (input.time_ms / STEP_MS) as usize % BEAM_PHASES;
+        let phases = config.tuning.map.beam_phases;
+        let phase = (input.time_ms / STEP_MS) as usize % phases;
         let mut written = 0;
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             let tuning = &config.tuning.ground;
@@ -103,10 +91,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                 // The cells before a known wall are mostly known, so a few beams per step suffice.
                 let is_due = |tiles: &Tiles<TILES, SLOTS>, number: usize| {
                     let is_new = |end: Cell| tiles.class(end) == Class::Unknown;
-                    number % BEAM_PHASES == phase || view.end_cell(number).is_some_and(is_new)
+                    number % phases == phase || view.end_cell(number).is_some_and(is_new)
                 };
                 for number in beams {
-                    if written < MAX_DOORWAY_CELLS && is_due(&self.tiles, number) {
+                    if written < config.tuning.map.max_doorway_cells && is_due(&self.tiles, number)
+                    {
                         view.for_each_cell(number, |cell, part| {
                             written += 1;
                             self.set_if_unknown(cell, part);
@@ -139,13 +128,15 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Ground behind a brow stays out of view. Such a cell becomes free if the measured ground on
     /// both sides spans the gap, otherwise negative.
     pub fn resolve_gaps(&mut self, config: &Config, goal: Cell) {
-        self.fill_gaps(config, (goal, RESOLVE_CELLS), Some(Class::Negative));
+        let reach = config.tuning.map.resolve_cells;
+        self.fill_gaps(config, (goal, reach), Some(Class::Negative));
     }
 
     /// Frees the unknown cells around the place before a blocked robot, if measured ground spans
     /// them. Returns true if there were any.
     pub(crate) fn free_gaps(&mut self, config: &Config, ahead: Cell) -> bool {
-        self.fill_gaps(config, (ahead, FREE_GAP_CELLS), None)
+        let reach = config.tuning.map.free_gap_cells;
+        self.fill_gaps(config, (ahead, reach), None)
     }
 
     /// Makes the unknown cells in a square free if measured ground spans them, otherwise `gone`.
@@ -238,8 +229,8 @@ mod tests {
     use std::boxed::Box;
     use std::vec::Vec;
 
-    use super::{Class, Config, FREE_GAP_CELLS, RiseLimits, UnevenGround};
-    use crate::config::GroundTuning;
+    use super::{Class, Config, RiseLimits, UnevenGround};
+    use crate::config::{GroundTuning, MapTuning};
     use crate::geometry::Cell;
     use crate::map::Map;
 
@@ -280,7 +271,8 @@ mod tests {
         let mut map = with_a_ditch(0.0);
         let ahead = Cell { x: 31, y: 30 };
         assert!(map.free_gaps(&config(), ahead));
-        let rows: Vec<i32> = (30 - FREE_GAP_CELLS..=31 + FREE_GAP_CELLS).collect();
+        let reach = MapTuning::DEFAULT.free_gap_cells;
+        let rows: Vec<i32> = (30 - reach..=31 + reach).collect();
         assert_eq!(free_rows(&map), rows);
         assert!(!map.free_gaps(&config(), ahead), "there was any");
     }

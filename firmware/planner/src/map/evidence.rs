@@ -14,6 +14,7 @@
 //! have no evidence.
 //! Units: map cells.
 
+use crate::config::MapTuning;
 use crate::geometry::Cell;
 use crate::grid::{Class, Rolling, masked_mut, wrapped_mut};
 
@@ -22,12 +23,6 @@ pub(crate) const EVIDENCE_SIDE: i32 = 128;
 /// The window moves in steps of this many cells, so that it moves seldom.
 const STRIDE: i32 = 16;
 
-/// A hit raises the count by this; a pass lowers it by 1.
-const HIT: u8 = 3;
-/// Least count of an obstacle.
-const OBSTACLE_MIN: u8 = 10;
-/// Greatest count of a free cell.
-const FREE_MAX: u8 = 7;
 /// Greatest count: all that four bits hold.
 const MAX_COUNT: u8 = 15;
 
@@ -43,12 +38,13 @@ pub(crate) struct Evidence {
 }
 
 /// Returns the count that a cell of this class starts with.
-const fn initial(class: Class) -> u8 {
-    match class {
-        Class::Unknown => 8,
-        Class::Free => 5,
-        Class::Obstacle | Class::Negative => 12,
-    }
+fn initial(class: Class, tuning: &MapTuning) -> u8 {
+    let start = match class {
+        Class::Unknown => tuning.unknown_start,
+        Class::Free => tuning.free_start,
+        Class::Obstacle | Class::Negative => tuning.obstacle_start,
+    };
+    start.min(MAX_COUNT)
 }
 
 impl Evidence {
@@ -107,39 +103,49 @@ impl Evidence {
     }
 
     #[inline(always)]
-    fn update(&mut self, cell: Cell, class: Class, change: impl Fn(u8) -> u8) -> Class {
+    fn update(
+        &mut self,
+        cell: Cell,
+        class: Class,
+        tuning: &MapTuning,
+        change: impl Fn(u8) -> u8,
+    ) -> Class {
         let (pair, shift) = self.pair(cell);
         let count = match *pair >> shift & 15 {
-            0 => initial(class),
+            0 => initial(class, tuning),
             count => count,
         };
         let count = change(count);
         *pair = *pair & !(15 << shift) | count << shift;
-        match count {
-            OBSTACLE_MIN.. => Class::Obstacle,
-            ..=FREE_MAX => Class::Free,
-            _ => class,
+        if count >= tuning.obstacle_count {
+            Class::Obstacle
+        } else if count <= tuning.free_count {
+            Class::Free
+        } else {
+            class
         }
     }
 
     /// Counts a beam that ended in this cell, whose class was `class`. Returns its class now.
-    pub(crate) fn hit(&mut self, cell: Cell, class: Class) -> Class {
-        self.update(cell, class, |count| (count + HIT).min(MAX_COUNT))
+    pub(crate) fn hit(&mut self, cell: Cell, class: Class, tuning: &MapTuning) -> Class {
+        let raised = |count: u8| (count + tuning.hit_count).min(MAX_COUNT);
+        self.update(cell, class, tuning, raised)
     }
 
     /// Counts a beam that passed this cell, whose class was `class`. Returns its class now.
-    pub(crate) fn pass(&mut self, cell: Cell, class: Class) -> Class {
-        self.update(cell, class, |count| count.saturating_sub(1).max(1))
+    pub(crate) fn pass(&mut self, cell: Cell, class: Class, tuning: &MapTuning) -> Class {
+        let lowered = |count: u8| count.saturating_sub(1).max(1);
+        self.update(cell, class, tuning, lowered)
     }
 
     /// Counts a beam that passed a free cell, which stays free. Most such cells have count 1.
     #[inline(always)]
-    pub(crate) fn pass_free(&mut self, cell: Cell) {
+    pub(crate) fn pass_free(&mut self, cell: Cell, tuning: &MapTuning) {
         let (pair, shift) = self.pair(cell);
         let count = *pair >> shift & 15;
         if count != 1 {
             let next = match count {
-                0 => initial(Class::Free) - 1,
+                0 => initial(Class::Free, tuning) - 1,
                 count => count - 1,
             };
             *pair = *pair & !(15 << shift) | next << shift;
@@ -156,8 +162,10 @@ impl Default for Evidence {
 #[cfg(test)]
 mod tests {
     use super::{Class, Evidence};
+    use crate::config::MapTuning;
     use crate::geometry::Cell;
 
+    const TUNING: MapTuning = MapTuning::DEFAULT;
     const CELL: Cell = Cell { x: 3, y: -4 };
 
     fn fresh() -> Evidence {
@@ -168,8 +176,8 @@ mod tests {
 
     #[test]
     fn one_beam_decides_an_unknown_cell() {
-        assert_eq!(fresh().hit(CELL, Class::Unknown), Class::Obstacle);
-        assert_eq!(fresh().pass(CELL, Class::Unknown), Class::Free);
+        assert_eq!(fresh().hit(CELL, Class::Unknown, &TUNING), Class::Obstacle);
+        assert_eq!(fresh().pass(CELL, Class::Unknown, &TUNING), Class::Free);
     }
 
     #[test]
@@ -177,12 +185,12 @@ mod tests {
         let mut evidence = fresh();
         let mut class = Class::Unknown;
         for _ in 0..9 {
-            class = evidence.pass(CELL, class);
+            class = evidence.pass(CELL, class, &TUNING);
         }
-        class = evidence.hit(CELL, class);
-        class = evidence.hit(CELL, class);
+        class = evidence.hit(CELL, class, &TUNING);
+        class = evidence.hit(CELL, class, &TUNING);
         assert_eq!(class, Class::Free);
-        assert_eq!(evidence.hit(CELL, class), Class::Obstacle);
+        assert_eq!(evidence.hit(CELL, class, &TUNING), Class::Obstacle);
     }
 
     #[test]
@@ -190,13 +198,13 @@ mod tests {
         let mut evidence = fresh();
         let mut class = Class::Unknown;
         for _ in 0..9 {
-            class = evidence.hit(CELL, class);
+            class = evidence.hit(CELL, class, &TUNING);
         }
         for _ in 0..7 {
-            class = evidence.pass(CELL, class);
+            class = evidence.pass(CELL, class, &TUNING);
             assert_eq!(class, Class::Obstacle);
         }
-        assert_eq!(evidence.pass(CELL, class), Class::Free);
+        assert_eq!(evidence.pass(CELL, class, &TUNING), Class::Free);
     }
 
     #[test]
@@ -204,19 +212,19 @@ mod tests {
         let mut evidence = fresh();
         let mut class = Class::Unknown;
         for _ in 0..9 {
-            class = evidence.hit(CELL, class);
+            class = evidence.hit(CELL, class, &TUNING);
         }
         evidence.follow(Cell { x: 40, y: 0 });
         assert!(evidence.covers(CELL));
         for _ in 0..7 {
-            class = evidence.pass(CELL, class);
+            class = evidence.pass(CELL, class, &TUNING);
         }
         assert_eq!(class, Class::Obstacle, "kept");
         evidence.follow(Cell { x: 200, y: 0 });
         assert!(!evidence.covers(CELL));
         evidence.follow(Cell { x: 0, y: 0 });
         assert_eq!(
-            evidence.pass(CELL, Class::Unknown),
+            evidence.pass(CELL, Class::Unknown, &TUNING),
             Class::Free,
             "begins anew"
         );

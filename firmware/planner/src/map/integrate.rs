@@ -3,9 +3,9 @@
 //!
 //! Beams of the level laser run in the plane, so they free and mark. Beams of the tilted laser run
 //! above the cells that they cross, so they free nothing; they mark ends higher than
-//! `MIN_OBSTACLE_M` above the robot's ground.
+//! `tilted_obstacle_m` above the robot's ground.
 //!
-//! - A beam does not erode an obstacle within `GUARD_M` of its own end, because at a grazing angle
+//! - A beam does not erode an obstacle within `guard_m` of its own end, because at a grazing angle
 //!   it crosses the wall's own cells first.
 //! - A lone no-return between two returns is a dropout and frees nothing.
 //! - A no-return stops at the first obstacle, so that it does not tunnel through a wall.
@@ -14,6 +14,7 @@
 //!
 //! Units: metres, radians; ranges in millimetres.
 
+use crate::config::MapTuning;
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::grid::Class;
 use crate::input::informative_range_mm;
@@ -25,20 +26,6 @@ use crate::map::traversal::Traversal;
 use crate::math;
 use crate::robot::LaserMount;
 use crate::robot::is_level;
-
-/// Least height of an obstacle above the robot's ground for the tilted laser, metres. It exceeds
-/// the ground clearance of a Pioneer 3-AT, and three sigma of an attitude error of 1° at the tilted
-/// beam's reach.
-pub(crate) const MIN_OBSTACLE_M: f32 = 0.15;
-/// Length before a beam's end on which it does not erode obstacles, metres.
-const GUARD_M: f32 = 0.35;
-
-/// Range from which on every second beam frees cells, millimetres: nearer, every fourth one does.
-/// At 1° per beam, every fourth beam is one cell (0.1 m) from the next at 1.4 m.
-const SECOND_FROM_MM: u16 = 1_400;
-/// Range from which on every beam frees cells, millimetres: every second beam is one cell from the
-/// next there.
-const ODD_FROM_MM: u16 = 2 * SECOND_FROM_MM;
 
 /// A beam in the plane.
 #[derive(Clone, Copy, Debug)]
@@ -91,8 +78,10 @@ pub(crate) fn level_beams<'a>(
     pose: &Pose,
     laser: &'a LaserMount,
     ranges_mm: &'a [u16],
-) -> impl Iterator<Item = Beam> + 'a {
+    tuning: &MapTuning,
+) -> impl Iterator<Item = Beam> + use<'a> {
     let from = sensor_point(pose, laser);
+    let second_from_mm = tuning.second_beam_from_mm;
     let first = pose.yaw_rad + laser.first_bearing_rad;
     (0..ranges_mm.len()).filter_map(move |i| {
         let limit = laser.range_limit_mm;
@@ -106,8 +95,8 @@ pub(crate) fn level_beams<'a>(
         } * 1e-3;
         let dense_to_mm = match i & 3 {
             0 => 0,
-            2 => SECOND_FROM_MM,
-            _ => ODD_FROM_MM,
+            2 => second_from_mm,
+            _ => 2 * second_from_mm,
         };
         // If a neighbour met something nearer, a no-return may meet an obstacle there, which ends
         // it. So it crosses all its cells.
@@ -135,18 +124,24 @@ pub(crate) fn level_beams<'a>(
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Enters a scan of `laser`, taken at `pose`. A cell without room sets [`Map::out_of_box`] or
     /// [`Map::pool_full`].
-    pub(crate) fn integrate(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
+    pub(crate) fn integrate(
+        &mut self,
+        tuning: &MapTuning,
+        pose: &Pose,
+        laser: &LaserMount,
+        ranges_mm: &[u16],
+    ) {
         if is_level(laser) {
-            for beam in level_beams(pose, laser, ranges_mm) {
-                self.free_along(&beam);
+            for beam in level_beams(pose, laser, ranges_mm, tuning) {
+                self.free_along(tuning, &beam);
             }
-            for beam in level_beams(pose, laser, ranges_mm) {
+            for beam in level_beams(pose, laser, ranges_mm, tuning) {
                 if beam.hit {
-                    self.hit(beam.end().cell());
+                    self.hit(tuning, beam.end().cell());
                 }
             }
         } else {
-            self.mark_tilted_hits(pose, laser, ranges_mm);
+            self.mark_tilted_hits(tuning, pose, laser, ranges_mm);
         }
     }
 
@@ -169,7 +164,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    fn free_along(&mut self, beam: &Beam) {
+    fn free_along(&mut self, tuning: &MapTuning, beam: &Beam) {
         let from_m = beam.free_from_m;
         let (start, length_m) = (beam.at(from_m), beam.length_m - from_m);
         if length_m <= 0.0 {
@@ -182,10 +177,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             goes_on = match self.tiles.open(tile) {
                 Ok(cells) => {
                     let pass = TilePass {
+                        tuning,
                         evidence: &mut self.evidence,
                         cells,
                         tile,
-                        guard_from_m: length_m - GUARD_M,
+                        guard_from_m: length_m - tuning.guard_m,
                         stops_at_obstacle: !beam.hit,
                     };
                     if beam.is_counted() {
@@ -199,10 +195,10 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    fn hit(&mut self, cell: Cell) {
+    fn hit(&mut self, tuning: &MapTuning, cell: Cell) {
         let class = self.tiles.class(cell);
         let now = if self.evidence.covers(cell) {
-            self.evidence.hit(cell, class)
+            self.evidence.hit(cell, class, tuning)
         } else {
             Class::Obstacle
         };
@@ -227,7 +223,13 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         false
     }
 
-    fn mark_tilted_hits(&mut self, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
+    fn mark_tilted_hits(
+        &mut self,
+        tuning: &MapTuning,
+        pose: &Pose,
+        laser: &LaserMount,
+        ranges_mm: &[u16],
+    ) {
         let from = sensor_point(pose, laser);
         let (sin_tilt, cos_tilt) = math::sin_cos(laser.pitch_rad + pose.pitch_rad);
         let (sin_roll, _) = math::sin_cos(pose.roll_rad);
@@ -241,12 +243,12 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             let range_m = f32::from(range) * 1e-3;
             let (ahead, left) = (range_m * cos * cos_tilt, range_m * sin);
             let height = laser.z_m - range_m * cos * sin_tilt + left * sin_roll;
-            if height > MIN_OBSTACLE_M {
+            if height > tuning.tilted_obstacle_m {
                 let end = Point {
                     x_m: from.x_m + ahead * cos_yaw - left * sin_yaw,
                     y_m: from.y_m + ahead * sin_yaw + left * cos_yaw,
                 };
-                self.hit(end.cell());
+                self.hit(tuning, end.cell());
             }
         }
     }
@@ -254,6 +256,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 
 /// The passage of a beam through a tile.
 struct TilePass<'a> {
+    tuning: &'a MapTuning,
     evidence: &'a mut Evidence,
     cells: TileMut<'a>,
     tile: (i32, i32),
@@ -274,7 +277,7 @@ impl TilePass<'_> {
             if COUNTS {
                 let cell = Traversal::cell(self.tile, row, bit);
                 if self.evidence.covers(cell) {
-                    self.evidence.pass_free(cell);
+                    self.evidence.pass_free(cell, self.tuning);
                 }
             }
             true
@@ -290,7 +293,7 @@ impl TilePass<'_> {
         }
         let cell = Traversal::cell(self.tile, row, bit);
         let now = if self.evidence.covers(cell) {
-            self.evidence.pass(cell, class)
+            self.evidence.pass(cell, class, self.tuning)
         } else if class == Class::Unknown {
             Class::Free
         } else {
@@ -309,6 +312,7 @@ mod tests {
     use crate::input::NO_RETURN_MM;
 
     type Plan = Map<144, 144>;
+    const TUNING: MapTuning = MapTuning::DEFAULT;
 
     fn laser() -> LaserMount {
         LaserMount {
@@ -336,13 +340,13 @@ mod tests {
                 let kept = match class {
                     Class::Free => !beam.is_counted(),
                     Class::Unknown => false,
-                    _ => beam.hit && leaves_m > length_m - GUARD_M,
+                    _ => beam.hit && leaves_m > length_m - TUNING.guard_m,
                 };
                 if kept {
                     return true;
                 }
                 let now = if map.evidence.covers(cell) {
-                    map.evidence.pass(cell, class)
+                    map.evidence.pass(cell, class, &TUNING)
                 } else if class == Class::Unknown {
                     Class::Free
                 } else {
@@ -390,12 +394,12 @@ mod tests {
                     ..Pose::default()
                 };
                 let ranges = scan(&mut seed);
-                fast.integrate(&pose, &laser(), &ranges);
-                for beam in level_beams(&pose, &laser(), &ranges) {
+                fast.integrate(&TUNING, &pose, &laser(), &ranges);
+                for beam in level_beams(&pose, &laser(), &ranges, &TUNING) {
                     free_slowly(&mut slow, &beam);
                 }
-                for beam in level_beams(&pose, &laser(), &ranges).filter(|beam| beam.hit) {
-                    slow.hit(beam.end().cell());
+                for beam in level_beams(&pose, &laser(), &ranges, &TUNING).filter(|beam| beam.hit) {
+                    slow.hit(&TUNING, beam.end().cell());
                 }
                 for map in [&mut fast, &mut slow] {
                     map.evidence.follow(pose.point().cell());

@@ -36,11 +36,6 @@ use crate::geometry::Cell;
 use crate::ground::AttitudeFilter;
 use crate::input::Input;
 
-/// A person carried the robot if it moved more cells than this between two observations.
-const MAX_STEP_CELLS: i32 = 10;
-/// Radius around the robot's centre that is free because the robot stands there, metres.
-const FOOTPRINT_M: f32 = 0.25;
-
 /// The map, with `TILES` pages in the pool and `SLOTS` slots in the box.
 #[derive(Debug)]
 pub struct Map<const TILES: usize, const SLOTS: usize> {
@@ -97,27 +92,29 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 
     /// Enters an input's scans and pose.
     pub fn observe(&mut self, config: &Config, input: &Input<'_>) {
+        let tuning = &config.tuning.map;
         let robot = input.pose.point();
         if let Some(ground) = &config.ground {
-            self.free_footprint(robot, FOOTPRINT_M);
-            self.record_visit(robot.cell());
+            self.free_footprint(robot, tuning.stand_radius_m);
+            self.record_visit(robot.cell(), tuning.max_step_cells);
             self.update_elevation(config, ground, input);
             return;
         }
         self.evidence.follow(robot.cell());
-        self.free_footprint(robot, FOOTPRINT_M);
-        self.record_visit(robot.cell());
+        self.free_footprint(robot, tuning.stand_radius_m);
+        self.record_visit(robot.cell(), tuning.max_step_cells);
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
-            self.integrate(&input.pose, laser, ranges_mm);
+            self.integrate(tuning, &input.pose, laser, ranges_mm);
         }
     }
 
-    /// Marks the trail from the last cell without diagonal steps, so that its cells share sides.
-    fn record_visit(&mut self, to: Cell) {
+    /// Marks the trail from the last cell without diagonal steps, so that its cells share sides. A
+    /// trail longer than `max_step_cells` is not marked: the robot was carried.
+    fn record_visit(&mut self, to: Cell, max_step_cells: i32) {
         let from = self.last_cell.unwrap_or(to);
         self.last_cell = Some(to);
         let steps = (to.x - from.x).abs().max((to.y - from.y).abs());
-        if steps > MAX_STEP_CELLS {
+        if steps > max_step_cells {
             self.tiles.mark_visited(to);
             return;
         }

@@ -1,11 +1,11 @@
 //! Obstacle points: returns of the level laser near the robot, finer than map cells.
 //!
 //! A door of 0.65 m leaves 8 cm on each side of a Pioneer 3-AT, less than a map cell. So the
-//! planner keeps points within `REACH_M`, also after they leave the field of view. A point is the
+//! planner keeps points within `reach_m`, also after they leave the field of view. A point is the
 //! mean of its returns:
 //!
 //! ```text
-//! p ← p + (r − p) / n,    n = min(returns so far, MAX_RETURNS)
+//! p ← p + (r − p) / n,    n = min(returns so far, max_returns)
 //! ```
 //!
 //! Without the mean, the nearest of many returns of a wall would count, and it is two or three
@@ -23,38 +23,23 @@
 
 use heapless::Vec;
 
-use crate::config::Tuning;
+use crate::config::{Config, MapTuning, Tuning};
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::grid::bits::ones;
 use crate::input::{has_company, informative_range_mm};
 use crate::map::integrate::{level_beams, sensor_point};
 use crate::map::{Class, Tiles};
 use crate::math;
-use crate::robot::{LaserMount, RobotShape};
+use crate::robot::LaserMount;
 
 /// Greatest number of points.
 pub(crate) const MAX_POINTS: usize = 256;
-/// Reach for points ahead, from the robot's centre, metres: half the robot and its braking
-/// distance.
-pub(crate) const REACH_M: f32 = 1.2;
-/// Reach for points behind, metres: half the robot's diagonal and its longest leg backwards.
-const REACH_BEHIND_M: f32 = 0.8;
-/// A return nearer than this to a point is a return of it, metres: a little over two sigma of a
-/// range. The mean rounds a sharp corner by a third of this.
-const SAME_M: f32 = 0.025;
-/// Greatest number of returns in a mean; later returns weigh as much as the last of these.
-const MAX_RETURNS: u8 = 8;
-/// A beam that ends this far behind a point passed through its place, metres: five sigma of a
-/// range.
-const THROUGH_M: f32 = 0.05;
-/// A point this far inside the robot's rectangle is false, metres, because the robot stands there.
-const INSIDE_M: f32 = 0.01;
 
 /// The obstacle points around the robot.
 #[derive(Debug, Default)]
 pub struct ObstaclePoints {
     points: Vec<Point, MAX_POINTS>,
-    /// Number of returns of each point, up to [`MAX_RETURNS`].
+    /// Number of returns of each point, up to `max_returns`.
     returns: Vec<u8, MAX_POINTS>,
 }
 
@@ -81,18 +66,13 @@ impl ObstaclePoints {
     }
 
     /// Enters a scan of the level laser, taken at `pose`.
-    pub fn update(
-        &mut self,
-        robot: &RobotShape,
-        pose: &Pose,
-        laser: &LaserMount,
-        ranges_mm: &[u16],
-    ) {
-        self.remove_stale(robot, pose, laser, ranges_mm);
-        for beam in level_beams(pose, laser, ranges_mm).filter(|beam| beam.hit) {
+    pub fn update(&mut self, config: &Config, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
+        let tuning = &config.tuning.map;
+        self.remove_stale(config, pose, laser, ranges_mm);
+        for beam in level_beams(pose, laser, ranges_mm, tuning).filter(|beam| beam.hit) {
             let end = beam.end();
-            if within_reach(pose, end) && has_company(ranges_mm, beam.number) {
-                self.add_return(pose.point(), end);
+            if within_reach(tuning, pose, end) && has_company(ranges_mm, beam.number) {
+                self.add_return(tuning, pose.point(), end);
             }
         }
     }
@@ -100,18 +80,19 @@ impl ObstaclePoints {
     /// Removes the points that the scan or the robot disproves, and those out of reach.
     fn remove_stale(
         &mut self,
-        robot: &RobotShape,
+        config: &Config,
         pose: &Pose,
         laser: &LaserMount,
         ranges_mm: &[u16],
     ) {
+        let tuning = &config.tuning.map;
         let from = sensor_point(pose, laser);
         let mut index = 0;
         while let (Some(&point), Some(&returns)) = (self.points.get(index), self.returns.get(index))
         {
-            let stays = within_reach(pose, point)
-                && !is_inside(robot, pose, point)
-                && match visibility(pose, laser, ranges_mm, from, point) {
+            let stays = within_reach(tuning, pose, point)
+                && !is_inside(config, pose, point)
+                && match visibility((pose, from), laser, ranges_mm, point, tuning.through_m) {
                     Visibility::Hit => true,
                     Visibility::Through => false,
                     Visibility::Unseen => returns > 1,
@@ -126,14 +107,15 @@ impl ObstaclePoints {
     }
 
     /// Enters a return: into the mean of the first point near it, or as a new point.
-    fn add_return(&mut self, centre: Point, end: Point) {
+    fn add_return(&mut self, tuning: &MapTuning, centre: Point, end: Point) {
+        let same_m = tuning.same_point_m;
         let near = |&&mut point: &&mut Point| {
-            (point.x_m - end.x_m).abs() < SAME_M && point.distance2(end) < SAME_M * SAME_M
+            (point.x_m - end.x_m).abs() < same_m && point.distance2(end) < same_m * same_m
         };
         let known = self.points.iter_mut().zip(&mut self.returns);
         let mut known = known.filter(|(point, _)| near(point));
         if let Some((point, returns)) = known.next() {
-            *returns = (*returns + 1).min(MAX_RETURNS);
+            *returns = (*returns + 1).min(tuning.max_returns);
             let part = 1.0 / f32::from(*returns);
             point.x_m += part * (end.x_m - point.x_m);
             point.y_m += part * (end.y_m - point.y_m);
@@ -167,9 +149,10 @@ impl ObstaclePoints {
 pub(crate) fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
-) -> impl Iterator<Item = Point> + '_ {
+    tuning: &MapTuning,
+) -> impl Iterator<Item = Point> {
     let obstacles = |x, y| tiles.row(x, y).obstacle();
-    cells_around(robot, obstacles).map(|cell| {
+    cells_around(robot, tuning, obstacles).map(|cell| {
         let corner = cell.corner();
         Point {
             x_m: corner.x_m + 0.5 * CELL_M,
@@ -183,13 +166,14 @@ pub(crate) fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
 pub(crate) fn border_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,
-) -> impl Iterator<Item = Point> + '_ {
+    tuning: &MapTuning,
+) -> impl Iterator<Item = Point> {
     let rims = |x, y| {
         let free = |dy: i32| tiles.row(x - 1, y + dy).free();
         let here = free(0);
         (here | here >> 2 | free(-1) >> 1 | free(1) >> 1) & !(here >> 1)
     };
-    cells_around(robot, rims).map(Cell::centre)
+    cells_around(robot, tuning, rims).map(Cell::centre)
 }
 
 /// Returns the `border_cells`, each with its own margin, metres. An obstacle may begin before its
@@ -200,16 +184,20 @@ pub fn inflated_border_cells<const TILES: usize, const SLOTS: usize>(
     tuning: &Tuning,
 ) -> impl Iterator<Item = (Point, f32)> {
     let hit_depth_m = tuning.ground.hit_depth_m;
-    border_cells(tiles, robot).map(move |at| match tiles.class(at.cell()) {
+    border_cells(tiles, robot, &tuning.map).map(move |at| match tiles.class(at.cell()) {
         Class::Obstacle => (at, hit_depth_m),
         _ => (at, 0.0),
     })
 }
 
 /// Returns the cells that `of` sets in the square of the reach behind: bit k of `of(x, y)` is cell
-/// (x + k, y).
-fn cells_around(robot: Point, of: impl Fn(i32, i32) -> u64) -> impl Iterator<Item = Cell> {
-    let reach = math::floor(REACH_BEHIND_M / CELL_M);
+/// (x + k, y). The reach is at most 15 cells, so that a row is a word.
+fn cells_around<F: Fn(i32, i32) -> u64>(
+    robot: Point,
+    tuning: &MapTuning,
+    of: F,
+) -> impl Iterator<Item = Cell> + use<F> {
+    let reach = math::floor(tuning.reach_behind_m / CELL_M).min(15);
     let Cell { x, y } = robot.cell();
     let (x, across) = (x - reach, (1 << (2 * reach + 1)) - 1);
     (y - reach..=y + reach).flat_map(move |y| {
@@ -219,16 +207,21 @@ fn cells_around(robot: Point, of: impl Fn(i32, i32) -> u64) -> impl Iterator<Ite
 }
 
 /// Returns true if a point is within reach of the robot.
-fn within_reach(pose: &Pose, point: Point) -> bool {
+fn within_reach(tuning: &MapTuning, pose: &Pose, point: Point) -> bool {
     let is_ahead = pose.to_robot(point).x_m > 0.0;
-    let reach_m = if is_ahead { REACH_M } else { REACH_BEHIND_M };
+    let reach_m = if is_ahead {
+        tuning.reach_m
+    } else {
+        tuning.reach_behind_m
+    };
     point.distance2(pose.point()) < reach_m * reach_m
 }
 
-/// Returns true if a point lies inside the robot's rectangle by more than [`INSIDE_M`].
-fn is_inside(robot: &RobotShape, pose: &Pose, point: Point) -> bool {
+/// Returns true if a point lies inside the robot's rectangle by more than `inside_m`.
+fn is_inside(config: &Config, pose: &Pose, point: Point) -> bool {
+    let (robot, inside_m) = (&config.robot, config.tuning.map.inside_m);
     let Point { x_m, y_m } = pose.to_robot(point);
-    x_m.abs() < robot.half_length_m - INSIDE_M && y_m.abs() < robot.half_width_m - INSIDE_M
+    x_m.abs() < robot.half_length_m - inside_m && y_m.abs() < robot.half_width_m - inside_m
 }
 
 /// The evidence of a scan about the place of a point.
@@ -241,14 +234,14 @@ enum Visibility {
     Unseen,
 }
 
-/// Returns the visibility of a point, from the two beams beside it. At a corner one beam may meet
-/// the point or nothing while the other passes.
+/// Returns the visibility of a point from the sensor at `from`, by the two beams beside it. At a
+/// corner one beam may meet the point or nothing while the other passes.
 fn visibility(
-    pose: &Pose,
+    (pose, from): (&Pose, Point),
     laser: &LaserMount,
     ranges_mm: &[u16],
-    from: Point,
     point: Point,
+    through_m: f32,
 ) -> Visibility {
     let (dx, dy) = (point.x_m - from.x_m, point.y_m - from.y_m);
     let bearing = math::wrap(math::atan2(dy, dx) - pose.yaw_rad - laser.first_bearing_rad);
@@ -265,12 +258,12 @@ fn visibility(
     if beyond
         .iter()
         .flatten()
-        .any(|beyond| beyond.abs() <= THROUGH_M)
+        .any(|beyond| beyond.abs() <= through_m)
     {
         Visibility::Hit
     } else if beyond
         .iter()
-        .all(|beyond| beyond.is_some_and(|beyond| beyond > THROUGH_M))
+        .all(|beyond| beyond.is_some_and(|beyond| beyond > through_m))
     {
         Visibility::Through
     } else {
@@ -283,8 +276,10 @@ mod tests {
     use super::*;
     use crate::drive::CollisionChecker;
     use crate::input::{INVALID_MM, NO_RETURN_MM};
+    use crate::robot::RobotShape;
 
     const ROBOT: RobotShape = RobotShape::PIONEER_3AT;
+    const CONFIG: Config = Config::pioneer_3at(Vec::new());
 
     fn laser() -> LaserMount {
         LaserMount {
@@ -304,7 +299,7 @@ mod tests {
         let mut obstacles = ObstaclePoints::new();
         let mut scan = [NO_RETURN_MM; 181];
         scan[90] = 500;
-        obstacles.update(&ROBOT, &Pose::default(), &laser(), &scan);
+        obstacles.update(&CONFIG, &Pose::default(), &laser(), &scan);
         assert!(obstacles.points().is_empty());
     }
 
@@ -321,15 +316,15 @@ mod tests {
     fn a_point_is_remembered_behind_the_robot_and_forgotten_when_seen_through() {
         let mut obstacles = ObstaclePoints::new();
         let here = Pose::default();
-        obstacles.update(&ROBOT, &here, &laser(), &thing(0, 800));
+        obstacles.update(&CONFIG, &here, &laser(), &thing(0, 800));
         assert!(!obstacles.points().is_empty());
         let turned = Pose {
             yaw_rad: math::PI,
             ..here
         };
-        obstacles.update(&ROBOT, &turned, &laser(), &[NO_RETURN_MM; 181]);
+        obstacles.update(&CONFIG, &turned, &laser(), &[NO_RETURN_MM; 181]);
         assert!(!obstacles.points().is_empty(), "out of view");
-        obstacles.update(&ROBOT, &here, &laser(), &[NO_RETURN_MM; 181]);
+        obstacles.update(&CONFIG, &here, &laser(), &[NO_RETURN_MM; 181]);
         assert!(obstacles.points().is_empty(), "seen through");
     }
 
@@ -337,15 +332,15 @@ mod tests {
     fn a_hidden_point_stays_and_a_far_one_goes() {
         let mut obstacles = ObstaclePoints::new();
         let here = Pose::default();
-        obstacles.update(&ROBOT, &here, &laser(), &thing(0, 1000));
+        obstacles.update(&CONFIG, &here, &laser(), &thing(0, 1000));
         let count = obstacles.points().len();
-        obstacles.update(&ROBOT, &here, &laser(), &thing(0, 500));
+        obstacles.update(&CONFIG, &here, &laser(), &thing(0, 500));
         assert!(
             obstacles.points().len() > count,
             "hidden behind the nearer thing"
         );
         let away = Pose { x_m: -2.0, ..here };
-        obstacles.update(&ROBOT, &away, &laser(), &[INVALID_MM; 181]);
+        obstacles.update(&CONFIG, &away, &laser(), &[INVALID_MM; 181]);
         assert!(obstacles.points().is_empty());
     }
 
@@ -357,7 +352,7 @@ mod tests {
                 yaw_rad: k as f32 * 0.7,
                 ..Pose::default()
             };
-            obstacles.update(&ROBOT, &pose, &laser(), &[400 + (k % 7) as u16 * 100; 181]);
+            obstacles.update(&CONFIG, &pose, &laser(), &[400 + (k % 7) as u16 * 100; 181]);
             assert!(obstacles.points().len() <= MAX_POINTS);
         }
     }

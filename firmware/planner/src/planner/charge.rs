@@ -3,7 +3,7 @@
 //!
 //! Units: map cells.
 
-use crate::config::Tuning;
+use crate::config::Config;
 use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows, SCALES};
 use crate::geometry::Cell;
@@ -16,6 +16,7 @@ use crate::roadmap::configuration_space::Footprint;
 /// Fills the local grid at the smallest scale that holds a local goal. Returns the goal's cells in
 /// it; `None` if there is no path, or no scale holds a goal.
 pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
     state: &State<TILES, SLOTS>,
     footprint: &Footprint,
     input: &Input<'_>,
@@ -32,7 +33,9 @@ pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
             shield.cells().for_each(|cell| grid.block(cell));
         }
         grid.free_robot(robot.cell());
-        state.ground.block_rims(tiles, footprint, robot, grid);
+        state
+            .ground
+            .block_rims(config, tiles, footprint, robot, grid);
         path.local_goals(robot)
             .find_map(|cell| goal_cells(grid, cell))
     })
@@ -47,11 +50,11 @@ fn goal_cells(grid: &LocalGrid, cell: Cell) -> Option<Rows> {
 /// Charges the window with the strategy's own boundary values. Returns `None` if it has none, or if
 /// the robot reaches none of them.
 pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     footprint: &Footprint,
     input: &Input<'_>,
-    tuning: &Tuning,
 ) -> Option<()> {
     state.strategy.tdbvp()?;
     let robot = input.pose.point().cell();
@@ -61,13 +64,13 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     let tiles = state.map.tiles();
     state
         .ground
-        .block_rims(tiles, footprint, input.pose.point(), view);
+        .block_rims(config, tiles, footprint, input.pose.point(), view);
     slide(workspace);
     let centres = Centres::of(&state.skeleton, tiles, footprint)?;
     let window = (&mut workspace.window, &workspace.view);
     state
         .strategy
-        .charge(&centres, input.pose.point(), window, tuning)
+        .charge(&centres, input.pose.point(), window, config.tuning)
 }
 
 /// Sets the window's boundary values. The last field stays where the two windows overlap.

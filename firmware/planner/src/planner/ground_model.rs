@@ -80,7 +80,7 @@ impl<const TILES: usize> GroundModel<TILES> {
         match self {
             Self::Flat(points) => {
                 for (laser, ranges_mm) in level_scans(config, input) {
-                    points.update(&config.robot, &input.pose, laser, ranges_mm);
+                    points.update(config, &input.pose, laser, ranges_mm);
                 }
             }
             Self::Uneven(levels) => {
@@ -118,13 +118,14 @@ impl<const TILES: usize> GroundModel<TILES> {
     /// would lead between two cells where the drive does not go.
     pub(super) fn block_rims<const SLOTS: usize>(
         &self,
+        config: &Config,
         tiles: &Tiles<TILES, SLOTS>,
         footprint: &Footprint,
         robot: Point,
         grid: &mut LocalGrid,
     ) {
         if self.is_uneven() {
-            let rims = obstacle_points::border_cells(tiles, robot);
+            let rims = obstacle_points::border_cells(tiles, robot, &config.tuning.map);
             grid.keep_off(robot.cell(), rims, footprint);
         }
     }
@@ -141,7 +142,8 @@ impl<const TILES: usize> GroundModel<TILES> {
         match self {
             Self::Flat(points) => {
                 checker.see(pose, points.points());
-                let cells = obstacle_points::obstacle_cells(tiles, pose.point());
+                let cells =
+                    obstacle_points::obstacle_cells(tiles, pose.point(), &config.tuning.map);
                 checker.remember(pose, cells);
             }
             Self::Uneven(_) => {

@@ -38,8 +38,6 @@ tuning! {
         /// Radius around the start that the tilted beams never see. They meet level ground 1.39 m
         /// from the robot's centre.
         blind_radius_m: f32 = 1.35, 0.5..=2.8, "m";
-        /// Radius around the robot's centre in which the ground carries the wheels.
-        wheel_radius_m: f32 = 0.25, 0.1..=0.5, "m";
         /// Error of a height: from the attitude, the range and the extent of the cell.
         height_tolerance_m: f32 = 0.10, 0.02..=0.3, "m";
         /// Rise above the steepest slope from which P is the foot of an obstacle and no ground.
