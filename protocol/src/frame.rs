@@ -34,7 +34,7 @@ pub const MAX_LOG_BYTES: usize = 240;
 const MAX_REQUEST_BODY: usize = 1 + 5 + 6 * 5 + 2 * 3 + 1 + MAX_SCANS * (2 + MAX_BEAMS * 3);
 /// Body of the largest reply, bytes: a map tile. A field row has 4 bytes per cell and is shorter.
 const MAX_REPLY_BODY: usize =
-    2 + 2 * 3 + (2 + TILE_BYTES) + (1 + TILE_SKELETON_BYTES) + 3 + TILE_STAMPS;
+    2 + 2 * 3 + (2 + TILE_BYTES) + (1 + TILE_SKELETON_BYTES) + 2 * 3 + TILE_STAMPS;
 const _: () = assert!(MAX_REPLY_BODY > 12 + 4 * FIELD_SIDE && MAX_REPLY_BODY > MAX_LOG_BYTES);
 // A page of the path: tractor point, shield, length, and cells of two varints.
 const _: () = assert!(MAX_REPLY_BODY > 1 + 7 + 13 + 2 + 6 * PATH_PAGE);

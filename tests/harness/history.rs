@@ -130,6 +130,7 @@ mod tests {
             cells: cells.into_iter().collect(),
             skeleton: [0; 32].into_iter().collect(),
             closed_regions: 0,
+            given_up_regions: 0,
             visit_stamps: [0; 4],
         }
     }

@@ -227,6 +227,7 @@ impl Pilot {
             cells: cells.iter().copied().collect(),
             skeleton: rows.iter().flat_map(|row| row.to_le_bytes()).collect(),
             closed_regions: memory.state.closed_regions(x, y),
+            given_up_regions: memory.state.given_up_regions(x, y),
             visit_stamps: memory.state.visit_stamps(x, y),
         })
     }

@@ -344,6 +344,7 @@ impl<S: Strategy> Link for Session<S> {
             cells: cells.into_iter().collect(),
             skeleton: [0; TILE_SKELETON_BYTES].into_iter().collect(),
             closed_regions: 0,
+            given_up_regions: 0,
             visit_stamps: [0; TILE_STAMPS],
         }))
     }

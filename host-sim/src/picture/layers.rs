@@ -16,7 +16,8 @@ const ARROW_STEP: usize = 3;
 /// Number of colours of the path.
 const PATH_SHADES: usize = 192;
 
-/// Draws the cells: free cells with a grid of 5 m, and tinted in closed regions.
+/// Draws the cells: free cells with a grid of 5 m, and tinted where no new loop
+/// starts.
 pub(super) fn map(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
     for row in 0..frame.rows {
         for column in 0..frame.columns {
@@ -25,7 +26,8 @@ pub(super) fn map(canvas: &mut Canvas, frame: &Frame, map: &GridMap) {
             let colour = match map.get(x, y) {
                 MapCell::Unknown => palette::UNKNOWN,
                 MapCell::Free if on_grid => palette::GRID,
-                MapCell::Free if map.is_in_closed_region(x, y) => palette::MARK,
+                MapCell::Free if map.is_in_closed_region(x, y) => palette::CLOSED,
+                MapCell::Free if map.is_in_given_up_region(x, y) => palette::GIVEN_UP,
                 MapCell::Free => palette::FREE,
                 MapCell::Obstacle => palette::OBSTACLE,
                 MapCell::NegativeObstacle => palette::NEGATIVE,

@@ -1,6 +1,6 @@
 //! Loops and rails: rails by age, the path to the goal, tractor point, shield, and loops given up.
 //!
-//! Closed regions are a tint of the map's free cells ([`super::layers::map`]). Rails are bands
+//! Closed and given up regions are tints of the map's free cells ([`super::layers::map`]). Rails are bands
 //! below the path of the robot, from dark (the newest visit) to light (the oldest). A skeleton cell
 //! that was never visited has no band.
 
@@ -105,8 +105,14 @@ pub(super) fn keys(scene: &Scene<'_>) -> Vec<Key> {
     let mut keys: Vec<Key> = Vec::new();
     if scene.map.has_closed_regions() {
         keys.push((
-            |canvas, spot| patch(canvas, spot, palette::MARK),
-            "closed region",
+            |canvas, spot| patch(canvas, spot, palette::CLOSED),
+            "near a closed loop",
+        ));
+    }
+    if scene.map.has_given_up_regions() {
+        keys.push((
+            |canvas, spot| patch(canvas, spot, palette::GIVEN_UP),
+            "no loop closed here",
         ));
     }
     if scene.map.visit_stamp_span().is_some() {

@@ -35,8 +35,10 @@ pub(super) const RESIDUE: Rgb = Rgb(0xe0, 0x8e, 0x0b);
 
 /// Tractor point and shield of the loop that is being closed; loops given up.
 pub(super) const LOOP: Rgb = Rgb(0xc0, 0x1f, 0x2e);
-/// Free cells of closed regions.
-pub(super) const MARK: Rgb = Rgb(0xe6, 0xf3, 0xe4);
+/// Free cells of regions near which a loop was closed.
+pub(super) const CLOSED: Rgb = Rgb(0xe6, 0xf3, 0xe4);
+/// Free cells of regions near which a loop was given up, or a revisit ended.
+pub(super) const GIVEN_UP: Rgb = Rgb(0xfb, 0xea, 0xdc);
 
 /// An opaque colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

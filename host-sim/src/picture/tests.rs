@@ -3,6 +3,7 @@
 use super::panels::Strip;
 use super::{FOOTER, Frame, GAP, GOOD_SIDE, Ground, MARGIN, Scene, area, run_png};
 use crate::metrics::{Footing, GroundTruth};
+use crate::report::grid_map::StrategyData;
 use crate::report::tum::Stamped;
 use crate::report::{GridMap, MapCell};
 use crate::robot::{Limits, RADIUS_M};
@@ -250,8 +251,14 @@ fn pixels_and_spots_agree() {
 #[test]
 fn loops_and_rails_are_drawn_at_their_places() {
     let (mut map, path, _) = room();
-    // Tile (-1, 0): its lower left region is closed, and its two lower places have dates.
-    map.set_strategy_data((-1, 0), 1, [3, 9, 0, 0]);
+    // Tile (-1, 0): its lower left region is closed, the third one is given up, and its two lower
+    // places have stamps.
+    let data = StrategyData {
+        closed_regions: 1,
+        given_up_regions: 4,
+        visit_stamps: [3, 9, 0, 0],
+    };
+    map.set_strategy_data((-1, 0), data);
     let planned_path = PlannedPath {
         tractor: Some((-40, -20)),
         shield: Some([(20, -30), (20, -20)]),
@@ -280,6 +287,7 @@ fn loops_and_rails_are_drawn_at_their_places() {
     );
     assert_eq!(colour(-3.15, 0.15), (0xe6, 0xf3, 0xe4), "a closed region");
     assert_eq!(colour(-2.25, 0.15), (0xff, 0xff, 0xff), "beside it");
+    assert_eq!(colour(-1.45, 0.15), (0xfb, 0xea, 0xdc), "a given up region");
     // Beside the line of the skeleton, which lies on the band. The younger rail is darker.
     let band = |x_m: f64| colour(x_m, 1.56);
     assert_eq!(band(-2.5), (0xbf, 0xe5, 0xbb), "the oldest rail");

@@ -27,6 +27,18 @@ pub enum MapCell {
     NegativeObstacle,
 }
 
+/// The strategy's data of a tile, as sent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StrategyData {
+    /// Regions in which no new loop starts because a loop was closed near them, one bit each.
+    pub closed_regions: u16,
+    /// Regions in which no new loop starts because a loop was given up near them, or a revisit
+    /// ended there, one bit each.
+    pub given_up_regions: u16,
+    /// Stamps of the last visits; 0 never.
+    pub visit_stamps: [u8; TILE_STAMPS],
+}
+
 /// A rectangle of cells and the skeleton over it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct GridMap {
@@ -40,8 +52,8 @@ pub struct GridMap {
     pub height: usize,
     cells: Vec<MapCell>,
     skeleton: Vec<bool>,
-    /// Closed regions and visit stamps of tiles that have any, as sent.
-    strategy_data: BTreeMap<(i16, i16), (u16, [u8; TILE_STAMPS])>,
+    /// The strategy's data of tiles that have any.
+    strategy_data: BTreeMap<(i16, i16), StrategyData>,
 }
 
 impl GridMap {
@@ -93,26 +105,35 @@ impl GridMap {
             .unwrap_or(false)
     }
 
-    /// Returns true if the cell at map coordinates is in a closed region.
+    /// Returns true if a loop was closed near the cell at map coordinates.
     #[must_use]
     pub fn is_in_closed_region(&self, x: i32, y: i32) -> bool {
         self.strategy_data(x, y)
-            .is_some_and(|(regions, _)| regions >> square(x, y, 8) & 1 == 1)
+            .is_some_and(|data| data.closed_regions >> square(x, y, 8) & 1 == 1)
+    }
+
+    /// Returns true if a loop was given up near the cell at map coordinates, or a revisit ended
+    /// there.
+    #[must_use]
+    pub fn is_in_given_up_region(&self, x: i32, y: i32) -> bool {
+        self.strategy_data(x, y)
+            .is_some_and(|data| data.given_up_regions >> square(x, y, 8) & 1 == 1)
     }
 
     /// Returns the stamp of the last visit near a cell, later ones are greater; `None` if there was
     /// none.
     #[must_use]
     pub fn visit_stamp(&self, x: i32, y: i32) -> Option<u8> {
-        let (_, stamps) = self.strategy_data(x, y)?;
-        let stamp = stamps.get(square(x, y, 16)).copied();
+        let data = self.strategy_data(x, y)?;
+        let stamp = data.visit_stamps.get(square(x, y, 16)).copied();
         stamp.filter(|stamp| *stamp > 0)
     }
 
     /// Returns the oldest and the newest visit stamp; `None` if there are none.
     #[must_use]
     pub fn visit_stamp_span(&self) -> Option<(u8, u8)> {
-        let stamps = self.strategy_data.values().flat_map(|(_, stamps)| *stamps);
+        let tiles = self.strategy_data.values();
+        let stamps = tiles.flat_map(|data| data.visit_stamps);
         let visited = stamps.filter(|stamp| *stamp > 0);
         visited.fold(None, |span: Option<(u8, u8)>, stamp| {
             let (oldest, newest) = span.unwrap_or((stamp, stamp));
@@ -124,23 +145,24 @@ impl GridMap {
     #[must_use]
     pub fn has_closed_regions(&self) -> bool {
         let mut tiles = self.strategy_data.values();
-        tiles.any(|(regions, _)| *regions != 0)
+        tiles.any(|data| data.closed_regions != 0)
     }
 
-    /// Sets closed regions and visit stamps of a tile.
-    pub fn set_strategy_data(
-        &mut self,
-        tile: (i16, i16),
-        closed_regions: u16,
-        visit_stamps: [u8; TILE_STAMPS],
-    ) {
-        if closed_regions != 0 || visit_stamps != [0; TILE_STAMPS] {
-            self.strategy_data
-                .insert(tile, (closed_regions, visit_stamps));
+    /// Returns true if there is a given up region.
+    #[must_use]
+    pub fn has_given_up_regions(&self) -> bool {
+        let mut tiles = self.strategy_data.values();
+        tiles.any(|data| data.given_up_regions != 0)
+    }
+
+    /// Sets the strategy's data of a tile.
+    pub fn set_strategy_data(&mut self, tile: (i16, i16), data: StrategyData) {
+        if data != StrategyData::default() {
+            self.strategy_data.insert(tile, data);
         }
     }
 
-    fn strategy_data(&self, x: i32, y: i32) -> Option<(u16, [u8; TILE_STAMPS])> {
+    fn strategy_data(&self, x: i32, y: i32) -> Option<StrategyData> {
         let tile = [x, y].map(|at| i16::try_from(at.div_euclid(TILE_SIDE)));
         let [Ok(x), Ok(y)] = tile else {
             return None;
@@ -188,7 +210,12 @@ impl GridMap {
     }
 
     fn lay(&mut self, tile: &Tile) {
-        self.set_strategy_data((tile.x, tile.y), tile.closed_regions, tile.visit_stamps);
+        let data = StrategyData {
+            closed_regions: tile.closed_regions,
+            given_up_regions: tile.given_up_regions,
+            visit_stamps: tile.visit_stamps,
+        };
+        self.set_strategy_data((tile.x, tile.y), data);
         let (left, bottom) = (i32::from(tile.x) * TILE_SIDE, i32::from(tile.y) * TILE_SIDE);
         for row in 0..TILE_SIDE {
             for column in 0..TILE_SIDE {
@@ -277,6 +304,7 @@ mod tests {
             cells: heapless::Vec::from_slice(&cells).unwrap(),
             skeleton: heapless::Vec::from_slice(&skeleton).unwrap(),
             closed_regions: 0,
+            given_up_regions: 0,
             visit_stamps: [0; 4],
         };
         ((x, y), tile)
@@ -306,7 +334,8 @@ mod tests {
     #[test]
     fn closed_regions_and_visit_stamps_are_placed_by_their_tile() {
         let (_, mut known) = tile(-1, 2, &[(0, 0, 1)]);
-        (known.closed_regions, known.visit_stamps) = (1 << 6, [0, 3, 9, 0]);
+        (known.closed_regions, known.given_up_regions) = (1 << 6, 1 << 7);
+        known.visit_stamps = [0, 3, 9, 0];
         let map = GridMap::from_tiles(&[((-1, 2), known)].into());
         // Region 6 is the third of the second row: 8 × 8 cells from (16, 8) on.
         let around = [
@@ -319,11 +348,14 @@ mod tests {
         ];
         let is_in = around.map(|(x, y)| map.is_in_closed_region(x, y));
         assert_eq!(is_in, [true, true, false, false, false, false]);
+        let is_in = around.map(|(x, y)| map.is_in_given_up_region(x, y));
+        assert_eq!(is_in, [false, false, false, false, true, false]);
         let places = [(-32, 64), (-16, 64), (-1, 79), (-32, 80), (-1, 95), (0, 64)];
         let stamps = places.map(|(x, y)| map.visit_stamp(x, y));
         assert_eq!(stamps, [None, Some(3), Some(3), Some(9), None, None]);
         assert_eq!(map.visit_stamp_span(), Some((3, 9)));
         assert!(map.has_closed_regions() && !GridMap::default().has_closed_regions());
+        assert!(map.has_given_up_regions() && !GridMap::default().has_given_up_regions());
         assert_eq!(GridMap::default().visit_stamp_span(), None);
     }
 

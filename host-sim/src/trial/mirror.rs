@@ -140,6 +140,7 @@ mod tests {
                     cells,
                     skeleton,
                     closed_regions: 0,
+                    given_up_regions: 0,
                     visit_stamps: [0; 4],
                 };
                 tiles.insert((x, y), tile);

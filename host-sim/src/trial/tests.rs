@@ -92,6 +92,7 @@ impl Link for Script {
             cells: heapless::Vec::from_slice(&[0b0101_0101; 256]).unwrap(),
             skeleton: heapless::Vec::new(),
             closed_regions: 1,
+            given_up_regions: 2,
             visit_stamps: [0, 7, 0, 9],
         }))
     }

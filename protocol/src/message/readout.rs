@@ -32,12 +32,12 @@ pub struct Tile {
     pub cells: Vec<u8, TILE_BYTES>,
     /// One bit per coarse cell: 1 if the cell is on the skeleton.
     pub skeleton: Vec<u8, TILE_SKELETON_BYTES>,
-    /// Regions in which no new loop starts, one bit per 8 × 8 cells, row by row from the least y,
-    /// with the least x in the lowest bit.
-    ///
-    /// A region is closed if a loop near it was closed or given up, or if a revisit near it was
-    /// settled. The bit does not tell which.
+    /// Regions in which no new loop starts because a loop was closed near them. One bit per 8 × 8
+    /// cells, row by row from the least y, with the least x in the lowest bit.
     pub closed_regions: u16,
+    /// Regions in which no new loop starts because a loop was given up near them, or a revisit
+    /// ended there. Bits as in `closed_regions`. No region is in both.
+    pub given_up_regions: u16,
     /// Stamp of the last visit to each place of 16 × 16 cells; 0 if the place was never visited or
     /// if the strategy keeps no account of visits.
     ///

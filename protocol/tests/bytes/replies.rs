@@ -149,6 +149,7 @@ fn reply_tile() {
             cells: cells.into_iter().collect(),
             skeleton: skeleton.into_iter().collect(),
             closed_regions: 0x8001,
+            given_up_regions: 0x0180,
             visit_stamps: [0, 1, 254, 255],
         })),
         &[
@@ -156,7 +157,8 @@ fn reply_tile() {
             &cells,
             &[32],
             &skeleton,
-            &[0x81, 0x80, 0x02],
+            &[0x81, 0x80, 0x02], // closed regions
+            &[0x80, 0x03],       // given up regions
             &[0, 1, 254, 255],
         ]
         .concat(),

@@ -305,14 +305,15 @@ fn command() -> impl Strategy<Value = Command> {
 }
 
 fn tile() -> impl Strategy<Value = Tile> {
-    let known = any::<(i16, i16, u16, [u8; 4])>();
+    let known = any::<(i16, i16, [u16; 2], [u8; 4])>();
     (known, list(any::<u8>()), list(any::<u8>())).prop_map(
-        |((x, y, closed_regions, visit_stamps), cells, skeleton)| Tile {
+        |((x, y, [closed_regions, given_up_regions], visit_stamps), cells, skeleton)| Tile {
             x,
             y,
             cells,
             skeleton,
             closed_regions,
+            given_up_regions,
             visit_stamps,
         },
     )

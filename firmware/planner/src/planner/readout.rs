@@ -10,7 +10,7 @@ use crate::geometry::Cell;
 use crate::map::tiles::TILE_SIDE;
 use crate::planner::state::State;
 use crate::status::ResidualFrontier;
-use crate::strategy::ouroboros::{Ouroboros, REGION_CELLS};
+use crate::strategy::ouroboros::{Closed, Ouroboros, REGION_CELLS};
 use crate::strategy::tdbvp::PLACE_CELLS;
 
 /// Places of a tile.
@@ -109,16 +109,27 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     }
 
     /// Returns one bit for each region of 8 × 8 cells of a tile, row by row: 1 if no new loop
-    /// starts there.
+    /// starts there because a loop was closed near it.
     #[must_use]
     pub fn closed_regions(&self, column: i16, row: i16) -> u16 {
+        self.regions((column, row), Closed::Loop)
+    }
+
+    /// Returns one bit for each region of 8 × 8 cells of a tile, row by row: 1 if no new loop
+    /// starts there because a loop was given up near it, or a revisit ended there.
+    #[must_use]
+    pub fn given_up_regions(&self, column: i16, row: i16) -> u16 {
+        self.regions((column, row), Closed::GivenUp)
+    }
+
+    /// Returns one bit for each region of a tile: 1 if it is closed for that reason.
+    fn regions(&self, tile: (i16, i16), why: Closed) -> u16 {
         let Some(ouroboros) = self.strategy.ouroboros() else {
             return 0;
         };
         let regions = ouroboros.closed_regions();
-        let is_closed = |k: &i32| regions.is_closed(square((column, row), REGION_CELLS, *k));
         (0..REGIONS)
-            .filter(is_closed)
+            .filter(|&k| regions.closed(square(tile, REGION_CELLS, k)) == Some(why))
             .fold(0, |bits, k| bits | 1 << k)
     }
 
@@ -154,6 +165,7 @@ mod tests {
         let state = Box::<State<4, 400>>::default();
         assert_eq!(state.loops(), LoopCounts::default());
         assert_eq!(state.closed_regions(0, 0), 0);
+        assert_eq!(state.given_up_regions(0, 0), 0);
         assert_eq!(state.visit_stamps(3, -1), [0; 4]);
         assert_eq!((state.tractor(), state.shield()), (None, None));
         assert!(state.path().is_empty() && state.frontiers().is_empty());

@@ -1,10 +1,19 @@
 //! Closed regions: the surroundings of loops, in which no new tractor point is made
 //! \[Jorge15, III-A: "the next tractor point must be placed in an unmarked area"\].
 //!
-//! A region is 0.8 × 0.8 m of the map and has two bits. *Pending*: the path of the current loop
-//! comes near. *Closed*: a loop came near that is over. Pending regions become closed at the end of
-//! the loop, or are dropped when the loop turns out to be none. Slots are addressed as the map's
-//! are, so the regions need no skeleton and outlast a map that is replaced under them.
+//! A region is 0.8 × 0.8 m of the map and has two bits:
+//!
+//! | `over` | `other` | state of the region |
+//! | --- | --- | --- |
+//! | 0 | 0 | open |
+//! | 0 | 1 | *pending*: the path of the current loop comes near |
+//! | 1 | 0 | closed: a loop was closed near it |
+//! | 1 | 1 | closed: no loop was closed near it; one was given up, or a revisit ended |
+//!
+//! Pending regions become closed at the end of the loop, or are dropped when the loop turns out to
+//! be none. A closed region keeps its state. The strategy treats both kinds of closed regions
+//! alike. Slots are addressed as the map's are, so the regions need no skeleton and outlast a map
+//! that is replaced under them.
 //!
 //! Departs from \[Jorge15, III-A\], which marks only loops that were closed: loops that were given
 //! up and places of a finished revisit become closed regions too, or the robot would begin the same
@@ -26,11 +35,20 @@ pub(crate) const REGION_CELLS: i32 = 1 << REGION_SHIFT;
 /// Regions along a tile as a power of two: a tile's 4 × 4 regions fill a `u16`.
 const TILE_SHIFT: i32 = 2;
 
+/// Why a region is closed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Closed {
+    /// A loop was closed near it.
+    Loop,
+    /// A loop was given up near it, or a revisit ended there.
+    GivenUp,
+}
+
 /// Closed and pending regions in a box of tiles: 4 bytes for each of its `SLOTS` places.
 #[derive(Debug)]
 pub(crate) struct ClosedRegions<const SLOTS: usize> {
-    closed: [u16; SLOTS],
-    pending: [u16; SLOTS],
+    over: [u16; SLOTS],
+    other: [u16; SLOTS],
     slots: TileBox,
 }
 
@@ -38,8 +56,8 @@ impl<const SLOTS: usize> ClosedRegions<SLOTS> {
     /// No region is closed, in a box of (width, height) tiles.
     pub(crate) const fn new((width, height): (i32, i32)) -> Self {
         Self {
-            closed: [0; SLOTS],
-            pending: [0; SLOTS],
+            over: [0; SLOTS],
+            other: [0; SLOTS],
             slots: TileBox { width, height },
         }
     }
@@ -47,34 +65,52 @@ impl<const SLOTS: usize> ClosedRegions<SLOTS> {
     /// Returns true if no new loop starts in the region of a map cell.
     #[must_use]
     pub(crate) fn is_closed(&self, cell: Cell) -> bool {
-        let (slot, bit) = self.place(cell.x >> REGION_SHIFT, cell.y >> REGION_SHIFT);
-        self.closed.get(slot).is_some_and(|tile| tile & bit != 0)
+        self.closed(cell).is_some()
     }
 
-    /// Makes the regions within `near_cells` of a cell of the loop's path pending, along either
+    /// Returns why the region of a map cell is closed; `None` if it is open or pending.
+    #[must_use]
+    pub(crate) fn closed(&self, cell: Cell) -> Option<Closed> {
+        let (slot, bit) = self.place(cell.x >> REGION_SHIFT, cell.y >> REGION_SHIFT);
+        self.over.get(slot).filter(|tile| **tile & bit != 0)?;
+        let is_other = self.other.get(slot).is_some_and(|tile| tile & bit != 0);
+        Some(if is_other {
+            Closed::GivenUp
+        } else {
+            Closed::Loop
+        })
+    }
+
+    /// Makes the open regions within `near_cells` of a cell of the loop's path pending, along either
     /// axis.
     pub(crate) fn add_pending(&mut self, cell: Cell, near_cells: i32) {
         let span = |at: i32| (at - near_cells) >> REGION_SHIFT..=(at + near_cells) >> REGION_SHIFT;
         for y in span(cell.y) {
             for x in span(cell.x) {
                 let (slot, bit) = self.place(x, y);
-                if let Some(tile) = self.pending.get_mut(slot) {
-                    *tile |= bit;
+                if let Some((over, other)) = self.over.get(slot).zip(self.other.get_mut(slot)) {
+                    *other |= bit & !over;
                 }
             }
         }
     }
 
     /// Closes the pending regions.
-    pub(crate) fn close_pending(&mut self) {
-        for (closed, pending) in self.closed.iter_mut().zip(&mut self.pending) {
-            *closed |= core::mem::take(pending);
+    pub(crate) fn close_pending(&mut self, why: Closed) {
+        for (over, other) in self.over.iter_mut().zip(&mut self.other) {
+            let pending = *other & !*over;
+            *over |= pending;
+            if why == Closed::Loop {
+                *other &= !pending;
+            }
         }
     }
 
     /// Drops the pending regions.
     pub(crate) fn drop_pending(&mut self) {
-        self.pending.fill(0);
+        for (over, other) in self.over.iter().zip(&mut self.other) {
+            *other &= over;
+        }
     }
 
     /// Returns the slot of a region, by column and row of regions, and its bit there.
@@ -86,7 +122,7 @@ impl<const SLOTS: usize> ClosedRegions<SLOTS> {
 
 #[cfg(test)]
 mod tests {
-    use super::ClosedRegions;
+    use super::{Closed, ClosedRegions};
     use crate::config::OuroborosTuning;
     use crate::geometry::Cell;
 
@@ -96,7 +132,7 @@ mod tests {
     fn regions_along_a_path_are_closed_with_its_loop_and_not_before() {
         let mut regions: ClosedRegions<12> = ClosedRegions::new((0, 0));
         regions.add_pending(Cell { x: 0, y: 0 }, NEAR_CELLS);
-        regions.close_pending();
+        regions.close_pending(Closed::Loop);
         let is_closed = regions.is_closed(Cell { x: 0, y: 0 });
         assert!(!is_closed, "the box has no area");
         let mut regions: ClosedRegions<12> = ClosedRegions::new((4, 3));
@@ -105,11 +141,11 @@ mod tests {
         }
         assert!(!regions.is_closed(Cell { x: -20, y: -3 }));
         regions.drop_pending();
-        regions.close_pending();
+        regions.close_pending(Closed::Loop);
         let is_closed = regions.is_closed(Cell { x: -20, y: -3 });
         assert!(!is_closed, "it was dropped");
         regions.add_pending(Cell { x: -20, y: -3 }, NEAR_CELLS);
-        regions.close_pending();
+        regions.close_pending(Closed::Loop);
         let shifted = |(dx, dy)| Cell {
             x: -20 + dx,
             y: -3 + dy,
@@ -120,6 +156,31 @@ mod tests {
         for far in [(18, 0), (-18, 0), (0, 18), (0, -18)].map(shifted) {
             assert!(!regions.is_closed(far), "{far:?}");
         }
+    }
+
+    #[test]
+    fn a_closed_region_tells_why_and_keeps_its_state() {
+        let at = |x| Cell { x, y: 0 };
+        let mut regions: ClosedRegions<12> = ClosedRegions::new((4, 3));
+        regions.add_pending(at(-40), NEAR_CELLS);
+        assert_eq!(regions.closed(at(-40)), None, "pending");
+        regions.close_pending(Closed::Loop);
+        regions.add_pending(at(40), NEAR_CELLS);
+        regions.close_pending(Closed::GivenUp);
+        let both = |regions: &ClosedRegions<12>| [-40, 0, 40].map(|x| regions.closed(at(x)));
+        let expected = [Some(Closed::Loop), None, Some(Closed::GivenUp)];
+        assert_eq!(both(&regions), expected);
+        for why in [Closed::Loop, Closed::GivenUp] {
+            for x in [-40, 40] {
+                regions.add_pending(at(x), NEAR_CELLS);
+            }
+            assert_eq!(both(&regions), expected, "while a loop is being closed");
+            regions.close_pending(why);
+            assert_eq!(both(&regions), expected, "{why:?}");
+        }
+        regions.add_pending(at(0), NEAR_CELLS);
+        regions.drop_pending();
+        assert_eq!(both(&regions), expected);
     }
 
     #[test]

@@ -11,6 +11,7 @@ use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::roadmap::Residues;
 use crate::roadmap::branches::surroundings;
 use crate::strategy::Frontier;
+use crate::strategy::ouroboros::closed_regions::Closed;
 use crate::strategy::ouroboros::loop_budget::LoopBudget;
 use crate::strategy::ouroboros::loop_road::{LoopRoad, back_to_shield, build_shield};
 use crate::strategy::ouroboros::tractor::{self, Fate};
@@ -67,7 +68,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             Some(Fate::Stays) => self.tractor = centre,
             Some(Fate::Reached) if is_closing => {
                 self.tally.closed += 1;
-                self.settle();
+                self.settle(Closed::Loop);
             }
             // It lies on an obstacle now, or is of no use.
             None | Some(Fate::Reached | Fate::Stale) => {
@@ -137,12 +138,12 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// Gives the loop up, and closes its regions so that it does not begin again.
     fn give_up(&mut self) {
         self.tally.given_up += 1;
-        self.settle();
+        self.settle(Closed::GivenUp);
     }
 
     /// Ends the loop, and closes its regions.
-    fn settle(&mut self) {
-        self.regions.close_pending();
+    fn settle(&mut self, why: Closed) {
+        self.regions.close_pending(why);
         self.revisit = None;
         self.lost_loops = 0;
         self.disable_tractor();

@@ -21,7 +21,7 @@ use crate::strategy::ouroboros::exploring::worlds::{ADJACENT, NESTED, ROOMS, THR
 use crate::strategy::ouroboros::scenes::{
     Memory, POINT_M, SLOTS, TILES, TUNING, at, has_cell, pose_in,
 };
-use crate::strategy::ouroboros::{Ouroboros, Tally};
+use crate::strategy::ouroboros::{Closed, Ouroboros, Tally};
 
 /// Cells that the robot sees: the same share of these loops as 12 m of one of 70 m.
 const SIGHT: i32 = 8;
@@ -279,6 +279,15 @@ impl Exploration {
             .count()
     }
 
+    /// The kinds of the world's closed regions.
+    fn closed_kinds(&self) -> Vec<Closed> {
+        let rows = self.world.iter().enumerate();
+        let cells = rows.flat_map(|(y, row)| (0..row.len()).map(move |x| at(x, y)));
+        cells
+            .filter_map(|cell| self.strategy.closed_regions().closed(cell))
+            .collect()
+    }
+
     fn drawn(&self) -> String {
         let mut text = String::new();
         for (y, row) in self.world.iter().enumerate() {
@@ -418,5 +427,8 @@ fn a_loop_that_takes_too_long_is_given_up() {
     exploration.run();
     let tally = exploration.strategy.tally();
     assert!(tally.given_up > 0, "{tally:?}");
+    let kinds = exploration.closed_kinds();
+    assert!(kinds.contains(&Closed::GivenUp), "{kinds:?}");
+    assert_eq!(kinds.contains(&Closed::Loop), tally.closed > 0, "{kinds:?}");
     assert_eq!(exploration.unknown(), 0, "it went on all the same");
 }

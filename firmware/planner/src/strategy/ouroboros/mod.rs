@@ -40,7 +40,7 @@ mod exploring;
 #[cfg(test)]
 mod scenes;
 
-pub(crate) use closed_regions::{ClosedRegions, REGION_CELLS};
+pub(crate) use closed_regions::{Closed, ClosedRegions, REGION_CELLS};
 pub(crate) use shield::Shield;
 
 use crate::config::OuroborosTuning;

@@ -19,7 +19,7 @@ use crate::path::nearest::Centres;
 use crate::path::{PlanningContext, PlanningScratch};
 use crate::roadmap::Residues;
 use crate::roadmap::branches::{Branch, Kind, kind, surroundings, ways};
-use crate::strategy::ouroboros::closed_regions::ClosedRegions;
+use crate::strategy::ouroboros::closed_regions::{Closed, ClosedRegions};
 use crate::strategy::ouroboros::loop_budget::LoopBudget;
 
 /// A drive to an open loop.
@@ -86,7 +86,7 @@ pub(super) fn settle<const TILES: usize, const SLOTS: usize>(
             regions.add_pending(centres.cell(site), near_cells);
         }
     }
-    regions.close_pending();
+    regions.close_pending(Closed::GivenUp);
 }
 
 /// Returns the first open cell of a branch.
