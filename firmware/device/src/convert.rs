@@ -151,7 +151,13 @@ pub fn config(
         .strategy(match start.strategy {
             wire::Strategy::Frontier => Strategy::Frontier,
             wire::Strategy::Ouroboros => Strategy::Ouroboros,
-            wire::Strategy::Tdbvp { patrol_s } => Strategy::Tdbvp { patrol_s },
+            wire::Strategy::Tdbvp {
+                patrol_s,
+                impatience_s,
+            } => Strategy::Tdbvp {
+                patrol_s,
+                impatience_s,
+            },
         })
         .loops(loop_limits(&start.loops))
         .box_tiles(across, up)

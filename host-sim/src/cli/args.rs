@@ -132,6 +132,15 @@ pub(super) struct ExploreArgs {
         allow_negative_numbers = true
     )]
     pub(super) patrol_for: u16,
+    /// Simulated seconds without a new place after which tdbvp follows a path to what is left to
+    /// explore [default: 15]
+    #[arg(
+        long,
+        value_name = "S|never",
+        value_parser = impatience,
+        allow_negative_numbers = true
+    )]
+    pub(super) tdbvp_impatience: Option<Impatience>,
     /// Folder of the run; with several runs, the folder of their folders [default:
     /// out/WORLD-STRATEGY-SEED, on uneven ground out/WORLD-STRATEGY-uneven-SEED]
     #[arg(long, value_name = "DIR")]
@@ -185,6 +194,7 @@ impl Default for ExploreArgs {
             failing_limits: None,
             time_limit: 3_600_000,
             patrol_for: 0,
+            tdbvp_impatience: None,
             out: None,
             realtime: false,
             fault: None,
@@ -196,6 +206,10 @@ impl Default for ExploreArgs {
         }
     }
 }
+
+/// Seconds without a new place; `None` for never.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Impatience(pub(super) Option<u16>);
 
 /// Faults, and the text that names them.
 #[derive(Clone, Debug, PartialEq)]
@@ -308,6 +322,15 @@ fn patrol_for(text: &str) -> Result<u16, String> {
     whole(text, u64::from(u16::MAX)).map(|number| number as u16)
 }
 
+/// Parses seconds without a new place.
+fn impatience(text: &str) -> Result<Impatience, String> {
+    if text == "never" {
+        return Ok(Impatience(None));
+    }
+    let seconds = whole(text, u64::from(u16::MAX)).map_err(|error| format!("{error}, or never"))?;
+    Ok(Impatience(Some(seconds as u16)))
+}
+
 /// Parses a number of pictures.
 fn snapshots(text: &str) -> Result<usize, String> {
     whole(text, MOST_SNAPSHOTS).map(|number| number as usize)
@@ -367,7 +390,10 @@ fn map_shape(text: &str) -> Result<(u8, u8), String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Cli, ExploreArgs, imu_noise, laser_noise, map_shape, snapshots, time_limit};
+    use super::{
+        Cli, ExploreArgs, Impatience, impatience, imu_noise, laser_noise, map_shape, snapshots,
+        time_limit,
+    };
     use clap::{CommandFactory as _, Parser as _};
 
     #[test]
@@ -393,6 +419,9 @@ mod tests {
         assert_eq!(imu_noise("1.5"), Ok(1.5));
         assert!(imu_noise("21").is_err() && laser_noise("-0.1").is_err());
         assert!(laser_noise("nan").is_err() && laser_noise("x").is_err());
+        assert_eq!(impatience("never"), Ok(Impatience(None)));
+        assert_eq!(impatience("60"), Ok(Impatience(Some(60))));
+        assert!(impatience("65536").is_err() && impatience("ever").is_err());
         assert_eq!((snapshots("0"), snapshots("500")), (Ok(0), Ok(500)));
         assert!(snapshots("501").is_err() && snapshots("-1").is_err());
         assert_eq!(map_shape("128x32"), Ok((40, 10)));

@@ -10,7 +10,7 @@ use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
 use host_sim::trial::Record;
-use host_sim::trial::mission::{self, Mission, MissionError, on_device};
+use host_sim::trial::mission::{self, IMPATIENCE_S, Mission, MissionError, on_device};
 use host_sim::trial::uneven;
 use host_sim::world::World;
 
@@ -32,7 +32,11 @@ pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     let args = &without_alias(args)?;
     let link = strategies::link_of(&args.strategy, args.robot.link(args.link.as_ref()))?;
     strategies::check(&args.strategy, args.check_field, args.fault.is_some())?;
-    strategies::check_patrol(&args.strategy, args.patrol_for)?;
+    strategies::check_rails(
+        &args.strategy,
+        args.patrol_for,
+        args.tdbvp_impatience.is_some(),
+    )?;
     let mission = mission(args, &link)?;
     check_reference(&mission)?;
     let runs = runs(args, &mission)?;
@@ -236,6 +240,7 @@ fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         failing,
         time_limit_ms: args.time_limit,
         patrol_s: args.patrol_for,
+        impatience_s: args.tdbvp_impatience.map_or(IMPATIENCE_S, |it| it.0),
         box_tiles: args.map_shape,
         check_field: args.check_field,
         snapshots: args.snapshots,

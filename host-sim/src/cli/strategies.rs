@@ -84,13 +84,16 @@ pub(super) fn check(strategy: &str, check_field: bool, faults: bool) -> Result<(
     }
 }
 
-/// Refuses a patrol for strategies without rails.
-pub(super) fn check_patrol(strategy: &str, patrol_s: u16) -> Result<()> {
+/// Refuses a patrol and an impatience for strategies without rails.
+pub(super) fn check_rails(strategy: &str, patrol_s: u16, has_impatience: bool) -> Result<()> {
     match on_device(strategy) {
         Some(Strategy::Tdbvp { .. }) => Ok(()),
         _ if patrol_s > 0 => {
             bail!("--strategy {strategy} does not patrol; leave --patrol-for out or say tdbvp")
         }
+        _ if has_impatience => bail!(
+            "--strategy {strategy} follows no rails; leave --tdbvp-impatience out or say tdbvp"
+        ),
         _ => Ok(()),
     }
 }

@@ -39,6 +39,9 @@ pub struct Report {
     pub preference: Option<String>,
     /// True if goals on other height levels cost more; `null` on flat ground and for baselines.
     pub levels: Option<bool>,
+    /// Seconds without a new place after which strategy tdbvp follows a path, or `never`; `null`
+    /// for other strategies.
+    pub tdbvp_impatience: Option<String>,
     /// Link to the planner, as given to `--link`.
     pub link: String,
     /// Seed of every random number of the run.

@@ -37,6 +37,7 @@ pub(super) fn report(
             .preference()
             .map(|it| wording::preference(it).into()),
         levels: mission.levels(),
+        tdbvp_impatience: impatience(mission),
         link: mission.link.clone(),
         seed: mission.seed,
         odometry: odometry.into(),
@@ -64,6 +65,16 @@ pub(super) fn report(
         debug: report::Debug {
             map_matches_mirror: map_is_read.then(|| account.mirror.equals(&record.tiles)),
         },
+    }
+}
+
+/// Returns the impatience of strategy tdbvp, as on the command line.
+fn impatience(mission: &Mission) -> Option<String> {
+    match mission.strategy() {
+        Strategy::Tdbvp { impatience_s, .. } => {
+            Some(impatience_s.map_or("never".into(), |seconds| seconds.to_string()))
+        }
+        Strategy::Frontier | Strategy::Ouroboros => None,
     }
 }
 

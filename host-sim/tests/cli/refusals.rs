@@ -243,6 +243,11 @@ fn bad_arguments_are_refused_in_one_line() {
         &["frontier", "leave --patrol-for out"],
     );
     explore(
+        &["--tdbvp-impatience", "9"],
+        &["frontier", "leave --tdbvp-impatience out"],
+    );
+    explore(&["--tdbvp-impatience", "-1"], &["-1", "or never"]);
+    explore(
         &["--strategy", "bvp", "--fault", "drop=0.1"],
         &["bvp", "leave --fault out"],
     );

@@ -45,6 +45,9 @@ pub enum Strategy {
         /// Duration of the patrol after everything is explored, seconds. The status stays
         /// [`Status::Exploring`] until it ends.
         patrol_s: u16,
+        /// Time without a new place after which the robot follows a path to what is left to
+        /// explore, seconds; `None` for never.
+        impatience_s: Option<u16>,
     },
 }
 

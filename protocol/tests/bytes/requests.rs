@@ -65,8 +65,15 @@ fn strategies_have_fixed_numbers() {
     for (strategy, number) in [(Strategy::Frontier, 0), (Strategy::Ouroboros, 1)] {
         assert_eq!(postcard::to_allocvec(&strategy).unwrap(), [number]);
     }
-    let strategy = Strategy::Tdbvp { patrol_s: 1800 };
-    assert_eq!(postcard::to_allocvec(&strategy).unwrap(), [2, 0x88, 14]);
+    let bytes = |impatience_s| {
+        let strategy = Strategy::Tdbvp {
+            patrol_s: 1800,
+            impatience_s,
+        };
+        postcard::to_allocvec(&strategy).unwrap()
+    };
+    assert_eq!(bytes(None), [2, 0x88, 14, 0]);
+    assert_eq!(bytes(Some(300)), [2, 0x88, 14, 1, 0xac, 2]);
 }
 
 #[test]

@@ -93,7 +93,10 @@ fn start() -> impl Strategy<Value = Start> {
     let strategy = prop_oneof![
         Just(message::Strategy::Frontier),
         Just(message::Strategy::Ouroboros),
-        any::<u16>().prop_map(|patrol_s| message::Strategy::Tdbvp { patrol_s }),
+        any::<(u16, Option<u16>)>().prop_map(|(patrol_s, impatience_s)| message::Strategy::Tdbvp {
+            patrol_s,
+            impatience_s,
+        }),
     ];
     (
         (

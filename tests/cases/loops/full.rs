@@ -1,12 +1,18 @@
 //! Cases that take hours: `tests/run --full` runs them.
 
 use crate::sides::{Fork, assert_follows_preference};
-use crate::{closed, patrol, uneven};
+use crate::{closed, impatience, patrol, uneven};
 
 #[test]
 #[ignore = "takes hours: 420 runs; tests/run --full runs it"]
 fn loops_of_every_start_are_closed_on_the_way() {
     closed::check_every_start("loops-full");
+}
+
+#[test]
+#[ignore = "takes minutes: 120 runs; tests/run --full runs it"]
+fn rails_with_and_without_impatience() {
+    impatience::check_every_start("impatience-full");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod closed;
 mod data;
 mod full;
+mod impatience;
 mod overlay;
 mod patrol;
 mod sides;

@@ -39,6 +39,9 @@ pub enum Strategy {
     Tdbvp {
         /// Duration of the patrol after the exploration, seconds.
         patrol_s: u16,
+        /// Time without a new place after which the robot follows a path to what is left to
+        /// explore, seconds; `None` for never, as in \[Maffei14\]. The simulator's default is 15.
+        impatience_s: Option<u16>,
     },
 }
 

@@ -67,8 +67,12 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         self.loops = match config.strategy {
             Strategy::Frontier => Loops::None,
             Strategy::Ouroboros => Loops::Ouroboros(Ouroboros::new(box_tiles)),
-            Strategy::Tdbvp { patrol_s } => {
-                Loops::Tdbvp(Tdbvp::new(box_tiles, patrol_s, &config.tuning.tdbvp))
+            Strategy::Tdbvp {
+                patrol_s,
+                impatience_s,
+            } => {
+                let tuning = &config.tuning.tdbvp;
+                Loops::Tdbvp(Tdbvp::new(box_tiles, patrol_s, impatience_s, tuning))
             }
         };
     }

@@ -3,10 +3,6 @@
 tuning! {
     /// Tuned constants of strategy TDBVP \[Maffei14\].
     "tdbvp" TdbvpTuning {
-        /// Time without a new place after which a robot follows a path to what is left to explore.
-        /// With 60 s, three adjacent loops took 378 s instead of 343 s (means of four starts), and
-        /// rooms without a loop 810 s instead of 584 s.
-        impatience_ms: u32 = 15_000, 1_000..=1_000_000, "ms";
         /// A robot lingers if it stays within this distance for longer than `linger_ms`.
         linger_m: f32 = 1.0, 0.2..=5.0, "m";
         /// A robot lingers if it stays within `linger_m` for longer than this time: some seven

@@ -14,8 +14,9 @@
 //! - (IV) The unexplored is a goal only until [`Frontier`] drops it, and a robot that lingers
 //!   follows a path for a while. The paper has no rule for what cannot be seen: the robot would
 //!   stand before it.
-//! - (IV) A robot that has visited no new place for `impatience_ms`, while something is left to
-//!   explore, follows a path. The paper relies on its rails to lead there in the end.
+//! - (IV) A robot that has visited no new place for the session's `impatience_s`, while something
+//!   is left to explore, follows a path. The paper relies on its rails to lead there in the end; so
+//!   does a session without `impatience_s`.
 //! - (IV) On patrol the robot follows a path to a rail that is overdue. The rails lead to the
 //!   oldest one in the window, and one beyond may wait for ever. With paths the age of the oldest
 //!   is bounded by a tour of everything and the way there.
@@ -63,16 +64,25 @@ pub(crate) struct Tdbvp<const SLOTS: usize> {
     stay: Point,
     stay_ms: u32,
     lingers: bool,
+    /// The robot has lingered since the last first visit to a place.
+    has_lingered: bool,
+    /// Time without a new place after which the robot follows a path; `None` for never.
+    impatience_ms: Option<u32>,
     /// Length of the patrol, and its begin.
     patrol_ms: u32,
     patrol_since_ms: Option<u32>,
 }
 
 impl<const SLOTS: usize> Tdbvp<SLOTS> {
-    /// The state at the start, for a map in a box of (width, height) tiles and a patrol of
-    /// `patrol_s` seconds.
+    /// The state at the start, for a map in a box of (width, height) tiles, a patrol of `patrol_s`
+    /// seconds, and a path after `impatience_s` seconds without a new place.
     #[must_use]
-    pub(crate) const fn new(box_tiles: (i32, i32), patrol_s: u16, tuning: &TdbvpTuning) -> Self {
+    pub(crate) const fn new(
+        box_tiles: (i32, i32),
+        patrol_s: u16,
+        impatience_s: Option<u16>,
+        tuning: &TdbvpTuning,
+    ) -> Self {
         Self {
             rails: Rails::new(box_tiles, tuning.first_tick_steps),
             pending: PendingVisits::new(),
@@ -83,6 +93,11 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
             stay: Point { x_m: 0.0, y_m: 0.0 },
             stay_ms: 0,
             lingers: false,
+            has_lingered: false,
+            impatience_ms: match impatience_s {
+                Some(seconds) => Some(seconds as u32 * 1000),
+                None => None,
+            },
             patrol_ms: patrol_s as u32 * 1000,
             patrol_since_ms: None,
         }
@@ -194,10 +209,9 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         });
         if self.lingers {
             pending.write_all(rails);
-            self.new_place_ms = self.now_ms.wrapping_sub(tuning.impatience_ms);
-            self.lingers = false;
+            (self.lingers, self.has_lingered) = (false, true);
         } else if is_new {
-            self.new_place_ms = self.now_ms;
+            (self.new_place_ms, self.has_lingered) = (self.now_ms, false);
         }
     }
 
@@ -216,12 +230,21 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
             }
             return self.patrol(frontier, &mut round, &mut scratch, patrolled_ms);
         }
-        let is_late =
-            round.time_ms.wrapping_sub(self.new_place_ms) >= round.tuning.tdbvp.impatience_ms;
+        let is_late = self.is_late(round.time_ms);
         let (outcome, is_free) = frontier.replan_freely(&round, scratch, is_late);
         // What remains for the second chance is where the robot only just fits through.
         self.on_path = !is_free || frontier.is_second_chance();
         outcome
+    }
+
+    /// Returns true if the robot follows a path rather than the rails: it lingered, or has visited
+    /// no new place for too long.
+    fn is_late(&self, time_ms: u32) -> bool {
+        let waited_ms = time_ms.wrapping_sub(self.new_place_ms);
+        self.has_lingered
+            || self
+                .impatience_ms
+                .is_some_and(|most_ms| waited_ms >= most_ms)
     }
 
     /// Plans a round of the patrol: the path to the oldest rail, which the robot follows if the
