@@ -36,7 +36,7 @@ use crate::geometry::Twist;
 use crate::input::Input;
 use crate::profiling::{Stage, StageTimer};
 use crate::roadmap::configuration_space::Footprint;
-use crate::robot::{LaserMount, is_level};
+use crate::robot::LaserMount;
 use crate::status::{Fault, Status};
 use charge::{charge, charge_rails, local_goal};
 use plan::{replan, search_viewpoints};
@@ -225,7 +225,7 @@ fn level_scans<'a>(
     input: &Input<'a>,
 ) -> impl Iterator<Item = (&'a LaserMount, &'a [u16])> {
     let scans = config.lasers.iter().zip(input.scans);
-    scans.filter(|(laser, _)| is_level(laser))
+    scans.filter(|(laser, _)| laser.is_level())
 }
 
 /// Returns true if nine of ten beams of the level laser end inside the robot's own hull.

@@ -114,12 +114,12 @@ impl LaserMount {
             range_limit_mm: 12_000,
         }
     }
-}
 
-/// Returns true if the laser sweeps the level plane.
-#[must_use]
-pub fn is_level(laser: &LaserMount) -> bool {
-    laser.pitch_rad.abs() < LaserMount::LEVEL_RAD
+    /// Returns true if the laser sweeps the level plane.
+    #[must_use]
+    pub const fn is_level(&self) -> bool {
+        self.pitch_rad.abs() < Self::LEVEL_RAD
+    }
 }
 
 #[cfg(test)]

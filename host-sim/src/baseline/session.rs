@@ -26,7 +26,6 @@ use fieldline_planner::map::{Map, Tiles};
 use fieldline_planner::math;
 use fieldline_planner::planner::starts_blocked;
 use fieldline_planner::roadmap::configuration_space::Footprint;
-use fieldline_planner::robot::is_level;
 use fieldline_planner::status::ResidualReason;
 use fieldline_protocol::message::{
     Command, Control, Cost, Fault, FieldRow, Finish, Identity, MAX_FRONTIERS, Observation, Path,
@@ -180,7 +179,7 @@ impl<S: Strategy> Session<S> {
             return;
         }
         for (laser, ranges_mm) in config.lasers().iter().zip(input.scans) {
-            if is_level(laser) {
+            if laser.is_level() {
                 self.obstacle_points
                     .update(config, &input.pose, laser, ranges_mm);
             }

@@ -11,7 +11,7 @@ use crate::config::{
 use crate::geometry::CELL_M;
 use crate::input::NO_RETURN_MM;
 use crate::math::PI;
-use crate::robot::{LaserMount, MAX_BEAMS, RobotShape, is_level};
+use crate::robot::{LaserMount, MAX_BEAMS, RobotShape};
 
 /// The least value of a quantity that must be positive. It is below the wire's resolution of 2⁻¹².
 const POSITIVE: f32 = 1e-4;
@@ -241,7 +241,7 @@ fn check_laser(laser: &LaserMount, is_first: bool) -> Result<(), ConfigError> {
     check(Parameter::Sweep, step * (beams - 1.0), (0.0, TURN_RAD))?;
     if !is_first {
         check(Parameter::Pitch, laser.pitch_rad, PITCHES_RAD)?;
-    } else if !is_level(laser) {
+    } else if !laser.is_level() {
         let level = LaserMount::LEVEL_RAD;
         check(Parameter::Pitch, f32::NAN, (-level, level)).map_err(|error| ConfigError {
             value: laser.pitch_rad,

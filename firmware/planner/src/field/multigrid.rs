@@ -20,6 +20,7 @@ use crate::field::pyramid::{
     self, EAST, EMPTY, Equation, FINEST, NORTH, OUT, Pyramid, SOURCE, SOUTH, WEST,
 };
 use crate::field::window::{GOAL, Preference, Rows, STRIDE, Window};
+use crate::grid::at;
 
 /// Floats of scratch memory that a cycle needs, 36 KB. Their content has no meaning between cycles.
 pub const SCRATCH_FLOATS: usize = pyramid::FLOATS;
@@ -125,11 +126,8 @@ impl<'a> BlockRow<'a> {
         let offset = window.origin.offset();
         let start = window.origin.start(y);
         // Rows outside the window have no cells; rows outside its margins are not read.
-        let mask = |rows: &Rows, row: usize| {
-            let row = (2 * y + row).checked_sub(1 + offset);
-            row.and_then(|row| rows.get(row))
-                .map_or(0, |bits| bits << offset)
-        };
+        let mask =
+            |rows: &Rows, row: usize| at(rows, (2 * y + row).wrapping_sub(1 + offset)) << offset;
         let q = |row: usize| {
             let start = (start + row * STRIDE).checked_sub(STRIDE);
             pairs(&window.q, start, &[[0.0; 2]; STRIDE / 2])
@@ -279,11 +277,8 @@ fn correct<const CHARGED: bool>(window: &mut Window, factors: &[f32]) -> f32 {
     let offset = window.origin.offset();
     for (y, factors) in factors.chunks_exact(FINEST).enumerate() {
         let start = window.origin.start(y);
-        let [mut below, mut over] = [0, 1].map(|row| {
-            let row = (2 * y + row).checked_sub(offset);
-            let reached = row.and_then(|row| window.reached.get(row));
-            reached.map_or(0, |bits| bits << offset)
-        });
+        let [mut below, mut over] =
+            [0, 1].map(|row| at(&window.reached, (2 * y + row).wrapping_sub(offset)) << offset);
         let (lower, upper) = window.q[start..][..2 * STRIDE].split_at_mut(STRIDE);
         let columns = lower
             .as_chunks_mut()

@@ -13,7 +13,7 @@ use fixed::types::I3F13;
 
 use crate::field::multigrid::Origin;
 use crate::field::runs::Runs;
-use crate::grid::flood;
+use crate::grid::{self, flood};
 
 /// Number of cells along a side of the window \[Jorge15, Table I\].
 pub const SIDE: usize = 61;
@@ -177,12 +177,7 @@ impl Window {
             slide(&mut self.preference, dx, dy);
         }
         for mask in [&mut self.reached, &mut self.goal] {
-            let bits = |y: usize| {
-                y.checked_add_signed(dy as isize)
-                    .and_then(|y| mask.get(y))
-                    .copied()
-                    .unwrap_or(0)
-            };
+            let bits = |y: usize| grid::at(mask, y.wrapping_add_signed(dy as isize));
             let moved = |bits: u64| {
                 if dx >= 0 {
                     bits >> across

@@ -227,7 +227,7 @@ mod tests {
     use crate::geometry::{Cell, Point, Pose};
     use crate::ground::elevation::tests::OwnedWindow;
     use crate::input::NO_RETURN_MM;
-    use crate::robot::{LaserMount, is_level};
+    use crate::robot::LaserMount;
 
     /// A plan of a room: a metre is two characters across and one line up, `#` stands. The robot is
     /// at (3.5, 1.0), in the middle, and looks north.
@@ -286,7 +286,7 @@ mod tests {
                 (0..2).for_each(|_| window.mark_obstacle(cell));
             }
         }
-        assert!(is_level(&LASER));
+        assert!(LASER.is_level());
         let mut cells = BTreeMap::new();
         if let Some(view) = DoorwayView::new(
             &pose,

@@ -17,7 +17,7 @@ use fixed::types::I7F9;
 
 use crate::config::GroundTuning;
 use crate::geometry::Cell;
-use crate::grid::Rolling;
+use crate::grid::{Rolling, at};
 
 /// Cells along the window's side.
 pub const WINDOW_SIDE: i32 = 64;
@@ -118,7 +118,7 @@ impl<'a> Heights<'a> {
 
     #[inline(always)]
     fn mark_at(&self, slot: usize) -> u8 {
-        self.marks.get(slot).copied().unwrap_or(0)
+        at(self.marks, slot)
     }
 
     /// Returns the mark of a cell; 0 outside the window.

@@ -43,7 +43,7 @@ use crate::ground::elevation::{Elevation, WINDOW_SIDE};
 use crate::ground::ray::{Attitude, Mount, Ray};
 use crate::input::{Input, has_company, informative_range_mm};
 use crate::math;
-use crate::robot::{LaserMount, is_level};
+use crate::robot::LaserMount;
 
 /// Least distance from the robot to the window's border, metres.
 const WINDOW_RADIUS_M: f32 = (WINDOW_SIDE / 2 - 1) as f32 * CELL_M;
@@ -107,7 +107,7 @@ impl<'a, 'm> Survey<'a, 'm> {
         // The level laser is judged by the ground that the tilted laser measures.
         for level in [false, true] {
             for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
-                if is_level(laser) == level {
+                if laser.is_level() == level {
                     self.scan(laser, ranges_mm);
                 }
             }
@@ -134,7 +134,7 @@ impl<'a, 'm> Survey<'a, 'm> {
     fn scan(&mut self, laser: &LaserMount, ranges_mm: &[u16]) {
         let attitude = self.attitude;
         let mount = Mount::new(&attitude, laser);
-        let is_level = is_level(laser);
+        let is_level = laser.is_level();
         for number in 0..ranges_mm.len() {
             let limit = laser.range_limit_mm;
             let Some(range) = informative_range_mm(ranges_mm, number, limit) else {

@@ -17,7 +17,6 @@ use crate::ground::survey::Survey;
 use crate::ground::{Elevation, Heights};
 use crate::input::Input;
 use crate::map::{Class, Map, SideTable, Tiles};
-use crate::robot::is_level;
 
 /// Pages that hold the marks.
 const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::Cells>();
@@ -82,7 +81,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             let tuning = &config.tuning.ground;
             let view = DoorwayView::new(&input.pose, ground, tuning, laser, ranges_mm);
-            let Some(view) = view.filter(|_| is_level(laser)) else {
+            let Some(view) = view.filter(|_| laser.is_level()) else {
                 continue;
             };
             let mut from = 0;

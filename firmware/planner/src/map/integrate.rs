@@ -25,7 +25,6 @@ use crate::map::tiles::{NoRoom, TileMut};
 use crate::map::traversal::Traversal;
 use crate::math;
 use crate::robot::LaserMount;
-use crate::robot::is_level;
 
 /// A beam in the plane.
 #[derive(Clone, Copy, Debug)]
@@ -131,7 +130,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         laser: &LaserMount,
         ranges_mm: &[u16],
     ) {
-        if is_level(laser) {
+        if laser.is_level() {
             for beam in level_beams(pose, laser, ranges_mm, tuning) {
                 self.free_along(tuning, &beam);
             }

@@ -13,6 +13,7 @@
 
 use crate::geometry::Cell;
 use crate::grid::bits::halve;
+use crate::grid::{at, inside, inside_mut};
 use crate::map::Tiles;
 use crate::map::tiles::Extent;
 use crate::roadmap::configuration_space::{Footprint, for_each_strip};
@@ -76,10 +77,8 @@ impl<'a> Reachability<'a> {
 
     /// Returns true if the robot can reach a cell.
     pub(crate) fn is_reached(&self, cell: Cell) -> bool {
-        self.place(cell).is_some_and(|(x, y)| {
-            let word = self.reached.get(y * self.per_row + x / 32);
-            word.is_some_and(|word| word >> (x % 32) & 1 == 1)
-        })
+        self.place(cell)
+            .is_some_and(|(x, y)| at(self.reached, y * self.per_row + x / 32) >> (x % 32) & 1 == 1)
     }
 
     /// Marks the open cells of a tile.
@@ -119,7 +118,7 @@ impl<'a> Reachability<'a> {
                     continue;
                 };
                 let index = y * self.per_row + x / 32;
-                let open = self.open.get(index).copied().unwrap_or(0);
+                let open = at(self.open, index);
                 if let Some(word) = self.reached.get_mut(index) {
                     *word |= open & 1 << (x % 32);
                     any |= *word;
@@ -149,8 +148,7 @@ impl<'a> Reachability<'a> {
         let mut changed = false;
         let mut carry = false;
         for word in 0..self.per_row {
-            let seeds = beside.and_then(|beside| self.reached.get(beside * self.per_row + word));
-            let seeds = seeds.copied().unwrap_or(0);
+            let seeds = beside.map_or(0, |beside| at(self.reached, beside * self.per_row + word));
             changed |= self.fill(row * self.per_row + word, seeds, &mut carry, |bits| bits);
         }
         let mut carry = false;
@@ -170,10 +168,11 @@ impl<'a> Reachability<'a> {
         carry: &mut bool,
         turn: impl Fn(u32) -> u32,
     ) -> bool {
-        let open = turn(self.open.get(index).copied().unwrap_or(0));
-        let Some(word) = self.reached.get_mut(index) else {
+        let open = inside(self.open, index);
+        let Some((&open, word)) = open.zip(inside_mut(self.reached, index)) else {
             return false;
         };
+        let open = turn(open);
         let before = turn(*word);
         let seeds = open & (before | turn(seeds) | u32::from(*carry));
         // A carry that starts at a seed clears the run's bits up to its end.

@@ -16,7 +16,7 @@
 //!
 //! Units: words of the plane, counted row by row.
 
-use crate::grid::{PlaneMut, Shape, ShapeError, at};
+use crate::grid::{PlaneMut, Shape, ShapeError, at, inside_mut, masked};
 use crate::roadmap::Progress;
 use crate::roadmap::thinning_rule::deletions;
 
@@ -233,8 +233,8 @@ impl<const M: usize> Thinning<M> {
             let k = todo.trailing_zeros();
             todo &= todo - 1;
             let k = k as usize;
-            if let (Some(word), Some(lost)) = (words.get_mut(group * 32 + k), losses.cells.get(k)) {
-                *word &= !lost;
+            if let Some(word) = inside_mut(words, group * 32 + k) {
+                *word &= !*masked(&losses.cells, k);
             }
         }
     }

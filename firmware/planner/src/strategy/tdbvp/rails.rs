@@ -18,7 +18,7 @@
 //! Units: map cells; ticks of a growing number of steps.
 
 use crate::geometry::Cell;
-use crate::grid::TileBox;
+use crate::grid::{TileBox, masked, masked_mut};
 
 /// Side of a place as a power of two, cells.
 const PLACE_SHIFT: i32 = 4;
@@ -90,7 +90,7 @@ impl<const SLOTS: usize> Rails<SLOTS> {
     pub(crate) fn stamp(&self, cell: Cell) -> u8 {
         let (slot, part) = self.place(cell);
         let tile = self.stamps.get(slot);
-        tile.and_then(|tile| tile.get(part)).copied().unwrap_or(0)
+        tile.map_or(0, |tile| *masked(tile, part))
     }
 
     /// Returns true if the place of a centre cell was visited.
@@ -140,7 +140,8 @@ impl<const SLOTS: usize> Rails<SLOTS> {
 
     fn stamp_mut(&mut self, cell: Cell) -> Option<&mut u8> {
         let (slot, part) = self.place(cell);
-        self.stamps.get_mut(slot)?.get_mut(part)
+        let tile = self.stamps.get_mut(slot)?;
+        Some(masked_mut(tile, part))
     }
 
     /// Returns the slot of a cell's tile and the cell's place in it.
