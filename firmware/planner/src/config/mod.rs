@@ -190,6 +190,11 @@ impl Config {
         self.period_s
     }
 
+    /// Returns the time from one step to the next, whole milliseconds.
+    pub(crate) const fn period_ms(&self) -> u32 {
+        (self.period_s * 1000.0 + 0.5) as u32
+    }
+
     /// Returns the parameters of uneven ground; `None` on flat ground.
     #[must_use]
     pub const fn ground(&self) -> Option<&UnevenGround> {

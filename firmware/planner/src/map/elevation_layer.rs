@@ -21,8 +21,10 @@ use crate::map::{Class, Map, SideTable, Tiles};
 /// Pages that hold the marks.
 const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::Cells>();
 
-/// Duration of a step, milliseconds. It only turns time into a phase.
-const STEP_MS: u32 = 200;
+/// Returns the phase of a step: which of the doorway's beams are due.
+const fn beam_phase(time_ms: u32, period_ms: u32, phases: usize) -> usize {
+    (time_ms / period_ms) as usize % phases
+}
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Lends the pages that hold the marks to the elevation window.
@@ -76,7 +78,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Enters what beams see through doorways into cells that are unknown.
     fn view_doorways(&mut self, config: &Config, ground: &UnevenGround, input: &Input<'_>) {
         let phases = config.tuning.map.beam_phases;
-        let phase = (input.time_ms / STEP_MS) as usize % phases;
+        let phase = beam_phase(input.time_ms, config.period_ms(), phases);
         let mut written = 0;
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             let tuning = &config.tuning.ground;
@@ -228,7 +230,7 @@ mod tests {
     use std::boxed::Box;
     use std::vec::Vec;
 
-    use super::{Class, Config, RiseLimits, UnevenGround};
+    use super::{Class, Config, RiseLimits, UnevenGround, beam_phase};
     use crate::config::{GroundTuning, MapTuning};
     use crate::geometry::Cell;
     use crate::map::Map;
@@ -263,6 +265,23 @@ mod tests {
                 .all(|class| class == Class::Free)
         };
         (0..64).filter(is_free).collect()
+    }
+
+    #[test]
+    fn beams_of_a_doorway_are_due_in_turn_at_every_period() {
+        let phases = MapTuning::DEFAULT.beam_phases;
+        for period_s in [0.1, 0.2, 0.4] {
+            let config = Config {
+                period_s,
+                ..config()
+            };
+            let period_ms = config.period_ms();
+            assert_eq!(period_ms, [100, 200, 400][(10.0 * period_s) as usize / 2]);
+            for step in 0..20 {
+                let phase = beam_phase(step * period_ms, period_ms, phases);
+                assert_eq!(phase, step as usize % phases, "{period_ms} ms");
+            }
+        }
     }
 
     #[test]

@@ -72,7 +72,13 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
                 impatience_s,
             } => {
                 let tuning = &config.tuning.tdbvp;
-                Loops::Tdbvp(Tdbvp::new(box_tiles, patrol_s, impatience_s, tuning))
+                Loops::Tdbvp(Tdbvp::new(
+                    box_tiles,
+                    config.period_ms(),
+                    patrol_s,
+                    impatience_s,
+                    tuning,
+                ))
             }
         };
     }

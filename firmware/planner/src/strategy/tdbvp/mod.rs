@@ -46,9 +46,6 @@ use crate::strategy::tdbvp::charges::{charge_rails, distance_m, has_fork, prefer
 use crate::strategy::tdbvp::pending_visits::PendingVisits;
 use crate::strategy::tdbvp::sides::SideVotes;
 
-/// Period of the planner that a patrol assumes, milliseconds.
-const STEP_MS: u32 = 200;
-
 /// The state of the strategy. `SLOTS` as the map's.
 #[derive(Debug)]
 pub(crate) struct Tdbvp<const SLOTS: usize> {
@@ -68,17 +65,20 @@ pub(crate) struct Tdbvp<const SLOTS: usize> {
     has_lingered: bool,
     /// Time without a new place after which the robot follows a path; `None` for never.
     impatience_ms: Option<u32>,
+    /// Time from one step to the next.
+    period_ms: u32,
     /// Length of the patrol, and its begin.
     patrol_ms: u32,
     patrol_since_ms: Option<u32>,
 }
 
 impl<const SLOTS: usize> Tdbvp<SLOTS> {
-    /// The state at the start, for a map in a box of (width, height) tiles, a patrol of `patrol_s`
-    /// seconds, and a path after `impatience_s` seconds without a new place.
+    /// The state at the start, for a map in a box of (width, height) tiles, steps of `period_ms`, a
+    /// patrol of `patrol_s` seconds, and a path after `impatience_s` seconds without a new place.
     #[must_use]
     pub(crate) const fn new(
         box_tiles: (i32, i32),
+        period_ms: u32,
         patrol_s: u16,
         impatience_s: Option<u16>,
         tuning: &TdbvpTuning,
@@ -98,6 +98,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
                 Some(seconds) => Some(seconds as u32 * 1000),
                 None => None,
             },
+            period_ms,
             patrol_ms: patrol_s as u32 * 1000,
             patrol_since_ms: None,
         }
@@ -280,17 +281,21 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         patrolled_ms: u32,
     ) -> Option<(u8, bool)> {
         let centres = round.centres()?;
-        let steps_per_cell = round.tuning.tdbvp.tour_cell_ms / STEP_MS;
-        let tour_steps = steps_per_cell * centres.cells.count() as u32;
+        let cell_ms = round.tuning.tdbvp.tour_cell_ms;
+        let tour_ms = cell_ms.saturating_mul(centres.cells.count() as u32);
         // The never visited come first. Those not visited in a whole tour cannot be reached.
-        let is_first_tour = patrolled_ms < tour_steps.saturating_mul(STEP_MS);
+        let is_first_tour = patrolled_ms < tour_ms;
         let stamps = centres
             .cells
             .sites()
             .map(|site| self.stamp(centres.cell(site)));
         let oldest = stamps.filter(|&stamp| is_first_tour || stamp > 0).min()?;
-        let is_overdue = oldest == 0 || self.rails.age_steps(oldest) > tour_steps;
-        Some((oldest, is_overdue))
+        Some((oldest, self.is_overdue(oldest, tour_ms)))
+    }
+
+    /// Returns true if rails with a stamp were not visited for as long as a tour of all takes.
+    fn is_overdue(&self, stamp: u8, tour_ms: u32) -> bool {
+        stamp == 0 || self.rails.age_steps(stamp) > tour_ms / self.period_ms
     }
 
     /// Returns the stamp of a centre cell; the newest for one that the robot is visiting.

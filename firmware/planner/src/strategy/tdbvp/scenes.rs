@@ -6,15 +6,19 @@
 use crate::config::TdbvpTuning;
 use crate::field::local_grid::{LocalGrid, position};
 use crate::field::{FieldTuning, SCRATCH_FLOATS, SIDE, SolverConfig, Window, descent, solve};
-use crate::geometry::Cell;
+use crate::geometry::{Cell, Pose};
 use crate::map::{Class, Tiles};
 use crate::path::nearest::Centres;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
+use crate::strategy::tdbvp::Tdbvp;
 use crate::strategy::tdbvp::charges::{charge_rails, prefer};
 use crate::strategy::tdbvp::pending_visits::PendingVisits;
 use crate::strategy::tdbvp::rails::Rails;
 use crate::strategy::tdbvp::sides::Side;
+
+/// The tuned constants.
+const TUNING: TdbvpTuning = TdbvpTuning::DEFAULT;
 
 /// A corridor that ends at another one across.
 const FORK: &str = "
@@ -57,7 +61,7 @@ impl Scene {
         let mut scene = Self {
             tiles: Tiles::new(),
             skeleton: Skeleton::new(),
-            rails: Rails::new((8, 8), TdbvpTuning::DEFAULT.first_tick_steps),
+            rails: Rails::new((8, 8), TUNING.first_tick_steps),
             pending: PendingVisits::new(),
             robot: Cell::default(),
         };
@@ -108,16 +112,16 @@ impl Scene {
             &grid,
             dates,
             &centres,
-            (robot, TdbvpTuning::DEFAULT.free_m),
+            (robot, TUNING.free_m),
             &[0; SIDE],
         );
         if let Some(side) = side {
             let ahead = self
                 .pending
-                .ahead(self.robot, TdbvpTuning::DEFAULT.disc_m)
+                .ahead(self.robot, TUNING.disc_m)
                 .expect("it came from somewhere");
             let preferred = (side, ahead);
-            prefer(&mut window, &grid, robot, preferred, &TdbvpTuning::DEFAULT);
+            prefer(&mut window, &grid, robot, preferred, &TUNING);
         }
         let config = SolverConfig {
             max_cycles: 100,
@@ -177,5 +181,58 @@ fn where_all_was_visited_the_older_arm_is_taken() {
         (0..40).for_each(|_| scene.rails.step());
         let (_, left) = scene.heading(None);
         assert!((left < 0.0) == up && left.abs() > 0.2, "{up}: {left}");
+    }
+}
+
+/// The state of a session with steps of `period_ms`, in the scene's box.
+fn session(period_ms: u32, impatience_s: Option<u16>) -> Tdbvp<64> {
+    Tdbvp::new((8, 8), period_ms, 600, impatience_s, &TUNING)
+}
+
+#[test]
+fn without_impatience_only_a_robot_that_lingers_leaves_the_rails() {
+    let scene = Scene::new(FORK);
+    let footprint = Footprint::new(0.1);
+    let centres = Centres::of(&scene.skeleton, &scene.tiles, &footprint).unwrap();
+    let robot = scene.robot.offset(1, 1).corner();
+    let pose = Pose {
+        x_m: robot.x_m,
+        y_m: robot.y_m,
+        ..Pose::default()
+    };
+    for impatience_s in [Some(10), None] {
+        let mut tdbvp = session(200, impatience_s);
+        let mut stay = |time_ms: u32| {
+            tdbvp.note(&pose, time_ms, None, &TUNING);
+            tdbvp.visit(&centres, robot, &TUNING);
+            tdbvp.is_late(time_ms)
+        };
+        assert!(!stay(0) && !stay(9_800));
+        assert_eq!(stay(10_000), impatience_s.is_some());
+        assert_eq!(stay(TUNING.linger_ms), impatience_s.is_some());
+        assert!(stay(TUNING.linger_ms + 200), "it lingers");
+        assert!(stay(TUNING.linger_ms + 400), "until it visits a new place");
+    }
+}
+
+#[test]
+fn a_rail_is_overdue_after_the_time_of_a_tour_at_every_period() {
+    let (cell, tour_ms) = (Cell::default(), 40_000);
+    for period_ms in [100, 200, 400] {
+        let mut tdbvp = session(period_ms, None);
+        assert!(
+            tdbvp.is_overdue(tdbvp.rails.stamp(cell), tour_ms),
+            "never visited"
+        );
+        tdbvp.rails.visit(cell);
+        let mut step = 0;
+        while !tdbvp.is_overdue(tdbvp.rails.stamp(cell), tour_ms) {
+            tdbvp.rails.step();
+            step += 1;
+        }
+        // A stamp is that of a whole tick.
+        let tick_ms = u32::from(TUNING.first_tick_steps) * period_ms;
+        let late_ms = step * period_ms - tour_ms;
+        assert!(late_ms <= 2 * tick_ms, "{period_ms} ms: {late_ms} ms late");
     }
 }
