@@ -172,10 +172,8 @@ pub struct Effect {
     pub touched: u32,
     /// Collisions, falls and tips that the defaults do not have.
     pub touched_more: u32,
-    /// Least share known.
+    /// Least share known by a run that knew the whole with the defaults.
     pub least_known: f64,
-    /// True if a run misses ground that it knew with the defaults.
-    pub misses: bool,
     /// Changes of the figures.
     pub figures: Figures,
 }
@@ -188,6 +186,7 @@ impl Effect {
         let count = |is: fn(&Outcome, &Outcome) -> bool| pairs().filter(|(d, o)| is(d, o)).count();
         let touched = |all: &[Outcome]| all.iter().map(|it| it.touched).sum::<u32>();
         let loops = |all: &[Outcome]| f64::from(all.iter().map(|it| it.loops).sum::<u32>());
+        let whole = || pairs().filter(|(d, _)| d.known >= WHOLE);
         let both = || pairs().filter(|(d, o)| d.explored() && o.explored());
         let change = |of: fn(&Outcome) -> Option<f64>| {
             mean(both().filter_map(|(d, o)| Some(100.0 * (of(o)? / of(d)? - 1.0))))
@@ -199,8 +198,7 @@ impl Effect {
             otherwise: count(|d, o| d.ending != o.ending),
             touched: touched(outcomes),
             touched_more: touched(outcomes).saturating_sub(touched(defaults)),
-            least_known: outcomes.iter().map(|it| it.known).fold(1.0, f64::min),
-            misses: count(|d, o| d.known >= WHOLE && o.known < WHOLE) > 0,
+            least_known: whole().map(|(_, o)| o.known).fold(1.0, f64::min),
             figures: Figures {
                 time_pct: change(|it| Some(it.time_s)),
                 t99_pct: change(|it| it.t99_s),
@@ -213,7 +211,7 @@ impl Effect {
     /// Returns true if every run ended as with the defaults, nothing more was touched, and no
     /// ground was missed.
     fn ends_alike(&self) -> bool {
-        self.otherwise == 0 && self.touched_more == 0 && !self.misses
+        self.otherwise == 0 && self.touched_more == 0 && self.least_known >= WHOLE
     }
 
     /// Returns true if all figures changed by less than the limits. Where the figures have no
@@ -339,7 +337,7 @@ mod tests {
             (effect.otherwise, effect.touched, effect.touched_more),
             (1, 2, 2)
         );
-        assert_eq!((effect.least_known, effect.misses), (0.7, true));
+        assert_eq!(effect.least_known, 0.7);
         assert_eq!((effect.figures.loops, effect.figures.age_pct), (3.0, None));
     }
 

@@ -181,12 +181,19 @@ impl<'a> Bench<'a> {
         (0..self.room.runs.len()).map(job).collect()
     }
 
+    /// Makes the runs. Those of the room's first run come first, so that the store of a stopped
+    /// ablation has all constants of fewer runs.
     fn go(&self, jobs: &[Job]) -> Vec<Outcome> {
-        in_parallel(jobs, |job| {
-            let run = &self.room.runs[job.run];
+        let mut order: Vec<usize> = (0..jobs.len()).collect();
+        order.sort_by_key(|&k| jobs[k].run);
+        let outcomes = in_parallel(&order, |&k| {
+            let (job, run) = (&jobs[k], &self.room.runs[jobs[k].run]);
             let key = format!("{}:{}:{}:{}", self.room.name, run.key(), job.seed, job.name);
             self.store.get_or(&key, || self.outcome(run, job))
-        })
+        });
+        let mut outcomes: Vec<_> = order.into_iter().zip(outcomes).collect();
+        outcomes.sort_by_key(|(k, _)| *k);
+        outcomes.into_iter().map(|(_, outcome)| outcome).collect()
     }
 
     fn outcome(&self, run: &Run, job: &Job) -> Outcome {
