@@ -80,57 +80,22 @@ struct Job {
     limit_ms: u32,
 }
 
-/// Makes all runs of a room: the defaults, other seeds of them, and half and double of every
-/// constant. Outcomes that `store` has are not made again.
+/// Makes all runs of a room: the defaults, half and double of every constant, and other seeds of
+/// the defaults. Outcomes that `store` has are not made again.
 ///
 /// # Panics
 /// If a run cannot begin, or the store cannot be written.
 #[must_use]
 pub fn of(room: &Room, store: &Store) -> Findings {
     let bench = Bench::new(room, store);
-    let defaults = bench.go(&bench.jobs("default", &Tuning::DEFAULT, 0, &|_| MOST_MS));
-    let limit_ms = |run: usize| (1000.0 * MOST_TIMES * defaults[run].end_s) as u32;
-    let seeds: Vec<Job> = OTHER_SEEDS
-        .flat_map(|seed| bench.jobs("default", &Tuning::DEFAULT, seed, &|_| MOST_MS))
-        .collect();
-    let spread: Vec<Figures> = bench
-        .go(&seeds)
-        .chunks(room.runs.len())
-        .map(|outcomes| Effect::of(&defaults, outcomes).figures)
-        .collect();
-    let constants = constants(room.name);
-    let changed: Vec<(usize, f32, Tuning)> = (0..2 * constants.len())
-        .filter_map(|k| {
-            let (value, tuning) = scaled(&constants[k / 2], [HALF, DOUBLE][k % 2])?;
-            Some((k, value, tuning))
-        })
-        .collect();
-    let jobs: Vec<Job> = changed
-        .iter()
-        .flat_map(|(k, value, tuning)| {
-            let name = format!("{}={value}", constants[k / 2].name);
-            bench.jobs(&name, Box::leak(Box::new(*tuning)), 0, &limit_ms)
-        })
-        .collect();
-    let outcomes = bench.go(&jobs);
-    let mut rows: Vec<Row> = constants.iter().map(Row::unchanged).collect();
-    for ((k, value, _), outcomes) in changed.iter().zip(outcomes.chunks(room.runs.len())) {
-        let effect = Effect::of(&defaults, outcomes);
-        let value = *value;
-        rows[k / 2].changes[k % 2] = Some(Change { value, effect });
-    }
-    let noise = Figures::root_mean_square(&spread);
+    let defaults = bench.defaults(0);
+    let rows = bench.rows(&defaults);
+    let spread = OTHER_SEEDS.map(|seed| Effect::of(&defaults, &bench.defaults(seed)).figures);
+    let noise = Figures::root_mean_square(&spread.collect::<Vec<_>>());
     Findings {
         defaults,
         noise,
         rows,
-    }
-}
-
-impl Row {
-    fn unchanged(tuned: &Tuned) -> Self {
-        let (tuned, changes) = (*tuned, [None, None]);
-        Self { tuned, changes }
     }
 }
 
@@ -163,22 +128,49 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Lists every run of the room with one tuning.
-    fn jobs(
-        &self,
-        name: &str,
-        tuning: &'static Tuning,
-        seed: u64,
-        limit_ms: &dyn Fn(usize) -> u32,
-    ) -> Vec<Job> {
+    /// Makes all runs with the defaults.
+    fn defaults(&self, seed: u64) -> Vec<Outcome> {
         let job = |run| Job {
             run,
-            name: name.into(),
-            tuning,
+            name: "default".into(),
+            tuning: &Tuning::DEFAULT,
             seed,
-            limit_ms: limit_ms(run),
+            limit_ms: MOST_MS,
         };
-        (0..self.room.runs.len()).map(job).collect()
+        self.go(&(0..self.room.runs.len()).map(job).collect::<Vec<_>>())
+    }
+
+    /// Makes all runs with half and with double of every constant.
+    fn rows(&self, defaults: &[Outcome]) -> Vec<Row> {
+        let mut rows = Vec::new();
+        let mut jobs = Vec::new();
+        for tuned in constants(self.room.name) {
+            let values = [HALF, DOUBLE].map(|share| scaled(&tuned, share));
+            for (value, tuning) in values.iter().flatten() {
+                let tuning: &'static Tuning = Box::leak(Box::new(*tuning));
+                jobs.extend(defaults.iter().enumerate().map(|(run, default)| Job {
+                    run,
+                    name: format!("{}={value}", tuned.name),
+                    tuning,
+                    seed: 0,
+                    limit_ms: (1000.0 * MOST_TIMES * default.end_s) as u32,
+                }));
+            }
+            rows.push((tuned, values.map(|it| it.map(|(value, _)| value))));
+        }
+        let outcomes = self.go(&jobs);
+        let mut effects = outcomes
+            .chunks(defaults.len())
+            .map(|it| Effect::of(defaults, it));
+        let mut change = |value: Option<f32>| {
+            let (value, effect) = (value?, effects.next()?);
+            Some(Change { value, effect })
+        };
+        let row = |(tuned, values): (Tuned, [Option<f32>; 2])| Row {
+            tuned,
+            changes: values.map(&mut change),
+        };
+        rows.into_iter().map(row).collect()
     }
 
     /// Makes the runs. Those of the room's first run come first, so that the store of a stopped
