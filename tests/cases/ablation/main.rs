@@ -1,4 +1,6 @@
 //! Ablation of every tuned constant: the tables of `docs/ABLATION.md`, one case a room.
+//!
+//! `ABLATION_RUNS=4` makes only the first four runs of a room.
 
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -14,6 +16,9 @@ fn check(name: &str) {
     let _guard = LOCK.lock().unwrap_or_else(PoisonError::into_inner);
     let room = ROOMS.iter().find(|room| room.name == name);
     let room = room.unwrap_or_else(|| panic!("no room is called {name}"));
+    let most = std::env::var("ABLATION_RUNS").ok();
+    let most = most.and_then(|most| most.parse().ok());
+    let room = &room.with_first(most.unwrap_or(usize::MAX));
     let store = match Store::open(Path::new(env!("CARGO_TARGET_TMPDIR"))) {
         Ok(store) => store,
         Err(error) => panic!("no store of outcomes: {error}"),

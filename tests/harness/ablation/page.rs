@@ -1,7 +1,7 @@
 //! The tables of `docs/ABLATION.md`, one part a room.
 
 use super::effect::{Effect, Figures, Outcome, Verdict, WHOLE};
-use super::rooms::Room;
+use super::rooms::{ROOMS, Room};
 use super::{Change, Findings, Row};
 use crate::table::number;
 
@@ -10,8 +10,9 @@ use crate::table::number;
 pub fn part(room: &Room, findings: &Findings) -> String {
     let loops = room.closes_loops;
     format!(
-        "{}\n{}\n\n{}\n{}",
+        "{}\n{} {}\n\n{}\n{}",
         defaults(room, &findings.defaults),
+        runs(room),
         noise(&findings.noise, loops),
         verdicts(findings),
         constants(findings, loops)
@@ -42,6 +43,18 @@ fn defaults(room: &Room, outcomes: &[Outcome]) -> String {
         lines += &line(&cells);
     }
     lines
+}
+
+/// Writes the sentence that counts the runs.
+fn runs(room: &Room) -> String {
+    let made = room.runs.len();
+    let all = ROOMS.iter().find(|all| all.name == room.name);
+    let all = all.map_or(made, |all| all.runs.len());
+    if made == all {
+        format!("All {all} runs of the room.")
+    } else {
+        format!("The first {made} of {all} runs of the room (`ABLATION_RUNS={made}`).")
+    }
 }
 
 /// Writes the sentence of the noise.
