@@ -86,8 +86,8 @@ pub const ROOMS: [Room; 5] = [
         runs: &[
             run("kerbs", 0, FRONTIER, Uneven, Ranges),
             run("causeway", 1, FRONTIER, Uneven, Odometry),
-            run("kerbs", 1, FRONTIER, Uneven, Attitude),
             run("cliff", 0, FRONTIER, Uneven, Ranges),
+            run("kerbs", 1, FRONTIER, Uneven, Attitude),
             run("slope", 0, FRONTIER, Uneven, Attitude),
             run("holes", 0, FRONTIER, Uneven, Ranges),
             run("causeway", 0, FRONTIER, Uneven, Attitude),
