@@ -5,7 +5,7 @@ use std::cell::RefCell;
 
 use fieldline_device::meter::NoMeter;
 use fieldline_device::{Boot, Memory, Session};
-use fieldline_planner::{State, Workspace};
+use fieldline_planner::{State, Tuning, Workspace};
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::frame::{MAX_REQUEST_FRAME, encode_request};
 use fieldline_protocol::message::Request;
@@ -32,7 +32,11 @@ fn request(sequence: u16, request: &Request) -> Vec<u8> {
 fuzz_target!(|data: &[u8]| {
     MEMORY.with_borrow_mut(|(state, workspace)| {
         **workspace = Workspace::new();
-        let mut memory = Memory { state, workspace };
+        let mut memory = Memory {
+            state,
+            workspace,
+            tuning: &Tuning::DEFAULT,
+        };
         let mut session = Session::new();
         session.boot(Boot::default(), TILES, SLOTS);
         let hello = Request::Hello {

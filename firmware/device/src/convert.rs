@@ -136,18 +136,14 @@ fn loop_limits(limits: &wire::LoopLimits) -> LoopLimits {
     }
 }
 
-/// Converts the parameters of a session from the wire. The planner checks them. Without `tuning`
-/// the tuned constants have their defaults.
+/// Converts the parameters of a session from the wire. The planner checks them.
 ///
 /// # Errors
 /// [`wire::Parameter`]: the first parameter that is out of its range.
-pub fn config(
-    start: &wire::Start,
-    tuning: Option<&'static Tuning>,
-) -> Result<Config, wire::Parameter> {
+pub fn config(start: &wire::Start, tuning: &'static Tuning) -> Result<Config, wire::Parameter> {
     let (across, up) = start.box_tiles;
     let mut builder = Config::builder(hull(&start.hull))
-        .tuning(tuning.unwrap_or(&Tuning::DEFAULT))
+        .tuning(tuning)
         .strategy(match start.strategy {
             wire::Strategy::Frontier => Strategy::Frontier,
             wire::Strategy::Ouroboros => Strategy::Ouroboros,

@@ -42,18 +42,21 @@ pub struct Memory<'a, const TILES: usize, const SLOTS: usize> {
     pub state: &'a mut State<TILES, SLOTS>,
     /// Scratch memory of a step.
     pub workspace: &'a mut Workspace,
+    /// The tuned constants of the next session. A chip keeps them in flash.
+    pub tuning: &'static Tuning,
 }
 
 /// State of a session, without the map.
 ///
 /// ```
 /// use fieldline_device::{Memory, Pilot};
-/// use fieldline_planner::{State, Workspace};
+/// use fieldline_planner::{State, Tuning, Workspace};
 /// use fieldline_protocol::message::{Control, Observation, Refusal, Status};
 ///
 /// let mut state = Box::new(State::<4, 64>::new());
 /// let mut workspace = Box::new(Workspace::new());
-/// let mut memory = Memory { state: &mut state, workspace: &mut workspace };
+/// let tuning = &Tuning::DEFAULT;
+/// let mut memory = Memory { state: &mut state, workspace: &mut workspace, tuning };
 /// let mut pilot = Pilot::new();
 /// assert_eq!(pilot.status(), Status::Idle);
 /// let refused = pilot.observe(&mut memory, &Observation::default(), &mut ());
@@ -63,8 +66,6 @@ pub struct Memory<'a, const TILES: usize, const SLOTS: usize> {
 /// Invariant: `pressed` implies `latched`.
 #[derive(Debug)]
 pub struct Pilot {
-    /// `None` means the defaults, so that a new pilot is all zeros and its static needs no flash.
-    tuning: Option<&'static Tuning>,
     config: Option<Config>,
     /// The status after the last step.
     planned: Status,
@@ -84,21 +85,11 @@ impl Pilot {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            tuning: None,
             config: None,
             planned: Status::Idle,
             paused: false,
             latched: false,
             pressed: false,
-        }
-    }
-
-    /// Returns a pilot whose sessions use these tuned constants.
-    #[must_use]
-    pub fn tuned(tuning: &'static Tuning) -> Self {
-        Self {
-            tuning: Some(tuning),
-            ..Self::new()
         }
     }
 
@@ -135,7 +126,6 @@ impl Pilot {
             Control::Start(start) => self.start(memory, start)?,
             Control::Reset => {
                 *self = Self {
-                    tuning: self.tuning,
                     pressed: self.pressed,
                     latched: self.latched,
                     ..Self::new()
@@ -157,7 +147,7 @@ impl Pilot {
         memory: &mut Memory<'_, TILES, SLOTS>,
         start: &Start,
     ) -> Result<(), Refusal> {
-        let config = convert::config(start, self.tuning).map_err(Refusal::BadParameter)?;
+        let config = convert::config(start, memory.tuning).map_err(Refusal::BadParameter)?;
         let reset = memory.state.reset(&config);
         reset.map_err(|BoxTooLarge { .. }| Refusal::BadBox)?;
         info!(
@@ -168,7 +158,6 @@ impl Pilot {
             start.robot_radius_mm
         );
         *self = Self {
-            tuning: self.tuning,
             config: Some(config),
             planned: Status::Exploring,
             paused: false,

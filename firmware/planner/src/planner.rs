@@ -46,6 +46,9 @@ use steer::{look_about, steer};
 /// A range below this is inside the robot's own hull, metres.
 const BLOCKED_M: f32 = 0.12;
 
+/// Thinning budget of a step, words of 32 coarse cells.
+const THINNING_WORDS: u32 = 6_000;
+
 /// The output of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Output {
@@ -181,7 +184,7 @@ fn advance_plan<const TILES: usize, const SLOTS: usize>(
         state.has_new_skeleton =
             state
                 .skeleton
-                .advance(state.map.tiles(), footprint, config.topology_units);
+                .advance(state.map.tiles(), footprint, THINNING_WORDS);
         timer.mark(Stage::Topology);
     }
     planned

@@ -17,7 +17,7 @@
 use fieldline_device::convert;
 use fieldline_device::session::{self, Boot};
 use fieldline_device::{SLOTS, TILES};
-use fieldline_planner::config::Config;
+use fieldline_planner::config::{Config, Tuning};
 use fieldline_planner::drive::{CollisionChecker, Drive, Place, SCRATCH_WORDS, SearchQuery};
 use fieldline_planner::geometry::{Cell, Point, Pose, Twist};
 use fieldline_planner::input::Input;
@@ -97,7 +97,7 @@ impl<S: Strategy> Session<S> {
     }
 
     fn start(&mut self, start: &Start) -> Result<(), Refusal> {
-        let config = convert::config(start, None).map_err(Refusal::BadParameter)?;
+        let config = convert::config(start, &Tuning::DEFAULT).map_err(Refusal::BadParameter)?;
         let (across, up) = config.box_tiles();
         if !Tiles::<TILES, SLOTS>::fits(across, up) {
             return Err(Refusal::BadBox);

@@ -16,6 +16,7 @@ pub struct Direct {
     pilot: Pilot,
     state: Box<State>,
     workspace: Box<Workspace>,
+    tuning: &'static Tuning,
     calls: u64,
 }
 
@@ -29,20 +30,17 @@ impl Direct {
     /// A pilot that has just booted.
     #[must_use]
     pub fn new() -> Self {
-        Self::of(Pilot::new())
+        Self::tuned(&Tuning::DEFAULT)
     }
 
     /// A pilot that has just booted, with these tuned constants.
     #[must_use]
     pub fn tuned(tuning: &'static Tuning) -> Self {
-        Self::of(Pilot::tuned(tuning))
-    }
-
-    fn of(pilot: Pilot) -> Self {
         Self {
-            pilot,
+            pilot: Pilot::new(),
             state: Box::new(State::new()),
             workspace: Box::new(Workspace::new()),
+            tuning,
             calls: 0,
         }
     }
@@ -53,6 +51,7 @@ impl Direct {
         let mut memory = Memory {
             state: &mut self.state,
             workspace: &mut self.workspace,
+            tuning: self.tuning,
         };
         act(&mut self.pilot, &mut memory)
     }

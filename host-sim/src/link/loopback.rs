@@ -8,7 +8,7 @@ use core::time::Duration;
 use fieldline_device::meter::NoMeter;
 use fieldline_device::session::Boot;
 use fieldline_device::{Memory, SLOTS, Session, State, TILES};
-use fieldline_planner::Workspace;
+use fieldline_planner::{Tuning, Workspace};
 
 use super::LinkError;
 use super::endpoint::{Endpoint, RetryPolicy};
@@ -82,6 +82,7 @@ impl Line for LocalDevice {
         let mut memory = Memory {
             state: &mut self.state,
             workspace: &mut self.workspace,
+            tuning: &Tuning::DEFAULT,
         };
         for byte in bytes {
             self.session.receive(*byte, &mut memory, &mut NoMeter);

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use fieldline_device::{SLOTS, TILES, convert};
-use fieldline_planner::config::Config;
+use fieldline_planner::config::{Config, Tuning};
 use fieldline_planner::geometry::{Cell, Pose};
 use fieldline_planner::map::{Class, Map};
 use fieldline_protocol::message::{Observation, Start, Status, Tile};
@@ -28,7 +28,7 @@ impl Mirror {
     /// Makes the empty map of a session.
     #[must_use]
     pub fn new(start: &Start) -> Self {
-        let config = convert::config(start, None).ok();
+        let config = convert::config(start, &Tuning::DEFAULT).ok();
         let mut map = Box::new(Map::new());
         if let Some(config) = &config {
             map.begin(config);

@@ -3,7 +3,9 @@
 use std::string::ToString;
 use std::vec::Vec;
 
-use fieldline_planner::{Cell, LaserMount, ResidualFrontier, ResidualReason, RobotShape, Twist};
+use fieldline_planner::{
+    Cell, LaserMount, ResidualFrontier, ResidualReason, RobotShape, Tuning, Twist,
+};
 use fieldline_protocol::message as wire;
 use fieldline_protocol::message::{
     Control, Hull, Laser, LoopLimits, Observation, Parameter, Refusal, Scan, Start, UnevenGround,
@@ -326,7 +328,7 @@ fn a_session_takes_its_limits_from_the_host() {
         lasers: start().lasers,
         ..Start::default()
     };
-    let config = config(&start, None).expect("valid");
+    let config = config(&start, &Tuning::DEFAULT).expect("valid");
     assert_eq!(*config.robot(), RobotShape::rectangle(0.9, 0.6, 0.4));
     assert_eq!(config.box_tiles(), (30, 12));
     assert_eq!(

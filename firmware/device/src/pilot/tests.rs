@@ -2,7 +2,7 @@
 
 use std::boxed::Box;
 
-use fieldline_planner::{State, Workspace};
+use fieldline_planner::{State, Tuning, Workspace};
 use fieldline_protocol::message::{
     Control, Fault, Finish, Hull, Laser, LoopLimits, Observation, Refusal, Scan, Start, Status,
     Strategy, Twist,
@@ -73,6 +73,7 @@ impl Bench {
         Memory {
             state: &mut self.state,
             workspace: &mut self.workspace,
+            tuning: &Tuning::DEFAULT,
         }
     }
 }

@@ -85,8 +85,6 @@ pub struct Config {
     pub(crate) period_s: f32,
     /// The window's solver.
     pub(crate) solver: SolverConfig,
-    /// Thinning budget of a step, words. Default: 6,000.
-    pub(crate) topology_units: u32,
     /// The tuned constants. Default: [`Tuning::DEFAULT`].
     pub(crate) tuning: &'static Tuning,
     /// Parameters of uneven ground; `None` on flat ground, where lasers only see obstacles.
@@ -127,7 +125,6 @@ impl Config {
                 max_cycles: 3,
                 ..SolverConfig::DEFAULT
             },
-            topology_units: 6_000,
             tuning: &Tuning::DEFAULT,
             ground: None,
         }

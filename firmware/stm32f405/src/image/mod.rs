@@ -21,6 +21,7 @@ mod workspace;
 use cortex_m_rt::entry;
 use fieldline_device::port::{Port, Turn};
 use fieldline_device::{Memory, SLOTS, Session, State, TILES};
+use fieldline_planner::Tuning;
 
 use board::Board;
 
@@ -45,6 +46,7 @@ fn main() -> ! {
     let mut memory = Memory {
         state: STATE,
         workspace,
+        tuning: &Tuning::DEFAULT,
     };
     loop {
         board.feed_watchdog();
