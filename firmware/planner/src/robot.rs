@@ -14,7 +14,7 @@ pub struct RobotShape {
     pub half_width_m: f32,
     /// Height of the top above the ground, metres.
     pub height_m: f32,
-    /// Distance from the centre to a corner of the rectangle, metres.
+    /// Distance from the centre to a corner of the rectangle, metres, to the nearest millimetre.
     pub half_diagonal_m: f32,
 }
 
@@ -33,7 +33,7 @@ impl RobotShape {
             half_length_m,
             half_width_m,
             height_m,
-            half_diagonal_m: hypotenuse(half_length_m, half_width_m),
+            half_diagonal_m: to_millimetre(hypotenuse(half_length_m, half_width_m)),
         }
     }
 
@@ -51,6 +51,11 @@ impl RobotShape {
     pub const fn round(diameter_m: f32, height_m: f32) -> Self {
         Self::rectangle(diameter_m, diameter_m, height_m)
     }
+}
+
+/// Rounds a positive length to the nearest millimetre.
+const fn to_millimetre(length_m: f32) -> f32 {
+    (length_m * 1000.0 + 0.5) as u32 as f32 / 1000.0
 }
 
 /// Returns √(a² + b²) by Newton's iteration, which can run at compile time; 0 if both are 0.
