@@ -1,8 +1,8 @@
 //! Loops and rails: rails by age, the path to the goal, tractor point, shield, and loops given up.
 //!
-//! Closed and given up regions are tints of the map's free cells ([`super::layers::map`]). Rails are bands
-//! below the path of the robot, from dark (the newest visit) to light (the oldest). A skeleton cell
-//! that was never visited has no band.
+//! Closed and given up regions are tints of the map's free cells ([`super::layers::map`]). Rails
+//! are bands below the path of the robot, from dark (the newest visit) to light (the oldest). A
+//! skeleton cell that was never visited has no band.
 
 use super::canvas::{Canvas, Spot};
 use super::layers::{links, skeleton_middle};

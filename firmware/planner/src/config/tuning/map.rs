@@ -6,8 +6,8 @@
 tuning! {
     /// Tuned constants of the map.
     "map" MapTuning {
-        /// Radius around the robot's centre in which it stands: the ground carries the wheels there,
-        /// and no cell is unknown.
+        /// Radius around the robot's centre in which it stands: the ground carries the wheels
+        /// there, and no cell is unknown.
         stand_radius_m: f32 = 0.25, 0.1..=0.5, "m";
         /// A person carried the robot if it moved more cells than this between two observations.
         max_step_cells: i32 = 10, 2..=50, "cells";

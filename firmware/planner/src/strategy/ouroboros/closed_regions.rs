@@ -1,5 +1,5 @@
-//! Closed regions: the surroundings of loops, in which no new tractor point is made
-//! \[Jorge15, III-A: "the next tractor point must be placed in an unmarked area"\].
+//! Closed regions: the surroundings of loops, in which no new tractor point is made \[Jorge15,
+//! III-A: "the next tractor point must be placed in an unmarked area"\].
 //!
 //! A region is 0.8 × 0.8 m of the map and has two bits:
 //!
@@ -81,8 +81,8 @@ impl<const SLOTS: usize> ClosedRegions<SLOTS> {
         })
     }
 
-    /// Makes the open regions within `near_cells` of a cell of the loop's path pending, along either
-    /// axis.
+    /// Makes the open regions within `near_cells` of a cell of the loop's path pending, along
+    /// either axis.
     pub(crate) fn add_pending(&mut self, cell: Cell, near_cells: i32) {
         let span = |at: i32| (at - near_cells) >> REGION_SHIFT..=(at + near_cells) >> REGION_SHIFT;
         for y in span(cell.y) {
