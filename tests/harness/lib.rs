@@ -25,9 +25,10 @@
 //! | [`emulator`] | the image for the chip, and QEMU |
 //! | [`elf`] | flash and memory that an image takes |
 //!
-//! Two environment variables have a meaning: `BLESS=1` rewrites golden files, and `FIELDLINE_DATA`
-//! names the folder with worlds drawn by others. Cases that take hours, or that need what a machine
-//! may lack, are `#[ignore]`d with the reason; `tests/README.md` says how to run them.
+//! Three environment variables have a meaning: `BLESS=1` rewrites golden files, `FIELDLINE_DATA`
+//! names the folder with worlds drawn by others, and `ABLATION_RUNS` limits the runs of a room.
+//! Cases that take hours, or that need what a machine may lack, are `#[ignore]`d with the
+//! reason; `tests/README.md` says how to run them.
 
 pub mod ablation;
 pub mod bitmap;

@@ -27,7 +27,7 @@ pub struct Outcome {
     pub ending: String,
     /// Collisions, falls and tips.
     pub touched: u32,
-    /// Loops of the world that the robot drove round.
+    /// Loops of the world that the robot drove round, if its strategy closes loops.
     pub loops: u32,
     /// Share known at the end.
     pub known: f64,
@@ -51,7 +51,11 @@ impl Outcome {
             digest: report.digest.clone(),
             ending: format!("{}({})", outcome.status, outcome.reason),
             touched: safety.collisions + safety.falls + safety.tips,
-            loops: report.loops.circled,
+            loops: if run.closes_loops() {
+                report.loops.circled
+            } else {
+                0
+            },
             known: report.coverage.fraction,
             time_s: report.sim_time_s - f64::from(patrol_s),
             end_s: report.sim_time_s,

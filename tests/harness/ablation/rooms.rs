@@ -86,8 +86,8 @@ pub const ROOMS: [Room; 5] = [
         runs: &[
             run("kerbs", 0, FRONTIER, Uneven, Ranges),
             run("causeway", 1, FRONTIER, Uneven, Odometry),
-            run("cliff", 0, FRONTIER, Uneven, Ranges),
             run("kerbs", 1, FRONTIER, Uneven, Attitude),
+            run("cliff", 0, FRONTIER, Uneven, Ranges),
             run("slope", 0, FRONTIER, Uneven, Attitude),
             run("holes", 0, FRONTIER, Uneven, Ranges),
             run("causeway", 0, FRONTIER, Uneven, Attitude),
@@ -185,6 +185,12 @@ impl Run {
             noise,
         } = self;
         format!("{world}:{start}:{strategy}:{ground:?}:{noise:?}")
+    }
+
+    /// Returns true if the strategy closes loops on purpose.
+    #[must_use]
+    pub fn closes_loops(&self) -> bool {
+        self.strategy != FRONTIER
     }
 
     /// Returns the duration of the patrol at the end of the run, seconds.
