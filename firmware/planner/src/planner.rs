@@ -133,7 +133,8 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         return Output::standing(state.status);
     }
     if charge_rails(config, state, workspace, &footprint, &input).is_none() {
-        let Some(goal) = local_goal(config, state, &footprint, &input, &mut workspace.view) else {
+        let Some(goal) = local_goal(config, state, &footprint, &input, &mut workspace.local_grid)
+        else {
             timer.mark(Stage::Window);
             return Output {
                 velocity: look_about(config, state, &input),

@@ -58,16 +58,16 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
 ) -> Option<()> {
     state.strategy.tdbvp()?;
     let robot = input.pose.point().cell();
-    let view = &mut workspace.view;
-    view.update(state.map.tiles(), footprint, robot, 1);
-    view.free_robot(robot);
+    let local_grid = &mut workspace.local_grid;
+    local_grid.update(state.map.tiles(), footprint, robot, 1);
+    local_grid.free_robot(robot);
     let tiles = state.map.tiles();
     state
         .ground
-        .block_rims(config, tiles, footprint, input.pose.point(), view);
+        .block_rims(config, tiles, footprint, input.pose.point(), local_grid);
     slide(workspace);
     let centres = Centres::of(&state.skeleton, tiles, footprint)?;
-    let window = (&mut workspace.window, &workspace.view);
+    let window = (&mut workspace.window, &workspace.local_grid);
     state
         .strategy
         .charge(&centres, input.pose.point(), window, config.tuning)
@@ -78,7 +78,7 @@ pub(super) fn charge(workspace: &mut Workspace, goal: &Rows) {
     slide(workspace);
     workspace
         .window
-        .set_boundary(&workspace.view.passable, goal);
+        .set_boundary(&workspace.local_grid.passable, goal);
 }
 
 /// Moves the window to the local grid's place, together with the field where they overlap.
@@ -86,19 +86,19 @@ fn slide(workspace: &mut Workspace) {
     let Workspace {
         window,
         window_at: at,
-        view,
+        local_grid,
         ..
     } = workspace;
     match *at {
-        Some((origin, scale)) if scale == view.scale => {
+        Some((origin, scale)) if scale == local_grid.scale => {
             let steps = |to: i32, from: i32| (to - from) / scale;
             window.shift(
-                steps(view.origin.x, origin.x),
-                steps(view.origin.y, origin.y),
+                steps(local_grid.origin.x, origin.x),
+                steps(local_grid.origin.y, origin.y),
             );
         }
         // A field at another scale is of no use.
         _ => window.shift(SIDE as i32, 0),
     }
-    *at = Some((view.origin, view.scale));
+    *at = Some((local_grid.origin, local_grid.scale));
 }

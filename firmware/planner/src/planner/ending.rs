@@ -30,7 +30,7 @@ pub(super) fn finish<const TILES: usize, const SLOTS: usize>(
     }
     let missing = list_ways_out(state, workspace, footprint, robot);
     state.strategy.frontier.list_unreachable(&state.skeleton);
-    let status = conclude(state, &mut workspace.view, footprint, robot, missing);
+    let status = conclude(state, &mut workspace.local_grid, footprint, robot, missing);
     if status != DONE || !state.strategy.begin_patrol() {
         state.status = status;
     }
@@ -53,24 +53,24 @@ fn list_ways_out<const TILES: usize, const SLOTS: usize>(
 /// Returns the status that tells why no frontier can be reached.
 fn conclude<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
-    view: &mut LocalGrid,
+    local_grid: &mut LocalGrid,
     footprint: &Footprint,
     robot: Cell,
     missing: Option<NoRoom>,
 ) -> Status {
-    view.update(state.map.tiles(), footprint, robot, 1);
-    view.free_robot(robot);
+    local_grid.update(state.map.tiles(), footprint, robot, 1);
+    local_grid.free_robot(robot);
     match missing {
         Some(NoRoom::Pool) => Status::Fault(Fault::MapFull),
         Some(NoRoom::Box) => Status::Fault(Fault::OutOfBox),
         None if state.strategy.frontier.is_stuck() => Status::Fault(Fault::Stuck),
-        None if room_cells(view, robot) < BOX_CELLS => Status::Finished(Finish::BoxedIn),
+        None if room_cells(local_grid, robot) < BOX_CELLS => Status::Finished(Finish::BoxedIn),
         None => Status::Finished(Finish::Explored),
     }
 }
 
 /// Returns the number of window cells that the robot's centre can reach.
-fn room_cells(view: &LocalGrid, robot: Cell) -> u32 {
-    let reached = view.reachable(robot);
+fn room_cells(local_grid: &LocalGrid, robot: Cell) -> u32 {
+    let reached = local_grid.reachable(robot);
     reached.map_or(0, |rows| rows.iter().map(|row| row.count_ones()).sum())
 }

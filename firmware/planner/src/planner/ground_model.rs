@@ -103,11 +103,11 @@ impl<const TILES: usize> GroundModel<TILES> {
         config: &'a Config,
         preferences: &Preferences,
     ) -> Option<LevelCost<'a, TILES>> {
-        let terrain = config.ground.as_ref()?;
+        let ground = config.ground.as_ref()?;
         match self {
-            Self::Uneven(heights) if terrain.levels => Some(LevelCost {
+            Self::Uneven(heights) if ground.levels => Some(LevelCost {
                 heights,
-                ground: terrain,
+                ground,
                 reference_m: preferences.reference_m(),
             }),
             _ => None,

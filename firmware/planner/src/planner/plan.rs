@@ -33,7 +33,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     let scratch = PlanningScratch {
         residues,
         queue,
-        local_grid: &mut workspace.view,
+        local_grid: &mut workspace.local_grid,
     };
     let context = PlanningContext {
         skeleton: &mut state.skeleton,

@@ -16,23 +16,25 @@ use crate::planner::workspace::Workspace;
 /// Adds the preference of \[Maffei20, eqs. 3 to 5\] to the strategy's own in every cell of the
 /// window.
 pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
-    terrain: &UnevenGround,
+    ground: &UnevenGround,
     state: &State<TILES, SLOTS>,
     workspace: &mut Workspace,
     input: &Input<'_>,
 ) {
     let heights = state.map.heights();
-    let global = state.preferences.global(terrain);
+    let global = state.preferences.global(ground);
     let has_sides = state.strategy.tdbvp().is_some();
-    let Workspace { window, view, .. } = workspace;
-    let crossed = crossed(terrain, &heights, window, view);
+    let Workspace {
+        window, local_grid, ..
+    } = workspace;
+    let crossed = crossed(ground, &heights, window, local_grid);
     window.change_preferences(|x, y, old| {
         if LocalGrid::has(&crossed, (x, y)) {
-            return Preference::nearest(terrain.least_preference);
+            return Preference::nearest(ground.least_preference);
         }
-        let height_m = heights.height_m(view.cell(x, y));
+        let height_m = heights.height_m(local_grid.cell(x, y));
         let difference_m = height_m.map(|height_m| height_m - input.pose.z_m);
-        let epsilon = state.preferences.of_cell(terrain, global, difference_m);
+        let epsilon = state.preferences.of_cell(ground, global, difference_m);
         let side = if has_sides { old.get().to_num() } else { 0.0 };
         Preference::nearest(epsilon + side)
     });
@@ -42,21 +44,21 @@ pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
 /// They repel with the least preference: otherwise the height preference would draw the robot along
 /// its own height, across the slope. Not in \[Maffei20\].
 fn crossed(
-    terrain: &UnevenGround,
+    ground: &UnevenGround,
     heights: &Heights<'_>,
     window: &Window,
-    view: &LocalGrid,
+    local_grid: &LocalGrid,
 ) -> Rows {
     let mut rows = [0; SIDE];
-    let Some(most) = terrain
+    let Some(most) = ground
         .side_slope_limit()
-        .filter(|_| terrain.mode.has_heights())
+        .filter(|_| ground.mode.has_heights())
     else {
         return rows;
     };
     for (y, row) in rows.iter_mut().enumerate() {
         for x in 0..SIDE {
-            let is_crossed = Slope::at(heights, view.cell(x, y))
+            let is_crossed = Slope::at(heights, local_grid.cell(x, y))
                 .zip(descent::gradient(window, x, y))
                 .is_some_and(|(slope, way)| slope.is_crossed(way, most));
             *row |= u64::from(is_crossed) << x;
@@ -71,7 +73,7 @@ pub(super) fn note_flatness<const TILES: usize, const SLOTS: usize>(
     workspace: &Workspace,
     input: &Input<'_>,
 ) {
-    let place = workspace.view.place(input.pose.point().cell());
+    let place = workspace.local_grid.place(input.pose.point().cell());
     if let Some((x, y)) = place.filter(|&(x, y)| workspace.window.is_reached(x, y)) {
         state.preferences.note(p_diff(&workspace.window, x, y));
     }

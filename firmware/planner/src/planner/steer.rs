@@ -194,9 +194,9 @@ mod tests {
     use crate::field::{SIDE, solve};
 
     /// Returns the turn rates of a robot in a flat field, at these times since it last moved.
-    fn turn_rates<const N: usize>(terrain: Option<UnevenGround>, times_ms: [u32; N]) -> [f32; N] {
+    fn turn_rates<const N: usize>(ground: Option<UnevenGround>, times_ms: [u32; N]) -> [f32; N] {
         let config = Config {
-            ground: terrain,
+            ground,
             ..Config::pioneer_3at(heapless::Vec::new())
         };
         let mut state = Box::<State<20, 400>>::default();

@@ -19,7 +19,7 @@ pub struct Workspace {
     /// The window's least map cell, and its scale in map cells.
     pub(super) window_at: Option<(Cell, i32)>,
     /// The passable cells of the window.
-    pub(super) view: LocalGrid,
+    pub(super) local_grid: LocalGrid,
     pub(super) scratch: [f32; SCRATCH],
 }
 
@@ -30,7 +30,7 @@ impl Workspace {
         Self {
             window: Window::new(),
             window_at: None,
-            view: LocalGrid::new(),
+            local_grid: LocalGrid::new(),
             scratch: [0.0; SCRATCH],
         }
     }
