@@ -111,7 +111,9 @@ impl Api {
                 let name = &item.ident;
                 self.add(format!("enum {name}"), &item.attrs);
                 for variant in &item.variants {
-                    let fields = text(&variant.fields);
+                    let mut fields = variant.fields.clone();
+                    fields.iter_mut().for_each(|field| field.attrs.clear());
+                    let fields = text(&fields);
                     let line = format!("{name}::{}{fields}", variant.ident);
                     self.add(line, &variant.attrs);
                 }

@@ -208,7 +208,7 @@ fn a_start_that_does_not_exist_is_named() {
     let error = Simulator::new(&world, config).expect_err("three starts");
     assert_eq!(
         error.to_string(),
-        "office: robots[9]: the world has only 3 starts; give a number below 3"
+        "office: robots[9]: the world has only 3 starts; give --start a number below 3"
     );
 }
 
