@@ -112,7 +112,9 @@ impl Api {
                 self.add(format!("enum {name}"), &item.attrs);
                 for variant in &item.variants {
                     let mut fields = variant.fields.clone();
-                    fields.iter_mut().for_each(|field| field.attrs.clear());
+                    for field in &mut fields {
+                        field.attrs.clear();
+                    }
                     let fields = text(&fields);
                     let line = format!("{name}::{}{fields}", variant.ident);
                     self.add(line, &variant.attrs);
