@@ -10,7 +10,7 @@
 //! | [`page`] | the tables of `docs/ABLATION.md` |
 //!
 //! Every run has two limits of simulated time: one hour with the defaults, and
-//! [`MOST_TIMES`] times the default's time with a changed constant. A run that reaches a limit, or
+//! `MOST_TIMES` times the default's time with a changed constant. A run that reaches a limit, or
 //! whose planner panics, did not explore.
 
 pub mod effect;
