@@ -26,15 +26,15 @@ tuning! {
         /// A hit raises the count of a cell by this; a pass lowers it by 1.
         hit_count: u8 = 3, 1..=15, "1";
         /// Least count of an obstacle. No count exceeds 15.
-        obstacle_count: u8 = 10, 2..=20, "1";
+        obstacle_count: u8 = 10, 2..=15, "1";
         /// Greatest count of a free cell.
         free_count: u8 = 7, 1..=15, "1";
         /// Count that an unknown cell starts with.
-        unknown_start: u8 = 8, 1..=16, "1";
+        unknown_start: u8 = 8, 1..=15, "1";
         /// Count that a free cell starts with.
         free_start: u8 = 5, 1..=15, "1";
         /// Count that an obstacle or a negative obstacle starts with. No count exceeds 15.
-        obstacle_start: u8 = 12, 1..=24, "1";
+        obstacle_start: u8 = 12, 1..=15, "1";
 
         /// Reach for obstacle points ahead, from the robot's centre: half the robot and its braking
         /// distance.
