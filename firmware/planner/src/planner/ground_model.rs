@@ -30,9 +30,6 @@ use crate::planner::level_scans;
 /// A goal whose height differs by less lies level with the robot, metres: twice the rounding of a
 /// block of heights.
 const LEVEL_M: f32 = 0.2;
-/// True if blocked passages are opened again on all uneven ground. While it is false, they are
-/// opened again only if the height preference is on.
-const REOPENS_ON_ALL_UNEVEN_GROUND: bool = false;
 
 /// What the planner keeps of the space beside the map.
 ///
@@ -91,10 +88,12 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
-    /// Returns true if blocked passages are opened again when no goal can be reached.
+    /// Returns true if blocked passages are opened again when no goal can be reached. On uneven
+    /// ground without the height preference they stay blocked, for no reason of the method:
+    /// `docs/LIMITATIONS.md` lists it.
     pub(super) fn reopens_passages(config: &Config) -> bool {
         let ground = config.ground.as_ref();
-        ground.is_some_and(|it| REOPENS_ON_ALL_UNEVEN_GROUND || it.mode.has_heights())
+        ground.is_some_and(|ground| ground.mode.has_heights())
     }
 
     /// Returns the cost of goals by their height; `None` where heights do not choose goals.
