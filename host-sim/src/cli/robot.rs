@@ -22,7 +22,7 @@ pub(super) struct RobotArgs {
     /// `least=20,most=120,per_frontier=10,detour=2,slack=20`, the defaults
     #[arg(long, value_name = "LIMITS", value_parser = loops)]
     loops: Option<LoopLimits>,
-    /// Sets a tuned constant, as in `ground.blind_m=1.2`; `host-sim tuning` lists them
+    /// Sets a tuned constant, as in `ground.blind_radius_m=1.2`; `host-sim tuning` lists them
     #[arg(long, value_name = "NAME=VALUE")]
     tune: Vec<String>,
 }
