@@ -7,7 +7,7 @@ use super::{
 };
 
 /// Every built-in world.
-pub(super) const BUILTINS: [Builtin; 25] = [
+pub(super) const BUILTINS: &[Builtin] = &[
     Builtin {
         name: "office",
         description: "nine furnished rooms with doors of 0.8 to 0.9 m along a corridor, 24 x 14 m",

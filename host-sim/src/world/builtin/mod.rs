@@ -47,7 +47,7 @@ enum Plan {
 /// All built-in worlds, in the order of the list.
 #[must_use]
 pub fn builtins() -> &'static [Builtin] {
-    &BUILTINS
+    BUILTINS
 }
 
 /// Names of the built-in worlds.

@@ -33,8 +33,8 @@ fn drawings_do_not_change() {
             (free + bit, sum.wrapping_mul(31).wrapping_add(bit))
         })
     };
-    let prints: Vec<_> = builtins()
-        .iter()
+    let flat = |builtin: &&Builtin| matches!(builtin.plan, Plan::Flat(_));
+    let prints: Vec<_> = (builtins().iter().filter(flat))
         .map(|builtin| {
             let world = World::builtin(builtin.name).expect("listed");
             (builtin.name, fingerprint(&world))
@@ -50,9 +50,6 @@ fn drawings_do_not_change() {
         ("narrow-doors", (44_784, 3_584_075_896)),
         ("unreachable-room", (50_296, 2_037_409_664)),
         ("boxed-in", (14_016, 405_072_896)),
-    ];
-    assert_eq!(prints[..9], expected);
-    let published = [
         ("ouroboros-a", (149_600, 804_963_840)),
         ("ouroboros-b", (140_800, 3_408_814_080)),
         ("ouroboros-c", (214_172, 3_718_203_840)),
@@ -61,7 +58,7 @@ fn drawings_do_not_change() {
         ("tdbvp-nested", (111_200, 3_258_082_816)),
         ("tdbvp-floor", (180_328, 1_935_914_624)),
     ];
-    assert_eq!(prints[prints.len() - 7..], published);
+    assert_eq!(prints, expected);
 }
 
 #[test]
