@@ -20,8 +20,8 @@ use crate::roadmap::{Barrier, Residues, WaveSpace, Wavefront};
 /// Length of a step along the skeleton, metres. A diagonal step counts the same.
 pub(crate) const STEP_M: f32 = 2.0 * CELL_M;
 /// Maximum number of cells that a blocker takes out of the skeleton: the robot's 3 × 3
-/// surroundings. A shield (\[Jorge15, step 5\]) takes fewer.
-const MOST_BLOCKED: usize = 9;
+/// surroundings, and the cells behind a shield. A shield (\[Jorge15, step 5\]) takes fewer.
+const MOST_BLOCKED: usize = 9 + 9;
 
 /// The inputs of a planning round on one published skeleton.
 #[derive(Debug)]

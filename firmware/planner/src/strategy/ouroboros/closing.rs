@@ -205,10 +205,7 @@ fn renew<const TILES: usize, const SLOTS: usize>(
     scratch: &mut PlanningScratch<'_>,
     robot: Site,
 ) -> Option<Shield> {
-    let centres = round.centres()?;
-    let on_it = previous.cells().find(|&cell| centres.is_centre(cell))?;
-    let from = centres.frame.site(on_it)?;
-    round.propagate(from, surroundings(robot), None, scratch)?;
+    spread_ahead_of(previous, round, scratch, robot)?;
     let centres = round.centres()?;
     let residues = Residues::new(centres.frame.shape, scratch.residues).ok()?;
     let back = back_to_shield(&centres, &residues, robot)?;
@@ -219,3 +216,24 @@ fn renew<const TILES: usize, const SLOTS: usize>(
         is_valid.then_some(previous)
     })
 }
+
+/// Spreads a wave from the shield, with the robot's surroundings as a blocker, and the centre cells
+/// behind the shield as another: each way back to it ends ahead of it.
+pub(super) fn spread_ahead_of<const TILES: usize, const SLOTS: usize>(
+    shield: Shield,
+    round: &mut PlanningContext<'_, TILES, SLOTS>,
+    scratch: &mut PlanningScratch<'_>,
+    robot: Site,
+) -> Option<()> {
+    let centres = round.centres()?;
+    let frame = centres.frame;
+    let own = shield.cells().filter(|&cell| centres.is_centre(cell));
+    let own: heapless::Vec<Cell, MOST_CUT> = own.take(MOST_CUT).collect();
+    let from = frame.site(*own.first()?)?;
+    let behind = own.iter().flat_map(|&on_it| shield.behind(on_it));
+    let behind = behind.filter_map(|cell| frame.site(cell));
+    round.propagate(from, surroundings(robot).chain(behind), None, scratch)
+}
+
+/// Maximum number of centre cells on a shield.
+const MOST_CUT: usize = 9;

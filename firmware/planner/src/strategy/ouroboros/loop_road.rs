@@ -23,6 +23,9 @@
 //!   tractor point. That descent is the shortest way: with a shorter loop beside the one that is
 //!   being closed it does not pass the shield, although the loop is there. The next wave [line 20]
 //!   shows whether the tractor point can be reached on the shield's other side.
+//! - That wave leaves the shield only ahead, where the robot drove on. More than half round the
+//!   loop, the shortest way to the shield is the front, which comes to it from behind. A shield
+//!   across the front would send the robot back the way it came.
 //!
 //! Units: steps along the skeleton, 20 cm each; a diagonal step counts the same.
 
@@ -152,7 +155,8 @@ fn steps_from(residues: &Residues<'_>, head: Site) -> u32 {
 }
 
 /// Returns the cells from just behind the robot to the previous shield, from which the wave has
-/// spread. Of the arms that lead there the shortest is the back; the others lead round the loop.
+/// spread ahead. Of the arms that lead there the shortest is the back; the others lead round other
+/// loops.
 pub(super) fn back_to_shield<'a, const TILES: usize, const SLOTS: usize>(
     centres: &Centres<'_, TILES, SLOTS>,
     residues: &'a Residues<'_>,

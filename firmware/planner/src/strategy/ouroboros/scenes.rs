@@ -24,7 +24,8 @@ use crate::roadmap::Residues;
 use crate::roadmap::branches::surroundings;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
-use crate::strategy::ouroboros::loop_road::{LoopRoad, build_shield};
+use crate::strategy::ouroboros::closing::spread_ahead_of;
+use crate::strategy::ouroboros::loop_road::{LoopRoad, back_to_shield, build_shield};
 use crate::strategy::ouroboros::shield::{Flaw, Shield};
 
 pub(super) const TILES: usize = 30;
@@ -212,6 +213,25 @@ impl Scene {
             .propagate(goal, surroundings(robot), None, scratch)
             .unwrap();
         robot
+    }
+
+    /// Looks for the back to the previous shield and for the next one across it.
+    fn back_to(&mut self, previous: Shield) -> Found {
+        let mut memory = Memory::new();
+        let here = self.pose.point().cell();
+        let mut round = self.round();
+        let robot = round.nearest(here, &mut memory.lend()).unwrap();
+        spread_ahead_of(previous, &mut round, &mut memory.lend(), robot).unwrap();
+        let centres = self.centres();
+        let residues = Residues::new(centres.frame.shape, &mut memory.residues).unwrap();
+        let back: Vec<Site> = back_to_shield(&centres, &residues, robot)
+            .unwrap()
+            .collect();
+        Found {
+            shield: build_shield(&centres, back.iter().copied(), here, &TUNING),
+            back: back.iter().map(|site| centres.frame.cell(*site)).collect(),
+            front: Vec::new(),
+        }
     }
 
     /// The flaws of a shield at each cell of the back, from the robot on, up to the valid one.

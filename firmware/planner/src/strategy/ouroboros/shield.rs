@@ -162,6 +162,19 @@ impl Shield {
         core::iter::once(self.at).chain(side(0)).chain(side(1))
     }
 
+    /// Returns the neighbours of one of its cells that lie behind it, on the tractor point's side.
+    pub(super) fn behind(self, on_it: Cell) -> impl Iterator<Item = Cell> {
+        let (x, y) = self.along;
+        // The path ahead is the direction turned to the right.
+        let (ahead_x, ahead_y) = (i32::from(y), -i32::from(x));
+        let is_behind = move |cell: &Cell| {
+            let ahead = (cell.x - self.at.x) * ahead_x + (cell.y - self.at.y) * ahead_y;
+            ahead < 0 && self.cells().all(|own| own != *cell)
+        };
+        let around = (0..9).map(move |k| on_it.offset(2 * (k % 3 - 1), 2 * (k / 3 - 1)));
+        around.filter(is_behind)
+    }
+
     /// Returns the last cell to the left and the last one to the right.
     #[must_use]
     pub(crate) fn ends(&self) -> [Cell; 2] {
@@ -197,6 +210,8 @@ impl Iterator for Ray {
 
 #[cfg(test)]
 mod tests {
+    use std::vec::Vec;
+
     use super::Shield;
     use crate::geometry::Cell;
 
@@ -217,5 +232,33 @@ mod tests {
             assert!(slant.cells().any(|cell| cell == end), "{end:?}");
         }
         assert_eq!(slant.ends()[1], Cell { x: 6, y: -8 });
+    }
+
+    #[test]
+    fn behind_it_is_where_the_path_came_from() {
+        let at = Cell { x: 10, y: -4 };
+        let driven = |x: i8, y: i8| Shield {
+            at,
+            along: (-y, x),
+            reach: [3, 3],
+        };
+        let behind = |shield: Shield| -> Vec<(i32, i32)> {
+            let cells = shield.behind(at);
+            cells
+                .map(|c| ((c.x - at.x) / 2, (c.y - at.y) / 2))
+                .collect()
+        };
+        assert_eq!(behind(driven(2, 0)), [(-1, -1), (-1, 0), (-1, 1)]);
+        assert_eq!(behind(driven(0, -1)), [(-1, 1), (0, 1), (1, 1)]);
+        let slant = behind(driven(2, 2));
+        assert!(
+            slant.contains(&(-1, -1)) && !slant.contains(&(1, 1)),
+            "{slant:?}"
+        );
+        let own = driven(2, 2);
+        assert!(
+            own.cells()
+                .all(|cell| own.behind(at).all(|behind| behind != cell))
+        );
     }
 }

@@ -1,11 +1,6 @@
 //! The course of loop roads; see [`super`].
 
-use std::vec::Vec;
-
-use crate::grid::Site;
-use crate::roadmap::Residues;
-use crate::strategy::ouroboros::loop_road::{back_to_shield, build_shield};
-use crate::strategy::ouroboros::scenes::{Found, Memory, Scene, TUNING, assert_picture};
+use crate::strategy::ouroboros::scenes::{Scene, assert_picture};
 
 /// A corridor round a block, closed below.
 const NO_LOOP: &str = "
@@ -97,6 +92,31 @@ const CAME: &str = "
     #.......................................#
     #.......................................#
     #.........................<.............#
+    #.......................................#
+    #.......................................#
+    #########################################";
+
+/// The shield of this robot is across the upper corridor, in the loop round the right block.
+const BEGAN: &str = "
+    #########################################
+    #.......................................#
+    #.......................................#
+    #........................>..............#
+    #.......................................#
+    #.......................................#
+    #.....########.....################.....#
+    #.....########.....################.....#
+    #.....########..T..################.....#
+    #.....########.....################.....#
+    #.....########.....################.....#
+    #.....########.....################.....#
+    #.....########.....################.....#
+    #.....########.....################.....#
+    #.....########.....################.....#
+    #.....########.....################.....#
+    #.......................................#
+    #.......................................#
+    #.......................................#
     #.......................................#
     #.......................................#
     #########################################";
@@ -276,19 +296,7 @@ fn a_loop_goes_on_by_the_previous_shield_though_another_is_shorter() {
     );
     // With it, the back leads there, and the next shield is on it.
     let mut scene = Scene::parse(NOW);
-    let mut memory = Memory::new();
-    let robot = scene.spread(stands_on, &mut memory);
-    let residues = Residues::new(scene.skeleton.frame().shape, &mut memory.residues).unwrap();
-    let centres = scene.centres();
-    let back: Vec<Site> = back_to_shield(&centres, &residues, robot)
-        .unwrap()
-        .collect();
-    let here = scene.pose.point().cell();
-    let found = Found {
-        shield: build_shield(&centres, back.iter().copied(), here, &TUNING),
-        back: back.iter().map(|site| centres.frame.cell(*site)).collect(),
-        front: Vec::new(),
-    };
+    let found = scene.back_to(previous);
     assert_eq!(found.back.last(), Some(&stands_on));
     assert_picture(
         &scene.picture_of(Some(&found)),
@@ -314,6 +322,39 @@ fn a_loop_goes_on_by_the_previous_shield_though_another_is_shorter() {
         #.....+++++++++....=bbbbbbbbbbb+++++....#
         #..................=....................#
         #.................==....................#
+        #########################################",
+    );
+}
+
+#[test]
+fn more_than_half_round_a_loop_the_back_is_not_the_short_way_to_the_shield() {
+    let previous = Scene::parse(BEGAN).look().unwrap().shield.unwrap();
+    let mut scene = Scene::parse(CAME);
+    let found = scene.back_to(previous);
+    assert_picture(
+        &scene.picture_of(Some(&found)),
+        "
+        #########################################
+        #.......................................#
+        #.......................................#
+        #....++++++++++...+++bbbbbbbbbbbbbbb....#
+        #...+..........+++..................b...#
+        #...+...........+....................b..#
+        #..+..########..+..################..b..#
+        #..+..########..+..################..b..#
+        #..+..########..T..################..b..#
+        #..+..########..+..################..b..#
+        #..+..########..+..################..b..#
+        #..+..########..+..################..b..#
+        #..+..########..+..################..b..#
+        #..+..########..+..################..b..#
+        #..+..########..+..################..b..#
+        #..+..########..+..################..b..#
+        #...+...........+.............=......b..#
+        #....+.........++++...........=.....b...#
+        #.....+++++++++....+++++++<+bb=bbbbb....#
+        #.............................=.........#
+        #.............................=.........#
         #########################################",
     );
 }
