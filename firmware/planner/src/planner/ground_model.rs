@@ -7,6 +7,7 @@
 //! | preferences in the field | none | [`Preferences`]: heights, flatness |
 //! | which goals cost more | none | those on other height levels |
 //! | side slope | none | the roll limit and the fall line |
+//! | blocked passages | opened for the second chance | opened several times more |
 //! | looks through gaps | from viewpoints | never: a look measures no ground |
 //!
 //! Level beams end on slopes, so obstacle points say nothing on uneven ground.
@@ -88,12 +89,10 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
-    /// Returns true if blocked passages are opened again when no goal can be reached. On uneven
-    /// ground without the height preference they stay blocked, for no reason of the method:
-    /// `docs/LIMITATIONS.md` lists it.
-    pub(super) fn reopens_passages(config: &Config) -> bool {
-        let ground = config.ground.as_ref();
-        ground.is_some_and(|ground| ground.mode.has_heights())
+    /// Returns true if blocked passages are opened again when no goal can be reached: one that was
+    /// seen from one side only may close the only way up.
+    pub(super) const fn reopens_passages(&self) -> bool {
+        self.is_uneven()
     }
 
     /// Returns the cost of goals by their height; `None` where heights do not choose goals.
@@ -185,12 +184,12 @@ mod tests {
     use crate::field::preference::Preferences;
 
     #[test]
-    fn levels_are_independent_of_the_preference() {
-        for (mode, has_heights) in [
-            (PreferenceMode::Off, false),
-            (PreferenceMode::Height, true),
-            (PreferenceMode::Global, false),
-            (PreferenceMode::Both, true),
+    fn levels_and_blocked_passages_are_independent_of_the_preference() {
+        for mode in [
+            PreferenceMode::Off,
+            PreferenceMode::Height,
+            PreferenceMode::Global,
+            PreferenceMode::Both,
         ] {
             for levels in [false, true] {
                 let config = Config {
@@ -204,15 +203,12 @@ mod tests {
                 let model = Box::new(GroundModel::<24>::of(&config));
                 let cost = model.level_cost(&config, &Preferences::new());
                 assert_eq!(cost.is_some(), levels, "{mode:?}");
-                assert_eq!(GroundModel::<24>::reopens_passages(&config), has_heights);
+                assert!(model.reopens_passages(), "{mode:?}, levels {levels}");
             }
         }
         let flat = Config::pioneer_3at(heapless::Vec::new());
-        assert!(
-            GroundModel::<24>::of(&flat)
-                .level_cost(&flat, &Preferences::new())
-                .is_none()
-        );
-        assert!(!GroundModel::<24>::reopens_passages(&flat));
+        let model = Box::new(GroundModel::<24>::of(&flat));
+        assert!(model.level_cost(&flat, &Preferences::new()).is_none());
+        assert!(!model.reopens_passages());
     }
 }

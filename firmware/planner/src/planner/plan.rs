@@ -9,7 +9,6 @@ use crate::input::Input;
 use crate::path::viewpoint::{Found, Inputs};
 use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::planner::ending::finish;
-use crate::planner::ground_model::GroundModel;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 use crate::roadmap::configuration_space::Footprint;
@@ -45,7 +44,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         goal_level: config.goal_level,
         tuning: config.tuning,
         levels: state.ground.level_cost(config, &state.preferences),
-        reopens_passages: GroundModel::<TILES>::reopens_passages(config),
+        reopens_passages: state.ground.reopens_passages(),
     };
     let Some(outcome) = state.strategy.advance(context, scratch) else {
         return false;
