@@ -36,8 +36,9 @@ type Place = [i16; 2];
 #[derive(Debug)]
 struct PendingVisit {
     place: Place,
-    /// Its centre cells that were visited, row by row.
-    visited: u64,
+    /// Its centre cells that were visited, a byte a row: an u64 would be aligned to 8 bytes, and
+    /// the whole state of the planner with it.
+    visited: [u8; SIDE as usize],
 }
 
 /// The robot's last metres, and the places on them.
@@ -69,7 +70,8 @@ impl PendingVisit {
     fn has(&self, cell: Cell) -> bool {
         // Columns 0 and 7 have no neighbour on one side.
         let (west, east) = (0x0101_0101_0101_0101, 0x8080_8080_8080_8080);
-        let row = self.visited | (self.visited & !east) << 1 | (self.visited & !west) >> 1;
+        let visited = u64::from_le_bytes(self.visited);
+        let row = visited | (visited & !east) << 1 | (visited & !west) >> 1;
         (row | row << SIDE | row >> SIDE) & bit(cell) != 0
     }
 }
@@ -152,10 +154,11 @@ impl PendingVisits {
     ) -> bool {
         let (place, visited) = (place(cell), bit(cell));
         if let Some(pending) = self.pending.iter_mut().find(|it| it.place == place) {
-            pending.visited |= visited;
+            pending.visited = (u64::from_le_bytes(pending.visited) | visited).to_le_bytes();
             return false;
         }
         let is_new = !rails.is_visited(cell);
+        let visited = visited.to_le_bytes();
         if self.pending.push(PendingVisit { place, visited }).is_err() {
             rails.visit(cell);
         }
