@@ -1,7 +1,7 @@
 //! Cases that take hours: `tests/run --full` runs them.
 
 use crate::sides::{Fork, assert_follows_preference};
-use crate::{closed, impatience, patrol, uneven};
+use crate::{closed, impatience, limits, patrol, uneven};
 
 #[test]
 #[ignore = "takes hours: 420 runs; tests/run --full runs it"]
@@ -13,6 +13,12 @@ fn loops_of_every_start_are_closed_on_the_way() {
 #[ignore = "takes minutes: 120 runs; tests/run --full runs it"]
 fn rails_with_and_without_impatience() {
     impatience::check_every_start("impatience-full");
+}
+
+#[test]
+#[ignore = "takes long: 210 runs; tests/run --full runs it"]
+fn loops_with_and_without_limits() {
+    limits::check_every_start("loop-limits-full");
 }
 
 #[test]

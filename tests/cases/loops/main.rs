@@ -4,6 +4,7 @@ mod closed;
 mod data;
 mod full;
 mod impatience;
+mod limits;
 mod overlay;
 mod patrol;
 mod sides;
