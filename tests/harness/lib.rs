@@ -8,6 +8,7 @@
 //! | [`table`] | columns of text |
 //! | [`runs`] | whole explorations, several at a time |
 //! | [`flat`] | tables of explorations of flat worlds |
+//! | [`flatness`] | how flat the field around the robot was in a run |
 //! | [`loops`] | the table of explorations that close loops, with the papers' ratios |
 //! | [`uneven`] | whole explorations of uneven ground, and their table |
 //! | [`truth`] | maps of uneven ground against the true ground |
@@ -38,6 +39,7 @@ pub mod elf;
 pub mod emulator;
 pub mod field;
 pub mod flat;
+pub mod flatness;
 pub mod golden;
 pub mod history;
 pub mod loops;

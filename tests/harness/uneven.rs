@@ -5,6 +5,7 @@
 //! between the lowest and the highest tenth of the world's heights along the true path.
 
 use fieldline_protocol::message::{Preference, UnevenGround};
+use host_sim::baseline::{Bvp, Session};
 use host_sim::link::direct::Direct;
 use host_sim::metrics::{MapScore as Truth, crossings};
 use host_sim::report::Report;
@@ -15,8 +16,10 @@ use host_sim::trial::wording;
 use host_sim::world::World;
 
 use crate::digests::Digest;
+use crate::flatness::Flatness;
 use crate::runs::{FRONTIER, explored};
 use crate::table::{Table, number};
+use crate::watched::Watched;
 
 /// Share of the world's heights, at either end, that counts as a height level.
 const LEVEL: f64 = 0.1;
@@ -26,12 +29,17 @@ const LEVEL: f64 = 0.1;
 pub struct UnevenRun<'a> {
     /// World to explore.
     pub world: &'a World,
+    /// Strategy that plans: [`FRONTIER`] or `bvp`.
+    pub strategy: &'a str,
     /// Index of the start in the world.
     pub start: usize,
     /// Seed of the noise.
     pub seed: u64,
     /// Preferences of the field.
     pub preference: Preference,
+    /// True if goals have height levels; what is usual with the preference if `None`. A baseline
+    /// has none.
+    pub levels: Option<bool>,
     /// Standard deviations of ranges, metres, and of roll and pitch, degrees; the usual ones if
     /// `None`.
     pub noise: Option<[f64; 2]>,
@@ -44,8 +52,10 @@ pub struct UnevenRun<'a> {
 pub struct Summary {
     /// The report.
     pub report: Report,
-    /// Preferences of the field.
-    pub preference: Preference,
+    /// Preferences of the field, and height levels if they are not the usual ones with them.
+    pub preference: String,
+    /// How flat the field was.
+    pub flatness: Flatness,
     /// Its settings in [`crate::digests`].
     settings: String,
     /// Changes of height level.
@@ -60,9 +70,11 @@ impl<'a> UnevenRun<'a> {
     pub fn of(world: &'a World, start: usize, seed: u64) -> Self {
         Self {
             world,
+            strategy: FRONTIER,
             start,
             seed,
             preference: Preference::Both,
+            levels: None,
             noise: None,
             roll_deg: None,
         }
@@ -72,10 +84,10 @@ impl<'a> UnevenRun<'a> {
     #[must_use]
     pub fn mission(&self) -> Mission {
         Mission {
-            strategy: FRONTIER.into(),
+            strategy: self.strategy.into(),
             uneven_ground: Some(UnevenGround {
                 preference: self.preference,
-                levels: has_levels(self.preference),
+                levels: self.levels.unwrap_or(has_levels(self.preference)),
                 roll: self.roll_deg.map_or(TABLE_I.roll, radians),
                 ..TABLE_I
             }),
@@ -87,9 +99,22 @@ impl<'a> UnevenRun<'a> {
         }
     }
 
+    /// Returns the name of the preference in tables.
+    fn preference(&self) -> String {
+        let name = wording::preference(self.preference).to_owned();
+        match self
+            .levels
+            .filter(|levels| *levels != has_levels(self.preference))
+        {
+            Some(true) => name + ",levels=on",
+            Some(false) => name + ",levels=off",
+            None => name,
+        }
+    }
+
     /// Returns the settings in [`crate::digests`].
     fn settings(&self) -> String {
-        let mut settings = format!("preference={}", wording::preference(self.preference));
+        let mut settings = format!("preference={}", self.preference());
         if let Some([laser_m, degrees]) = self.noise {
             let laser_cm = 100.0 * laser_m;
             settings += &format!(",laser={laser_cm:.0}cm,attitude={degrees}deg");
@@ -106,16 +131,31 @@ impl<'a> UnevenRun<'a> {
     /// If it cannot begin.
     #[must_use]
     pub fn go(&self) -> Summary {
-        let (report, record) = explored(&self.mission(), self.world, &mut Direct::new());
-        self.summary(report, &record)
+        let mut flatness = Flatness::default();
+        let (report, record) = if self.strategy == "bvp" {
+            let planner = Session::new(Bvp::new());
+            let mut link = Watched::new(planner, |link, _, _| {
+                flatness.note(link.strategy.preferences());
+                Ok(())
+            });
+            explored(&self.mission(), self.world, &mut link)
+        } else {
+            let mut link = Watched::new(Direct::new(), |link, _, _| {
+                flatness.note(link.state().preferences());
+                Ok(())
+            });
+            explored(&self.mission(), self.world, &mut link)
+        };
+        self.summary(report, &record, flatness)
     }
 
     /// Summarises a run.
     #[must_use]
-    pub fn summary(&self, report: Report, record: &Record) -> Summary {
+    pub fn summary(&self, report: Report, record: &Record, flatness: Flatness) -> Summary {
         Summary {
             report,
-            preference: self.preference,
+            preference: self.preference(),
+            flatness,
             settings: self.settings(),
             crossings: crossings_of(self.world, record),
             truth: truth_of(record),
@@ -168,7 +208,7 @@ pub fn table(runs: &[Summary]) -> Table {
         let ride = report.true_ground.unwrap_or_default();
         table.row(vec![
             report.world.clone(),
-            wording::preference(run.preference).into(),
+            run.preference.clone(),
             format!("{}({})", report.outcome.status, report.outcome.reason),
             report.start.to_string(),
             report.seed.to_string(),
@@ -220,7 +260,7 @@ pub fn means(runs: &[Summary]) -> Table {
         let two_levels = first.report.world == "slope";
         table.row(vec![
             first.report.world.clone(),
-            wording::preference(first.preference).into(),
+            first.preference.clone(),
             group.len().to_string(),
             sum(|run| u32::from(run.report.explored())),
             format!("{:.1}", mean(|run| run.report.sim_time_s)),
@@ -274,8 +314,8 @@ pub fn markdown(runs: &[Summary]) -> String {
     lines
 }
 
-fn key(run: &Summary) -> (&str, Preference) {
-    (&run.report.world, run.preference)
+fn key(run: &Summary) -> (&str, &str) {
+    (&run.report.world, &run.preference)
 }
 
 /// Formats crossings; only the slope has two height levels to cross between.

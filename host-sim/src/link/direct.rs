@@ -45,6 +45,12 @@ impl Direct {
         }
     }
 
+    /// Returns the planner's memory.
+    #[must_use]
+    pub const fn state(&self) -> &State {
+        &self.state
+    }
+
     /// Runs `act` on the pilot and its memory.
     fn with<T>(&mut self, act: impl FnOnce(&mut Pilot, &mut Memory<'_, TILES, SLOTS>) -> T) -> T {
         self.calls += 1;

@@ -17,7 +17,6 @@ use fieldline_tests::table::{Table, number};
 use fieldline_tests::uneven::{self, Summary, UnevenRun};
 use fieldline_tests::wilcoxon::signed_rank;
 use fieldline_tests::{golden, truth, worlds};
-use host_sim::trial::wording;
 
 use crate::scenarios;
 use crate::shared::{WatchedRun, assert_explored, explore};
@@ -155,7 +154,7 @@ fn preferences_on_the_big_slope() {
     let pairs = Pairs { with, without };
     let mut counts = Table::new(1, &["crossings", "0", "1", "2", "3", "4", "5 and more"]);
     for half in [with, without] {
-        let mut row = vec![wording::preference(half[0].preference).to_owned()];
+        let mut row = vec![half[0].preference.clone()];
         let of = |k: u32| half.iter().filter(|run| run.crossings.min(5) == k).count();
         row.extend((0..=5).map(|k| of(k).to_string()));
         counts.row(row);

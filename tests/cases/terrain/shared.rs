@@ -2,6 +2,7 @@
 
 use std::sync::LazyLock;
 
+use fieldline_tests::flatness::Flatness;
 use fieldline_tests::history::{History, Watcher};
 use fieldline_tests::runs::{self, assert_faultless, explored, in_parallel};
 use fieldline_tests::uneven::{Summary, UnevenRun};
@@ -85,12 +86,13 @@ impl WatchedRun {
 
 /// Makes a run and reads the map after every step.
 pub(crate) fn watch(run: &UnevenRun<'_>) -> (Summary, Record, History) {
-    let mut watcher = Watcher::new();
+    let (mut watcher, mut flatness) = (Watcher::new(), Flatness::default());
     let mut link = Watched::new(Direct::new(), |link, observation, _| {
+        flatness.note(link.state().preferences());
         watcher.look(link, observation)
     });
     let (report, record) = explored(&run.mission(), run.world, &mut link);
-    let summary = run.summary(report, &record);
+    let summary = run.summary(report, &record, flatness);
     (summary, record, watcher.history)
 }
 

@@ -1,11 +1,12 @@
 //! Every built-in uneven world explored once, and the slope without preferences.
 //!
-//! `golden/terrain.txt` has the runs, `golden/truth.txt` their maps against the true ground. The
-//! documentation shows a part of the first. A changed row is a changed behaviour.
+//! `golden/terrain.txt` has the runs, `golden/truth.txt` their maps against the true ground, and
+//! `golden/flatness.txt` says how flat their fields were. The documentation shows a part of the
+//! first. A changed row is a changed behaviour.
 
 use fieldline_protocol::message::Preference;
 use fieldline_tests::uneven::{self, Summary, UnevenRun};
-use fieldline_tests::{golden, truth, worlds};
+use fieldline_tests::{flatness, golden, truth, worlds};
 
 use crate::shared::{FIRST, assert_explored};
 
@@ -22,6 +23,9 @@ fn uneven_worlds_are_explored_and_nothing_is_touched() {
     golden::compare_runs("terrain", &text, &uneven::digests(&runs));
     assert_explored(&runs);
     runs.remove(1);
+    let worlds = runs.iter();
+    let flatness = worlds.map(|run| (run.report.world.clone(), [&run.flatness]));
+    golden::compare("flatness.txt", &flatness::table(flatness).to_string());
     golden::compare("truth.txt", &truth::text(&runs));
     golden::compare_with_docs("uneven", &uneven::markdown(&runs));
     truth::assert_classified(&runs);

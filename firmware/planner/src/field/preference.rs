@@ -70,7 +70,8 @@ fn of_height(ground: &UnevenGround, difference_m: f32) -> f32 {
 }
 
 /// Returns `ε_global` [eq. 4].
-fn of_flatness(ground: &UnevenGround, p_diff: f32) -> f32 {
+#[must_use]
+pub fn of_flatness(ground: &UnevenGround, p_diff: f32) -> f32 {
     if p_diff > 0.0 {
         (-ground.global_scale * math::ln(p_diff)).min(ground.most_preference)
     } else {
@@ -111,6 +112,18 @@ impl Preferences {
         } else if p_diff > STEEP_AGAIN {
             self.ignores_heights = false;
         }
+    }
+
+    /// Returns `p_diff` of the last field around the robot; `None` before the first.
+    #[must_use]
+    pub const fn p_diff(&self) -> Option<f32> {
+        self.p_diff
+    }
+
+    /// Returns true if heights do not count because the field was too flat.
+    #[must_use]
+    pub const fn ignores_heights(&self) -> bool {
+        self.ignores_heights
     }
 
     /// Returns `ε_global`; 0 if the mode does not use it.

@@ -6,6 +6,8 @@
 //!
 //! Units: map cells; tiles of 32 × 32 cells.
 
+#[cfg(feature = "internals")]
+use crate::field::preference::Preferences;
 use crate::geometry::Cell;
 use crate::map::tiles::TILE_SIDE;
 use crate::planner::state::State;
@@ -79,6 +81,13 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     #[must_use]
     pub fn frontiers(&self) -> &[ResidualFrontier] {
         self.strategy.frontier.residual_frontiers()
+    }
+
+    /// Returns the preferences after the last step.
+    #[cfg(feature = "internals")]
+    #[must_use]
+    pub const fn preferences(&self) -> &Preferences {
+        &self.preferences
     }
 
     /// Returns the numbers of loops.

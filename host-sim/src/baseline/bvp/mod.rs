@@ -73,6 +73,12 @@ impl Bvp {
         self.work
     }
 
+    /// Returns the preferences after the last step.
+    #[must_use]
+    pub const fn preferences(&self) -> &Preferences {
+        &self.preferences
+    }
+
     /// Sets the boundary of the field.
     fn charge(&mut self, scene: &Scene<'_>) {
         let progress = &self.progress;
