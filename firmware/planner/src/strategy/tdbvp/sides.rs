@@ -5,9 +5,10 @@
 //! ε = +`side_preference` on the preferred side, minus that on the other   in the half disc ahead
 //! ```
 //!
-//! An *opening* is a sudden increase of the mean range to one side, and a vote for that side. Two
-//! equal votes in a row set the preference. So a robot that passed two openings on its left turns
-//! left at the next fork, which closes a loop. Openings on both sides at once are no vote.
+//! An *opening* is a sudden increase of the mean range to one side, and a vote for that side. The
+//! first vote sets the preference, and two equal votes in a row change it. So a robot that passed
+//! two openings on its left turns left at the next fork, which closes a loop. Openings on both
+//! sides at once are no vote.
 //!
 //! The paper gives neither ε nor the disc's radius. Measured on a symmetric T and a symmetric
 //! cross, in 20 approaches each with openings on the left and 20 with openings on the right; how
@@ -89,14 +90,14 @@ impl SideVotes {
         preferred: None,
     };
 
-    /// Returns the preferred side; `None` before two equal votes in a row.
+    /// Returns the preferred side; `None` before the first vote.
     pub(super) const fn preferred(&self) -> Option<Side> {
         self.preferred
     }
 
     /// Votes for a side.
     fn vote(&mut self, side: Side) {
-        if self.last_vote.replace(side) == Some(side) {
+        if self.last_vote.replace(side) == Some(side) || self.preferred.is_none() {
             self.preferred = Some(side);
         }
     }
@@ -181,11 +182,13 @@ mod tests {
     }
 
     #[test]
-    fn two_equal_votes_in_a_row_set_the_side_and_one_does_not() {
+    fn the_first_vote_sets_the_side_and_two_in_a_row_change_it() {
         use Side::{Left, Right};
         assert_eq!(preferred(&[]), None);
-        assert_eq!(preferred(&[Left]), None);
-        assert_eq!(preferred(&[Left, Right]), None);
+        assert_eq!(preferred(&[Left]), Some(Left));
+        assert_eq!(preferred(&[Right]), Some(Right));
+        assert_eq!(preferred(&[Left, Right]), Some(Left));
+        assert_eq!(preferred(&[Left, Right, Right]), Some(Right));
         assert_eq!(preferred(&[Left, Left]), Some(Left));
         assert_eq!(preferred(&[Left, Left, Right]), Some(Left));
         assert_eq!(preferred(&[Left, Left, Right, Left]), Some(Left));
@@ -209,12 +212,14 @@ mod tests {
     #[test]
     fn an_opening_votes_once_and_noise_does_not() {
         let mut votes = SideVotes::NEW;
+        votes.vote(Side::Right);
         votes.note(&LASER, &scan(&[]), &TdbvpTuning::DEFAULT);
         for k in 0..50 {
             let ranges = scan(&[Side::Left]).map(|range| range.min(3_000) + k * 17 % 90);
             votes.note(&LASER, &ranges, &TdbvpTuning::DEFAULT);
         }
-        assert_eq!(votes.preferred(), None, "one long opening is one vote");
         assert_eq!(votes.last_vote, Some(Side::Left));
+        let preferred = votes.preferred();
+        assert_eq!(preferred, Some(Side::Right), "one long opening is one vote");
     }
 }
