@@ -24,9 +24,9 @@ tuning! {
         /// Distance from the robot at which a pending visit ends: most of the way to the window's
         /// edge.
         away_m: f32 = 2.4, 0.8..=10.0, "m";
-        /// Steps in a tick of the stamps at first: 0.8 s at 200 ms a step, in which the robot does
-        /// not cross a place.
-        first_tick_steps: u16 = 4, 1..=64, "steps";
+        /// Length of a tick of the stamps at first, in which the robot does not cross a place. A
+        /// tick is a whole number of steps, at least one.
+        first_tick_ms: u32 = 800, 100..=12_800, "ms";
         /// Distance from a dropped goal, along either axis, within which the unexplored is no goal:
         /// the 0.5 m in which no other goal is taken, and the frontier's own coarse cell.
         dropped_cells: i32 = 7, 1..=30, "cells";

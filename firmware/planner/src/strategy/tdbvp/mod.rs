@@ -84,7 +84,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         tuning: &TdbvpTuning,
     ) -> Self {
         Self {
-            rails: Rails::new(box_tiles, tuning.first_tick_steps),
+            rails: Rails::new(box_tiles, tuning.first_tick_ms, period_ms),
             pending: PendingVisits::new(),
             votes: SideVotes::NEW,
             on_path: false,

@@ -43,15 +43,20 @@ pub(crate) struct Rails<const SLOTS: usize> {
 }
 
 impl<const SLOTS: usize> Rails<SLOTS> {
-    /// No place is visited, in a box of (width, height) tiles. A tick has `tick_steps` steps at
-    /// first.
-    pub(crate) const fn new((width, height): (i32, i32), tick_steps: u16) -> Self {
+    /// No place is visited, in a box of (width, height) tiles. A tick takes `tick_ms` at first, in
+    /// whole steps of `period_ms`.
+    pub(crate) const fn new((width, height): (i32, i32), tick_ms: u32, period_ms: u32) -> Self {
+        let tick_steps = tick_ms.checked_div(period_ms);
         Self {
             stamps: [[0; 4]; SLOTS],
             slots: TileBox { width, height },
             now: 1,
             oldest: 1,
-            tick_steps,
+            tick_steps: match tick_steps {
+                None | Some(0) => 1,
+                Some(steps) if steps > u16::MAX as u32 => u16::MAX,
+                Some(steps) => steps as u16,
+            },
             steps: 0,
         }
     }
@@ -158,6 +163,10 @@ mod tests {
     use crate::config::TdbvpTuning;
     use crate::geometry::Cell;
 
+    const PERIOD_MS: u32 = 200;
+    /// Steps of a tick at first.
+    const FIRST_STEPS: u16 = (TdbvpTuning::DEFAULT.first_tick_ms / PERIOD_MS) as u16;
+
     fn place(k: i32) -> Cell {
         Cell {
             x: 16 * (k % 8) - 50,
@@ -166,7 +175,7 @@ mod tests {
     }
 
     fn rails() -> Rails<16> {
-        Rails::new((4, 4), TdbvpTuning::DEFAULT.first_tick_steps)
+        Rails::new((4, 4), TdbvpTuning::DEFAULT.first_tick_ms, PERIOD_MS)
     }
 
     #[test]
@@ -196,8 +205,17 @@ mod tests {
             let tick = u32::from(rails.tick_steps);
             assert!(age.abs_diff(steps) <= tick, "{age} after {steps} steps");
         }
-        let is_longer = rails.tick_steps > TdbvpTuning::DEFAULT.first_tick_steps;
-        assert!(is_longer, "the stamps were halved");
+        assert!(rails.tick_steps > FIRST_STEPS, "the stamps were halved");
+    }
+
+    #[test]
+    fn a_tick_takes_as_long_at_every_period_in_whole_steps() {
+        let steps = |tick_ms, period_ms| Rails::<16>::new((4, 4), tick_ms, period_ms).tick_steps;
+        assert_eq!(
+            [100, 200, 400].map(|period_ms| steps(800, period_ms)),
+            [8, 4, 2]
+        );
+        assert_eq!([steps(800, 300), steps(100, 400), steps(100, 0)], [2, 1, 1]);
     }
 
     #[test]
@@ -233,7 +251,7 @@ mod tests {
 
     #[test]
     fn in_a_box_without_area_nothing_is_visited() {
-        let mut rails: Rails<16> = Rails::new((0, 0), 4);
+        let mut rails: Rails<16> = Rails::new((0, 0), 800, PERIOD_MS);
         assert!(!rails.visit(place(0)));
         assert_eq!(rails.potential(place(0)), UNVISITED);
     }

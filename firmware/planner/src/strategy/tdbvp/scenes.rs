@@ -61,7 +61,7 @@ impl Scene {
         let mut scene = Self {
             tiles: Tiles::new(),
             skeleton: Skeleton::new(),
-            rails: Rails::new((8, 8), TUNING.first_tick_steps),
+            rails: Rails::new((8, 8), TUNING.first_tick_ms, 200),
             pending: PendingVisits::new(),
             robot: Cell::default(),
         };
@@ -231,7 +231,7 @@ fn a_rail_is_overdue_after_the_time_of_a_tour_at_every_period() {
             step += 1;
         }
         // A stamp is that of a whole tick.
-        let tick_ms = u32::from(TUNING.first_tick_steps) * period_ms;
+        let tick_ms = TUNING.first_tick_ms;
         let late_ms = step * period_ms - tour_ms;
         assert!(late_ms <= 2 * tick_ms, "{period_ms} ms: {late_ms} ms late");
     }
