@@ -224,6 +224,8 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         mut round: PlanningContext<'_, TILES, SLOTS>,
         mut scratch: PlanningScratch<'_>,
     ) -> RoundOutcome {
+        let visits = self.stamps(&round).filter(|&stamp| stamp > 0);
+        self.rails.set_oldest(visits.min());
         if let Some(since_ms) = self.patrol_since_ms {
             let patrolled_ms = round.time_ms.wrapping_sub(since_ms);
             if patrolled_ms >= self.patrol_ms {
@@ -236,6 +238,18 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         // What remains for the second chance is where the robot only just fits through.
         self.on_path = !is_free || frontier.is_second_chance();
         outcome
+    }
+
+    /// Returns the stamps of all centre cells.
+    fn stamps<const TILES: usize>(
+        &self,
+        round: &PlanningContext<'_, TILES, SLOTS>,
+    ) -> impl Iterator<Item = u8> {
+        let centres = round.centres();
+        let sites = centres
+            .into_iter()
+            .flat_map(|centres| centres.cells.sites());
+        sites.map(|site| self.stamp(round.skeleton.frame().cell(site)))
     }
 
     /// Returns true if the robot follows a path rather than the rails: it lingered, or has visited
@@ -280,15 +294,11 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         round: &PlanningContext<'_, TILES, SLOTS>,
         patrolled_ms: u32,
     ) -> Option<(u8, bool)> {
-        let centres = round.centres()?;
         let cell_ms = round.tuning.tdbvp.tour_cell_ms;
-        let tour_ms = cell_ms.saturating_mul(centres.cells.count() as u32);
+        let tour_ms = cell_ms.saturating_mul(self.stamps(round).count() as u32);
         // The never visited come first. Those not visited in a whole tour cannot be reached.
         let is_first_tour = patrolled_ms < tour_ms;
-        let stamps = centres
-            .cells
-            .sites()
-            .map(|site| self.stamp(centres.cell(site)));
+        let stamps = self.stamps(round);
         let oldest = stamps.filter(|&stamp| is_first_tour || stamp > 0).min()?;
         Some((oldest, self.is_overdue(oldest, tour_ms)))
     }

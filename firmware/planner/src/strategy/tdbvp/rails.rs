@@ -12,6 +12,9 @@
 //! several steps. When the ticks run out, all stamps become lower by as much as the oldest allows,
 //! or are halved and the ticks become twice as long. So the robot can go on for ever.
 //!
+//! The oldest is that of the centre cells of the last skeleton. A place that has none any more
+//! keeps its stamp. It counts as equally old as the oldest if centre cells come back.
+//!
 //! Invariants: 0 is not visited; no stamp is later than now; the order of two visits never
 //! reverses. Slots are addressed as the map's are.
 //!
@@ -36,6 +39,7 @@ pub(crate) struct Rails<const SLOTS: usize> {
     stamps: [[u8; 4]; SLOTS],
     slots: TileBox,
     now: u8,
+    /// The earliest stamp of a centre cell, at most now.
     oldest: u8,
     /// Steps of a tick, and of the current one so far.
     tick_steps: u16,
@@ -68,7 +72,6 @@ impl<const SLOTS: usize> Rails<SLOTS> {
             return;
         }
         self.steps = 0;
-        self.find_oldest();
         if self.now == u8::MAX {
             self.make_room();
         }
@@ -87,6 +90,11 @@ impl<const SLOTS: usize> Rails<SLOTS> {
         if let Some(stamp) = self.stamp_mut(cell) {
             *stamp = 0;
         }
+    }
+
+    /// Takes the earliest stamp of a centre cell that was visited; `None` if none was.
+    pub(super) fn set_oldest(&mut self, stamp: Option<u8>) {
+        self.oldest = stamp.map_or(self.now, |stamp| stamp.clamp(1, self.now));
     }
 
     /// Returns the stamp of the last visit to a map cell's place; 0 if there was none. The older of
@@ -119,12 +127,6 @@ impl<const SLOTS: usize> Rails<SLOTS> {
         ticks * u32::from(self.tick_steps) + u32::from(self.steps)
     }
 
-    /// Finds the earliest stamp; now if nothing was visited.
-    fn find_oldest(&mut self) {
-        let stamps = self.stamps.as_flattened().iter().copied();
-        self.oldest = stamps.filter(|&stamp| stamp != 0).min().unwrap_or(self.now);
-    }
-
     /// Lowers all stamps to the bottom, or halves them and makes the ticks twice as long.
     fn make_room(&mut self) {
         let unused = self.oldest - 1;
@@ -134,7 +136,8 @@ impl<const SLOTS: usize> Rails<SLOTS> {
         }
         let lower = |stamp: u8| match stamp {
             0 => 0,
-            stamp if is_enough => stamp - unused,
+            // Places without centre cells may be older than the oldest.
+            stamp if is_enough => stamp.saturating_sub(unused).max(1),
             stamp => stamp.div_ceil(2),
         };
         for stamp in self.stamps.as_flattened_mut() {
@@ -174,6 +177,12 @@ mod tests {
         }
     }
 
+    /// The centre cells are those of the places.
+    fn find_oldest(rails: &mut Rails<16>, places: core::ops::Range<i32>) {
+        let stamps = places.map(|k| rails.stamp(place(k)));
+        rails.set_oldest(stamps.filter(|&stamp| stamp != 0).min());
+    }
+
     fn rails() -> Rails<16> {
         Rails::new((4, 4), TdbvpTuning::DEFAULT.first_tick_ms, PERIOD_MS)
     }
@@ -189,6 +198,7 @@ mod tests {
                 rails.step();
             }
         }
+        find_oldest(&mut rails, 0..8);
         let of = |k| rails.potential(place(k));
         // Two ticks from one to the next; the last was two ticks ago.
         assert_eq!([0, 1, 2, 3, 4].map(of), [0.0, 0.2, 0.4, 0.6, 0.8]);
@@ -219,6 +229,39 @@ mod tests {
     }
 
     #[test]
+    fn a_place_without_centre_cells_does_not_count_for_the_oldest() {
+        let mut rails = rails();
+        for k in [0, 1, 2] {
+            rails.visit(place(k));
+            let steps = if k == 0 { 400 } else { 20 };
+            (0..steps).for_each(|_| rails.step());
+        }
+        let of = |rails: &Rails<16>| [1, 2].map(|k| rails.potential(place(k)));
+        find_oldest(&mut rails, 0..8);
+        assert!(of(&rails)[0] > 0.9, "{:?}", of(&rails));
+        find_oldest(&mut rails, 1..8);
+        assert_eq!(of(&rails), [0.0, 0.5]);
+        assert_eq!(
+            rails.potential(place(0)),
+            0.0,
+            "centre cells that come back"
+        );
+    }
+
+    #[test]
+    fn a_place_without_centre_cells_does_not_make_the_ticks_longer() {
+        let mut rails = rails();
+        rails.visit(place(0));
+        for _ in 0..1_000 {
+            rails.visit(place(1));
+            (0..20).for_each(|_| rails.step());
+            find_oldest(&mut rails, 1..2);
+        }
+        assert_eq!(rails.tick_steps, FIRST_STEPS);
+        assert_eq!(rails.stamp(place(0)), 1, "visited, as long ago as possible");
+    }
+
+    #[test]
     fn all_equally_old_are_as_the_newest() {
         let mut rails = rails();
         rails.visit(place(3));
@@ -236,6 +279,7 @@ mod tests {
                 rails.visit(place(k));
                 for _ in 0..stay {
                     rails.step();
+                    find_oldest(&mut rails, 0..20);
                 }
                 if round > 0 && k == 19 {
                     let p = (0..20).map(|k| rails.potential(place(k)));
