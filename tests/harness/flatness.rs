@@ -12,7 +12,7 @@ use fieldline_planner::field::preference::{Preferences, of_flatness};
 
 use crate::table::Table;
 
-/// `p_diff` after every step that had one.
+/// `p_diff` of the last field, after every step since the first field.
 #[derive(Clone, Debug, Default)]
 pub struct Flatness {
     p_diffs: Vec<f32>,

@@ -3,7 +3,8 @@
 //! | golden table | runs |
 //! | --- | --- |
 //! | `terrain-full.txt` | ten seeds of every world; of the holes, ten seeds of ten starts |
-//! | `terrain-slope.txt` | the slope with and without preferences, ten starts, three seeds |
+//! | `terrain-slope.txt` | the slope with and without preferences and height levels, 30 runs each |
+//! | `terrain-slope-bvp.txt` | the same with `bvp`, the paper's field over the whole grid |
 //! | `truth-noise.txt` | maps against the true ground under growing noise |
 //! | `scenarios-full.txt` | the papers' scenarios from all ten starts |
 
@@ -12,11 +13,11 @@ use std::sync::LazyLock;
 
 use fieldline_protocol::message::Preference;
 use fieldline_tests::digests::Digest;
-use fieldline_tests::runs::in_parallel;
+use fieldline_tests::runs::{FRONTIER, in_parallel};
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::uneven::{self, Summary, UnevenRun};
 use fieldline_tests::wilcoxon::signed_rank;
-use fieldline_tests::{golden, truth, worlds};
+use fieldline_tests::{flatness, golden, truth, worlds};
 
 use crate::scenarios;
 use crate::shared::{WatchedRun, assert_explored, explore};
@@ -56,7 +57,7 @@ fn ten_seeds_of_every_world_and_every_start_of_the_holes() {
     assert_explored(&runs);
 }
 
-/// Pairs of runs that differ only in their preferences.
+/// Pairs of runs that differ only in their preferences or levels.
 struct Pairs<'a> {
     with: &'a [Summary],
     without: &'a [Summary],
@@ -136,40 +137,96 @@ const QUANTITIES: [(&str, Quantity); 4] = [
     ("time s", |run| run.report.sim_time_s),
 ];
 
-#[test]
-#[ignore = "takes hours: 60 runs; tests/run --full runs it"]
-fn preferences_on_the_big_slope() {
+/// Makes 30 runs on the slope for each pair of preference and levels.
+fn slope_runs(strategy: &str, choices: &[(Preference, Option<bool>)]) -> Vec<Summary> {
     let world = worlds::builtin("slope");
     let mut to_run = Vec::new();
-    for preference in [Preference::Both, Preference::Off] {
+    for &(preference, levels) in choices {
         for start in 0..world.starts().len() {
             to_run.extend((0..SLOPE_SEEDS).map(|seed| UnevenRun {
+                strategy,
                 preference,
+                levels,
                 ..UnevenRun::of(&world, start, seed)
             }));
         }
     }
-    let runs = explore(&to_run);
-    let (with, without) = runs.split_at(runs.len() / 2);
-    let pairs = Pairs { with, without };
+    explore(&to_run)
+}
+
+/// Makes the tables of groups of runs: means, crossings, flatness, comparisons, every run.
+fn slope_text(groups: &[&[Summary]], comparisons: &[(&str, Pairs<'_>)]) -> String {
     let mut counts = Table::new(1, &["crossings", "0", "1", "2", "3", "4", "5 and more"]);
-    for half in [with, without] {
-        let mut row = vec![half[0].preference.clone()];
-        let of = |k: u32| half.iter().filter(|run| run.crossings.min(5) == k).count();
+    for group in groups {
+        let mut row = vec![group[0].preference.clone()];
+        let of = |k: u32| group.iter().filter(|run| run.crossings.min(5) == k).count();
         row.extend((0..=5).map(|k| of(k).to_string()));
         counts.row(row);
     }
-    let text = format!(
+    let flatness = flatness::table(groups.iter().map(|group| {
+        let runs = group.iter().map(|run| &run.flatness);
+        (group[0].preference.clone(), runs)
+    }));
+    let runs = groups.concat();
+    let mut text = format!(
         "Means.\n\n{}\nRuns by their crossings.\n\n{counts}\n\
-         Signed ranks of the pairs' differences, without less with.\n\n{}\nEvery run.\n\n{}",
-        uneven::means(&runs),
-        pairs.table(),
-        uneven::table(&runs)
+         How flat the field at the robot was.\n\n{flatness}\n",
+        uneven::means(&runs)
+    );
+    for (name, pairs) in comparisons {
+        let _ = write!(
+            text,
+            "Signed ranks of the pairs' differences, without less with: {name}.\n\n{}\n",
+            pairs.table()
+        );
+    }
+    text + &format!("Every run.\n\n{}", uneven::table(&runs))
+}
+
+#[test]
+#[ignore = "takes long: 120 runs; tests/run --full runs it"]
+fn preferences_and_levels_on_the_big_slope() {
+    let runs = slope_runs(
+        FRONTIER,
+        &[
+            (Preference::Both, Some(true)),
+            (Preference::Off, Some(false)),
+            (Preference::Both, Some(false)),
+            (Preference::Off, Some(true)),
+        ],
+    );
+    let groups: Vec<&[Summary]> = runs.chunks(runs.len() / 4).collect();
+    let [usual, neither, preferences, levels] = groups[..] else {
+        panic!("four groups of runs");
+    };
+    let pairs = |with, without| Pairs { with, without };
+    let text = slope_text(
+        &groups,
+        &[
+            ("preferences and levels", pairs(usual, neither)),
+            ("levels, no preferences", pairs(levels, neither)),
+            ("preferences, no levels", pairs(preferences, neither)),
+            ("preferences, with levels in both", pairs(usual, levels)),
+        ],
     );
     golden::compare_runs("terrain-slope", &text, &uneven::digests(&runs));
-    // How often a run without preferences ends explored is a result, in the table.
-    assert_explored(with);
-    pairs.assert_crossed_less();
+    // How often other runs end explored is a result, in the table.
+    assert_explored(usual);
+    pairs(usual, neither).assert_crossed_less();
+}
+
+/// The method of \[Maffei20\] itself: one field over the whole grid. How its runs end is a result,
+/// in the table.
+#[test]
+#[ignore = "takes hours: 60 runs of up to ten minutes each; tests/run --full runs it"]
+fn the_papers_method_on_the_big_slope() {
+    let runs = slope_runs("bvp", &[(Preference::Both, None), (Preference::Off, None)]);
+    let (with, without) = runs.split_at(runs.len() / 2);
+    let text = slope_text(
+        &[with, without],
+        &[("preferences", Pairs { with, without })],
+    );
+    golden::compare_runs("terrain-slope-bvp", &text, &uneven::digests(&runs));
 }
 
 #[test]
