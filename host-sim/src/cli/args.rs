@@ -29,7 +29,7 @@ pub(super) struct Cli {
 pub(super) enum Command {
     /// Explore worlds; write a folder with report, map, trajectory, commands and picture of each
     Explore(Box<ExploreArgs>),
-    /// List the built-in worlds
+    /// List the built-in worlds and the kinds of generated ones
     Worlds {
         /// Print one JSON object a line
         #[arg(long)]
@@ -47,7 +47,8 @@ pub(super) enum Command {
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct ExploreArgs {
-    /// World files (YAML for ROS map servers) or names of built-in worlds; WORLD@N begins at its
+    /// World files (YAML for ROS map servers), names of built-in worlds, or generated worlds
+    /// maze:SEED, rooms:SEED, dungeon:SEED, with a size as in rooms:7:40x25; WORLD@N begins at its
     /// start N
     #[arg(value_name = "WORLD[@N]", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,

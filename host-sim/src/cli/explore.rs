@@ -85,7 +85,9 @@ fn runs(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Run>> {
             start => format!("@{start}"),
         };
         let ground = mission.uneven_ground.map_or("", |_| "-uneven");
-        let (world, strategy, seed) = (world.name(), &args.strategy, args.seed);
+        // The colons of a generated world's name: some file systems do not allow them.
+        let world = world.name().replace(':', "-");
+        let (strategy, seed) = (&args.strategy, args.seed);
         format!("{world}{start}-{strategy}{ground}-{seed}")
     }));
     let single = worlds.len() == 1;

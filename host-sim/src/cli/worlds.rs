@@ -1,9 +1,10 @@
-//! `host-sim worlds`: lists the built-in worlds with size and starts.
+//! `host-sim worlds`: lists the built-in worlds with size and starts, and the kinds of generated
+//! ones. A line of JSON is a world, so `--json` leaves the kinds out.
 
 use anyhow::Result;
 use serde::Serialize;
 
-use host_sim::world::{World, builtins};
+use host_sim::world::{KINDS, World, builtins};
 
 use super::say;
 
@@ -33,12 +34,17 @@ pub(super) fn run(json: bool) -> Result<()> {
         })
         .collect();
     let widest = listings.iter().map(|listing| listing.name.len()).max();
+    let widest = widest.unwrap_or(0);
     for listing in &listings {
         if json {
             say(&serde_json::to_string(listing)?)?;
         } else {
-            say(&text(listing, widest.unwrap_or(0)))?;
+            say(&text(listing, widest))?;
         }
+    }
+    for kind in KINDS.iter().filter(|_| !json) {
+        let name = format!("{}:SEED", kind.word());
+        say(&format!("{name:widest$}  {}", kind.description()))?;
     }
     Ok(())
 }

@@ -29,7 +29,7 @@ pub const SCHEMA_VERSION: u32 = 2;
 pub struct Report {
     /// [`SCHEMA_VERSION`].
     pub schema_version: u32,
-    /// Name of the world: a built-in one, or the file's stem.
+    /// Name of the world: a built-in one, a generated one with its seed, or the file's stem.
     pub world: String,
     /// Strategy that planned.
     pub strategy: String,

@@ -1,4 +1,4 @@
-//! Seeded randomness: one independent stream for every source of noise.
+//! Seeded randomness: one independent stream for every source of noise, and for drawings.
 //!
 //! Every source draws from its own `ChaCha8` stream, so a change to one source does not shift the
 //! others. Every sample takes a fixed number of draws, so a change of a standard deviation does
@@ -8,7 +8,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// Sources of noise; the discriminant is the number of the stream.
+/// Sources of random numbers; the discriminant is the number of the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Source {
@@ -28,6 +28,8 @@ pub enum Source {
     Inertial = 7,
     /// The odometry's random walk in height.
     OdometryClimb = 8,
+    /// The drawing of a generated world, under the world's own seed.
+    Drawing = 9,
 }
 
 /// One stream.

@@ -46,7 +46,7 @@ pub(super) struct Canvas {
 
 impl Canvas {
     /// Side of a cell, metres.
-    const RESOLUTION_M: f64 = 0.05;
+    pub(super) const RESOLUTION_M: f64 = 0.05;
 
     /// A plan of `width_m` × `height_m` in one class; its lower left corner is the frame's origin.
     pub(super) fn new(width_m: f64, height_m: f64, class: Class) -> Self {
@@ -64,8 +64,21 @@ impl Canvas {
 
     /// Fills every cell whose centre satisfies `inside(x, y)`.
     pub(super) fn fill(&mut self, class: Class, inside: impl Fn(f64, f64) -> bool) {
-        for j in 0..self.grid.height() as i64 {
-            for i in 0..self.grid.width() as i64 {
+        let [width, height] = self.size_m();
+        self.fill_within(class, [0.0, 0.0, width, height], inside);
+    }
+
+    /// Fills every cell that touches the rectangle from (x0, y0) to (x1, y1) and whose centre
+    /// satisfies `inside(x, y)`.
+    pub(super) fn fill_within(
+        &mut self,
+        class: Class,
+        [x0, y0, x1, y1]: [f64; 4],
+        inside: impl Fn(f64, f64) -> bool,
+    ) {
+        let (low, high) = (self.grid.cell_at(x0, y0), self.grid.cell_at(x1, y1));
+        for j in low.j.max(0)..=high.j.min(self.grid.height() as i64 - 1) {
+            for i in low.i.max(0)..=high.i.min(self.grid.width() as i64 - 1) {
                 let cell = GridCell { i, j };
                 let [x, y] = self.grid.centre(cell);
                 if inside(x, y) {
@@ -99,11 +112,21 @@ impl Canvas {
 
     /// Puts a wall all around the plan.
     pub(super) fn border(&mut self, thickness: f64) {
-        let [width, height] =
-            [self.grid.width(), self.grid.height()].map(|cells| cells as f64 * Self::RESOLUTION_M);
+        let [width, height] = self.size_m();
         self.fill(Class::Wall, |x, y| {
             x < thickness || y < thickness || x > width - thickness || y > height - thickness
         });
+    }
+
+    /// Fills the cell that holds a point: a leg of a chair.
+    pub(super) fn dot(&mut self, class: Class, [x, y]: [f64; 2]) {
+        let cell = self.grid.cell_at(x, y);
+        self.grid.set(cell, class);
+    }
+
+    /// Width and height, metres.
+    pub(super) fn size_m(&self) -> [f64; 2] {
+        [self.grid.width(), self.grid.height()].map(|cells| cells as f64 * Self::RESOLUTION_M)
     }
 
     /// The finished plan.

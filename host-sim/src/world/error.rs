@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::builtin;
+use super::{KINDS, builtin};
 
 /// Why a world cannot be opened.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +12,13 @@ pub enum WorldError {
         /// File or name as given.
         file: String,
         /// The system's message.
+        reason: String,
+    },
+    /// The name of a generated world has a bad seed or size.
+    Generated {
+        /// The name as given.
+        name: String,
+        /// The fault and the remedy.
         reason: String,
     },
     /// Not YAML, or not one document of it.
@@ -53,17 +60,15 @@ pub enum WorldError {
 impl fmt::Display for WorldError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Unreadable { file, .. } if file.is_empty() => write!(
-                f,
-                "the world has no name; give a world file or a built-in world: {}",
-                builtin::names().join(", ")
-            ),
+            Self::Unreadable { file, .. } if file.is_empty() => {
+                write!(f, "the world has no name; give {}", accepted())
+            }
             Self::Unreadable { file, reason } => write!(
                 f,
-                "{file}: cannot read this world ({reason}); \
-                 give a world file or a built-in world: {}",
-                builtin::names().join(", ")
+                "{file}: cannot read this world ({reason}); give {}",
+                accepted()
             ),
+            Self::Generated { name, reason } => write!(f, "{name}: {reason}"),
             Self::Syntax { file, reason } => {
                 write!(f, "{file}: {reason}; correct the YAML there")
             }
@@ -81,6 +86,16 @@ impl fmt::Display for WorldError {
             } => write!(f, "{file}: robots[{index}]: {reason}"),
         }
     }
+}
+
+/// Lists what names a world.
+fn accepted() -> String {
+    let generated = KINDS.map(|kind| format!("{}:SEED", kind.word()));
+    format!(
+        "a world file or a built-in world: {}; or a generated one: {}",
+        builtin::names().join(", "),
+        generated.join(", ")
+    )
 }
 
 impl core::error::Error for WorldError {}

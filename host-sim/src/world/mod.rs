@@ -1,9 +1,9 @@
 //! The world that a robot explores: walls, heights of the ground, and start poses.
 //!
 //! A world comes from a YAML file in the ROS `map_server` convention ([`World::load`]), from the
-//! built-in collection ([`World::builtin`]), or in a test from rows of characters
-//! ([`World::picture`]). It is immutable and exact. Collisions, coverage and ranges are computed
-//! from it, never from the planner's map.
+//! built-in collection ([`World::builtin`]), from a seed ([`World::open`]), or in a test from rows
+//! of characters ([`World::picture`]). It is immutable and exact. Collisions, coverage and ranges
+//! are computed from it, never from the planner's map.
 //!
 //! Frame: x east, y north, z up, metres, angles counter-clockwise in radians.
 
@@ -13,6 +13,7 @@ mod distance;
 mod elevation;
 mod error;
 mod file;
+mod generated;
 mod ground_ray;
 mod heights;
 mod image;
@@ -30,6 +31,7 @@ pub use builtin::{Builtin, Place, builtins, place, places};
 pub use distance::DistanceField;
 pub use elevation::{Elevation, HeightScale};
 pub use error::WorldError;
+pub use generated::{KINDS, Kind};
 pub use image::{Image, ImageError, MAX_PIXELS};
 pub use occupancy::{Class, GridCell, Occupancy, Thresholds};
 pub use ray::{Hit, Ray, Surface};
@@ -78,12 +80,16 @@ pub struct World {
 }
 
 impl World {
-    /// Opens a built-in world by name, or else a world file by path.
+    /// Opens a built-in world by name, a generated world by name and seed (`maze:1`, [`KINDS`]), or
+    /// else a world file by path.
     ///
     /// # Errors
     /// As [`WorldError`].
     pub fn open(name_or_path: &str) -> Result<Self, WorldError> {
-        Self::builtin(name_or_path).map_or_else(|| Self::load(Path::new(name_or_path)), Ok)
+        Self::builtin(name_or_path)
+            .map(Ok)
+            .or_else(|| generated::open(name_or_path))
+            .unwrap_or_else(|| Self::load(Path::new(name_or_path)))
     }
 
     /// Loads a world file.
@@ -157,13 +163,22 @@ impl World {
         }
     }
 
-    /// The built-in name, or the file's name without its extension.
+    /// This world with one start, which is not checked.
+    fn with_start(self, start: Start) -> Self {
+        Self {
+            starts: vec![start],
+            ..self
+        }
+    }
+
+    /// The built-in name, the generated world's name with its seed, or the file's name without its
+    /// extension.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Start poses; never empty for a world file or a built-in world.
+    /// Start poses; empty only in worlds of a test.
     #[must_use]
     pub fn starts(&self) -> &[Start] {
         &self.starts

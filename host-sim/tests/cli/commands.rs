@@ -26,6 +26,9 @@ fn the_worlds_are_listed_with_their_names() {
     let (status, stdout, _) = outcome(&folder, &["worlds"]);
     assert_eq!(status, 0);
     assert!(names.iter().all(|name| stdout.contains(name.as_str())));
+    for kind in ["maze:SEED ", "rooms:SEED ", "dungeon:SEED "] {
+        assert!(stdout.contains(kind), "{kind}");
+    }
 }
 
 #[test]

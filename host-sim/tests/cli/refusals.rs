@@ -29,6 +29,22 @@ fn refused(folder: &TempDir, arguments: &[&str], words: &[&str]) {
 }
 
 #[test]
+fn bad_names_of_generated_worlds_are_refused_in_one_line() {
+    let folder = folder();
+    for (name, words) in [
+        ("maze", "the seed must be a whole number"),
+        ("rooms:x", "rooms:x: the seed must be a whole number"),
+        ("rooms:7:40", "say rooms:1:20x15"),
+        ("dungeon:7:5x20", "too small; say 8x8"),
+        ("dungeon:7:100x100", "say 64x64, 128x32 or less"),
+    ] {
+        refused(&folder, &["explore", name], &[name, words]);
+    }
+    let generated = ["maze:SEED", "rooms:SEED", "dungeon:SEED"];
+    refused(&folder, &["explore", "mazes"], &generated);
+}
+
+#[test]
 fn bad_worlds_are_refused_in_one_line() {
     let folder = folder();
     let world = |name: &str, more: &str| {
