@@ -3,6 +3,7 @@
 mod data;
 mod endings;
 mod full;
+mod generated;
 mod hostile;
 mod links;
 mod lost_device;
