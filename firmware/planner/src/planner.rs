@@ -39,6 +39,7 @@ use crate::roadmap::configuration_space::Footprint;
 use crate::robot::LaserMount;
 use crate::status::{Fault, Status};
 use charge::{charge, charge_rails, local_goal};
+use ground_model::GroundModel;
 use plan::{replan, search_viewpoints};
 use prefer::{note_flatness, prefer};
 use steer::{look_about, steer};
@@ -104,6 +105,18 @@ impl Output {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn step<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    input: Input<'_>,
+    timer: &mut impl StageTimer,
+) -> Output {
+    let output = explore(config, state, workspace, input, timer);
+    state.drive.tell(output.velocity);
+    output
+}
+
+fn explore<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
@@ -221,6 +234,14 @@ fn sense<const TILES: usize, const SLOTS: usize>(
     state
         .ground
         .observe(config, input, &mut state.map, &mut state.preferences);
+    // Wheels that slip on a slope are no contact.
+    if let GroundModel::Flat(points) = &mut state.ground
+        && let Some(contact) = state.drive.feel(config, input.velocity)
+    {
+        for point in contact.points(&config.robot) {
+            points.add_felt(input.pose.point(), input.pose.to_map(point));
+        }
+    }
 }
 
 /// Returns the level lasers, each with its scan.

@@ -13,6 +13,7 @@
 //! Units: metres, seconds, radians; robot frame, x forward.
 
 mod collision;
+pub(crate) mod contact;
 mod incline;
 mod motion;
 mod open_list;
@@ -28,6 +29,7 @@ pub use search_query::SearchQuery;
 use crate::config::Config;
 use crate::geometry::Twist;
 use crate::math;
+use contact::{Contact, ContactSense};
 use motion::{MotionSet, Recovery};
 use recovery::{Search, SearchBudget, SearchOutcome};
 use search_query::{Attempt, Leads};
@@ -99,7 +101,7 @@ const STANDING_MPS: f32 = 0.02;
 const STANDING_RADPS: f32 = 0.05;
 
 /// The drive's state: the recovery in progress, or the search for one.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Drive {
     recovery: Recovery,
     search: Option<Search>,
@@ -107,6 +109,7 @@ pub struct Drive {
     looks_right: bool,
     /// Steps until the next search may begin, after one that found nothing.
     rest_steps: u8,
+    contact: ContactSense,
 }
 
 impl Drive {
@@ -118,7 +121,21 @@ impl Drive {
             search: None,
             looks_right: false,
             rest_steps: 0,
+            contact: ContactSense::new(),
         }
+    }
+
+    /// Notes the velocity that the robot is told to drive for the next period.
+    pub(crate) const fn tell(&mut self, told: Twist) {
+        self.contact.tell(told);
+    }
+
+    /// Compares the measured velocity with what was told. A contact ends recovery and search.
+    pub(crate) fn feel(&mut self, config: &Config, measured: Twist) -> Option<Contact> {
+        let contact = self.contact.feel(config, measured)?;
+        self.recovery.clear();
+        self.search = None;
+        Some(contact)
     }
 
     /// Returns true during a search. Its poses are in the scratch memory, which must not change
@@ -228,6 +245,12 @@ impl Drive {
                     .map(|&attempt| Search::start(attempt, first, scratch));
             }
         }
+    }
+}
+
+impl Default for Drive {
+    fn default() -> Self {
+        Self::new()
     }
 }
 

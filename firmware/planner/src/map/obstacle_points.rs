@@ -17,6 +17,8 @@
 //! - if it is out of reach. The reach behind the robot is shorter, because the robot only turns and
 //!   backs out there.
 //!
+//! A *felt* point is where the hull met something that the laser does not see. No beam removes it.
+//!
 //! Invariants: at most `MAX_POINTS` points, of which the farthest gives way; as many counts as
 //! points.
 //! Units: metres, odometry frame.
@@ -39,7 +41,7 @@ pub(crate) const MAX_POINTS: usize = 256;
 #[derive(Debug, Default)]
 pub struct ObstaclePoints {
     points: Vec<Point, MAX_POINTS>,
-    /// Number of returns of each point, up to `max_returns`.
+    /// Number of returns of each point, up to `max_returns`; 0 for a felt point.
     returns: Vec<u8, MAX_POINTS>,
 }
 
@@ -92,11 +94,12 @@ impl ObstaclePoints {
         {
             let stays = within_reach(tuning, pose, point)
                 && !is_inside(config, pose, point)
-                && match visibility((pose, from), laser, ranges_mm, point, tuning.through_m) {
-                    Visibility::Hit => true,
-                    Visibility::Through => false,
-                    Visibility::Unseen => returns > 1,
-                };
+                && (returns == 0
+                    || match visibility((pose, from), laser, ranges_mm, point, tuning.through_m) {
+                        Visibility::Hit => true,
+                        Visibility::Through => false,
+                        Visibility::Unseen => returns > 1,
+                    });
             if stays {
                 index += 1;
             } else {
@@ -120,12 +123,17 @@ impl ObstaclePoints {
             point.x_m += part * (end.x_m - point.x_m);
             point.y_m += part * (end.y_m - point.y_m);
         } else {
-            self.insert(centre, end);
+            self.insert(centre, end, 1);
         }
     }
 
+    /// Enters a point where the hull of a robot at `centre` met something.
+    pub(crate) fn add_felt(&mut self, centre: Point, point: Point) {
+        self.insert(centre, point, 0);
+    }
+
     /// Inserts a point; in a full store it replaces the farthest one, if that is farther.
-    fn insert(&mut self, centre: Point, point: Point) {
+    fn insert(&mut self, centre: Point, point: Point, returns: u8) {
         if self.points.is_full() {
             let farther = |best: (usize, f32), (k, &point): (usize, &Point)| {
                 let far = point.distance2(centre);
@@ -140,7 +148,7 @@ impl ObstaclePoints {
         }
         // There is room now.
         let _ = self.points.push(point);
-        let _ = self.returns.push(1);
+        let _ = self.returns.push(returns);
     }
 }
 
@@ -326,6 +334,19 @@ mod tests {
         assert!(!obstacles.points().is_empty(), "out of view");
         obstacles.update(&CONFIG, &here, &laser(), &[NO_RETURN_MM; 181]);
         assert!(obstacles.points().is_empty(), "seen through");
+    }
+
+    /// Beams pass over what the hull met.
+    #[test]
+    fn a_felt_point_stays_until_it_is_out_of_reach() {
+        let mut obstacles = ObstaclePoints::new();
+        let here = Pose::default();
+        obstacles.add_felt(here.point(), Point { x_m: 0.3, y_m: 0.1 });
+        obstacles.update(&CONFIG, &here, &laser(), &[NO_RETURN_MM; 181]);
+        assert_eq!(obstacles.points().len(), 1, "seen through, and felt");
+        let away = Pose { x_m: -1.0, ..here };
+        obstacles.update(&CONFIG, &away, &laser(), &[NO_RETURN_MM; 181]);
+        assert!(obstacles.points().is_empty());
     }
 
     #[test]
