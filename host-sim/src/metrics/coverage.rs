@@ -46,11 +46,11 @@ pub struct Coverage {
     /// Visible cells; the known ones come first.
     cells: Vec<Cell>,
     known: usize,
-    seen_at_s: [Option<f64>; 2],
+    seen_at_s: [Option<f64>; MILESTONES.len()],
 }
 
 /// Fractions whose times are recorded: T90 and T99.
-const MILESTONES: [f64; 2] = [0.90, 0.99];
+const MILESTONES: [f64; 3] = [0.90, 0.95, 0.99];
 
 impl Coverage {
     /// Finds the cells that a disc of `radius_m` from `start` can see within `range_m`.
@@ -71,7 +71,7 @@ impl Coverage {
         Self {
             cells,
             known: 0,
-            seen_at_s: [None; 2],
+            seen_at_s: [None; MILESTONES.len()],
         }
     }
 
@@ -85,7 +85,7 @@ impl Coverage {
         Self {
             cells: cells.collect(),
             known: 0,
-            seen_at_s: [None; 2],
+            seen_at_s: [None; MILESTONES.len()],
         }
     }
 
@@ -135,10 +135,16 @@ impl Coverage {
         self.seen_at_s[0]
     }
 
+    /// Simulated time at which 95 % were known, seconds.
+    #[must_use]
+    pub fn t95_s(&self) -> Option<f64> {
+        self.seen_at_s[1]
+    }
+
     /// Simulated time at which 99 % were known, seconds.
     #[must_use]
     pub fn t99_s(&self) -> Option<f64> {
-        self.seen_at_s[1]
+        self.seen_at_s[2]
     }
 
     /// Visible cells that are not known.
@@ -346,10 +352,12 @@ mod tests {
         let mut coverage = unseen.clone();
         assert!((coverage.reachable_m2() - 4.0).abs() < 1e-9);
         assert_eq!(coverage.update(1.0, |cell| cell.y < 10), 0.5);
-        assert_eq!((coverage.t90_s(), coverage.t99_s()), (None, None));
+        let times = |it: &Coverage| [it.t90_s(), it.t95_s(), it.t99_s()];
+        assert_eq!(times(&coverage), [None; 3]);
         assert_eq!(coverage.update(2.0, |cell| cell.y < 18), 0.9);
-        assert_eq!(coverage.update(3.0, |_| true), 1.0);
-        assert_eq!((coverage.t90_s(), coverage.t99_s()), (Some(2.0), Some(3.0)));
+        assert_eq!(coverage.update(3.0, |cell| cell.y < 19), 0.95);
+        assert_eq!(coverage.update(4.0, |_| true), 1.0);
+        assert_eq!(times(&coverage), [2.0, 3.0, 4.0].map(Some));
         assert!(coverage.missing().is_empty());
         let mut coverage = unseen;
         assert_eq!(coverage.update(4.0, |cell| cell.x < 10), 0.5);

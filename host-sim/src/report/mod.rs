@@ -139,6 +139,8 @@ pub struct Coverage {
     pub explorable_m2: f64,
     /// First time at which the fraction was 0.90.
     pub t90_s: Option<f64>,
+    /// First time at which the fraction was 0.95.
+    pub t95_s: Option<f64>,
     /// First time at which the fraction was 0.99.
     pub t99_s: Option<f64>,
 }

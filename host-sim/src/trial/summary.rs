@@ -85,6 +85,7 @@ fn coverage(account: &Account) -> report::Coverage {
         known_m2: whole_cells_m2(coverage.known_m2()),
         explorable_m2: whole_cells_m2(coverage.reachable_m2()),
         t90_s: coverage.t90_s(),
+        t95_s: coverage.t95_s(),
         t99_s: coverage.t99_s(),
     }
 }
