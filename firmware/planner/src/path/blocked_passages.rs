@@ -4,6 +4,9 @@
 //! the first path cell that the local grid has no way to, or, ahead of a robot that stands, at the
 //! first path cell [`AHEAD_M`] away from it.
 //!
+//! A full list loses its oldest passage: what was blocked long ago may be tried again, and no goal
+//! is lost for want of room.
+//!
 //! Units: map cells, metres.
 
 use heapless::Vec;
@@ -14,23 +17,25 @@ use crate::geometry::{Cell, Point};
 use crate::path::{Path, PlanningContext};
 use crate::roadmap::skeleton::Skeleton;
 
-/// Maximum number of blocked passages. A goal that would need one more is given up.
-const MOST_PASSAGES: usize = 8;
+/// Maximum number of blocked passages. On scanned buildings, two of `aria_columbia` and two of
+/// `willow_full`, the mean share known at the end is 78 % if a goal is given up for want of a ninth
+/// place. If the oldest gives way, it is
+///
+/// | passages | 8 | 24 | 64 |
+/// | --- | --- | --- | --- |
+/// | known, % | 78.8 | 97.9 | 97.3 |
+const MOST_PASSAGES: usize = 24;
 /// Radius of the cut in the skeleton around a blocked passage, metres: half the width of a door.
 const CUT_RADIUS_M: f32 = 0.4;
 /// Distance from a standing robot's centre to the passage that it blocks, metres: its front, where
 /// it meets what stops it.
 const AHEAD_M: f32 = 0.5;
 
-/// The list of blocked passages, the oldest first.
+/// The list of blocked passages, the oldest first, by x and y of their cells.
 #[derive(Debug)]
 pub(crate) struct BlockedPassages {
-    cells: Vec<Cell, MOST_PASSAGES>,
+    cells: Vec<[i16; 2], MOST_PASSAGES>,
 }
-
-/// There is no room for another blocked passage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct PassagesFull;
 
 impl BlockedPassages {
     /// Makes an empty list.
@@ -44,11 +49,12 @@ impl BlockedPassages {
     }
 
     /// Blocks the passage at a cell.
-    ///
-    /// # Errors
-    /// If the list is full. It is then as it was.
-    pub(crate) fn block(&mut self, cell: Cell) -> Result<(), PassagesFull> {
-        self.cells.push(cell).map_err(|_| PassagesFull)
+    pub(crate) fn block(&mut self, cell: Cell) {
+        if self.cells.is_full() {
+            self.cells.remove(0);
+        }
+        // There is room now.
+        let _ = self.cells.push([cell.x, cell.y].map(|at| at as i16));
     }
 
     /// Opens the passage that was blocked last.
@@ -63,7 +69,11 @@ impl BlockedPassages {
 
     /// Cuts the published skeleton around each blocked passage.
     pub(crate) fn cut<const SLOTS: usize>(&self, skeleton: &mut Skeleton<SLOTS>) {
-        for &cell in &self.cells {
+        for &[x, y] in &self.cells {
+            let cell = Cell {
+                x: x.into(),
+                y: y.into(),
+            };
             skeleton.cut(cell, CUT_RADIUS_M);
         }
     }
@@ -93,4 +103,22 @@ pub(crate) fn ahead(path: &Path, robot: Point) -> Option<Cell> {
     let robot = robot.cell();
     let mut cells = path.cells().iter().copied();
     cells.find(|cell| cell.distance2(robot) >= AHEAD_M * AHEAD_M)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{BlockedPassages, MOST_PASSAGES};
+    use crate::geometry::Cell;
+
+    #[test]
+    fn a_full_list_loses_its_oldest_passage() {
+        let mut blocked = BlockedPassages::new();
+        for x in 0..MOST_PASSAGES as i32 + 2 {
+            blocked.block(Cell { x, y: -x });
+        }
+        assert_eq!(blocked.cells.len(), MOST_PASSAGES);
+        assert_eq!(blocked.cells.first(), Some(&[2, -2]));
+        blocked.open_last();
+        assert_eq!(blocked.cells.last(), Some(&[24, -24]));
+    }
 }

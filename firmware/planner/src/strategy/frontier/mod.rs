@@ -267,10 +267,8 @@ impl Frontier {
             }
         };
         let goal = self.path.goal();
-        match self.blocked.block(passage.unwrap_or(goal)) {
-            Ok(()) => self.forget_path(),
-            Err(_) => self.give_up(goal, ResidualReason::NoProgress),
-        }
+        self.blocked.block(passage.unwrap_or(goal));
+        self.forget_path();
     }
 
     /// Goes on along the path, or begins the next try if the robot is stuck or `has_enough` goals
