@@ -161,12 +161,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     }
     timer.mark(Stage::Window);
     let solver = budget(config, planned);
-    let solution = solve(
-        &mut workspace.window,
-        &mut workspace.scratch,
-        &solver,
-        &config.tuning.field,
-    );
+    let solution = solve(&mut workspace.window, &mut workspace.scratch, &solver);
     if state.ground.is_uneven() {
         note_flatness(state, workspace, &input);
     }

@@ -8,7 +8,7 @@ pub mod sheet;
 use core::fmt::Write as _;
 
 use fieldline_planner::field::{
-    FieldTuning, GOAL, Method, Preference, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window,
+    GOAL, Method, Preference, SCRATCH_FLOATS, SIDE, SWEEPS_PER_CYCLE, SolverConfig, Stop, Window,
     descent, preference, solve,
 };
 use serde::Serialize;
@@ -145,7 +145,7 @@ struct Effort {
 /// the error. So this function continues until the change is only rounding.
 fn converge(window: &mut Window, solver: Solver) -> Effort {
     let mut config = SolverConfig {
-        max_cycles: MOST_SWEEPS.min(u16::MAX.into()) as u16 / FieldTuning::DEFAULT.sweeps_per_cycle,
+        max_cycles: MOST_SWEEPS.min(u16::MAX.into()) as u16 / SWEEPS_PER_CYCLE,
         tolerance: 1e-5,
         method: match solver {
             Solver::Multigrid => Method::Auto,
@@ -153,7 +153,7 @@ fn converge(window: &mut Window, solver: Solver) -> Effort {
         },
     };
     let mut scratch = Box::new([0.0; SCRATCH_FLOATS]);
-    let first = solve(window, &mut scratch, &config, &FieldTuning::DEFAULT);
+    let first = solve(window, &mut scratch, &config);
     let mut effort = Effort {
         cycles: first.cycles.into(),
         sweeps: first.sweeps.into(),
@@ -169,7 +169,7 @@ fn converge(window: &mut Window, solver: Solver) -> Effort {
         && effort.sweeps < MOST_SWEEPS
         && idle < MOST_IDLE
     {
-        let more = solve(window, &mut scratch, &config, &FieldTuning::DEFAULT);
+        let more = solve(window, &mut scratch, &config);
         effort.sweeps += u32::from(more.sweeps);
         effort.residual = more.residual;
         idle = if more.residual < best { 0 } else { idle + 1 };

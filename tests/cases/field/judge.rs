@@ -7,7 +7,7 @@ use core::fmt::Write as _;
 
 use fieldline_planner::field::descent;
 use fieldline_planner::field::{
-    FieldTuning, Method, SCRATCH_FLOATS, Solution, SolverConfig, Stop, Window, solve,
+    Method, SCRATCH_FLOATS, Solution, SolverConfig, Stop, Window, solve,
 };
 use fieldline_tests::field::truth::Truth;
 use fieldline_tests::field::{ascend, cells, degrees_between};
@@ -101,7 +101,7 @@ pub(crate) fn work(
         method,
         ..SolverConfig::default()
     };
-    solve(window, scratch, &config, &FieldTuning::DEFAULT)
+    solve(window, scratch, &config)
 }
 
 /// The solver's scratch memory.

@@ -2,7 +2,7 @@
 //! converge to the truth.
 
 use fieldline_planner::field::{
-    FieldTuning, GOAL, Method, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, solve,
+    GOAL, Method, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, solve,
 };
 use fieldline_tests::field::floor::{KINDS, Kind};
 use fieldline_tests::field::scenes::{Pull, Scene, scene};
@@ -121,7 +121,7 @@ fn values_converge_to_the_truth_and_the_goal_value_cancels() {
             tolerance: 1e-4,
             method: Method::Multigrid,
         };
-        solve(&mut window, &mut scratch, &config, &FieldTuning::DEFAULT);
+        solve(&mut window, &mut scratch, &config);
         for (x, y) in cells().filter(|&(x, y)| window.is_reached(x, y)) {
             let q = f64::from(window.q(x, y)) / f64::from(GOAL);
             let error = (q / truth.q(x, y) - 1.0).abs();

@@ -1,8 +1,6 @@
 //! Windows from pictures, and ways to solve them.
 
-use fieldline_planner::field::{
-    FieldTuning, Method, SCRATCH_FLOATS, SIDE, SolverConfig, Window, solve,
-};
+use fieldline_planner::field::{Method, SCRATCH_FLOATS, SIDE, SolverConfig, Window, solve};
 use fieldline_tests::field::Rows;
 
 /// Solves far beyond the stop rule, to the precision of f32.
@@ -13,7 +11,7 @@ pub(crate) fn converge(window: &mut Window) {
         tolerance: 3e-6,
         method: Method::Multigrid,
     };
-    solve(window, &mut scratch, &config, &FieldTuning::DEFAULT);
+    solve(window, &mut scratch, &config);
 }
 
 /// Makes sweeps of Gauss–Seidel, five for each of `fives`.
@@ -24,7 +22,7 @@ pub(crate) fn sweeps(window: &mut Window, fives: u16) {
         method: Method::GaussSeidel,
         ..SolverConfig::default()
     };
-    solve(window, &mut scratch, &config, &FieldTuning::DEFAULT);
+    solve(window, &mut scratch, &config);
 }
 
 /// Makes a window from a picture whose first line has the greatest y: `#` obstacle, `.` free, `G`

@@ -3,8 +3,7 @@
 
 use fieldline_planner::field::preference::p_diff;
 use fieldline_planner::field::{
-    FieldTuning, GOAL, Method, Preference, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window,
-    descent, solve,
+    GOAL, Method, Preference, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, descent, solve,
 };
 use fieldline_tests::field::floor::{KINDS, Kind};
 use fieldline_tests::field::scenes::{Pull, scene};
@@ -34,13 +33,7 @@ fn cells_that_no_goal_reaches_are_flat() {
         "without the 12 cells on the other side of the wall"
     );
     assert_eq!(
-        solve(
-            &mut closed,
-            &mut scratch,
-            &SolverConfig::default(),
-            &FieldTuning::DEFAULT
-        )
-        .stop,
+        solve(&mut closed, &mut scratch, &SolverConfig::default()).stop,
         Stop::Converged
     );
     assert!(descent::heading(&closed, 1, 1).is_some());
@@ -54,12 +47,7 @@ fn cells_that_no_goal_reaches_are_flat() {
     let goal_only = window(&["#####", "##G##", "#####", "....."]);
     let no_goal = window(&["....."]);
     for mut flat in [goal_only, no_goal, Window::new()] {
-        let solution = solve(
-            &mut flat,
-            &mut scratch,
-            &SolverConfig::default(),
-            &FieldTuning::DEFAULT,
-        );
+        let solution = solve(&mut flat, &mut scratch, &SolverConfig::default());
         assert_eq!((solution.stop, solution.cycles), (Stop::Flat, 0));
     }
 }
@@ -74,16 +62,11 @@ fn a_budget_spent_in_parts_makes_the_same_bits() {
     };
     let mut whole = scene(Kind::Rooms, Pull::Heights, 8).window;
     let mut parts = whole.clone();
-    let solution = solve(&mut whole, &mut scratch, &budget(7), &FieldTuning::DEFAULT);
+    let solution = solve(&mut whole, &mut scratch, &budget(7));
     assert_eq!((solution.stop, solution.cycles), (Stop::Budget, 7));
     for part in [3, 1, 3] {
         scratch.fill(f32::NAN);
-        solve(
-            &mut parts,
-            &mut scratch,
-            &budget(part),
-            &FieldTuning::DEFAULT,
-        );
+        solve(&mut parts, &mut scratch, &budget(part));
     }
     assert!(cells().all(|(x, y)| whole.q(x, y).to_bits() == parts.q(x, y).to_bits()));
 }
@@ -143,7 +126,7 @@ fn strong_attraction_falls_back_to_gauss_seidel() {
     };
     window.set_preferences(|_, _| Preference::nearest(0.3));
     let truth = Truth::of(&window);
-    let solution = solve(&mut window, &mut scratch, &config, &FieldTuning::DEFAULT);
+    let solution = solve(&mut window, &mut scratch, &config);
     assert_eq!(
         (solution.method, solution.stop),
         (Method::GaussSeidel, Stop::Converged)
@@ -186,7 +169,6 @@ fn noise_brings_no_panic_and_no_number_out_of_range() {
                 tolerance: 0.05,
                 method,
             },
-            &FieldTuning::DEFAULT,
         );
         for (x, y) in cells() {
             let q = window.q(x, y);
@@ -212,12 +194,7 @@ fn fields_have_the_same_bits_everywhere() {
         .flat_map(|k| [(k, Pull::None), (k, Pull::Heights)])
     {
         let mut window = scene(kind, pull, 12).window;
-        let solution = solve(
-            &mut window,
-            &mut scratch,
-            &SolverConfig::default(),
-            &FieldTuning::DEFAULT,
-        );
+        let solution = solve(&mut window, &mut scratch, &SolverConfig::default());
         let bits = cells().map(|(x, y)| window.q(x, y).to_bits());
         // FNV-1a, word by word.
         let hash = bits.fold(0x811C_9DC5_u32, |hash, bits| {

@@ -27,8 +27,7 @@ pub enum Method {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverConfig {
-    /// Greatest number of multigrid cycles; a cycle is worth
-    /// [`FieldTuning::sweeps_per_cycle`](crate::FieldTuning::sweeps_per_cycle) sweeps. Default: 12.
+    /// Greatest number of multigrid cycles; a cycle is worth five Gauss–Seidel sweeps. Default: 12.
     /// A heading is right after 1 cycle in a warm window and after 2 or 3 in a cold one; 5 cycles
     /// suffice in 19 of 20 cold windows.
     pub max_cycles: u16,

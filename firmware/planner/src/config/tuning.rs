@@ -169,7 +169,7 @@ macro_rules! rooms {
 rooms! {
     ground: GroundTuning, "Uneven ground.";
     map: MapTuning, "The map.";
-    field: FieldTuning, "The window's field and its solver.";
+    field: FieldTuning, "The window's field.";
     tdbvp: TdbvpTuning, "Rails of time.";
     ouroboros: OuroborosTuning, "Loop closing.";
 }

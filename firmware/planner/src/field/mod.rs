@@ -62,9 +62,9 @@ pub mod preference;
 pub mod solver;
 pub mod window;
 
-pub use crate::config::{FieldTuning, Method, SolverConfig};
+pub use crate::config::{Method, SolverConfig};
 pub use multigrid::SCRATCH_FLOATS;
-pub use solver::{Solution, Stop, solve};
+pub use solver::{SWEEPS_PER_CYCLE, Solution, Stop, solve};
 pub use window::{GOAL, Preference, Rows, SIDE, Window};
 
 /// The window and the multigrid's scratch memory fit into the chip's 64 KB core-coupled memory.

@@ -157,7 +157,7 @@ mod tests {
     use super::{
         PreferenceMode, Preferences, STEEP_AGAIN, TOO_FLAT, of_flatness, of_height, p_diff,
     };
-    use crate::config::{FieldTuning, UnevenGround};
+    use crate::config::UnevenGround;
     use crate::field::{GOAL, Preference, SCRATCH_FLOATS, SIDE, SolverConfig, Stop, Window, solve};
 
     /// Pseudorandom numbers in [0, 1).
@@ -187,7 +187,7 @@ mod tests {
             ..SolverConfig::default()
         };
         assert_eq!(
-            solve(&mut window, &mut scratch, &config, &FieldTuning::DEFAULT).stop,
+            solve(&mut window, &mut scratch, &config).stop,
             Stop::Converged
         );
         window

@@ -6,15 +6,29 @@
 //! stop converging.
 //!
 //! The budget is in multigrid cycles, a hard bound on time: Gauss–Seidel spends
-//! [`FieldTuning::sweeps_per_cycle`] sweeps per cycle. If the budget runs out, the field stays in
+//! [`SWEEPS_PER_CYCLE`] sweeps per cycle. If the budget runs out, the field stays in
 //! the window and the next call continues from it.
 
-use crate::config::{FieldTuning, Method, SolverConfig};
+use crate::config::{Method, SolverConfig};
 use crate::field::gauss_seidel;
 use crate::field::multigrid::{self, SCRATCH_FLOATS};
 use crate::field::runs::Runs;
 use crate::field::seed;
 use crate::field::window::{Window, index};
+
+/// Mean preference of the reachable cells above which Gauss–Seidel solves instead of the multigrid.
+/// Under a strong attraction q is so near to the goal's value over whole rooms that the factors
+/// show only rounding, and a wrong field seems right. The ablation's runs stay below half of it.
+const STRONG_ATTRACTION: f32 = 0.15;
+/// Gauss–Seidel sweeps for each multigrid cycle of the budget: about as many as take the same time.
+pub const SWEEPS_PER_CYCLE: u16 = 5;
+/// Consecutive cycles of one call without a smaller error after which the multigrid gives up. The
+/// default budget of a call ends earlier.
+const MOST_IDLE_CYCLES: u16 = 12;
+/// Greatest relative change of a cell in the last sweep of Gauss–Seidel. Its slowest modes lose
+/// less than a hundredth of their error per sweep, so the remaining error is a few thousandths at
+/// most.
+const SWEEP_TOLERANCE: f32 = 1e-5;
 
 /// Reason for the end of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,7 +62,6 @@ pub fn solve(
     window: &mut Window,
     scratch: &mut [f32; SCRATCH_FLOATS],
     config: &SolverConfig,
-    tuning: &FieldTuning,
 ) -> Solution {
     let mut solution = Solution {
         cycles: 0,
@@ -64,15 +77,14 @@ pub fn solve(
             ..solution
         };
     }
-    let strong =
-        config.method == Method::Auto && mean_preference(window) > tuning.strong_attraction;
+    let strong = config.method == Method::Auto && mean_preference(window) > STRONG_ATTRACTION;
     if config.method != Method::GaussSeidel && !strong {
-        run_multigrid(window, scratch, (config, tuning), &mut solution);
+        run_multigrid(window, scratch, config, &mut solution);
     } else {
         solution.method = Method::GaussSeidel;
     }
     if solution.method == Method::GaussSeidel {
-        run_gauss_seidel(window, (config, tuning), &mut solution);
+        run_gauss_seidel(window, config, &mut solution);
     }
     solution
 }
@@ -80,7 +92,7 @@ pub fn solve(
 fn run_multigrid(
     window: &mut Window,
     scratch: &mut [f32; SCRATCH_FLOATS],
-    (config, tuning): (&SolverConfig, &FieldTuning),
+    config: &SolverConfig,
     solution: &mut Solution,
 ) {
     seed::raise(window);
@@ -96,27 +108,23 @@ fn run_multigrid(
         if solution.residual < best {
             (best, since) = (solution.residual, 0);
         }
-        if config.method == Method::Auto && since >= tuning.most_idle_cycles {
+        if config.method == Method::Auto && since >= MOST_IDLE_CYCLES {
             solution.method = Method::GaussSeidel;
             return;
         }
     }
 }
 
-fn run_gauss_seidel(
-    window: &mut Window,
-    (config, tuning): (&SolverConfig, &FieldTuning),
-    solution: &mut Solution,
-) {
+fn run_gauss_seidel(window: &mut Window, config: &SolverConfig, solution: &mut Solution) {
     // Values that rose only in part are worth keeping.
     window.warm = true;
     for _ in solution.cycles..config.max_cycles {
-        for _ in 1..tuning.sweeps_per_cycle {
+        for _ in 1..SWEEPS_PER_CYCLE {
             gauss_seidel::sweep(window);
         }
         solution.residual = gauss_seidel::measured_sweep(window);
-        solution.sweeps += tuning.sweeps_per_cycle;
-        if solution.residual < tuning.sweep_tolerance {
+        solution.sweeps += SWEEPS_PER_CYCLE;
+        if solution.residual < SWEEP_TOLERANCE {
             solution.stop = Stop::Converged;
             return;
         }

@@ -356,7 +356,7 @@ mod tests {
     /// field, between the two.
     #[test]
     fn goals_keep_the_share_that_they_are_charged_with() {
-        use crate::field::{FieldTuning, Method, SCRATCH_FLOATS, SolverConfig, solve};
+        use crate::field::{Method, SCRATCH_FLOATS, SolverConfig, solve};
 
         let solved = |method| {
             let (mut free, mut goal) = ([0; SIDE], [0; SIDE]);
@@ -374,7 +374,7 @@ mod tests {
                 method,
             };
             let scratch = &mut [0.0; SCRATCH_FLOATS];
-            solve(&mut window, scratch, &config, &FieldTuning::DEFAULT);
+            solve(&mut window, scratch, &config);
             window
         };
         let [fast, slow] = [Method::Multigrid, Method::GaussSeidel].map(solved);

@@ -262,7 +262,6 @@ mod tests {
             &mut workspace.window,
             &mut workspace.scratch,
             &config.solver,
-            &config.tuning.field,
         );
         let input = Input {
             time_ms: standing_ms,

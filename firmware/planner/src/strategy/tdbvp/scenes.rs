@@ -5,7 +5,7 @@
 
 use crate::config::TdbvpTuning;
 use crate::field::local_grid::{LocalGrid, position};
-use crate::field::{FieldTuning, SCRATCH_FLOATS, SIDE, SolverConfig, Window, descent, solve};
+use crate::field::{SCRATCH_FLOATS, SIDE, SolverConfig, Window, descent, solve};
 use crate::geometry::{Cell, Pose};
 use crate::map::{Class, Tiles};
 use crate::path::nearest::Centres;
@@ -127,12 +127,7 @@ impl Scene {
             max_cycles: 100,
             ..SolverConfig::default()
         };
-        solve(
-            &mut window,
-            &mut [0.0; SCRATCH_FLOATS],
-            &config,
-            &FieldTuning::DEFAULT,
-        );
+        solve(&mut window, &mut [0.0; SCRATCH_FLOATS], &config);
         let (x, y) = position((grid.origin, grid.scale), robot);
         let heading = descent::heading_at(&window, x, y).expect("the field is not flat");
         (heading.cos(), heading.sin())
