@@ -94,7 +94,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         let candidate = tractor::candidate(&self.crumbs, &self.regions, &round.pose, tuning)?;
         let site = round.nearest(candidate, scratch)?;
         let centre = round.skeleton.frame().cell(site);
-        tractor::suits(centre, candidate, &self.regions, &round.pose, tuning).then_some(centre)
+        tractor::suits(centre, &self.regions, &round.pose, tuning).then_some(centre)
     }
 
     /// Begins a loop that is worth closing [lines 12, 16 and 18]: returns the shield behind the
@@ -158,7 +158,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             return Some(RoundOutcome::Path);
         }
         self.lost_loops += 1;
-        if self.lost_loops > tuning.most_lost_loops {
+        if self.lost_loops > tuning.lost_rounds {
             self.give_up();
         } else {
             (self.shield, self.lost_rounds) = (None, 0);
@@ -235,5 +235,5 @@ pub(super) fn spread_ahead_of<const TILES: usize, const SLOTS: usize>(
     round.propagate(from, surroundings(robot).chain(behind), None, scratch)
 }
 
-/// Maximum number of centre cells on a shield.
+/// Maximum number of centre cells on a shield that are looked at.
 const MOST_CUT: usize = 9;

@@ -171,7 +171,7 @@ pub(super) fn back_to_shield<'a, const TILES: usize, const SLOTS: usize>(
 /// Returns the first valid shield across the back, from the robot on \[Jorge15, III-C, fourth
 /// step\].
 ///
-/// `None` if the back ends, or `most_tried_cells` cells were tried, without one.
+/// `None` if the back ends, or `most_reach_cells` cells were tried, without one.
 pub(super) fn build_shield<const TILES: usize, const SLOTS: usize>(
     centres: &Centres<'_, TILES, SLOTS>,
     back: impl Iterator<Item = Site>,
@@ -179,7 +179,7 @@ pub(super) fn build_shield<const TILES: usize, const SLOTS: usize>(
     tuning: &OuroborosTuning,
 ) -> Option<Shield> {
     let mut span = [None; SPAN];
-    let most = tuning.most_tried_cells + SPAN - 1;
+    let most = usize::from(tuning.most_reach_cells) + SPAN - 1;
     back.take(most).find_map(|site| {
         span.rotate_left(1);
         span[SPAN - 1] = Some(centres.cell(site));

@@ -22,7 +22,7 @@
 //!
 //! Departs from \[Jorge15, Algorithm 1, line 17\], where a missing loop road ends the loop at once:
 //! a loop is lost only after `lost_rounds` rounds in a row without loop road or shield, since a
-//! skeleton may grow a spur under the robot for a moment. After `most_lost_loops` lost loops the
+//! skeleton may grow a spur under the robot for a moment. After as many lost loops the
 //! next one is given up, or the robot might begin and lose the same loop for ever.
 //!
 //! Units: map cells, metres, milliseconds.
@@ -47,6 +47,7 @@ use crate::config::OuroborosTuning;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::path::breadcrumbs::Crumbs;
+use crate::path::context::STEP_M;
 use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::strategy::Frontier;
 use crate::strategy::ouroboros::loop_budget::LoopBudget;
@@ -221,7 +222,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
             .and_then(|(robot, goal)| round.path([robot, goal], core::iter::empty(), scratch));
         let path = path.filter(|path| {
             let is_over = revisit.is_over(path.steps(), round.limits);
-            path.steps() > round.tuning.ouroboros.done_steps && !is_over
+            path.steps() as f32 * STEP_M > round.tuning.ouroboros.reached_m && !is_over
         });
         if let Some(path) = path {
             self.revisit = Some(revisit);

@@ -93,7 +93,7 @@ impl Shield {
                 *place = reach;
             }
         }
-        self.check_cut(centres, tuning.most_cut_cells)
+        self.check_cut(centres)
     }
 
     /// Returns the cells to one side up to the first one that is not open; `None` if there is none
@@ -115,13 +115,11 @@ impl Shield {
         })?
     }
 
-    /// Checks that only the branch that it stands on has cells on it, `most_cells` of them at most.
+    /// Checks that only the branch that it stands on has cells on it.
     fn check_cut<const TILES: usize, const SLOTS: usize>(
         &self,
         centres: &Centres<'_, TILES, SLOTS>,
-        most_cells: usize,
     ) -> Result<(), Flaw> {
-        let mut cut = 1;
         for side in [0, 1] {
             // Cells that follow each other from where it stands are of the same branch.
             let mut is_joined = true;
@@ -130,12 +128,8 @@ impl Shield {
                 if is_centre && !is_joined {
                     return Err(Flaw::CutsMore);
                 }
-                cut += usize::from(is_centre);
                 is_joined &= is_centre;
             }
-        }
-        if cut > most_cells {
-            return Err(Flaw::CutsMore);
         }
         Ok(())
     }

@@ -50,20 +50,17 @@ pub(super) fn candidate<const SLOTS: usize>(
 ) -> Option<Cell> {
     crumbs
         .newest_first()
-        .find(|&crumb| is_behind(crumb, robot, tuning) && !regions.is_closed(crumb))
+        .find(|&crumb| suits(crumb, regions, robot, tuning))
 }
 
-/// Returns true if a tractor point may be at a centre cell, the one nearest to a candidate.
+/// Returns true if a cell lies behind the robot and in no closed region.
 pub(super) fn suits<const SLOTS: usize>(
     centre: Cell,
-    candidate: Cell,
     regions: &ClosedRegions<SLOTS>,
     robot: &Pose,
     tuning: &OuroborosTuning,
 ) -> bool {
-    centre.distance_m(candidate) <= tuning.most_aside_m
-        && is_behind(centre, robot, tuning)
-        && !regions.is_closed(centre)
+    is_behind(centre, robot, tuning) && !regions.is_closed(centre)
 }
 
 /// Returns true if a tractor point may move to a cell on the loop road's back.
