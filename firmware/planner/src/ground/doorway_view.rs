@@ -126,7 +126,7 @@ impl<'a> DoorwayView<'a> {
         let (from, to, tuning) = (a.end(), b.end(), self.tuning);
         let width_m = from.distance_m(to);
         let stands = |ray: &Ray| heights.is_obstacle(ray.hit_cell(tuning.hit_depth_m), tuning);
-        let widths_m = tuning.min_doorway_m..=tuning.max_doorway_m;
+        let widths_m = CELL_M..=tuning.max_doorway_m;
         if !widths_m.contains(&width_m) || !stands(&a) || !stands(&b) {
             return false;
         }
@@ -135,16 +135,12 @@ impl<'a> DoorwayView<'a> {
         // left and a positive depth is beyond the threshold.
         let depth_m =
             |point: Point| (dy * (point.x_m - from.x_m) - dx * (point.y_m - from.y_m)) / width_m;
-        let mut deepest_m = 0.0_f32;
-        let all = (first + 1..second).all(|k| {
+        (first + 1..second).all(|k| {
             self.ray(k).is_some_and(|ray| {
-                let depth_m = depth_m(ray.end());
-                deepest_m = deepest_m.max(depth_m);
                 let over_m = ray.height_m(ray.length_m) - self.ground_m;
-                depth_m > tuning.min_recess_m && over_m > self.ground.obstacle_m
+                depth_m(ray.end()) > tuning.min_recess_m && over_m > self.ground.obstacle_m
             })
-        });
-        all && deepest_m > tuning.min_room_depth_m
+        })
     }
 
     /// Returns the cell of what a beam hit.

@@ -2,7 +2,7 @@
 //! filter](super::attitude_filter), and when it counts as free.
 //!
 //! ```text
-//! usable:  |z − h| ≤ low_confidence_tolerance_m + noisy_climb_share climb d
+//! usable:  |z − h| ≤ height_tolerance_m + noisy_climb_share climb d
 //! ```
 //!
 //! Here z is the height of the cell and h the first measured height on the line to the robot, d
@@ -45,7 +45,7 @@ pub(super) fn is_usable(heights: &Heights<'_>, limits: &RiseLimits<'_>, cell: Ce
         if let Some(height_m) = heights.height_m(on) {
             let d_m = distance_m * k as f32 / steps as f32;
             return (low_confidence_m - height_m).abs()
-                <= tuning.low_confidence_tolerance_m + tuning.noisy_climb_share * climb * d_m;
+                <= tuning.height_tolerance_m + tuning.noisy_climb_share * climb * d_m;
         }
     }
     false

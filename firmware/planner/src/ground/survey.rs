@@ -213,7 +213,7 @@ impl<'a, 'm> Survey<'a, 'm> {
         }
         let closing = self.attitude.rise(ux, uy) - ray.slope;
         let above_m = ray.from_z_m - self.attitude.plane_m(ray.from);
-        if closing < self.tuning.min_closing || above_m > closing * WINDOW_RADIUS_M {
+        if above_m > closing * WINDOW_RADIUS_M {
             return;
         }
         let expected_m = above_m / closing;
@@ -325,15 +325,11 @@ impl<'a, 'm> Survey<'a, 'm> {
     /// Returns the slope of the ground along the beam up to K, at least the steepest descent.
     fn slope_at(&self, ray: &Ray, last: &LastGround) -> f32 {
         let back = ray.at(last.s_m - self.tuning.slope_base_m).cell();
-        let climb = self.ground.climb;
         let slope = match self.elevation.read().height_m(back) {
             Some(height_m) => (last.height_m - height_m) / self.tuning.slope_base_m,
-            None => {
-                let plane = self.attitude.rise(ray.along.0, ray.along.1);
-                plane.min(self.tuning.assumed_slope_share * climb)
-            }
+            None => self.attitude.rise(ray.along.0, ray.along.1),
         };
-        slope.max(-climb)
+        slope.max(-self.ground.climb)
     }
 
     /// Marks possible drops on the unmeasured cells behind K.

@@ -21,9 +21,13 @@ use crate::map::{Class, Map, SideTable, Tiles};
 /// Pages that hold the marks.
 const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::Cells>();
 
+/// Phases of the beams through a doorway to a known wall. A step evaluates one phase, to save time.
+/// Each beam comes within a second.
+const BEAM_PHASES: usize = 5;
+
 /// Returns the phase of a step: which of the doorway's beams are due.
-const fn beam_phase(time_ms: u32, period_ms: u32, phases: usize) -> usize {
-    (time_ms / period_ms) as usize % phases
+const fn beam_phase(time_ms: u32, period_ms: u32) -> usize {
+    (time_ms / period_ms) as usize % BEAM_PHASES
 }
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
@@ -77,8 +81,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 
     /// Enters what beams see through doorways into cells that are unknown.
     fn view_doorways(&mut self, config: &Config, ground: &UnevenGround, input: &Input<'_>) {
-        let phases = config.tuning.map.beam_phases;
-        let phase = beam_phase(input.time_ms, config.period_ms(), phases);
+        let phase = beam_phase(input.time_ms, config.period_ms());
         let mut written = 0;
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             let tuning = &config.tuning.ground;
@@ -92,7 +95,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                 // The cells before a known wall are mostly known, so a few beams per step suffice.
                 let is_due = |tiles: &Tiles<TILES, SLOTS>, number: usize| {
                     let is_new = |end: Cell| tiles.class(end) == Class::Unknown;
-                    number % phases == phase || view.end_cell(number).is_some_and(is_new)
+                    number % BEAM_PHASES == phase || view.end_cell(number).is_some_and(is_new)
                 };
                 for number in beams {
                     if written < config.tuning.map.max_doorway_cells && is_due(&self.tiles, number)
@@ -230,7 +233,7 @@ mod tests {
     use std::boxed::Box;
     use std::vec::Vec;
 
-    use super::{Class, Config, RiseLimits, UnevenGround, beam_phase};
+    use super::{BEAM_PHASES, Class, Config, RiseLimits, UnevenGround, beam_phase};
     use crate::config::{GroundTuning, MapTuning};
     use crate::geometry::Cell;
     use crate::map::Map;
@@ -269,7 +272,6 @@ mod tests {
 
     #[test]
     fn beams_of_a_doorway_are_due_in_turn_at_every_period() {
-        let phases = MapTuning::DEFAULT.beam_phases;
         for period_s in [0.1, 0.2, 0.4] {
             let config = Config {
                 period_s,
@@ -278,8 +280,8 @@ mod tests {
             let period_ms = config.period_ms();
             assert_eq!(period_ms, [100, 200, 400][(10.0 * period_s) as usize / 2]);
             for step in 0..20 {
-                let phase = beam_phase(step * period_ms, period_ms, phases);
-                assert_eq!(phase, step as usize % phases, "{period_ms} ms");
+                let phase = beam_phase(step * period_ms, period_ms);
+                assert_eq!(phase, step as usize % BEAM_PHASES, "{period_ms} ms");
             }
         }
     }

@@ -36,6 +36,10 @@ use crate::geometry::Cell;
 use crate::ground::AttitudeFilter;
 use crate::input::Input;
 
+/// A person carried the robot if it moved more cells than this between two observations. It drives
+/// one or two.
+const MAX_STEP_CELLS: i32 = 10;
+
 /// The map, with `TILES` pages in the pool and `SLOTS` slots in the box.
 #[derive(Debug)]
 pub struct Map<const TILES: usize, const SLOTS: usize> {
@@ -96,25 +100,25 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         let robot = input.pose.point();
         if let Some(ground) = &config.ground {
             self.free_footprint(robot, tuning.stand_radius_m);
-            self.record_visit(robot.cell(), tuning.max_step_cells);
+            self.record_visit(robot.cell());
             self.update_elevation(config, ground, input);
             return;
         }
         self.evidence.follow(robot.cell());
         self.free_footprint(robot, tuning.stand_radius_m);
-        self.record_visit(robot.cell(), tuning.max_step_cells);
+        self.record_visit(robot.cell());
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             self.integrate(tuning, &input.pose, laser, ranges_mm);
         }
     }
 
     /// Marks the trail from the last cell without diagonal steps, so that its cells share sides. A
-    /// trail longer than `max_step_cells` is not marked: the robot was carried.
-    fn record_visit(&mut self, to: Cell, max_step_cells: i32) {
+    /// trail longer than [`MAX_STEP_CELLS`] is not marked: the robot was carried.
+    fn record_visit(&mut self, to: Cell) {
         let from = self.last_cell.unwrap_or(to);
         self.last_cell = Some(to);
         let steps = (to.x - from.x).abs().max((to.y - from.y).abs());
-        if steps > max_step_cells {
+        if steps > MAX_STEP_CELLS {
             self.tiles.mark_visited(to);
             return;
         }

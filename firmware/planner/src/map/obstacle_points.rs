@@ -225,9 +225,9 @@ fn within_reach(tuning: &MapTuning, pose: &Pose, point: Point) -> bool {
     point.distance2(pose.point()) < reach_m * reach_m
 }
 
-/// Returns true if a point lies inside the robot's rectangle by more than `inside_m`.
+/// Returns true if a point lies inside the robot's rectangle by more than `same_point_m`.
 fn is_inside(config: &Config, pose: &Pose, point: Point) -> bool {
-    let (robot, inside_m) = (&config.robot, config.tuning.map.inside_m);
+    let (robot, inside_m) = (&config.robot, config.tuning.map.same_point_m);
     let Point { x_m, y_m } = pose.to_robot(point);
     x_m.abs() < robot.half_length_m - inside_m && y_m.abs() < robot.half_width_m - inside_m
 }

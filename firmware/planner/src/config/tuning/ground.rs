@@ -38,7 +38,8 @@ tuning! {
         /// Radius around the start that the tilted beams never see. They meet level ground 1.39 m
         /// from the robot's centre.
         blind_radius_m: f32 = 1.35, 0.5..=2.8, "m";
-        /// Error of a height: from the attitude, the range and the extent of the cell.
+        /// Error of a height, also of one of low confidence: from the attitude, the range and the
+        /// extent of the cell.
         height_tolerance_m: f32 = 0.10, 0.02..=0.3, "m";
         /// Rise above the steepest slope from which P is the foot of an obstacle and no ground.
         wall_foot_m: f32 = 0.03, 0.01..=0.1, "m";
@@ -56,9 +57,6 @@ tuning! {
         possible_grazing_m: f32 = 0.3, 0.1..=1.0, "m";
         /// Length before K over which the slope at K is measured.
         slope_base_m: f32 = 0.3, 0.1..=1.0, "m";
-        /// Greatest slope at K, as a share of the climb, if it is not measured but taken from the
-        /// robot's plane.
-        assumed_slope_share: f32 = 0.9, 0.2..=2.0, "1";
         /// Greatest change of the slope between K and P on a brow.
         max_bend: f32 = 0.15, 0.05..=0.5, "1";
         /// Share of the climb from which a beam comes down steeply enough to tell a rim from a
@@ -75,8 +73,6 @@ tuning! {
         min_ground_m: f32 = 0.2, 0.05..=0.5, "m";
         /// Distance from the laser at which the ground under the robot stands for K.
         robot_ground_m: f32 = 0.1, 0.0..=0.5, "m";
-        /// Least slope between a beam and the robot's plane for the beam to meet the ground.
-        min_closing: f32 = 0.1, 0.02..=0.5, "1";
         /// Reach of heights of low confidence over the reach of measured heights.
         low_confidence_reach: f32 = 2.0, 1.0..=4.0, "1";
         /// Cells from one sample of the kernel to the next, along both axes.
@@ -87,8 +83,6 @@ tuning! {
         /// Distance from the robot along an axis within which unmeasured ground stays unmeasured.
         /// The steep beams meet level ground farther off (1.39 m), and would have met a slope.
         near_cells: i32 = 9, 3..=20, "cells";
-        /// Error of a mean height of low confidence.
-        low_confidence_tolerance_m: f32 = 0.10, 0.02..=0.3, "m";
         /// Share of the climb that a slope may have if a noisy attitude measured it: across a gap,
         /// and on the way to a height of low confidence.
         noisy_climb_share: f32 = 0.75, 0.2..=2.0, "1";
@@ -118,16 +112,12 @@ tuning! {
 
         /// Greatest width of a doorway.
         max_doorway_m: f32 = 2.0, 1.0..=5.0, "m";
-        /// Least width of a doorway: a narrower gap shows too little.
-        min_doorway_m: f32 = 0.6, 0.2..=1.5, "m";
         /// Difference of range between a jamb and the next beam; the jamb is nearer.
         jamb_step_mm: u16 = 100, 20..=500, "mm";
         /// Range below which a beam's end can be a jamb: inside the elevation window.
         max_jamb_mm: u16 = 3_000, 1_000..=6_000, "mm";
         /// Least depth behind the threshold of every beam's end.
         min_recess_m: f32 = 0.08, 0.0..=0.3, "m";
-        /// Least depth behind the threshold of the deepest end: a shallower space is a niche.
-        min_room_depth_m: f32 = 1.0, 0.2..=5.0, "m";
         /// Greatest slope of the robot along x and y that shows a doorway: 2.9°.
         max_doorway_tilt: f32 = 0.05, 0.01..=0.2, "1";
         /// Distance between the ends of neighbouring beams on one wall.

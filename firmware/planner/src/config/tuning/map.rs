@@ -9,8 +9,6 @@ tuning! {
         /// Radius around the robot's centre in which it stands: the ground carries the wheels
         /// there, and no cell is unknown.
         stand_radius_m: f32 = 0.25, 0.1..=0.5, "m";
-        /// A person carried the robot if it moved more cells than this between two observations.
-        max_step_cells: i32 = 10, 2..=50, "cells";
         /// Least height of an obstacle above the robot's ground for the tilted laser on flat
         /// ground. It exceeds the ground clearance of a Pioneer 3-AT, and three sigma of an
         /// attitude error of 1° at the tilted beam's reach.
@@ -43,7 +41,8 @@ tuning! {
         /// leg backwards. Cells count up to 1.5 m.
         reach_behind_m: f32 = 0.8, 0.4..=1.6, "m";
         /// A return nearer than this to an obstacle point is a return of it: a little over two
-        /// sigma of a range. The mean rounds a sharp corner by a third of this.
+        /// sigma of a range. The mean rounds a sharp corner by a third of this. A point farther
+        /// than this inside the robot's rectangle is false.
         same_point_m: f32 = 0.025, 0.005..=0.1, "m";
         /// Greatest number of returns in an obstacle point's mean; later returns weigh as much as
         /// the last of these.
@@ -51,16 +50,10 @@ tuning! {
         /// A beam that ends this far behind an obstacle point passed through its place: five sigma
         /// of a range.
         through_m: f32 = 0.05, 0.01..=0.2, "m";
-        /// An obstacle point this far inside the robot's rectangle is false, because the robot
-        /// stands there.
-        inside_m: f32 = 0.01, 0.0..=0.05, "m";
 
         /// Rows of the elevation window this near to the robot are classified in every step, others
         /// in every second step. It is more than the robot's stopping distance.
         near_rows: i32 = 12, 4..=32, "cells";
-        /// Phases of the beams through a doorway to a known wall: a step evaluates one phase, every
-        /// fifth beam.
-        beam_phases: usize = 5, 1..=20, "1";
         /// Number of doorway cells after which a step starts no further beam; the rest waits for
         /// the next step. A whole room at once takes too long for a step.
         max_doorway_cells: u32 = 5_000, 500..=20_000, "cells";
