@@ -84,14 +84,13 @@ pub const ROOMS: [Room; 5] = [
     Room {
         name: "ground",
         runs: &[
-            run("kerbs", 0, FRONTIER, Uneven, Ranges),
-            run("causeway", 1, FRONTIER, Uneven, Odometry),
-            run("kerbs", 1, FRONTIER, Uneven, Attitude),
-            run("cliff", 0, FRONTIER, Uneven, Ranges),
+            run("building", 0, FRONTIER, Uneven, Ranges),
             run("slope", 0, FRONTIER, Uneven, Attitude),
             run("holes", 0, FRONTIER, Uneven, Ranges),
+            run("kerbs", 0, FRONTIER, Uneven, Ranges),
+            run("kerbs", 1, FRONTIER, Uneven, Attitude),
+            run("cliff", 0, FRONTIER, Uneven, Ranges),
             run("causeway", 0, FRONTIER, Uneven, Attitude),
-            run("building", 0, FRONTIER, Uneven, Ranges),
         ],
         closes_loops: false,
     },
