@@ -116,6 +116,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     output
 }
 
+/// Runs one step, but for the note of what the robot is told.
 fn explore<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,

@@ -7,14 +7,14 @@
 use fieldline_protocol::message::LoopLimits;
 use fieldline_tests::digests::Digest;
 use fieldline_tests::loops::OUROBOROS;
-use fieldline_tests::runs::{explored, in_parallel, mean};
+use fieldline_tests::runs::mean;
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::{golden, worlds};
 use fixed::types::I16F16;
-use host_sim::link::direct::Direct;
 use host_sim::report::{LoopClosing, Report};
 use host_sim::trial::mission::Mission;
-use host_sim::world::World;
+
+use crate::sweep;
 
 /// No limit: a loop of any length is worth closing, however far the robot drives for it.
 const NONE: LoopLimits = LoopLimits {
@@ -45,20 +45,6 @@ const COLUMNS: [&str; 14] = [
 /// Those of them on the page: `closed` and later ones are the device's own account.
 const ON_PAGE: [usize; 9] = [0, 1, 3, 4, 5, 8, 9, 10, 11];
 
-/// Explores from every start.
-fn sweep(world: &World, loops: LoopLimits) -> Vec<Report> {
-    let starts: Vec<usize> = (0..world.starts().len()).collect();
-    in_parallel(&starts, |&start| {
-        let mission = Mission {
-            strategy: OUROBOROS.into(),
-            loops,
-            start,
-            ..Mission::default()
-        };
-        explored(&mission, world, &mut Direct::new()).0
-    })
-}
-
 /// Compares all starts of the worlds, with and without limits, with golden table `name`.
 pub(crate) fn check_every_start(name: &str) {
     let mut table = Table::new(2, &COLUMNS);
@@ -66,7 +52,12 @@ pub(crate) fn check_every_start(name: &str) {
     let mut digests = Vec::new();
     for world in worlds::builtins(&worlds::PUBLISHED) {
         for (limits, text) in [(LoopLimits::default(), "default"), (NONE, "none")] {
-            let reports = sweep(&world, limits);
+            let mission = Mission {
+                strategy: OUROBOROS.into(),
+                loops: limits,
+                ..Mission::default()
+            };
+            let reports = sweep::sweep(&world, &mission);
             let row = row(&reports, text);
             page += &page_row(&row);
             table.row(row);
@@ -87,34 +78,19 @@ fn page_row(cells: &[impl AsRef<str>]) -> String {
     format!("| {} |\n", cells.join(" | "))
 }
 
+/// Returns the row of these runs; the device's own account stands before the last two columns.
 fn row(reports: &[Report], limits: &str) -> Vec<String> {
-    let sum = |of: fn(&Report) -> u32| reports.iter().map(of).sum::<u32>();
     let all: Vec<&Report> = reports.iter().collect();
-    let times = || reports.iter().map(|report| report.sim_time_s);
-    let known = reports
-        .iter()
-        .map(|report| 100.0 * report.coverage.fraction);
-    let explored = reports.iter().filter(|report| report.explored());
     let closing =
         |of: fn(&LoopClosing) -> f64| number(mean(&all, |it| it.loop_closing.as_ref().map(of)), 1);
-    vec![
-        reports[0].world.clone(),
-        limits.into(),
-        reports.len().to_string(),
-        explored.count().to_string(),
-        format!(
-            "{}/{}",
-            sum(|it| it.loops.circled),
-            sum(|it| it.loops.islands)
-        ),
-        number(mean(&all, |it| Some(it.sim_time_s)), 1),
-        number(times().reduce(f64::min), 1),
-        number(times().reduce(f64::max), 1),
-        number(mean(&all, |it| Some(it.path_length_m)), 1),
+    let mut row: Vec<String> = vec![reports[0].world.clone(), limits.into()];
+    row.extend(sweep::row(reports));
+    let account = [
         closing(|it| f64::from(it.closed)),
         closing(|it| it.given_up.len() as f64),
         closing(|it| it.wasted_s),
-        number(known.reduce(f64::min), 2),
-        sum(|it| it.safety.collisions).to_string(),
-    ]
+    ];
+    let last = row.len() - 2;
+    row.splice(last..last, account);
+    row
 }

@@ -8,4 +8,5 @@ mod limits;
 mod overlay;
 mod patrol;
 mod sides;
+mod sweep;
 mod uneven;

@@ -137,7 +137,7 @@ impl Hull {
 }
 
 /// Returns `from` moved towards `to` by at most `most`.
-fn towards(from: f32, to: f32, most: f32) -> f32 {
+pub(super) fn towards(from: f32, to: f32, most: f32) -> f32 {
     from + (to - from).clamp(-most, most)
 }
 

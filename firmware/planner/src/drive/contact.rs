@@ -11,6 +11,7 @@
 //! Units: metres, metres per second, radians per second; robot frame, x forward.
 
 use crate::config::Config;
+use crate::drive::collision::towards;
 use crate::geometry::{Point, Twist};
 use crate::robot::RobotShape;
 
@@ -87,8 +88,7 @@ impl ContactSense {
     /// if it was told to stand.
     fn leading(&self, config: &Config, measured: Twist) -> Option<(Contact, bool)> {
         let is_held = |told: f32, [before, now]: [f32; 2], accel: f32| {
-            let most = accel * config.period_s;
-            let due = (before + (told - before).clamp(-most, most)) * told.signum();
+            let due = towards(before, told, accel * config.period_s) * told.signum();
             due > 0.0 && now * told.signum() < HELD_PART * due
         };
         let (v, w) = (self.told.linear_mps, self.told.angular_radps);

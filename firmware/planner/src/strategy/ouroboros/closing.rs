@@ -17,6 +17,9 @@ use crate::strategy::ouroboros::loop_road::{LoopRoad, back_to_shield, build_shie
 use crate::strategy::ouroboros::tractor::{self, Fate};
 use crate::strategy::ouroboros::{Ouroboros, Shield, Stage};
 
+/// Maximum number of centre cells on a shield that are looked at.
+const MOST_CUT: usize = 9;
+
 impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// Runs lines 3 to 18: tractor point, loop road and shield.
     pub(super) fn look<const TILES: usize>(
@@ -234,6 +237,3 @@ pub(super) fn spread_ahead_of<const TILES: usize, const SLOTS: usize>(
     let behind = behind.filter_map(|cell| frame.site(cell));
     round.propagate(from, surroundings(robot).chain(behind), None, scratch)
 }
-
-/// Maximum number of centre cells on a shield that are looked at.
-const MOST_CUT: usize = 9;
