@@ -243,9 +243,12 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
             frame.origin.x + across as i32 * 32,
             frame.origin.y + up as i32 * 32,
         );
-        // A tile that was never touched is unexplored.
-        let mut rows = [[0, u16::MAX]; 16];
-        let seen = tiles.is_touched(corner.0 >> 5, corner.1 >> 5);
+        let (tile_x, tile_y) = (corner.0 >> 5, corner.1 >> 5);
+        let seen = tiles.is_touched(tile_x, tile_y);
+        // A tile that was never touched is unexplored. One that the map has no room for stays so:
+        // its border is no frontier.
+        let has_room = tiles.room(tile_x, tile_y).is_ok();
+        let mut rows = [[0, if has_room { u16::MAX } else { 0 }]; 16];
         if seen {
             let mut lower = Strip::default();
             for_each_strip(tiles, disc, corner, 32, |y, strip| {

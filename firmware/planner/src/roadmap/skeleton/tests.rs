@@ -143,6 +143,30 @@ fn an_unexplored_corner_beside_a_wide_way_is_a_frontier() {
     assert_eq!(counts, [5, 5]);
 }
 
+/// Returns the frontier cells of a free tile beside which nothing was measured. The map has this
+/// many tiles.
+fn frontier_of_a_free_tile<const TILES: usize>() -> usize {
+    let mut tiles = Tiles::<TILES, 24>::new();
+    tiles.reset(6, 4);
+    for k in 0..32 * 32 {
+        let cell = Cell {
+            x: k % 32,
+            y: k / 32,
+        };
+        tiles.set(cell, Class::Free).unwrap();
+    }
+    let mut skeleton = Skeleton::<24>::new();
+    skeleton.reset(Space::KnownFree);
+    while !skeleton.advance(&tiles, &Footprint::new(0.05), 10_000) {}
+    skeleton.frontier().unwrap().count()
+}
+
+#[test]
+fn what_the_map_has_no_room_for_is_no_frontier() {
+    assert!(frontier_of_a_free_tile::<2>() > 0, "a tile is left");
+    assert_eq!(frontier_of_a_free_tile::<1>(), 0, "the pool is full");
+}
+
 #[test]
 fn a_round_in_instalments_is_the_round_in_one() {
     let tiles = scene(RING);
