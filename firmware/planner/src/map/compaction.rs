@@ -9,7 +9,8 @@
 //! Uneven ground shares the pool with the marks of its window. Open ground of 50 × 50 m then has
 //! twice as many tiles as there are pages. So when pages run short, the map *compacts* every tile
 //! away from the robot, and *expands* it before the robot's window reaches it. A compact tile reads
-//! as before. It cannot be written, except that a free tile accepts free cells.
+//! as before, without the robot's trail. It cannot be written, except that a free tile accepts free
+//! cells.
 //!
 //! Spare pages and spare halves are two lists: the first word of an element is the number of the
 //! next one, plus 1. Two spare halves of the same page become a spare page.
@@ -287,9 +288,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         } else {
             kept
         };
-        if let Some(cells) = inside_mut(&mut self.pool, page) {
-            *cells = [low, ZEROS];
-        }
+        self.fill_page(page, [low, ZEROS]);
         side_table.restore_page(page, kept);
         self.free.compact -= 1;
         self.enter(slot, Entry::Page(page));
@@ -396,6 +395,20 @@ mod tests {
         tiles.compact(FAR, 64, &mut ());
         let standing = cells(3).filter(|&cell| tiles.class(cell) != Class::Free);
         assert_eq!(standing.collect::<Vec<_>>(), [wall]);
+    }
+
+    #[test]
+    fn a_tile_that_was_compact_has_no_trail() {
+        let mut tiles = small();
+        free(&mut tiles, 3).unwrap();
+        tiles.mark_visited(corner(3));
+        let trail = |tiles: &Small| tiles.row(corner(3).x, corner(3).y).visited();
+        assert_eq!(trail(&tiles), 0b11);
+        (4..30).for_each(|tile| free(&mut tiles, tile).unwrap());
+        tiles.compact(FAR, 64, &mut ());
+        assert_eq!((tiles.used(), trail(&tiles)), (0, 0));
+        tiles.compact(corner(3), 8, &mut ());
+        assert_eq!((tiles.used() > 0, trail(&tiles)), (true, 0));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::grid::Row;
 use crate::grid::bits::twice;
 use crate::grid::masked;
 use crate::map::compaction::ZEROS;
-use crate::map::tiles::{Plane, TILE_ROWS, Tiles, Visited};
+use crate::map::tiles::{NO_TRAIL, Plane, Tiles, Visited};
 
 /// Columns of the halo to the left of a [`Line`].
 pub(crate) const HALO: i32 = 16;
@@ -45,7 +45,7 @@ impl Column<'_> {
     const EMPTY: Self = Self {
         low: &ZEROS,
         high: &ZEROS,
-        visited: &[0; TILE_ROWS / 2],
+        visited: &NO_TRAIL,
     };
 
     /// Returns the low and the high bits of a row.

@@ -6,7 +6,8 @@
 //! little content takes less than a page (`compaction`).
 //!
 //! The *trail* has one bit for 2 × 2 cells: the robot's centre was there. Noise may close a passage
-//! as narrow as the robot behind it. The trail keeps the passage open.
+//! as narrow as the robot behind it. The trail keeps the passage open. It is kept with the page, so
+//! a tile that is compacted forgets it: nothing stands there.
 //!
 //! Invariant: `extent` covers every tile in use and fits the box, so no two tiles share a slot.
 //! Units: cells of [`crate::geometry::CELL_M`].
@@ -22,6 +23,8 @@ pub(super) use crate::map::tile::{Cells, Plane, TileMut};
 pub const TILE_SIDE: i32 = 32;
 pub(super) const TILE_ROWS: usize = TILE_SIDE as usize;
 pub(super) type Visited = [u16; TILE_ROWS / 2];
+/// The trail in a tile without any.
+pub(super) static NO_TRAIL: Visited = [0; TILE_ROWS / 2];
 
 /// The tile pool and its directory: `TILES` pages, `SLOTS` slots.
 #[derive(Debug)]
@@ -29,8 +32,8 @@ pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     pub(super) pool: [Cells; TILES],
     /// An [`Entry`] for the tile of each slot.
     pub(super) directory: [u16; SLOTS],
-    /// The trail in the tile of each slot: 16 rows of 16 blocks of 2 × 2 cells.
-    visited: [Visited; SLOTS],
+    /// The trail in the tile of each page: 16 rows of 16 blocks of 2 × 2 cells.
+    pub(super) trail: [Visited; TILES],
     pub(super) free: FreeList,
     /// Pages at the pool's end that are lent to the elevation window.
     lent: u16,
@@ -47,7 +50,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         Self {
             pool: [[ZEROS; 2]; TILES],
             directory: [0; SLOTS],
-            visited: [[0; TILE_SIDE as usize / 2]; SLOTS],
+            trail: [NO_TRAIL; TILES],
             free: FreeList::EMPTY,
             lent: 0,
             slots: TileBox::EMPTY,
@@ -71,7 +74,6 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// [`fit`](Self::fits) has no slots.
     pub fn reset(&mut self, width: u8, height: u8) {
         self.directory.fill(0);
-        self.visited.as_flattened_mut().fill(0);
         self.free = FreeList::EMPTY;
         self.lent = 0;
         self.slots = if Self::fits(width, height) {
@@ -227,11 +229,20 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             Entry::Page(page) => Ok(page),
             Entry::Untouched if self.has_page() => {
                 let page = self.take_page()?;
-                *inside_mut(&mut self.pool, page).ok_or(NoRoom::Pool)? = [ZEROS; 2];
+                self.fill_page(page, [ZEROS; 2]);
                 self.enter(slot, Entry::Page(page));
                 Ok(page)
             }
             _ => Err(NoRoom::Pool),
+        }
+    }
+
+    /// Gives a page its first cells; it has no trail.
+    pub(super) fn fill_page(&mut self, page: usize, cells: Cells) {
+        if let Some((old, trail)) =
+            inside_mut(&mut self.pool, page).zip(inside_mut(&mut self.trail, page))
+        {
+            (*old, *trail) = (cells, NO_TRAIL);
         }
     }
 
@@ -264,11 +275,10 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
 
     /// Marks a cell of the trail: the robot's centre was there.
     pub(crate) fn mark_visited(&mut self, cell: Cell) {
-        if !self.in_extent(cell.x >> 5, cell.y >> 5) {
+        let Entry::Page(page) = self.entry(cell.x >> 5, cell.y >> 5) else {
             return;
-        }
-        let slot = self.slot(cell.x >> 5, cell.y >> 5);
-        if let Some(rows) = inside_mut(&mut self.visited, slot) {
+        };
+        if let Some(rows) = inside_mut(&mut self.trail, page) {
             *masked_mut(rows, (cell.y & 31) as usize / 2) |= 1 << ((cell.x & 31) / 2);
         }
     }
@@ -285,16 +295,13 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
 
     /// Returns the planes and the trail of a tile; `None` if it is untouched.
     pub(super) fn column(&self, tile_x: i32, tile_y: i32) -> Option<Column<'_>> {
-        if !self.in_extent(tile_x, tile_y) {
-            return None;
-        }
-        let slot = self.slot(tile_x, tile_y);
-        let [low, high] = self.planes(self.entry_in(slot))?;
-        Some(Column {
-            low,
-            high,
-            visited: inside(&self.visited, slot)?,
-        })
+        let entry = self.entry(tile_x, tile_y);
+        let [low, high] = self.planes(entry)?;
+        let visited = match entry {
+            Entry::Page(page) => inside(&self.trail, page)?,
+            _ => &NO_TRAIL,
+        };
+        Some(Column { low, high, visited })
     }
 
     /// Opens a tile to read and write its cells; takes a page on first touch.
