@@ -25,15 +25,18 @@ mod index;
 mod rolling;
 mod shape;
 mod sites;
-mod tile_box;
+mod tile_key;
+mod tile_map;
 
 pub(crate) use index::{at, inside, inside_mut, masked, masked_mut, triple, wrapped, wrapped_mut};
 pub(crate) use rolling::Rolling;
-pub(crate) use tile_box::TileBox;
+pub(crate) use tile_key::find;
+pub(crate) use tile_map::TileMap;
 
 pub use class::{Class, Row};
 pub use shape::{MAX_ROWS, MAX_WORDS_PER_ROW, Shape, ShapeError};
 pub use sites::{Site, Sites};
+pub use tile_key::TileKey;
 
 /// A bit plane, read only.
 #[derive(Clone, Copy, Debug)]

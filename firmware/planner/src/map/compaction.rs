@@ -215,28 +215,34 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// compacts all others.
     pub(super) fn compact(&mut self, window: Cell, side: i32, side_table: &mut impl SideTable) {
         let is_short = self.free_pages() < LOW_PAGES;
-        let Some(extent) = self.extent().filter(|_| is_short || self.free.compact > 0) else {
+        if !is_short && self.free.compact == 0 {
             return;
-        };
+        }
         let is_near = |tile: i32, from: i32| {
             let least = tile * TILE_SIDE;
             least + TILE_SIDE > from - EXPAND_MARGIN && least < from + side + EXPAND_MARGIN
         };
-        for y in extent.least.1..=extent.greatest.1 {
-            for x in extent.least.0..=extent.greatest.0 {
-                let slot = self.slot(x, y);
-                if is_near(x, window.x) && is_near(y, window.y) {
-                    // Without room the tile stays compact until the next call.
-                    let _ = self.expand_tile(slot, side_table);
-                } else if is_short {
-                    self.compact_tile(slot, side_table);
-                }
+        for place in 0..self.directory.keys().len() {
+            let Some((x, y)) = self.tile_at(place) else {
+                continue;
+            };
+            if is_near(x, window.x) && is_near(y, window.y) {
+                // Without room the tile stays compact until the next call.
+                let _ = self.expand_tile(place, side_table);
+            } else if is_short {
+                self.compact_tile(place, side_table);
             }
         }
     }
 
-    fn compact_tile(&mut self, slot: usize, side_table: &mut impl SideTable) {
-        let Entry::Page(page) = self.entry_in(slot) else {
+    /// Returns the column and the row of the tile at a place of the directory.
+    fn tile_at(&self, place: usize) -> Option<(i32, i32)> {
+        let &key = inside(self.directory.keys(), place)?;
+        Some(self.directory.tile(key))
+    }
+
+    fn compact_tile(&mut self, place: usize, side_table: &mut impl SideTable) {
+        let Entry::Page(page) = self.entry_at(place) else {
             return;
         };
         let Some(&[low, high]) = inside(&self.pool, page) else {
@@ -255,7 +261,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             Entry::Half(half)
         };
         self.free.compact += 1;
-        self.enter(slot, entry);
+        self.enter(place, entry);
     }
 
     /// Moves the low plane of a page to a spare half, or leaves it in place if there is none. The
@@ -274,8 +280,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         half
     }
 
-    fn expand_tile(&mut self, slot: usize, side_table: &mut impl SideTable) -> Result<(), NoRoom> {
-        let entry = self.entry_in(slot);
+    fn expand_tile(&mut self, place: usize, side_table: &mut impl SideTable) -> Result<(), NoRoom> {
+        let entry = self.entry_at(place);
         let (low, kept) = match entry {
             Entry::Untouched | Entry::Page(_) => return Ok(()),
             Entry::AllFree(kept) => (ONES, kept),
@@ -291,7 +297,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.fill_page(page, [low, ZEROS]);
         side_table.restore_page(page, kept);
         self.free.compact -= 1;
-        self.enter(slot, Entry::Page(page));
+        self.enter(place, Entry::Page(page));
         Ok(())
     }
 }

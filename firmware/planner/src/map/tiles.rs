@@ -1,19 +1,18 @@
 //! The tile pool: two bits per cell in pages of 32 × 32 cells. A tile takes a page when its first
 //! cell is stored.
 //!
-//! The directory has a slot for every tile of a box with toroidal addresses (`TileBox`), so the
-//! map may start anywhere; only the *extent* of the stored tiles has to fit the box. A tile with
+//! The directory lists the tiles that were touched, so the map may start anywhere. A tile with
 //! little content takes less than a page (`compaction`).
 //!
 //! The *trail* has one bit for 2 × 2 cells: the robot's centre was there. Noise may close a passage
 //! as narrow as the robot behind it. The trail keeps the passage open. It is kept with the page, so
 //! a tile that is compacted forgets it: nothing stands there.
 //!
-//! Invariant: `extent` covers every tile in use and fits the box, so no two tiles share a slot.
+//! Invariant: `extent` covers every tile in use and fits the box.
 //! Units: cells of [`crate::geometry::CELL_M`].
 
 use crate::geometry::Cell;
-use crate::grid::{Class, Row, TileBox, inside, inside_mut, masked, masked_mut};
+use crate::grid::{Class, Row, TileMap, inside, inside_mut, masked, masked_mut};
 use crate::map::compaction::{Entry, FreeList, ONES, ZEROS};
 pub use crate::map::extent::{Extent, NoRoom};
 use crate::map::rows::{Column, RowReader};
@@ -26,18 +25,19 @@ pub(super) type Visited = [u16; TILE_ROWS / 2];
 /// The trail in a tile without any.
 pub(super) static NO_TRAIL: Visited = [0; TILE_ROWS / 2];
 
-/// The tile pool and its directory: `TILES` pages, `SLOTS` slots.
+/// The tile pool and its directory: `TILES` pages, `SLOTS` tiles.
 #[derive(Debug)]
 pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     pub(super) pool: [Cells; TILES],
-    /// An [`Entry`] for the tile of each slot.
-    pub(super) directory: [u16; SLOTS],
+    /// An [`Entry`] for every tile that was touched.
+    pub(super) directory: TileMap<u16, SLOTS>,
     /// The trail in the tile of each page: 16 rows of 16 blocks of 2 × 2 cells.
     pub(super) trail: [Visited; TILES],
     pub(super) free: FreeList,
     /// Pages at the pool's end that are lent to the elevation window.
     lent: u16,
-    slots: TileBox,
+    /// Width and height of the box.
+    sides: (i32, i32),
     extent: Option<Extent>,
     /// Number of changes of any cell; wraps.
     edits: u32,
@@ -49,11 +49,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     pub const fn new() -> Self {
         Self {
             pool: [[ZEROS; 2]; TILES],
-            directory: [0; SLOTS],
+            directory: TileMap::new(0),
             trail: [NO_TRAIL; TILES],
             free: FreeList::EMPTY,
             lent: 0,
-            slots: TileBox::EMPTY,
+            sides: (0, 0),
             extent: None,
             edits: 0,
         }
@@ -73,16 +73,13 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Clears the map; the box becomes `width` × `height` tiles. A box that does not
     /// [`fit`](Self::fits) has no slots.
     pub fn reset(&mut self, width: u8, height: u8) {
-        self.directory.fill(0);
+        self.directory.clear();
         self.free = FreeList::EMPTY;
         self.lent = 0;
-        self.slots = if Self::fits(width, height) {
-            TileBox {
-                width: width.into(),
-                height: height.into(),
-            }
+        self.sides = if Self::fits(width, height) {
+            (width.into(), height.into())
         } else {
-            TileBox::EMPTY
+            (0, 0)
         };
         self.extent = None;
         self.edits = self.edits.wrapping_add(1);
@@ -123,7 +120,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Returns the width and the height of the box, tiles.
     #[must_use]
     pub const fn box_tiles(&self) -> (i32, i32) {
-        (self.slots.width, self.slots.height)
+        self.sides
     }
 
     /// Returns true if a cell was ever stored in this tile.
@@ -143,34 +140,20 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.edits
     }
 
-    pub(super) fn slot(&self, tile_x: i32, tile_y: i32) -> usize {
-        self.slots.slot(tile_x, tile_y)
-    }
-
-    fn in_extent(&self, tile_x: i32, tile_y: i32) -> bool {
-        self.extent.is_some_and(|e| {
-            tile_x >= e.least.0
-                && tile_x <= e.greatest.0
-                && tile_y >= e.least.1
-                && tile_y <= e.greatest.1
-        })
-    }
-
     /// Returns the directory's entry of a tile.
     pub(crate) fn entry(&self, tile_x: i32, tile_y: i32) -> Entry {
-        if !self.in_extent(tile_x, tile_y) {
-            return Entry::Untouched;
-        }
-        self.entry_in(self.slot(tile_x, tile_y))
+        let word = self.directory.get((tile_x, tile_y));
+        word.map_or(Entry::Untouched, |&word| Entry::of(word))
     }
 
-    /// Returns the directory's entry in a slot.
-    pub(super) fn entry_in(&self, slot: usize) -> Entry {
-        inside(&self.directory, slot).map_or(Entry::Untouched, |&word| Entry::of(word))
+    /// Returns the directory's entry at a place.
+    pub(super) fn entry_at(&self, place: usize) -> Entry {
+        let word = self.directory.value(place);
+        word.map_or(Entry::Untouched, |&word| Entry::of(word))
     }
 
-    pub(super) fn enter(&mut self, slot: usize, entry: Entry) {
-        if let Some(word) = inside_mut(&mut self.directory, slot) {
+    pub(super) fn enter(&mut self, place: usize, entry: Entry) {
+        if let Some(word) = self.directory.value_mut(place) {
             *word = entry.word();
         }
     }
@@ -194,9 +177,9 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
                 greatest: (tile_x, tile_y),
             },
         };
-        if grown.width() > self.slots.width || grown.height() > self.slots.height {
+        if grown.width() > self.sides.0 || grown.height() > self.sides.1 {
             Err(NoRoom::Box)
-        } else if !self.has_page() {
+        } else if !self.has_page() || self.directory.is_full() {
             Err(NoRoom::Pool)
         } else {
             Ok(grown)
@@ -209,32 +192,30 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// [`NoRoom`] if the box or the pool cannot hold it.
     pub(crate) fn room(&self, tile_x: i32, tile_y: i32) -> Result<(), NoRoom> {
         if self.is_touched(tile_x, tile_y) {
-            Ok(())
-        } else if !self.in_extent(tile_x, tile_y) {
-            self.grown(tile_x, tile_y).map(|_| ())
-        } else if !self.has_page() {
-            Err(NoRoom::Pool)
-        } else {
-            Ok(())
+            return Ok(());
         }
+        self.grown(tile_x, tile_y).map(|_| ())
     }
 
     /// Returns the page of a tile; takes a fresh one on first touch. A compact tile has no page.
     fn touch(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
-        if !self.in_extent(tile_x, tile_y) {
-            self.extent = Some(self.grown(tile_x, tile_y)?);
-        }
-        let slot = self.slot(tile_x, tile_y);
-        match self.entry_in(slot) {
+        match self.entry(tile_x, tile_y) {
             Entry::Page(page) => Ok(page),
-            Entry::Untouched if self.has_page() => {
-                let page = self.take_page()?;
-                self.fill_page(page, [ZEROS; 2]);
-                self.enter(slot, Entry::Page(page));
-                Ok(page)
-            }
+            Entry::Untouched => self.add(tile_x, tile_y),
             _ => Err(NoRoom::Pool),
         }
+    }
+
+    /// Gives an untouched tile a fresh page.
+    fn add(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
+        let extent = self.grown(tile_x, tile_y)?;
+        let page = self.take_page()?;
+        self.directory
+            .get_or_add((tile_x, tile_y), Entry::Page(page).word())
+            .ok_or(NoRoom::Box)?;
+        self.fill_page(page, [ZEROS; 2]);
+        self.extent = Some(extent);
+        Ok(page)
     }
 
     /// Gives a page its first cells; it has no trail.

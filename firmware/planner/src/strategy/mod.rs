@@ -62,18 +62,15 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     /// Forgets everything and begins the strategy of `config`.
     pub(crate) fn reset(&mut self, config: &Config) {
         self.frontier.reset();
-        let (width, height) = config.box_tiles;
-        let box_tiles = (i32::from(width), i32::from(height));
         self.loops = match config.strategy {
             Strategy::Frontier => Loops::None,
-            Strategy::Ouroboros => Loops::Ouroboros(Ouroboros::new(box_tiles)),
+            Strategy::Ouroboros => Loops::Ouroboros(Ouroboros::new()),
             Strategy::Tdbvp {
                 patrol_s,
                 impatience_s,
             } => {
                 let tuning = &config.tuning.tdbvp;
                 Loops::Tdbvp(Tdbvp::new(
-                    box_tiles,
                     config.period_ms(),
                     patrol_s,
                     impatience_s,

@@ -12,21 +12,19 @@
 //!
 //! Pending regions become closed at the end of the loop, or are dropped when the loop turns out to
 //! be none. A closed region keeps its state. The strategy treats both kinds of closed regions
-//! alike. Slots are addressed as the map's are, so the regions need no skeleton and outlast a map
-//! that is replaced under them.
+//! alike. The regions need no skeleton and outlast a map that is replaced under them.
 //!
 //! Departs from \[Jorge15, III-A\], which marks only loops that were closed: loops that were given
 //! up and places of a finished revisit become closed regions too, or the robot would begin the same
 //! loop again.
 //!
-//! Invariant: what is known fits the box, so its tiles have slots of their own. A region in a tile
-//! beyond may share the slot of one on the box's other side. The error is safe: there is no tractor
-//! point where one might have been.
+//! A loop road through the unexplored has pending regions in tiles that the map does not hold. If
+//! there is no place for the tile of a region, the region stays open.
 //!
 //! Units: map cells.
 
 use crate::geometry::Cell;
-use crate::grid::TileBox;
+use crate::grid::TileMap;
 
 /// Side of a region as a power of two, cells.
 const REGION_SHIFT: i32 = 3;
@@ -44,21 +42,17 @@ pub(crate) enum Closed {
     GivenUp,
 }
 
-/// Closed and pending regions in a box of tiles: 4 bytes for each of its `SLOTS` places.
+/// Closed and pending regions of up to `SLOTS` tiles: the words `over` and `other` of each.
 #[derive(Debug)]
 pub(crate) struct ClosedRegions<const SLOTS: usize> {
-    over: [u16; SLOTS],
-    other: [u16; SLOTS],
-    slots: TileBox,
+    tiles: TileMap<[u16; 2], SLOTS>,
 }
 
 impl<const SLOTS: usize> ClosedRegions<SLOTS> {
-    /// No region is closed, in a box of (width, height) tiles.
-    pub(crate) const fn new((width, height): (i32, i32)) -> Self {
+    /// No region is closed.
+    pub(crate) const fn new() -> Self {
         Self {
-            over: [0; SLOTS],
-            other: [0; SLOTS],
-            slots: TileBox { width, height },
+            tiles: TileMap::new([0; 2]),
         }
     }
 
@@ -71,14 +65,12 @@ impl<const SLOTS: usize> ClosedRegions<SLOTS> {
     /// Returns why the region of a map cell is closed; `None` if it is open or pending.
     #[must_use]
     pub(crate) fn closed(&self, cell: Cell) -> Option<Closed> {
-        let (slot, bit) = self.place(cell.x >> REGION_SHIFT, cell.y >> REGION_SHIFT);
-        self.over.get(slot).filter(|tile| **tile & bit != 0)?;
-        let is_other = self.other.get(slot).is_some_and(|tile| tile & bit != 0);
-        Some(if is_other {
-            Closed::GivenUp
-        } else {
-            Closed::Loop
-        })
+        let (tile, bit) = place(cell.x >> REGION_SHIFT, cell.y >> REGION_SHIFT);
+        match self.tiles.get(tile)?.map(|word| word & bit != 0) {
+            [false, _] => None,
+            [true, false] => Some(Closed::Loop),
+            [true, true] => Some(Closed::GivenUp),
+        }
     }
 
     /// Makes the open regions within `near_cells` of a cell of the loop's path pending, along
@@ -87,9 +79,9 @@ impl<const SLOTS: usize> ClosedRegions<SLOTS> {
         let span = |at: i32| (at - near_cells) >> REGION_SHIFT..=(at + near_cells) >> REGION_SHIFT;
         for y in span(cell.y) {
             for x in span(cell.x) {
-                let (slot, bit) = self.place(x, y);
-                if let Some((over, other)) = self.over.get(slot).zip(self.other.get_mut(slot)) {
-                    *other |= bit & !over;
+                let (tile, bit) = place(x, y);
+                if let Some([over, other]) = self.tiles.get_or_add(tile, [0; 2]) {
+                    *other |= bit & !*over;
                 }
             }
         }
@@ -97,7 +89,7 @@ impl<const SLOTS: usize> ClosedRegions<SLOTS> {
 
     /// Closes the pending regions.
     pub(crate) fn close_pending(&mut self, why: Closed) {
-        for (over, other) in self.over.iter_mut().zip(&mut self.other) {
+        for [over, other] in self.tiles.values_mut() {
             let pending = *other & !*over;
             *over |= pending;
             if why == Closed::Loop {
@@ -108,21 +100,21 @@ impl<const SLOTS: usize> ClosedRegions<SLOTS> {
 
     /// Drops the pending regions.
     pub(crate) fn drop_pending(&mut self) {
-        for (over, other) in self.over.iter().zip(&mut self.other) {
-            *other &= over;
+        for [over, other] in self.tiles.values_mut() {
+            *other &= *over;
         }
     }
+}
 
-    /// Returns the slot of a region, by column and row of regions, and its bit there.
-    fn place(&self, x: i32, y: i32) -> (usize, u16) {
-        let slot = self.slots.slot(x >> TILE_SHIFT, y >> TILE_SHIFT);
-        (slot, 1 << ((y & 3) << TILE_SHIFT | (x & 3)))
-    }
+/// Returns the tile of a region, by column and row of regions, and its bit there.
+const fn place(x: i32, y: i32) -> ((i32, i32), u16) {
+    let bit = (y & 3) << TILE_SHIFT | (x & 3);
+    ((x >> TILE_SHIFT, y >> TILE_SHIFT), 1 << bit)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Closed, ClosedRegions};
+    use super::{Closed, ClosedRegions, place};
     use crate::config::OuroborosTuning;
     use crate::geometry::Cell;
 
@@ -130,12 +122,7 @@ mod tests {
 
     #[test]
     fn regions_along_a_path_are_closed_with_its_loop_and_not_before() {
-        let mut regions: ClosedRegions<12> = ClosedRegions::new((0, 0));
-        regions.add_pending(Cell { x: 0, y: 0 }, NEAR_CELLS);
-        regions.close_pending(Closed::Loop);
-        let is_closed = regions.is_closed(Cell { x: 0, y: 0 });
-        assert!(!is_closed, "the box has no area");
-        let mut regions: ClosedRegions<12> = ClosedRegions::new((4, 3));
+        let mut regions: ClosedRegions<12> = ClosedRegions::new();
         for x in -40..20 {
             regions.add_pending(Cell { x, y: -3 }, NEAR_CELLS);
         }
@@ -161,7 +148,7 @@ mod tests {
     #[test]
     fn a_closed_region_tells_why_and_keeps_its_state() {
         let at = |x| Cell { x, y: 0 };
-        let mut regions: ClosedRegions<12> = ClosedRegions::new((4, 3));
+        let mut regions: ClosedRegions<12> = ClosedRegions::new();
         regions.add_pending(at(-40), NEAR_CELLS);
         assert_eq!(regions.closed(at(-40)), None, "pending");
         regions.close_pending(Closed::Loop);
@@ -184,13 +171,27 @@ mod tests {
     }
 
     #[test]
-    fn every_region_of_the_box_has_a_bit_of_its_own() {
-        let regions: ClosedRegions<12> = ClosedRegions::new((4, 3));
-        let places = (0..192).map(|k| regions.place(k % 16 - 8, k / 16 + 100));
+    fn every_region_has_a_bit_of_its_own() {
+        let places = (0..192).map(|k| place(k % 16 - 8, k / 16 + 100));
         let mut places: std::vec::Vec<_> = places.collect();
         places.sort_unstable();
         places.dedup();
         assert_eq!(places.len(), 192);
-        assert!(places.iter().all(|(slot, _)| *slot < 12));
+        places.dedup_by_key(|(tile, _)| *tile);
+        assert_eq!(places.len(), 12);
+    }
+
+    #[test]
+    fn without_a_place_for_its_tile_a_region_stays_open() {
+        let mut regions: ClosedRegions<2> = ClosedRegions::new();
+        let cells = [16, 48, 80].map(|x| Cell { x, y: 16 });
+        for cell in cells {
+            regions.add_pending(cell, 0);
+        }
+        regions.close_pending(Closed::Loop);
+        assert_eq!(
+            cells.map(|cell| regions.is_closed(cell)),
+            [true, true, false]
+        );
     }
 }

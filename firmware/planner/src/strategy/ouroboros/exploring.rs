@@ -63,7 +63,7 @@ impl Exploration {
         tiles.reset(8, 6);
         let mut skeleton = Skeleton::new();
         skeleton.reset(Space::NotObstacle);
-        let strategy = Ouroboros::new(tiles.box_tiles());
+        let strategy = Ouroboros::new();
         let mut robot = (0, 0);
         let mut turned = BTreeMap::new();
         for (y, row) in world.iter().enumerate() {

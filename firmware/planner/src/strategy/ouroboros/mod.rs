@@ -99,13 +99,13 @@ pub(crate) struct Tally {
 }
 
 impl<const SLOTS: usize> Ouroboros<SLOTS> {
-    /// The state at the start [line 1], for a map in a box of (width, height) tiles.
+    /// The state at the start [line 1].
     #[must_use]
-    pub(crate) const fn new(box_tiles: (i32, i32)) -> Self {
+    pub(crate) const fn new() -> Self {
         Self {
             tractor: None,
             shield: None,
-            regions: ClosedRegions::new(box_tiles),
+            regions: ClosedRegions::new(),
             crumbs: Crumbs::new(),
             budget: LoopBudget::NEW,
             revisit: None,

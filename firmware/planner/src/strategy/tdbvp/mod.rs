@@ -73,18 +73,17 @@ pub(crate) struct Tdbvp<const SLOTS: usize> {
 }
 
 impl<const SLOTS: usize> Tdbvp<SLOTS> {
-    /// The state at the start, for a map in a box of (width, height) tiles, steps of `period_ms`, a
-    /// patrol of `patrol_s` seconds, and a path after `impatience_s` seconds without a new place.
+    /// The state at the start, for steps of `period_ms`, a patrol of `patrol_s` seconds, and a path
+    /// after `impatience_s` seconds without a new place.
     #[must_use]
     pub(crate) const fn new(
-        box_tiles: (i32, i32),
         period_ms: u32,
         patrol_s: u16,
         impatience_s: Option<u16>,
         tuning: &TdbvpTuning,
     ) -> Self {
         Self {
-            rails: Rails::new(box_tiles, tuning.first_tick_ms, period_ms),
+            rails: Rails::new(tuning.first_tick_ms, period_ms),
             pending: PendingVisits::new(),
             votes: SideVotes::NEW,
             on_path: false,

@@ -209,7 +209,7 @@ mod tests {
     }
 
     fn rails() -> Rails<16> {
-        Rails::new((4, 4), TdbvpTuning::DEFAULT.first_tick_ms, 200)
+        Rails::new(TdbvpTuning::DEFAULT.first_tick_ms, 200)
     }
 
     /// The robot drives from one centre cell to another, and visits those within `near`.

@@ -16,12 +16,12 @@
 //! keeps its stamp. It counts as equally old as the oldest if centre cells come back.
 //!
 //! Invariants: 0 is not visited; no stamp is later than now; the order of two visits never
-//! reverses. Slots are addressed as the map's are.
+//! reverses.
 //!
 //! Units: map cells; ticks of a growing number of steps.
 
 use crate::geometry::Cell;
-use crate::grid::{TileBox, masked, masked_mut};
+use crate::grid::{TileMap, masked, masked_mut};
 
 /// Side of a place as a power of two, cells.
 const PLACE_SHIFT: i32 = 4;
@@ -33,11 +33,10 @@ const LEAST_ROOM: u8 = u8::MAX / 4;
 /// Potential of a centre cell that was not visited yet.
 pub(super) const UNVISITED: f32 = -0.5;
 
-/// The stamps of a box of tiles: 4 bytes for each of its `SLOTS` places.
+/// The stamps of up to `SLOTS` tiles, 4 bytes each: as many as the map holds.
 #[derive(Debug)]
 pub(crate) struct Rails<const SLOTS: usize> {
-    stamps: [[u8; 4]; SLOTS],
-    slots: TileBox,
+    stamps: TileMap<[u8; 4], SLOTS>,
     now: u8,
     /// The earliest stamp of a centre cell, at most now.
     oldest: u8,
@@ -47,13 +46,11 @@ pub(crate) struct Rails<const SLOTS: usize> {
 }
 
 impl<const SLOTS: usize> Rails<SLOTS> {
-    /// No place is visited, in a box of (width, height) tiles. A tick takes `tick_ms` at first, in
-    /// whole steps of `period_ms`.
-    pub(crate) const fn new((width, height): (i32, i32), tick_ms: u32, period_ms: u32) -> Self {
+    /// No place is visited. A tick takes `tick_ms` at first, in whole steps of `period_ms`.
+    pub(crate) const fn new(tick_ms: u32, period_ms: u32) -> Self {
         let tick_steps = tick_ms.checked_div(period_ms);
         Self {
-            stamps: [[0; 4]; SLOTS],
-            slots: TileBox { width, height },
+            stamps: TileMap::new([0; 4]),
             now: 1,
             oldest: 1,
             tick_steps: match tick_steps {
@@ -81,14 +78,16 @@ impl<const SLOTS: usize> Rails<SLOTS> {
     /// Stamps the place of a centre cell. Returns true if it was never visited before.
     pub(super) fn visit(&mut self, cell: Cell) -> bool {
         let now = self.now;
-        let stamp = self.stamp_mut(cell);
-        stamp.is_some_and(|stamp| core::mem::replace(stamp, now) == 0)
+        let (tile, part) = place(cell);
+        let stamps = self.stamps.get_or_add(tile, [0; 4]);
+        stamps.is_some_and(|stamps| core::mem::replace(masked_mut(stamps, part), now) == 0)
     }
 
     /// Makes the place of a centre cell count as never visited.
     pub(super) fn forget(&mut self, cell: Cell) {
-        if let Some(stamp) = self.stamp_mut(cell) {
-            *stamp = 0;
+        let (tile, part) = place(cell);
+        if let Some(stamps) = self.stamps.get_or_add(tile, [0; 4]) {
+            *masked_mut(stamps, part) = 0;
         }
     }
 
@@ -101,9 +100,9 @@ impl<const SLOTS: usize> Rails<SLOTS> {
     /// two places has the lower stamp.
     #[must_use]
     pub(crate) fn stamp(&self, cell: Cell) -> u8 {
-        let (slot, part) = self.place(cell);
-        let tile = self.stamps.get(slot);
-        tile.map_or(0, |tile| *masked(tile, part))
+        let (tile, part) = place(cell);
+        let stamps = self.stamps.get(tile);
+        stamps.map_or(0, |stamps| *masked(stamps, part))
     }
 
     /// Returns true if the place of a centre cell was visited.
@@ -140,24 +139,17 @@ impl<const SLOTS: usize> Rails<SLOTS> {
             stamp if is_enough => stamp.saturating_sub(unused).max(1),
             stamp => stamp.div_ceil(2),
         };
-        for stamp in self.stamps.as_flattened_mut() {
+        for stamp in self.stamps.values_mut().as_flattened_mut() {
             *stamp = lower(*stamp);
         }
         (self.now, self.oldest) = (lower(self.now), lower(self.oldest));
     }
+}
 
-    fn stamp_mut(&mut self, cell: Cell) -> Option<&mut u8> {
-        let (slot, part) = self.place(cell);
-        let tile = self.stamps.get_mut(slot)?;
-        Some(masked_mut(tile, part))
-    }
-
-    /// Returns the slot of a cell's tile and the cell's place in it.
-    fn place(&self, cell: Cell) -> (usize, usize) {
-        let (x, y) = (cell.x >> PLACE_SHIFT, cell.y >> PLACE_SHIFT);
-        let slot = self.slots.slot(x >> 1, y >> 1);
-        (slot, ((y & 1) << 1 | (x & 1)) as usize)
-    }
+/// Returns a cell's tile and the number of the cell's place in it.
+const fn place(cell: Cell) -> ((i32, i32), usize) {
+    let (x, y) = (cell.x >> PLACE_SHIFT, cell.y >> PLACE_SHIFT);
+    ((x >> 1, y >> 1), ((y & 1) << 1 | (x & 1)) as usize)
 }
 
 #[cfg(test)]
@@ -184,7 +176,7 @@ mod tests {
     }
 
     fn rails() -> Rails<16> {
-        Rails::new((4, 4), TdbvpTuning::DEFAULT.first_tick_ms, PERIOD_MS)
+        Rails::new(TdbvpTuning::DEFAULT.first_tick_ms, PERIOD_MS)
     }
 
     #[test]
@@ -220,7 +212,7 @@ mod tests {
 
     #[test]
     fn a_tick_takes_as_long_at_every_period_in_whole_steps() {
-        let steps = |tick_ms, period_ms| Rails::<16>::new((4, 4), tick_ms, period_ms).tick_steps;
+        let steps = |tick_ms, period_ms| Rails::<16>::new(tick_ms, period_ms).tick_steps;
         assert_eq!(
             [100, 200, 400].map(|period_ms| steps(800, period_ms)),
             [8, 4, 2]
@@ -291,12 +283,5 @@ mod tests {
         }
         let steps = rails.tick_steps;
         assert!(steps < 40, "ticks of {steps} steps");
-    }
-
-    #[test]
-    fn in_a_box_without_area_nothing_is_visited() {
-        let mut rails: Rails<16> = Rails::new((0, 0), 800, PERIOD_MS);
-        assert!(!rails.visit(place(0)));
-        assert_eq!(rails.potential(place(0)), UNVISITED);
     }
 }

@@ -61,7 +61,7 @@ impl Scene {
         let mut scene = Self {
             tiles: Tiles::new(),
             skeleton: Skeleton::new(),
-            rails: Rails::new((8, 8), TUNING.first_tick_ms, 200),
+            rails: Rails::new(TUNING.first_tick_ms, 200),
             pending: PendingVisits::new(),
             robot: Cell::default(),
         };
@@ -181,7 +181,7 @@ fn where_all_was_visited_the_older_arm_is_taken() {
 
 /// The state of a session with steps of `period_ms`, in the scene's box.
 fn session(period_ms: u32, impatience_s: Option<u16>) -> Tdbvp<64> {
-    Tdbvp::new((8, 8), period_ms, 600, impatience_s, &TUNING)
+    Tdbvp::new(period_ms, 600, impatience_s, &TUNING)
 }
 
 #[test]

@@ -79,7 +79,7 @@ const LITTLE_LEFT: &str = "
 
 /// The closed regions of the picture.
 fn regions(scene: &Scene) -> ClosedRegions<SLOTS> {
-    let mut regions = ClosedRegions::new((8, 6));
+    let mut regions = ClosedRegions::new();
     let centres = scene.centres();
     for (y, row) in scene.picture.iter().enumerate() {
         for (x, &character) in row.iter().enumerate() {

@@ -147,7 +147,7 @@ const BRANCHES: &str = "
 #[track_caller]
 fn assert_tractor(picture: &str, expected: &str) {
     let mut scene = Scene::parse(picture);
-    let mut strategy = Ouroboros::new(scene.tiles.box_tiles());
+    let mut strategy = Ouroboros::new();
     let row = scene.picture.iter().position(|row| row.contains(&'o'));
     for (x, _) in row.into_iter().flat_map(|y| {
         let cells = scene.picture[y].iter().enumerate();

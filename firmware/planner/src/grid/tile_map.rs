@@ -1,0 +1,174 @@
+//! A value for each of a number of tiles, wherever they lie.
+//!
+//! The tiles are a sorted list of keys ([`TileKey`]), so memory is needed for the tiles alone,
+//! whatever the shape of the area that they cover. The first tile is the origin of the keys.
+//!
+//! Invariant: the keys are sorted, and value i belongs to key i.
+//! Units: tiles.
+
+use heapless::Vec;
+
+use crate::grid::tile_key::{TileKey, find};
+use crate::grid::{inside, inside_mut};
+
+/// Values of up to `N` tiles. A value's place in the list moves when a tile is added.
+#[derive(Debug)]
+pub(crate) struct TileMap<T, const N: usize> {
+    keys: Vec<TileKey, N>,
+    values: [T; N],
+    /// Column and row of the first tile.
+    origin: (i32, i32),
+}
+
+impl<T: Copy, const N: usize> TileMap<T, N> {
+    /// Creates a map without tiles; `empty` fills the memory.
+    pub(crate) const fn new(empty: T) -> Self {
+        Self {
+            keys: Vec::new(),
+            values: [empty; N],
+            origin: (0, 0),
+        }
+    }
+
+    /// Removes all tiles.
+    pub(crate) fn clear(&mut self) {
+        self.keys.clear();
+    }
+
+    /// Returns the keys, sorted.
+    pub(crate) fn keys(&self) -> &[TileKey] {
+        &self.keys
+    }
+
+    /// Returns the column and the row of the tile with this key.
+    pub(crate) const fn tile(&self, key: TileKey) -> (i32, i32) {
+        let (columns, rows) = key.offset();
+        (self.origin.0 + columns, self.origin.1 + rows)
+    }
+
+    /// Returns a tile's key; `None` if it is too far from the first tile.
+    #[inline]
+    fn key(&self, (column, row): (i32, i32)) -> Option<TileKey> {
+        let (columns, rows) = (
+            column.wrapping_sub(self.origin.0),
+            row.wrapping_sub(self.origin.1),
+        );
+        TileKey::of(columns, rows)
+    }
+
+    /// Returns true if a tile is near enough to the first one to have a key.
+    pub(crate) fn is_in_range(&self, tile: (i32, i32)) -> bool {
+        self.keys.is_empty() || self.key(tile).is_some()
+    }
+
+    /// Returns true if there is no place for another tile.
+    pub(crate) fn is_full(&self) -> bool {
+        self.keys.is_full()
+    }
+
+    /// Returns a tile's place in the list.
+    #[inline]
+    pub(crate) fn place(&self, tile: (i32, i32)) -> Option<usize> {
+        find(&self.keys, self.key(tile)?)
+    }
+
+    /// Returns the value at a place in the list.
+    #[inline]
+    pub(crate) fn value(&self, place: usize) -> Option<&T> {
+        inside(&self.values, place)
+    }
+
+    /// Returns the value at a place in the list.
+    #[inline]
+    pub(crate) fn value_mut(&mut self, place: usize) -> Option<&mut T> {
+        inside_mut(&mut self.values, place)
+    }
+
+    /// Returns a tile's value; `None` if the tile was not added.
+    #[inline]
+    pub(crate) fn get(&self, tile: (i32, i32)) -> Option<&T> {
+        self.value(self.place(tile)?)
+    }
+
+    /// Returns the value of a tile, which is added with the value `new` if it is not there; `None`
+    /// if it is out of range, or there is no place.
+    pub(crate) fn get_or_add(&mut self, tile: (i32, i32), new: T) -> Option<&mut T> {
+        if self.keys.is_empty() {
+            self.origin = tile;
+        }
+        let key = self.key(tile)?;
+        let place = match self.keys.binary_search(&key) {
+            Ok(place) => place,
+            Err(place) => {
+                let tiles = self.keys.len();
+                self.keys.insert(place, key).ok()?;
+                self.values.copy_within(place..tiles, place + 1);
+                *self.value_mut(place)? = new;
+                place
+            }
+        };
+        self.value_mut(place)
+    }
+
+    /// Returns the values of all tiles.
+    pub(crate) fn values_mut(&mut self) -> &mut [T] {
+        let tiles = self.keys.len();
+        self.values.get_mut(..tiles).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+    use std::vec::Vec;
+
+    use super::TileMap;
+
+    #[test]
+    fn tiles_are_found_wherever_they_lie_and_listed_row_by_row() {
+        let mut seed = 1_u32;
+        let mut random = |below: i32| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as i32 % below
+        };
+        for round in 0..40 {
+            let mut map = TileMap::<i32, 50>::new(0);
+            let mut twin = BTreeMap::new();
+            let start = (1_000 * round - 20_000, 77 * round);
+            for _ in 0..200 {
+                let tile = (start.0 + random(14), start.1 - random(9));
+                let value = random(1_000);
+                let has_room = twin.len() < 50 || twin.contains_key(&(tile.1, tile.0));
+                assert_eq!(map.get_or_add(tile, value).is_some(), has_room);
+                if has_room {
+                    *map.get_or_add(tile, -1).unwrap() = value;
+                    twin.insert((tile.1, tile.0), value);
+                }
+            }
+            assert!(map.is_full());
+            let tiles: Vec<_> = map.keys().iter().map(|&key| map.tile(key)).collect();
+            let rows: Vec<_> = twin.keys().map(|&(row, column)| (column, row)).collect();
+            assert_eq!(tiles, rows);
+            for (column, row) in (-2..16).flat_map(|x| (-11..3).map(move |y| (x, y))) {
+                let tile = (start.0 + column, start.1 + row);
+                assert_eq!(map.get(tile), twin.get(&(tile.1, tile.0)));
+            }
+        }
+    }
+
+    #[test]
+    fn a_tile_far_from_the_first_one_has_no_place() {
+        let mut map = TileMap::<u8, 4>::new(0);
+        assert!(map.is_in_range((i32::MIN, i32::MAX)));
+        map.get_or_add((1_000, -5), 1);
+        for (column, fits) in [(873, false), (874, true), (1_126, true), (1_127, false)] {
+            assert_eq!(map.is_in_range((column, -5)), fits);
+            assert_eq!(map.get_or_add((column, -5), 2).is_some(), fits);
+        }
+        map.get_or_add((i32::MIN, i32::MAX), 3);
+        assert_eq!(map.keys().len(), 3);
+        map.clear();
+        assert_eq!(map.get((1_000, -5)), None);
+        assert!(map.get_or_add((0, 9_000), 1).is_some(), "a new origin");
+    }
+}
