@@ -7,17 +7,19 @@
 //! good. The same world, configuration (with its seed) and commands give the same run, bit for bit.
 
 mod config;
+mod fleet;
 
 use fieldline_protocol::message::{Hull, LoopLimits, Observation, Start, Strategy, Twist};
 use fixed::types::I4F12;
 
 use crate::metrics::{Overlap, Ride, Safety};
 use crate::robot::{
-    Contacts, Drive, Footprint, LaserScanner, Mishap, Odometry, Pose, Source, Velocity, laser,
-    stand,
+    Contacts, Drive, Footprint, LaserScanner, Mishap, Odometry, OtherRobot, Pose, Source, Velocity,
+    laser, stand,
 };
 use crate::world::{World, WorldError};
 pub use config::SimConfig;
+pub use fleet::{Fleet, FleetError};
 
 /// Clearance at which a contact with a wall ends, metres.
 const CONTACT_OVER_M: f64 = 0.01;
@@ -55,6 +57,12 @@ pub struct Simulator<'w> {
     safety: Safety,
     ride: Ride,
     overlap: Overlap,
+    /// Distance and turn of the wheels in this period, metres and radians.
+    wheels: [f64; 2],
+    /// The other robots of the world, where they are now; empty for a robot that is alone.
+    others: Vec<OtherRobot>,
+    /// Index of the other robot that stopped this one in the last substep.
+    bumped: Option<usize>,
 }
 
 /// The greatest number of the wire that is at most `quantity`.
@@ -106,6 +114,9 @@ impl<'w> Simulator<'w> {
             safety: Safety::default(),
             ride: Ride::default(),
             overlap: Overlap::default(),
+            wheels: [0.0; 2],
+            others: Vec::new(),
+            bumped: None,
         };
         simulator.overlap.add(pose.x_m, pose.y_m);
         simulator.track_clearance();
@@ -122,7 +133,8 @@ impl<'w> Simulator<'w> {
         };
         for laser in &mut self.lasers {
             // The vector holds two scans, and there are two lasers.
-            let _ = observation.scans.push(laser.scan(self.world, &self.pose));
+            let scan = laser.scan_among(self.world, &self.others, &self.pose);
+            let _ = observation.scans.push(scan);
         }
         observation
     }
@@ -130,30 +142,44 @@ impl<'w> Simulator<'w> {
     /// Drives for one period. `None` means that no command came: the last command counts until it
     /// is stale.
     pub fn drive(&mut self, command: Option<Twist>) {
+        self.begin_period(command);
+        let end_ms = self.time_ms + self.config.period_ms;
+        while self.time_ms < end_ms {
+            self.advance(self.config.substep_ms.clamp(1, end_ms - self.time_ms));
+        }
+        self.end_period();
+    }
+
+    /// Takes the command of a period.
+    fn begin_period(&mut self, command: Option<Twist>) {
         if let Some(twist) = command {
             self.drive.command(twist.into());
             self.commanded_ms = self.time_ms;
         }
-        let end_ms = self.time_ms + self.config.period_ms;
-        let (mut forward_m, mut turn_rad) = (0.0, 0.0);
-        while self.time_ms < end_ms {
-            let step_ms = self.config.substep_ms.clamp(1, end_ms - self.time_ms);
-            if self.time_ms - self.commanded_ms >= self.config.stale_ms {
-                self.drive.command(Velocity::default());
-            }
-            let seconds = f64::from(step_ms) / 1000.0;
-            let forwards = self.drive.velocity().linear_mps >= 0.0;
-            let share = self.config.traction.speed_share(&self.pose, forwards);
-            let velocity = self.drive.advance(seconds, share);
-            if self.substep(velocity, seconds) {
-                forward_m += velocity.linear_mps * seconds;
-                turn_rad += velocity.angular_radps * seconds;
-            }
-            self.ride.add(&self.pose, &self.config.working, seconds);
-            self.time_ms += step_ms;
+        self.wheels = [0.0; 2];
+    }
+
+    /// Drives for one substep.
+    fn advance(&mut self, step_ms: u32) {
+        if self.time_ms - self.commanded_ms >= self.config.stale_ms {
+            self.drive.command(Velocity::default());
         }
+        let seconds = f64::from(step_ms) / 1000.0;
+        let forwards = self.drive.velocity().linear_mps >= 0.0;
+        let share = self.config.traction.speed_share(&self.pose, forwards);
+        let velocity = self.drive.advance(seconds, share);
+        if self.substep(velocity, seconds) {
+            self.wheels[0] += velocity.linear_mps * seconds;
+            self.wheels[1] += velocity.angular_radps * seconds;
+        }
+        self.ride.add(&self.pose, &self.config.working, seconds);
+        self.time_ms += step_ms;
+    }
+
+    /// Measures the motion of a period.
+    fn end_period(&mut self) {
         self.overlap.add(self.pose.x_m, self.pose.y_m);
-        let velocity = self.drive.velocity();
+        let ([forward_m, turn_rad], velocity) = (self.wheels, self.drive.velocity());
         self.odometry
             .advance(&self.pose, forward_m, turn_rad, velocity);
     }
@@ -166,7 +192,13 @@ impl<'w> Simulator<'w> {
             return false;
         }
         let shift = self.config.traction.shift(&self.pose, velocity, seconds);
-        let next = match self.try_move(&shift.applied(&self.pose)) {
+        let next = shift.applied(&self.pose);
+        self.bumped = self.bumps(&next);
+        if self.bumped.is_some() {
+            self.drive.halt();
+            return false;
+        }
+        let next = match self.try_move(&next) {
             Ok(next) => next,
             Err(mishap) => {
                 self.record(mishap);
@@ -209,6 +241,19 @@ impl<'w> Simulator<'w> {
             }
             Err(mishap) => Err(mishap),
         }
+    }
+
+    /// Returns the other robot that is in the way to a pose. Robots that overlap already, because
+    /// one leaned over, may part.
+    fn bumps(&self, next: &Pose) -> Option<usize> {
+        let footprint = &self.config.footprint;
+        self.others.iter().position(|other| {
+            let parts = || {
+                let [now_m, then_m] = [&self.pose, next].map(|pose| pose.distance_m(other.pose()));
+                footprint.touches(&self.pose, other) && then_m > now_m
+            };
+            footprint.touches(next, other) && !parts()
+        })
     }
 
     /// Counts a contact with a wall.
@@ -291,7 +336,8 @@ impl<'w> Simulator<'w> {
     #[must_use]
     pub fn start(&self) -> crate::world::Start {
         let starts = self.world.starts();
-        starts.get(self.config.start).copied().unwrap_or_default()
+        let of_world = || starts.get(self.config.start).copied().unwrap_or_default();
+        self.config.place.unwrap_or_else(of_world)
     }
 
     /// Simulated milliseconds since the start.
@@ -372,7 +418,7 @@ impl<'w> Simulator<'w> {
 
 /// The stance at the configured start, if the robot can stand there.
 fn start_pose(world: &World, config: &SimConfig) -> Result<Pose, WorldError> {
-    let Some(start) = world.starts().get(config.start) else {
+    let Some(start) = config.place.as_ref().or(world.starts().get(config.start)) else {
         let count = world.starts().len();
         return Err(WorldError::Start {
             file: world.name().to_owned(),

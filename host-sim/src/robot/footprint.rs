@@ -8,6 +8,7 @@
 //! The rectangle of a leaning robot is the shadow of its box: the bottom corners move in and the
 //! top corners move out. Walls count as higher than the robot. Metres.
 
+use super::other::OtherRobot;
 use super::pose::{PlanarFrame, Pose};
 use crate::world::{GridCell, World};
 
@@ -80,6 +81,36 @@ impl Footprint {
         world.distance().from_anywhere_m(cell) - self.reach_m(pose)
     }
 
+    /// Returns true if the footprint at a pose overlaps another robot's.
+    #[must_use]
+    pub fn touches(&self, pose: &Pose, other: &OtherRobot) -> bool {
+        let reach_m = self.reach_m(pose) + other.footprint().reach_m(other.pose());
+        if pose.distance_m(other.pose()) > reach_m {
+            return false;
+        }
+        self.place(pose)
+            .meets(&other.footprint().place(other.pose()))
+    }
+
+    /// Metres between the footprints of two robots, seen from above: 0 if they overlap, and at
+    /// most [`FARTHEST_M`].
+    #[must_use]
+    pub fn gap_m(&self, pose: &Pose, other: &OtherRobot) -> f64 {
+        let reach_m = self.reach_m(pose) + other.footprint().reach_m(other.pose());
+        if pose.distance_m(other.pose()) > reach_m + FARTHEST_M {
+            return FARTHEST_M;
+        }
+        let placed = self.place(pose);
+        let theirs = other.footprint().place(other.pose());
+        if placed.meets(&theirs) {
+            return 0.0;
+        }
+        placed
+            .between_m(&theirs)
+            .min(theirs.between_m(&placed))
+            .min(FARTHEST_M)
+    }
+
     /// Distance from the pose to the farthest corner of the shadow, or more, metres.
     fn reach_m(&self, pose: &Pose) -> f64 {
         if pose.pitch_rad == 0.0 && pose.roll_rad == 0.0 {
@@ -127,13 +158,6 @@ impl Placed {
 
     /// Returns true if no edge direction of either shape separates them.
     fn overlaps(&self, [x0, y0, x1, y1]: [f64; 4]) -> bool {
-        let spread = |values: [f64; 4]| {
-            values
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-                    (low.min(*v), high.max(*v))
-                })
-        };
         let corners = self.corners();
         let (low, high) = spread(corners.map(|c| c[0]));
         if high <= x0 || low >= x1 {
@@ -150,6 +174,26 @@ impl Placed {
         })
     }
 
+    /// Returns true if no edge direction of either rectangle separates them.
+    fn meets(&self, other: &Self) -> bool {
+        let parted = |by: &Self, corners: [[f64; 2]; 4]| {
+            let local = corners.map(|corner| by.frame.to_local(corner));
+            (0..2).any(|axis| {
+                let (low, high) = spread(local.map(|corner| corner[axis]));
+                high <= -by.half[axis] || low >= by.half[axis]
+            })
+        };
+        !parted(self, other.corners()) && !parted(other, self.corners())
+    }
+
+    /// Least distance from a corner of another rectangle to this one.
+    fn between_m(&self, other: &Self) -> f64 {
+        let [a, b] = self.half;
+        let corners = other.corners().map(|corner| self.frame.to_local(corner));
+        let gaps = corners.map(|corner| point_to_box(corner, [-a, -b, a, b]));
+        gaps.into_iter().fold(f64::INFINITY, f64::min)
+    }
+
     /// Distance between shapes that do not overlap.
     fn gap_m(&self, square: [f64; 4]) -> f64 {
         let [x0, y0, x1, y1] = square;
@@ -162,6 +206,15 @@ impl Placed {
             .chain(to_square)
             .fold(f64::INFINITY, f64::min)
     }
+}
+
+/// The least and the greatest of four numbers.
+fn spread(values: [f64; 4]) -> (f64, f64) {
+    values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+            (low.min(*v), high.max(*v))
+        })
 }
 
 fn square_corners([x0, y0, x1, y1]: [f64; 4]) -> [[f64; 2]; 4] {
@@ -265,6 +318,44 @@ mod tests {
             touching > 30 && near > 30 && far > 5,
             "{touching} {near} {far}"
         );
+    }
+
+    #[test]
+    fn the_gap_between_two_robots_is_what_sampling_finds() {
+        let mut rng = ChaCha8Rng::seed_from_u64(33);
+        let mut uniform = |low: f64, high: f64| {
+            low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX)
+        };
+        let (mut touching, mut apart) = (0, 0);
+        for _ in 0..300 {
+            let here = upright(0.0, 0.0, uniform(-3.0, 3.0));
+            let other = OtherRobot::new(
+                ROBOT,
+                upright(uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-3.0, 3.0)),
+            );
+            let (ours, theirs) = (ROBOT.place(&here), ROBOT.place(other.pose()));
+            let mut sampled = f64::INFINITY;
+            for a in -13..=13 {
+                for b in -13..=13 {
+                    let share = [f64::from(a) / 13.0, f64::from(b) / 13.0];
+                    let point = theirs
+                        .frame
+                        .to_world([share[0] * theirs.half[0], share[1] * theirs.half[1]]);
+                    let [x, y] = ours.half;
+                    let local = ours.frame.to_local(point);
+                    sampled = sampled.min(point_to_box(local, [-x, -y, x, y]));
+                }
+            }
+            let gap_m = ROBOT.gap_m(&here, &other);
+            assert!(
+                gap_m <= sampled + 1e-12 && sampled <= gap_m + 0.0138,
+                "{gap_m} {sampled}"
+            );
+            assert_eq!(ROBOT.touches(&here, &other), gap_m == 0.0);
+            touching += u32::from(gap_m == 0.0);
+            apart += u32::from(gap_m > 0.0);
+        }
+        assert!(touching > 50 && apart > 50, "{touching} {apart}");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Parameters of a simulated run.
 
 use crate::robot::{DriveLimits, Footprint, LaserNoise, Limits, OdometryModel, RADIUS_M, Traction};
+use crate::world::Start;
 
 /// Parameters of a simulated run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +10,8 @@ pub struct SimConfig {
     pub seed: u64,
     /// Index of the world's start. Default: 0.
     pub start: usize,
+    /// A start pose to use instead of the world's. Default: none.
+    pub place: Option<Start>,
     /// Model of the odometry. Default: the truth.
     pub odometry: OdometryModel,
     /// Errors of the lasers. Default: [`LaserNoise::default`].
@@ -38,6 +41,7 @@ impl Default for SimConfig {
         Self {
             seed: 0,
             start: 0,
+            place: None,
             odometry: OdometryModel::Truth,
             laser_noise: LaserNoise::default(),
             footprint: Footprint::PIONEER_3AT,
