@@ -9,7 +9,9 @@ use core::time::Duration;
 
 use drive::{Robot, digest_of, start};
 use fieldline_device::STALE_MS;
-use fieldline_protocol::message::{Control, Finish, Observation, Path, Start, Status, Strategy};
+use fieldline_protocol::message::{
+    Beacon, Body, Control, Finish, Member, Observation, Packet, Path, Start, Status, Strategy, Team,
+};
 use host_sim::link::direct::Direct;
 use host_sim::link::endpoint::{Endpoint, RetryPolicy};
 use host_sim::link::fault::{Faults, Faulty};
@@ -34,6 +36,50 @@ fn direct_and_loopback_give_the_same_commands() {
         digest_of(&mut Direct::new(), STEPS),
         digest_of(&mut loopback(), STEPS)
     );
+}
+
+/// Returns what a member of a team says on a drive, while a peer crosses its way.
+fn words_of(link: &mut impl Link) -> Vec<Packet> {
+    let member = Member { id: 1, boot: 1 };
+    let team = Team {
+        member,
+        ..Team::default()
+    };
+    let start = Start {
+        team: Some(team),
+        ..start()
+    };
+    link.hello().unwrap();
+    link.control(&Control::Start(start)).unwrap();
+    let mut robot = Robot::new();
+    let mut said = Vec::new();
+    for sequence in 0..100 {
+        robot.step(link).unwrap();
+        while let Some(packet) = link.say().unwrap() {
+            said.push(packet);
+        }
+        let beacon = Beacon {
+            x_cm: 100 + sequence as i16,
+            ..Beacon::default()
+        };
+        let from = Member { id: 2, boot: 0 };
+        let body = Body::Beacon(beacon);
+        let packet = Packet {
+            from,
+            sequence,
+            body,
+        };
+        link.hear(&packet).unwrap();
+    }
+    said
+}
+
+#[test]
+fn direct_and_loopback_say_the_same_to_the_team() {
+    let said = words_of(&mut Direct::new());
+    assert!(said.len() >= 100, "a beacon in every step");
+    assert_eq!(said, words_of(&mut loopback()));
+    assert_eq!(said, words_of(&mut faulty("drop=0.02,duplicate=0.02", 1)));
 }
 
 #[test]

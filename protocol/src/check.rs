@@ -40,6 +40,8 @@ pub enum Kind {
     Reply,
     /// From the device: bytes of its log.
     Log,
+    /// From a robot to its team: [`crate::message::Packet`].
+    Packet,
 }
 
 impl Kind {
@@ -53,6 +55,7 @@ impl Kind {
             Self::Request => SCHEMA_KEY,
             Self::Reply => SCHEMA_KEY ^ 0x5a_96_c3,
             Self::Log => SCHEMA_KEY ^ 0xc3_69_5a,
+            Self::Packet => SCHEMA_KEY ^ 0x69_5a_3c,
         }
     }
 }
@@ -124,6 +127,7 @@ mod tests {
             Kind::Welcome,
             Kind::Reply,
             Kind::Log,
+            Kind::Packet,
         ];
         let keys: BTreeSet<u32> = kinds.iter().map(|kind| kind.key()).collect();
         assert_eq!(keys.len(), kinds.len());

@@ -55,6 +55,7 @@ impl fmt::Display for Refusal {
                  at least 4 tiles per side, and at most as many tiles as the device has tile slots",
             ),
             Self::BadParameter(parameter) => write!(f, "bad parameter: {parameter}"),
+            Self::NoTeam => f.write_str("the session has no team; start it with one"),
         }
     }
 }

@@ -20,6 +20,7 @@ use crate::message::{
     FIELD_SIDE, MAX_BEAMS, MAX_SCANS, PATH_PAGE, Reply, Request, TILE_BYTES, TILE_SKELETON_BYTES,
     TILE_STAMPS,
 };
+use crate::packet::MAX_PACKET;
 use crate::schema::{SCHEMA, VERSION};
 
 pub use receiver::{Receiver, Side, Tally};
@@ -36,6 +37,8 @@ const MAX_REQUEST_BODY: usize = 1 + 5 + 6 * 5 + 2 * 3 + 1 + MAX_SCANS * (2 + MAX
 const MAX_REPLY_BODY: usize =
     2 + 2 * 3 + (2 + TILE_BYTES) + (1 + TILE_SKELETON_BYTES) + 2 * 3 + TILE_STAMPS;
 const _: () = assert!(MAX_REPLY_BODY > 12 + 4 * FIELD_SIDE && MAX_REPLY_BODY > MAX_LOG_BYTES);
+// A packet: as in the air, with a variant's number and a tag, without the check.
+const _: () = assert!(MAX_REPLY_BODY > 2 + MAX_PACKET && MAX_REQUEST_BODY > 1 + MAX_PACKET);
 // A page of the path: tractor point, shield, length, and cells of two varints.
 const _: () = assert!(MAX_REPLY_BODY > 1 + 7 + 13 + 2 + 6 * PATH_PAGE);
 

@@ -5,6 +5,7 @@
 //! | --- | --- |
 //! | [`message`] | the messages: plain data |
 //! | [`frame`] | messages to bytes and back: encoders, and a receiver for each side |
+//! | [`packet`] | the bytes of a packet between robots in the air |
 //! | [`check`] | the checksum of a frame, and the key that each kind of frame has |
 //!
 //! No input from a peer makes this crate panic. No byte sequence blocks a [`frame::Receiver`]:
@@ -29,6 +30,7 @@ mod cobs;
 mod display;
 pub mod frame;
 pub mod message;
+pub mod packet;
 mod schema;
 
 pub use schema::{SCHEMA, VERSION};

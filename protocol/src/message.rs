@@ -12,6 +12,8 @@
 //! | [`Request::FieldRow`] | host | [`Reply::FieldRow`] or [`Reply::Refused`] |
 //! | [`Request::Frontiers`] | host | [`Reply::Frontiers`] or [`Reply::Refused`] |
 //! | [`Request::Path`] | host | [`Reply::Path`] or [`Reply::Refused`] |
+//! | [`Request::Hear`] | host | [`Reply::Heard`] or [`Reply::Refused`] |
+//! | [`Request::Say`] | host | [`Reply::Say`] or [`Reply::Refused`] |
 //!
 //! The device sends two messages without a request: [`Reply::Hello`] after it booted, and
 //! [`Reply::Crash`] before it reboots.
@@ -26,6 +28,7 @@ mod readout;
 mod refusal;
 mod residual;
 mod session;
+mod team;
 
 pub use command::{Command, Cost, Counters, Fault, Finish, Loops, Stages, Status};
 pub use identity::{BUILD_BYTES, CRASH_FILE_BYTES, Cause, Crash, Identity};
@@ -39,6 +42,10 @@ pub use readout::{
 pub use refusal::{Parameter, Refusal};
 pub use residual::{MAX_FRONTIERS, ResidualFrontier, ResidualReason};
 pub use session::{Control, Hull, Laser, LoopLimits, Preference, Start, Strategy, UnevenGround};
+pub use team::{
+    Activity, Beacon, Body, DIGEST_TILES, Digest, Member, Packet, ROAD_POINTS, ROAD_UNIT_CM, Team,
+    TeamTile, TileVersion, WANTED_TILES, Wanted,
+};
 
 use heapless::Vec;
 use postcard_schema::Schema;
@@ -87,6 +94,11 @@ pub enum Request {
         /// Number of path cells to leave out, from the robot's end.
         from: u8,
     },
+    /// Passes on a packet that another robot of the team said.
+    Hear(Packet),
+    /// Asks for the next packet to pass on to the team. The host asks after each observation until
+    /// there is none.
+    Say,
 }
 
 /// A message from the device.
@@ -123,4 +135,8 @@ pub enum Reply {
     Crash(Crash),
     /// The planner's path, tractor point and shield.
     Path(Path),
+    /// The device heard the packet.
+    Heard,
+    /// The next packet for the team; `None` until the next step.
+    Say(Option<Packet>),
 }

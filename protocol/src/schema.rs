@@ -9,8 +9,9 @@ use fixed::types::{I4F12, I16F16};
 use postcard_schema::key::hash::fnv1a64::hash_ty_path;
 
 use crate::message::{
-    BUILD_BYTES, CRASH_FILE_BYTES, FIELD_SIDE, MAX_BEAMS, MAX_FRONTIERS, MAX_SCANS, NO_RETURN_MM,
-    PATH_PAGE, Reply, Request, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS,
+    BUILD_BYTES, CRASH_FILE_BYTES, DIGEST_TILES, FIELD_SIDE, MAX_BEAMS, MAX_FRONTIERS, MAX_SCANS,
+    NO_RETURN_MM, PATH_PAGE, ROAD_POINTS, Reply, Request, TILE_BYTES, TILE_SKELETON_BYTES,
+    TILE_STAMPS, WANTED_TILES,
 };
 
 /// Version of the protocol.
@@ -38,6 +39,9 @@ pub const SCHEMA: u32 = {
         FIELD_SIDE,
         BUILD_BYTES,
         CRASH_FILE_BYTES,
+        ROAD_POINTS,
+        DIGEST_TILES,
+        WANTED_TILES,
         NO_RETURN_MM as usize,
         I16F16::FRAC_NBITS as usize,
         I4F12::FRAC_NBITS as usize,
@@ -69,6 +73,6 @@ mod tests {
     /// message changed as well, raise [`VERSION`].
     #[test]
     fn schema_hash_is_unchanged() {
-        assert_eq!((VERSION, SCHEMA), (1, 0xff1c_5895));
+        assert_eq!((VERSION, SCHEMA), (1, 0xa23e_a131));
     }
 }

@@ -13,9 +13,9 @@ use fieldline_protocol::frame::{
 };
 use fieldline_protocol::message::{
     self, BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Counters, Crash, FIELD_CELL_BYTES,
-    FIELD_SIDE, FieldRow, Hull, Identity, Laser, LoopLimits, MAX_FRONTIERS, MAX_SCANS,
+    FIELD_SIDE, FieldRow, Hull, Identity, Laser, LoopLimits, MAX_FRONTIERS, MAX_SCANS, Member,
     NO_RETURN_MM, PATH_PAGE, Path, Preference, Reply, Request, ResidualFrontier, ResidualReason,
-    Start, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS, Tile, UnevenGround,
+    Start, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS, Team, Tile, UnevenGround,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use proptest::prelude::*;
@@ -134,6 +134,14 @@ fn the_largest_messages_fit_and_fill_their_frames() {
             detour: farthest,
             slack: farthest,
         },
+        team: Some(Team {
+            member: Member {
+                id: u8::MAX,
+                boot: u16::MAX,
+            },
+            origin: (farthest, farthest),
+            yaw: farthest,
+        }),
     }));
     let file = "f".repeat(CRASH_FILE_BYTES).as_str().try_into().unwrap();
     let crash = Crash {

@@ -2,7 +2,7 @@
 //! command.
 
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Identity, Observation, Path, ResidualFrontier, Status, Tile,
+    Command, Control, FieldRow, Identity, Observation, Packet, Path, ResidualFrontier, Status, Tile,
 };
 use host_sim::link::{Link, LinkError, LinkStats};
 
@@ -57,6 +57,14 @@ where
         self.link.path(from)
     }
 
+    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
+        self.link.hear(packet)
+    }
+
+    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
+        self.link.say()
+    }
+
     fn stats(&self) -> LinkStats {
         self.link.stats()
     }
@@ -68,6 +76,8 @@ where
 
 #[cfg(test)]
 mod tests {
+    use fieldline_protocol::message::{Body, Member, Wanted};
+
     use super::*;
 
     /// A link that answers each request with a value of its own.
@@ -102,6 +112,14 @@ mod tests {
             Err(LinkError::Refused(format!("road from {from}")))
         }
 
+        fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
+            Err(LinkError::Refused(format!("packet {}", packet.sequence)))
+        }
+
+        fn say(&mut self) -> Result<Option<Packet>, LinkError> {
+            Err(LinkError::Refused("nothing to say".into()))
+        }
+
         fn stats(&self) -> LinkStats {
             LinkStats::default()
         }
@@ -112,10 +130,18 @@ mod tests {
     }
 
     #[test]
-    fn the_decorator_forwards_the_road_and_the_log() {
+    fn the_decorator_forwards_the_road_the_packets_and_the_log() {
         let mut link = Watched::new(Marked, |_, _, _| Ok(()));
         let refused = LinkError::Refused("road from 7".into());
         assert_eq!(link.path(7), Err(refused));
+        let packet = Packet {
+            from: Member::default(),
+            sequence: 9,
+            body: Body::Wanted(Wanted::default()),
+        };
+        let refused = LinkError::Refused("packet 9".into());
+        assert_eq!(link.hear(&packet), Err(refused));
+        assert_eq!(link.say(), Err(LinkError::Refused("nothing to say".into())));
         assert_eq!(link.take_log(), [1, 2, 3]);
     }
 }

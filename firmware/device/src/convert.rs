@@ -13,6 +13,10 @@ use fieldline_planner::{
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
 
+mod team;
+
+pub use team::{packet, wire_packet};
+
 /// Returns a wire quantity as f32.
 fn float(quantity: impl LossyInto<f32>) -> f32 {
     quantity.lossy_into()
@@ -166,6 +170,9 @@ pub fn config(start: &wire::Start, tuning: &'static Tuning) -> Result<Config, wi
     }
     if let Some(ground) = &start.uneven_ground {
         builder = builder.uneven_ground(uneven_ground(ground));
+    }
+    if let Some(team) = &start.team {
+        builder = builder.team(team::place(team));
     }
     builder
         .build()

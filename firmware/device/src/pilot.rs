@@ -21,8 +21,8 @@ use fieldline_planner::{
     Tuning, Workspace, step,
 };
 use fieldline_protocol::message::{
-    Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS, MAX_SCANS,
-    Observation, Path, Refusal, ResidualFrontier, Start, Status, Tile, Twist,
+    Activity, Body, Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS,
+    MAX_SCANS, Observation, Packet, Path, Refusal, ResidualFrontier, Start, Status, Tile, Twist,
 };
 use heapless::Vec;
 
@@ -187,6 +187,7 @@ impl Pilot {
             return Ok(stopped(Status::Fault(Fault::BadObservation)));
         };
         if self.status() != Status::Exploring {
+            memory.state.stand(&input);
             return Ok(stopped(self.status()));
         }
         let (state, workspace) = (&mut *memory.state, &mut *memory.workspace);
@@ -199,6 +200,58 @@ impl Pilot {
             loops: convert::wire_loops(memory.state.loops()),
             ..command(&output, self.planned)
         })
+    }
+
+    /// Takes a packet that another robot of the team said. A packet whose tile is not whole is
+    /// ignored.
+    ///
+    /// # Errors
+    /// [`Refusal::NotStarted`] without a session, [`Refusal::NoTeam`] in a session without a team.
+    pub fn hear<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        memory: &mut Memory<'_, TILES, SLOTS>,
+        packet: &Packet,
+    ) -> Result<(), Refusal> {
+        self.in_team()?;
+        if let Some(packet) = convert::packet(packet) {
+            memory.state.hear(&packet);
+        }
+        Ok(())
+    }
+
+    /// Returns the next packet for the team; `None` until the next observation.
+    ///
+    /// # Errors
+    /// As [`Pilot::hear`].
+    pub fn say<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        memory: &mut Memory<'_, TILES, SLOTS>,
+    ) -> Result<Option<Packet>, Refusal> {
+        let config = self.in_team()?;
+        let said = memory.state.say(config);
+        Ok(said.map(|packet| {
+            let mut packet = convert::wire_packet(&packet);
+            if let (Body::Beacon(beacon), Some(activity)) = (&mut packet.body, self.order()) {
+                beacon.activity = activity;
+            }
+            packet
+        }))
+    }
+
+    /// Returns the configuration of a session with a team.
+    fn in_team(&self) -> Result<&Config, Refusal> {
+        let config = self.config.as_ref().ok_or(Refusal::NotStarted)?;
+        config.team().ok_or(Refusal::NoTeam)?;
+        Ok(config)
+    }
+
+    /// Returns what the robot does by order, whatever its planner would do.
+    const fn order(&self) -> Option<Activity> {
+        match self.status() {
+            Status::Finished(Finish::Stopped) => Some(Activity::Gone),
+            Status::Paused | Status::EmergencyStop => Some(Activity::Standing),
+            _ => None,
+        }
     }
 
     /// Returns one map tile; `None` if nothing in it was ever seen.

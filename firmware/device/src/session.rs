@@ -346,6 +346,14 @@ impl Session {
             Request::FieldRow { row } => Reply::FieldRow(Pilot::field_row(memory, *row)),
             Request::Frontiers => Reply::Frontiers(Pilot::frontiers(memory)),
             Request::Path { from } => Reply::Path(Pilot::path(memory, *from)),
+            Request::Hear(packet) => {
+                let heard = self.pilot.hear(memory, packet);
+                heard.map_or_else(Reply::Refused, |()| Reply::Heard)
+            }
+            Request::Say => {
+                let said = self.pilot.say(memory);
+                said.map_or_else(Reply::Refused, Reply::Say)
+            }
             // Other functions answer these.
             Request::Hello { .. } | Request::Observation(_) => Reply::Refused(Refusal::OutOfOrder),
         };

@@ -64,6 +64,8 @@ mod robot;
 mod status;
 #[cfg(not(feature = "internals"))]
 mod strategy;
+#[cfg(not(feature = "internals"))]
+mod team;
 
 #[cfg(feature = "internals")]
 pub mod config;
@@ -97,11 +99,13 @@ pub mod robot;
 pub mod status;
 #[cfg(feature = "internals")]
 pub mod strategy;
+#[cfg(feature = "internals")]
+pub mod team;
 
 pub use config::{
     BoxTooLarge, Config, ConfigBuilder, ConfigError, FieldTuning, Goal, GoalLevel, GroundTuning,
-    LoopLimits, MapTuning, Method, OuroborosTuning, Parameter, PreferenceMode, SolverConfig,
-    Strategy, TdbvpTuning, Tuned, Tuning, TuningError, UnevenGround,
+    LoopLimits, MapTuning, Member, Method, OuroborosTuning, Parameter, PreferenceMode,
+    SolverConfig, Strategy, TdbvpTuning, TeamPlace, Tuned, Tuning, TuningError, UnevenGround,
 };
 pub use field::SIDE as FIELD_SIDE;
 pub use geometry::{CELL_M, Cell, Point, Pose, Twist};
@@ -112,3 +116,8 @@ pub use planner::{
 pub use profiling::{Stage, StageTimer};
 pub use robot::{LaserMount, MAX_BEAMS, RobotShape};
 pub use status::{Fault, Finish, ResidualFrontier, ResidualReason, Status};
+pub use team::packet::{
+    Activity, Beacon, Body, DIGEST_TILES, Digest, Packet, ROAD_POINTS, TeamTile, TileVersion,
+    WANTED_TILES, Wanted,
+};
+pub use team::peers::Peer;

@@ -23,6 +23,7 @@ mod prefer;
 mod readout;
 mod state;
 mod steer;
+mod team;
 mod workspace;
 
 pub use memory::{Capacity, F405, Memory, Planner};
@@ -111,6 +112,9 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     input: Input<'_>,
     timer: &mut impl StageTimer,
 ) -> Output {
+    let pose = state.team.to_map(&input.pose);
+    let input = Input { pose, ..input };
+    state.team.note(input.time_ms, &pose, input.velocity);
     let output = explore(config, state, workspace, input, timer);
     state.drive.tell(output.velocity);
     output

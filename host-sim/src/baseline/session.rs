@@ -28,8 +28,8 @@ use fieldline_planner::planner::starts_blocked;
 use fieldline_planner::roadmap::configuration_space::Footprint;
 use fieldline_planner::status::ResidualReason;
 use fieldline_protocol::message::{
-    Command, Control, Cost, Fault, FieldRow, Finish, Identity, MAX_FRONTIERS, Observation, Path,
-    Refusal, ResidualFrontier, Start, Status, TILE_SKELETON_BYTES, TILE_STAMPS, Tile,
+    Command, Control, Cost, Fault, FieldRow, Finish, Identity, MAX_FRONTIERS, Observation, Packet,
+    Path, Refusal, ResidualFrontier, Start, Status, TILE_SKELETON_BYTES, TILE_STAMPS, Tile,
 };
 
 use super::chart::Chart;
@@ -365,6 +365,15 @@ impl<S: Strategy> Link for Session<S> {
 
     fn path(&mut self, _: u8) -> Result<Path, LinkError> {
         Ok(Path::default())
+    }
+
+    fn hear(&mut self, _: &Packet) -> Result<(), LinkError> {
+        Err(refused(Refusal::NoTeam))
+    }
+
+    /// A baseline has no team.
+    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
+        Err(refused(Refusal::NoTeam))
     }
 
     fn take_log(&mut self) -> Vec<u8> {

@@ -4,8 +4,8 @@ use fieldline_device::session::{self, Boot};
 use fieldline_device::{Memory, Pilot, SLOTS, State, TILES};
 use fieldline_planner::{Tuning, Workspace};
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Identity, Observation, Path, Refusal, ResidualFrontier, Status,
-    Tile,
+    Command, Control, FieldRow, Identity, Observation, Packet, Path, Refusal, ResidualFrontier,
+    Status, Tile,
 };
 
 use super::{Link, LinkError, LinkStats};
@@ -96,6 +96,15 @@ impl Link for Direct {
 
     fn path(&mut self, from: u8) -> Result<Path, LinkError> {
         Ok(self.with(|_, memory| Pilot::path(memory, from)))
+    }
+
+    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
+        self.with(|pilot, memory| pilot.hear(memory, packet))
+            .map_err(refused)
+    }
+
+    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
+        self.with(Pilot::say).map_err(refused)
     }
 
     /// Every call counts as one frame sent and one received.

@@ -13,8 +13,8 @@ use fieldline_protocol::frame::{
     BodyError, MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_request,
 };
 use fieldline_protocol::message::{
-    Command, Control, Counters, FieldRow, Identity, Observation, Path, Refusal, Reply, Request,
-    ResidualFrontier, Status, Tile,
+    Command, Control, Counters, FieldRow, Identity, Observation, Packet, Path, Refusal, Reply,
+    Request, ResidualFrontier, Status, Tile,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 
@@ -149,7 +149,7 @@ impl<L: Line> Endpoint<L> {
         let deadline = self.line.now() + limit;
         loop {
             while let Some(byte) = self.inbox.pop_front() {
-                if let Some(reply) = self.hear(byte)? {
+                if let Some(reply) = self.take(byte)? {
                     return Ok(Some(reply));
                 }
             }
@@ -165,7 +165,7 @@ impl<L: Line> Endpoint<L> {
     }
 
     /// Takes a byte; returns the awaited reply when it is complete.
-    fn hear(&mut self, byte: u8) -> Result<Option<Reply>, LinkError> {
+    fn take(&mut self, byte: u8) -> Result<Option<Reply>, LinkError> {
         let Some(frame) = self.receiver.push(byte) else {
             return Ok(None);
         };
@@ -298,6 +298,20 @@ impl<L: Line> Link for Endpoint<L> {
         match self.call(&Request::Path { from })? {
             Reply::Path(path) => Ok(path),
             _ => Err(unexpected("a request for the road")),
+        }
+    }
+
+    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
+        match self.call(&Request::Hear(packet.clone()))? {
+            Reply::Heard => Ok(()),
+            _ => Err(unexpected("a packet")),
+        }
+    }
+
+    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
+        match self.call(&Request::Say)? {
+            Reply::Say(packet) => Ok(packet),
+            _ => Err(unexpected("a request for a packet")),
         }
     }
 

@@ -15,7 +15,7 @@
 use core::fmt;
 
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Identity, Observation, Path, ResidualFrontier, Status, Tile,
+    Command, Control, FieldRow, Identity, Observation, Packet, Path, ResidualFrontier, Status, Tile,
 };
 use serde::{Deserialize, Serialize};
 
@@ -125,6 +125,17 @@ pub trait Link {
     /// # Errors
     /// As [`LinkError`].
     fn path(&mut self, from: u8) -> Result<Path, LinkError>;
+    /// Passes on a packet that another robot of the team said.
+    ///
+    /// # Errors
+    /// As [`LinkError`]; [`LinkError::Refused`] in a session without a team.
+    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError>;
+    /// Asks for the next packet for the team. Call this after each observation until it returns
+    /// `None`: a planner says a beacon and at most three other packets in a step.
+    ///
+    /// # Errors
+    /// As [`Link::hear`].
+    fn say(&mut self) -> Result<Option<Packet>, LinkError>;
     /// The counters since the hello.
     fn stats(&self) -> LinkStats;
     /// Returns the device's log bytes (defmt) since the last call; empty if it has no log.

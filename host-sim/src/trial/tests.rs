@@ -1,8 +1,8 @@
 //! Runs with a scripted device and a point robot: every end, and the record after it.
 
 use fieldline_protocol::message::{
-    Command, Control, Fault, FieldRow, Finish, Identity, Observation, Path, ResidualFrontier,
-    ResidualReason, Start, Status, Tile, Twist,
+    Command, Control, Fault, FieldRow, Finish, Identity, Observation, Packet, Path,
+    ResidualFrontier, ResidualReason, Start, Status, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -109,6 +109,12 @@ impl Link for Script {
     }
     fn path(&mut self, _: u8) -> Result<Path, LinkError> {
         Ok(Path::default())
+    }
+    fn hear(&mut self, _: &Packet) -> Result<(), LinkError> {
+        Ok(())
+    }
+    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
+        Ok(None)
     }
     fn take_log(&mut self) -> Vec<u8> {
         Vec::new()

@@ -47,6 +47,7 @@ pub(crate) fn start() -> Start {
         period_ms: 200,
         uneven_ground: None,
         loops: LoopLimits::default(),
+        team: None,
     }
 }
 
@@ -151,10 +152,13 @@ impl Robot {
         link.hello()?;
         let status = link.control(&Control::Start(start()))?;
         assert_eq!(status, Status::Exploring);
-        for _ in 0..steps {
-            let command = link.observe(&self.sense())?;
-            self.drive(&command);
-        }
+        (0..steps).try_for_each(|_| self.step(link))
+    }
+
+    /// Drives a step of a session that has started.
+    pub(crate) fn step(&mut self, link: &mut dyn Link) -> Result<(), LinkError> {
+        let command = link.observe(&self.sense())?;
+        self.drive(&command);
         Ok(())
     }
 }

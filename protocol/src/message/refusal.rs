@@ -59,4 +59,6 @@ pub enum Refusal {
     BadBox,
     /// A parameter is out of its range.
     BadParameter(Parameter),
+    /// The session has no team: [`Start::team`] is `None`.
+    NoTeam,
 }

@@ -7,9 +7,9 @@ use heapless::Vec;
 use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
-use super::MAX_SCANS;
 #[cfg(doc)]
 use super::{Identity, MAX_BEAMS, Status};
+use super::{MAX_SCANS, Team};
 
 /// Mounting and sweep of a laser.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
@@ -178,6 +178,8 @@ pub struct Start {
     pub uneven_ground: Option<UnevenGround>,
     /// Limits of loops, for [`Strategy::Ouroboros`].
     pub loops: LoopLimits,
+    /// The robot's place in a team; `None` for a robot alone.
+    pub team: Option<Team>,
 }
 
 /// A change of the session's state.

@@ -8,6 +8,7 @@
 mod common;
 mod replies;
 mod requests;
+mod team;
 
 use common::{reply_frame, request_frame};
 use fieldline_protocol::SCHEMA;

@@ -250,6 +250,7 @@ fn reply_refused() {
         (Refusal::BadParameter(Parameter::UnevenGround), &[7, 4, 13]),
         (Refusal::BadParameter(Parameter::Hull), &[7, 4, 14]),
         (Refusal::BadParameter(Parameter::LoopLimits), &[7, 4, 15]),
+        (Refusal::NoTeam, &[7, 5]),
     ] {
         reply_is(Reply::Refused(refusal), body);
     }
@@ -278,9 +279,9 @@ fn reply_crash() {
     }
 }
 
-/// Number 5 is free: no refusal has it.
+/// Number 6 is free: no refusal has it.
 #[test]
 fn an_unknown_refusal_is_not_a_reply() {
     assert_eq!(replies(&frame(Kind::Reply, 1, &[7, 3])).0.len(), 1);
-    assert_eq!(replies(&frame(Kind::Reply, 1, &[7, 5])).0, []);
+    assert_eq!(replies(&frame(Kind::Reply, 1, &[7, 6])).0, []);
 }

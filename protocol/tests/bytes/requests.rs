@@ -2,8 +2,8 @@
 
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::message::{
-    Control, Hull, INVALID_MM, Laser, LoopLimits, NO_RETURN_MM, Observation, Pose, Preference,
-    Request, Scan, Start, Strategy, Twist, UnevenGround,
+    Control, Hull, INVALID_MM, Laser, LoopLimits, Member, NO_RETURN_MM, Observation, Pose,
+    Preference, Request, Scan, Start, Strategy, Team, Twist, UnevenGround,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -55,7 +55,8 @@ fn request_control_start_on_uneven_ground() {
             0x80, 0x10, // roll 0.25 rad = 1024/4096
             0x80, 0x04, // step 1/16 m = 256/4096
             0x80, 0x80, 0xa0, 0x01, 0x80, 0x80, 0xc0, 0x07, // default limits of loops
-            0x80, 0x80, 0x50, 0x80, 0x80, 0x10, 0x80, 0x80, 0xa0, 0x01,
+            0x80, 0x80, 0x50, 0x80, 0x80, 0x10, 0x80, 0x80, 0xa0, 0x01, //
+            0,    // no team
         ],
     );
 }
@@ -102,6 +103,11 @@ fn request_control_start() {
             period_ms: 200,
             uneven_ground: None,
             loops: LoopLimits::default(),
+            team: Some(Team {
+                member: Member { id: 2, boot: 128 },
+                origin: (long(1.0), long(-0.5)),
+                yaw: long(0.0),
+            }),
         })),
         &[
             1, 0, // Control, Start
@@ -128,6 +134,9 @@ fn request_control_start() {
             0x80, 0x80, 0x50, // 10 m more for each metre of frontier
             0x80, 0x80, 0x10, // twice the length
             0x80, 0x80, 0xa0, 0x01, // and 20 m
+            1, 2, 0x80, 0x01, // a team's robot 2, boot 128
+            0x80, 0x80, 0x08, 0xff, 0xff, 0x03,
+            0, // odometry from (1 m, −0.5 m), not turned
         ],
     );
 }

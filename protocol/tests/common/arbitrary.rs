@@ -1,10 +1,10 @@
 //! Proptest strategies for arbitrary messages.
 
 use fieldline_protocol::message::{
-    self, Cause, Command, Control, Cost, Counters, Crash, Fault, FieldRow, Finish, Hull, Identity,
-    Laser, LoopLimits, Loops, Observation, Parameter, Path, Pose, Preference, Refusal, Reply,
-    Request, ResidualFrontier, ResidualReason, Scan, Stages, Start, Status, Tile, Twist,
-    UnevenGround,
+    self, Activity, Beacon, Body, Cause, Command, Control, Cost, Counters, Crash, Digest, Fault,
+    FieldRow, Finish, Hull, Identity, Laser, LoopLimits, Loops, Member, Observation, Packet,
+    Parameter, Path, Pose, Preference, Refusal, Reply, Request, ResidualFrontier, ResidualReason,
+    Scan, Stages, Start, Status, Team, TeamTile, Tile, TileVersion, Twist, UnevenGround, Wanted,
 };
 use fixed::types::{I4F12, I16F16};
 use proptest::prelude::*;
@@ -103,6 +103,7 @@ fn start() -> impl Strategy<Value = Start> {
             strategy,
             any::<(u8, u8)>(),
             prop::option::of(uneven_ground()),
+            prop::option::of(team()),
         ),
         list(laser()),
         (any::<[u16; 4]>(), [long(), long(), long(), long(), long()]),
@@ -110,7 +111,13 @@ fn start() -> impl Strategy<Value = Start> {
         [short(), short(), short(), short()],
     )
         .prop_map(
-            |((strategy, box_tiles, uneven_ground), lasers, (sizes, loops), period_ms, limits)| {
+            |(
+                (strategy, box_tiles, uneven_ground, team),
+                lasers,
+                (sizes, loops),
+                period_ms,
+                limits,
+            )| {
                 let [length_mm, width_mm, height_mm, robot_radius_mm] = sizes;
                 let [least, most, most_per_frontier, detour, slack] = loops;
                 let [max_linear, max_angular, linear_accel, angular_accel] = limits;
@@ -137,9 +144,76 @@ fn start() -> impl Strategy<Value = Start> {
                         detour,
                         slack,
                     },
+                    team,
                 }
             },
         )
+}
+
+fn member() -> impl Strategy<Value = Member> {
+    any::<(u8, u16)>().prop_map(|(id, boot)| Member { id, boot })
+}
+
+fn team() -> impl Strategy<Value = Team> {
+    (member(), long(), long(), long()).prop_map(|(member, x, y, yaw)| Team {
+        member,
+        origin: (x, y),
+        yaw,
+    })
+}
+
+fn beacon() -> impl Strategy<Value = Beacon> {
+    let activity = prop::sample::select(vec![
+        Activity::Exploring,
+        Activity::Yielding,
+        Activity::Cornered,
+        Activity::Standing,
+        Activity::Finished,
+        Activity::Faulted,
+        Activity::Gone,
+    ]);
+    let motion = (short(), twist());
+    let place = any::<(u32, i16, i16, u8, u8, u8)>();
+    let road = list(any::<(i8, i8)>());
+    (place, motion, activity, any::<Option<(i16, i16)>>(), road).prop_map(
+        |((map, x_cm, y_cm, sd_cm, length, width), (yaw, velocity), activity, goal, road)| Beacon {
+            map,
+            x_cm,
+            y_cm,
+            yaw,
+            sd_cm,
+            velocity,
+            half_length_cm: length,
+            half_width_cm: width,
+            activity,
+            goal,
+            road,
+        },
+    )
+}
+
+/// Any packet of a team.
+pub(crate) fn packet() -> impl Strategy<Value = Packet> {
+    let version = any::<(i8, i8, u16, u16)>().prop_map(|(x, y, epoch, hash)| TileVersion {
+        x,
+        y,
+        epoch,
+        hash,
+    });
+    let digest = (any::<u8>(), list(version)).prop_map(|(salt, tiles)| Digest { salt, tiles });
+    let wanted = (any::<u8>(), list(any::<(i8, i8)>()));
+    let tile = (any::<(i8, i8, u16)>(), list(any::<u8>()));
+    let body = prop_oneof![
+        beacon().prop_map(Body::Beacon),
+        digest.prop_map(Body::Digest),
+        wanted.prop_map(|(of, tiles)| Body::Wanted(Wanted { of, tiles })),
+        tile.prop_map(|((x, y, epoch), cells)| Body::Tile(TeamTile { x, y, epoch, cells })),
+    ];
+    (member(), any::<u16>(), body).prop_map(|(from, sequence, body)| Packet {
+        from,
+        sequence,
+        body,
+    })
 }
 
 fn control() -> impl Strategy<Value = Control> {
@@ -189,6 +263,8 @@ pub(crate) fn request() -> impl Strategy<Value = Request> {
         any::<u8>().prop_map(|row| Request::FieldRow { row }),
         Just(Request::Frontiers),
         any::<u8>().prop_map(|from| Request::Path { from }),
+        packet().prop_map(Request::Hear),
+        Just(Request::Say),
     ]
 }
 
@@ -368,6 +444,7 @@ fn refusal() -> impl Strategy<Value = Refusal> {
         Refusal::NotStarted,
         Refusal::OutOfOrder,
         Refusal::BadBox,
+        Refusal::NoTeam,
         Refusal::BadParameter(Parameter::Beams),
         Refusal::BadParameter(Parameter::MaxAngular),
         Refusal::BadParameter(Parameter::LinearAccel),
@@ -393,5 +470,7 @@ pub(crate) fn reply() -> impl Strategy<Value = Reply> {
         refusal().prop_map(Reply::Refused),
         crash().prop_map(Reply::Crash),
         path().prop_map(Reply::Path),
+        Just(Reply::Heard),
+        prop::option::of(packet()).prop_map(Reply::Say),
     ]
 }

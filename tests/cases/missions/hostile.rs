@@ -124,6 +124,7 @@ impl AbsurdHost {
             period_ms: self.random.between(100, 400) as u16,
             uneven_ground: None,
             loops: self.loops(),
+            team: None,
         };
         for (speed, accel) in [
             (start.max_linear, &mut start.linear_accel),

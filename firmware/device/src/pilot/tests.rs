@@ -4,8 +4,8 @@ use std::boxed::Box;
 
 use fieldline_planner::{State, Tuning, Workspace};
 use fieldline_protocol::message::{
-    Control, Fault, Finish, Hull, Laser, LoopLimits, Observation, Refusal, Scan, Start, Status,
-    Strategy, Twist,
+    Activity, Beacon, Body, Control, Fault, Finish, Hull, Laser, LoopLimits, Member, Observation,
+    Packet, Refusal, Scan, Start, Status, Strategy, Team, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -40,6 +40,7 @@ pub(crate) fn start() -> Start {
         period_ms: 200,
         uneven_ground: None,
         loops: LoopLimits::default(),
+        team: None,
     }
 }
 
@@ -191,4 +192,99 @@ fn a_reset_ends_the_session_but_not_the_emergency_stop() {
     pilot.set_emergency_stop(false);
     let refused = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
     assert_eq!(refused, Err(Refusal::NotStarted));
+}
+
+fn in_team() -> (Pilot, Bench) {
+    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let team = Team {
+        member: Member { id: 1, boot: 4 },
+        origin: (I16F16::lit("2"), I16F16::lit("-1")),
+        yaw: I16F16::lit("1.570796"),
+    };
+    let start = Start {
+        team: Some(team),
+        ..start()
+    };
+    let status = pilot.control(&mut bench.memory(), &Control::Start(start));
+    assert_eq!(status, Ok(Status::Exploring));
+    (pilot, bench)
+}
+
+fn of_another(sequence: u16) -> Packet {
+    Packet {
+        from: Member { id: 2, boot: 0 },
+        sequence,
+        body: Body::Beacon(Beacon::default()),
+    }
+}
+
+#[test]
+fn a_robot_alone_neither_hears_nor_says() {
+    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let mut memory = bench.memory();
+    assert_eq!(pilot.say(&mut memory), Err(Refusal::NotStarted));
+    let (mut pilot, mut bench) = started();
+    let mut memory = bench.memory();
+    assert_eq!(pilot.say(&mut memory), Err(Refusal::NoTeam));
+    let heard = pilot.hear(&mut memory, &of_another(0));
+    assert_eq!(heard, Err(Refusal::NoTeam));
+}
+
+/// Returns the first packet after an observation.
+fn said(pilot: &mut Pilot, bench: &mut Bench, observation: &Observation) -> Option<Packet> {
+    let mut memory = bench.memory();
+    pilot.observe(&mut memory, observation, &mut ()).unwrap();
+    pilot.say(&mut memory).unwrap()
+}
+
+/// Returns the beacon after an observation.
+fn beacon(pilot: &mut Pilot, bench: &mut Bench, time_ms: u32) -> Beacon {
+    match said(pilot, bench, &observation(time_ms)).map(|packet| packet.body) {
+        Some(Body::Beacon(beacon)) => beacon,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The odometry starts at (2 m, −1 m) of the team and is turned left by a right angle.
+#[test]
+fn a_beacon_tells_the_pose_in_the_coordinates_of_the_team() {
+    let (mut pilot, mut bench) = in_team();
+    assert_eq!(pilot.say(&mut bench.memory()), Ok(None), "no step yet");
+    let mut observation = observation(0);
+    observation.pose.x = I16F16::lit("0.5");
+    let first = said(&mut pilot, &mut bench, &observation).unwrap();
+    assert_eq!((first.from.id, first.from.boot, first.sequence), (1, 4, 0));
+    let Body::Beacon(beacon) = first.body else {
+        panic!("{first:?}");
+    };
+    assert_eq!((beacon.x_cm, beacon.y_cm), (200, -50));
+    assert!((beacon.yaw.to_num::<f32>() - core::f32::consts::FRAC_PI_2).abs() < 1e-3);
+    assert_eq!((beacon.half_length_cm, beacon.half_width_cm), (26, 25));
+    assert_eq!(beacon.activity, Activity::Exploring);
+}
+
+#[test]
+fn a_robot_that_stands_by_order_goes_on_to_say_so() {
+    let (mut pilot, mut bench) = in_team();
+    let orders = [
+        (Control::Pause, Activity::Standing),
+        (Control::Resume, Activity::Exploring),
+        (Control::Stop, Activity::Gone),
+    ];
+    for (time_ms, (order, activity)) in (0..).step_by(200).zip(orders) {
+        pilot.control(&mut bench.memory(), &order).unwrap();
+        let beacon = beacon(&mut pilot, &mut bench, time_ms);
+        assert_eq!(beacon.activity, activity, "{order:?}");
+    }
+}
+
+#[test]
+fn peers_are_heard_and_the_own_packets_are_not() {
+    let (mut pilot, mut bench) = in_team();
+    let mut own = of_another(0);
+    own.from.id = 1;
+    pilot.hear(&mut bench.memory(), &own).unwrap();
+    assert_eq!(bench.state.peers().count(), 0);
+    pilot.hear(&mut bench.memory(), &of_another(1)).unwrap();
+    assert_eq!(bench.state.peers().count(), 1);
 }

@@ -5,8 +5,8 @@
 use heapless::Vec;
 
 use crate::config::{
-    Config, ConfigError, GoalLevel, LoopLimits, Parameter, SolverConfig, Strategy, Tuning,
-    UnevenGround,
+    Config, ConfigError, GoalLevel, LoopLimits, Parameter, SolverConfig, Strategy, TeamPlace,
+    Tuning, UnevenGround,
 };
 use crate::geometry::CELL_M;
 use crate::input::NO_RETURN_MM;
@@ -151,6 +151,14 @@ impl ConfigBuilder {
     #[must_use]
     pub const fn tuning(mut self, tuning: &'static Tuning) -> Self {
         self.config.tuning = tuning;
+        self
+    }
+
+    /// Makes the robot one of a team: it says and hears packets ([`crate::State::say`]). Default: a
+    /// robot alone.
+    #[must_use]
+    pub const fn team(mut self, place: TeamPlace) -> Self {
+        self.config.team = Some(place);
         self
     }
 

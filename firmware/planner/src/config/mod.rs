@@ -10,6 +10,7 @@ mod goal;
 mod ground;
 mod loops;
 mod solver;
+mod team;
 mod tuning;
 
 pub use builder::ConfigBuilder;
@@ -18,6 +19,7 @@ pub use goal::{Goal, GoalLevel};
 pub use ground::{KERNEL_CELLS, PreferenceMode, UnevenGround};
 pub use loops::LoopLimits;
 pub use solver::{Method, SolverConfig};
+pub use team::{Member, TeamPlace};
 pub use tuning::{
     FieldTuning, GroundTuning, MapTuning, OuroborosTuning, TdbvpTuning, Tuned, Tuning, TuningError,
 };
@@ -89,6 +91,8 @@ pub struct Config {
     pub(crate) tuning: &'static Tuning,
     /// Parameters of uneven ground; `None` on flat ground, where lasers only see obstacles.
     pub(crate) ground: Option<UnevenGround>,
+    /// The robot's place in a team; `None` for a robot alone.
+    pub(crate) team: Option<TeamPlace>,
 }
 
 impl Config {
@@ -127,6 +131,7 @@ impl Config {
             },
             tuning: &Tuning::DEFAULT,
             ground: None,
+            team: None,
         }
     }
 
@@ -196,6 +201,12 @@ impl Config {
     #[must_use]
     pub const fn ground(&self) -> Option<&UnevenGround> {
         self.ground.as_ref()
+    }
+
+    /// Returns the robot's place in a team; `None` for a robot alone.
+    #[must_use]
+    pub const fn team(&self) -> Option<&TeamPlace> {
+        self.team.as_ref()
     }
 
     /// Returns the tuned constants.

@@ -9,6 +9,8 @@ use crate::input::Input;
 use crate::planner::{Output, State, Workspace, step};
 use crate::profiling::StageTimer;
 use crate::status::{ResidualFrontier, Status};
+use crate::team::packet::Packet;
+use crate::team::peers::{Peer, Peers};
 
 /// The capacity of a planner: `TILES` map tiles of 3.2 × 3.2 m in the pool, and a box of `SLOTS`
 /// tile places that they may lie in.
@@ -109,6 +111,57 @@ impl<M: Memory> Planner<M> {
         )
     }
 
+    /// Takes a packet that another robot of the team said.
+    ///
+    /// ```
+    /// use fieldline_planner::{
+    ///     Config, F405, Input, LaserMount, Member, Peer, Planner, Pose, RobotShape, TeamPlace,
+    ///     Twist,
+    /// };
+    ///
+    /// // Two robots, 3 m apart, that look the same way.
+    /// let mut team = [0.0, 3.0].map(|x_m| {
+    ///     let config = Config::builder(RobotShape::PIONEER_3AT)
+    ///         .laser(LaserMount::level(0.10, 0.40))
+    ///         .team(TeamPlace {
+    ///             member: Member { id: x_m as u8, boot: 0 },
+    ///             map_from_odom: Pose { x_m, ..Pose::default() },
+    ///         })
+    ///         .build()
+    ///         .unwrap();
+    ///     Box::new(Planner::<F405>::new(&config).unwrap())
+    /// });
+    /// let ranges_mm = [2_000; 181];
+    /// let input = Input {
+    ///     time_ms: 0,
+    ///     pose: Pose::default(),
+    ///     velocity: Twist::default(),
+    ///     scans: [&ranges_mm, &[]],
+    /// };
+    /// for (from, to) in [(0, 1), (1, 0)] {
+    ///     team[from].step(&input);
+    ///     while let Some(packet) = team[from].say() {
+    ///         team[to].hear(&packet);
+    ///     }
+    /// }
+    /// let place = |peer: &Peer| peer.pose(0).x_m;
+    /// assert_eq!(team[0].peers().map(place).collect::<Vec<f32>>(), [3.0]);
+    /// ```
+    pub fn hear(&mut self, packet: &Packet) {
+        sealed::Planning::hear(&mut self.state, packet);
+    }
+
+    /// Returns the next packet for the team; `None` until the next step, and for a robot alone. Ask
+    /// after every step until there is none.
+    pub fn say(&mut self) -> Option<Packet> {
+        sealed::Planning::say(&mut self.state, &self.config)
+    }
+
+    /// Returns the other robots of the team, as their last beacons told.
+    pub fn peers(&self) -> impl Iterator<Item = &Peer> {
+        sealed::Planning::peers(&self.state).iter()
+    }
+
     /// Returns the configuration.
     pub const fn config(&self) -> &Config {
         &self.config
@@ -148,8 +201,8 @@ mod sealed {
     use core::fmt::Debug;
 
     use super::{
-        BoxTooLarge, Capacity, Cell, Config, Input, Output, ResidualFrontier, StageTimer, State,
-        Status, Workspace, step,
+        BoxTooLarge, Capacity, Cell, Config, Input, Output, Packet, Peers, ResidualFrontier,
+        StageTimer, State, Status, Workspace, step,
     };
 
     /// A capacity.
@@ -173,6 +226,9 @@ mod sealed {
             input: Input<'_>,
             timer: &mut impl StageTimer,
         ) -> Output;
+        fn hear(&mut self, packet: &Packet);
+        fn say(&mut self, config: &Config) -> Option<Packet>;
+        fn peers(&self) -> &Peers;
         fn status(&self) -> Status;
         fn path(&self) -> &[Cell];
         fn frontiers(&self) -> &[ResidualFrontier];
@@ -196,6 +252,18 @@ mod sealed {
             timer: &mut impl StageTimer,
         ) -> Output {
             step(config, self, workspace, input, timer)
+        }
+
+        fn hear(&mut self, packet: &Packet) {
+            Self::hear(self, packet);
+        }
+
+        fn say(&mut self, config: &Config) -> Option<Packet> {
+            Self::say(self, config)
+        }
+
+        fn peers(&self) -> &Peers {
+            self.team.peers()
         }
 
         fn status(&self) -> Status {

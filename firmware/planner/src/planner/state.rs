@@ -18,6 +18,7 @@ use crate::roadmap::reachability;
 use crate::roadmap::skeleton::Skeleton;
 use crate::status::Status;
 use crate::strategy::Strategist;
+use crate::team::Team;
 
 /// The planner's memory from step to step.
 ///
@@ -35,6 +36,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     /// The search for viewpoints, which begins when no frontier can be reached.
     pub(super) viewpoints: viewpoint::Search,
     pub(super) drive: Drive,
+    /// The other robots, and what is said to them.
+    pub(super) team: Team,
     /// The direction driven on a slope that the robot must not cross.
     pub(super) slope_direction: Option<SlopeDirection>,
     /// The direction in which the drive found no way, until its next search.
@@ -75,6 +78,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             preferences: Preferences::new(),
             viewpoints: viewpoint::Search::new(),
             drive: Drive::new(),
+            team: Team::new(),
             slope_direction: None,
             blocked_direction: None,
             status: Status::Exploring,
@@ -104,6 +108,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.strategy.reset(config);
         self.viewpoints = viewpoint::Search::new();
         self.drive = Drive::new();
+        self.team.reset(config.team);
         (self.slope_direction, self.blocked_direction) = (None, None);
         self.status = Status::Exploring;
         self.started = false;

@@ -1,0 +1,68 @@
+//! What the planner says to its team, and how it takes what the team says.
+//!
+//! Units: metres; coarse cells of 20 cm.
+
+use crate::config::Config;
+use crate::geometry::Cell;
+use crate::input::Input;
+use crate::planner::state::State;
+use crate::status::Status;
+use crate::team::packet::{Activity, Packet, half_cm};
+use crate::team::peers::Peer;
+
+/// Coarse cells of the path from one told place to the next: 0.8 m.
+const ROAD_CELLS: usize = 4;
+
+impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
+    /// Returns true if the session has a team.
+    #[must_use]
+    pub const fn is_in_team(&self) -> bool {
+        self.team.is_member()
+    }
+
+    /// Returns the other robots of the team, as their last beacons told.
+    pub fn peers(&self) -> impl Iterator<Item = &Peer> {
+        self.team.peers().iter()
+    }
+
+    /// Enters an input without a step: the robot stands by order, or its exploration has ended.
+    /// Only its team learns of it.
+    pub fn stand(&mut self, input: &Input<'_>) {
+        let pose = self.team.to_map(&input.pose);
+        self.team.note(input.time_ms, &pose, input.velocity);
+    }
+
+    /// Takes a packet that another robot of the team said.
+    pub fn hear(&mut self, packet: &Packet) {
+        self.team.hear(packet);
+    }
+
+    /// Returns the next packet for the team; `None` until the next step, and for a robot alone. Ask
+    /// after every step until there is none.
+    #[must_use]
+    pub fn say(&mut self, config: &Config) -> Option<Packet> {
+        let robot = &config.robot;
+        let path = self.strategy.frontier.path();
+        let status = self.status;
+        self.team.say(|mut beacon| {
+            beacon.half_cm = (half_cm(robot.half_length_m), half_cm(robot.half_width_m));
+            beacon.activity = activity(status);
+            if !beacon.activity.moves() {
+                return beacon;
+            }
+            let goal = (!path.is_empty()).then(|| path.goal());
+            let ahead = path.cells().iter().skip(ROAD_CELLS).step_by(ROAD_CELLS);
+            let middle = |cell: &Cell| cell.offset(1, 1).corner();
+            beacon.bound_for(goal).along(ahead.map(middle))
+        })
+    }
+}
+
+/// Returns what a robot with this status does.
+const fn activity(status: Status) -> Activity {
+    match status {
+        Status::Exploring => Activity::Exploring,
+        Status::Finished(_) => Activity::Finished,
+        Status::Fault(_) => Activity::Faulted,
+    }
+}
