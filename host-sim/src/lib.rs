@@ -5,6 +5,7 @@ pub mod baseline;
 pub mod link;
 pub mod metrics;
 pub mod picture;
+pub mod radio;
 pub mod report;
 pub mod robot;
 pub mod sim;

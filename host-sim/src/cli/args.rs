@@ -12,6 +12,7 @@ use host_sim::trial::uneven::{self, ParameterError};
 
 use super::robot::RobotArgs;
 use super::strategies;
+use super::team::TeamArgs;
 
 /// Most pictures during a run. Each is read over the link and held until the end.
 const MOST_SNAPSHOTS: u64 = 500;
@@ -29,6 +30,9 @@ pub(super) struct Cli {
 pub(super) enum Command {
     /// Explore worlds; write a folder with report, map, trajectory, commands and picture of each
     Explore(Box<ExploreArgs>),
+    /// Explore a world with several robots; write a folder with report, map and picture of the team
+    /// and a folder of each robot
+    Team(Box<TeamArgs>),
     /// List the built-in worlds and the kinds of generated ones
     Worlds {
         /// Print one JSON object a line
@@ -309,12 +313,12 @@ fn whole(text: &str, most: u64) -> Result<u64, String> {
 }
 
 /// Parses a seed.
-fn seed(text: &str) -> Result<u64, String> {
+pub(super) fn seed(text: &str) -> Result<u64, String> {
     whole(text, u64::MAX)
 }
 
 /// Parses the index of a start.
-fn start(text: &str) -> Result<usize, String> {
+pub(super) fn start(text: &str) -> Result<usize, String> {
     whole(text, u64::from(u16::MAX)).map(|number| number as usize)
 }
 
@@ -338,7 +342,7 @@ fn snapshots(text: &str) -> Result<usize, String> {
 }
 
 /// Parses seconds; returns milliseconds.
-fn time_limit(text: &str) -> Result<u32, String> {
+pub(super) fn time_limit(text: &str) -> Result<u32, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds > 0.0 && seconds <= 4e6 => Ok((seconds * 1000.0).ceil() as u32),
         _ => Err("give simulated seconds above 0, at most 4000000".into()),

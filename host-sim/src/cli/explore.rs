@@ -111,7 +111,7 @@ fn runs(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Run>> {
 }
 
 /// Splits `WORLD@N` into a world and one of its starts, unless a file has that name.
-fn with_start(name: &str) -> (&str, Option<usize>) {
+pub(super) fn with_start(name: &str) -> (&str, Option<usize>) {
     let parts = name.rsplit_once('@').filter(|_| !Path::new(name).exists());
     match parts.and_then(|(world, start)| Some((world, start.parse().ok()?))) {
         Some((world, start)) => (world, Some(start)),
@@ -219,7 +219,8 @@ fn check_reference(mission: &Mission) -> Result<()> {
     Ok(())
 }
 
-fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
+/// Returns the settings of a run.
+pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     let working = args.working_limits.unwrap_or(Limits::WORKING);
     let failing = args.failing_limits.unwrap_or(Limits::FAILING);
     if !working.is_within(&failing) {

@@ -12,6 +12,7 @@ mod progress;
 mod robot;
 mod solve;
 mod strategies;
+mod team;
 mod tuning;
 mod worlds;
 
@@ -58,6 +59,7 @@ fn run(cli: &Cli) -> Result<bool> {
     match &cli.command {
         None => explore::run(&ExploreArgs::default()),
         Some(Command::Explore(args)) => explore::run(args),
+        Some(Command::Team(args)) => team::run(args),
         Some(Command::Worlds { json }) => worlds::run(*json).map(|()| true),
         Some(Command::Tuning { json }) => tuning::run(*json).map(|()| true),
         Some(Command::Solve(args)) => solve::run(args).map(|()| true),

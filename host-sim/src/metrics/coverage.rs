@@ -147,6 +147,12 @@ impl Coverage {
         self.seen_at_s[2]
     }
 
+    /// Visible cells that are known.
+    #[must_use]
+    pub fn known(&self) -> &[Cell] {
+        &self.cells[..self.known]
+    }
+
     /// Visible cells that are not known.
     #[must_use]
     pub fn missing(&self) -> &[Cell] {

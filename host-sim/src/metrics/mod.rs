@@ -13,6 +13,7 @@ pub mod patrol;
 mod reach;
 mod ride;
 mod safety;
+mod team_overlap;
 
 pub use cell_area::CellArea;
 pub use coverage::{Coverage, DIRECTIONS, MAP_CELL_M, Truth, map_cells, truth};
@@ -26,3 +27,4 @@ pub use patrol::Patrol;
 pub use reach::{CellSet, START_SLACK_M};
 pub use ride::Ride;
 pub use safety::Safety;
+pub use team_overlap::TeamOverlap;

@@ -15,10 +15,10 @@ const TIME_BAR: f32 = 118.0;
 const HEIGHT_BAR: f32 = 78.0;
 
 /// Draws the two lines above the map.
-pub(super) fn title(canvas: &mut Canvas, scene: &Scene<'_>) {
+pub(super) fn lines(canvas: &mut Canvas, title: &str, subtitle: &str) {
     let left = MARGIN as f32;
-    canvas.text((left, 37.0), 23.0, scene.title, palette::INK);
-    canvas.text((left, 61.0), 15.5, scene.subtitle, palette::FAINT);
+    canvas.text((left, 37.0), 23.0, title, palette::INK);
+    canvas.text((left, 61.0), 15.5, subtitle, palette::FAINT);
 }
 
 /// Draws a bar of a round length, at most a quarter of the width of the map.
@@ -142,7 +142,8 @@ fn signed(height_m: f64) -> String {
     format!("{height_m:+.2} m from the start")
 }
 
-fn swatch(canvas: &mut Canvas, (left, y): (f32, f32), colour: Rgb) {
+/// Draws the mark of a colour.
+pub(super) fn swatch(canvas: &mut Canvas, (left, y): (f32, f32), colour: Rgb) {
     let corners = |inset: f32| {
         let (x0, y0) = (left + inset, y - 8.0 + inset);
         let (x1, y1) = (left + 26.0 - inset, y + 8.0 - inset);
@@ -152,7 +153,8 @@ fn swatch(canvas: &mut Canvas, (left, y): (f32, f32), colour: Rgb) {
     canvas.outline(&corners(0.5), 1.0, palette::HAIR.alpha(1.0));
 }
 
-fn label(canvas: &mut Canvas, left: f32, y: f32, words: &str) {
+/// Draws the words beside a mark.
+pub(super) fn label(canvas: &mut Canvas, left: f32, y: f32, words: &str) {
     canvas.text((left + 40.0, y + 5.0), 15.5, words, palette::INK);
 }
 

@@ -14,6 +14,7 @@ mod legend;
 mod loops;
 mod palette;
 mod panels;
+mod team;
 mod text;
 
 use crate::metrics::CellArea;
@@ -26,6 +27,7 @@ use canvas::{Canvas, Spot};
 use panels::Strip;
 
 pub use ground::Ground;
+pub use team::{TeamScene, team_png};
 
 /// Pixels around everything.
 const MARGIN: i32 = 28;
@@ -211,7 +213,7 @@ pub fn run_png(scene: &Scene<'_>) -> Vec<u8> {
     if let Some(strip) = &strip {
         panels::draw(&mut canvas, strip, scene);
     }
-    legend::title(&mut canvas, scene);
+    legend::lines(&mut canvas, scene.title, scene.subtitle);
     legend::scale_bar(&mut canvas, &frame);
     legend::panel(&mut canvas, maps + 32, scene);
     canvas.png().unwrap_or_default()

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{Report, commands, ros_map, tum};
+use super::{GridMap, Report, TeamReport, commands, ros_map, tum};
 use crate::trial::Record;
 
 /// Folder of the pictures during the run.
@@ -73,6 +73,22 @@ pub fn write(
         tum::text(&truths).as_bytes(),
     )?;
     put(folder, "commands.csv", commands::text(rows).as_bytes())?;
+    put(folder, "run.png", picture)
+}
+
+/// Writes the files of a team as a whole into `folder`.
+///
+/// # Errors
+/// As [`WriteError`], at the first file that cannot be written.
+pub fn write_team(
+    folder: &Path,
+    report: &TeamReport,
+    map: &GridMap,
+    picture: &[u8],
+) -> Result<(), WriteError> {
+    put(folder, "report.json", report.to_json_pretty().as_bytes())?;
+    put(folder, "map.pgm", &ros_map::pgm(map))?;
+    put(folder, "map.yaml", ros_map::yaml(map, "map.pgm").as_bytes())?;
     put(folder, "run.png", picture)
 }
 

@@ -14,7 +14,7 @@ pub const TILE_SIDE: i32 = 32;
 pub const CELL_M: f64 = 0.1;
 
 /// Class of a cell.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MapCell {
     /// Never measured.
     #[default]
@@ -201,6 +201,37 @@ impl GridMap {
     pub fn known(&self) -> usize {
         let is_known = |cell: &&MapCell| **cell != MapCell::Unknown;
         self.cells.iter().filter(is_known).count()
+    }
+
+    /// Returns the cells that are not unknown, with their map coordinates, row by row.
+    pub fn known_cells(&self) -> impl Iterator<Item = (i32, i32, MapCell)> + '_ {
+        let cells = self.places().zip(&self.cells);
+        cells
+            .filter(|(_, cell)| **cell != MapCell::Unknown)
+            .map(|((x, y), cell)| (x, y, *cell))
+    }
+
+    /// Returns what several maps know together, with the skeletons of all. Of two classes of a cell
+    /// the later one in [`MapCell`] counts, as when the robots merge their maps.
+    #[must_use]
+    pub fn united<'a>(maps: impl Iterator<Item = &'a Self>) -> Self {
+        let maps: Vec<&Self> = maps.filter(|map| !map.cells.is_empty()).collect();
+        let least = |of: fn(&Self) -> i32| maps.iter().map(|map| of(map)).min().unwrap_or(0);
+        let most = |of: fn(&Self) -> i32| maps.iter().map(|map| of(map)).max().unwrap_or(0);
+        let (x0, y0) = (least(|map| map.origin_x), least(|map| map.origin_y));
+        let east = most(|map| map.origin_x + map.width as i32);
+        let north = most(|map| map.origin_y + map.height as i32);
+        let side = |from: i32, to: i32| usize::try_from(to - from).unwrap_or(0);
+        let mut out = Self::unknown(x0, y0, side(x0, east), side(y0, north));
+        for map in maps {
+            for (x, y, cell) in map.known_cells() {
+                out.set(x, y, out.get(x, y).max(cell));
+                if map.on_skeleton(x, y) {
+                    out.set_skeleton(x, y);
+                }
+            }
+        }
+        out
     }
 
     fn index(&self, x: i32, y: i32) -> Option<usize> {

@@ -10,6 +10,7 @@ pub mod folder;
 pub mod grid_map;
 pub mod loop_closing;
 pub mod ros_map;
+pub mod team;
 mod text;
 pub mod true_ground;
 pub mod tum;
@@ -19,6 +20,7 @@ use serde::{Deserialize, Serialize};
 pub use crate::link::LinkStats;
 pub use grid_map::{GridMap, MapCell};
 pub use loop_closing::{GivenUp, LoopClosing};
+pub use team::TeamReport;
 pub use true_ground::TrueGround;
 
 /// Version of the schema. It grows by one when a key changes its name or meaning, or goes.
@@ -174,6 +176,10 @@ pub struct Safety {
     pub tips: u32,
     /// Least distance from the footprint to an obstacle.
     pub min_clearance_m: Option<f64>,
+    /// Number of times that two robots of a team began to touch; the key is missing for a robot
+    /// alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robot_contacts: Option<u32>,
 }
 
 /// Distance between the estimated and the true position.

@@ -30,6 +30,8 @@ pub enum Source {
     OdometryClimb = 8,
     /// The drawing of a generated world, under the world's own seed.
     Drawing = 9,
+    /// Losses and delays of the radio between robots.
+    Radio = 10,
 }
 
 /// One stream.

@@ -40,6 +40,22 @@ impl Account {
     }
 }
 
+impl Account {
+    /// Makes the account of another robot of the same team, which has not begun.
+    pub(super) fn beside(&self, setup: &Setup) -> Self {
+        Self {
+            mirror: Mirror::new(&setup.start),
+            coverage: self.coverage.clone(),
+            ground: self.ground.clone(),
+        }
+    }
+
+    /// Begins with an empty map again. What the robot measured before stays counted.
+    pub(super) fn forget(&mut self, setup: &Setup) {
+        self.mirror = Mirror::new(&setup.start);
+    }
+}
+
 impl Survey for Account {
     fn note(&mut self, observation: &Observation, status: Status) -> f64 {
         self.mirror.observe(observation, status);

@@ -23,10 +23,12 @@ pub enum Ending {
     Frozen,
     /// The user stopped it.
     Interrupted,
+    /// The robot left its team.
+    Left,
 }
 
 impl Ending {
-    /// Returns `finished`, `fault`, `lost`, `time-limit`, `frozen` or `interrupted`.
+    /// Returns `finished`, `fault`, `lost`, `time-limit`, `frozen`, `interrupted` or `left`.
     #[must_use]
     pub fn status(&self) -> &'static str {
         match self {
@@ -36,6 +38,7 @@ impl Ending {
             Self::TimeLimit => "time-limit",
             Self::Frozen => "frozen",
             Self::Interrupted => "interrupted",
+            Self::Left => "left",
         }
     }
 
@@ -56,6 +59,7 @@ impl Ending {
             Self::TimeLimit => "simulated-time",
             Self::Frozen => "no-motion",
             Self::Interrupted => "user",
+            Self::Left => "timetable",
         }
     }
 
@@ -82,6 +86,7 @@ impl Ending {
                  see run.png"
                 .into(),
             Self::Interrupted => "stopped by the user".into(),
+            Self::Left => "the robot left its team and did not join again".into(),
         };
         Some(text)
     }

@@ -14,7 +14,7 @@ use crate::link::{Link, LinkError};
 use crate::report::Report;
 use crate::robot::{Footprint, LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M};
 use crate::sim::{SimConfig, Simulator};
-use crate::world::{World, WorldError};
+use crate::world::{Start, World, WorldError};
 
 /// The usual impatience of strategy tdbvp, seconds. With 60 s, three adjacent loops took 378 s
 /// instead of 343 s (means of four starts), and rooms without a loop 810 s instead of 584 s.
@@ -35,6 +35,8 @@ pub struct Mission {
     pub seed: u64,
     /// Index of the start in the world.
     pub start: usize,
+    /// A start pose to use instead of the world's.
+    pub place: Option<Start>,
     /// True if odometry has errors.
     pub noisy_odometry: bool,
     /// Standard deviation of roll and pitch, radians. If `None`, 0 with true odometry and that of
@@ -78,6 +80,7 @@ impl Default for Mission {
             fault: None,
             seed: 0,
             start: 0,
+            place: None,
             noisy_odometry: false,
             imu_rad: None,
             laser_m: None,
@@ -190,11 +193,12 @@ impl Mission {
     }
 
     /// Returns the simulator's configuration.
-    fn sim_config(&self) -> SimConfig {
+    pub(super) fn sim_config(&self) -> SimConfig {
         let lasers = LaserNoise::default();
         SimConfig {
             seed: self.seed,
             start: self.start,
+            place: self.place,
             period_ms: self.period_ms,
             odometry: match (self.noisy_odometry, self.imu_rad) {
                 (true, imu_rad) => {
@@ -228,6 +232,31 @@ pub fn check(mission: &Mission, world: &World) -> Result<(), WorldError> {
     Simulator::new(world, mission.sim_config()).map(|_| ())
 }
 
+/// Returns the settings of a run by a device with so many slots for tiles.
+pub(super) fn setup(
+    mission: &Mission,
+    simulator: &Simulator<'_>,
+    slots: u16,
+) -> Result<Setup, MissionError> {
+    let size_m = simulator.world().size_m();
+    let (across, up) = mission
+        .box_tiles
+        .unwrap_or_else(|| shape::for_world(size_m, slots));
+    if u32::from(across) * u32::from(up) > u32::from(slots) {
+        return Err(MissionError::Box { across, up, slots });
+    }
+    Ok(Setup {
+        start: wire::Start {
+            uneven_ground: mission.uneven_ground,
+            loops: mission.loops,
+            ..simulator.start_message(mission.strategy(), (across, up))
+        },
+        time_limit_ms: mission.time_limit_ms,
+        check_field: mission.check_field,
+        snapshots: mission.snapshots,
+    })
+}
+
 /// Explores `world` over `link`.
 ///
 /// # Errors
@@ -239,23 +268,7 @@ pub fn explore(
     watch: &mut dyn Watch,
 ) -> Result<(Report, Record), MissionError> {
     let mut simulator = Simulator::new(world, mission.sim_config())?;
-    let slots = link.hello()?.tile_slots;
-    let (across, up) = mission
-        .box_tiles
-        .unwrap_or_else(|| shape::for_world(world.size_m(), slots));
-    if u32::from(across) * u32::from(up) > u32::from(slots) {
-        return Err(MissionError::Box { across, up, slots });
-    }
-    let setup = Setup {
-        start: wire::Start {
-            uneven_ground: mission.uneven_ground,
-            loops: mission.loops,
-            ..simulator.start_message(mission.strategy(), (across, up))
-        },
-        time_limit_ms: mission.time_limit_ms,
-        check_field: mission.check_field,
-        snapshots: mission.snapshots,
-    };
+    let setup = setup(mission, &simulator, link.hello()?.tile_slots)?;
     let mut account = Account::new(&setup, &simulator);
     let mut record = run(
         &setup,

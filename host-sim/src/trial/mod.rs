@@ -19,6 +19,7 @@ pub mod series;
 pub mod shape;
 pub mod snapshot;
 mod summary;
+pub mod team;
 pub mod uneven;
 pub mod wording;
 
@@ -215,7 +216,7 @@ fn bring_to_rest(cast: &mut Cast<'_>, record: &Record) {
 /// Reads map, last window, residual frontiers and counters, if the link still answers.
 fn read_out(cast: &mut Cast<'_>, record: &mut Record) {
     if !matches!(record.ending, Ending::Link(_))
-        && let Err(error) = snapshot::read(cast.link, record)
+        && let Err(error) = snapshot::read(cast.link, record, &[])
     {
         record.read_out_error = Some(error);
     }

@@ -60,15 +60,21 @@ pub struct Snapshot {
     pub relief: Option<Relief>,
 }
 
-/// Reads the record's map, window, path and frontiers.
+/// Reads the record's map, window, path and frontiers. A map that consists of parts, because a
+/// part of it was heard, is found if each part holds the start or one of `places`, metres.
 ///
 /// # Errors
 /// As [`LinkError`]; data read before it stays in the record.
-pub fn read(link: &mut dyn Link, record: &mut Record) -> Result<(), LinkError> {
+pub fn read(
+    link: &mut dyn Link,
+    record: &mut Record,
+    places: &[[f64; 2]],
+) -> Result<(), LinkError> {
     record.frontiers = link.frontiers()?;
     record.window = window(link)?;
     record.planned_path = planned_path::read(link)?;
-    record.tiles = tiles(link, began_m(record))?;
+    let places: Vec<[f64; 2]> = [&[began_m(record)], places].concat();
+    record.tiles = tiles(link, &places)?;
     record.map = GridMap::from_tiles(&record.tiles);
     Ok(())
 }
@@ -79,7 +85,7 @@ pub fn read(link: &mut dyn Link, record: &mut Record) -> Result<(), LinkError> {
 /// As [`LinkError`].
 pub fn take(link: &mut dyn Link, record: &Record) -> Result<Snapshot, LinkError> {
     let (window, planned_path) = (window(link)?, planned_path::read(link)?);
-    let tiles = tiles(link, began_m(record))?;
+    let tiles = tiles(link, &[began_m(record)])?;
     Ok(Snapshot {
         progress: record.progress(),
         steps: record.steps.len(),
@@ -133,12 +139,16 @@ fn cell_of(row: &FieldRow, column: usize) -> WindowCell {
 
 fn tiles(
     link: &mut dyn Link,
-    [x_m, y_m]: [f64; 2],
+    places: &[[f64; 2]],
 ) -> Result<BTreeMap<(i16, i16), Tile>, LinkError> {
     let side_m = CELL_M * f64::from(TILE_SIDE);
-    let first = ((x_m / side_m).floor() as i16, (y_m / side_m).floor() as i16);
-    let (mut found, mut asked) = (BTreeMap::new(), BTreeSet::from([first]));
-    let mut pending = vec![first];
+    let tile_of = |[x_m, y_m]: &[f64; 2]| {
+        let number = |m: &f64| (m / side_m).floor() as i16;
+        (number(x_m), number(y_m))
+    };
+    let mut asked: BTreeSet<(i16, i16)> = places.iter().map(tile_of).collect();
+    let mut pending: Vec<(i16, i16)> = asked.iter().copied().collect();
+    let mut found = BTreeMap::new();
     while let Some((x, y)) = pending.pop() {
         let Some(tile) = link.tile(x, y)? else {
             continue;

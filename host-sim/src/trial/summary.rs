@@ -129,6 +129,7 @@ fn safety(simulator: &Simulator<'_>) -> report::Safety {
         falls: safety.falls,
         tips: safety.tips,
         min_clearance_m: Some(safety.min_clearance_m).filter(|m| m.is_finite()),
+        robot_contacts: None,
     }
 }
 
@@ -161,6 +162,6 @@ fn true_ground(simulator: &Simulator<'_>, record: &Record) -> Option<TrueGround>
 }
 
 /// Rounds to whole cells of 0.01 m²; the last bits are rounding errors.
-fn whole_cells_m2(area_m2: f64) -> f64 {
+pub(super) fn whole_cells_m2(area_m2: f64) -> f64 {
     (area_m2 * 100.0).round() / 100.0
 }

@@ -345,3 +345,38 @@ fn bad_windows_are_refused_in_one_line() {
         &["no/where.csv", "--out"],
     );
 }
+
+#[test]
+fn bad_teams_are_refused_in_one_line() {
+    let folder = folder();
+    let team = |arguments: &[&str], words: &[&str]| {
+        refused(&folder, &[&["team", "loop"], arguments].concat(), words);
+    };
+    for robots in ["0", "9", "-1", "two"] {
+        team(&["--robots", robots], &["--robots", "1 to 8"]);
+    }
+    team(
+        &["--radio", "power=3"],
+        &["--radio", "'power=3'", "range=M"],
+    );
+    team(&["--radio", "loss=1"], &["loss=1", "0 to 0.95"]);
+    team(&["--radio", "partition@60-50"], &["partition@60-50"]);
+    team(&["--radio", "partition@6-9:0/2"], &["robot 2", "partition"]);
+    team(&["--leave", "2@9"], &["no robot 2", "0 to 1"]);
+    team(&["--leave", "soon"], &["'soon'", "2@90"]);
+    team(&["--join", "1@9"], &["robot 1", "must leave before"]);
+    team(&["--link", "direct,tcp"], &["'tcp'", "loopback"]);
+    team(
+        &["--robots", "3", "--link", "direct,direct"],
+        &["2 links", "3 robots"],
+    );
+    team(&["--strategy", "bvp"], &["bvp", "--radio off"]);
+    team(&["--start", "99"], &["starts", "--start"]);
+    let boxed = ["team", "boxed-in", "--robots", "8"];
+    refused(&folder, &boxed, &["of 8 robots", "--apart"]);
+    refused(
+        &folder,
+        &["team", "nowhere.yaml"],
+        &["nowhere.yaml", "office"],
+    );
+}

@@ -298,3 +298,44 @@ fn the_interrupt_key_ends_a_run_with_a_report() {
     );
     assert_eq!(files(&folder.path().join("run")), FILES);
 }
+
+#[test]
+fn a_team_leaves_a_folder_of_its_own_and_one_of_each_robot() {
+    let folder = folder();
+    let arguments = [
+        "team",
+        "loop",
+        "--robots",
+        "2",
+        "--radio",
+        "loss=0.5",
+        "--time-limit",
+        "20",
+        "--json",
+    ];
+    let (status, stdout, stderr) = outcome(&folder, &arguments);
+    assert_eq!(status, 1, "{stderr}");
+    let report = &reports(&stdout)[0];
+    for key in ["world", "coverage", "digest", "sim_time_s", "planner"] {
+        assert!(!report[key].is_null(), "{key}");
+    }
+    assert_eq!(report["outcome"]["status"], "time-limit");
+    assert_eq!(report["link"], "loopback");
+    assert_eq!(report["robots"].as_array().unwrap().len(), 2);
+    assert_eq!(report["robots"][1]["robot"], 1);
+    assert!(report["robots"][1]["digest"].is_string());
+    assert!(report["safety"]["robot_contacts"].is_u64());
+    assert!(report["radio"]["sent_bytes"].as_u64().unwrap() > 0);
+    assert!(report["radio"]["lost"].as_u64().unwrap() > 0);
+    let run = folder.path().join("out/loop-frontier-team-2-0");
+    let of_team = [
+        "map.pgm",
+        "map.yaml",
+        "report.json",
+        "robot-0",
+        "robot-1",
+        "run.png",
+    ];
+    assert_eq!(files(&run), of_team);
+    assert_eq!(files(&run.join("robot-1")), FILES);
+}

@@ -1,0 +1,274 @@
+//! `host-sim team`: several robots explore one world; writes a folder and a report.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, Result, bail};
+use clap::Args;
+
+use host_sim::link::Link;
+use host_sim::link::spec::{LinkSpec, Options};
+use host_sim::picture::{TeamScene, team_png};
+use host_sim::radio::{MOST_ROBOTS, RadioSpec};
+use host_sim::report::tum::Stamped;
+use host_sim::report::{TeamReport, folder};
+use host_sim::trial::mission::on_device;
+use host_sim::trial::team::{
+    Appointment, TeamError, TeamMission, TeamRecord, Timetable, explore, starts,
+};
+use host_sim::world::World;
+
+use super::args::{ExploreArgs, GroundArg, OdometryArg, seed, start, time_limit};
+use super::explore::{mission, with_start};
+use super::pictures::Album;
+use super::progress::{Interrupt, Onlooker};
+use super::robot::RobotArgs;
+use super::{note, say, strategies};
+
+#[derive(Clone, Debug, Args)]
+pub(super) struct TeamArgs {
+    /// World, as for explore; WORLD@N begins at its start N
+    #[arg(value_name = "WORLD[@N]", default_value = "office")]
+    world: String,
+    /// Number of robots, 1 to 8; their numbers begin with 0
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "2",
+        value_parser = robots,
+        allow_negative_numbers = true
+    )]
+    robots: usize,
+    /// Strategy of all robots, as for explore; a baseline needs --radio off
+    #[arg(long, default_value = strategies::FRONTIER, value_parser = strategies::parse)]
+    strategy: String,
+    /// Ground that the planners expect [default: flat]
+    #[arg(long, value_enum)]
+    ground: Option<GroundArg>,
+    /// Start far apart, at the world's starts; else side by side around one start
+    #[arg(long)]
+    apart: bool,
+    /// Radio between the robots: off, or any of range=M,walls=M,walls=block,loss=P,duplicate=P,
+    /// delay=S,reorder=P,partition@A-B,partition@A-B:0/12 [default: perfect]
+    #[arg(long, value_name = "SPEC")]
+    radio: Option<RadioSpec>,
+    /// A robot leaves the team after so many seconds, as in 2@90: it stands and is silent
+    #[arg(
+        long,
+        value_name = "ROBOT@S",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    leave: Vec<Appointment>,
+    /// A robot that left joins again after so many seconds, where it stands, with an empty map
+    #[arg(
+        long,
+        value_name = "ROBOT@S",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    join: Vec<Appointment>,
+    /// Link of all robots, or a list with the link of each, as in direct,direct,qemu [default:
+    /// loopback; direct for baselines]
+    #[arg(long, value_name = "LINK,LINK", value_delimiter = ',')]
+    link: Vec<LinkSpec>,
+    /// Seed of every random number of the run
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "0",
+        value_parser = seed,
+        allow_negative_numbers = true
+    )]
+    seed: u64,
+    /// Index of the world's start pose for robot 0, from 0; WORLD@N comes first
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "0",
+        value_parser = start,
+        allow_negative_numbers = true
+    )]
+    start: usize,
+    /// Source of the pose that the planners are told
+    #[arg(long, value_enum, default_value_t = OdometryArg::Truth)]
+    odometry: OdometryArg,
+    /// Simulated seconds after which the run ends
+    #[arg(
+        long,
+        value_name = "S",
+        default_value = "3600",
+        value_parser = time_limit,
+        allow_negative_numbers = true
+    )]
+    time_limit: u32,
+    /// Folder of the run [default: out/WORLD-STRATEGY-team-ROBOTS-SEED]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Run no faster than real time
+    #[arg(long)]
+    realtime: bool,
+    #[command(flatten)]
+    robot: RobotArgs,
+    /// Print only the report, one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Parses the number of robots.
+fn robots(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok();
+    number
+        .filter(|number| (1..=MOST_ROBOTS).contains(number))
+        .ok_or_else(|| format!("give 1 to {MOST_ROBOTS} robots"))
+}
+
+/// Explores a world with a team; returns true if it ended explored.
+pub(super) fn run(args: &TeamArgs) -> Result<bool> {
+    let links = links(args)?;
+    let (name, at) = with_start(&args.world);
+    let world = World::open(name)?;
+    let team = TeamMission {
+        mission: mission(&common(args, at.unwrap_or(args.start)), &links[0])?,
+        robots: args.robots,
+        links: links.iter().map(ToString::to_string).collect(),
+        apart: args.apart,
+        places: None,
+        radio: radio(args)?,
+        timetable: Timetable {
+            leave: args.leave.clone(),
+            join: args.join.clone(),
+        },
+    };
+    starts(&team, &world)?;
+    let folder = args.out.clone().unwrap_or_else(|| {
+        let (world, strategy) = (world.name().replace(':', "-"), &args.strategy);
+        let (robots, seed) = (args.robots, args.seed);
+        Path::new("out").join(format!("{world}-{strategy}-team-{robots}-{seed}"))
+    });
+    folder::prepare(&folder)?;
+    for text in world.notes() {
+        note(&format!("host-sim: {}: {text}", world.name()));
+    }
+    let mut planners = open(args, &links)?;
+    let interrupt = Interrupt::listen()?;
+    let mut onlooker = Onlooker::new(world.name(), args.realtime, interrupt);
+    let result = explore(&team, &world, &mut planners, &mut onlooker);
+    onlooker.finish();
+    let (report, record) = match result {
+        Err(TeamError::Robot { robot, error }) => {
+            let link = links.get(robot).map(ToString::to_string);
+            bail!(
+                "robot {robot}, --link {}: {error}",
+                link.unwrap_or_default()
+            )
+        }
+        result => result?,
+    };
+    write(&folder, &world, &report, &record)?;
+    print(args, &report, &record, &folder)?;
+    Ok(report.whole.explored())
+}
+
+/// Returns the arguments that a team has in common with a run of one robot.
+fn common(args: &TeamArgs, start: usize) -> ExploreArgs {
+    ExploreArgs {
+        strategy: args.strategy.clone(),
+        ground: args.ground,
+        seed: args.seed,
+        start,
+        odometry: args.odometry,
+        time_limit: args.time_limit,
+        robot: args.robot.clone(),
+        ..ExploreArgs::default()
+    }
+}
+
+/// Returns the link of each robot.
+fn links(args: &TeamArgs) -> Result<Vec<LinkSpec>> {
+    if args.strategy == strategies::TERRAIN {
+        bail!("--strategy terrain is for explore; say --strategy frontier --ground uneven");
+    }
+    let of = |link| strategies::link_of(&args.strategy, args.robot.link(link));
+    match &args.link[..] {
+        [] => Ok(vec![of(None)?; args.robots]),
+        [one] => Ok(vec![of(Some(one))?; args.robots]),
+        list if list.len() == args.robots => list.iter().map(|link| of(Some(link))).collect(),
+        list => bail!(
+            "--link names {} links for {} robots; give one for all, or one for each",
+            list.len(),
+            args.robots
+        ),
+    }
+}
+
+/// Returns the radio; refuses one for a strategy that does not talk.
+fn radio(args: &TeamArgs) -> Result<RadioSpec> {
+    let radio = args.radio.clone().unwrap_or_default();
+    if radio.on && on_device(&args.strategy).is_none() {
+        bail!(
+            "--strategy {} does not talk to a team; say --radio off",
+            args.strategy
+        );
+    }
+    Ok(radio)
+}
+
+fn open(args: &TeamArgs, links: &[LinkSpec]) -> Result<Vec<Box<dyn Link>>> {
+    let open = |link: &LinkSpec| {
+        let options = Options {
+            seed: args.seed,
+            real_time: args.realtime,
+            tuning: args.robot.tuning(link)?,
+            ..Options::default()
+        };
+        strategies::open(&args.strategy, link, &options).with_context(|| format!("--link {link}"))
+    };
+    links.iter().map(open).collect()
+}
+
+/// Writes the team's files, and each robot's files into a folder of its own.
+fn write(folder: &Path, world: &World, report: &TeamReport, record: &TeamRecord) -> Result<()> {
+    let truths = |k: usize| record.robots[k].steps.iter().map(|step| step.truth);
+    let paths: Vec<Vec<Stamped>> = (0..record.robots.len())
+        .map(|k| truths(k).collect())
+        .collect();
+    let left = report.whole.outcome.residual_frontiers.iter();
+    let residual: Vec<(f64, f64)> = left.map(|at| (at.x_m, at.y_m)).collect();
+    let picture = team_png(&TeamScene {
+        title: &report.headline(),
+        subtitle: &report.whole.in_short(),
+        map: &record.map,
+        paths: &paths,
+        residual: &residual,
+    });
+    folder::write_team(folder, report, &record.map, &picture)?;
+    for (robot, record) in report.robots.iter().zip(&record.robots) {
+        let folder = folder.join(format!("robot-{}", robot.robot));
+        folder::prepare(&folder)?;
+        let album = Album::new(world, &robot.report, record);
+        folder::write(&folder, &robot.report, record, &album.end())?;
+    }
+    Ok(())
+}
+
+/// Prints the report on standard output, and advice on standard error.
+fn print(args: &TeamArgs, report: &TeamReport, record: &TeamRecord, folder: &Path) -> Result<()> {
+    say(&if args.json {
+        report.to_json_line()
+    } else {
+        report.to_text()
+    })?;
+    let world = &report.whole.world;
+    for (robot, record) in record.robots.iter().enumerate() {
+        if let Some(advice) = record.ending.advice() {
+            note(&format!("host-sim: {world}: robot {robot}: {advice}"));
+        }
+        if let Some(error) = &record.read_out_error {
+            note(&format!(
+                "host-sim: {world}: the map of robot {robot} could not be read: {error}"
+            ));
+        }
+    }
+    note(&format!("{world}: files in {}", folder.display()));
+    Ok(())
+}

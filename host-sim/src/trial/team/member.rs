@@ -1,0 +1,322 @@
+//! One robot of a team: its link, its record, and its part in the conversation.
+//!
+//! ```text
+//!               ended                      leave
+//!  Exploring ──────────► Standing   any ───────────► Away
+//!      ▲                                              │
+//!      └──────────────────── join ────────────────────┘
+//! ```
+//!
+//! A robot whose exploration ended stands, hears and says on. One that is away stands, is silent
+//! and hears nothing. Joining again is a new session of its planner: a new boot, an empty map. After
+//! a broken link the robot's watchdog stops it, and it is silent for good.
+
+use fieldline_protocol::message::{self as wire, Control, Finish, Observation, Status, Twist};
+use fieldline_protocol::packet::{MAX_PACKET, decode_packet, encode_packet};
+
+use super::super::account::Account;
+use super::super::freeze::FreezeDetector;
+use super::super::record::{self, Record};
+use super::super::series::Series;
+use super::super::snapshot::{self, Snapshot};
+use super::super::{Body, Cast, Ending, Setup, Survey, ended, step};
+use crate::link::{Link, LinkError};
+use crate::metrics::Coverage;
+use crate::radio::{Radio, Station};
+use crate::report::tum::Stamped;
+use crate::sim::{Fleet, Loss};
+
+/// Most packets that a planner says in a step. A device that says more is not asked on.
+const MOST_SAID: usize = 8;
+
+/// A robot's place in the team.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Presence {
+    /// It explores.
+    Exploring,
+    /// Its exploration ended; it hears and says on.
+    Standing,
+    /// It left the team.
+    Away,
+    /// Its link is broken.
+    Silent,
+}
+
+/// What a robot said and heard.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Talk {
+    /// Bytes said.
+    pub(super) said_bytes: u64,
+    /// Packets said.
+    pub(super) said: u64,
+    /// Packets heard.
+    pub(super) heard: u64,
+}
+
+/// What all robots share.
+pub(super) struct Common<'a, 'w> {
+    pub(super) fleet: &'a mut Fleet<'w>,
+    pub(super) radio: &'a mut Radio<'w>,
+    /// Where the robots are and who listens, as this period began.
+    pub(super) stations: &'a [Station],
+    /// Coverage by all robots together.
+    pub(super) coverage: &'a mut Coverage,
+}
+
+/// A robot of a team.
+pub(super) struct Member<'a> {
+    number: usize,
+    link: &'a mut dyn Link,
+    setup: Setup,
+    freeze: FreezeDetector,
+    pub(super) presence: Presence,
+    pub(super) account: Account,
+    pub(super) record: Record,
+    pub(super) talk: Talk,
+}
+
+impl<'a> Member<'a> {
+    /// Begins a robot's session. `setup.start.team` says if it talks.
+    pub(super) fn begin(
+        number: usize,
+        link: &'a mut dyn Link,
+        setup: Setup,
+        account: Account,
+    ) -> Self {
+        let mut member = Self {
+            number,
+            link,
+            setup,
+            freeze: FreezeDetector::default(),
+            presence: Presence::Exploring,
+            account,
+            record: Record::default(),
+            talk: Talk::default(),
+        };
+        member.start();
+        member
+    }
+
+    /// Returns true if it belongs to the team.
+    pub(super) fn is_in_team(&self) -> bool {
+        self.presence != Presence::Away
+    }
+
+    /// Returns true if it can hear.
+    pub(super) fn listens(&self) -> bool {
+        matches!(self.presence, Presence::Exploring | Presence::Standing)
+    }
+
+    /// Returns the number of its sessions.
+    pub(super) fn boots(&self) -> u16 {
+        self.setup.start.team.map_or(1, |team| team.member.boot)
+    }
+
+    fn start(&mut self) {
+        match self.link.control(&Control::Start(self.setup.start.clone())) {
+            Ok(Status::Fault(fault)) => self.end(Ending::Fault(fault)),
+            Ok(_) => self.presence = Presence::Exploring,
+            Err(error) => self.end(Ending::Link(error)),
+        }
+    }
+
+    /// Leaves the team without a word.
+    pub(super) fn leave(&mut self) {
+        if self.presence == Presence::Exploring {
+            self.record.ending = Ending::Left;
+        }
+        if self.presence != Presence::Silent {
+            self.presence = Presence::Away;
+        }
+    }
+
+    /// Joins the team again where it stands, with an empty map.
+    pub(super) fn join(&mut self) {
+        if self.presence != Presence::Away {
+            return;
+        }
+        if let Some(team) = &mut self.setup.start.team {
+            team.member.boot = team.member.boot.wrapping_add(1);
+        }
+        self.account.forget(&self.setup);
+        self.freeze = FreezeDetector::default();
+        self.start();
+    }
+
+    /// Ends its exploration; it stands from now on.
+    pub(super) fn end(&mut self, ending: Ending) {
+        self.presence = match &ending {
+            Ending::Link(_) => Presence::Silent,
+            _ => Presence::Standing,
+        };
+        let stop = !matches!(ending, Ending::Finished(_) | Ending::Link(_));
+        self.record.ending = ending;
+        if stop {
+            // A device that does not hear this stands by its own time limit.
+            let _ = self.link.control(&Control::Stop);
+        }
+    }
+
+    /// Takes part in one period; returns the command for the robot, `None` if it gets none.
+    pub(super) fn take_part(&mut self, common: &mut Common<'_, '_>) -> Option<Twist> {
+        let time_ms = common.fleet.robots()[self.number].time_ms();
+        let listens = self.listens();
+        let packets = common.radio.hear(time_ms, self.number, listens);
+        let standing = Some(Twist::default());
+        let told = match self.presence {
+            Presence::Silent => Ok(None),
+            Presence::Away => Ok(standing),
+            Presence::Exploring => self.hear(&packets).and_then(|()| self.explore(common)),
+            Presence::Standing => self.hear(&packets).and_then(|()| {
+                self.link.observe(&common.fleet.observe(self.number))?;
+                Ok(standing)
+            }),
+        };
+        let said = told.and_then(|velocity| {
+            if listens {
+                self.say(time_ms, common)?;
+            }
+            Ok(velocity)
+        });
+        said.unwrap_or_else(|error| {
+            self.presence = Presence::Silent;
+            if !matches!(self.record.ending, Ending::Finished(_)) {
+                self.record.ending = Ending::Link(error);
+            }
+            None
+        })
+    }
+
+    /// Makes a step of the exploration.
+    fn explore(&mut self, common: &mut Common<'_, '_>) -> Result<Option<Twist>, LinkError> {
+        let mut cast = Cast {
+            link: self.link,
+            body: &mut Seat {
+                fleet: common.fleet,
+                robot: self.number,
+            },
+            survey: &mut Witness {
+                own: &mut self.account,
+                all: common.coverage,
+            },
+            watch: &mut (),
+        };
+        let mut series: Series<Snapshot> = Series::new(0);
+        let command = step(&self.setup, &mut cast, &mut self.record, &mut series)?;
+        let ending = ended(
+            &self.setup,
+            &mut (),
+            &mut self.freeze,
+            &self.record,
+            &command,
+        );
+        let Some(ending) = ending else {
+            return Ok(Some(command.velocity));
+        };
+        self.end(ending);
+        Ok(Some(Twist::default()))
+    }
+
+    fn hear(&mut self, packets: &[Vec<u8>]) -> Result<(), LinkError> {
+        for packet in packets.iter().filter_map(|bytes| decode_packet(bytes)) {
+            self.link.hear(&packet)?;
+            self.talk.heard += 1;
+        }
+        Ok(())
+    }
+
+    /// Sends what the planner says, if it is in a team.
+    fn say(&mut self, time_ms: u32, common: &mut Common<'_, '_>) -> Result<(), LinkError> {
+        if self.setup.start.team.is_none() {
+            return Ok(());
+        }
+        let mut bytes = [0; MAX_PACKET];
+        for _ in 0..MOST_SAID {
+            let Some(packet) = self.link.say()? else {
+                break;
+            };
+            let Ok(length) = encode_packet(&packet, &mut bytes) else {
+                continue;
+            };
+            common
+                .radio
+                .send(time_ms, self.number, &bytes[..length], common.stations);
+            self.talk.said += 1;
+            self.talk.said_bytes += length as u64;
+        }
+        Ok(())
+    }
+
+    /// Notes that the robot fell or tipped over while it drove.
+    pub(super) fn note_loss(&mut self, loss: Option<Loss>) {
+        if let (Some(loss), Presence::Exploring) = (loss, self.presence) {
+            self.end(Ending::Lost(loss));
+        }
+    }
+
+    /// Reads the map and the rest at the end of the run. The map may consist of parts: each holds
+    /// one of `places`.
+    pub(super) fn read_out(&mut self, places: &[[f64; 2]]) {
+        if self.presence != Presence::Silent
+            && let Err(error) = snapshot::read(self.link, &mut self.record, places)
+        {
+            self.record.read_out_error = Some(error);
+        }
+        self.record.link_stats = self.link.stats();
+    }
+
+    /// Returns the member of the wire with this number.
+    pub(super) fn of_wire(number: usize) -> wire::Team {
+        wire::Team {
+            member: wire::Member {
+                id: number as u8,
+                boot: 1,
+            },
+            ..wire::Team::default()
+        }
+    }
+
+    /// Returns true if it explored everything.
+    pub(super) fn has_explored(&self) -> bool {
+        self.record.ending == Ending::Finished(Finish::Explored)
+    }
+}
+
+/// One robot of a fleet as a body. It drives with the fleet, never alone.
+struct Seat<'a, 'w> {
+    fleet: &'a mut Fleet<'w>,
+    robot: usize,
+}
+
+impl Body for Seat<'_, '_> {
+    fn period_ms(&self) -> u32 {
+        self.fleet.robots()[self.robot].config().period_ms
+    }
+
+    fn observe(&mut self) -> Observation {
+        self.fleet.observe(self.robot)
+    }
+
+    fn drive(&mut self, _: Option<Twist>) {}
+
+    fn truth(&self) -> Stamped {
+        let robot = &self.fleet.robots()[self.robot];
+        record::stamped(robot.time_ms(), &robot.above_start(robot.pose()).to_wire())
+    }
+}
+
+/// Counts what a robot measures for the robot and for the team.
+struct Witness<'a> {
+    own: &'a mut Account,
+    all: &'a mut Coverage,
+}
+
+impl Survey for Witness<'_> {
+    fn note(&mut self, observation: &Observation, status: Status) -> f64 {
+        let fraction = self.own.note(observation, status);
+        let time_s = f64::from(observation.time_ms) / 1000.0;
+        let mirror = &self.own.mirror;
+        self.all.update(time_s, |cell| mirror.is_known(cell));
+        fraction
+    }
+}

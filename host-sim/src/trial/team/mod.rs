@@ -1,0 +1,394 @@
+//! Several robots explore one world, each with its own link and planner.
+//!
+//! The loop is lockstep: in each period the robots take part one after another, in the order of
+//! their numbers, then all drive. In its part a robot hears what the radio brought until then, makes
+//! its step, and says what its planner has to say. So a packet is heard in the next period at the
+//! earliest. The same settings give the same records, except for measured times.
+//!
+//! The team has ended when no robot explores and none is to join. Then the robots stand and talk for
+//! [`SETTLE_MS`] more, so that what was said last is repaired if it was lost; that time counts
+//! nowhere.
+
+mod member;
+mod starts;
+mod summary;
+mod timetable;
+
+use core::fmt;
+
+use fieldline_protocol::message as wire;
+
+use super::account::Account;
+use super::mission::{self, Mission, MissionError};
+use super::{Ending, Flow, Progress, REST_MS, Record, Watch};
+use crate::link::Link;
+use crate::metrics::Coverage;
+use crate::radio::{MOST_ROBOTS, Radio, RadioSpec, Station};
+use crate::report::{GridMap, TeamReport};
+use crate::sim::{Fleet, FleetError, SimConfig, Simulator};
+use crate::world::{Start, World, WorldError};
+use member::{Common, Member, Presence};
+use starts::Places;
+pub use timetable::{Appointment, AppointmentError, Timetable, TimetableError};
+
+/// Time for the last exchange after the team has ended, milliseconds. A digest of every tile of a
+/// full map takes 8 s.
+pub const SETTLE_MS: u32 = 20_000;
+
+/// Settings of a team's run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TeamMission {
+    /// What all robots have in common. The first robot stands at its start and has its seed.
+    pub mission: Mission,
+    /// Number of robots, 1 to [`MOST_ROBOTS`].
+    pub robots: usize,
+    /// Names of the links, robot by robot, for the report.
+    pub links: Vec<String>,
+    /// True if the robots start far apart, false if side by side.
+    pub apart: bool,
+    /// Starts of all robots to use instead of those.
+    pub places: Option<Vec<Start>>,
+    /// The radio between them. If it is off, the planners know of no team.
+    pub radio: RadioSpec,
+    /// Who leaves and who joins again.
+    pub timetable: Timetable,
+}
+
+impl TeamMission {
+    /// A team of robots by direct links, side by side, with a perfect radio.
+    #[must_use]
+    pub fn of(mission: Mission, robots: usize) -> Self {
+        Self {
+            links: vec![mission.link.clone(); robots],
+            mission,
+            robots,
+            apart: false,
+            places: None,
+            radio: RadioSpec::default(),
+            timetable: Timetable::default(),
+        }
+    }
+
+    /// The mission of one robot.
+    fn mission_of(&self, robot: usize, place: Start) -> Mission {
+        Mission {
+            link: self.links.get(robot).cloned().unwrap_or_default(),
+            seed: seed_of(self.mission.seed, robot),
+            place: Some(place),
+            ..self.mission.clone()
+        }
+    }
+}
+
+/// The seed of a robot's noise: the run's for the first, and far from it for the others.
+fn seed_of(seed: u64, robot: usize) -> u64 {
+    seed.wrapping_add((robot as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15))
+}
+
+/// Reason why a team's run could not begin.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TeamError {
+    /// There are too few robots or too many.
+    Robots(usize),
+    /// Not all robots find a place to start.
+    Room {
+        /// Robots that do.
+        fitting: usize,
+        /// Robots of the team.
+        robots: usize,
+        /// True if they were to start far apart.
+        apart: bool,
+    },
+    /// The timetable is impossible.
+    Timetable(TimetableError),
+    /// The radio names a robot that the team does not have.
+    Stranger(usize),
+    /// Robots do not fit at their starts.
+    Fleet(FleetError),
+    /// A robot cannot begin.
+    Robot {
+        /// Its number.
+        robot: usize,
+        /// The reason.
+        error: MissionError,
+    },
+}
+
+impl fmt::Display for TeamError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Robots(robots) => write!(
+                f,
+                "a team of {robots} robots is not possible; give 1 to {MOST_ROBOTS}"
+            ),
+            Self::Room {
+                fitting,
+                robots,
+                apart,
+            } => {
+                let how = if *apart { "apart" } else { "side by side" };
+                let remedy = if *apart { "" } else { ", or say --apart" };
+                write!(
+                    f,
+                    "only {fitting} of {robots} robots find room {how}; \
+                     take fewer robots, or another --start{remedy}"
+                )
+            }
+            Self::Timetable(error) => error.fmt(f),
+            Self::Stranger(robot) => write!(
+                f,
+                "a partition of the radio names robot {robot}, which the team does not have"
+            ),
+            Self::Fleet(error) => error.fmt(f),
+            Self::Robot { robot, error } => write!(f, "robot {robot}: {error}"),
+        }
+    }
+}
+
+impl core::error::Error for TeamError {}
+
+impl From<WorldError> for TeamError {
+    fn from(error: WorldError) -> Self {
+        Self::Robot {
+            robot: 0,
+            error: error.into(),
+        }
+    }
+}
+
+/// The records of a team's run.
+#[derive(Clone, Debug)]
+pub struct TeamRecord {
+    /// Each robot's record.
+    pub robots: Vec<Record>,
+    /// What the robots' maps know together.
+    pub map: GridMap,
+}
+
+/// Returns the starts of a team's robots.
+///
+/// # Errors
+/// [`TeamError`] if not all settings are possible, or not all robots fit.
+pub fn starts(team: &TeamMission, world: &World) -> Result<Vec<Start>, TeamError> {
+    let robots = team.robots;
+    if robots == 0 || robots > MOST_ROBOTS {
+        return Err(TeamError::Robots(robots));
+    }
+    team.timetable.check(robots).map_err(TeamError::Timetable)?;
+    if let Some(stranger) = team.radio.stranger(robots) {
+        return Err(TeamError::Stranger(stranger));
+    }
+    let starts = match &team.places {
+        Some(places) => places.clone(),
+        None => {
+            let places = Places::new(world, team.mission.sim_config())?;
+            if team.apart {
+                places.apart(robots)
+            } else {
+                places.side_by_side(robots)
+            }
+        }
+    };
+    if starts.len() < robots {
+        return Err(TeamError::Room {
+            fitting: starts.len(),
+            robots,
+            apart: team.apart,
+        });
+    }
+    Ok(starts)
+}
+
+/// Explores `world` with a team; the links are in the order of the robots' numbers.
+///
+/// # Errors
+/// As [`TeamError`], before a robot moves. Later failures are in the report.
+pub fn explore(
+    team: &TeamMission,
+    world: &World,
+    links: &mut [Box<dyn Link>],
+    watch: &mut dyn Watch,
+) -> Result<(TeamReport, TeamRecord), TeamError> {
+    let starts = starts(team, world)?;
+    let missions = (0..)
+        .zip(&starts)
+        .map(|(k, start)| team.mission_of(k, *start));
+    let missions: Vec<Mission> = missions.collect();
+    let configs: Vec<SimConfig> = missions.iter().map(Mission::sim_config).collect();
+    let mut fleet = Fleet::new(world, &configs).map_err(TeamError::Fleet)?;
+    let radio = Radio::new(world, team.radio.clone(), team.mission.seed);
+    let members = begin(team, &missions, &fleet, links)?;
+    let coverage = members[0].account.coverage.clone();
+    let mut run = Run {
+        team,
+        members,
+        radio,
+        coverage,
+        interrupted: false,
+    };
+    let ended_ms = run.explore(&mut fleet, watch);
+    let traffic = run.radio.traffic();
+    run.settle(&mut fleet);
+    let places: Vec<[f64; 2]> = starts.iter().map(|start| [start.x_m, start.y_m]).collect();
+    for member in &mut run.members {
+        member.read_out(&places);
+    }
+    let whole = summary::Whole {
+        team,
+        missions: &missions,
+        starts: &starts,
+        fleet: &fleet,
+        members: &run.members,
+        coverage: &run.coverage,
+        traffic,
+        ended_ms,
+    };
+    let report = whole.report();
+    let record = TeamRecord {
+        map: GridMap::united(run.members.iter().map(|member| &member.record.map)),
+        robots: run.members.into_iter().map(|it| it.record).collect(),
+    };
+    Ok((report, record))
+}
+
+/// Begins the session of every robot.
+fn begin<'a>(
+    team: &TeamMission,
+    missions: &[Mission],
+    fleet: &Fleet<'_>,
+    links: &'a mut [Box<dyn Link>],
+) -> Result<Vec<Member<'a>>, TeamError> {
+    let mut members: Vec<Member<'a>> = Vec::new();
+    for (robot, link) in links.iter_mut().enumerate().take(fleet.len()) {
+        let of_robot = |error: MissionError| TeamError::Robot { robot, error };
+        let hello = link.hello().map_err(|error| of_robot(error.into()))?;
+        let simulator: &Simulator<'_> = &fleet.robots()[robot];
+        let mut setup =
+            mission::setup(&missions[robot], simulator, hello.tile_slots).map_err(of_robot)?;
+        setup.start.team = team.radio.on.then(|| Member::of_wire(robot));
+        let account = match members.first() {
+            Some(first) => first.account.beside(&setup),
+            None => Account::new(&setup, simulator),
+        };
+        members.push(Member::begin(robot, link.as_mut(), setup, account));
+    }
+    Ok(members)
+}
+
+/// A run in progress.
+struct Run<'a, 'w> {
+    team: &'a TeamMission,
+    members: Vec<Member<'a>>,
+    radio: Radio<'w>,
+    coverage: Coverage,
+    interrupted: bool,
+}
+
+impl<'w> Run<'_, 'w> {
+    /// Explores until the team has ended; returns when, in milliseconds.
+    fn explore(&mut self, fleet: &mut Fleet<'w>, watch: &mut dyn Watch) -> u32 {
+        let mut last_ms = 0;
+        loop {
+            let now_ms = fleet.robots()[0].time_ms();
+            self.come_and_go([last_ms, now_ms]);
+            last_ms = now_ms;
+            self.period(fleet);
+            let progress = self.progress(now_ms);
+            if !self.interrupted && watch.step(&progress) == Flow::Interrupt {
+                self.interrupted = true;
+                self.end_all(&Ending::Interrupted);
+            }
+            if self.has_ended(now_ms) {
+                return now_ms;
+            }
+            if now_ms >= self.team.mission.time_limit_ms {
+                self.end_all(&Ending::TimeLimit);
+                return now_ms;
+            }
+        }
+    }
+
+    /// Lets the robots stand and talk after the end.
+    fn settle(&mut self, fleet: &mut Fleet<'w>) {
+        let period_ms = fleet.robots()[0].config().period_ms;
+        let talks = self.team.radio.on && !self.interrupted;
+        let time_ms = if talks { SETTLE_MS } else { REST_MS };
+        for _ in 0..time_ms.div_ceil(period_ms.max(1)) {
+            self.period(fleet);
+        }
+    }
+
+    fn end_all(&mut self, ending: &Ending) {
+        let exploring = |member: &&mut Member<'_>| member.presence == Presence::Exploring;
+        for member in self.members.iter_mut().filter(exploring) {
+            member.end(ending.clone());
+        }
+    }
+
+    fn come_and_go(&mut self, span_ms: [u32; 2]) {
+        for (robot, member) in self.members.iter_mut().enumerate() {
+            if self.team.timetable.leaves(robot, span_ms) {
+                member.leave();
+            }
+            if self.team.timetable.joins(robot, span_ms) {
+                member.join();
+            }
+        }
+    }
+
+    /// Returns true if no robot explores, and none that is away is to join.
+    fn has_ended(&self, now_ms: u32) -> bool {
+        let will_join = |robot: usize| {
+            let timetable = &self.team.timetable;
+            timetable.joins(robot, [now_ms, u32::MAX])
+        };
+        let mut members = self.members.iter().enumerate();
+        self.interrupted
+            || members.all(|(robot, member)| match member.presence {
+                Presence::Exploring => false,
+                Presence::Away => !will_join(robot),
+                Presence::Standing | Presence::Silent => true,
+            })
+    }
+
+    /// Lets every robot take part, and all drive.
+    fn period(&mut self, fleet: &mut Fleet<'w>) {
+        let listens = self.members.iter().map(Member::listens);
+        let stations: Vec<Station> = fleet
+            .robots()
+            .iter()
+            .zip(listens)
+            .map(|(robot, listens)| Station {
+                at_m: [robot.pose().x_m, robot.pose().y_m],
+                listens,
+            })
+            .collect();
+        let mut common = Common {
+            fleet,
+            radio: &mut self.radio,
+            stations: &stations,
+            coverage: &mut self.coverage,
+        };
+        let members = self.members.iter_mut();
+        let commands: Vec<Option<wire::Twist>> = members
+            .map(|member| member.take_part(&mut common))
+            .collect();
+        fleet.drive(&commands);
+        for (member, robot) in self.members.iter_mut().zip(fleet.robots()) {
+            member.note_loss(robot.loss());
+        }
+    }
+
+    fn progress(&self, time_ms: u32) -> Progress {
+        let mut exploring = self.members.iter();
+        let exploring = exploring.find(|member| member.presence == Presence::Exploring);
+        let shown = exploring.or(self.members.first());
+        let path_m = self.members.iter().map(|member| member.record.path_m).sum();
+        Progress {
+            time_ms,
+            coverage: self.coverage.fraction(),
+            path_m,
+            ..shown.map_or_else(|| Record::default().progress(), |it| it.record.progress())
+        }
+    }
+}
