@@ -4,6 +4,7 @@
 pub mod baseline;
 pub mod link;
 pub mod metrics;
+pub mod network;
 pub mod picture;
 pub mod radio;
 pub mod report;

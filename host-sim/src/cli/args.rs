@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
+use host_sim::network::spec::TeamSpec;
 use host_sim::robot::{Limits, LimitsError};
 use host_sim::trial::uneven::{self, ParameterError};
 
@@ -153,6 +154,11 @@ pub(super) struct ExploreArgs {
     /// Run no faster than real time
     #[arg(long)]
     pub(super) realtime: bool,
+    /// This robot is one of a team of processes, as in
+    /// id=2,bind=0.0.0.0:47002,peers=10.0.0.3:47003+10.0.0.4:47004; also find=GROUP:PORT,
+    /// interface=A, key=FILE, pace=N
+    #[arg(long, value_name = "SPEC")]
+    pub(super) team: Option<TeamSpec>,
     /// Inject faults into the link, as in
     /// drop=0.02,duplicate=0.02,corrupt=0.02,truncate=0.01,delay=0.01,reset@900
     #[arg(long, value_name = "SPEC")]
@@ -202,6 +208,7 @@ impl Default for ExploreArgs {
             tdbvp_impatience: None,
             out: None,
             realtime: false,
+            team: None,
             fault: None,
             map_shape: None,
             check_field: false,

@@ -6,7 +6,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Result, bail};
 
 use fieldline_protocol::message::{Preference, UnevenGround};
+use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
+use host_sim::network::udp::Udp;
+use host_sim::network::{self, Networked};
 use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
 use host_sim::trial::Record;
@@ -39,6 +42,7 @@ pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     )?;
     let mission = mission(args, &link)?;
     check_reference(&mission)?;
+    check_team(args)?;
     let runs = runs(args, &mission)?;
     let interrupt = Interrupt::listen()?;
     let mut all_explored = true;
@@ -149,20 +153,62 @@ fn explore(args: &ExploreArgs, link: &LinkSpec, run: &Run, interrupt: &Interrupt
     for text in run.world.notes() {
         note(&format!("host-sim: {name}: {text}"));
     }
-    let mut planner = strategies::open(&args.strategy, link, &options)
+    let planner = strategies::open(&args.strategy, link, &options)
         .with_context(|| format!("--link {link}"))?;
-    let mut onlooker = Onlooker::new(name, args.realtime, interrupt.clone());
+    let (mut planner, network) = join(args, planner)?;
+    let pace = args.team.as_ref().map(|team| team.pace);
+    let pace = pace.or(args.realtime.then_some(1.0));
+    let mut onlooker = Onlooker::new(name, pace, interrupt.clone());
     let result = mission::explore(&run.mission, &run.world, planner.as_mut(), &mut onlooker);
     onlooker.finish();
-    let (report, record) = match result {
+    let (mut report, record) = match result {
         Err(MissionError::Link(error)) => bail!("--link {link}: {error}"),
         result => result?,
     };
+    if let Some(network) = network {
+        report.network = Some(network.read());
+        // The device's map also has what the robot heard.
+        report.debug.map_matches_mirror = None;
+    }
     let album = Album::new(&run.world, &report, &record);
     folder::write(&run.folder, &report, &record, &album.end())?;
     folder::write_snapshots(&run.folder, album.during())?;
     print(args, &report, &record, &run.folder)?;
     Ok(report.explored())
+}
+
+/// Refuses a team of processes with several worlds, or with a strategy that does not talk.
+fn check_team(args: &ExploreArgs) -> Result<()> {
+    if args.team.is_none() {
+        return Ok(());
+    }
+    if args.worlds.len() != 1 {
+        bail!("--team is for one world; name only one");
+    }
+    if on_device(&args.strategy).is_none() {
+        bail!(
+            "--strategy {} does not talk to a team; leave --team out",
+            args.strategy
+        );
+    }
+    Ok(())
+}
+
+/// Makes the planner a member of its team, if it has one; returns its counters too.
+fn join(
+    args: &ExploreArgs,
+    planner: Box<dyn Link>,
+) -> Result<(Box<dyn Link>, Option<network::Account>)> {
+    let Some(team) = &args.team else {
+        return Ok((planner, None));
+    };
+    let key = team.read_key().context("--team")?;
+    let carrier = Udp::open(team)
+        .map_err(anyhow::Error::msg)
+        .context("--team")?;
+    let member = Networked::new(planner, Box::new(carrier), key, team.id);
+    let account = member.account();
+    Ok((Box::new(member), Some(account)))
 }
 
 /// Returns the parameters of uneven ground; `None` on flat ground.

@@ -42,13 +42,14 @@ impl Interrupt {
 pub(super) struct Onlooker {
     bar: ProgressBar,
     interrupt: Interrupt,
-    /// Real time of the start, if the run must be no faster than real time.
-    began: Option<Instant>,
+    /// Real time of the start, and the simulated seconds that one second may have at most.
+    began: Option<(Instant, f64)>,
 }
 
 impl Onlooker {
-    /// Makes the watcher of a run; `name` is in its line.
-    pub(super) fn new(name: &str, realtime: bool, interrupt: Interrupt) -> Self {
+    /// Makes the watcher of a run; `name` is in its line. The run is no faster than `pace`, in
+    /// simulated seconds a second.
+    pub(super) fn new(name: &str, pace: Option<f64>, interrupt: Interrupt) -> Self {
         // Draws nothing if standard error is no terminal.
         let bar = ProgressBar::new(TICKS);
         let style = ProgressStyle::with_template("{prefix:.bold} {bar:24.cyan/black.dim} {msg}");
@@ -60,7 +61,7 @@ impl Onlooker {
         Self {
             bar,
             interrupt,
-            began: realtime.then(Instant::now),
+            began: pace.map(|pace| (Instant::now(), pace)),
         }
     }
 
@@ -75,8 +76,8 @@ impl Watch for Onlooker {
         self.bar
             .set_position((progress.coverage * TICKS as f64) as u64);
         self.bar.set_message(message(progress));
-        if let Some(began) = self.began {
-            let due = Duration::from_millis(progress.time_ms.into());
+        if let Some((began, pace)) = self.began {
+            let due = Duration::from_millis(progress.time_ms.into()).div_f64(pace);
             std::thread::sleep(due.saturating_sub(began.elapsed()));
         }
         if self.interrupt.pressed() {

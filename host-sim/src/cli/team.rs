@@ -151,7 +151,7 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
     }
     let mut planners = open(args, &links)?;
     let interrupt = Interrupt::listen()?;
-    let mut onlooker = Onlooker::new(world.name(), args.realtime, interrupt);
+    let mut onlooker = Onlooker::new(world.name(), args.realtime.then_some(1.0), interrupt);
     let result = explore(&team, &world, &mut planners, &mut onlooker);
     onlooker.finish();
     let (report, record) = match result {

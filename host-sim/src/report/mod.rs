@@ -18,6 +18,7 @@ pub mod tum;
 use serde::{Deserialize, Serialize};
 
 pub use crate::link::LinkStats;
+pub use crate::network::Counters;
 pub use grid_map::{GridMap, MapCell};
 pub use loop_closing::{GivenUp, LoopClosing};
 pub use team::TeamReport;
@@ -94,6 +95,9 @@ pub struct Report {
     pub digest: String,
     /// Cross-checks of the simulator.
     pub debug: Debug,
+    /// Datagrams of a team of processes; the key is missing without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub network: Option<Counters>,
 }
 
 /// End of a run.

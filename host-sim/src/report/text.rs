@@ -81,6 +81,13 @@ impl Report {
                 "  position  wrong by {mean_m:.2} m on average, {max_m:.2} m at most"
             ));
         }
+        if let Some(network) = &self.network {
+            let dropped = network.malformed + network.unauthentic + network.foreign;
+            lines.push(format!(
+                "  network   {} packets said, {} heard; {dropped} foreign or damaged, {} replayed",
+                network.said, network.heard, network.replayed
+            ));
+        }
         for left in &self.outcome.residual_frontiers {
             lines.push(format!(
                 "  left      {} cells at ({:.1}, {:.1}): {}",

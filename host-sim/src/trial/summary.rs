@@ -65,6 +65,7 @@ pub(super) fn report(
         debug: report::Debug {
             map_matches_mirror: map_is_read.then(|| account.mirror.equals(&record.tiles)),
         },
+        network: None,
     }
 }
 
