@@ -12,6 +12,7 @@
 //! | [`loops`] | the table of explorations that close loops, with the papers' ratios |
 //! | [`uneven`] | whole explorations of uneven ground, and their table |
 //! | [`truth`] | maps of uneven ground against the true ground |
+//! | [`teams`] | explorations by teams, and their tables |
 //! | [`history`] | every change of every map cell, with its time |
 //! | [`watched`] | a link that is read after every step |
 //! | [`worlds`] | the built-in worlds by kind; worlds drawn by others |
@@ -49,6 +50,7 @@ pub mod random;
 pub mod runs;
 pub mod starts;
 pub mod table;
+pub mod teams;
 pub mod truth;
 pub mod uneven;
 pub mod watched;

@@ -1,0 +1,212 @@
+//! Explorations by teams, and their tables.
+//!
+//! Units: simulated seconds, metres, per cent, kilobytes on the air. A *contact* is a touch of two
+//! robots, a *hit* one with the world. *After another* is the share of the path that another robot
+//! had driven before, *twice* the share of the known ground that more than one robot measured.
+
+use host_sim::link::Link;
+use host_sim::link::direct::Direct;
+use host_sim::report::TeamReport;
+use host_sim::trial::mission::Mission;
+use host_sim::trial::team::{Appointment, TeamMission, Timetable, explore};
+use host_sim::world::World;
+
+use crate::digests::Digest;
+use crate::table::{Table, number};
+
+/// One exploration by a team over direct links.
+#[derive(Clone, Copy, Debug)]
+pub struct TeamRun<'a> {
+    /// World to explore.
+    pub world: &'a World,
+    /// Number of robots.
+    pub robots: usize,
+    /// True if they start apart.
+    pub apart: bool,
+    /// The radio, as on the command line.
+    pub radio: &'a str,
+    /// Who leaves, as on the command line.
+    pub leave: &'a [&'a str],
+    /// Who joins again.
+    pub join: &'a [&'a str],
+    /// Seed of the noise.
+    pub seed: u64,
+}
+
+impl<'a> TeamRun<'a> {
+    /// Makes the usual run: side by side, a radio that loses nothing, seed 0.
+    #[must_use]
+    pub const fn of(world: &'a World, robots: usize) -> Self {
+        Self {
+            world,
+            robots,
+            apart: false,
+            radio: "loss=0",
+            leave: &[],
+            join: &[],
+            seed: 0,
+        }
+    }
+
+    /// Explores.
+    ///
+    /// # Panics
+    /// If the team cannot begin.
+    #[must_use]
+    pub fn go(&self) -> TeamReport {
+        let mission = Mission {
+            seed: self.seed,
+            ..Mission::default()
+        };
+        let team = TeamMission {
+            apart: self.apart,
+            radio: self.radio.parse().expect("a radio"),
+            timetable: Timetable {
+                leave: appointments(self.leave),
+                join: appointments(self.join),
+            },
+            ..TeamMission::of(mission, self.robots)
+        };
+        let link = |_| -> Box<dyn Link> { Box::new(Direct::new()) };
+        let mut links: Vec<Box<dyn Link>> = (0..self.robots).map(link).collect();
+        match explore(&team, self.world, &mut links, &mut ()) {
+            Ok((report, _)) => report,
+            Err(error) => panic!("{}: {error}", self.world.name()),
+        }
+    }
+
+    /// Returns the words that say what differs from a run of one robot.
+    #[must_use]
+    pub fn settings(&self) -> String {
+        let starts = if self.apart { "apart" } else { "beside" };
+        let mut words = vec![
+            format!("team={}", self.robots),
+            starts.into(),
+            self.radio.into(),
+        ];
+        words.extend(self.leave.iter().map(|it| format!("leave={it}")));
+        words.extend(self.join.iter().map(|it| format!("join={it}")));
+        words.join(",")
+    }
+
+    /// Returns the digest of its report.
+    #[must_use]
+    pub fn digest(&self, report: &TeamReport) -> Digest {
+        Digest::of(&report.whole, &self.settings())
+    }
+}
+
+fn appointments(words: &[&str]) -> Vec<Appointment> {
+    let parse = |word: &&str| word.parse().expect("an appointment");
+    words.iter().map(parse).collect()
+}
+
+/// Makes a table with one line for each run.
+#[must_use]
+pub fn table(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
+    let mut table = Table::new(
+        3,
+        &[
+            "world",
+            "team",
+            "ended",
+            "seed",
+            "known %",
+            "T90 s",
+            "T99 s",
+            "end s",
+            "path m",
+            "after another",
+            "twice",
+            "hits",
+            "contacts",
+            "gap m",
+            "kB",
+            "lost",
+            "equal maps",
+        ],
+    );
+    for (run, report) in runs.iter().zip(reports) {
+        let whole = &report.whole;
+        table.row(vec![
+            whole.world.clone(),
+            run.settings(),
+            format!("{}({})", whole.outcome.status, whole.outcome.reason),
+            whole.seed.to_string(),
+            format!("{:.2}", whole.coverage.fraction * 100.0),
+            number(whole.coverage.t90_s, 1),
+            number(whole.coverage.t99_s, 1),
+            format!("{:.1}", whole.sim_time_s),
+            format!("{:.1}", whole.path_length_m),
+            format!("{:.2}", report.team.driven_after_another),
+            format!("{:.2}", report.team.measured_twice),
+            (whole.safety.collisions + whole.safety.falls + whole.safety.tips).to_string(),
+            whole.safety.robot_contacts.unwrap_or(0).to_string(),
+            number(report.team.min_robot_gap_m, 3),
+            format!("{:.1}", report.radio.traffic.sent_bytes as f64 / 1e3),
+            report.radio.traffic.lost.to_string(),
+            report
+                .team
+                .maps_equal
+                .map_or("-".into(), |it| it.to_string()),
+        ]);
+    }
+    table
+}
+
+/// Makes a table with one line for each world, start, radio and number of robots, over the seeds.
+///
+/// Runs of one line stand together, and the runs of one robot of a group come first. `speed-up` is
+/// the mean T99 of one robot over that of the team; it needs 99 % in every run.
+#[must_use]
+pub fn speed_up(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
+    let mut table = Table::new(
+        3,
+        &[
+            "world",
+            "starts",
+            "radio",
+            "robots",
+            "T99 s",
+            "speed-up",
+            "path m",
+            "after another",
+            "twice",
+            "hits",
+            "contacts",
+            "unfinished",
+        ],
+    );
+    let all: Vec<(&TeamRun<'_>, &TeamReport)> = runs.iter().zip(reports).collect();
+    let group = |it: &TeamRun<'_>| (it.world.name().to_owned(), it.apart, it.radio.to_owned());
+    for same in all.chunk_by(|(a, _), (b, _)| group(a) == group(b)) {
+        let mut alone_s = None;
+        for line in same.chunk_by(|(a, _), (b, _)| a.robots == b.robots) {
+            let (run, count) = (line[0].0, line.len() as f64);
+            let times: Option<Vec<f64>> =
+                line.iter().map(|(_, it)| it.whole.coverage.t99_s).collect();
+            let t99_s = times.map(|times| times.iter().sum::<f64>() / count);
+            if run.robots == 1 {
+                alone_s = t99_s;
+            }
+            let mean =
+                |of: fn(&TeamReport) -> f64| line.iter().map(|(_, it)| of(it)).sum::<f64>() / count;
+            let sum = |of: fn(&TeamReport) -> u32| line.iter().map(|(_, it)| of(it)).sum::<u32>();
+            table.row(vec![
+                run.world.name().into(),
+                if run.apart { "apart" } else { "beside" }.into(),
+                run.radio.into(),
+                run.robots.to_string(),
+                number(t99_s, 1),
+                number(alone_s.zip(t99_s).map(|(alone, team)| alone / team), 2),
+                format!("{:.1}", mean(|it| it.whole.path_length_m)),
+                format!("{:.2}", mean(|it| it.team.driven_after_another)),
+                format!("{:.2}", mean(|it| it.team.measured_twice)),
+                sum(|it| it.whole.safety.collisions).to_string(),
+                sum(|it| it.whole.safety.robot_contacts.unwrap_or(0)).to_string(),
+                sum(|it| u32::from(!it.whole.explored())).to_string(),
+            ]);
+        }
+    }
+    table
+}
