@@ -1,7 +1,7 @@
 //! What carries datagrams between processes.
 
 use core::fmt::Debug;
-use std::net::SocketAddr;
+use core::net::SocketAddr;
 
 /// A datagram that arrived.
 #[derive(Clone, Debug, PartialEq, Eq)]

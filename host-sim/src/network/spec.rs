@@ -11,8 +11,9 @@
 //! | `pace=N` | simulated seconds in one second | 1 |
 
 use core::fmt;
+use core::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use core::str::FromStr;
-use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, ToSocketAddrs as _};
+use std::net::ToSocketAddrs as _;
 use std::path::{Path, PathBuf};
 
 use super::envelope::{Key, ROBOTS};

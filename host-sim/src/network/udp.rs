@@ -3,10 +3,11 @@
 //! Once a second a process says in the group at which port it hears packets. Whoever hears that
 //! sends its packets there. Without a group, only the configured peers are known.
 
+use core::net::{Ipv4Addr, SocketAddr};
 use core::time::Duration;
 use std::collections::BTreeMap;
 use std::io::{self, ErrorKind};
-use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
+use std::net::UdpSocket;
 use std::time::Instant;
 
 use socket2::{Domain, Protocol, Socket, Type};
