@@ -1,9 +1,9 @@
 //! Share of a team's path that was driven twice, and by whom.
 //!
 //! As [`super::Overlap`], over the paths of all robots: a piece of path counts if a robot passed
-//! within [`NEAR_M`] of it before. *Again* counts earlier passes by any robot, one's own if they are
-//! [`EARLIER_M`] of path earlier. *After another* counts passes by other robots only. Robots that
-//! start side by side have no earlier pass of each other then.
+//! within [`NEAR_M`] of it before. *Again* counts earlier passes by any robot, one's own if they
+//! are [`EARLIER_M`] of path earlier. *After another* counts passes by other robots only. Robots
+//! that start side by side have no earlier pass of each other then.
 
 use std::collections::BTreeMap;
 

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! A robot whose exploration ended stands, hears and says on. One that is away stands, is silent
-//! and hears nothing. Joining again is a new session of its planner: a new boot, an empty map. After
-//! a broken link the robot's watchdog stops it, and it is silent for good.
+//! and hears nothing. Joining again is a new session of its planner: a new boot, an empty map.
+//! After a broken link the robot's watchdog stops it, and it is silent for good.
 
 use fieldline_protocol::message::{self as wire, Control, Finish, Observation, Status, Twist};
 use fieldline_protocol::packet::{MAX_PACKET, decode_packet, encode_packet};

@@ -1,12 +1,12 @@
 //! Several robots explore one world, each with its own link and planner.
 //!
 //! The loop is lockstep: in each period the robots take part one after another, in the order of
-//! their numbers, then all drive. In its part a robot hears what the radio brought until then, makes
-//! its step, and says what its planner has to say. So a packet is heard in the next period at the
-//! earliest. The same settings give the same records, except for measured times.
+//! their numbers, then all drive. In its part a robot hears what the radio brought until then,
+//! makes its step, and says what its planner has to say. So a packet is heard in the next period at
+//! the earliest. The same settings give the same records, except for measured times.
 //!
-//! The team has ended when no robot explores and none is to join. Then the robots stand and talk for
-//! [`SETTLE_MS`] more, so that what was said last is repaired if it was lost; that time counts
+//! The team has ended when no robot explores and none is to join. Then the robots stand and talk
+//! for [`SETTLE_MS`] more, so that what was said last is repaired if it was lost; that time counts
 //! nowhere.
 
 mod member;
