@@ -4,7 +4,7 @@
 //! | --- | --- | --- |
 //! | `off` | no robot hears another | |
 //! | `range=M` | greatest distance, metres | no limit |
-//! | `walls=M`, `walls=block` | each wall between counts as M metres more; or ends the contact | 0 |
+//! | `walls=M`, `walls=block` | each wall between counts as M metres more, or blocks | 0 |
 //! | `loss=P` | probability that a hearer does not hear a packet | 0 |
 //! | `duplicate=P` | probability that a hearer hears a packet twice | 0 |
 //! | `delay=S` | greatest delay, seconds: uniform from 0 | 0 |
