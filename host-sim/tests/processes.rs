@@ -1,9 +1,9 @@
 //! A team of processes on this machine: three robots over UDP, one killed and started again.
 
+use core::time::Duration;
 use std::net::UdpSocket;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::time::Duration;
 
 use serde_json::Value;
 

@@ -191,3 +191,19 @@ fn members_find_each_other_in_a_multicast_group() {
         assert_eq!(counters.malformed + counters.unauthentic, 0, "{counters:?}");
     }
 }
+
+#[test]
+fn any_bytes_are_refused_and_none_panics() {
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
+    let mut rng = ChaCha8Rng::seed_from_u64(14);
+    let key = key();
+    for round in 0..200_000_u32 {
+        let mut bytes = vec![0; (rng.next_u32() % 64) as usize];
+        rng.fill_bytes(&mut bytes);
+        if round % 2 == 0 && bytes.len() > 5 {
+            bytes[..5].copy_from_slice(&[b'F', b'L', 1, 0, 3]);
+        }
+        assert!(key.open(&bytes).is_err());
+    }
+}

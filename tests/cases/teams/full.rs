@@ -1,6 +1,6 @@
 //! How much faster a team is than a robot: hours.
 
-use std::ops::Range;
+use core::ops::Range;
 
 use fieldline_tests::runs::in_parallel;
 use fieldline_tests::teams::{TeamRun, speed_up, table};

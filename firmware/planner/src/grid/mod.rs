@@ -30,7 +30,6 @@ mod tile_map;
 
 pub(crate) use index::{at, inside, inside_mut, masked, masked_mut, triple, wrapped, wrapped_mut};
 pub(crate) use rolling::Rolling;
-pub(crate) use tile_key::find;
 pub(crate) use tile_map::TileMap;
 
 pub use class::{Class, Row};

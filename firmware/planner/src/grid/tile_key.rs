@@ -14,9 +14,7 @@
 
 use crate::grid::Site;
 
-/// Cells of a plane along a tile's side.
-pub(crate) const SIDE: u16 = 1 << SHIFT;
-/// The same as a power of two.
+/// Cells of a plane along a tile's side, as a power of two.
 const SHIFT: u16 = 4;
 /// Tiles from the first one to the end of the range, in either direction.
 const REACH: i32 = 126;
@@ -39,7 +37,7 @@ impl TileKey {
         if columns < -REACH || columns > REACH || rows < -REACH || rows > REACH {
             return None;
         }
-        Some(Self((rows + MIDDLE << 8 | columns + MIDDLE) as u16))
+        Some(Self(((rows + MIDDLE) << 8 | (columns + MIDDLE)) as u16))
     }
 
     /// Returns how many columns and rows the tile lies from the first one.
@@ -69,17 +67,6 @@ impl TileKey {
             x: (self.0 & 0xff) << SHIFT,
             y: self.0 >> 8 << SHIFT,
         }
-    }
-
-    /// Returns the key of the tile `columns` and `rows` away, each −1, 0 or 1.
-    #[inline]
-    pub(crate) const fn beside(self, columns: i16, rows: i16) -> Self {
-        Self(self.0.wrapping_add_signed(columns + rows * 256))
-    }
-
-    /// Returns true if both tiles lie in the same row.
-    pub(crate) const fn is_in_row_of(self, other: Self) -> bool {
-        self.0 >> 8 == other.0 >> 8
     }
 }
 

@@ -56,11 +56,6 @@ impl<T: Copy, const N: usize> TileMap<T, N> {
         TileKey::of(columns, rows)
     }
 
-    /// Returns true if a tile is near enough to the first one to have a key.
-    pub(crate) fn is_in_range(&self, tile: (i32, i32)) -> bool {
-        self.keys.is_empty() || self.key(tile).is_some()
-    }
-
     /// Returns true if there is no place for another tile.
     pub(crate) fn is_full(&self) -> bool {
         self.keys.is_full()
@@ -159,10 +154,8 @@ mod tests {
     #[test]
     fn a_tile_far_from_the_first_one_has_no_place() {
         let mut map = TileMap::<u8, 4>::new(0);
-        assert!(map.is_in_range((i32::MIN, i32::MAX)));
         map.get_or_add((1_000, -5), 1);
         for (column, fits) in [(873, false), (874, true), (1_126, true), (1_127, false)] {
-            assert_eq!(map.is_in_range((column, -5)), fits);
             assert_eq!(map.get_or_add((column, -5), 2).is_some(), fits);
         }
         map.get_or_add((i32::MIN, i32::MAX), 3);
