@@ -37,6 +37,9 @@ fn start(folder: &Path, world: &str, id: usize, spec: &str) -> Child {
             spec,
             "--seed",
             &id.to_string(),
+            // Each process has a world of its own; the robots keep off each other by beacons.
+            "--start",
+            &id.to_string(),
         ])
         .args(["--out", &format!("robot-{id}")])
         .stdout(Stdio::piped())

@@ -212,9 +212,9 @@ impl Pilot {
         memory: &mut Memory<'_, TILES, SLOTS>,
         packet: &Packet,
     ) -> Result<(), Refusal> {
-        self.in_team()?;
+        let config = self.in_team()?;
         if let Some(packet) = convert::packet(packet) {
-            memory.state.hear(&packet);
+            memory.state.hear(config, &packet);
         }
         Ok(())
     }

@@ -17,10 +17,12 @@
 mod charge;
 mod ending;
 mod ground_model;
+mod make_way;
 mod memory;
 mod plan;
 mod prefer;
 mod readout;
+mod sight;
 mod state;
 mod steer;
 mod team;
@@ -41,6 +43,7 @@ use crate::robot::LaserMount;
 use crate::status::{Fault, Status};
 use charge::{charge, charge_rails, local_goal};
 use ground_model::GroundModel;
+use make_way::{Way, make_way};
 use plan::{replan, search_viewpoints};
 use prefer::{note_flatness, prefer};
 use steer::{look_about, steer};
@@ -114,7 +117,8 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
 ) -> Output {
     let pose = state.team.to_map(&input.pose);
     let input = Input { pose, ..input };
-    state.team.note(input.time_ms, &pose, input.velocity);
+    let motion = (&pose, input.velocity);
+    state.team.begin_step(input.time_ms, motion, &mut state.map);
     let output = explore(config, state, workspace, input, timer);
     state.drive.tell(output.velocity);
     output
@@ -131,7 +135,12 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if state.status != Status::Exploring {
         return Output::standing(state.status);
     }
-    sense(config, state, &input);
+    let peers = state.team.peers();
+    if peers.may_be_seen(input.time_ms, &input.pose, &config.lasers) {
+        sight::sense_without_peers(config, state, &input);
+    } else {
+        sense(config, state, &input);
+    }
     timer.mark(Stage::Sense);
     // A search for a recovery owns the scratch: the robot stands and plans nothing until it is
     // over.
@@ -150,7 +159,20 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if state.status != Status::Exploring {
         return Output::standing(state.status);
     }
-    if charge_rails(config, state, workspace, &footprint, &input).is_none() {
+    let way = if state.team.is_member() {
+        make_way(config, state, workspace, &footprint, &input)
+    } else {
+        Way::Free
+    };
+    if !matches!(way, Way::Free) {
+        state.strategy.frontier.pause(input.time_ms);
+    }
+    if let Way::Retreat(goal) = &way {
+        charge(workspace, goal);
+    } else if matches!(way, Way::Hold) {
+        timer.mark(Stage::Window);
+        return Output::default();
+    } else if charge_rails(config, state, workspace, &footprint, &input).is_none() {
         let Some(goal) = local_goal(config, state, &footprint, &input, &mut workspace.local_grid)
         else {
             timer.mark(Stage::Window);
@@ -213,7 +235,9 @@ const fn budget(config: &Config, planned: bool) -> SolverConfig {
     }
 }
 
-/// Enters scans and odometry into the map and the ground model.
+/// Enters scans and odometry into the map and the ground model. It is large and called from two
+/// places, so it is not inlined.
+#[inline(never)]
 fn sense<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,

@@ -73,6 +73,8 @@ pub enum Activity {
     Faulted,
     /// It leaves the team.
     Gone,
+    /// It stands until another robot is out of its way.
+    Holding,
 }
 
 /// Where a robot is and what it is about to do: at most [`crate::packet::MAX_BEACON`] bytes.

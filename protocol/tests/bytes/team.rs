@@ -141,6 +141,7 @@ fn activities_have_fixed_numbers() {
         Activity::Finished,
         Activity::Faulted,
         Activity::Gone,
+        Activity::Holding,
     ];
     for (number, activity) in (0..).zip(activities) {
         assert_eq!(postcard::to_allocvec(&activity).unwrap(), [number]);

@@ -171,6 +171,7 @@ fn beacon() -> impl Strategy<Value = Beacon> {
         Activity::Finished,
         Activity::Faulted,
         Activity::Gone,
+        Activity::Holding,
     ]);
     let motion = (short(), twist());
     let place = any::<(u32, i16, i16, u8, u8, u8)>();

@@ -64,6 +64,7 @@ fn beacon(said: &wire::Beacon) -> Beacon {
             wire::Activity::Finished => Activity::Finished,
             wire::Activity::Faulted => Activity::Faulted,
             wire::Activity::Gone => Activity::Gone,
+            wire::Activity::Holding => Activity::Holding,
         },
         goal: said.goal,
         road: said.road.clone(),
@@ -142,6 +143,7 @@ fn wire_beacon(said: &Beacon) -> wire::Beacon {
             Activity::Finished => wire::Activity::Finished,
             Activity::Faulted => wire::Activity::Faulted,
             Activity::Gone => wire::Activity::Gone,
+            Activity::Holding => wire::Activity::Holding,
         },
         goal: said.goal,
         road: said.road.clone(),
@@ -201,6 +203,7 @@ mod tests {
             wire::Activity::Finished,
             wire::Activity::Faulted,
             wire::Activity::Gone,
+            wire::Activity::Holding,
         ] {
             is_kept(Body::Beacon(wire::Beacon {
                 map: 0xdead_beef,

@@ -25,6 +25,8 @@ use crate::robot::RobotShape;
 const CHECK_EVERY_M: f32 = 0.05;
 /// Capacity for map cells beside the obstacle points.
 const MOST_CELLS: usize = 64;
+/// Capacity for points on the hulls of other robots.
+const MOST_HULL_POINTS: usize = 96;
 /// Distance of an obstacle point from a map cell's centre within which the point replaces the cell,
 /// metres: in the cell, or at its side.
 const KNOWN_M: f32 = 0.08;
@@ -90,7 +92,7 @@ struct Threat {
 #[derive(Debug)]
 pub struct CollisionChecker {
     robot: RobotShape,
-    threats: Vec<Threat, { MAX_POINTS + MOST_CELLS }>,
+    threats: Vec<Threat, { MAX_POINTS + MOST_CELLS + MOST_HULL_POINTS }>,
     hull: Hull,
     /// Slopes of the ground, where they bound the headings.
     incline: Option<Incline>,
@@ -189,6 +191,18 @@ impl CollisionChecker {
             let clearance_m = self.hull.overhang(at.x_m, at.y_m);
             if clearance_m > -FALSE_ECHO_M {
                 // There is room for all points.
+                let _ = self.threats.push(Threat { at, clearance_m });
+            }
+        }
+    }
+
+    /// Adds points on the hulls of other robots.
+    pub(crate) fn keep_off_hulls(&mut self, pose: &Pose, points: impl Iterator<Item = Point>) {
+        let frame = RobotFrame::of(pose);
+        for at in points.map(|point| frame.to_robot(point)) {
+            let clearance_m = self.hull.overhang(at.x_m, at.y_m);
+            if clearance_m > -FALSE_ECHO_M {
+                // Points beyond the capacity are dropped: those of the other robots remain.
                 let _ = self.threats.push(Threat { at, clearance_m });
             }
         }

@@ -248,7 +248,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         let Some(&[low, high]) = inside(&self.pool, page) else {
             return;
         };
-        if high != ZEROS {
+        // A compact tile has no place for an epoch.
+        if high != ZEROS || self.versions.epoch(page) > 0 {
             return;
         }
         let kept = side_table.release_page(page);

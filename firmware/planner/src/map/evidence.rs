@@ -138,6 +138,15 @@ impl Evidence {
         self.update(cell, class, tuning, lowered)
     }
 
+    /// Forgets the evidence for a cell. Its next count starts from its class, as at the window's
+    /// edge.
+    pub(crate) fn forget(&mut self, cell: Cell) {
+        if self.covers(cell) {
+            let (pair, shift) = self.pair(cell);
+            *pair &= !(15 << shift);
+        }
+    }
+
     /// Counts a beam that passed a free cell, which stays free. Most such cells have count 1.
     #[inline(always)]
     pub(crate) fn pass_free(&mut self, cell: Cell, tuning: &MapTuning) {

@@ -144,6 +144,29 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
+    /// Frees the cells that a beam of the level laser crossed up to `length_m`, whatever it met
+    /// there.
+    pub(crate) fn free_view(
+        &mut self,
+        tuning: &MapTuning,
+        pose: &Pose,
+        laser: &LaserMount,
+        (number, length_m): (usize, f32),
+    ) {
+        let bearing =
+            pose.yaw_rad + laser.first_bearing_rad + number as f32 * laser.bearing_step_rad;
+        let (sin, cos) = math::sin_cos(bearing);
+        let beam = Beam {
+            from: sensor_point(pose, laser),
+            direction: (cos, sin),
+            length_m,
+            hit: false,
+            number,
+            free_from_m: 0.0,
+        };
+        self.free_along(tuning, &beam);
+    }
+
     /// Frees the unknown cells in a disc of `radius_m` around the robot, because it stands there.
     pub(crate) fn free_footprint(&mut self, centre: Point, radius_m: f32) {
         let (middle, reach) = (centre.cell(), math::floor(radius_m / CELL_M) + 1);
@@ -163,6 +186,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
+    #[inline(never)]
     fn free_along(&mut self, tuning: &MapTuning, beam: &Beam) {
         let from_m = beam.free_from_m;
         let (start, length_m) = (beam.at(from_m), beam.length_m - from_m);

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`tiles`], `tile`, `extent` | the class of every cell, for the whole run |
 //! | `compaction` | smaller storage for tiles with little content |
+//! | `versions`, [`exchange`], `join` | for a team: tiles with versions, and their joins |
 //! | `rows` | rows of 32 and 64 cells, for all planning |
 //! | `evidence` | counts for and against an obstacle around the robot, on flat ground |
 //! | `integrate`, `traversal` | beams into classes and counts |
@@ -15,8 +16,10 @@
 pub(crate) mod compaction;
 mod elevation_layer;
 pub(crate) mod evidence;
+pub(crate) mod exchange;
 mod extent;
 pub(crate) mod integrate;
+pub(crate) mod join;
 pub mod obstacle_points;
 pub(crate) mod rows;
 mod tile;
@@ -24,6 +27,7 @@ pub mod tiles;
 mod traversal;
 #[cfg(test)]
 mod uneven_tests;
+mod versions;
 
 pub use crate::grid::Class;
 pub use compaction::SideTable;

@@ -6,6 +6,7 @@
 
 use crate::grid::{Class, masked, masked_mut};
 use crate::map::tiles::TILE_ROWS;
+use crate::map::versions::News;
 
 /// One bit of every cell of a tile, row by row.
 pub(super) type Plane = [u32; TILE_ROWS];
@@ -18,6 +19,7 @@ pub(super) struct TileMut<'a> {
     pub(super) cells: &'a mut Cells,
     /// Number of changes of any cell of the map; wraps.
     pub(super) edits: &'a mut u32,
+    pub(super) news: &'a mut News,
 }
 
 impl TileMut<'_> {
@@ -46,16 +48,18 @@ impl TileMut<'_> {
     pub(super) fn set(&mut self, row: usize, bit: u32, class: Class) {
         let [low, high] = &mut *self.cells;
         let words = [low, high].map(|plane| masked_mut(plane, row));
-        *self.edits = self.edits.wrapping_add(u32::from(write(words, bit, class)));
+        let (before, after) = (write(words, bit, class), class as u32);
+        *self.edits = self.edits.wrapping_add(u32::from(before != after));
+        self.news.note(before, after);
     }
 }
 
-/// Writes a cell's class into the words of its row. Returns true if it changed.
+/// Writes a cell's class into the words of its row. Returns the number of the class before.
 #[inline(always)]
-const fn write([low, high]: [&mut u32; 2], bit: u32, class: Class) -> bool {
+const fn write([low, high]: [&mut u32; 2], bit: u32, class: Class) -> u32 {
     let code = class as u32;
-    let old = (*low, *high);
+    let before = (*low & bit != 0) as u32 | ((*high & bit != 0) as u32) << 1;
     *low = *low & !bit | bit & (code & 1).wrapping_neg();
     *high = *high & !bit | bit & (code >> 1 & 1).wrapping_neg();
-    old.0 != *low || old.1 != *high
+    before
 }

@@ -17,6 +17,7 @@ use crate::map::compaction::{Entry, FreeList, ONES, ZEROS};
 pub use crate::map::extent::{Extent, NoRoom};
 use crate::map::rows::{Column, RowReader};
 pub(super) use crate::map::tile::{Cells, Plane, TileMut};
+use crate::map::versions::Versions;
 
 /// Cells along a tile's side.
 pub const TILE_SIDE: i32 = 32;
@@ -33,6 +34,7 @@ pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     pub(super) directory: TileMap<u16, SLOTS>,
     /// The trail in the tile of each page: 16 rows of 16 blocks of 2 × 2 cells.
     pub(super) trail: [Visited; TILES],
+    pub(super) versions: Versions<TILES>,
     pub(super) free: FreeList,
     /// Pages at the pool's end that are lent to the elevation window.
     lent: u16,
@@ -40,7 +42,7 @@ pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     sides: (i32, i32),
     extent: Option<Extent>,
     /// Number of changes of any cell; wraps.
-    edits: u32,
+    pub(super) edits: u32,
 }
 
 impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
@@ -51,6 +53,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             pool: [[ZEROS; 2]; TILES],
             directory: TileMap::new(0),
             trail: [NO_TRAIL; TILES],
+            versions: Versions::new(),
             free: FreeList::EMPTY,
             lent: 0,
             sides: (0, 0),
@@ -159,7 +162,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Returns the low and the high plane of a tile; `None` if it is untouched.
-    fn planes(&self, entry: Entry) -> Option<[&Plane; 2]> {
+    pub(super) fn planes(&self, entry: Entry) -> Option<[&Plane; 2]> {
         match entry {
             Entry::Untouched => None,
             Entry::Page(page) => inside(&self.pool, page).map(|[low, high]| [low, high]),
@@ -198,7 +201,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Returns the page of a tile; takes a fresh one on first touch. A compact tile has no page.
-    fn touch(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
+    pub(super) fn touch(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
         match self.entry(tile_x, tile_y) {
             Entry::Page(page) => Ok(page),
             Entry::Untouched => self.add(tile_x, tile_y),
@@ -225,6 +228,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         {
             (*old, *trail) = (cells, NO_TRAIL);
         }
+        self.versions.begin(page);
     }
 
     /// Returns the class of a cell.
@@ -294,6 +298,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         Ok(TileMut {
             cells: inside_mut(&mut self.pool, index).ok_or(NoRoom::Pool)?,
             edits: &mut self.edits,
+            news: self.versions.news_mut(index).ok_or(NoRoom::Pool)?,
         })
     }
 

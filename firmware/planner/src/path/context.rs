@@ -46,6 +46,8 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) levels: Option<LevelCost<'a, TILES>>,
     /// True if blocked passages are opened again when no goal can be reached.
     pub(crate) reopens_passages: bool,
+    /// True if a peer stands in the way that may drive on: without a path the robot waits.
+    pub(crate) waits_for_peers: bool,
 }
 
 impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {

@@ -121,6 +121,12 @@ impl ProgressChecker {
         time_ms.saturating_sub(self.moved_ms)
     }
 
+    /// Notes that the robot waits for another one. The wait does not count.
+    pub(crate) fn pause(&mut self, time_ms: u32) {
+        (self.judged_ms, self.stood_ms, self.moved_ms) = (time_ms, time_ms, time_ms);
+        self.flat = false;
+    }
+
     /// Forgets the progress towards a goal.
     pub(crate) fn forget(&mut self, goal: Cell) {
         self.attempts.retain(|attempt| !attempt.leads_to(goal));

@@ -36,6 +36,7 @@ pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
         state
             .ground
             .block_rims(config, tiles, footprint, robot, grid);
+        state.block_peers(footprint, input, grid, None);
         path.local_goals(robot)
             .find_map(|cell| goal_cells(grid, cell))
     })
@@ -65,6 +66,7 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     state
         .ground
         .block_rims(config, tiles, footprint, input.pose.point(), local_grid);
+    state.block_peers(footprint, input, local_grid, None);
     slide(workspace);
     let centres = Centres::of(&state.skeleton, tiles, footprint)?;
     let window = (&mut workspace.window, &workspace.local_grid);

@@ -148,7 +148,7 @@ impl<M: Memory> Planner<M> {
     /// assert_eq!(team[0].peers().map(place).collect::<Vec<f32>>(), [3.0]);
     /// ```
     pub fn hear(&mut self, packet: &Packet) {
-        sealed::Planning::hear(&mut self.state, packet);
+        sealed::Planning::hear(&mut self.state, &self.config, packet);
     }
 
     /// Returns the next packet for the team; `None` until the next step, and for a robot alone. Ask
@@ -226,7 +226,7 @@ mod sealed {
             input: Input<'_>,
             timer: &mut impl StageTimer,
         ) -> Output;
-        fn hear(&mut self, packet: &Packet);
+        fn hear(&mut self, config: &Config, packet: &Packet);
         fn say(&mut self, config: &Config) -> Option<Packet>;
         fn peers(&self) -> &Peers;
         fn status(&self) -> Status;
@@ -254,8 +254,8 @@ mod sealed {
             step(config, self, workspace, input, timer)
         }
 
-        fn hear(&mut self, packet: &Packet) {
-            Self::hear(self, packet);
+        fn hear(&mut self, config: &Config, packet: &Packet) {
+            Self::hear(self, config, packet);
         }
 
         fn say(&mut self, config: &Config) -> Option<Packet> {

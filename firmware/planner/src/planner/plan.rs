@@ -26,6 +26,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     footprint: &Footprint,
     input: &Input<'_>,
 ) -> bool {
+    let waits_for_peers = state.cut_peers(footprint, input.time_ms);
     let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
     let (residues, queue) = words.split_at_mut(SLOTS * 16);
     let (residues, _) = residues.as_chunks_mut::<2>();
@@ -45,6 +46,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         tuning: config.tuning,
         levels: state.ground.level_cost(config, &state.preferences),
         reopens_passages: state.ground.reopens_passages(),
+        waits_for_peers,
     };
     let Some(outcome) = state.strategy.advance(context, scratch) else {
         return false;

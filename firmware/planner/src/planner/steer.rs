@@ -4,7 +4,7 @@
 
 use crate::config::Config;
 use crate::drive::side_slope::Hysteresis;
-use crate::drive::{Incline, Place, SearchQuery};
+use crate::drive::{CollisionChecker, Incline, Place, SearchQuery};
 use crate::field::local_grid;
 use crate::field::{Window, descent};
 use crate::geometry::{Cell, Point, Pose, Twist};
@@ -13,6 +13,7 @@ use crate::math;
 use crate::planner::Output;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
+use crate::team::hull::Hull;
 
 /// The period of looking around, milliseconds: the time of half a turn.
 const LOOK_PERIOD_MS: u32 = 5_000;
@@ -62,9 +63,10 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     let here = headed(Place::default());
     state.slope_direction = here.and_then(|(_, direction)| direction);
     let here = here.map(|(heading, _)| heading);
-    let checker = state
+    let mut checker = state
         .ground
         .collision_checker(config, tiles, &input.pose, incline.clone());
+    keep_off_peers(&mut checker, state, config, input);
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
             let (x, y) = local_grid::position((origin, scale), input.pose.to_map(place.point()));
@@ -117,11 +119,25 @@ pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
     if !is_stalled(state, Twist::default(), input.time_ms) {
         return Twist::default();
     }
-    let checker = state
+    let mut checker = state
         .ground
         .collision_checker(config, state.map.tiles(), &input.pose, None);
+    keep_off_peers(&mut checker, state, config, input);
     let wish = state.drive.look_around(config, &checker, input.velocity);
     within_limits(config, wish)
+}
+
+/// Adds the other robots near by to the obstacles of the drive.
+#[inline(never)]
+fn keep_off_peers<const TILES: usize, const SLOTS: usize>(
+    checker: &mut CollisionChecker,
+    state: &State<TILES, SLOTS>,
+    config: &Config,
+    input: &Input<'_>,
+) {
+    let robot = input.pose.point();
+    let hulls = state.team.peers().near(input.time_ms, robot, config);
+    checker.keep_off_hulls(&input.pose, hulls.flat_map(Hull::outline));
 }
 
 /// Returns true if the robot is stalled on uneven ground and should look around: a turn may measure

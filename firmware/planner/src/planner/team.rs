@@ -3,12 +3,13 @@
 //! Units: metres; coarse cells of 20 cm.
 
 use crate::config::Config;
-use crate::geometry::Cell;
+use crate::geometry::{CELL_M, Cell};
 use crate::input::Input;
 use crate::planner::state::State;
 use crate::status::Status;
 use crate::team::packet::{Activity, Packet, half_cm};
 use crate::team::peers::Peer;
+use crate::team::right_of_way::Stance;
 
 /// Coarse cells of the path from one told place to the next: 0.8 m.
 const ROAD_CELLS: usize = 4;
@@ -29,12 +30,17 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// Only its team learns of it.
     pub fn stand(&mut self, input: &Input<'_>) {
         let pose = self.team.to_map(&input.pose);
-        self.team.note(input.time_ms, &pose, input.velocity);
+        let motion = (&pose, input.velocity);
+        self.team.begin_step(input.time_ms, motion, &mut self.map);
     }
 
     /// Takes a packet that another robot of the team said.
-    pub fn hear(&mut self, packet: &Packet) {
-        self.team.hear(packet);
+    pub fn hear(&mut self, config: &Config, packet: &Packet) {
+        let has_evidence = !self.ground.is_uneven();
+        // Another robot sees the hull, and marks the cells behind its beams' ends.
+        let stand_m = config.robot.half_diagonal_m + CELL_M;
+        self.team
+            .hear(packet, &mut self.map, (stand_m, has_evidence));
     }
 
     /// Returns the next packet for the team; `None` until the next step, and for a robot alone. Ask
@@ -43,26 +49,28 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     pub fn say(&mut self, config: &Config) -> Option<Packet> {
         let robot = &config.robot;
         let path = self.strategy.frontier.path();
-        let status = self.status;
-        self.team.say(|mut beacon| {
+        let activity = match self.status {
+            Status::Exploring => self.team.way.activity(),
+            Status::Finished(_) => Activity::Finished,
+            Status::Fault(_) => Activity::Faulted,
+        };
+        let (stance, refuge) = (self.team.way.stance(), self.team.way.refuge());
+        self.team.say(&mut self.map, |mut beacon| {
             beacon.half_cm = (half_cm(robot.half_length_m), half_cm(robot.half_width_m));
-            beacon.activity = activity(status);
+            beacon.activity = activity;
             if !beacon.activity.moves() {
                 return beacon;
             }
             let goal = (!path.is_empty()).then(|| path.goal());
             let ahead = path.cells().iter().skip(ROAD_CELLS).step_by(ROAD_CELLS);
             let middle = |cell: &Cell| cell.offset(1, 1).corner();
-            beacon.bound_for(goal).along(ahead.map(middle))
+            match stance {
+                Stance::Free | Stance::Holding => beacon.bound_for(goal).along(ahead.map(middle)),
+                // Its road is the one that it needs to make way.
+                Stance::Yielding | Stance::Cornered => {
+                    beacon.bound_for(goal).along(refuge.into_iter())
+                }
+            }
         })
-    }
-}
-
-/// Returns what a robot with this status does.
-const fn activity(status: Status) -> Activity {
-    match status {
-        Status::Exploring => Activity::Exploring,
-        Status::Finished(_) => Activity::Finished,
-        Status::Fault(_) => Activity::Faulted,
     }
 }

@@ -4,20 +4,30 @@
 //! | --- | --- |
 //! | [`packet`] | what the robots say to each other |
 //! | [`peers`] | the other robots, as their last beacons told |
+//! | [`hull`] | the places that the peers take, and the beams that they stop |
+//! | [`right_of_way`] | who makes way for whom |
+//! | `exchange` | the exchange of map tiles |
 //!
 //! All members use the same coordinates: [`Team::to_map`] converts a robot's odometry to them at
 //! the planner's entry. So the tiles of all members lie in one grid.
 //!
 //! Units: metres, milliseconds.
 
+mod exchange;
+pub(crate) mod hull;
 pub mod packet;
 pub mod peers;
+pub(crate) mod right_of_way;
 
 use crate::config::{Member, TeamPlace};
-use crate::geometry::{Pose, RobotFrame, Twist};
+use crate::geometry::{Point, Pose, RobotFrame, Twist};
+use crate::map::Map;
+use crate::map::exchange::Stand;
 use crate::math;
+use exchange::Exchange;
 use packet::{Beacon, Body, Packet};
-use peers::Peers;
+use peers::{Peer, Peers};
+use right_of_way::RightOfWay;
 
 /// The state of a team's member; of a robot alone it is empty.
 #[derive(Debug)]
@@ -34,6 +44,9 @@ pub(crate) struct Team {
     pose: Pose,
     velocity: Twist,
     peers: Peers,
+    exchange: Exchange,
+    /// The right of way.
+    pub(crate) way: RightOfWay,
 }
 
 impl Team {
@@ -59,6 +72,8 @@ impl Team {
                 angular_radps: 0.0,
             },
             peers: Peers::new(),
+            exchange: Exchange::new(),
+            way: RightOfWay::new(),
         }
     }
 
@@ -96,41 +111,103 @@ impl Team {
     }
 
     /// Notes the time and the robot's motion at the beginning of a step.
-    pub(crate) fn note(&mut self, now_ms: u32, pose: &Pose, velocity: Twist) {
+    pub(crate) fn begin_step<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        now_ms: u32,
+        (pose, velocity): (&Pose, Twist),
+        map: &mut Map<TILES, SLOTS>,
+    ) {
         (self.now_ms, self.pose, self.velocity) = (now_ms, *pose, velocity);
-        self.owes_beacon = self.is_member();
-        self.peers.forget_silent(now_ms);
+        if self.is_member() {
+            self.owes_beacon = true;
+            self.peers.forget_silent(now_ms);
+            self.exchange.begin_step(now_ms, map);
+        }
     }
 
-    /// Takes a packet of another robot.
-    pub(crate) fn hear(&mut self, packet: &Packet) {
-        let is_peer = |me: Member| me.id != packet.from.id;
-        if !self.member.is_some_and(is_peer) {
+    /// Returns the nearest peer that may move, near enough to meet the robot.
+    pub(crate) fn meets(
+        &self,
+        now_ms: u32,
+        robot: Point,
+        is_met: impl Fn(&Peer) -> bool,
+    ) -> Option<&Peer> {
+        self.way.nearest(&self.peers, now_ms, robot, is_met)
+    }
+
+    /// Returns true if a peer has the right of way before this robot.
+    pub(crate) fn is_before_me(&self, peer: &Peer) -> bool {
+        self.member
+            .is_some_and(|me| self.way.is_before(peer, me.id))
+    }
+
+    /// Takes a packet of another robot. The robot stands within `stand_m` of its centre.
+    /// `has_evidence` is true on flat ground.
+    pub(crate) fn hear<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        packet: &Packet,
+        map: &mut Map<TILES, SLOTS>,
+        (stand_m, has_evidence): (f32, bool),
+    ) {
+        let Some(me) = self.member.filter(|me| me.id != packet.from.id) else {
             return;
-        }
-        if let Body::Beacon(beacon) = &packet.body {
-            self.peers
-                .hear(packet.from, packet.sequence, beacon, self.now_ms);
+        };
+        match &packet.body {
+            Body::Beacon(beacon) => {
+                self.peers
+                    .hear(packet.from, packet.sequence, beacon, self.now_ms);
+            }
+            Body::Digest(digest) => self.exchange.hear_digest(packet.from.id, digest, map),
+            Body::Wanted(wanted) if wanted.of == me.id => self.exchange.hear_wanted(&wanted.tiles),
+            Body::Wanted(_) => {}
+            Body::Tile(said) => {
+                let tile = (said.tile.0.into(), said.tile.1.into());
+                let stand = Stand {
+                    centre: self.pose.point(),
+                    radius_m: stand_m,
+                };
+                // A tile without room is offered again.
+                let _ = map.join(tile, (said.epoch, &said.planes), stand, has_evidence);
+            }
         }
     }
 
     /// Returns the next packet for the team; `None` until the next step. `beacon` fills in what the
     /// rest of the planner knows.
-    pub(crate) fn say(&mut self, beacon: impl FnOnce(Beacon) -> Beacon) -> Option<Packet> {
+    pub(crate) fn say<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        map: &mut Map<TILES, SLOTS>,
+        beacon: impl FnOnce(Beacon) -> Beacon,
+    ) -> Option<Packet> {
         let from = self.member?;
-        if !core::mem::replace(&mut self.owes_beacon, false) {
-            return None;
-        }
-        let body = beacon(Beacon {
-            velocity: self.velocity,
-            ..Beacon::default().at(&self.pose)
-        });
+        let body = if core::mem::replace(&mut self.owes_beacon, false) {
+            Body::Beacon(beacon(Beacon {
+                map: self.exchange.mark(map),
+                velocity: self.velocity,
+                ..Beacon::default().at(&self.pose)
+            }))
+        } else {
+            let mark = self.exchange.mark(map);
+            let mut in_reach = self
+                .peers
+                .iter()
+                .filter(|peer| peer.has_claims(self.now_ms));
+            let differs = |peer: &Peer| peer.beacon.map != mark;
+            // Without a peer in reach nobody would hear.
+            let differs = in_reach
+                .next()
+                .map(|peer| differs(peer) || in_reach.any(differs))?;
+            self.exchange.say(map, differs)?
+        };
         let sequence = self.sequence;
         self.sequence = sequence.wrapping_add(1);
         Some(Packet {
             from,
             sequence,
-            body: Body::Beacon(body),
+            body,
         })
     }
 }
+
+#[cfg(test)]
+mod scenes;

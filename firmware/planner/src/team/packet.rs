@@ -39,12 +39,17 @@ pub enum Activity {
     Faulted,
     /// It leaves the team.
     Gone,
+    /// It stands until another robot is out of its way.
+    Holding,
 }
 
 impl Activity {
     /// Returns true if the robot moves, or will move by itself.
     pub(crate) const fn moves(self) -> bool {
-        matches!(self, Self::Exploring | Self::Yielding | Self::Cornered)
+        matches!(
+            self,
+            Self::Exploring | Self::Holding | Self::Yielding | Self::Cornered
+        )
     }
 }
 

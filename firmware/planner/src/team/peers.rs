@@ -12,6 +12,7 @@ use heapless::Vec;
 
 use crate::config::Member;
 use crate::geometry::{Point, Pose};
+use crate::math;
 use crate::team::packet::Beacon;
 
 /// Greatest number of peers: a team of eight.
@@ -37,6 +38,13 @@ pub struct Peer {
 }
 
 impl Peer {
+    /// Returns the radius of the hull's circle, metres.
+    pub(crate) fn radius_m(&self) -> f32 {
+        let (length, width) = self.beacon.half_cm;
+        let (length_m, width_m) = (f32::from(length) * 0.01, f32::from(width) * 0.01);
+        math::sqrt(length_m * length_m + width_m * width_m)
+    }
+
     /// Returns the time since the last beacon, milliseconds.
     #[must_use]
     pub const fn silence_ms(&self, now_ms: u32) -> u32 {

@@ -110,6 +110,11 @@ impl Frontier {
         self.progress.standing_ms(time_ms)
     }
 
+    /// Notes that the robot waits for another one, which is not its failure.
+    pub(crate) fn pause(&mut self, time_ms: u32) {
+        self.progress.pause(time_ms);
+    }
+
     /// Opens the passage that was blocked last.
     pub(crate) fn open_last_passage(&mut self) {
         self.blocked.open_last();
@@ -221,6 +226,9 @@ impl Frontier {
             let along_centre = path.steps();
             self.path = path.leading_to(viewpoint.stand);
             return self.go_and_look(viewpoint, along_centre, context);
+        } else if context.waits_for_peers {
+            self.path.clear();
+            return RoundOutcome::Unsure;
         } else {
             return self.do_without(context.reopens_passages);
         }

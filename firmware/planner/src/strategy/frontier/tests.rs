@@ -131,6 +131,7 @@ impl Scene {
                 reference_m,
             }),
             reopens_passages: reference_m.is_some(),
+            waits_for_peers: false,
         }
     }
 

@@ -147,6 +147,7 @@ impl Exploration {
                 tuning: &Tuning::DEFAULT,
                 levels: None,
                 reopens_passages: false,
+                waits_for_peers: false,
             };
             let outcome = self
                 .strategy

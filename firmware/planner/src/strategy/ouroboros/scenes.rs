@@ -169,6 +169,7 @@ impl Scene {
             tuning: &Tuning::DEFAULT,
             levels: None,
             reopens_passages: false,
+            waits_for_peers: false,
         }
     }
 

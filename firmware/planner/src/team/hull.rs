@@ -1,0 +1,339 @@
+//! The hulls of the peers: which beams they stop, and which places they take.
+//!
+//! - A beam that ends within a peer's hull carries no information: a peer is never entered into the
+//!   map, and leaves no obstacle points. The hull is grown by what is not known of its place.
+//! - For the drive a peer is points on its outline. A peer that may move takes the place that it
+//!   needs to turn, and the place up to where it can stop. If both robots keep out of that place of
+//!   the other, both can stop.
+//!
+//! ```text
+//! grown by   2 sd + (0.1 + 0.3 · age in s, at most 2 s) m
+//! stops in   |v| · age + v² / 2a
+//! ```
+//!
+//! Units: metres, seconds, radians.
+
+use crate::config::Config;
+use crate::geometry::{Point, Pose, RobotFrame};
+use crate::input::INVALID_MM;
+use crate::math;
+use crate::robot::LaserMount;
+use crate::team::peers::{Peer, Peers};
+
+/// Growth of a hull for beams: the noise of a range and of a pose, and its rate.
+const GROWTH_M: f32 = 0.1;
+const GROWTH_MPS: f32 = 0.3;
+const MOST_GROWING_S: f32 = 2.0;
+/// Greatest motion of a peer that its last beacon could not tell, metres: it may accelerate for two
+/// periods.
+const LATENCY_M: f32 = 0.025;
+/// Peers within this distance are obstacles for the drive, metres.
+const NEAR_M: f32 = 4.0;
+/// Greatest distance between two points of an outline, metres: less than half of a robot's side.
+const POINT_EVERY_M: f32 = 0.15;
+/// Greatest number of points on a side of an outline.
+const MOST_SIDE_POINTS: u32 = 12;
+
+/// The place that a peer takes: a rectangle in its own frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hull {
+    frame: RobotFrame,
+    centre: Point,
+    /// Extents ahead of the centre, behind it, and to each side.
+    front_m: f32,
+    back_m: f32,
+    half_width_m: f32,
+}
+
+impl Hull {
+    /// Returns a peer's hull, grown on all sides.
+    fn of(peer: &Peer, now_ms: u32, grown_m: f32) -> Self {
+        let pose = peer.pose(now_ms);
+        let (length, width) = peer.beacon.half_cm;
+        let half = |cm: u8| f32::from(cm) * 0.01 + grown_m;
+        Self {
+            frame: RobotFrame::of(&pose),
+            centre: pose.point(),
+            front_m: half(length),
+            back_m: half(length),
+            half_width_m: half(width),
+        }
+    }
+
+    /// Returns the place that a peer may take by turning on the spot: a square around its hull's
+    /// circle. A peer that stands for good does not turn.
+    fn turning(peer: &Peer, now_ms: u32) -> Self {
+        let sd_m = f32::from(peer.beacon.sd_cm) * 0.01;
+        let hull = Self::of(peer, now_ms, sd_m);
+        if !(peer.beacon.activity.moves() && peer.has_claims(now_ms)) {
+            return hull;
+        }
+        let radius_m = hull.radius_m();
+        Self {
+            front_m: radius_m,
+            back_m: radius_m,
+            half_width_m: radius_m,
+            ..hull
+        }
+    }
+
+    /// Returns the hull in which a beam is not used.
+    fn hidden(peer: &Peer, now_ms: u32) -> Self {
+        let age_s = peer.silence_ms(now_ms) as f32 * 1e-3;
+        let sd_m = f32::from(peer.beacon.sd_cm) * 0.01;
+        let grown_m = 2.0 * sd_m + GROWTH_M + GROWTH_MPS * age_s.min(MOST_GROWING_S);
+        Self::of(peer, now_ms, grown_m)
+    }
+
+    /// Returns the place that a peer takes until it can stand.
+    fn swept(peer: &Peer, now_ms: u32, config: &Config) -> Self {
+        let mut hull = Self::turning(peer, now_ms);
+        let speed_mps = peer.beacon.velocity.linear_mps;
+        if peer.beacon.activity.moves() && peer.has_claims(now_ms) {
+            hull.front_m += LATENCY_M;
+            hull.back_m += LATENCY_M;
+            hull.half_width_m += LATENCY_M;
+            let braking_m = speed_mps * speed_mps / (2.0 * config.linear_accel_mps2);
+            let stops_m = speed_mps.abs() * config.period_s + braking_m;
+            if speed_mps > 0.0 {
+                hull.front_m += stops_m;
+            } else {
+                hull.back_m += stops_m;
+            }
+        }
+        hull
+    }
+
+    /// Returns true if a point lies inside.
+    fn holds(&self, point: Point) -> bool {
+        let Point { x_m, y_m } = self.frame.to_robot(point);
+        x_m <= self.front_m && x_m >= -self.back_m && y_m.abs() <= self.half_width_m
+    }
+
+    /// Returns the radius of a circle around the centre that holds the hull.
+    fn radius_m(&self) -> f32 {
+        let along_m = self.front_m.max(self.back_m);
+        math::sqrt(along_m * along_m + self.half_width_m * self.half_width_m)
+    }
+
+    /// Returns points on the outline, corners included.
+    pub(crate) fn outline(self) -> impl Iterator<Item = Point> {
+        let (length_m, width_m) = (self.front_m + self.back_m, 2.0 * self.half_width_m);
+        let at = move |along_m: f32, across_m: f32| {
+            self.frame.to_map(Point {
+                x_m: along_m - self.back_m,
+                y_m: across_m - self.half_width_m,
+            })
+        };
+        let sides = side(length_m).flat_map(move |k| [at(k, 0.0), at(k, width_m)]);
+        let ends = side(width_m).flat_map(move |k| [at(0.0, k), at(length_m, k)]);
+        sides.chain(ends)
+    }
+
+    /// Returns points all over the hull, a map cell or less apart.
+    pub(crate) fn area(self) -> impl Iterator<Item = Point> {
+        let across = move |k: f32| {
+            side(2.0 * self.half_width_m).map(move |m| {
+                self.frame.to_map(Point {
+                    x_m: k - self.back_m,
+                    y_m: m - self.half_width_m,
+                })
+            })
+        };
+        side(self.front_m + self.back_m).flat_map(across)
+    }
+}
+
+/// Returns places along a side, its ends included.
+fn side(length_m: f32) -> impl Iterator<Item = f32> {
+    let parts = math::floor(length_m / POINT_EVERY_M) as u32 + 1;
+    let parts = parts.min(MOST_SIDE_POINTS);
+    (0..=parts).map(move |k| length_m * k as f32 / parts as f32)
+}
+
+impl Peers {
+    /// Makes the beams of a scan that end within a peer invalid.
+    pub(crate) fn hide(&self, now_ms: u32, pose: &Pose, laser: &LaserMount, ranges_mm: &mut [u16]) {
+        let frame = RobotFrame::of(pose);
+        let from = Point {
+            x_m: laser.x_m,
+            y_m: laser.y_m,
+        };
+        let (_, cos_pitch) = math::sin_cos(laser.pitch_rad);
+        for hull in self.iter().map(|peer| Hull::hidden(peer, now_ms)) {
+            let centre = frame.to_robot(hull.centre);
+            let (dx, dy) = (centre.x_m - from.x_m, centre.y_m - from.y_m);
+            let distance_m = math::sqrt(dx * dx + dy * dy);
+            let radius_m = hull.radius_m();
+            let bearing_rad = math::wrap(math::atan2(dy, dx) - laser.first_bearing_rad);
+            // The arc sine of x is at most π/2 · x.
+            let half_rad = if distance_m > radius_m {
+                0.5 * math::PI * radius_m / distance_m
+            } else {
+                math::PI
+            };
+            for (number, range_mm) in ranges_mm.iter_mut().enumerate() {
+                let beam_rad = number as f32 * laser.bearing_step_rad;
+                let range_m = f32::from(*range_mm) * 1e-3;
+                let may_end = *range_mm != INVALID_MM
+                    && *range_mm < laser.range_limit_mm
+                    && range_m <= distance_m + radius_m
+                    && math::wrap(beam_rad - bearing_rad).abs() <= half_rad;
+                if !may_end {
+                    continue;
+                }
+                let (sin, cos) = math::sin_cos(laser.first_bearing_rad + beam_rad);
+                let end = Point {
+                    x_m: from.x_m + range_m * cos * cos_pitch,
+                    y_m: from.y_m + range_m * sin,
+                };
+                if hull.holds(frame.to_map(end)) {
+                    *range_mm = INVALID_MM;
+                }
+            }
+        }
+    }
+
+    /// Returns true if a peer may be in the view of a laser.
+    pub(crate) fn may_be_seen(&self, now_ms: u32, pose: &Pose, lasers: &[LaserMount]) -> bool {
+        let range_mm = lasers.iter().map(|laser| laser.range_limit_mm).max();
+        let range_m = f32::from(range_mm.unwrap_or(0)) * 1e-3;
+        self.iter().any(|peer| {
+            let hull = Hull::hidden(peer, now_ms);
+            hull.centre.distance_m(pose.point()) <= range_m + hull.radius_m()
+        })
+    }
+
+    /// Returns the places that the peers near the robot may take by turning, each with its number.
+    pub(crate) fn turning(&self, now_ms: u32, robot: Point) -> impl Iterator<Item = (u8, Hull)> {
+        self.iter()
+            .map(move |peer| (peer.member.id, Hull::turning(peer, now_ms)))
+            .filter(move |(_, hull)| hull.centre.distance2(robot) <= NEAR_M * NEAR_M)
+    }
+
+    /// Returns the places that the peers near the robot take until they can stand.
+    pub(crate) fn near(
+        &self,
+        now_ms: u32,
+        robot: Point,
+        config: &Config,
+    ) -> impl Iterator<Item = Hull> {
+        self.iter()
+            .map(move |peer| Hull::swept(peer, now_ms, config))
+            .filter(move |hull| hull.centre.distance2(robot) <= NEAR_M * NEAR_M)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+    use crate::config::Member;
+    use crate::geometry::Twist;
+    use crate::input::NO_RETURN_MM;
+    use crate::team::packet::Beacon;
+
+    const LASER: LaserMount = LaserMount::level(0.1, 0.4);
+    const NONE: [usize; 0] = [];
+
+    /// A peer of 0.52 m × 0.50 m.
+    fn peers(x_m: f32, y_m: f32, speed_mps: f32) -> Peers {
+        let beacon = Beacon {
+            half_cm: (26, 25),
+            velocity: Twist {
+                linear_mps: speed_mps,
+                angular_radps: 0.0,
+            },
+            ..Beacon::default()
+        };
+        let beacon = beacon.at(&Pose {
+            x_m,
+            y_m,
+            yaw_rad: math::PI,
+            ..Pose::default()
+        });
+        let mut peers = Peers::new();
+        peers.hear(Member { id: 2, boot: 0 }, 0, &beacon, 0);
+        peers
+    }
+
+    /// Returns the numbers of the beams of a wall at a range that are hidden.
+    fn hidden(peers: &Peers, range_mm: u16, now_ms: u32) -> Vec<usize> {
+        let mut ranges_mm = [range_mm; 181];
+        peers.hide(now_ms, &Pose::default(), &LASER, &mut ranges_mm);
+        let gone = ranges_mm
+            .iter()
+            .enumerate()
+            .filter(|(_, mm)| **mm == INVALID_MM);
+        gone.map(|(number, _)| number).collect()
+    }
+
+    #[test]
+    fn only_beams_that_end_in_the_peer_are_hidden() {
+        let peers = peers(2.0, 0.0, 0.0);
+        // Its front is 1.64 m from the laser; 0.1 m of growth.
+        assert_eq!(hidden(&peers, 1_500, 0), NONE);
+        let seen = hidden(&peers, 1_700, 0);
+        assert_eq!((seen.first(), seen.last()), (Some(&79), Some(&101)));
+        assert_eq!(hidden(&peers, 2_400, 0), NONE, "behind the peer");
+        assert_eq!(hidden(&peers, NO_RETURN_MM, 0), NONE);
+        assert!(
+            hidden(&peers, 1_400, 2_000).len() > 20,
+            "grown after a silence"
+        );
+    }
+
+    #[test]
+    fn a_peer_beside_the_view_or_beyond_the_range_is_not_looked_for() {
+        let sees = |peers: &Peers| peers.may_be_seen(0, &Pose::default(), &[LASER]);
+        assert!(sees(&peers(0.0, 3.0, 0.0)));
+        assert!(!sees(&peers(0.0, 30.0, 0.0)));
+    }
+
+    #[test]
+    fn a_moving_peer_takes_the_place_up_to_where_it_stops() {
+        let config = Config::pioneer_3at(heapless::Vec::new());
+        let outline = |speed_mps| -> (f32, f32) {
+            let peers = peers(2.0, 0.0, speed_mps);
+            let hull = peers
+                .near(0, Point::default(), &config)
+                .next()
+                .expect("near");
+            let ends = hull.outline().map(|point| point.x_m);
+            ends.fold((9.0, -9.0), |(least, most), x| (x.min(least), x.max(most)))
+        };
+        let close = |(least, most): (f32, f32), expected: (f32, f32)| {
+            (least - expected.0).abs() < 1e-3 && (most - expected.1).abs() < 1e-3
+        };
+        // Half of its diagonal, and what it may do unseen.
+        let half = 0.360_7 + LATENCY_M;
+        assert!(close(outline(0.0), (2.0 - half, 2.0 + half)));
+        // It looks west: 0.6 · 0.2 + 0.36 / 0.6.
+        assert!(close(outline(0.6), (2.0 - half - 0.72, 2.0 + half)));
+        assert!(close(outline(-0.6), (2.0 - half, 2.0 + half + 0.72)));
+    }
+
+    #[test]
+    fn the_points_of_an_outline_leave_no_gap_for_a_robot() {
+        let config = Config::pioneer_3at(heapless::Vec::new());
+        let peers = peers(2.0, 0.0, 0.7);
+        let hull = peers
+            .near(0, Point::default(), &config)
+            .next()
+            .expect("near");
+        let points: Vec<Point> = hull.outline().collect();
+        assert!(points.len() < 64, "{}", points.len());
+        for point in &points {
+            let others = points.iter().filter(|other| other.distance2(*point) > 1e-6);
+            let nearest = others
+                .map(|other| other.distance_m(*point))
+                .fold(9.0, f32::min);
+            assert!(nearest <= POINT_EVERY_M + 1e-3, "{nearest}");
+        }
+        assert!(
+            hull.area()
+                .all(|point| hull.frame.to_robot(point).y_m.abs() <= 0.387)
+        );
+    }
+}
