@@ -164,10 +164,8 @@ impl CollisionChecker {
     }
 
     /// Sets the slopes that bound the headings.
-    #[must_use]
-    pub(crate) fn on(mut self, incline: Option<Incline>) -> Self {
+    pub(crate) fn stand_on(&mut self, incline: Option<Incline>) {
         self.incline = incline;
-        self
     }
 
     /// Returns true if slopes bound the headings.

@@ -15,8 +15,8 @@
 //! Units: metres, milliseconds.
 
 use crate::config::Config;
+use crate::drive::CollisionChecker;
 use crate::drive::side_slope::SlopeDirection;
-use crate::drive::{CollisionChecker, Incline};
 use crate::field::local_grid::LocalGrid;
 use crate::field::preference::Preferences;
 use crate::geometry::{Cell, Point, Pose};
@@ -128,15 +128,15 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
-    /// Returns the obstacles that the hull must not touch around the robot.
-    pub(super) fn collision_checker<const SLOTS: usize>(
+    /// Adds the obstacles around the robot that its hull must not touch. In place: a checker is
+    /// large, and a second one does not fit on the chip's stack.
+    pub(super) fn obstruct<const SLOTS: usize>(
         &self,
         config: &Config,
         tiles: &Tiles<TILES, SLOTS>,
         pose: &Pose,
-        incline: Option<Incline>,
-    ) -> CollisionChecker {
-        let mut checker = CollisionChecker::empty(&config.robot).on(incline);
+        checker: &mut CollisionChecker,
+    ) {
         match self {
             Self::Flat(points) => {
                 checker.see(pose, points.points());
@@ -150,7 +150,6 @@ impl<const TILES: usize> GroundModel<TILES> {
                 checker.keep_off(pose, rims);
             }
         }
-        checker
     }
 
     /// Returns the slope direction of the goal; `None` if the goal is level with the robot or its

@@ -63,10 +63,9 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     let here = headed(Place::default());
     state.slope_direction = here.and_then(|(_, direction)| direction);
     let here = here.map(|(heading, _)| heading);
-    let mut checker = state
-        .ground
-        .collision_checker(config, tiles, &input.pose, incline.clone());
-    keep_off_peers(&mut checker, state, config, input);
+    let mut checker = CollisionChecker::empty(&config.robot);
+    checker.stand_on(incline.clone());
+    obstruct(&mut checker, state, config, input);
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
             let (x, y) = local_grid::position((origin, scale), input.pose.to_map(place.point()));
@@ -119,22 +118,22 @@ pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
     if !is_stalled(state, Twist::default(), input.time_ms) {
         return Twist::default();
     }
-    let mut checker = state
-        .ground
-        .collision_checker(config, state.map.tiles(), &input.pose, None);
-    keep_off_peers(&mut checker, state, config, input);
+    let mut checker = CollisionChecker::empty(&config.robot);
+    obstruct(&mut checker, state, config, input);
     let wish = state.drive.look_around(config, &checker, input.velocity);
     within_limits(config, wish)
 }
 
-/// Adds the other robots near by to the obstacles of the drive.
+/// Adds what the drive must not touch: the obstacles near by, and the other robots.
 #[inline(never)]
-fn keep_off_peers<const TILES: usize, const SLOTS: usize>(
+fn obstruct<const TILES: usize, const SLOTS: usize>(
     checker: &mut CollisionChecker,
     state: &State<TILES, SLOTS>,
     config: &Config,
     input: &Input<'_>,
 ) {
+    let tiles = state.map.tiles();
+    state.ground.obstruct(config, tiles, &input.pose, checker);
     let robot = input.pose.point();
     let hulls = state.team.peers().near(input.time_ms, robot, config);
     checker.keep_off_hulls(&input.pose, hulls.flat_map(Hull::outline));
