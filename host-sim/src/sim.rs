@@ -332,6 +332,7 @@ impl<'w> Simulator<'w> {
             period_ms: u16::try_from(self.config.period_ms).unwrap_or(u16::MAX),
             uneven_ground: None,
             loops: LoopLimits::default(),
+            order: strategy.order(),
             team: None,
         }
     }

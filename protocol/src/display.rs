@@ -39,6 +39,7 @@ impl fmt::Display for Parameter {
                 "uneven ground needs scales of at least 0, heights that are not 0, \
                  and slopes above 0 and at most 45°"
             }
+            Self::Worth => "the worth of a trip must be within 0 and 7 m²/m",
             Self::LoopLimits => "the limits of loops must be at least 0",
         })
     }

@@ -41,7 +41,9 @@ pub use readout::{
 };
 pub use refusal::{Parameter, Refusal};
 pub use residual::{MAX_FRONTIERS, ResidualFrontier, ResidualReason};
-pub use session::{Control, Hull, Laser, LoopLimits, Preference, Start, Strategy, UnevenGround};
+pub use session::{
+    Control, Hull, Laser, LoopLimits, Order, Preference, Start, Strategy, UnevenGround,
+};
 pub use team::{
     Activity, Beacon, Body, DIGEST_TILES, Digest, Member, Packet, ROAD_POINTS, ROAD_UNIT_CM, Team,
     TeamTile, TileVersion, WANTED_TILES, Wanted,

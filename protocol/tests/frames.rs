@@ -14,8 +14,8 @@ use fieldline_protocol::frame::{
 use fieldline_protocol::message::{
     self, BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Counters, Crash, FIELD_CELL_BYTES,
     FIELD_SIDE, FieldRow, Hull, Identity, Laser, LoopLimits, MAX_FRONTIERS, MAX_SCANS, Member,
-    NO_RETURN_MM, PATH_PAGE, Path, Preference, Reply, Request, ResidualFrontier, ResidualReason,
-    Start, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS, Team, Tile, UnevenGround,
+    NO_RETURN_MM, Order, PATH_PAGE, Path, Preference, Reply, Request, ResidualFrontier,
+    ResidualReason, Start, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS, Team, Tile, UnevenGround,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use proptest::prelude::*;
@@ -134,6 +134,7 @@ fn the_largest_messages_fit_and_fill_their_frames() {
             detour: farthest,
             slack: farthest,
         },
+        order: Order::Gain { worth: far },
         team: Some(Team {
             member: Member {
                 id: u8::MAX,

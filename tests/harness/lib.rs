@@ -17,6 +17,7 @@
 //! | [`watched`] | a link that is read after every step |
 //! | [`worlds`] | the built-in worlds by kind; worlds drawn by others |
 //! | [`places`] | pits and a building, found in a world's definition |
+//! | [`orders`] | orders of frontiers beside one another, as ratios to a baseline |
 //! | [`starts`] | starts drawn at random in a flat world |
 //! | [`ablation`] | every tuned constant at half and at double its default |
 //! | [`bitmap`] | seeded bit maps; thinning and search cell by cell, as oracles |
@@ -44,6 +45,7 @@ pub mod flatness;
 pub mod golden;
 pub mod history;
 pub mod loops;
+pub mod orders;
 pub mod places;
 pub mod plot;
 pub mod random;

@@ -7,8 +7,8 @@
 //! the same bits on every machine.
 
 use fieldline_planner::{
-    self as planner, Cell, Config, Input, LaserMount, LoopCounts, LoopLimits, Parameter, Pose,
-    PreferenceMode, ResidualReason, RobotShape, State, Strategy, Tuning, Twist, UnevenGround,
+    self as planner, Cell, Config, Input, LaserMount, LoopCounts, LoopLimits, Order, Parameter,
+    Pose, PreferenceMode, ResidualReason, RobotShape, State, Strategy, Tuning, Twist, UnevenGround,
 };
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
@@ -130,6 +130,15 @@ fn hull(hull: &wire::Hull) -> RobotShape {
     )
 }
 
+fn order(order: wire::Order) -> Order {
+    match order {
+        wire::Order::Gain { worth } => Order::Gain {
+            worth: float(worth),
+        },
+        wire::Order::Nearest => Order::Nearest,
+    }
+}
+
 fn loop_limits(limits: &wire::LoopLimits) -> LoopLimits {
     LoopLimits {
         least_m: float(limits.least),
@@ -159,6 +168,7 @@ pub fn config(start: &wire::Start, tuning: &'static Tuning) -> Result<Config, wi
                 impatience_s,
             },
         })
+        .order(order(start.order))
         .loops(loop_limits(&start.loops))
         .box_tiles(across, up)
         .radius_m(f32::from(start.robot_radius_mm) / 1000.0)
@@ -199,6 +209,7 @@ const fn wire_parameter(parameter: Parameter) -> wire::Parameter {
         Parameter::Period => wire::Parameter::Period,
         Parameter::LeastPreference | Parameter::MostPreference => wire::Parameter::Preference,
         Parameter::LoopLimits => wire::Parameter::LoopLimits,
+        Parameter::Worth => wire::Parameter::Worth,
         // The solver's parameters do not come from the wire.
         Parameter::UnevenGround | Parameter::Solver => wire::Parameter::UnevenGround,
     }
@@ -268,6 +279,7 @@ pub fn wire_frontier(frontier: &planner::ResidualFrontier) -> wire::ResidualFron
             ResidualReason::Unobservable => wire::ResidualReason::Unobservable,
             ResidualReason::OutOfBounds => wire::ResidualReason::OutOfBounds,
             ResidualReason::NoProgress => wire::ResidualReason::NoProgress,
+            ResidualReason::NotWorthIt => wire::ResidualReason::NotWorthIt,
         },
     }
 }

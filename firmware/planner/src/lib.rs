@@ -104,8 +104,9 @@ pub mod team;
 
 pub use config::{
     BoxTooLarge, Config, ConfigBuilder, ConfigError, FieldTuning, Goal, GoalLevel, GroundTuning,
-    LoopLimits, MapTuning, Member, Method, OuroborosTuning, Parameter, PreferenceMode,
-    SolverConfig, Strategy, TdbvpTuning, TeamPlace, Tuned, Tuning, TuningError, UnevenGround,
+    LoopLimits, MapTuning, Member, Method, Order, OrderTuning, OuroborosTuning, Parameter,
+    PreferenceMode, SolverConfig, Strategy, TdbvpTuning, TeamPlace, Tuned, Tuning, TuningError,
+    UnevenGround,
 };
 pub use field::SIDE as FIELD_SIDE;
 pub use geometry::{CELL_M, Cell, Point, Pose, Twist};

@@ -35,6 +35,12 @@ pub fn ln(x: f32) -> f32 {
     libm::logf(x)
 }
 
+/// Returns `x` to the power of `y`.
+#[must_use]
+pub fn powf(x: f32, y: f32) -> f32 {
+    libm::powf(x, y)
+}
+
 /// Returns the equal angle in [−π, π], for |angle| up to a few hundred turns.
 #[must_use]
 pub fn wrap(angle: f32) -> f32 {

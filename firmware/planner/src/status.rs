@@ -61,6 +61,8 @@ pub enum ResidualReason {
     OutOfBounds,
     /// The robot did not come nearer to it.
     NoProgress,
+    /// There is too little to see for the way there.
+    NotWorthIt,
 }
 
 /// A residual frontier: cells that border on unexplored space and that the exploration left.
@@ -119,6 +121,7 @@ impl fmt::Display for ResidualReason {
             Self::Unobservable => "unobservable",
             Self::OutOfBounds => "out of bounds",
             Self::NoProgress => "no progress",
+            Self::NotWorthIt => "not worth the trip",
         })
     }
 }

@@ -288,6 +288,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         );
     }
     Ok(args.robot.applied(Mission {
+        order: args.robot.order(&args.strategy)?,
         strategy: args.strategy.clone(),
         uneven_ground: uneven_ground(args)?,
         link: link.to_string(),

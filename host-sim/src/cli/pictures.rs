@@ -1,10 +1,11 @@
 //! The pictures of a run: one of its end, and a series during it.
 
+use fieldline_protocol::message::ResidualReason;
 use host_sim::picture::{Ground, Scene, run_png};
-use host_sim::report::Report;
 use host_sim::report::tum::Stamped;
-use host_sim::trial::Record;
+use host_sim::report::{Report, ResidualFrontier};
 use host_sim::trial::snapshot::Snapshot;
+use host_sim::trial::{Record, wording};
 use host_sim::world::World;
 
 /// The run that the pictures show.
@@ -31,8 +32,13 @@ impl<'a> Album<'a> {
 
     /// Draws `run.png`.
     pub(super) fn end(&self) -> Vec<u8> {
-        let left = self.report.outcome.residual_frontiers.iter();
-        let residual: Vec<_> = left.map(|f| (f.x_m, f.y_m)).collect();
+        let left = &self.report.outcome.residual_frontiers;
+        let (not_worth_it, residual): (Vec<_>, Vec<_>) = left
+            .iter()
+            .partition(|left| left.reason == wording::residual(ResidualReason::NotWorthIt));
+        let at = |left: Vec<&ResidualFrontier>| -> Vec<_> {
+            left.iter().map(|left| (left.x_m, left.y_m)).collect()
+        };
         run_png(&Scene {
             title: &self.report.headline(),
             subtitle: &self.report.in_short(),
@@ -40,7 +46,8 @@ impl<'a> Album<'a> {
             path: &self.path,
             window: self.record.window.as_ref(),
             relief: self.record.relief.as_ref(),
-            residual: &residual,
+            residual: &at(residual),
+            not_worth_it: &at(not_worth_it),
             planned_path: Some(&self.record.planned_path),
             given_up: &self.given_up(u32::MAX),
             ground: self.ground,
@@ -85,6 +92,7 @@ impl<'a> Album<'a> {
             window: snapshot.window.as_ref(),
             relief: snapshot.relief.as_ref(),
             residual: &[],
+            not_worth_it: &[],
             planned_path: Some(&snapshot.planned_path),
             given_up: &self.given_up(progress.time_ms),
             ground: self.ground,

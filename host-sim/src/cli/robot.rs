@@ -1,13 +1,14 @@
-//! Arguments about the robot's hull, the loops that it closes, and the planner's tuned constants.
+//! Arguments about the robot's hull, the order in which it takes frontiers, the loops that it
+//! closes, and the planner's tuned constants.
 
 use anyhow::{Context as _, Result, bail};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use fieldline_planner::{RobotShape, Tuning};
-use fieldline_protocol::message::LoopLimits;
-use fixed::types::I16F16;
+use fieldline_protocol::message::{LoopLimits, Order};
+use fixed::types::{I4F12, I16F16};
 use host_sim::link::spec::LinkSpec;
 use host_sim::robot::Footprint;
-use host_sim::trial::mission::Mission;
+use host_sim::trial::mission::{Mission, on_device};
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct RobotArgs {
@@ -22,9 +23,25 @@ pub(super) struct RobotArgs {
     /// `least=20,most=120,per_frontier=10,detour=2,slack=20`, the defaults
     #[arg(long, value_name = "LIMITS", value_parser = loops)]
     loops: Option<LoopLimits>,
+    /// Order in which frontiers are taken [default: gain for frontier, nearest for the others]
+    #[arg(long, value_name = "ORDER")]
+    order: Option<OrderArg>,
+    /// Least gain of a trip, square metres for each metre of way: what is not worth it is left; 0
+    /// for everything that can be seen. With the order gain only [default: 0.3]
+    #[arg(long, value_name = "M2_PER_M", value_parser = worth)]
+    worth: Option<I4F12>,
     /// Sets a tuned constant, as in `ground.blind_radius_m=1.2`; `host-sim tuning` lists them
     #[arg(long, value_name = "NAME=VALUE")]
     tune: Vec<String>,
+}
+
+/// An order of frontiers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum OrderArg {
+    /// The greatest gain for its cost first
+    Gain,
+    /// The nearest first
+    Nearest,
 }
 
 impl RobotArgs {
@@ -37,6 +54,29 @@ impl RobotArgs {
             loops: self.loops.unwrap_or(mission.loops),
             ..mission
         }
+    }
+
+    /// Returns the order of frontiers for a strategy.
+    ///
+    /// # Errors
+    /// If the strategy has none, or a worth was given without the order by gain.
+    pub(super) fn order(&self, strategy: &str) -> Result<Option<Order>> {
+        if self.order.is_none() && self.worth.is_none() {
+            return Ok(None);
+        }
+        let Some(known) = on_device(strategy) else {
+            bail!("--strategy {strategy} has an order of its own; leave --order and --worth out");
+        };
+        let order = match self.order {
+            None => known.order(),
+            Some(OrderArg::Gain) => Order::default(),
+            Some(OrderArg::Nearest) => Order::Nearest,
+        };
+        Ok(Some(match (order, self.worth) {
+            (Order::Gain { .. }, Some(worth)) => Order::Gain { worth },
+            (Order::Nearest, Some(_)) => bail!("--worth needs --order gain"),
+            (order, None) => order,
+        }))
     }
 
     /// Returns the link that was asked for: a direct one if only tuned constants ask for it.
@@ -105,6 +145,14 @@ fn radius(text: &str) -> Result<f64, String> {
         return Ok(radius);
     }
     Err("the radius must be 0.05 to 0.6 m".into())
+}
+
+fn worth(text: &str) -> Result<I4F12, String> {
+    let worth = number(text)?;
+    if (0.0..=7.0).contains(&worth) {
+        return Ok(I4F12::from_num(worth));
+    }
+    Err("the worth of a trip must be 0 to 7 m²/m".into())
 }
 
 fn loops(text: &str) -> Result<LoopLimits, String> {

@@ -199,10 +199,19 @@ pub(super) fn residual(canvas: &mut Canvas, frame: &Frame, residual: &[(f64, f64
 }
 
 /// Draws the mark of a residual frontier.
-pub(super) fn diamond(canvas: &mut Canvas, (x, y): Spot) {
-    let around = |r: f32| [(x, y - r), (x + r, y), (x, y + r), (x - r, y)];
-    canvas.polygon(&around(7.0), palette::PAGE.alpha(1.0));
-    canvas.polygon(&around(5.2), palette::RESIDUE.alpha(1.0));
+pub(super) fn diamond(canvas: &mut Canvas, spot: Spot) {
+    canvas.polygon(&rhomb(spot, 7.0), palette::PAGE.alpha(1.0));
+    canvas.polygon(&rhomb(spot, 5.2), palette::RESIDUE.alpha(1.0));
+}
+
+/// Draws the mark of a residual frontier that is not worth the trip.
+pub(super) fn hollow_diamond(canvas: &mut Canvas, spot: Spot) {
+    diamond(canvas, spot);
+    canvas.polygon(&rhomb(spot, 2.8), palette::PAGE.alpha(1.0));
+}
+
+fn rhomb((x, y): Spot, r: f32) -> [Spot; 4] {
+    [(x, y - r), (x + r, y), (x, y + r), (x - r, y)]
 }
 
 /// Draws a ring at the start and an arrowhead at the end of the path.

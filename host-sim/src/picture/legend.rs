@@ -102,6 +102,11 @@ pub(super) fn panel(canvas: &mut Canvas, left: i32, scene: &Scene<'_>) {
         label(canvas, left, y, "frontier left");
         y += LINE;
     }
+    if !scene.not_worth_it.is_empty() {
+        layers::hollow_diamond(canvas, (mid, y));
+        label(canvas, left, y, "not worth the trip");
+        y += LINE;
+    }
     for (mark, words) in loops::keys(scene) {
         mark(canvas, (mid, y));
         label(canvas, left, y, words);

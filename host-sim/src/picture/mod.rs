@@ -69,6 +69,8 @@ pub struct Scene<'a> {
     pub relief: Option<&'a Relief>,
     /// Residual frontiers, metres.
     pub residual: &'a [(f64, f64)],
+    /// Residual frontiers that are not worth the trip, metres.
+    pub not_worth_it: &'a [(f64, f64)],
     /// Path to the goal, tractor point and shield.
     pub planned_path: Option<&'a PlannedPath>,
     /// Places where loops were given up, metres.
@@ -232,6 +234,9 @@ fn robots_map(canvas: &mut Canvas, frame: &Frame, scene: &Scene<'_>) {
     }
     layers::path(canvas, frame, scene.path);
     layers::residual(canvas, frame, scene.residual);
+    for &(x_m, y_m) in scene.not_worth_it {
+        layers::hollow_diamond(canvas, frame.metres(x_m, y_m));
+    }
     if let Some(planned_path) = scene.planned_path {
         loops::planned_path(canvas, frame, planned_path);
     }

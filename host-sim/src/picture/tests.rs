@@ -30,6 +30,7 @@ fn scene_of(map: &GridMap) -> Scene<'_> {
         window: None,
         relief: None,
         residual: &[],
+        not_worth_it: &[],
         planned_path: None,
         given_up: &[],
         ground: None,

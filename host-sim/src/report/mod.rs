@@ -45,6 +45,12 @@ pub struct Report {
     /// Seconds without a new place after which strategy tdbvp follows a path, or `never`; `null`
     /// for other strategies.
     pub tdbvp_impatience: Option<String>,
+    /// Order in which frontiers were taken: `gain` or `nearest`; `null` for baselines.
+    #[serde(default)]
+    pub order: Option<String>,
+    /// Least gain of a trip, square metres for each metre; `null` without the order `gain`.
+    #[serde(default)]
+    pub worth: Option<f64>,
     /// Link to the planner, as given to `--link`.
     pub link: String,
     /// Seed of every random number of the run.
@@ -120,7 +126,7 @@ pub struct ResidualFrontier {
     pub y_m: f64,
     /// Number of its cells.
     pub cells: u32,
-    /// `unreachable`, `unobservable`, `out-of-bounds` or `no-progress`.
+    /// `unreachable`, `unobservable`, `out-of-bounds`, `no-progress` or `not-worth-it`.
     pub reason: String,
 }
 

@@ -6,7 +6,9 @@
 
 use core::fmt;
 
-use fieldline_protocol::message::{self as wire, LoopLimits, Preference, Strategy, UnevenGround};
+use fieldline_protocol::message::{
+    self as wire, LoopLimits, Order, Preference, Strategy, UnevenGround,
+};
 
 use super::account::Account;
 use super::{Cast, Record, Setup, Watch, run, shape, summary};
@@ -49,6 +51,8 @@ pub struct Mission {
     pub hull: Footprint,
     /// Radius around the robot's centre that the planner keeps clear, metres.
     pub radius_m: f64,
+    /// Order in which frontiers are taken; the strategy's own if `None`.
+    pub order: Option<Order>,
     /// Limits of loops; for strategy ouroboros.
     pub loops: LoopLimits,
     /// Limits within which the ground counts as reachable and traversable.
@@ -87,6 +91,7 @@ impl Default for Mission {
             laser_m: None,
             hull: Footprint::PIONEER_3AT,
             radius_m: RADIUS_M,
+            order: None,
             loops: LoopLimits::default(),
             working: Limits::WORKING,
             failing: Limits::FAILING,
@@ -182,6 +187,11 @@ impl Mission {
         }
     }
 
+    /// Returns the order of frontiers that the device is told.
+    pub(super) fn order(&self) -> Order {
+        self.order.unwrap_or_else(|| self.strategy().order())
+    }
+
     /// Returns the preferences of the field; `None` on flat ground.
     pub(super) fn preference(&self) -> Option<Preference> {
         self.uneven_ground.map(|ground| ground.preference)
@@ -249,6 +259,7 @@ pub(super) fn setup(
     Ok(Setup {
         start: wire::Start {
             uneven_ground: mission.uneven_ground,
+            order: mission.order(),
             loops: mission.loops,
             ..simulator.start_message(mission.strategy(), (across, up))
         },

@@ -1,9 +1,9 @@
 //! The report of a run, put together from its mission, simulator, account and record.
 
-use fieldline_protocol::message::{Finish, Strategy};
+use fieldline_protocol::message::{Finish, Order, Strategy};
 
 use super::account::Account;
-use super::mission::Mission;
+use super::mission::{Mission, on_device};
 use super::{Ending, Record, wording};
 use crate::metrics::patrol::{Patrol, without_spurs};
 use crate::metrics::{CellSet, Loops};
@@ -27,6 +27,7 @@ pub(super) fn report(
         "truth"
     };
     let closes_loops = mission.strategy() == Strategy::Ouroboros;
+    let order = on_device(&mission.strategy).map(|_| mission.order());
     let map_is_read = !record.tiles.is_empty();
     Report {
         schema_version: SCHEMA_VERSION,
@@ -38,6 +39,11 @@ pub(super) fn report(
             .map(|it| wording::preference(it).into()),
         levels: mission.levels(),
         tdbvp_impatience: impatience(mission),
+        order: order.map(|it| wording::order(it).into()),
+        worth: match order {
+            Some(Order::Gain { worth }) => Some(worth.to_num()),
+            _ => None,
+        },
         link: mission.link.clone(),
         seed: mission.seed,
         odometry: odometry.into(),

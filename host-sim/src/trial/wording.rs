@@ -1,6 +1,6 @@
 //! Words for the wire's enums in reports, tables and progress lines. They are part of the schema.
 
-use fieldline_protocol::message::{Fault, Finish, Preference, ResidualReason, Status};
+use fieldline_protocol::message::{Fault, Finish, Order, Preference, ResidualReason, Status};
 
 /// Returns `exploring`, `finished(explored)`, `fault(stuck)` ...
 #[must_use]
@@ -37,6 +37,15 @@ pub fn fault(fault: Fault) -> &'static str {
     }
 }
 
+/// Returns the order in which frontiers are taken.
+#[must_use]
+pub fn order(order: Order) -> &'static str {
+    match order {
+        Order::Gain { .. } => "gain",
+        Order::Nearest => "nearest",
+    }
+}
+
 /// Returns the reason why a frontier was left.
 #[must_use]
 pub fn residual(reason: ResidualReason) -> &'static str {
@@ -45,6 +54,7 @@ pub fn residual(reason: ResidualReason) -> &'static str {
         ResidualReason::Unobservable => "unobservable",
         ResidualReason::OutOfBounds => "out-of-bounds",
         ResidualReason::NoProgress => "no-progress",
+        ResidualReason::NotWorthIt => "not-worth-it",
     }
 }
 

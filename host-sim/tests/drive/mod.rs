@@ -4,7 +4,7 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use fieldline_protocol::message::{
-    Command, Control, Hull, Laser, LoopLimits, NO_RETURN_MM, Observation, Pose, Scan, Start,
+    Command, Control, Hull, Laser, LoopLimits, NO_RETURN_MM, Observation, Order, Pose, Scan, Start,
     Status, Strategy, Twist,
 };
 use fixed::types::{I4F12, I16F16};
@@ -47,6 +47,7 @@ pub(crate) fn start() -> Start {
         period_ms: 200,
         uneven_ground: None,
         loops: LoopLimits::default(),
+        order: Order::default(),
         team: None,
     }
 }

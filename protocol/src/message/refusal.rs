@@ -4,7 +4,7 @@ use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 #[cfg(doc)]
-use super::{Laser, MAX_BEAMS, NO_RETURN_MM, Start, UnevenGround};
+use super::{Laser, MAX_BEAMS, NO_RETURN_MM, Order, Start, UnevenGround};
 
 /// A parameter of [`Start`], with its accepted range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
@@ -44,6 +44,8 @@ pub enum Parameter {
     Hull,
     /// [`Start::loops`]: at least 0.
     LoopLimits,
+    /// [`Order::Gain`]: 0 to 7.
+    Worth,
 }
 
 /// Why the device refused a request.

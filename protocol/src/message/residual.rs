@@ -19,6 +19,8 @@ pub enum ResidualReason {
     OutOfBounds,
     /// The robot made no progress towards it.
     NoProgress,
+    /// There is too little to see for the way there.
+    NotWorthIt,
 }
 
 /// A residual frontier.

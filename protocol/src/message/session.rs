@@ -35,10 +35,10 @@ pub struct Laser {
 /// The strategy that plans.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub enum Strategy {
-    /// Drive to the nearest unexplored centre cell.
+    /// Drive to one unexplored centre cell after the other.
     #[default]
     Frontier,
-    /// Drive to the nearest unexplored centre cell, and close loops on the way.
+    /// Drive to one unexplored centre cell after the other, and close loops on the way.
     Ouroboros,
     /// Follow rails by the time of their last visit, and patrol on them.
     Tdbvp {
@@ -49,6 +49,39 @@ pub enum Strategy {
         /// explore, seconds; `None` for never.
         impatience_s: Option<u16>,
     },
+}
+
+impl Strategy {
+    /// Returns the strategy's own order of frontiers: by gain for [`Strategy::Frontier`], the
+    /// nearest first, as in the papers, for the others.
+    #[must_use]
+    pub fn order(self) -> Order {
+        match self {
+            Self::Frontier => Order::default(),
+            Self::Ouroboros | Self::Tdbvp { .. } => Order::Nearest,
+        }
+    }
+}
+
+/// The order in which frontiers are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum Order {
+    /// First the frontier of the greatest gain for its cost.
+    Gain {
+        /// Least gain of a trip, square metres for each metre of way: 0 to 7. What is not worth the
+        /// trip is left; 0 leaves nothing. Default: 0.3.
+        worth: I4F12,
+    },
+    /// First the nearest frontier.
+    Nearest,
+}
+
+impl Default for Order {
+    fn default() -> Self {
+        Self::Gain {
+            worth: I4F12::lit("0.3"),
+        }
+    }
 }
 
 /// The preferences that shape the field on uneven ground.
@@ -178,6 +211,8 @@ pub struct Start {
     pub uneven_ground: Option<UnevenGround>,
     /// Limits of loops, for [`Strategy::Ouroboros`].
     pub loops: LoopLimits,
+    /// The order in which frontiers are taken.
+    pub order: Order,
     /// The robot's place in a team; `None` for a robot alone.
     pub team: Option<Team>,
 }

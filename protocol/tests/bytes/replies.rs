@@ -201,11 +201,14 @@ fn reply_frontiers() {
                 frontier(1, ResidualReason::Unobservable),
                 frontier(2, ResidualReason::OutOfBounds),
                 frontier(3, ResidualReason::NoProgress),
+                frontier(4, ResidualReason::NotWorthIt),
             ]
             .into_iter()
             .collect(),
         ),
-        &[6, 4, 0, 1, 9, 0, 2, 1, 9, 1, 4, 1, 9, 2, 6, 1, 9, 3],
+        &[
+            6, 5, 0, 1, 9, 0, 2, 1, 9, 1, 4, 1, 9, 2, 6, 1, 9, 3, 8, 1, 9, 4,
+        ],
     );
 }
 

@@ -2,7 +2,7 @@
 
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::message::{
-    Control, Hull, INVALID_MM, Laser, LoopLimits, Member, NO_RETURN_MM, Observation, Pose,
+    Control, Hull, INVALID_MM, Laser, LoopLimits, Member, NO_RETURN_MM, Observation, Order, Pose,
     Preference, Request, Scan, Start, Strategy, Team, Twist, UnevenGround,
 };
 use fixed::types::{I4F12, I16F16};
@@ -56,6 +56,7 @@ fn request_control_start_on_uneven_ground() {
             0x80, 0x04, // step 1/16 m = 256/4096
             0x80, 0x80, 0xa0, 0x01, 0x80, 0x80, 0xc0, 0x07, // default limits of loops
             0x80, 0x80, 0x50, 0x80, 0x80, 0x10, 0x80, 0x80, 0xa0, 0x01, //
+            0, 0x9a, 0x13, // by gain, worth 0.3 = 1229/4096
             0,    // no team
         ],
     );
@@ -103,6 +104,7 @@ fn request_control_start() {
             period_ms: 200,
             uneven_ground: None,
             loops: LoopLimits::default(),
+            order: Order::Nearest,
             team: Some(Team {
                 member: Member { id: 2, boot: 128 },
                 origin: (long(1.0), long(-0.5)),
@@ -134,6 +136,7 @@ fn request_control_start() {
             0x80, 0x80, 0x50, // 10 m more for each metre of frontier
             0x80, 0x80, 0x10, // twice the length
             0x80, 0x80, 0xa0, 0x01, // and 20 m
+            1,    // nearest first
             1, 2, 0x80, 0x01, // a team's robot 2, boot 128
             0x80, 0x80, 0x08, 0xff, 0xff, 0x03,
             0, // odometry from (1 m, −0.5 m), not turned

@@ -2,7 +2,7 @@
 
 use fieldline_protocol::message::{
     self, Activity, Beacon, Body, Cause, Command, Control, Cost, Counters, Crash, Digest, Fault,
-    FieldRow, Finish, Hull, Identity, Laser, LoopLimits, Loops, Member, Observation, Packet,
+    FieldRow, Finish, Hull, Identity, Laser, LoopLimits, Loops, Member, Observation, Order, Packet,
     Parameter, Path, Pose, Preference, Refusal, Reply, Request, ResidualFrontier, ResidualReason,
     Scan, Stages, Start, Status, Team, TeamTile, Tile, TileVersion, Twist, UnevenGround, Wanted,
 };
@@ -104,6 +104,7 @@ fn start() -> impl Strategy<Value = Start> {
             any::<(u8, u8)>(),
             prop::option::of(uneven_ground()),
             prop::option::of(team()),
+            order(),
         ),
         list(laser()),
         (any::<[u16; 4]>(), [long(), long(), long(), long(), long()]),
@@ -112,7 +113,7 @@ fn start() -> impl Strategy<Value = Start> {
     )
         .prop_map(
             |(
-                (strategy, box_tiles, uneven_ground, team),
+                (strategy, box_tiles, uneven_ground, team, order),
                 lasers,
                 (sizes, loops),
                 period_ms,
@@ -144,10 +145,18 @@ fn start() -> impl Strategy<Value = Start> {
                         detour,
                         slack,
                     },
+                    order,
                     team,
                 }
             },
         )
+}
+
+fn order() -> impl Strategy<Value = Order> {
+    prop_oneof![
+        short().prop_map(|worth| Order::Gain { worth }),
+        Just(Order::Nearest),
+    ]
 }
 
 fn member() -> impl Strategy<Value = Member> {
@@ -419,6 +428,7 @@ fn frontier() -> impl Strategy<Value = ResidualFrontier> {
         ResidualReason::Unobservable,
         ResidualReason::OutOfBounds,
         ResidualReason::NoProgress,
+        ResidualReason::NotWorthIt,
     ]);
     (any::<(i16, i16, u16)>(), reason).prop_map(|((x, y, cells), reason)| ResidualFrontier {
         x,

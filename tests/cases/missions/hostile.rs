@@ -6,8 +6,8 @@
 //! and debug assertions are on in this profile.
 
 use fieldline_protocol::message::{
-    Command, Control, Hull, Laser, LoopLimits, MAX_BEAMS, NO_RETURN_MM, Observation, Pose, Scan,
-    Start, Status, Strategy, Twist,
+    Command, Control, Hull, Laser, LoopLimits, MAX_BEAMS, NO_RETURN_MM, Observation, Order, Pose,
+    Scan, Start, Status, Strategy, Twist,
 };
 use fieldline_tests::random::Random;
 use fixed::types::{I4F12, I16F16};
@@ -102,6 +102,16 @@ impl AbsurdHost {
         }
     }
 
+    fn order(&mut self) -> Order {
+        if self.random.once_in(2) {
+            Order::Nearest
+        } else {
+            Order::Gain {
+                worth: self.narrow().min(I4F12::ONE),
+            }
+        }
+    }
+
     fn session(&mut self) -> Start {
         let count = if self.random.once_in(30) {
             0
@@ -124,6 +134,7 @@ impl AbsurdHost {
             period_ms: self.random.between(100, 400) as u16,
             uneven_ground: None,
             loops: self.loops(),
+            order: self.order(),
             team: None,
         };
         for (speed, accel) in [

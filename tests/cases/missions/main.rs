@@ -7,5 +7,6 @@ mod generated;
 mod hostile;
 mod links;
 mod lost_device;
+mod orders;
 mod periods;
 mod whole;

@@ -80,7 +80,7 @@ const fn run(
 }
 
 /// The rooms.
-pub const ROOMS: [Room; 5] = [
+pub const ROOMS: [Room; 6] = [
     Room {
         name: "ground",
         runs: &[
@@ -101,6 +101,19 @@ pub const ROOMS: [Room; 5] = [
             run("office", 1, FRONTIER, Flat, Odometry),
             run("kerbs", 0, FRONTIER, Uneven, Ranges),
             run("causeway", 0, FRONTIER, Uneven, Attitude),
+            run("cluttered", 0, FRONTIER, Flat, Ranges),
+            run("narrow-doors", 0, FRONTIER, Flat, Ranges),
+            run("cave", 0, FRONTIER, Flat, Ranges),
+            run("loop", 0, FRONTIER, Flat, Ranges),
+        ],
+        closes_loops: false,
+    },
+    Room {
+        name: "order",
+        runs: &[
+            run("office", 0, FRONTIER, Flat, Ranges),
+            run("office", 1, FRONTIER, Flat, Odometry),
+            run("hall", 0, FRONTIER, Flat, Ranges),
             run("cluttered", 0, FRONTIER, Flat, Ranges),
             run("narrow-doors", 0, FRONTIER, Flat, Ranges),
             run("cave", 0, FRONTIER, Flat, Ranges),

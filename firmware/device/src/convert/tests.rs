@@ -8,7 +8,8 @@ use fieldline_planner::{
 };
 use fieldline_protocol::message as wire;
 use fieldline_protocol::message::{
-    Control, Hull, Laser, LoopLimits, Observation, Parameter, Refusal, Scan, Start, UnevenGround,
+    Control, Hull, Laser, LoopLimits, Observation, Order, Parameter, Refusal, Scan, Start,
+    UnevenGround,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -83,6 +84,15 @@ fn every_limit_is_checked() {
                 ..start()
             },
             Parameter::LoopLimits,
+        ),
+        (
+            Start {
+                order: Order::Gain {
+                    worth: -I4F12::DELTA,
+                },
+                ..start()
+            },
+            Parameter::Worth,
         ),
         (
             Start {

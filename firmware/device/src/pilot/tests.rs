@@ -5,7 +5,7 @@ use std::boxed::Box;
 use fieldline_planner::{State, Tuning, Workspace};
 use fieldline_protocol::message::{
     Activity, Beacon, Body, Control, Fault, Finish, Hull, Laser, LoopLimits, Member, Observation,
-    Packet, Refusal, Scan, Start, Status, Strategy, Team, Twist,
+    Order, Packet, Refusal, Scan, Start, Status, Strategy, Team, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -40,6 +40,7 @@ pub(crate) fn start() -> Start {
         period_ms: 200,
         uneven_ground: None,
         loops: LoopLimits::default(),
+        order: Order::default(),
         team: None,
     }
 }

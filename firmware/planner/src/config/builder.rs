@@ -5,8 +5,8 @@
 use heapless::Vec;
 
 use crate::config::{
-    Config, ConfigError, GoalLevel, LoopLimits, Parameter, SolverConfig, Strategy, TeamPlace,
-    Tuning, UnevenGround,
+    Config, ConfigError, GoalLevel, LoopLimits, Order, Parameter, SolverConfig, Strategy,
+    TeamPlace, Tuning, UnevenGround,
 };
 use crate::geometry::CELL_M;
 use crate::input::NO_RETURN_MM;
@@ -31,6 +31,8 @@ const TURN_RAD: f32 = 2.0 * PI + 1e-4;
 const PITCHES_RAD: (f32, f32) = (0.0, 0.5 * PI - 3e-4);
 /// Steepest slope, a tangent: 45°.
 const STEEPEST: f32 = 1.0002;
+/// Greatest worth, square metres for each metre.
+const MOST_WORTH: f32 = 7.0;
 /// Strongest preference: beyond it the relaxation diverges \[Maffei20, III-C\].
 const STRONGEST: f32 = 2.0;
 
@@ -139,8 +141,16 @@ impl ConfigBuilder {
         self
     }
 
-    /// Sets a user's own order of goals, for every strategy. Default: only the path counts, with a
-    /// head start for the present goal and for large frontiers.
+    /// Sets the order in which frontiers are taken, for every strategy. Default: by gain for
+    /// [`Strategy::Frontier`], the nearest first for the others.
+    #[must_use]
+    pub const fn order(mut self, order: Order) -> Self {
+        self.config.order = Some(order);
+        self
+    }
+
+    /// Sets a user's own order of goals, for every strategy: a level counts as so much more way.
+    /// Default: all goals have the same level.
     #[must_use]
     pub const fn goal_level(mut self, level: GoalLevel) -> Self {
         self.config.goal_level = Some(level);
@@ -180,6 +190,9 @@ impl ConfigBuilder {
         check(Parameter::Radius, config.robot_radius_m, RADII_M)?;
         check(Parameter::Period, config.period_s, Config::PERIODS_S)?;
         check_loops(&config.loops)?;
+        if let Order::Gain { worth } = config.order() {
+            check(Parameter::Worth, worth, (0.0, MOST_WORTH))?;
+        }
         check(Parameter::Solver, config.solver.tolerance, (POSITIVE, 1.0))?;
         let cycles = f32::from(config.solver.max_cycles);
         check(Parameter::Solver, cycles, (1.0, ANY))?;

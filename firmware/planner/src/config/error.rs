@@ -50,6 +50,8 @@ pub enum Parameter {
     UnevenGround,
     /// A parameter of [`LoopLimits`](crate::LoopLimits).
     LoopLimits,
+    /// The worth of [`Order::Gain`](crate::Order::Gain).
+    Worth,
     /// A parameter of [`SolverConfig`](crate::SolverConfig).
     Solver,
 }
@@ -79,6 +81,7 @@ impl fmt::Display for Parameter {
             Self::MostPreference => "greatest preference",
             Self::UnevenGround => "parameter of uneven ground",
             Self::LoopLimits => "limit of loops",
+            Self::Worth => "worth",
             Self::Solver => "parameter of the solver",
         })
     }

@@ -9,6 +9,7 @@ mod error;
 mod goal;
 mod ground;
 mod loops;
+mod order;
 mod solver;
 mod team;
 mod tuning;
@@ -18,10 +19,12 @@ pub use error::{BoxTooLarge, ConfigError, Parameter};
 pub use goal::{Goal, GoalLevel};
 pub use ground::{KERNEL_CELLS, PreferenceMode, UnevenGround};
 pub use loops::LoopLimits;
+pub use order::Order;
 pub use solver::{Method, SolverConfig};
 pub use team::{Member, TeamPlace};
 pub use tuning::{
-    FieldTuning, GroundTuning, MapTuning, OuroborosTuning, TdbvpTuning, Tuned, Tuning, TuningError,
+    FieldTuning, GroundTuning, MapTuning, OrderTuning, OuroborosTuning, TdbvpTuning, Tuned, Tuning,
+    TuningError,
 };
 
 use heapless::Vec;
@@ -32,7 +35,7 @@ use crate::robot::{LaserMount, RobotShape};
 /// The exploration strategy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Strategy {
-    /// Go to the nearest frontier along the skeleton.
+    /// Go to one frontier after the other along the skeleton.
     #[default]
     Frontier,
     /// Close loops on the way \[Jorge15\].
@@ -65,6 +68,8 @@ pub struct Config {
     pub(crate) strategy: Strategy,
     /// Limits of the loops to close, for [`Strategy::Ouroboros`].
     pub(crate) loops: LoopLimits,
+    /// The order in which frontiers are taken; `None` for the strategy's own.
+    pub(crate) order: Option<Order>,
     /// The user's own order of goals.
     pub(crate) goal_level: Option<GoalLevel>,
     /// The robot's hull. Default: a Pioneer 3-AT.
@@ -115,6 +120,7 @@ impl Config {
         Self {
             strategy: Strategy::Frontier,
             loops: LoopLimits::DEFAULT,
+            order: None,
             goal_level: None,
             robot,
             lasers,
@@ -145,6 +151,16 @@ impl Config {
     #[must_use]
     pub const fn strategy(&self) -> Strategy {
         self.strategy
+    }
+
+    /// Returns the order in which frontiers are taken.
+    #[must_use]
+    pub const fn order(&self) -> Order {
+        match (self.order, self.strategy) {
+            (Some(order), _) => order,
+            (None, Strategy::Frontier) => Order::GAIN,
+            (None, _) => Order::Nearest,
+        }
     }
 
     /// Returns the robot's hull.

@@ -172,6 +172,7 @@ rooms! {
     field: FieldTuning, "The window's field.";
     tdbvp: TdbvpTuning, "Rails of time.";
     ouroboros: OuroborosTuning, "Loop closing.";
+    order: OrderTuning, "The order of goals.";
 }
 
 impl Tuning {

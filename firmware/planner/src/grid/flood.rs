@@ -91,7 +91,7 @@ pub(crate) fn nearest<const N: usize>(
 }
 
 /// Grows a flood by one step in some of the rows. Returns the span of the rows that changed.
-fn grow<const N: usize>(
+pub(crate) fn grow<const N: usize>(
     open: &[u64; N],
     reached: &mut [u64; N],
     rows: Range<usize>,

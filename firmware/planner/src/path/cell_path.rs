@@ -70,6 +70,20 @@ impl Path {
         Self::along(before.chain(sites.map(|site| frame.cell(site))))
     }
 
+    /// Makes the path of `steps` steps to a goal from its cells backwards: the goal first, then
+    /// `count` − 1 others.
+    pub(crate) fn back(cells: impl Iterator<Item = Cell>, count: usize, steps: u32) -> Self {
+        let mut cells = cells.peekable();
+        let goal = cells.peek().copied().unwrap_or_default();
+        let mut path = Self::along(cells.skip(count.saturating_sub(PATH_CELLS)));
+        path.cells.reverse();
+        Self {
+            steps,
+            goal,
+            ..path
+        }
+    }
+
     /// Returns the path prolonged straight to a place, which becomes the goal. The field finds the
     /// way round what stands between.
     pub(crate) fn leading_to(mut self, place: Cell) -> Self {

@@ -5,7 +5,7 @@
 //!
 //! Units: map cells, metres; steps along the skeleton.
 
-use crate::config::{GoalLevel, LoopLimits, Tuning};
+use crate::config::{GoalLevel, LoopLimits, Order, Tuning};
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{CELL_M, Cell, Pose};
 use crate::grid::Site;
@@ -40,6 +40,8 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) limits: &'a LoopLimits,
     /// The user's own order of goals.
     pub(crate) goal_level: Option<GoalLevel>,
+    /// The order in which goals are taken.
+    pub(crate) order: Order,
     /// The tuned constants.
     pub(crate) tuning: &'a Tuning,
     /// The cost of goals by height, where height levels are on.

@@ -7,9 +7,11 @@
 //!
 //! Units: map cells, coarse steps of 20 cm.
 
+use crate::config::Order;
 use crate::geometry::Cell;
 use crate::grid::{Plane, PlaneMut};
 use crate::map::Tiles;
+use crate::path::goal_choice::path_to_best;
 use crate::path::goal_cost::{GoalCost, PresentGoal};
 use crate::path::height_levels::LEVEL_STEPS;
 use crate::path::nearest::Centres;
@@ -25,9 +27,23 @@ const OTHER_LEVELS: u32 = 4;
 /// waiting.
 const CLASS_WORDS: usize = 170;
 
+/// Returns the path to the next frontier in the session's order; `None` if none is within reach or
+/// worth the trip.
+pub(crate) fn path_to_next<const TILES: usize, const SLOTS: usize>(
+    context: &PlanningContext<'_, TILES, SLOTS>,
+    residual: &mut ResidualFrontiers,
+    present: Option<PresentGoal>,
+    scratch: &mut PlanningScratch<'_>,
+) -> Option<Path> {
+    match context.order {
+        Order::Gain { worth } => path_to_best(context, residual, present, worth, scratch),
+        Order::Nearest => path_to_frontier(context, residual, present, scratch),
+    }
+}
+
 /// Returns the path to the frontier cell of the least cost, which is on the same level as far as
 /// possible. `None` if no frontier is within reach.
-pub(crate) fn path_to_frontier<const TILES: usize, const SLOTS: usize>(
+fn path_to_frontier<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
     given_up: &ResidualFrontiers,
     present: Option<PresentGoal>,
@@ -54,36 +70,48 @@ fn path_on_level<const TILES: usize, const SLOTS: usize>(
     cost: &GoalCost<'_, TILES, SLOTS>,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
-    let PlanningContext {
-        skeleton,
-        tiles,
-        levels,
-        ..
-    } = cost.context;
-    let levels = levels.as_ref()?;
-    let level = |cell: Cell| levels.of(tiles, cell);
+    let (cells, most_steps, mut scratch) = cells_on_level(path, cost.context, scratch)?;
+    let detour = path_along(cells, cost, &mut scratch)?;
+    (detour.steps() <= most_steps).then_some(detour)
+}
+
+/// For a path that crosses other levels, returns the centre cells that are no farther off than the
+/// goal, or one level, the greatest number of steps of a path along them, and the scratch memory
+/// that they leave. `None` if the path crosses no other level.
+#[allow(
+    clippy::type_complexity,
+    reason = "two uses, side by side with their callers"
+)]
+pub(crate) fn cells_on_level<'s, const TILES: usize, const SLOTS: usize>(
+    path: &Path,
+    context: &PlanningContext<'_, TILES, SLOTS>,
+    scratch: &'s mut PlanningScratch<'_>,
+) -> Option<(Plane<'s>, u32, PlanningScratch<'s>)> {
+    let levels = context.levels.as_ref()?;
+    let level = |cell: Cell| levels.of(context.tiles, cell);
     let least = level(path.goal()).max(1);
     let most = path.cells().iter().copied().map(level).max()?;
     let excess = most
         .checked_sub(least)
         .filter(|&excess| excess >= OTHER_LEVELS)?;
-    let frame = skeleton.frame();
+    let frame = context.skeleton.frame();
     // On a map so large that the plane does not fit behind the wave, the shortest path is taken.
     let (residues, spare) = scratch.residues.split_at_mut_checked(frame.shape.words())?;
-    let mut on_level = PlaneMut::new(frame.shape, spare.as_flattened_mut()).ok()?;
+    let spare = spare.as_flattened_mut();
+    let mut on_level = PlaneMut::new(frame.shape, &mut *spare).ok()?;
     on_level.fill(0);
-    for site in skeleton.skeleton()?.sites() {
+    for site in context.skeleton.skeleton()?.sites() {
         if level(frame.cell(site)) <= least {
             on_level.set(site);
         }
     }
-    let mut scratch = PlanningScratch {
+    let scratch = PlanningScratch {
         residues,
         queue: &mut *scratch.queue,
         local_grid: &mut *scratch.local_grid,
     };
-    let detour = path_along(on_level.view(), cost, &mut scratch)?;
-    (detour.steps() <= path.steps() + LEVEL_STEPS * excess).then_some(detour)
+    let cells = Plane::new(frame.shape, spare).ok()?;
+    Some((cells, path.steps() + LEVEL_STEPS * excess, scratch))
 }
 
 /// Returns the path to the frontier cell of the least cost along these centre cells.
@@ -144,7 +172,7 @@ fn spread<const TILES: usize, const SLOTS: usize>(
 }
 
 /// Returns the coarse cell at a side of `cell` that holds the most unexplored map cells, if any.
-fn unexplored_beside<const TILES: usize, const SLOTS: usize>(
+pub(crate) fn unexplored_beside<const TILES: usize, const SLOTS: usize>(
     cell: Cell,
     tiles: &Tiles<TILES, SLOTS>,
 ) -> Option<Cell> {

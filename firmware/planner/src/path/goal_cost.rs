@@ -75,7 +75,7 @@ pub(crate) struct PresentGoal {
 }
 
 impl PresentGoal {
-    fn is_beside(self, cell: Cell) -> bool {
+    pub(crate) fn is_beside(self, cell: Cell) -> bool {
         is_near(self.cell, cell, PRESENT_RADIUS_M)
     }
 }
@@ -169,14 +169,6 @@ impl<'a, const TILES: usize, const SLOTS: usize> GoalCost<'a, TILES, SLOTS> {
         all.filter_map(move |of| (class_of(of) == class).then_some(of.1))
     }
 
-    /// Returns the level that the user's own order gives a frontier cell.
-    fn user_level(&self, site: Site, cell: Cell) -> u32 {
-        self.context.goal_level.map_or(0, |level| {
-            let cells = connected_cells(self.frontier, site);
-            level(&Goal { cell, cells }).into()
-        })
-    }
-
     fn class(&self, site: Site) -> u32 {
         let cell = self.context.skeleton.frame().cell(site);
         if self.given_up.is_given_up(cell) {
@@ -187,9 +179,23 @@ impl<'a, const TILES: usize, const SLOTS: usize> GoalCost<'a, TILES, SLOTS> {
         } else {
             1 + u32::from(!is_large(self.frontier, site))
         };
-        let level = level(self.context, self.present, cell) + self.user_level(site, cell);
-        level.min(MOST_LEVEL) * RANKS + rank
+        goal_level(self.context, self.frontier, self.present, site) * RANKS + rank
     }
+}
+
+/// Returns the level of a frontier cell: its height's, and that of the user's own order.
+pub(crate) fn goal_level<const TILES: usize, const SLOTS: usize>(
+    context: &PlanningContext<'_, TILES, SLOTS>,
+    frontier: Plane<'_>,
+    present: Option<PresentGoal>,
+    site: Site,
+) -> u32 {
+    let cell = context.skeleton.frame().cell(site);
+    let user_level = context.goal_level.map_or(0, |level| {
+        let cells = connected_cells(frontier, site);
+        level(&Goal { cell, cells }).into()
+    });
+    (level(context, present, cell) + user_level).min(MOST_LEVEL)
 }
 
 /// Returns the number of frontier cells that are connected with one, counted up to

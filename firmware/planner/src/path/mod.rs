@@ -25,12 +25,16 @@ pub(crate) mod cell_path;
 pub(crate) mod centres;
 pub(crate) mod context;
 pub(crate) mod frontier_path;
+pub(crate) mod gain;
+pub(crate) mod goal_choice;
 pub(crate) mod goal_cost;
 pub(crate) mod height_levels;
 pub(crate) mod map_exits;
 pub(crate) mod nearest;
 pub(crate) mod progress;
+pub(crate) mod rays;
 pub(crate) mod residual_frontiers;
+pub(crate) mod robot_wave;
 pub(crate) mod search;
 pub(crate) mod viewpoint;
 

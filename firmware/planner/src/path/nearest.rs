@@ -11,13 +11,18 @@
 use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows, SCALES};
 use crate::geometry::Cell;
-use crate::grid::{Plane, Site, flood};
+use crate::grid::bits::ones64;
+use crate::grid::{Plane, Site, at, flood};
 use crate::map::Tiles;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::Frame;
 
 /// Maximum length of a straight way to a centre cell, cells: 128 m. Only a corridor's map is wider.
 const MOST_LINE_CELLS: i32 = 1_280;
+
+/// Greatest excess of a centre cell's steps over those of the nearest one, coarse steps: 1 m. In a
+/// junction or a hall the way to a goal seldom begins at the nearest one.
+const ENTRY_STEPS: u32 = 5;
 
 /// The centre cells of a skeleton, with the map under them.
 #[derive(Clone, Copy, Debug)]
@@ -50,6 +55,49 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
             let met = flood::nearest(&grid.passable, &mut seeds, &targets)?;
             let steps = u32::from(met.steps) * scale as u32 / 2;
             Some((self.site_in(grid, met.site, &accepts)?, steps))
+        })
+    }
+
+    /// Calls `visit` with the centre cells near a robot at `from` and the coarse steps there, the
+    /// nearest first: those at most [`ENTRY_STEPS`] farther off than the nearest one. Returns false
+    /// if there are none.
+    pub(crate) fn entries(
+        &self,
+        from: Cell,
+        grid: &mut LocalGrid,
+        mut visit: impl FnMut(Site, u32),
+    ) -> bool {
+        SCALES.iter().any(|&scale| {
+            grid.update(self.tiles, self.footprint, from, scale);
+            grid.free_robot(from);
+            let mut targets = self.targets(grid, |_| true);
+            let mut reached: Rows = [0; SIDE];
+            if let Some(place) = grid.place(from) {
+                LocalGrid::put(&mut reached, place);
+            }
+            let (mut changed, mut steps, mut most) = (0..SIDE, 0, None);
+            while !changed.is_empty() && most.is_none_or(|most| steps <= most) {
+                for y in changed.clone() {
+                    let met = at(&reached, y) & at(&targets, y);
+                    if let Some(row) = targets.get_mut(y) {
+                        *row &= !met;
+                    }
+                    for x in ones64(met) {
+                        let place = Site {
+                            x: x as u16,
+                            y: y as u16,
+                        };
+                        if let Some(site) = self.site_in(grid, place, |_| true) {
+                            most.get_or_insert(steps + 2 * ENTRY_STEPS / scale as u32);
+                            visit(site, steps * scale as u32 / 2);
+                        }
+                    }
+                }
+                let wider = changed.start.saturating_sub(1)..(changed.end + 1).min(SIDE);
+                changed = flood::grow(&grid.passable, &mut reached, wider);
+                steps += 1;
+            }
+            most.is_some()
         })
     }
 

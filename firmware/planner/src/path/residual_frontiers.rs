@@ -33,21 +33,30 @@ impl ResidualFrontiers {
         &self.list
     }
 
-    /// Returns true if there is room for no more.
+    /// Returns the goals that were given up.
+    fn given_up(&self) -> impl Iterator<Item = &ResidualFrontier> {
+        let list = self.list.iter();
+        list.filter(|residual| residual.reason != ResidualReason::NotWorthIt)
+    }
+
+    /// Returns true if as many goals were given up as there is room for.
     pub(crate) fn is_full(&self) -> bool {
-        self.list.is_full()
+        self.given_up().count() == MOST_RESIDUAL
     }
 
     /// Returns true if a cell is beside a goal that was given up.
     pub(crate) fn is_given_up(&self, cell: Cell) -> bool {
-        let mut list = self.list.iter();
-        list.any(|residual| is_near(residual.cell, cell, GIVEN_UP_RADIUS_M))
+        let mut given_up = self.given_up();
+        given_up.any(|residual| is_near(residual.cell, cell, GIVEN_UP_RADIUS_M))
     }
 
-    /// Gives up a goal. A full list loses its oldest one.
+    /// Gives up a goal. A full list loses one that is not worth the trip, or else its oldest one.
     pub(crate) fn give_up(&mut self, cell: Cell, reason: ResidualReason) {
         if self.list.is_full() {
-            self.list.remove(0);
+            let is_left =
+                |residual: &ResidualFrontier| residual.reason == ResidualReason::NotWorthIt;
+            let place = self.list.iter().position(is_left).unwrap_or(0);
+            self.list.remove(place);
         }
         // There is room now.
         let _ = self.list.push(ResidualFrontier {
@@ -55,6 +64,19 @@ impl ResidualFrontiers {
             cells: 1,
             reason,
         });
+    }
+
+    /// Lists frontier cells that are not worth the trip from where the robot is now.
+    pub(crate) fn list_not_worth_it(&mut self, cell: Cell, cells: u16) {
+        if let Some(group) = self.count(cell, ResidualReason::NotWorthIt) {
+            group.cells = group.cells.saturating_add(cells.saturating_sub(1));
+        }
+    }
+
+    /// Takes off the list what was not worth the trip.
+    pub(crate) fn forget_not_worth_it(&mut self) {
+        self.list
+            .retain(|residual| residual.reason != ResidualReason::NotWorthIt);
     }
 
     /// Takes the goals back that were given up because the robot came no nearer.

@@ -4,14 +4,16 @@
 //! floor under a table, the space between two cupboards. When no frontier is within reach, this
 //! search looks through the map for *gaps*: free cells with an unexplored one at a side. From each
 //! gap a ray leads back, away from the unexplored cells, through free cells, to the first one that
-//! the robot can reach. There the robot can stand and look along the ray. The gap of the least cost
-//! wins:
+//! the robot can reach. There the robot can stand and look along the ray. The gap of the greatest
+//! utility wins, as among frontiers ([`crate::path::goal_choice`]), or that of the least cost if
+//! goals are taken nearest first:
 //!
 //! ```text
 //! gap      free, with an unexplored cell at a side
 //! beyond   gap + d, gap + 2 d, … are free, then five are unexplored     (d: along a shadow's edge)
 //! stand    the first reached cell of gap − d, gap − 2 d, …, all free
 //! cost     |robot − stand| + |stand − gap|
+//! gain     unexplored, seen from the stand, in the quarter of all directions towards beyond
 //! ```
 //!
 //! None of the four papers has this; their robots leave what they cannot drive to. The search runs
@@ -19,14 +21,17 @@
 //!
 //! Units: map cells.
 
+use crate::config::{Order, OrderTuning};
 use crate::geometry::Cell;
 use crate::map::tiles::Extent;
 use crate::map::{Class, Tiles};
+use crate::path::gain::View;
+use crate::path::goal_choice::{is_worth, utility, value};
+use crate::path::rays::{RAYS, along, ray};
+use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::Reachability;
 
-/// Rays from a gap, all around.
-const RAYS: i32 = 64;
 /// Minimum number of unexplored cells at a ray's end, 0.5 m: fewer are hardly worth the way.
 const LEAST_BEYOND: i32 = 5;
 /// Maximum length of a ray beyond the gap and back from it, cells. A laser of 8 m sees farther,
@@ -48,6 +53,8 @@ const SWEEPS_PER_STEP: u32 = 3;
 const CELLS_PER_STEP: i32 = 20_000;
 /// Cost of finding a block's gaps, in cells on rays: measured on the chip.
 const EDGES_CELLS: i32 = 60;
+/// Cost of a gap's gain, in cells on rays.
+const GAIN_CELLS: i32 = 600;
 
 /// A place to look from, and what for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,7 +72,7 @@ pub(crate) struct Viewpoint {
 pub(crate) enum Found {
     /// The search needs another instalment.
     Pending,
-    /// The viewpoint of the least cost.
+    /// The best viewpoint.
     Viewpoint(Viewpoint),
     /// Nothing more can be seen.
     Nothing,
@@ -81,6 +88,10 @@ pub(crate) struct Inputs<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) footprints: [&'a Footprint; 2],
     /// Where the robot stands.
     pub(crate) robot: Cell,
+    /// The order in which viewpoints are taken: also by gain, or the nearest first.
+    pub(crate) order: Order,
+    /// The tuned constants of the order.
+    pub(crate) tuning: &'a OrderTuning,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -103,27 +114,8 @@ pub(crate) struct Search {
     /// The tiles of the map.
     extent: Extent,
     found: bool,
-    cost: f32,
+    score: f32,
     best: Viewpoint,
-}
-
-/// Returns a step along ray number n, sixteenths of a cell. Its longer side is a whole cell.
-const fn ray(number: i32) -> (i32, i32) {
-    let slant = number % 16 * 2 - 16;
-    match number / 16 {
-        0 => (16, slant),
-        1 => (-slant, 16),
-        2 => (-16, -slant),
-        _ => (slant, -16),
-    }
-}
-
-/// Returns the cell `steps` along a ray.
-const fn along(from: Cell, ray: (i32, i32), steps: i32) -> Cell {
-    Cell {
-        x: (from.x * 16 + 8 + ray.0 * steps) >> 4,
-        y: (from.y * 16 + 8 + ray.1 * steps) >> 4,
-    }
 }
 
 impl Search {
@@ -137,7 +129,7 @@ impl Search {
                 greatest: (0, 0),
             },
             found: false,
-            cost: 0.0,
+            score: 0.0,
             best: Viewpoint {
                 stand: Cell { x: 0, y: 0 },
                 gap: Cell { x: 0, y: 0 },
@@ -164,11 +156,12 @@ impl Search {
         }
     }
 
-    /// Runs an instalment. Gaps that `is_gone` do not count.
+    /// Runs an instalment. Gaps that were given up do not count; those that are not worth the trip
+    /// are listed.
     pub(crate) fn advance<const TILES: usize, const SLOTS: usize>(
         &mut self,
         inputs: &Inputs<'_, TILES, SLOTS>,
-        is_gone: impl Fn(Cell) -> bool,
+        residual: &mut ResidualFrontiers,
         scratch: &mut [u32],
     ) -> Found {
         let Some(mut reachability) = Reachability::resume(self.extent, scratch) else {
@@ -183,7 +176,7 @@ impl Search {
                     self.phase = Phase::Scan(0);
                 }
             }
-            Phase::Scan(block) => self.scan(inputs, &reachability, &is_gone, block),
+            Phase::Scan(block) => self.scan(inputs, &reachability, residual, block),
         }
         match (self.phase, self.found) {
             (Phase::Idle, true) => Found::Viewpoint(self.best),
@@ -227,7 +220,7 @@ impl Search {
         &mut self,
         inputs: &Inputs<'_, TILES, SLOTS>,
         reachability: &Reachability<'_>,
-        is_gone: &impl Fn(Cell) -> bool,
+        residual: &mut ResidualFrontiers,
         first: u16,
     ) {
         let mut left = CELLS_PER_STEP;
@@ -243,7 +236,7 @@ impl Search {
                     x: x * 32 + i32::from(number % ALONG) * BLOCK,
                     y: y * 32 + i32::from(number / ALONG % ALONG) * BLOCK,
                 };
-                left -= EDGES_CELLS + self.scan_block(inputs, reachability, is_gone, corner);
+                left -= EDGES_CELLS + self.scan_block(inputs, reachability, residual, corner);
             }
             number += 1;
         }
@@ -255,7 +248,7 @@ impl Search {
         &mut self,
         inputs: &Inputs<'_, TILES, SLOTS>,
         reachability: &Reachability<'_>,
-        is_gone: &impl Fn(Cell) -> bool,
+        residual: &mut ResidualFrontiers,
         corner: Cell,
     ) -> i32 {
         let edges = edges(inputs.tiles, corner);
@@ -266,18 +259,41 @@ impl Search {
         let mut walked = 0;
         let apart = count.div_ceil(TRIES) as usize;
         let gaps = cells(&edges, corner).step_by(apart);
-        for gap in gaps.filter(|&gap| !is_gone(gap)) {
+        for gap in gaps {
+            if residual.is_given_up(gap) {
+                continue;
+            }
             if let Some(viewpoint) = look_back(inputs.tiles, reachability, gap, &mut walked) {
-                self.offer(inputs.robot, viewpoint);
+                walked += GAIN_CELLS;
+                self.offer(inputs, residual, viewpoint);
             }
         }
         walked
     }
 
-    fn offer(&mut self, robot: Cell, viewpoint: Viewpoint) {
-        let cost = robot.distance_m(viewpoint.stand) + viewpoint.stand.distance_m(viewpoint.gap);
-        if !self.found || cost < self.cost {
-            (self.found, self.cost, self.best) = (true, cost, viewpoint);
+    /// Takes a viewpoint if it is the best so far; leaves its gap if that is not worth the trip.
+    fn offer<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        inputs: &Inputs<'_, TILES, SLOTS>,
+        residual: &mut ResidualFrontiers,
+        viewpoint: Viewpoint,
+    ) {
+        let Viewpoint { stand, gap, beyond } = viewpoint;
+        let trip_m = inputs.robot.distance_m(stand) + stand.distance_m(gap);
+        let score = match inputs.order {
+            Order::Gain { worth } => {
+                let view = View::of(inputs.tiles, stand, inputs.tuning.gain_m);
+                let gain_m2 = view.gain_towards_m2((beyond.x - stand.x, beyond.y - stand.y));
+                if !is_worth(gain_m2, trip_m, worth) {
+                    residual.list_not_worth_it(gap, 1);
+                    return;
+                }
+                utility(value(inputs.tuning, gain_m2), trip_m)
+            }
+            Order::Nearest => -trip_m,
+        };
+        if !self.found || score > self.score {
+            (self.found, self.score, self.best) = (true, score, viewpoint);
         }
     }
 }

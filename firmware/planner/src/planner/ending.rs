@@ -5,6 +5,7 @@
 
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::Cell;
+use crate::map::Tiles;
 use crate::map::tiles::NoRoom;
 use crate::path::map_exits::missing_room;
 use crate::planner::state::State;
@@ -64,13 +65,25 @@ fn conclude<const TILES: usize, const SLOTS: usize>(
         Some(NoRoom::Pool) => Status::Fault(Fault::MapFull),
         Some(NoRoom::Box) => Status::Fault(Fault::OutOfBox),
         None if state.strategy.frontier.is_stuck() => Status::Fault(Fault::Stuck),
-        None if room_cells(local_grid, robot) < BOX_CELLS => Status::Finished(Finish::BoxedIn),
+        None if room_cells(state.map.tiles(), local_grid, robot) < BOX_CELLS => {
+            Status::Finished(Finish::BoxedIn)
+        }
         None => Status::Finished(Finish::Explored),
     }
 }
 
-/// Returns the number of window cells that the robot's centre can reach.
-fn room_cells(local_grid: &LocalGrid, robot: Cell) -> u32 {
-    let reached = local_grid.reachable(robot);
-    reached.map_or(0, |rows| rows.iter().map(|row| row.count_ones()).sum())
+/// Returns the number of explored window cells that the robot's centre can reach. What is left
+/// unexplored at the end is no room.
+fn room_cells<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    local_grid: &LocalGrid,
+    robot: Cell,
+) -> u32 {
+    let mut reader = tiles.reader(local_grid.origin.x);
+    let ys = local_grid.origin.y..;
+    let Some(rows) = local_grid.reachable(robot) else {
+        return 0;
+    };
+    let explored = |(row, y): (&u64, i32)| (row & !reader.row(y).unknown()).count_ones();
+    rows.iter().zip(ys).map(explored).sum()
 }

@@ -43,6 +43,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         time_ms: input.time_ms,
         limits: &config.loops,
         goal_level: config.goal_level,
+        order: config.order(),
         tuning: config.tuning,
         levels: state.ground.level_cost(config, &state.preferences),
         reopens_passages: state.ground.reopens_passages(),
@@ -109,10 +110,12 @@ pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
         tiles: state.map.tiles(),
         footprints: [&wide, &narrow],
         robot,
+        order: config.order(),
+        tuning: &config.tuning.order,
     };
-    let is_gone = |gap| state.strategy.frontier.is_gone(gap);
+    let residual = state.strategy.frontier.residual_mut();
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
-    match state.viewpoints.advance(&inputs, is_gone, scratch) {
+    match state.viewpoints.advance(&inputs, residual, scratch) {
         Found::Pending => {}
         Found::Viewpoint(viewpoint) => {
             state.strategy.frontier.look_from(viewpoint);

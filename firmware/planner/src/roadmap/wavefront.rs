@@ -16,6 +16,7 @@
 
 use core::ops::RangeInclusive;
 
+use crate::grid::bits::ones;
 use crate::grid::{Plane, Site, at};
 use crate::roadmap::residues::{Residue, Residues};
 
@@ -126,6 +127,39 @@ impl Wavefront {
         }
     }
 
+    /// Calls `visit` with the cells of `marks` that the wave reached last, from which it goes on.
+    /// After a full queue a cell may be called twice, or again with a later level.
+    pub(crate) fn for_each_new(
+        &self,
+        space: &WaveSpace<'_>,
+        marks: Plane<'_>,
+        mut visit: impl FnMut(Site),
+    ) {
+        for offset in 0..self.len {
+            let site = unpack(at(space.ring, self.place(space, offset)));
+            if marks.get(site) {
+                visit(site);
+            }
+        }
+        if self.noted.is_empty() {
+            return;
+        }
+        let shape = marks.shape();
+        for row in self.noted.first..=self.noted.last {
+            for word in 0..shape.words_per_row() {
+                let reached = shape
+                    .index(row, word)
+                    .map_or(0, |index| space.residues.with(index, self.next));
+                for bit in ones(reached & marks.word(row, word)) {
+                    visit(Site {
+                        x: (word * 32) as u16 + bit as u16,
+                        y: row as u16,
+                    });
+                }
+            }
+        }
+    }
+
     /// Expands the cells of the next level, which becomes the present one.
     fn run_level(&mut self, space: &mut WaveSpace<'_>) {
         (self.here, self.next) = (self.next, self.next.next());
@@ -146,7 +180,8 @@ impl Wavefront {
         }
     }
 
-    const fn is_over(&self) -> bool {
+    /// Returns true if the wave has been everywhere.
+    pub(crate) const fn is_over(&self) -> bool {
         self.len == 0 && self.noted.is_empty()
     }
 

@@ -4,11 +4,15 @@
 use std::boxed::Box;
 use std::vec::Vec;
 
+use crate::config::{Order, Tuning};
 use crate::geometry::Cell;
 use crate::map::{Class, Tiles};
-use crate::path::viewpoint::{Found, Inputs, Search, Viewpoint, along};
+use crate::path::rays::along;
+use crate::path::residual_frontiers::ResidualFrontiers;
+use crate::path::viewpoint::{Found, Inputs, Search, Viewpoint};
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::scratch_words;
+use crate::status::ResidualReason;
 
 const SLOTS: usize = 24;
 type Map = Tiles<20, SLOTS>;
@@ -53,12 +57,17 @@ fn search(tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Viewpoint> {
         tiles,
         footprints: [&Footprint::new(0.3), &Footprint::new(0.22)],
         robot,
+        order: Order::Nearest,
+        tuning: &Tuning::DEFAULT.order,
     };
-    let is_gone = |gap| gone.iter().any(|&cell| cell.distance_m(gap) < 0.5);
+    let mut residual = ResidualFrontiers::new();
+    for &cell in gone {
+        residual.give_up(cell, ResidualReason::Unobservable);
+    }
     let mut search = Search::new();
     search.begin(tiles.extent(), &mut scratch);
     for _ in 0..100 {
-        match search.advance(&inputs, is_gone, &mut scratch) {
+        match search.advance(&inputs, &mut residual, &mut scratch) {
             Found::Pending => assert!(search.is_running()),
             Found::Viewpoint(viewpoint) => return Some(viewpoint),
             Found::Nothing => return None,

@@ -16,7 +16,7 @@ use crate::map::Class;
 use crate::math;
 use crate::path::blocked_passages::{BlockedPassages, ahead, first_unreachable};
 use crate::path::context::STEP_M;
-use crate::path::frontier_path::path_to_frontier;
+use crate::path::frontier_path::path_to_next;
 use crate::path::goal_cost::{PresentGoal, level};
 use crate::path::progress::{ProgressChecker, Verdict};
 use crate::path::residual_frontiers::ResidualFrontiers;
@@ -28,6 +28,8 @@ use crate::status::{ResidualFrontier, ResidualReason};
 
 /// A robot that follows its own potential has reached a goal that is at most this many steps away.
 const REACHED_STEPS: u32 = 4;
+/// A robot this near to a viewpoint has reached it, whatever way leads there along centre cells.
+const BESIDE_STEPS: u32 = 2;
 /// Maximum number of viewpoints in a run.
 const MOST_VIEWPOINTS: u8 = 100;
 /// Rounds in a row that must find nothing before the exploration ends: noise may close a way for a
@@ -182,7 +184,7 @@ impl Frontier {
     }
 
     fn find_path<const TILES: usize, const SLOTS: usize>(
-        &self,
+        &mut self,
         context: &PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
     ) -> Option<Path> {
@@ -190,7 +192,7 @@ impl Frontier {
             return None;
         }
         let present = self.present_goal();
-        path_to_frontier(context, &self.residual, present, scratch)
+        path_to_next(context, &mut self.residual, present, scratch)
     }
 
     /// Follows a path to a frontier. The present height becomes the goal's reference if the goal is
@@ -308,9 +310,9 @@ impl Frontier {
         self.viewpoints < MOST_VIEWPOINTS && !self.residual.is_full()
     }
 
-    /// Returns true if the robot looked through a gap, or gave it up.
-    pub(crate) fn is_gone(&self, gap: Cell) -> bool {
-        self.residual.is_given_up(gap)
+    /// Returns the goals that were given up, for a search to add to.
+    pub(crate) const fn residual_mut(&mut self) -> &mut ResidualFrontiers {
+        &mut self.residual
     }
 
     /// Goes to a viewpoint next.
@@ -329,7 +331,13 @@ impl Frontier {
     ) -> RoundOutcome {
         let robot = context.pose.point();
         let straight_m = math::sqrt(viewpoint.stand.corner().distance2(robot));
-        let steps = along_centre.max((straight_m / STEP_M) as u32);
+        let straight = (straight_m / STEP_M) as u32;
+        // No wall has room between two places of the robot's centre that are so near.
+        let steps = if straight <= BESIDE_STEPS {
+            straight
+        } else {
+            along_centre.max(straight)
+        };
         let reason = match self.progress.judge(viewpoint.stand, steps, context.time_ms) {
             Verdict::GoOn => return RoundOutcome::Path,
             Verdict::Drop(reason) => reason,

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::string::String;
 use std::vec::Vec;
 
-use crate::config::{LoopLimits, Tuning};
+use crate::config::{LoopLimits, Order, Tuning};
 use crate::geometry::{Cell, Pose};
 use crate::map::{Class, Tiles};
 use crate::path::{PlanningContext, RoundOutcome};
@@ -144,6 +144,7 @@ impl Exploration {
                 time_ms,
                 limits: &self.limits,
                 goal_level: None,
+                order: Order::Nearest,
                 tuning: &Tuning::DEFAULT,
                 levels: None,
                 reopens_passages: false,

@@ -13,7 +13,7 @@ use core::f32::consts::{FRAC_PI_2, PI};
 use std::string::String;
 use std::vec::Vec;
 
-use crate::config::{LoopLimits, OuroborosTuning, Tuning};
+use crate::config::{LoopLimits, Order, OuroborosTuning, Tuning};
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
@@ -166,6 +166,7 @@ impl Scene {
             time_ms: 0,
             limits: &self.limits,
             goal_level: None,
+            order: Order::Nearest,
             tuning: &Tuning::DEFAULT,
             levels: None,
             reopens_passages: false,

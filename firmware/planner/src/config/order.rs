@@ -1,0 +1,33 @@
+//! The order in which frontiers are taken.
+//!
+//! Units: square metres for each metre.
+
+/// The order in which frontiers are taken.
+///
+/// ```
+/// use fieldline_planner::{Config, LaserMount, Order, RobotShape};
+///
+/// // Explore everything that can be seen, whatever the way.
+/// let config = Config::builder(RobotShape::PIONEER_3AT)
+///     .laser(LaserMount::level(0.10, 0.40))
+///     .order(Order::Gain { worth: 0.0 })
+///     .build()?;
+/// # Ok::<(), fieldline_planner::ConfigError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Order {
+    /// First the frontier of the greatest gain for its cost: the unexplored area around it, for the
+    /// way there and the turn before it.
+    Gain {
+        /// Least gain of a trip, square metres for each metre of way, 0 to 7. What is not worth the
+        /// trip is left; 0 leaves nothing.
+        worth: f32,
+    },
+    /// First the nearest frontier, as in the papers.
+    Nearest,
+}
+
+impl Order {
+    /// By gain, with the default worth.
+    pub const GAIN: Self = Self::Gain { worth: 0.3 };
+}

@@ -1,0 +1,260 @@
+//! The choice of the next frontier by gain over cost.
+//!
+//! ```text
+//! U = G^0.625 / (t + 1 m)      t = path + turn · (1 − cos θ) / 2 + 10 m · level
+//! ```
+//!
+//! G is the unexplored area that may be seen from the goal ([`crate::path::gain`]). θ is the angle
+//! from the robot's heading to the first metre of the path. The level is that of
+//! [`crate::path::height_levels`] and of the user's own order. The present goal's gain counts more,
+//! so the robot keeps it until another one is clearly better. A goal is *worth* its trip if it is
+//! open, or G ≥ worth · max(t, 1 m).
+//!
+//! Frontier cells near each other are one *candidate*: the nearest by path stands for them. One
+//! wave from the robot finds them all, the nearest first, with their paths
+//! ([`crate::path::robot_wave`]).
+//!
+//! Units: metres, square metres; coarse steps of 20 cm.
+
+use heapless::Vec;
+
+use crate::config::OrderTuning;
+use crate::geometry::{Cell, Point};
+use crate::grid::{Plane, Site};
+use crate::math;
+use crate::path::context::STEP_M;
+use crate::path::frontier_path::{cells_on_level, unexplored_beside};
+use crate::path::gain::View;
+use crate::path::goal_cost::{PresentGoal, goal_level};
+use crate::path::height_levels::LEVEL_STEPS;
+use crate::path::nearest::Centres;
+use crate::path::residual_frontiers::ResidualFrontiers;
+use crate::path::search::PathSearch;
+use crate::path::{Path, PlanningContext, PlanningScratch};
+
+/// Maximum number of candidates. Those farther off wait until the robot is nearer.
+const MOST_CANDIDATES: usize = 24;
+/// A frontier cell at most this far from a candidate along either axis belongs to it, coarse cells.
+const GROUP_CELLS: u16 = 5;
+/// Distance from the robot at which the direction of a path is taken, metres.
+const AHEAD_M: f32 = 1.0;
+/// Length that is added to every trip, metres, so that a goal at the robot is worth no more than
+/// its gain.
+const NEAR_M: f32 = 1.0;
+
+/// Frontier cells near each other.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    /// The nearest one, and the steps to it.
+    site: Site,
+    steps: u32,
+    cells: u16,
+}
+
+/// The candidates, the nearest first.
+type Candidates = Vec<Candidate, MOST_CANDIDATES>;
+
+/// Returns the value of a gain.
+pub(crate) fn value(tuning: &OrderTuning, gain_m2: f32) -> f32 {
+    math::powf(gain_m2, tuning.power)
+}
+
+/// Returns the utility of a trip for a value.
+pub(crate) fn utility(value: f32, trip_m: f32) -> f32 {
+    value / (trip_m + NEAR_M)
+}
+
+/// Returns the greatest value that a goal can have: of the whole square within reach.
+fn most_value(tuning: &OrderTuning) -> f32 {
+    let side_m = 2.0 * tuning.gain_m;
+    value(tuning, tuning.keep * (side_m * side_m).max(1.0))
+}
+
+/// Returns true if a gain is worth a trip, at so many square metres for each metre.
+pub(crate) fn is_worth(gain_m2: f32, trip_m: f32, worth: f32) -> bool {
+    gain_m2 >= worth * trip_m.max(NEAR_M)
+}
+
+/// Returns the path to the frontier of the greatest utility; `None` if there is none within reach
+/// that is worth the trip. Lists those that are not.
+pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
+    context: &PlanningContext<'_, TILES, SLOTS>,
+    residual: &mut ResidualFrontiers,
+    present: Option<PresentGoal>,
+    worth: f32,
+    scratch: &mut PlanningScratch<'_>,
+) -> Option<Path> {
+    residual.forget_not_worth_it();
+    let centres = context.centres()?;
+    let frontier = context.skeleton.frontier()?;
+    let mut search = PathSearch::open(centres, scratch)?;
+    let candidates = candidates(&mut search, context, frontier, residual);
+    let choice = Choice {
+        context,
+        frontier,
+        present,
+        worth,
+        most_value: most_value(&context.tuning.order),
+        search: &search,
+        robot: Heading::of(context),
+    };
+    let Some(best) = choice.best(&candidates) else {
+        for candidate in &candidates {
+            residual.list_not_worth_it(centres.cell(candidate.site), candidate.cells);
+        }
+        return None;
+    };
+    let path = search.path_from_robot(best.site, best.steps);
+    let mut path = path_on_level(&path, best.site, context, scratch).unwrap_or(path);
+    path.extend(unexplored_beside(path.goal(), context.tiles));
+    Some(path)
+}
+
+/// Finds the candidates, with a wave that stays for their paths.
+fn candidates<const TILES: usize, const SLOTS: usize>(
+    search: &mut PathSearch<'_, TILES, SLOTS>,
+    context: &PlanningContext<'_, TILES, SLOTS>,
+    frontier: Plane<'_>,
+    residual: &ResidualFrontiers,
+) -> Candidates {
+    let mut candidates = Candidates::new();
+    let centres = search.centres;
+    let robot = context.pose.point().cell();
+    search.spread_from(robot, frontier, |site, steps| {
+        let is_near = |candidate: &&mut Candidate| {
+            candidate.site.x.abs_diff(site.x) <= GROUP_CELLS
+                && candidate.site.y.abs_diff(site.y) <= GROUP_CELLS
+        };
+        if residual.is_given_up(centres.cell(site)) {
+            return;
+        }
+        if let Some(candidate) = candidates.iter_mut().find(is_near) {
+            candidate.cells = candidate.cells.saturating_add(1);
+        } else {
+            // The farthest ones do not fit.
+            let _ = candidates.push(Candidate {
+                site,
+                steps,
+                cells: 1,
+            });
+        }
+    });
+    candidates
+}
+
+/// The robot's cell, and a unit vector along its heading.
+#[derive(Clone, Copy, Debug)]
+struct Heading {
+    cell: Cell,
+    along: Point,
+}
+
+impl Heading {
+    fn of<const TILES: usize, const SLOTS: usize>(
+        context: &PlanningContext<'_, TILES, SLOTS>,
+    ) -> Self {
+        let (sin, cos) = math::sin_cos(context.pose.yaw_rad);
+        Self {
+            cell: context.pose.point().cell(),
+            along: Point { x_m: cos, y_m: sin },
+        }
+    }
+
+    /// Returns (1 − cos θ) / 2 for the angle θ from the heading to the direction of a cell: the
+    /// part of turning about.
+    fn turn_to(self, cell: Cell) -> f32 {
+        let (dx, dy) = ((cell.x - self.cell.x) as f32, (cell.y - self.cell.y) as f32);
+        let length = math::sqrt(dx * dx + dy * dy);
+        if length < 1.0 {
+            return 0.0;
+        }
+        0.5 - 0.5 * (dx * self.along.x_m + dy * self.along.y_m) / length
+    }
+}
+
+/// What the candidates are judged by.
+struct Choice<'a, const TILES: usize, const SLOTS: usize> {
+    context: &'a PlanningContext<'a, TILES, SLOTS>,
+    frontier: Plane<'a>,
+    present: Option<PresentGoal>,
+    worth: f32,
+    most_value: f32,
+    search: &'a PathSearch<'a, TILES, SLOTS>,
+    robot: Heading,
+}
+
+impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
+    /// Returns the candidate of the greatest utility that is worth its trip.
+    fn best(&self, candidates: &Candidates) -> Option<Candidate> {
+        let mut best: Option<(f32, Candidate)> = None;
+        for &candidate in candidates {
+            let least = best.map_or(0.0, |(utility, _)| utility);
+            if let Some(utility) = self.utility_above(least, candidate) {
+                best = Some((utility, candidate));
+            }
+        }
+        best.map(|(_, candidate)| candidate)
+    }
+
+    /// Returns a candidate's utility if it is greater than `least` and worth the trip. What costs
+    /// more to compute comes later: most candidates are too far off for any gain.
+    fn utility_above(&self, least: f32, candidate: Candidate) -> Option<f32> {
+        let tuning: &OrderTuning = &self.context.tuning.order;
+        let cell = self.search.centres.cell(candidate.site);
+        let level = goal_level(self.context, self.frontier, self.present, candidate.site);
+        let path_m = (candidate.steps + LEVEL_STEPS * level) as f32 * STEP_M;
+        if utility(self.most_value, path_m) <= least {
+            return None;
+        }
+        let view = View::of(self.context.tiles, cell, tuning.gain_m);
+        let is_present = self.present.is_some_and(|present| present.is_beside(cell));
+        let kept = if is_present { tuning.keep } else { 1.0 };
+        let gain_m2 = kept
+            * if tuning.gain_m > 0.0 {
+                view.gain_m2()
+            } else {
+                1.0
+            };
+        let value = value(tuning, gain_m2);
+        if utility(value, path_m) <= least {
+            return None;
+        }
+        let ahead = self
+            .search
+            .first_cell_near(self.robot.cell, candidate.site, AHEAD_M);
+        let trip_m = path_m + tuning.turn_m * self.robot.turn_to(ahead);
+        let utility = utility(value, trip_m);
+        let is_worth = || is_worth(gain_m2, trip_m, self.worth) || view.is_open(self.clearance());
+        (utility > least && is_worth()).then_some(utility)
+    }
+
+    /// Returns the distance that the robot's centre keeps from obstacles, cells.
+    fn clearance(&self) -> i32 {
+        self.context.footprint.reach()
+    }
+}
+
+/// For a path that crosses other levels, returns one to the same goal that does not; `None` if
+/// there is none, or it is too long.
+fn path_on_level<const TILES: usize, const SLOTS: usize>(
+    path: &Path,
+    goal: Site,
+    context: &PlanningContext<'_, TILES, SLOTS>,
+    scratch: &mut PlanningScratch<'_>,
+) -> Option<Path> {
+    let (cells, most_steps, mut scratch) = cells_on_level(path, context, scratch)?;
+    let centres = Centres {
+        cells,
+        ..context.centres()?
+    };
+    let mut search = PathSearch::open(centres, &mut scratch)?;
+    let robot = context.pose.point().cell();
+    let mut found = None;
+    search.spread_from(robot, context.skeleton.frontier()?, |site, steps| {
+        if site == goal {
+            found.get_or_insert(steps);
+        }
+    });
+    let steps = found.filter(|&steps| steps <= most_steps)?;
+    Some(search.path_from_robot(goal, steps))
+}
