@@ -150,21 +150,6 @@ impl<'w> Simulator<'w> {
         self.end_period();
     }
 
-    /// Puts other robots into the world. They stand on its ground at these planar poses.
-    pub fn stand_among(&mut self, hulls: Vec<(Footprint, Pose)>) {
-        let stance = |planar: Pose| stand(self.world, &planar).unwrap_or(planar);
-        let others = hulls.into_iter();
-        self.others = others
-            .map(|(footprint, planar)| OtherRobot::new(footprint, stance(planar)))
-            .collect();
-    }
-
-    /// Returns true if another robot stopped this one in the last substep.
-    #[must_use]
-    pub const fn is_held_by_robot(&self) -> bool {
-        self.bumped.is_some()
-    }
-
     /// Takes the command of a period.
     fn begin_period(&mut self, command: Option<Twist>) {
         if let Some(twist) = command {

@@ -8,7 +8,6 @@ use anyhow::{Context as _, Result, bail};
 use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
-use host_sim::network::neighbours::Neighbours;
 use host_sim::network::udp::Udp;
 use host_sim::network::{self, Networked};
 use host_sim::report::{Report, folder};
@@ -160,24 +159,13 @@ fn explore(args: &ExploreArgs, link: &LinkSpec, run: &Run, interrupt: &Interrupt
     let pace = args.team.as_ref().map(|team| team.pace);
     let pace = pace.or(args.realtime.then_some(1.0));
     let mut onlooker = Onlooker::new(name, pace, interrupt.clone());
-    let neighbours = network
-        .as_ref()
-        .map(|(_, it)| it.clone())
-        .unwrap_or_default();
-    let result = mission::explore_among(
-        &run.mission,
-        &run.world,
-        planner.as_mut(),
-        &mut onlooker,
-        &neighbours,
-    );
+    let result = mission::explore(&run.mission, &run.world, planner.as_mut(), &mut onlooker);
     onlooker.finish();
     let (mut report, record) = match result {
         Err(MissionError::Link(error)) => bail!("--link {link}: {error}"),
         result => result?,
     };
-    if let Some((network, neighbours)) = network {
-        report.safety.robot_contacts = Some(neighbours.contacts());
+    if let Some(network) = network {
         report.network = Some(network.read());
         // The device's map also has what the robot heard.
         report.debug.map_matches_mirror = None;
@@ -206,11 +194,11 @@ fn check_team(args: &ExploreArgs) -> Result<()> {
     Ok(())
 }
 
-/// What a member of a team counts, and whom it hears.
-type Membership = (network::Account, Neighbours);
-
-/// Makes the planner a member of its team, if it has one.
-fn join(args: &ExploreArgs, planner: Box<dyn Link>) -> Result<(Box<dyn Link>, Option<Membership>)> {
+/// Makes the planner a member of its team, if it has one; returns its counters too.
+fn join(
+    args: &ExploreArgs,
+    planner: Box<dyn Link>,
+) -> Result<(Box<dyn Link>, Option<network::Account>)> {
     let Some(team) = &args.team else {
         return Ok((planner, None));
     };
@@ -219,8 +207,8 @@ fn join(args: &ExploreArgs, planner: Box<dyn Link>) -> Result<(Box<dyn Link>, Op
         .map_err(anyhow::Error::msg)
         .context("--team")?;
     let member = Networked::new(planner, Box::new(carrier), key, team.id);
-    let membership = (member.account(), member.neighbours());
-    Ok((Box::new(member), Some(membership)))
+    let account = member.account();
+    Ok((Box::new(member), Some(account)))
 }
 
 /// Returns the parameters of uneven ground; `None` on flat ground.

@@ -3,22 +3,20 @@
 //! [`Networked`] is a link around the link to the robot's own planner. Before each observation it
 //! passes on what arrived from the others; after it, it sends what the planner says. So every run
 //! over every link can be part of a team, also one with a board on a serial port. Each process
-//! simulates its own robot in its own copy of the world, and puts the robots of the others where
-//! their beacons say.
+//! simulates its own robot in its own copy of the world: robots of other processes are neither seen
+//! nor touched there, only heard.
 //!
 //! | file | holds |
 //! | --- | --- |
 //! | [`envelope`] | the bytes of a datagram: sender, number, tag; what is new |
 //! | [`spec`] | a process's place in a team, by name |
 //! | [`carrier`] | what carries datagrams |
-//! | [`neighbours`] | the robots of other processes in this one's world |
 //! | [`udp`] | unicast to peers, multicast to find them |
 //!
 //! Whatever arrives, nothing panics: a datagram that is no good is dropped and counted.
 
 pub mod carrier;
 pub mod envelope;
-pub mod neighbours;
 pub mod spec;
 pub mod udp;
 
@@ -35,7 +33,6 @@ use serde::{Deserialize, Serialize};
 use crate::link::{Link, LinkError, LinkStats};
 use carrier::{Arrived, Carrier};
 use envelope::{Heard, Key, Kind, Letter, Refused};
-use neighbours::Neighbours;
 
 /// Most packets that a planner says in a step. A device that says more is not asked on.
 const MOST_SAID: usize = 8;
@@ -92,7 +89,6 @@ pub struct Networked {
     counter: u64,
     heard: Heard,
     account: Account,
-    neighbours: Neighbours,
 }
 
 impl Networked {
@@ -115,7 +111,6 @@ impl Networked {
             counter: 0,
             heard: Heard::default(),
             account: Account::default(),
-            neighbours: Neighbours::default(),
         }
     }
 
@@ -123,12 +118,6 @@ impl Networked {
     #[must_use]
     pub fn account(&self) -> Account {
         self.account.clone()
-    }
-
-    /// Returns the robots that are heard.
-    #[must_use]
-    pub fn neighbours(&self) -> Neighbours {
-        self.neighbours.clone()
     }
 
     fn seal(&mut self, kind: Kind, body: &[u8]) -> Vec<u8> {
@@ -149,7 +138,6 @@ impl Networked {
                 break;
             };
             if let Some(packet) = self.accept(&arrived) {
-                self.neighbours.note(&packet);
                 self.link.hear(&packet)?;
             }
         }

@@ -13,7 +13,6 @@ use fieldline_protocol::message::{
 use super::account::Account;
 use super::{Cast, Record, Setup, Watch, run, shape, summary};
 use crate::link::{Link, LinkError};
-use crate::network::neighbours::{Guest, Neighbours};
 use crate::report::Report;
 use crate::robot::{Footprint, LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M};
 use crate::sim::{SimConfig, Simulator};
@@ -279,20 +278,6 @@ pub fn explore(
     link: &mut dyn Link,
     watch: &mut dyn Watch,
 ) -> Result<(Report, Record), MissionError> {
-    explore_among(mission, world, link, watch, &Neighbours::default())
-}
-
-/// Explores `world` over `link`, among the robots of other processes.
-///
-/// # Errors
-/// As [`explore`].
-pub fn explore_among(
-    mission: &Mission,
-    world: &World,
-    link: &mut dyn Link,
-    watch: &mut dyn Watch,
-    neighbours: &Neighbours,
-) -> Result<(Report, Record), MissionError> {
     let mut simulator = Simulator::new(world, mission.sim_config())?;
     let setup = setup(mission, &simulator, link.hello()?.tile_slots)?;
     let mut account = Account::new(&setup, &simulator);
@@ -300,7 +285,7 @@ pub fn explore_among(
         &setup,
         &mut Cast {
             link,
-            body: &mut Guest::new(&mut simulator, neighbours),
+            body: &mut simulator,
             survey: &mut account,
             watch,
         },
