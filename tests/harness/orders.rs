@@ -58,10 +58,9 @@ pub fn variants() -> Vec<Variant> {
         by("everything seen (worth 0)", worth(0.0)),
         by("worth 0.1", worth(0.1)),
         by("nearest first", Some(Order::Nearest)),
-        // With one gain for all goals no trip has a worth.
         Variant {
             order: worth(0.0),
-            ..with("same gain everywhere, worth 0", &[("order.gain_m", 0.0)])
+            ..with("same gain everywhere, worth 0", &[("order.power", 0.0)])
         },
         with("a gain counts in full", &[("order.power", 1.0)]),
         with("a gain counts by its root", &[("order.power", 0.5)]),

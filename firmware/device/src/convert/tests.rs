@@ -4,7 +4,7 @@ use std::string::ToString;
 use std::vec::Vec;
 
 use fieldline_planner::{
-    Cell, LaserMount, ResidualFrontier, ResidualReason, RobotShape, Tuning, Twist,
+    Cell, Config, LaserMount, ResidualFrontier, ResidualReason, RobotShape, Tuning, Twist,
 };
 use fieldline_protocol::message as wire;
 use fieldline_protocol::message::{
@@ -292,6 +292,35 @@ fn the_box_must_fit_the_slots() {
         };
         let expected = if fits { Ok(()) } else { Err(Refusal::BadBox) };
         assert_eq!(checked(&start), expected, "{box_tiles:?}");
+    }
+}
+
+/// The wire and the planner write the default worth down twice. It may differ by the wire's digits.
+#[test]
+fn the_default_order_of_a_strategy_is_the_planners() {
+    let tdbvp = wire::Strategy::Tdbvp {
+        patrol_s: 10,
+        impatience_s: Some(60),
+    };
+    for strategy in [wire::Strategy::Frontier, wire::Strategy::Ouroboros, tdbvp] {
+        let start = Start {
+            strategy,
+            order: strategy.order(),
+            ..start()
+        };
+        let heard = config(&start, &Tuning::DEFAULT).expect("valid");
+        let own = Config::builder(RobotShape::PIONEER_3AT)
+            .strategy(heard.strategy())
+            .laser(LaserMount::level(0.1, 0.4))
+            .build()
+            .expect("valid");
+        match (heard.order(), own.order()) {
+            (
+                fieldline_planner::Order::Gain { worth: heard },
+                fieldline_planner::Order::Gain { worth: own },
+            ) => assert!((heard - own).abs() < 1.0 / 4096.0),
+            (heard, own) => assert_eq!(heard, own),
+        }
     }
 }
 

@@ -28,15 +28,16 @@ const OTHER_LEVELS: u32 = 4;
 const CLASS_WORDS: usize = 170;
 
 /// Returns the path to the next frontier in the session's order; `None` if none is within reach or
-/// worth the trip.
+/// worth the trip. `judged` is as for [`path_to_best`].
 pub(crate) fn path_to_next<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
     residual: &mut ResidualFrontiers,
     present: Option<PresentGoal>,
+    judged: &mut usize,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
     match context.order {
-        Order::Gain { worth } => path_to_best(context, residual, present, worth, scratch),
+        Order::Gain { worth } => path_to_best(context, residual, present, worth, judged, scratch),
         Order::Nearest => path_to_frontier(context, residual, present, scratch),
     }
 }
@@ -70,23 +71,28 @@ fn path_on_level<const TILES: usize, const SLOTS: usize>(
     cost: &GoalCost<'_, TILES, SLOTS>,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
-    let (cells, most_steps, mut scratch) = cells_on_level(path, cost.context, scratch)?;
-    let detour = path_along(cells, cost, &mut scratch)?;
-    (detour.steps() <= most_steps).then_some(detour)
+    let mut level = cells_on_level(path, cost.context, scratch)?;
+    let detour = path_along(level.cells, cost, &mut level.scratch)?;
+    (detour.steps() <= level.most_steps).then_some(detour)
 }
 
-/// For a path that crosses other levels, returns the centre cells that are no farther off than the
-/// goal, or one level, the greatest number of steps of a path along them, and the scratch memory
-/// that they leave. `None` if the path crosses no other level.
-#[allow(
-    clippy::type_complexity,
-    reason = "two uses, side by side with their callers"
-)]
+/// The centre cells on the level of a goal.
+pub(crate) struct OnLevel<'s> {
+    /// Those that are no farther off than the goal, or one level.
+    pub(crate) cells: Plane<'s>,
+    /// Greatest number of steps of a path along them.
+    pub(crate) most_steps: u32,
+    /// The scratch memory that they leave.
+    pub(crate) scratch: PlanningScratch<'s>,
+}
+
+/// Returns the centre cells on the level of a path's goal; `None` if the path crosses no other
+/// level.
 pub(crate) fn cells_on_level<'s, const TILES: usize, const SLOTS: usize>(
     path: &Path,
     context: &PlanningContext<'_, TILES, SLOTS>,
     scratch: &'s mut PlanningScratch<'_>,
-) -> Option<(Plane<'s>, u32, PlanningScratch<'s>)> {
+) -> Option<OnLevel<'s>> {
     let levels = context.levels.as_ref()?;
     let level = |cell: Cell| levels.of(context.tiles, cell);
     let least = level(path.goal()).max(1);
@@ -110,8 +116,11 @@ pub(crate) fn cells_on_level<'s, const TILES: usize, const SLOTS: usize>(
         queue: &mut *scratch.queue,
         local_grid: &mut *scratch.local_grid,
     };
-    let cells = Plane::new(frame.shape, spare).ok()?;
-    Some((cells, path.steps() + LEVEL_STEPS * excess, scratch))
+    Some(OnLevel {
+        cells: Plane::new(frame.shape, spare).ok()?,
+        most_steps: path.steps() + LEVEL_STEPS * excess,
+        scratch,
+    })
 }
 
 /// Returns the path to the frontier cell of the least cost along these centre cells.

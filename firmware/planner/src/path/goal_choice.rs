@@ -12,7 +12,8 @@
 //!
 //! Frontier cells near each other are one *candidate*: the nearest by path stands for them. One
 //! wave from the robot finds them all, the nearest first, with their paths
-//! ([`crate::path::robot_wave`]).
+//! ([`crate::path::robot_wave`]). A round judges the nearest [`MOST_JUDGED`]. If none is worth its
+//! trip, the next round judges the ones behind them.
 //!
 //! Units: metres, square metres; coarse steps of 20 cm.
 
@@ -33,7 +34,9 @@ use crate::path::search::PathSearch;
 use crate::path::{Path, PlanningContext, PlanningScratch};
 
 /// Maximum number of candidates. Those farther off wait until the robot is nearer.
-const MOST_CANDIDATES: usize = 24;
+const MOST_CANDIDATES: usize = 64;
+/// Maximum number of candidates that a round judges: a gain costs about 0.1 million instructions.
+pub(crate) const MOST_JUDGED: usize = 24;
 /// A frontier cell at most this far from a candidate along either axis belongs to it, coarse cells.
 const GROUP_CELLS: u16 = 5;
 /// Distance from the robot at which the direction of a path is taken, metres.
@@ -67,7 +70,7 @@ pub(crate) fn utility(value: f32, trip_m: f32) -> f32 {
 /// Returns the greatest value that a goal can have: of the whole square within reach.
 fn most_value(tuning: &OrderTuning) -> f32 {
     let side_m = 2.0 * tuning.gain_m;
-    value(tuning, tuning.keep * (side_m * side_m).max(1.0))
+    value(tuning, tuning.keep * side_m * side_m)
 }
 
 /// Returns true if a gain is worth a trip, at so many square metres for each metre.
@@ -75,16 +78,21 @@ pub(crate) fn is_worth(gain_m2: f32, trip_m: f32, worth: f32) -> bool {
     gain_m2 >= worth * trip_m.max(NEAR_M)
 }
 
-/// Returns the path to the frontier of the greatest utility; `None` if there is none within reach
-/// that is worth the trip. Lists those that are not.
+/// Returns the path to the frontier of the greatest utility; `None` if none that this round judges
+/// is worth the trip: then it lists them. `judged` counts the candidates that the rounds before
+/// judged in vain; it is 0 again after the last of them.
 pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
     residual: &mut ResidualFrontiers,
     present: Option<PresentGoal>,
     worth: f32,
+    judged: &mut usize,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
-    residual.forget_not_worth_it();
+    if *judged == 0 {
+        residual.forget_not_worth_it();
+    }
+    let before = core::mem::take(judged);
     let centres = context.centres()?;
     let frontier = context.skeleton.frontier()?;
     let mut search = PathSearch::open(centres, scratch)?;
@@ -98,8 +106,10 @@ pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
         search: &search,
         robot: Heading::of(context),
     };
-    let Some(best) = choice.best(&candidates) else {
-        for candidate in &candidates {
+    let (instalment, next) = instalment(&candidates, before);
+    let Some(best) = choice.best(instalment) else {
+        *judged = next;
+        for candidate in instalment {
             residual.list_not_worth_it(centres.cell(candidate.site), candidate.cells);
         }
         return None;
@@ -108,6 +118,16 @@ pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
     let mut path = path_on_level(&path, best.site, context, scratch).unwrap_or(path);
     path.extend(unexplored_beside(path.goal(), context.tiles));
     Some(path)
+}
+
+/// Returns the next [`MOST_JUDGED`] after those that were judged before, and how many are judged
+/// then: 0 if these are the last.
+fn instalment<T>(all: &[T], before: usize) -> (&[T], usize) {
+    let rest = all.get(before..).unwrap_or(&[]);
+    match rest.get(..MOST_JUDGED) {
+        Some(next) if next.len() < rest.len() => (next, before + MOST_JUDGED),
+        _ => (rest, 0),
+    }
 }
 
 /// Finds the candidates, with a wave that stays for their paths.
@@ -185,7 +205,7 @@ struct Choice<'a, const TILES: usize, const SLOTS: usize> {
 
 impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
     /// Returns the candidate of the greatest utility that is worth its trip.
-    fn best(&self, candidates: &Candidates) -> Option<Candidate> {
+    fn best(&self, candidates: &[Candidate]) -> Option<Candidate> {
         let mut best: Option<(f32, Candidate)> = None;
         for &candidate in candidates {
             let least = best.map_or(0.0, |(utility, _)| utility);
@@ -209,12 +229,7 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
         let view = View::of(self.context.tiles, cell, tuning.gain_m);
         let is_present = self.present.is_some_and(|present| present.is_beside(cell));
         let kept = if is_present { tuning.keep } else { 1.0 };
-        let gain_m2 = kept
-            * if tuning.gain_m > 0.0 {
-                view.gain_m2()
-            } else {
-                1.0
-            };
+        let gain_m2 = kept * view.gain_m2();
         let value = value(tuning, gain_m2);
         if utility(value, path_m) <= least {
             return None;
@@ -242,12 +257,12 @@ fn path_on_level<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
-    let (cells, most_steps, mut scratch) = cells_on_level(path, context, scratch)?;
+    let mut level = cells_on_level(path, context, scratch)?;
     let centres = Centres {
-        cells,
+        cells: level.cells,
         ..context.centres()?
     };
-    let mut search = PathSearch::open(centres, &mut scratch)?;
+    let mut search = PathSearch::open(centres, &mut level.scratch)?;
     let robot = context.pose.point().cell();
     let mut found = None;
     search.spread_from(robot, context.skeleton.frontier()?, |site, steps| {
@@ -255,6 +270,33 @@ fn path_on_level<const TILES: usize, const SLOTS: usize>(
             found.get_or_insert(steps);
         }
     });
-    let steps = found.filter(|&steps| steps <= most_steps)?;
+    let steps = found.filter(|&steps| steps <= level.most_steps)?;
     Some(search.path_from_robot(goal, steps))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::{MOST_JUDGED, instalment};
+
+    #[test]
+    fn instalments_judge_every_candidate_once_and_begin_anew() {
+        for count in [0, 1, MOST_JUDGED, MOST_JUDGED + 1, 2 * MOST_JUDGED, 64] {
+            let all: Vec<usize> = (0..count).collect();
+            let (mut seen, mut judged) = (Vec::<usize>::new(), 0);
+            loop {
+                let (part, next) = instalment(&all, judged);
+                assert!(part.len() <= MOST_JUDGED);
+                seen.extend(part);
+                judged = next;
+                if judged == 0 {
+                    break;
+                }
+            }
+            assert_eq!(seen, all);
+        }
+        // Candidates may become fewer between two rounds.
+        assert_eq!(instalment(&[7; 3], 2 * MOST_JUDGED), (&[][..], 0));
+    }
 }

@@ -82,15 +82,9 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
                     if let Some(row) = targets.get_mut(y) {
                         *row &= !met;
                     }
-                    for x in ones64(met) {
-                        let place = Site {
-                            x: x as u16,
-                            y: y as u16,
-                        };
-                        if let Some(site) = self.site_in(grid, place, |_| true) {
-                            most.get_or_insert(steps + 2 * ENTRY_STEPS / scale as u32);
-                            visit(site, steps * scale as u32 / 2);
-                        }
+                    for site in self.sites_in_row(grid, y, met) {
+                        most.get_or_insert(steps + 2 * ENTRY_STEPS / scale as u32);
+                        visit(site, steps * scale as u32 / 2);
                     }
                 }
                 let wider = changed.start.saturating_sub(1)..(changed.end + 1).min(SIDE);
@@ -149,6 +143,17 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
             }
         }
         targets
+    }
+
+    /// Returns a centre cell for each of a row's places that are set, where it has one.
+    fn sites_in_row(&self, grid: &LocalGrid, y: usize, places: u64) -> impl Iterator<Item = Site> {
+        ones64(places).filter_map(move |x| {
+            let place = Site {
+                x: x as u16,
+                y: y as u16,
+            };
+            self.site_in(grid, place, |_| true)
+        })
     }
 
     /// Returns a centre cell in a cell of the grid.

@@ -3,12 +3,11 @@
 tuning! {
     /// Tuned constants of the order in which frontiers are taken.
     "order" OrderTuning {
-        /// Distance from a goal within which unexplored area counts as its gain; 0 for the same
-        /// gain at every goal.
-        gain_m: f32 = 3.0, 0.0..=3.1, "m";
+        /// Distance from a goal within which unexplored area counts as its gain.
+        gain_m: f32 = 3.0, 0.5..=3.1, "m";
         /// Power of a gain in a goal's utility: below 1, small gains near the robot are taken on
-        /// the way rather than left for a trip of their own.
-        power: f32 = 0.625, 0.1..=2.0, "1";
+        /// the way rather than left for a trip of their own; 0 makes all gains equal.
+        power: f32 = 0.625, 0.0..=2.0, "1";
         /// Way that counts as much as turning about: stopping from 0.7 m/s and going on costs 2.3
         /// s, which is 1.6 m, and half a turn another 2.2 m.
         turn_m: f32 = 3.8, 0.0..=20.0, "m";

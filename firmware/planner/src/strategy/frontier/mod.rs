@@ -28,8 +28,6 @@ use crate::status::{ResidualFrontier, ResidualReason};
 
 /// A robot that follows its own potential has reached a goal that is at most this many steps away.
 const REACHED_STEPS: u32 = 4;
-/// A robot this near to a viewpoint has reached it, whatever way leads there along centre cells.
-const BESIDE_STEPS: u32 = 2;
 /// Maximum number of viewpoints in a run.
 const MOST_VIEWPOINTS: u8 = 100;
 /// Rounds in a row that must find nothing before the exploration ends: noise may close a way for a
@@ -46,6 +44,8 @@ pub(crate) struct Frontier {
     blocked: BlockedPassages,
     progress: ProgressChecker,
     empty_rounds: u8,
+    /// Goals that the last rounds judged in vain; more are left.
+    judged: usize,
     second_chance: bool,
     /// Further second chances so far, on uneven ground.
     retries: u8,
@@ -71,6 +71,7 @@ impl Frontier {
             blocked: BlockedPassages::new(),
             progress: ProgressChecker::new(),
             empty_rounds: 0,
+            judged: 0,
             second_chance: false,
             retries: 0,
             only_looks: false,
@@ -192,7 +193,8 @@ impl Frontier {
             return None;
         }
         let present = self.present_goal();
-        path_to_next(context, &mut self.residual, present, scratch)
+        let (residual, judged) = (&mut self.residual, &mut self.judged);
+        path_to_next(context, residual, present, judged, scratch)
     }
 
     /// Follows a path to a frontier. The present height becomes the goal's reference if the goal is
@@ -228,7 +230,7 @@ impl Frontier {
             let along_centre = path.steps();
             self.path = path.leading_to(viewpoint.stand);
             return self.go_and_look(viewpoint, along_centre, context);
-        } else if context.waits_for_peers {
+        } else if context.waits_for_peers || self.judged > 0 {
             self.path.clear();
             return RoundOutcome::Unsure;
         } else {
@@ -331,13 +333,7 @@ impl Frontier {
     ) -> RoundOutcome {
         let robot = context.pose.point();
         let straight_m = math::sqrt(viewpoint.stand.corner().distance2(robot));
-        let straight = (straight_m / STEP_M) as u32;
-        // No wall has room between two places of the robot's centre that are so near.
-        let steps = if straight <= BESIDE_STEPS {
-            straight
-        } else {
-            along_centre.max(straight)
-        };
+        let steps = along_centre.max((straight_m / STEP_M) as u32);
         let reason = match self.progress.judge(viewpoint.stand, steps, context.time_ms) {
             Verdict::GoOn => return RoundOutcome::Path,
             Verdict::Drop(reason) => reason,
