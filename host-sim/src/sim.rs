@@ -319,6 +319,7 @@ impl<'w> Simulator<'w> {
             loops: LoopLimits::default(),
             order: strategy.order(),
             team: None,
+            localise: false,
         }
     }
 

@@ -23,6 +23,7 @@
 
 mod command;
 mod identity;
+mod location;
 mod observation;
 mod readout;
 mod refusal;
@@ -32,6 +33,7 @@ mod team;
 
 pub use command::{Command, Cost, Counters, Fault, Finish, Loops, Stages, Status};
 pub use identity::{BUILD_BYTES, CRASH_FILE_BYTES, Cause, Crash, Identity};
+pub use location::{Location, Quality};
 pub use observation::{
     INVALID_MM, MAX_BEAMS, MAX_SCANS, NO_RETURN_MM, Observation, Pose, Scan, Twist,
 };

@@ -143,6 +143,7 @@ fn the_largest_messages_fit_and_fill_their_frames() {
             origin: (farthest, farthest),
             yaw: farthest,
         }),
+        localise: true,
     }));
     let file = "f".repeat(CRASH_FILE_BYTES).as_str().try_into().unwrap();
     let crash = Crash {

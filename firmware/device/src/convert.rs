@@ -174,7 +174,8 @@ pub fn config(start: &wire::Start, tuning: &'static Tuning) -> Result<Config, wi
         .radius_m(f32::from(start.robot_radius_mm) / 1000.0)
         .max_speed(float(start.max_linear), float(start.max_angular))
         .acceleration(float(start.linear_accel), float(start.angular_accel))
-        .period_s(f32::from(start.period_ms) / 1000.0);
+        .period_s(f32::from(start.period_ms) / 1000.0)
+        .localise(start.localise);
     for mount in &start.lasers {
         builder = builder.laser(laser(mount));
     }
@@ -228,6 +229,7 @@ pub(crate) fn wire_status(status: planner::Status) -> wire::Status {
             planner::Fault::MapFull => wire::Fault::MapFull,
             planner::Fault::OutOfBox => wire::Fault::OutOfBox,
             planner::Fault::Stuck => wire::Fault::Stuck,
+            planner::Fault::PoseLost => wire::Fault::PoseLost,
         }),
     }
 }
@@ -238,6 +240,25 @@ pub(crate) const fn wire_loops(loops: LoopCounts) -> wire::Loops {
         closing: loops.closing,
         closed: loops.closed,
         given_up: loops.given_up,
+    }
+}
+
+/// Converts a location for the wire.
+pub(crate) fn wire_location(location: &planner::Location) -> wire::Location {
+    let pose = &location.pose.0;
+    wire::Location {
+        x: quantity(pose.x_m),
+        y: quantity(pose.y_m),
+        yaw: quantity(pose.yaw_rad),
+        // From metres and radians to their hundredths.
+        covariance: location.covariance.map(|it| quantity(1e4 * it)),
+        quality: match location.quality {
+            planner::Quality::Tracking => wire::Quality::Tracking,
+            planner::Quality::Degenerate(direction) => wire::Quality::Degenerate {
+                direction: direction.map(quantity),
+            },
+            planner::Quality::Lost => wire::Quality::Lost,
+        },
     }
 }
 

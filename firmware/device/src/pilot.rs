@@ -196,8 +196,10 @@ impl Pilot {
         if self.planned != Status::Exploring {
             info!("exploration ended");
         }
+        let location = config.localises().then(|| memory.state.location());
         Ok(Command {
             loops: convert::wire_loops(memory.state.loops()),
+            location: location.as_ref().map(convert::wire_location),
             ..command(&output, self.planned)
         })
     }

@@ -29,7 +29,7 @@ pub struct Point {
     pub y_m: f32,
 }
 
-/// The robot's pose in the odometry frame.
+/// A pose of the robot: in the odometry frame, or in the map's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
     /// Metres east of the start.
@@ -43,6 +43,25 @@ pub struct Pose {
     /// Radians about the left axis; positive is nose down.
     pub pitch_rad: f32,
     /// Radians about the up axis.
+    pub yaw_rad: f32,
+}
+
+/// A pose in the odometry frame. It moves smoothly and drifts: what protects the hull lies there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OdomPose(pub Pose);
+
+/// A pose in the map's frame. A correction may shift it: what is remembered lies there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MapPose(pub Pose);
+
+/// The motion that takes the odometry frame to the map's: a turn, then a shift.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MapFromOdom {
+    /// Metres east.
+    pub x_m: f32,
+    /// Metres north.
+    pub y_m: f32,
+    /// Radians, counter-clockwise.
     pub yaw_rad: f32,
 }
 
@@ -108,6 +127,53 @@ impl Pose {
     #[must_use]
     pub fn to_robot(&self, point: Point) -> Point {
         RobotFrame::of(self).to_robot(point)
+    }
+}
+
+impl MapFromOdom {
+    /// No motion.
+    pub(crate) const IDENTITY: Self = Self {
+        x_m: 0.0,
+        y_m: 0.0,
+        yaw_rad: 0.0,
+    };
+
+    /// Returns the motion of an odometry whose origin has this pose in the map.
+    pub(crate) const fn of(origin: &Pose) -> Self {
+        Self {
+            x_m: origin.x_m,
+            y_m: origin.y_m,
+            yaw_rad: origin.yaw_rad,
+        }
+    }
+
+    /// Returns the motion that takes one pose to the other.
+    #[must_use]
+    pub fn between(odom: &OdomPose, map: &MapPose) -> Self {
+        let yaw_rad = math::wrap(map.0.yaw_rad - odom.0.yaw_rad);
+        let turn = Self {
+            yaw_rad,
+            ..Self::default()
+        };
+        let Point { x_m, y_m } = turn.apply(odom).0.point();
+        Self {
+            x_m: map.0.x_m - x_m,
+            y_m: map.0.y_m - y_m,
+            yaw_rad,
+        }
+    }
+
+    /// Returns the pose in the map's frame. Height, roll and pitch stay.
+    #[must_use]
+    pub fn apply(&self, odom: &OdomPose) -> MapPose {
+        let (sin, cos) = math::sin_cos(self.yaw_rad);
+        let OdomPose(pose) = odom;
+        MapPose(Pose {
+            x_m: self.x_m + pose.x_m * cos - pose.y_m * sin,
+            y_m: self.y_m + pose.x_m * sin + pose.y_m * cos,
+            yaw_rad: math::wrap(self.yaw_rad + pose.yaw_rad),
+            ..*pose
+        })
     }
 }
 
@@ -200,8 +266,28 @@ impl Cell {
 
 #[cfg(test)]
 mod tests {
-    use super::{CELL_M, Cell, Point, Pose};
+    use super::{CELL_M, Cell, MapFromOdom, MapPose, OdomPose, Point, Pose};
     use crate::math;
+
+    #[test]
+    fn the_motion_between_two_poses_takes_one_to_the_other() {
+        let at = |x_m, y_m, yaw_rad| Pose {
+            x_m,
+            y_m,
+            yaw_rad,
+            ..Pose::default()
+        };
+        let odom = OdomPose(Pose {
+            z_m: 0.5,
+            ..at(12.0, -7.0, 3.0)
+        });
+        let map = MapPose(at(10.0, -9.0, -2.5));
+        let found = MapFromOdom::between(&odom, &map).apply(&odom).0;
+        assert!(found.point().distance_m(map.0.point()) < 1e-5, "{found:?}");
+        assert!((found.yaw_rad + 2.5).abs() < 1e-5 && found.z_m == 0.5);
+        let same = MapFromOdom::default().apply(&odom).0;
+        assert_eq!(same, odom.0);
+    }
 
     #[test]
     fn the_two_frames_are_inverse() {

@@ -47,6 +47,8 @@ mod ground;
 #[cfg(not(feature = "internals"))]
 mod input;
 #[cfg(not(feature = "internals"))]
+mod localise;
+#[cfg(not(feature = "internals"))]
 mod map;
 #[cfg(not(feature = "internals"))]
 mod math;
@@ -82,6 +84,8 @@ pub mod ground;
 #[cfg(feature = "internals")]
 pub mod input;
 #[cfg(feature = "internals")]
+pub mod localise;
+#[cfg(feature = "internals")]
 pub mod map;
 #[cfg(feature = "internals")]
 pub mod math;
@@ -104,13 +108,14 @@ pub mod team;
 
 pub use config::{
     BoxTooLarge, Config, ConfigBuilder, ConfigError, FieldTuning, Goal, GoalLevel, GroundTuning,
-    LoopLimits, MapTuning, Member, Method, Order, OrderTuning, OuroborosTuning, Parameter,
-    PreferenceMode, SolverConfig, Strategy, TdbvpTuning, TeamPlace, Tuned, Tuning, TuningError,
-    UnevenGround,
+    LocaliseTuning, LoopLimits, MapTuning, Member, Method, Order, OrderTuning, OuroborosTuning,
+    Parameter, PreferenceMode, SolverConfig, Strategy, TdbvpTuning, TeamPlace, Tuned, Tuning,
+    TuningError, UnevenGround,
 };
 pub use field::SIDE as FIELD_SIDE;
-pub use geometry::{CELL_M, Cell, Point, Pose, Twist};
+pub use geometry::{CELL_M, Cell, MapPose, Point, Pose, Twist};
 pub use input::{INVALID_MM, Input, NO_RETURN_MM};
+pub use localise::{Location, Quality};
 pub use planner::{
     Capacity, CellKind, F405, FieldRow, LoopCounts, Memory, Output, Planner, State, Workspace, step,
 };

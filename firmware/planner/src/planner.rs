@@ -1,7 +1,7 @@
 //! One step of the exploration, the papers' algorithm box \[Jorge15, Algorithm 1\]:
 //!
 //! ```text
-//! sense:   scans + odometry → map, ground model
+//! sense:   scans + odometry → pose, map, ground model
 //! line 3:  update the Voronoi cells               skeleton, in instalments
 //! line 4:  move the robot to the Voronoi          strategy
 //! line 24: propagate from the unexplored          strategy
@@ -35,7 +35,7 @@ pub use workspace::{CellKind, FieldRow, Workspace};
 
 use crate::config::Config;
 use crate::field::{SolverConfig, Stop, solve};
-use crate::geometry::Twist;
+use crate::geometry::{MapPose, OdomPose, Twist};
 use crate::input::Input;
 use crate::profiling::{Stage, StageTimer};
 use crate::roadmap::configuration_space::Footprint;
@@ -117,7 +117,8 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
 ) -> Output {
     let pose = state.team.to_map(&input.pose);
     let input = Input { pose, ..input };
-    let motion = (&pose, input.velocity);
+    let MapPose(corrected) = state.localiser.to_map(&OdomPose(pose));
+    let motion = (&corrected, input.velocity);
     state.team.begin_step(input.time_ms, motion, &mut state.map);
     let output = explore(config, state, workspace, input, timer);
     state.drive.tell(output.velocity);
@@ -135,6 +136,8 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if state.status != Status::Exploring {
         return Output::standing(state.status);
     }
+    let MapPose(pose) = state.localiser.locate(config, state.map.tiles(), &input);
+    let input = Input { pose, ..input };
     let peers = state.team.peers();
     if peers.may_be_seen(input.time_ms, &input.pose, &config.lasers) {
         sight::sense_without_peers(config, state, &input);
@@ -142,6 +145,12 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         sense(config, state, &input);
     }
     timer.mark(Stage::Sense);
+    if state.localiser.has_given_up() {
+        state.status = Status::Fault(Fault::PoseLost);
+    }
+    if state.localiser.is_lost() {
+        return Output::standing(state.status);
+    }
     // A search for a recovery owns the scratch: the robot stands and plans nothing until it is
     // over.
     if state.drive.is_searching() {
@@ -250,20 +259,26 @@ fn sense<const TILES: usize, const SLOTS: usize>(
             state.status = Status::Fault(Fault::StartBlocked);
         }
     }
-    state.map.observe(config, input);
+    if state.localiser.may_enter() {
+        state.map.observe(config, input);
+    }
+    let odom = state.localiser.odom();
     let level = level_scans(config, input).find(|(_, ranges_mm)| !ranges_mm.is_empty());
     state
         .strategy
         .note(&input.pose, input.time_ms, level, config.tuning);
-    state
-        .ground
-        .observe(config, input, &mut state.map, &mut state.preferences);
+    state.ground.observe(
+        config,
+        (input, &odom),
+        &mut state.map,
+        &mut state.preferences,
+    );
     // Wheels that slip on a slope are no contact.
     if let GroundModel::Flat(points) = &mut state.ground
         && let Some(contact) = state.drive.feel(config, input.velocity)
     {
         for point in contact.points(&config.robot) {
-            points.add_felt(input.pose.point(), input.pose.to_map(point));
+            points.add_felt(odom.0.point(), odom.0.to_map(point));
         }
     }
 }

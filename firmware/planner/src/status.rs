@@ -48,6 +48,8 @@ pub enum Fault {
     OutOfBox,
     /// The robot did not move for too long, although it was commanded to move.
     Stuck,
+    /// The robot does not know where it is: the search around its last place found nothing.
+    PoseLost,
 }
 
 /// The reason why a frontier was left.
@@ -110,6 +112,7 @@ impl fmt::Display for Fault {
             Self::MapFull => "the map is full",
             Self::OutOfBox => "a path leads out of the map's box",
             Self::Stuck => "the robot is stuck",
+            Self::PoseLost => "the robot does not know where it is",
         })
     }
 }

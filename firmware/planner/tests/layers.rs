@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The rooms, the lowest layer first. A room is a folder of `src`, a file of it, or both.
-const ROOMS: [&str; 17] = [
+const ROOMS: [&str; 18] = [
     "math",
     "geometry",
     "input",
@@ -18,6 +18,7 @@ const ROOMS: [&str; 17] = [
     "grid",
     "ground",
     "map",
+    "localise",
     "team",
     "roadmap",
     "field",

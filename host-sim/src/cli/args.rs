@@ -9,6 +9,7 @@ use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
 use host_sim::network::spec::TeamSpec;
 use host_sim::robot::{Limits, LimitsError};
+use host_sim::trial::mission::OdometryProfile;
 use host_sim::trial::uneven::{self, ParameterError};
 
 use super::robot::RobotArgs;
@@ -106,7 +107,10 @@ pub(super) struct ExploreArgs {
     /// Source of the pose that the planner is told
     #[arg(long, value_enum, default_value_t = OdometryArg::Truth)]
     pub(super) odometry: OdometryArg,
-    /// Standard deviation of roll and pitch, degrees [default: 0 with truth, 0.5 with noisy]
+    /// Correct odometry by the level scan, on flat ground [default: on, off with --odometry truth]
+    #[arg(long, value_enum, value_name = "on|off", hide_possible_values = true)]
+    pub(super) localise: Option<SwitchArg>,
+    /// Standard deviation of roll and pitch, degrees [default: 0 with truth, else 0.5]
     #[arg(long, value_name = "DEG", value_parser = imu_noise, allow_negative_numbers = true)]
     pub(super) imu_noise: Option<f64>,
     /// Standard deviation of the lasers' ranges, metres [default: 0.01]
@@ -199,6 +203,7 @@ impl Default for ExploreArgs {
             seed: 0,
             start: 0,
             odometry: OdometryArg::Truth,
+            localise: None,
             imu_noise: None,
             laser_noise: None,
             working_limits: None,
@@ -284,6 +289,21 @@ pub(super) enum OdometryArg {
     Truth,
     /// Wheel encoders and an inertial unit, with errors
     Noisy,
+    /// Variances 20 times larger, as in the papers
+    Papers,
+    /// Scale errors of 0.75 %, no random walk
+    Mobilesim,
+}
+
+impl From<OdometryArg> for OdometryProfile {
+    fn from(which: OdometryArg) -> Self {
+        match which {
+            OdometryArg::Truth => Self::Truth,
+            OdometryArg::Noisy => Self::Noisy,
+            OdometryArg::Papers => Self::Papers,
+            OdometryArg::Mobilesim => Self::MobileSim,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -283,7 +283,11 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         fault: args.fault.as_ref().map(|fault| fault.text.clone()),
         seed: args.seed,
         start: args.start,
-        noisy_odometry: args.odometry == OdometryArg::Noisy,
+        odometry: args.odometry.into(),
+        localise: match args.localise {
+            Some(switch) => switch == SwitchArg::On,
+            None => args.odometry != OdometryArg::Truth,
+        },
         imu_rad: args.imu_noise.map(f64::to_radians),
         laser_m: args.laser_noise,
         working,

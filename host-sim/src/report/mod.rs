@@ -25,7 +25,7 @@ pub use team::TeamReport;
 pub use true_ground::TrueGround;
 
 /// Version of the schema. It grows by one when a key changes its name or meaning, or goes.
-pub const SCHEMA_VERSION: u32 = 2;
+pub const SCHEMA_VERSION: u32 = 3;
 
 /// One run, as in `report.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -89,8 +89,10 @@ pub struct Report {
     pub safety: Safety,
     /// The true ground, and the drive over it; `null` in a flat world.
     pub true_ground: Option<TrueGround>,
-    /// Distance between the estimated and the true position.
-    pub position_error: PositionError,
+    /// The pose that the planner took for the true one.
+    pub localization: Localization,
+    /// The map's walls against the true ones; `null` without a map, and in an uneven world.
+    pub map: Option<MapErrors>,
     /// Cost of planning.
     pub planner: Planner,
     /// Quality of the windows' solutions.
@@ -192,13 +194,48 @@ pub struct Safety {
     pub robot_contacts: Option<u32>,
 }
 
-/// Distance between the estimated and the true position.
+/// The pose that the planner took for the true one: the device's, or odometry's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct PositionError {
-    /// Mean over the steps.
-    pub mean_m: Option<f64>,
-    /// Greatest over the steps.
-    pub max_m: Option<f64>,
+pub struct Localization {
+    /// True if the device corrected odometry.
+    pub corrected: bool,
+    /// Mean distance to the true position over the steps.
+    pub mean_error_m: Option<f64>,
+    /// Greatest distance over the steps.
+    pub max_error_m: Option<f64>,
+    /// Distance in the last step.
+    pub end_error_m: Option<f64>,
+    /// Share of the steps of each quality; `null` if the device corrects nothing.
+    pub quality: Option<QualityShares>,
+}
+
+/// Share of the steps of each quality.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct QualityShares {
+    /// The scan held the pose.
+    pub tracking: f64,
+    /// Odometry alone held it in some direction.
+    pub degenerate: f64,
+    /// The scan contradicted the map.
+    pub lost: f64,
+}
+
+/// The map's obstacle cells against the true surfaces, after the best rigid alignment of the map.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MapErrors {
+    /// Distance of an obstacle cell to a true surface.
+    pub wall_error_m: WallError,
+    /// Share of the obstacle cells farther than 0.3 m from every true surface.
+    pub ghost_share: f64,
+}
+
+/// Percentiles of the distance of an obstacle cell to a true surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WallError {
+    /// The median.
+    pub p50: f64,
+    /// 95 of 100 cells are at or below it.
+    pub p95: f64,
 }
 
 /// Cost of planning.

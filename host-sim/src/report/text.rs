@@ -2,6 +2,9 @@
 
 use super::{GivenUp, LoopClosing, Loops, Report};
 
+/// Least share of the ground that an explored run has truly seen.
+const LEAST_SEEN: f64 = 0.97;
+
 impl Report {
     /// Returns world, strategy, uneven ground and seed on one line.
     #[must_use]
@@ -75,8 +78,8 @@ impl Report {
                 ground.working.roll_deg,
             ));
         }
-        if let Some(max_m) = self.position_error.max_m.filter(|m| *m > 1e-3) {
-            let mean_m = self.position_error.mean_m.unwrap_or(0.0);
+        if let Some(max_m) = self.localization.max_error_m.filter(|m| *m > 1e-3) {
+            let mean_m = self.localization.mean_error_m.unwrap_or(0.0);
             lines.push(format!(
                 "  position  wrong by {mean_m:.2} m on average, {max_m:.2} m at most"
             ));
@@ -88,6 +91,11 @@ impl Report {
                 network.said, network.heard, network.replayed
             ));
         }
+        if self.is_falsely_explored() {
+            lines.push(String::from(
+                "  false     calls itself explored, and saw less than 97 % of the ground",
+            ));
+        }
         for left in &self.outcome.residual_frontiers {
             lines.push(format!(
                 "  left      {} cells at ({:.1}, {:.1}): {}",
@@ -95,6 +103,12 @@ impl Report {
             ));
         }
         lines.join("\n")
+    }
+
+    /// Returns true if the run ended as explored with less than 97 % of the ground truly seen.
+    #[must_use]
+    pub fn is_falsely_explored(&self) -> bool {
+        self.outcome.reason == "explored" && self.coverage.fraction < LEAST_SEEN
     }
 
     /// Returns one word or two: `explored`, `boxed-in`, `fault (stuck)`, `time-limit` ...

@@ -62,6 +62,37 @@ impl Default for OdometryNoise {
     }
 }
 
+impl OdometryNoise {
+    /// Noise as the papers' groups assume it for their filters: the variances of the random walk
+    /// are 20 times the default's. It is about the Intel log's raw odometry.
+    #[must_use]
+    pub fn papers() -> Self {
+        let usual = Self::default();
+        Self {
+            turn_by_turn: 20.0 * usual.turn_by_turn,
+            turn_by_distance: 20.0 * usual.turn_by_distance,
+            distance_by_distance: 20.0 * usual.distance_by_distance,
+            distance_by_turn: 20.0 * usual.distance_by_turn,
+            ..usual
+        }
+    }
+
+    /// Noise of `MobileSim`, the simulator of the papers' group: scale errors of 0.75 %, no random
+    /// walk in the plane.
+    #[must_use]
+    pub fn mobilesim() -> Self {
+        Self {
+            turn_by_turn: 0.0,
+            turn_by_distance: 0.0,
+            distance_by_distance: 0.0,
+            distance_by_turn: 0.0,
+            distance_scale: 0.0075,
+            turn_scale: 0.0075,
+            ..Self::default()
+        }
+    }
+}
+
 /// The model of a robot's odometry.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum OdometryModel {

@@ -1,20 +1,27 @@
-//! Coverage during a run, by the host's copy of the device's map.
+//! Coverage during a run: what the robot truly saw.
+//!
+//! With true odometry that is the host's copy of the device's map. If the odometry drifts, a second
+//! map takes the same scans at the true poses, and coverage is judged by it: a map that folds over
+//! itself gains nothing.
 
 use fieldline_planner::geometry::Cell;
-use fieldline_protocol::message::{Observation, Status};
+use fieldline_protocol::message::{Observation, Start, Status};
 
 use super::mirror::Mirror;
 use super::relief::Relief;
 use super::snapshot::Window;
-use super::{Setup, Survey};
+use super::{Setup, Survey, record};
 use crate::metrics::{Coverage, Footing, GroundTruth};
-use crate::robot::laser;
+use crate::report::tum::Stamped;
+use crate::robot::{OdometryModel, laser};
 use crate::sim::Simulator;
 
 /// The map's copy and the coverage judged by it.
 #[derive(Debug)]
 pub(super) struct Account {
     pub(super) mirror: Mirror,
+    /// The map that the true poses would have made; `None` if they are the odometry.
+    seen: Option<Mirror>,
     pub(super) coverage: Coverage,
     /// The true ground in an uneven world.
     pub(super) ground: Option<GroundTruth>,
@@ -31,6 +38,7 @@ impl Account {
             uneven.map(|_| Footing::new(world, start, simulator.config().radius_m, working));
         Self {
             mirror: Mirror::new(&setup.start),
+            seen: seen(setup, simulator),
             coverage: match &footing {
                 Some(footing) => Coverage::on(footing),
                 None => Coverage::new(world, start, simulator.config().radius_m, range_m),
@@ -42,9 +50,10 @@ impl Account {
 
 impl Account {
     /// Makes the account of another robot of the same team, which has not begun.
-    pub(super) fn beside(&self, setup: &Setup) -> Self {
+    pub(super) fn beside(&self, setup: &Setup, simulator: &Simulator<'_>) -> Self {
         Self {
             mirror: Mirror::new(&setup.start),
+            seen: seen(setup, simulator),
             coverage: self.coverage.clone(),
             ground: self.ground.clone(),
         }
@@ -56,13 +65,39 @@ impl Account {
     }
 }
 
+impl Account {
+    /// Returns true if the robot truly saw a cell.
+    pub(super) fn has_seen(&self, cell: Cell) -> bool {
+        let seen = self.seen.as_ref().unwrap_or(&self.mirror);
+        seen.is_known(cell)
+    }
+}
+
+/// Returns the map for the true poses; `None` if they are the odometry.
+fn seen(setup: &Setup, simulator: &Simulator<'_>) -> Option<Mirror> {
+    let drifts = matches!(simulator.config().odometry, OdometryModel::Noisy(_));
+    drifts.then(|| {
+        Mirror::new(&Start {
+            localise: false,
+            ..setup.start.clone()
+        })
+    })
+}
+
 impl Survey for Account {
-    fn note(&mut self, observation: &Observation, status: Status) -> f64 {
+    fn note(&mut self, observation: &Observation, truth: &Stamped, status: Status) -> f64 {
         self.mirror.observe(observation, status);
+        if let Some(seen) = &mut self.seen {
+            let pose = record::unstamped(truth);
+            let observation = Observation {
+                pose,
+                ..observation.clone()
+            };
+            seen.observe(&observation, status);
+        }
         let time_s = f64::from(observation.time_ms) / 1000.0;
-        let mirror = &self.mirror;
-        self.coverage
-            .update(time_s, |cell: Cell| mirror.is_known(cell))
+        let seen = self.seen.as_ref().unwrap_or(&self.mirror);
+        self.coverage.update(time_s, |cell| seen.is_known(cell))
     }
 
     fn relief(&self, window: &Window) -> Option<Relief> {

@@ -104,6 +104,7 @@ fn fault_advice(fault: Fault) -> &'static str {
         }
         Fault::BadObservation => "an observation did not match the lasers of the start message",
         Fault::Stuck => "the robot did not move although it was commanded to; see run.png",
+        Fault::PoseLost => "the scan contradicts the map, and no place near by agrees; see run.png",
     }
 }
 

@@ -7,8 +7,10 @@
 use std::collections::BTreeMap;
 
 use fieldline_device::{SLOTS, TILES, convert};
+use fieldline_planner::Input;
 use fieldline_planner::config::{Config, Tuning};
-use fieldline_planner::geometry::{Cell, Pose};
+use fieldline_planner::geometry::{Cell, MapPose, Pose};
+use fieldline_planner::localise::Localiser;
 use fieldline_planner::map::{Class, Map};
 use fieldline_protocol::message::{Observation, Start, Status, Tile};
 
@@ -20,6 +22,7 @@ use super::snapshot::Window;
 pub struct Mirror {
     /// `None` if the device refuses the session's parameters. The map then stays empty.
     config: Option<Config>,
+    localiser: Localiser,
     map: Box<Map<TILES, SLOTS>>,
     pose: Pose,
 }
@@ -34,7 +37,12 @@ impl Mirror {
             map.begin(config);
         }
         let pose = Pose::default();
-        Self { config, map, pose }
+        Self {
+            config,
+            localiser: Localiser::new(),
+            map,
+            pose,
+        }
     }
 
     /// Enters an observation that the device answered with `status`. A device that is idle, paused
@@ -50,8 +58,11 @@ impl Mirror {
         let Some(input) = convert::input(observation, config.lasers()) else {
             return;
         };
-        self.pose = input.pose;
-        self.map.observe(config, &input);
+        let MapPose(pose) = self.localiser.locate(config, self.map.tiles(), &input);
+        self.pose = pose;
+        if self.localiser.may_enter() {
+            self.map.observe(config, &Input { pose, ..input });
+        }
         if config.ground().is_some() {
             self.map.compact(&mut ());
         }

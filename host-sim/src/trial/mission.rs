@@ -39,8 +39,10 @@ pub struct Mission {
     pub start: usize,
     /// A start pose to use instead of the world's.
     pub place: Option<Start>,
-    /// True if odometry has errors.
-    pub noisy_odometry: bool,
+    /// The errors of the odometry.
+    pub odometry: OdometryProfile,
+    /// True if the device corrects odometry by the level scan. Baselines do not.
+    pub localise: bool,
     /// Standard deviation of roll and pitch, radians. If `None`, 0 with true odometry and that of
     /// [`OdometryNoise`] with noisy odometry.
     pub imu_rad: Option<f64>,
@@ -85,7 +87,8 @@ impl Default for Mission {
             seed: 0,
             start: 0,
             place: None,
-            noisy_odometry: false,
+            odometry: OdometryProfile::Truth,
+            localise: false,
             imu_rad: None,
             laser_m: None,
             hull: Footprint::PIONEER_3AT,
@@ -101,6 +104,44 @@ impl Default for Mission {
             period_ms: SimConfig::default().period_ms,
             check_field: false,
             snapshots: 0,
+        }
+    }
+}
+
+/// Errors of the odometry, by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OdometryProfile {
+    /// The true pose.
+    #[default]
+    Truth,
+    /// [`OdometryNoise::default`].
+    Noisy,
+    /// [`OdometryNoise::papers`].
+    Papers,
+    /// [`OdometryNoise::mobilesim`].
+    MobileSim,
+}
+
+impl OdometryProfile {
+    /// Returns the name on the command line and in the report.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Truth => "truth",
+            Self::Noisy => "noisy",
+            Self::Papers => "papers",
+            Self::MobileSim => "mobilesim",
+        }
+    }
+
+    /// Returns the noise; `None` for the truth.
+    #[must_use]
+    pub fn noise(self) -> Option<OdometryNoise> {
+        match self {
+            Self::Truth => None,
+            Self::Noisy => Some(OdometryNoise::default()),
+            Self::Papers => Some(OdometryNoise::papers()),
+            Self::MobileSim => Some(OdometryNoise::mobilesim()),
         }
     }
 }
@@ -196,6 +237,11 @@ impl Mission {
         self.uneven_ground.map(|ground| ground.preference)
     }
 
+    /// Returns true if the device corrects odometry.
+    pub(super) fn localises(&self) -> bool {
+        self.localise && on_device(&self.strategy).is_some()
+    }
+
     /// Returns true if goals have height levels; `None` on flat ground, and for a baseline.
     pub(super) fn levels(&self) -> Option<bool> {
         let ground = self.uneven_ground?;
@@ -210,16 +256,13 @@ impl Mission {
             start: self.start,
             place: self.place,
             period_ms: self.period_ms,
-            odometry: match (self.noisy_odometry, self.imu_rad) {
-                (true, imu_rad) => {
-                    let usual = OdometryNoise::default();
-                    OdometryModel::Noisy(OdometryNoise {
-                        attitude_rad: imu_rad.unwrap_or(usual.attitude_rad),
-                        ..usual
-                    })
-                }
-                (false, Some(imu_rad)) => OdometryModel::Tilting(imu_rad),
-                (false, None) => OdometryModel::Truth,
+            odometry: match (self.odometry.noise(), self.imu_rad) {
+                (Some(usual), imu_rad) => OdometryModel::Noisy(OdometryNoise {
+                    attitude_rad: imu_rad.unwrap_or(usual.attitude_rad),
+                    ..usual
+                }),
+                (None, Some(imu_rad)) => OdometryModel::Tilting(imu_rad),
+                (None, None) => OdometryModel::Truth,
             },
             laser_noise: LaserNoise {
                 sigma_m: self.laser_m.unwrap_or(lasers.sigma_m),
@@ -260,6 +303,7 @@ pub(super) fn setup(
             uneven_ground: mission.uneven_ground,
             order: mission.order(),
             loops: mission.loops,
+            localise: mission.localises(),
             ..simulator.start_message(mission.strategy(), (across, up))
         },
         time_limit_ms: mission.time_limit_ms,

@@ -28,6 +28,7 @@ use std::time::Instant;
 use fieldline_protocol::message::{Command, Control, Loops, Observation, Start, Status, Twist};
 
 use crate::link::{Link, LinkError};
+use crate::report::tum::Stamped;
 use freeze::FreezeDetector;
 use relief::Relief;
 use series::Series;
@@ -35,6 +36,7 @@ use snapshot::{Snapshot, Window};
 
 pub use body::Body;
 pub use ending::Ending;
+use record::unstamped;
 pub use record::{Record, Step};
 
 /// Time for the robot to come to rest after the last command, milliseconds: its watchdog's 500 ms,
@@ -43,9 +45,9 @@ const REST_MS: u32 = 3_000;
 
 /// Measures the coverage of a run.
 pub trait Survey {
-    /// Takes an observation and the planner's status; returns the fraction of the explorable world
-    /// that is known now.
-    fn note(&mut self, observation: &Observation, status: Status) -> f64;
+    /// Takes an observation, the true pose, and the planner's status; returns the fraction of the
+    /// explorable world that is known now.
+    fn note(&mut self, observation: &Observation, truth: &Stamped, status: Status) -> f64;
 
     /// Returns heights and preferences in a window that the planner solved; `None` on flat ground.
     fn relief(&self, _window: &Window) -> Option<Relief> {
@@ -164,11 +166,11 @@ fn step(
     let asked = Instant::now();
     let command = cast.link.observe(&observation)?;
     let round_trip_us = asked.elapsed().as_secs_f64() * 1e6;
-    let coverage = cast.survey.note(&observation, command.status);
+    let coverage = cast.survey.note(&observation, &truth, command.status);
     let step = Step::new(&observation, truth, command, round_trip_us);
     record.push(step, coverage);
     if setup.check_field {
-        check_field(cast.link, &observation, &command, record)?;
+        check_field(cast.link, &command, record)?;
     }
     if series.is_due(observation.time_ms) {
         let mut snapshot = snapshot::take(cast.link, record)?;
@@ -230,7 +232,6 @@ fn relief(cast: &Cast<'_>, window: Option<&Window>) -> Option<Relief> {
 
 fn check_field(
     link: &mut dyn Link,
-    observation: &Observation,
     command: &Command,
     record: &mut Record,
 ) -> Result<(), LinkError> {
@@ -238,8 +239,10 @@ fn check_field(
     if command.status != Status::Exploring || command.cost.cycles == 0 {
         return Ok(());
     }
+    let pose = record.steps.last().map(|step| unstamped(&step.estimate));
     if let Some(window) = snapshot::window(link)?
-        && let Some(error_deg) = oracle::heading_error_deg(&window, &observation.pose, command)
+        && let Some(pose) = pose
+        && let Some(error_deg) = oracle::heading_error_deg(&window, &pose, command)
     {
         record.heading_errors_deg.push(error_deg);
     }

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use fieldline_protocol::message::{
-    Command, Cost, Loops, Observation, Pose, ResidualFrontier, Status, Tile,
+    Command, Cost, Loops, Observation, Pose, Quality, ResidualFrontier, Status, Tile,
 };
+use fixed::types::I16F16;
 
 use super::planned_path::PlannedPath;
 use super::relief::Relief;
@@ -20,7 +21,7 @@ use crate::report::{self, GridMap, Percentiles};
 /// One step.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// The pose in the observation.
+    /// The pose that the planner takes for the true one: its own location, or odometry's.
     pub estimate: Stamped,
     /// The true pose.
     pub truth: Stamped,
@@ -102,8 +103,17 @@ impl Step {
         command: Command,
         round_trip_us: f64,
     ) -> Self {
+        let pose = match command.location {
+            Some(at) => Pose {
+                x: at.x,
+                y: at.y,
+                yaw: at.yaw,
+                ..observation.pose
+            },
+            None => observation.pose,
+        };
         Self {
-            estimate: stamped(observation.time_ms, &observation.pose),
+            estimate: stamped(observation.time_ms, &pose),
             truth,
             command,
             round_trip_us,
@@ -122,6 +132,19 @@ pub fn stamped(time_ms: u32, pose: &Pose) -> Stamped {
         roll_rad: pose.roll.to_num(),
         pitch_rad: pose.pitch.to_num(),
         yaw_rad: pose.yaw.to_num(),
+    }
+}
+
+/// Converts a pose back to the wire's. Exact for a pose that came from there.
+#[must_use]
+pub fn unstamped(pose: &Stamped) -> Pose {
+    Pose {
+        x: I16F16::saturating_from_num(pose.x_m),
+        y: I16F16::saturating_from_num(pose.y_m),
+        z: I16F16::saturating_from_num(pose.z_m),
+        roll: I16F16::saturating_from_num(pose.roll_rad),
+        pitch: I16F16::saturating_from_num(pose.pitch_rad),
+        yaw: I16F16::saturating_from_num(pose.yaw_rad),
     }
 }
 
@@ -185,17 +208,27 @@ impl Record {
         }))
     }
 
-    /// Returns the report's part on the position's error.
+    /// Returns the report's part on the pose that the planner took for the true one.
     #[must_use]
-    pub fn position_error(&self) -> report::PositionError {
+    pub fn localization(&self) -> report::Localization {
         let error = |s: &Step| (s.estimate.x_m - s.truth.x_m).hypot(s.estimate.y_m - s.truth.y_m);
         let errors: Vec<f64> = self.steps.iter().map(error).collect();
-        if errors.is_empty() {
-            return report::PositionError::default();
-        }
-        report::PositionError {
-            mean_m: Some(errors.iter().sum::<f64>() / errors.len() as f64),
-            max_m: errors.into_iter().reduce(f64::max),
+        let steps = errors.len() as f64;
+        let located = self.steps.iter().filter_map(|step| step.command.location);
+        let qualities: Vec<Quality> = located.map(|location| location.quality).collect();
+        let share = |of: fn(&Quality) -> bool| {
+            qualities.iter().filter(|quality| of(quality)).count() as f64 / qualities.len() as f64
+        };
+        report::Localization {
+            corrected: !qualities.is_empty(),
+            mean_error_m: (steps > 0.0).then(|| errors.iter().sum::<f64>() / steps),
+            max_error_m: errors.iter().copied().reduce(f64::max),
+            end_error_m: errors.last().copied(),
+            quality: (!qualities.is_empty()).then(|| report::QualityShares {
+                tracking: share(|it| *it == Quality::Tracking),
+                degenerate: share(|it| matches!(it, Quality::Degenerate { .. })),
+                lost: share(|it| *it == Quality::Lost),
+            }),
         }
     }
 

@@ -6,11 +6,12 @@ use super::account::Account;
 use super::mission::{Mission, on_device};
 use super::{Ending, Record, wording};
 use crate::metrics::patrol::{Patrol, without_spurs};
-use crate::metrics::{CellSet, Loops};
+use crate::metrics::{CellSet, Loops, map_error};
 use crate::report::true_ground::{ClassScores, TrueGround, degrees};
 use crate::report::{self, Report, SCHEMA_VERSION};
 use crate::robot::OdometryModel;
 use crate::sim::{SimConfig, Simulator};
+use crate::world::World;
 
 /// Returns the report.
 pub(super) fn report(
@@ -21,11 +22,6 @@ pub(super) fn report(
 ) -> Report {
     let world = simulator.world();
     let ground = mission.uneven_ground.map_or("flat", |_| "uneven");
-    let odometry = if mission.noisy_odometry {
-        "noisy"
-    } else {
-        "truth"
-    };
     let closes_loops = mission.strategy() == Strategy::Ouroboros;
     let order = on_device(&mission.strategy).map(|_| mission.order());
     let map_is_read = !record.tiles.is_empty();
@@ -46,7 +42,7 @@ pub(super) fn report(
         },
         link: mission.link.clone(),
         seed: mission.seed,
-        odometry: odometry.into(),
+        odometry: mission.odometry.name().into(),
         start: mission.start,
         injected_faults: mission.fault.clone(),
         noise: noise(simulator.config()),
@@ -63,7 +59,8 @@ pub(super) fn report(
         patrol: patrol(mission, record),
         safety: safety(simulator),
         true_ground: true_ground(simulator, record),
-        position_error: record.position_error(),
+        localization: record.localization(),
+        map: map_errors(world, record),
         planner: record.planner(),
         field: record.field(),
         link_stats: record.link_stats,
@@ -73,6 +70,21 @@ pub(super) fn report(
         },
         network: None,
     }
+}
+
+/// Returns the errors of the map's walls. In an uneven world an obstacle may be a slope.
+fn map_errors(world: &World, record: &Record) -> Option<report::MapErrors> {
+    if world.elevation().is_some() {
+        return None;
+    }
+    let error = map_error(world, &record.map)?;
+    Some(report::MapErrors {
+        wall_error_m: report::WallError {
+            p50: error.wall_p50_m,
+            p95: error.wall_p95_m,
+        },
+        ghost_share: error.ghost_share,
+    })
 }
 
 /// Returns the impatience of strategy tdbvp, as on the command line.

@@ -130,7 +130,7 @@ impl Link for Script {
 struct Counting(u64);
 
 impl Survey for Counting {
-    fn note(&mut self, _: &Observation, _: Status) -> f64 {
+    fn note(&mut self, _: &Observation, _: &Stamped, _: Status) -> f64 {
         self.0 += 1;
         self.0 as f64 / 1_000.0
     }
@@ -230,8 +230,8 @@ fn a_finish_ends_the_run_and_all_data_is_read() {
     );
     let frontier = &outcome.residual_frontiers[0];
     assert_eq!((frontier.x_m, frontier.y_m), (3.05, -1.25));
-    let error = record.position_error();
-    assert!((error.mean_m.unwrap() - 0.25).abs() < 1e-4);
+    let error = record.localization();
+    assert!((error.mean_error_m.unwrap() - 0.25).abs() < 1e-4);
 }
 
 #[test]

@@ -34,6 +34,7 @@ pub fn fault(fault: Fault) -> &'static str {
         Fault::OutOfBox => "out-of-box",
         Fault::BadObservation => "bad-observation",
         Fault::Stuck => "stuck",
+        Fault::PoseLost => "pose-lost",
     }
 }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 #[cfg(doc)]
 use super::Identity;
-use super::Twist;
+use super::{Location, Twist};
 
 /// State of the planner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
@@ -51,6 +51,8 @@ pub enum Fault {
     BadObservation,
     /// The robot did not move for too long although it had a command.
     Stuck,
+    /// The robot does not know where it is: no place around its last one agrees with the scan.
+    PoseLost,
 }
 
 /// Counters of the device since its boot.
@@ -125,6 +127,8 @@ pub struct Command {
     pub heading: I16F16,
     /// Counts of loops.
     pub loops: Loops,
+    /// The pose in the map; `None` if the session takes odometry for the pose.
+    pub location: Option<Location>,
     /// Counters of the link.
     pub counters: Counters,
     /// Cost of the step.

@@ -215,6 +215,8 @@ pub struct Start {
     pub order: Order,
     /// The robot's place in a team; `None` for a robot alone.
     pub team: Option<Team>,
+    /// True if the device corrects odometry by the level scan. False takes odometry for the pose.
+    pub localise: bool,
 }
 
 /// A change of the session's state.

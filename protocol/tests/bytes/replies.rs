@@ -3,9 +3,9 @@
 use fieldline_protocol::SCHEMA;
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::message::{
-    Cause, Command, Cost, Counters, Crash, Fault, FieldRow, Finish, Identity, Loops, Parameter,
-    Path, Refusal, Reply, ResidualFrontier, ResidualReason, Stages, Status, TILE_BYTES,
-    TILE_SKELETON_BYTES, Tile, Twist,
+    Cause, Command, Cost, Counters, Crash, Fault, FieldRow, Finish, Identity, Location, Loops,
+    Parameter, Path, Quality, Refusal, Reply, ResidualFrontier, ResidualReason, Stages, Status,
+    TILE_BYTES, TILE_SKELETON_BYTES, Tile, Twist,
 };
 
 use super::common::replies;
@@ -81,6 +81,7 @@ fn reply_control_with_every_status() {
         (Status::Fault(Fault::OutOfBox), &[2, 5, 2]),
         (Status::Fault(Fault::BadObservation), &[2, 5, 3]),
         (Status::Fault(Fault::Stuck), &[2, 5, 4]),
+        (Status::Fault(Fault::PoseLost), &[2, 5, 5]),
     ] {
         reply_is(Reply::Control(status), body);
     }
@@ -101,6 +102,15 @@ fn reply_command() {
                 closed: 300,
                 given_up: 2,
             },
+            location: Some(Location {
+                x: long(1.0),
+                y: long(-0.5),
+                yaw: long(0.25),
+                covariance: [1.0, 0.0, 2.0, 0.0, -0.5, 0.25].map(long),
+                quality: Quality::Degenerate {
+                    direction: Some(short(0.5)),
+                },
+            }),
             counters: Counters {
                 received: 200,
                 crc_errors: 1,
@@ -130,6 +140,10 @@ fn reply_command() {
             1,    // exploring
             0xff, 0xff, 0x03, // heading −0.5 rad = −32768/65536
             1, 0xac, 0x02, 2, // loops
+            1, // a location
+            0x80, 0x80, 0x08, 0xff, 0xff, 0x03, 0x80, 0x80, 0x02, // x, y, yaw
+            0x80, 0x80, 0x08, 0, 0x80, 0x80, 0x10, 0, 0xff, 0xff, 0x03, 0x80, 0x80, 0x02, 1, 1,
+            0x80, 0x20, // degenerate, at 0.5 rad
             0xc8, 0x01, 1, 2, 3, 4, // counters
             0xc0, 0x84, 0x3d, 1, 2, 3, 4, 5, 0x80, 0x01, 7, // instructions, then each stage
             0x80, 0x20, 3, 1, // the rest of the cost

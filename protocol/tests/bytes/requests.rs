@@ -57,7 +57,7 @@ fn request_control_start_on_uneven_ground() {
             0x80, 0x80, 0xa0, 0x01, 0x80, 0x80, 0xc0, 0x07, // default limits of loops
             0x80, 0x80, 0x50, 0x80, 0x80, 0x10, 0x80, 0x80, 0xa0, 0x01, //
             0, 0x9a, 0x13, // by gain, worth 0.3 = 1229/4096
-            0,    // no team
+            0, 0, // no team, no localisation
         ],
     );
 }
@@ -110,6 +110,7 @@ fn request_control_start() {
                 origin: (long(1.0), long(-0.5)),
                 yaw: long(0.0),
             }),
+            localise: true,
         })),
         &[
             1, 0, // Control, Start
@@ -140,6 +141,7 @@ fn request_control_start() {
             1, 2, 0x80, 0x01, // a team's robot 2, boot 128
             0x80, 0x80, 0x08, 0xff, 0xff, 0x03,
             0, // odometry from (1 m, −0.5 m), not turned
+            1, // localise
         ],
     );
 }

@@ -2,9 +2,10 @@
 
 use fieldline_protocol::message::{
     self, Activity, Beacon, Body, Cause, Command, Control, Cost, Counters, Crash, Digest, Fault,
-    FieldRow, Finish, Hull, Identity, Laser, LoopLimits, Loops, Member, Observation, Order, Packet,
-    Parameter, Path, Pose, Preference, Refusal, Reply, Request, ResidualFrontier, ResidualReason,
-    Scan, Stages, Start, Status, Team, TeamTile, Tile, TileVersion, Twist, UnevenGround, Wanted,
+    FieldRow, Finish, Hull, Identity, Laser, Location, LoopLimits, Loops, Member, Observation,
+    Order, Packet, Parameter, Path, Pose, Preference, Quality, Refusal, Reply, Request,
+    ResidualFrontier, ResidualReason, Scan, Stages, Start, Status, Team, TeamTile, Tile,
+    TileVersion, Twist, UnevenGround, Wanted,
 };
 use fixed::types::{I4F12, I16F16};
 use proptest::prelude::*;
@@ -101,7 +102,7 @@ fn start() -> impl Strategy<Value = Start> {
     (
         (
             strategy,
-            any::<(u8, u8)>(),
+            any::<(u8, u8, bool)>(),
             prop::option::of(uneven_ground()),
             prop::option::of(team()),
             order(),
@@ -113,7 +114,7 @@ fn start() -> impl Strategy<Value = Start> {
     )
         .prop_map(
             |(
-                (strategy, box_tiles, uneven_ground, team, order),
+                (strategy, (across, up, localise), uneven_ground, team, order),
                 lasers,
                 (sizes, loops),
                 period_ms,
@@ -124,7 +125,7 @@ fn start() -> impl Strategy<Value = Start> {
                 let [max_linear, max_angular, linear_accel, angular_accel] = limits;
                 Start {
                     strategy,
-                    box_tiles,
+                    box_tiles: (across, up),
                     lasers,
                     hull: Hull {
                         length_mm,
@@ -147,6 +148,7 @@ fn start() -> impl Strategy<Value = Start> {
                     },
                     order,
                     team,
+                    localise,
                 }
             },
         )
@@ -286,6 +288,7 @@ fn status() -> impl Strategy<Value = Status> {
         Fault::OutOfBox,
         Fault::BadObservation,
         Fault::Stuck,
+        Fault::PoseLost,
     ]);
     prop_oneof![
         Just(Status::Idle),
@@ -366,21 +369,40 @@ fn loops() -> impl Strategy<Value = Loops> {
     })
 }
 
+fn location() -> impl Strategy<Value = Location> {
+    let quality = prop_oneof![
+        Just(Quality::Tracking),
+        prop::option::of(short()).prop_map(|direction| Quality::Degenerate { direction }),
+        Just(Quality::Lost),
+    ];
+    let six = [long(), long(), long(), long(), long(), long()];
+    ([long(), long(), long()], six, quality).prop_map(|([x, y, yaw], covariance, quality)| {
+        Location {
+            x,
+            y,
+            yaw,
+            covariance,
+            quality,
+        }
+    })
+}
+
 fn command() -> impl Strategy<Value = Command> {
     (
         twist(),
         status(),
-        (long(), loops()),
+        (long(), loops(), prop::option::of(location())),
         counters(),
         stages(),
         any::<(u32, u32, u16, bool)>(),
     )
         .prop_map(
-            |(velocity, status, (heading, loops), counters, stages, cost)| Command {
+            |(velocity, status, (heading, loops, location), counters, stages, cost)| Command {
                 velocity,
                 status,
                 heading,
                 loops,
+                location,
                 counters,
                 cost: Cost {
                     instructions: cost.0,

@@ -136,6 +136,7 @@ impl AbsurdHost {
             loops: self.loops(),
             order: self.order(),
             team: None,
+            localise: count == 1,
         };
         for (speed, accel) in [
             (start.max_linear, &mut start.linear_accel),

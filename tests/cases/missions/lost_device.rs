@@ -51,7 +51,7 @@ impl Body for Witness<'_> {
 struct Nobody;
 
 impl Survey for Nobody {
-    fn note(&mut self, _: &Observation, _: Status) -> f64 {
+    fn note(&mut self, _: &Observation, _: &Stamped, _: Status) -> f64 {
         0.0
     }
 }

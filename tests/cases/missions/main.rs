@@ -6,6 +6,7 @@ mod full;
 mod generated;
 mod hostile;
 mod links;
+mod localise;
 mod lost_device;
 mod orders;
 mod periods;

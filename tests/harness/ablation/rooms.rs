@@ -1,6 +1,6 @@
 //! The runs that judge the constants of each room.
 
-use host_sim::trial::mission::Mission;
+use host_sim::trial::mission::{Mission, OdometryProfile};
 use host_sim::trial::uneven::TABLE_I;
 
 use crate::loops::{OUROBOROS, TDBVP};
@@ -80,7 +80,7 @@ const fn run(
 }
 
 /// The rooms.
-pub const ROOMS: [Room; 6] = [
+pub const ROOMS: [Room; 7] = [
     Room {
         name: "ground",
         runs: &[
@@ -118,6 +118,18 @@ pub const ROOMS: [Room; 6] = [
             run("narrow-doors", 0, FRONTIER, Flat, Ranges),
             run("cave", 0, FRONTIER, Flat, Ranges),
             run("loop", 0, FRONTIER, Flat, Ranges),
+        ],
+        closes_loops: false,
+    },
+    Room {
+        name: "localise",
+        runs: &[
+            run("office", 0, FRONTIER, Flat, Odometry),
+            run("cave", 0, FRONTIER, Flat, Odometry),
+            run("loop", 0, FRONTIER, Flat, Odometry),
+            run("ouroboros-a", 0, FRONTIER, Flat, Odometry),
+            run("ouroboros-b", 0, FRONTIER, Flat, Odometry),
+            run("hall", 0, FRONTIER, Flat, Odometry),
         ],
         closes_loops: false,
     },
@@ -219,7 +231,12 @@ impl Run {
             uneven_ground: (self.ground == Uneven).then_some(TABLE_I),
             seed,
             start: self.start,
-            noisy_odometry: self.noise == Odometry,
+            odometry: if self.noise == Odometry {
+                OdometryProfile::Noisy
+            } else {
+                OdometryProfile::Truth
+            },
+            localise: self.noise == Odometry,
             imu_rad: (self.noise == Attitude).then_some(ATTITUDE_DEG.to_radians()),
             patrol_s: self.patrol_s(),
             time_limit_ms,

@@ -42,6 +42,7 @@ pub(crate) fn start() -> Start {
         loops: LoopLimits::default(),
         order: Order::default(),
         team: None,
+        localise: false,
     }
 }
 

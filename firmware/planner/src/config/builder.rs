@@ -95,6 +95,14 @@ impl ConfigBuilder {
         self
     }
 
+    /// Corrects the odometry by the level scan, on flat ground. Default: the odometry is taken for
+    /// the pose.
+    #[must_use]
+    pub const fn localise(mut self, localise: bool) -> Self {
+        self.config.localise = localise;
+        self
+    }
+
     /// Sets the map's box in tiles of 3.2 m, across and up. Default: 20 × 20, which is 64 × 64 m.
     #[must_use]
     pub const fn box_tiles(mut self, across: u8, up: u8) -> Self {

@@ -23,8 +23,8 @@ pub use order::Order;
 pub use solver::{Method, SolverConfig};
 pub use team::{Member, TeamPlace};
 pub use tuning::{
-    FieldTuning, GroundTuning, MapTuning, OrderTuning, OuroborosTuning, TdbvpTuning, Tuned, Tuning,
-    TuningError,
+    FieldTuning, GroundTuning, LocaliseTuning, MapTuning, OrderTuning, OuroborosTuning,
+    TdbvpTuning, Tuned, Tuning, TuningError,
 };
 
 use heapless::Vec;
@@ -98,6 +98,8 @@ pub struct Config {
     pub(crate) ground: Option<UnevenGround>,
     /// The robot's place in a team; `None` for a robot alone.
     pub(crate) team: Option<TeamPlace>,
+    /// The planner corrects odometry by the level scan. Default: false.
+    pub(crate) localise: bool,
 }
 
 impl Config {
@@ -138,6 +140,7 @@ impl Config {
             tuning: &Tuning::DEFAULT,
             ground: None,
             team: None,
+            localise: false,
         }
     }
 
@@ -223,6 +226,12 @@ impl Config {
     #[must_use]
     pub const fn team(&self) -> Option<&TeamPlace> {
         self.team.as_ref()
+    }
+
+    /// Returns true if the planner corrects odometry by the level scan.
+    #[must_use]
+    pub const fn localises(&self) -> bool {
+        self.localise
     }
 
     /// Returns the tuned constants.

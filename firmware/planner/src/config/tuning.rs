@@ -142,10 +142,11 @@ macro_rules! rooms {
         /// All tuned constants.
         ///
         /// ```
-        /// use fieldline_planner::{Tuned, Tuning, TuningError};
+        /// use fieldline_planner::{LocaliseTuning, Tuned, Tuning, TuningError};
         ///
         /// let mut tuning = Tuning::DEFAULT;
         /// assert_eq!(tuning.set("no.such", 1.0), Err(TuningError::Unknown));
+        /// assert_eq!(tuning.localise, LocaliseTuning::DEFAULT);
         /// tuning.parameters(|tuned: Tuned| println!("{tuned}: {} {}", tuned.meaning, tuned.unit));
         /// ```
         #[derive(Clone, Copy, Debug, PartialEq)]
@@ -169,6 +170,7 @@ macro_rules! rooms {
 rooms! {
     ground: GroundTuning, "Uneven ground.";
     map: MapTuning, "The map.";
+    localise: LocaliseTuning, "Localisation.";
     field: FieldTuning, "The window's field.";
     tdbvp: TdbvpTuning, "Rails of time.";
     ouroboros: OuroborosTuning, "Loop closing.";

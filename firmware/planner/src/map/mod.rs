@@ -20,6 +20,7 @@ pub(crate) mod exchange;
 mod extent;
 pub(crate) mod integrate;
 pub(crate) mod join;
+pub(crate) mod neighbourhood;
 pub mod obstacle_points;
 pub(crate) mod rows;
 mod tile;

@@ -19,7 +19,7 @@ use crate::drive::CollisionChecker;
 use crate::drive::side_slope::SlopeDirection;
 use crate::field::local_grid::LocalGrid;
 use crate::field::preference::Preferences;
-use crate::geometry::{Cell, Point, Pose};
+use crate::geometry::{Cell, OdomPose, Point, Pose};
 use crate::input::Input;
 use crate::map::obstacle_points::ObstaclePoints;
 use crate::map::{Map, Tiles, obstacle_points};
@@ -67,18 +67,18 @@ impl<const TILES: usize> GroundModel<TILES> {
         matches!(self, Self::Uneven(_))
     }
 
-    /// Enters one step's scans, after the map did.
+    /// Enters one step's scans, after the map did. Obstacle points lie in the odometry frame.
     pub(super) fn observe<const SLOTS: usize>(
         &mut self,
         config: &Config,
-        input: &Input<'_>,
+        (input, odom): (&Input<'_>, &OdomPose),
         map: &mut Map<TILES, SLOTS>,
         preferences: &mut Preferences,
     ) {
         match self {
             Self::Flat(points) => {
                 for (laser, ranges_mm) in level_scans(config, input) {
-                    points.update(config, &input.pose, laser, ranges_mm);
+                    points.update(config, &odom.0, laser, ranges_mm);
                 }
             }
             Self::Uneven(levels) => {
@@ -134,12 +134,12 @@ impl<const TILES: usize> GroundModel<TILES> {
         &self,
         config: &Config,
         tiles: &Tiles<TILES, SLOTS>,
-        pose: &Pose,
+        (pose, odom): (&Pose, &OdomPose),
         checker: &mut CollisionChecker,
     ) {
         match self {
             Self::Flat(points) => {
-                checker.see(pose, points.points());
+                checker.see(&odom.0, points.points());
                 let cells =
                     obstacle_points::obstacle_cells(tiles, pose.point(), &config.tuning.map);
                 checker.remember(pose, cells);

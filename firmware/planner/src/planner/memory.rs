@@ -6,6 +6,7 @@
 use crate::config::{BoxTooLarge, Config};
 use crate::geometry::Cell;
 use crate::input::Input;
+use crate::localise::Location;
 use crate::planner::{Output, State, Workspace, step};
 use crate::profiling::StageTimer;
 use crate::status::{ResidualFrontier, Status};
@@ -172,6 +173,11 @@ impl<M: Memory> Planner<M> {
         sealed::Planning::status(&self.state)
     }
 
+    /// Returns the robot's pose in the map after the last step.
+    pub fn location(&self) -> Location {
+        sealed::Planning::location(&self.state)
+    }
+
     /// Returns the path to the current goal: coarse cells of 20 cm, each named by the least of its
     /// four map cells, the robot's end first.
     pub fn path(&self) -> &[Cell] {
@@ -201,8 +207,8 @@ mod sealed {
     use core::fmt::Debug;
 
     use super::{
-        BoxTooLarge, Capacity, Cell, Config, Input, Output, Packet, Peers, ResidualFrontier,
-        StageTimer, State, Status, Workspace, step,
+        BoxTooLarge, Capacity, Cell, Config, Input, Location, Output, Packet, Peers,
+        ResidualFrontier, StageTimer, State, Status, Workspace, step,
     };
 
     /// A capacity.
@@ -230,6 +236,7 @@ mod sealed {
         fn say(&mut self, config: &Config) -> Option<Packet>;
         fn peers(&self) -> &Peers;
         fn status(&self) -> Status;
+        fn location(&self) -> Location;
         fn path(&self) -> &[Cell];
         fn frontiers(&self) -> &[ResidualFrontier];
         fn tile(&self, column: i16, row: i16) -> Option<[u8; 256]>;
@@ -268,6 +275,10 @@ mod sealed {
 
         fn status(&self) -> Status {
             Self::status(self)
+        }
+
+        fn location(&self) -> Location {
+            Self::location(self)
         }
 
         fn path(&self) -> &[Cell] {

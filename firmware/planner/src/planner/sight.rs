@@ -44,7 +44,7 @@ pub(super) fn sense_without_peers<const TILES: usize, const SLOTS: usize>(
         ..*input
     };
     sense(config, state, &without_peers);
-    if !state.ground.is_uneven() {
+    if !state.ground.is_uneven() && state.localiser.may_enter() {
         free_before_peers(config, state, input, &seen);
     }
 }

@@ -11,6 +11,7 @@ use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{self, Drive};
 use crate::field::preference::Preferences;
 use crate::geometry::Cell;
+use crate::localise::{Localiser, Location};
 use crate::map::{Map, Tiles};
 use crate::path::viewpoint;
 use crate::roadmap::configuration_space::Footprint;
@@ -26,6 +27,7 @@ use crate::team::Team;
 /// box.
 #[derive(Debug)]
 pub struct State<const TILES: usize, const SLOTS: usize> {
+    pub(super) localiser: Localiser,
     pub(super) map: Map<TILES, SLOTS>,
     /// All that differs between flat and uneven ground.
     pub(super) ground: GroundModel<TILES>,
@@ -71,6 +73,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     pub const fn new() -> Self {
         let () = Self::CHECK;
         Self {
+            localiser: Localiser::new(),
             map: Map::new(),
             ground: GroundModel::new(),
             skeleton: Skeleton::new(),
@@ -100,6 +103,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
                 slots: SLOTS,
             });
         }
+        self.localiser = Localiser::new();
         self.map.begin(config);
         self.preferences = Preferences::new();
         self.ground = GroundModel::of(config);
@@ -120,6 +124,12 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     #[must_use]
     pub const fn status(&self) -> Status {
         self.status
+    }
+
+    /// Returns the location after the last step.
+    #[must_use]
+    pub fn location(&self) -> Location {
+        self.localiser.location()
     }
 
     /// Returns the footprint that paths are planned for: narrower at the second chance.

@@ -133,7 +133,8 @@ fn obstruct<const TILES: usize, const SLOTS: usize>(
     input: &Input<'_>,
 ) {
     let tiles = state.map.tiles();
-    state.ground.obstruct(config, tiles, &input.pose, checker);
+    let poses = (&input.pose, &state.localiser.odom());
+    state.ground.obstruct(config, tiles, poses, checker);
     let robot = input.pose.point();
     let hulls = state.team.peers().near(input.time_ms, robot, config);
     checker.keep_off_hulls(&input.pose, hulls.flat_map(Hull::outline));

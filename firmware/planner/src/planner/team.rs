@@ -3,7 +3,7 @@
 //! Units: metres; coarse cells of 20 cm.
 
 use crate::config::Config;
-use crate::geometry::{CELL_M, Cell};
+use crate::geometry::{CELL_M, Cell, MapPose, OdomPose};
 use crate::input::Input;
 use crate::planner::state::State;
 use crate::status::Status;
@@ -29,7 +29,8 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// Enters an input without a step: the robot stands by order, or its exploration has ended.
     /// Only its team learns of it.
     pub fn stand(&mut self, input: &Input<'_>) {
-        let pose = self.team.to_map(&input.pose);
+        let odom = OdomPose(self.team.to_map(&input.pose));
+        let MapPose(pose) = self.localiser.to_map(&odom);
         let motion = (&pose, input.velocity);
         self.team.begin_step(input.time_ms, motion, &mut self.map);
     }

@@ -20,10 +20,9 @@ pub mod peers;
 pub(crate) mod right_of_way;
 
 use crate::config::{Member, TeamPlace};
-use crate::geometry::{Point, Pose, RobotFrame, Twist};
+use crate::geometry::{MapFromOdom, OdomPose, Point, Pose, Twist};
 use crate::map::Map;
 use crate::map::exchange::Stand;
-use crate::math;
 use exchange::Exchange;
 use packet::{Beacon, Body, Packet};
 use peers::{Peer, Peers};
@@ -34,8 +33,8 @@ use right_of_way::RightOfWay;
 pub(crate) struct Team {
     /// This robot; `None` for a robot alone.
     member: Option<Member>,
-    /// The pose of the odometry's origin in the team's coordinates.
-    map_from_odom: Pose,
+    /// From the odometry's coordinates to the team's.
+    map_from_odom: MapFromOdom,
     /// Number of the next packet.
     sequence: u16,
     /// A beacon is due: a step was made since the last one.
@@ -62,7 +61,7 @@ impl Team {
         };
         Self {
             member: None,
-            map_from_odom: ORIGIN,
+            map_from_odom: MapFromOdom::IDENTITY,
             sequence: 0,
             owes_beacon: false,
             now_ms: 0,
@@ -82,7 +81,7 @@ impl Team {
         *self = Self::new();
         if let Some(place) = place {
             self.member = Some(place.member);
-            self.map_from_odom = place.map_from_odom;
+            self.map_from_odom = MapFromOdom::of(&place.map_from_odom);
         }
     }
 
@@ -101,13 +100,7 @@ impl Team {
         if !self.is_member() {
             return *odom;
         }
-        let place = RobotFrame::of(&self.map_from_odom).to_map(odom.point());
-        Pose {
-            x_m: place.x_m,
-            y_m: place.y_m,
-            yaw_rad: math::wrap(odom.yaw_rad + self.map_from_odom.yaw_rad),
-            ..*odom
-        }
+        self.map_from_odom.apply(&OdomPose(*odom)).0
     }
 
     /// Notes the time and the robot's motion at the beginning of a step.

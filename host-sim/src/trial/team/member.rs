@@ -312,11 +312,11 @@ struct Witness<'a> {
 }
 
 impl Survey for Witness<'_> {
-    fn note(&mut self, observation: &Observation, status: Status) -> f64 {
-        let fraction = self.own.note(observation, status);
+    fn note(&mut self, observation: &Observation, truth: &Stamped, status: Status) -> f64 {
+        let fraction = self.own.note(observation, truth, status);
         let time_s = f64::from(observation.time_ms) / 1000.0;
-        let mirror = &self.own.mirror;
-        self.all.update(time_s, |cell| mirror.is_known(cell));
+        let own = &self.own;
+        self.all.update(time_s, |cell| own.has_seen(cell));
         fraction
     }
 }

@@ -267,7 +267,7 @@ fn begin<'a>(
             mission::setup(&missions[robot], simulator, hello.tile_slots).map_err(of_robot)?;
         setup.start.team = team.radio.on.then(|| Member::of_wire(robot));
         let account = match members.first() {
-            Some(first) => first.account.beside(&setup),
+            Some(first) => first.account.beside(&setup, simulator),
             None => Account::new(&setup, simulator),
         };
         members.push(Member::begin(robot, link.as_mut(), setup, account));

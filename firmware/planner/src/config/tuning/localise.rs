@@ -1,0 +1,48 @@
+//! Tuned constants of localisation: how far odometry may be wrong, and what a beam says.
+//!
+//! Units: metres, radians, map cells of 0.1 m.
+
+tuning! {
+    /// Tuned constants of localisation.
+    "localise" LocaliseTuning {
+        /// Variance of a distance per metre driven.
+        along_by_distance: f32 = 2e-3, 0.0..=1.0, "m²/m";
+        /// Variance of a distance per radian turned.
+        along_by_turn: f32 = 5e-4, 0.0..=1.0, "m²/rad";
+        /// Variance sideways as a share of that of the distance.
+        across_share: f32 = 0.25, 0.0..=1.0, "1";
+        /// Variance of a turn per radian turned.
+        turn_by_turn: f32 = 2e-3, 0.0..=1.0, "rad²/rad";
+        /// Variance of a turn per metre driven.
+        turn_by_distance: f32 = 1e-3, 0.0..=1.0, "rad²/m";
+        /// Least standard deviation of the distance of a step.
+        floor_m: f32 = 0.005, 0.0001..=0.1, "m";
+        /// Least standard deviation of the turn of a step.
+        floor_rad: f32 = 0.002, 0.0001..=0.1, "rad";
+
+        /// Every beam of this number is matched.
+        beam_stride: u16 = 1, 1..=10, "beams";
+        /// Greatest number of Gauss–Newton steps.
+        iterations: u16 = 6, 1..=30, "1";
+        /// Information of a beam about the distance to its wall. A cell is 0.3 cells wide as a
+        /// standard deviation, and neighbouring beams share their error.
+        beam_information: f32 = 1.0, 0.01..=100.0, "1/cell²";
+        /// Distance from its wall at which a beam counts half.
+        robust_cells: f32 = 0.7, 0.05..=10.0, "cells";
+        /// Squared distance from odometry, in standard deviations, at which odometry counts half:
+        /// wheels slip.
+        slip_gap: f32 = 9.0, 1.0..=1e9, "1";
+        /// A direction with less information than this is not observed.
+        least_information: f32 = 4.0, 0.0..=100.0, "1/cell²";
+        /// Share of contradicting beams above which a scan contradicts the map.
+        contradicted_share: f32 = 0.5, 0.1..=1.0, "1";
+        /// Share of all beams that end within a cell of an obstacle, from which on a lost robot is
+        /// found.
+        agreed_share: f32 = 0.8, 0.5..=1.0, "1";
+        /// Fewest beams on known ground with which a scan can contradict the map, or
+        /// find a lost robot.
+        least_counted: f32 = 30.0, 1.0..=181.0, "beams";
+        /// Consecutive contradicting scans after which the robot is lost.
+        lost_steps: u8 = 3, 1..=50, "steps";
+    }
+}

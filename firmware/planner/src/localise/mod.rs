@@ -1,0 +1,313 @@
+//! Where the robot is in its own map: odometry predicts, the level scan corrects.
+//!
+//! ```text
+//! input ─► predict (odometry) ─► align (scan with the map's tiles) ─► fuse ─► map pose
+//! ```
+//!
+//! | file | holds |
+//! | --- | --- |
+//! | `odometry` | how far odometry may be wrong after a step |
+//! | `scan_points` | the beams' ends |
+//! | `wall` | the piece of wall around a beam's end |
+//! | `alignment` | Gauss–Newton, and directions that the scan does not observe |
+//! | `search` | the wider search of a robot that is lost |
+//! | `symmetric` | 3 × 3 matrices |
+//!
+//! The state is the motion [`MapFromOdom`] and its covariance. Without localisation the motion is
+//! the identity, and every pose passes through unchanged, bit for bit.
+//!
+//! Invariant: a correction changes the motion only. The odometry frame, and with it the obstacle
+//! points beside the robot, never moves.
+//! Units: metres, radians; cells inside the alignment.
+
+mod alignment;
+mod odometry;
+mod scan_points;
+mod search;
+mod symmetric;
+#[cfg(test)]
+mod tests;
+mod wall;
+
+use crate::config::{Config, LocaliseTuning};
+use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose};
+use crate::input::Input;
+use crate::map::Tiles;
+use crate::math;
+use crate::robot::LaserMount;
+use alignment::{Aligned, Unobserved, align};
+use scan_points::ScanPoints;
+use search::Search;
+use symmetric::Symmetric;
+
+/// How well the robot knows where it is.
+///
+/// ```
+/// use fieldline_planner::Quality;
+///
+/// /// Returns the speed that a careful user allows.
+/// fn speed_mps(quality: Quality) -> f32 {
+///     match quality {
+///         Quality::Tracking => 0.7,
+///         Quality::Degenerate(_) => 0.4,
+///         Quality::Lost => 0.0,
+///     }
+/// }
+/// assert_eq!(speed_mps(Quality::Degenerate(None)), 0.4);
+/// ```
+// With a tag of its own, the first value is all zeros. So is then the memory of a session that
+// begins, and the image does not have to store it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(u8)]
+pub enum Quality {
+    /// The scan holds the pose in every direction.
+    #[default]
+    Tracking,
+    /// The scan does not observe this direction of the map, radians, or none at all: odometry holds
+    /// the pose there.
+    Degenerate(Option<f32>),
+    /// The scan contradicts the map. Nothing is entered into the map.
+    Lost,
+}
+
+/// A pose in the map, and how well it is known.
+///
+/// ```
+/// use fieldline_planner::{Location, MapPose, Quality, State};
+///
+/// let state = Box::new(State::<4, 64>::new());
+/// let Location { pose, quality, .. } = state.location();
+/// assert_eq!((pose, quality), (MapPose::default(), Quality::Tracking));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Location {
+    /// The pose.
+    pub pose: MapPose,
+    /// Variances and covariances of x, y and yaw: xx, xy, yy, xt, yt, tt; m², m rad, rad².
+    pub covariance: [f32; 6],
+    /// The quality.
+    pub quality: Quality,
+}
+
+/// The localiser's memory.
+#[derive(Debug)]
+pub struct Localiser {
+    /// The last odometry pose; `None` before the first step.
+    odom: Option<OdomPose>,
+    map_from_odom: MapFromOdom,
+    /// Covariance of the pose in the map, metres and radians.
+    covariance: Symmetric,
+    quality: Quality,
+    /// Consecutive steps whose scan contradicted the map.
+    contradicted: u8,
+    /// The search of a robot that is lost.
+    search: Search,
+}
+
+impl Default for Localiser {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Localiser {
+    /// Returns a localiser at the beginning of a session.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            odom: None,
+            map_from_odom: MapFromOdom::IDENTITY,
+            covariance: Symmetric {
+                xx: 0.0,
+                xy: 0.0,
+                yy: 0.0,
+                xt: 0.0,
+                yt: 0.0,
+                tt: 0.0,
+            },
+            quality: Quality::Tracking,
+            contradicted: 0,
+            search: Search::new(),
+        }
+    }
+
+    /// Returns the last odometry pose.
+    #[must_use]
+    pub fn odom(&self) -> OdomPose {
+        self.odom.unwrap_or_default()
+    }
+
+    /// Returns a pose of the odometry in the map, with the last correction.
+    #[must_use]
+    pub fn to_map(&self, odom: &OdomPose) -> MapPose {
+        if self.map_from_odom == MapFromOdom::IDENTITY {
+            return MapPose(odom.0);
+        }
+        self.map_from_odom.apply(odom)
+    }
+
+    /// Returns true if the last scan may be entered into the map.
+    #[must_use]
+    pub const fn may_enter(&self) -> bool {
+        self.contradicted == 0
+    }
+
+    /// Returns true if the robot does not know where it is.
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
+        self.quality == Quality::Lost
+    }
+
+    /// Returns true if the robot is lost and the search found no place.
+    #[must_use]
+    pub fn has_given_up(&self) -> bool {
+        self.is_lost() && self.search.is_over()
+    }
+
+    /// Returns the location after the last step.
+    #[must_use]
+    pub fn location(&self) -> Location {
+        let p = &self.covariance;
+        Location {
+            pose: self.to_map(&self.odom()),
+            covariance: [p.xx, p.xy, p.yy, p.xt, p.yt, p.tt],
+            quality: self.quality,
+        }
+    }
+
+    /// Takes odometry and scans of a step. Returns the pose in the map.
+    pub fn locate<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        config: &Config,
+        tiles: &Tiles<TILES, SLOTS>,
+        input: &Input<'_>,
+    ) -> MapPose {
+        let odom = OdomPose(input.pose);
+        let last = self.odom.replace(odom);
+        if !config.localise {
+            return MapPose(input.pose);
+        }
+        let tuning = &config.tuning.localise;
+        let predicted = self.to_map(&odom);
+        self.covariance = odometry::spread(
+            &self.covariance,
+            (&last.unwrap_or(odom), &odom),
+            predicted.0.yaw_rad,
+            tuning,
+        );
+        let lasers = config.lasers.iter().zip(input.scans);
+        let level = lasers.filter(|(laser, _)| laser.is_level() && config.ground.is_none());
+        let pose = match level.into_iter().next() {
+            Some(level) => self.correct(config, tiles, level, &predicted),
+            None => {
+                self.quality = Quality::Degenerate(None);
+                predicted
+            }
+        };
+        self.map_from_odom = MapFromOdom::between(&odom, &pose);
+        pose
+    }
+
+    /// Corrects the predicted pose by a scan.
+    fn correct<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        config: &Config,
+        tiles: &Tiles<TILES, SLOTS>,
+        (laser, ranges_mm): (&LaserMount, &[u16]),
+        predicted: &MapPose,
+    ) -> MapPose {
+        let tuning = &config.tuning.localise;
+        let stride = usize::from(tuning.beam_stride);
+        let points = scan_points::scan_points(laser, ranges_mm, &config.tuning.map, stride);
+        if self.is_lost() {
+            return self.search(tiles, &points, predicted, tuning);
+        }
+        let prior = in_cells(&predicted.0);
+        let Some(information) = to_cells(&self.covariance).inverse() else {
+            return *predicted;
+        };
+        let found = align(tiles, &points, (prior, &information), prior, tuning);
+        if found.constraints.is_contradicted(tuning) {
+            self.contradicted = self.contradicted.saturating_add(1);
+            if self.contradicted >= tuning.lost_steps {
+                self.quality = Quality::Lost;
+                self.search = Search::new();
+            }
+            return *predicted;
+        }
+        self.accept(&found, predicted)
+    }
+
+    /// Takes an alignment for the pose.
+    fn accept(&mut self, found: &Aligned, predicted: &MapPose) -> MapPose {
+        self.contradicted = 0;
+        self.quality = match found.constraints.unobserved {
+            Unobserved::Nothing => Quality::Tracking,
+            Unobserved::Direction([x, y]) => Quality::Degenerate(Some(math::atan2(y, x))),
+            Unobserved::Everything => Quality::Degenerate(None),
+        };
+        if let Some(covariance) = found.information.inverse() {
+            self.covariance = to_metres(&covariance);
+        }
+        let [x, y, yaw_rad] = found.pose;
+        MapPose(Pose {
+            x_m: x * CELL_M,
+            y_m: y * CELL_M,
+            yaw_rad,
+            ..predicted.0
+        })
+    }
+
+    /// Searches on. Returns the predicted pose until the scan agrees with the map at another one.
+    fn search<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        tiles: &Tiles<TILES, SLOTS>,
+        points: &ScanPoints,
+        predicted: &MapPose,
+        tuning: &LocaliseTuning,
+    ) -> MapPose {
+        let odom = self.odom();
+        let Some(candidate) = self.search.advance(tiles, points, (&odom, predicted)) else {
+            return *predicted;
+        };
+        let start = in_cells(&candidate.apply(&odom).0);
+        let wide = Symmetric::diagonal(WIDE_CELLS, WIDE_CELLS, WIDE_RAD).inverse();
+        let wide = wide.unwrap_or_default();
+        let found = align(tiles, points, (start, &wide), start, tuning);
+        if found.constraints.is_agreed(points.len(), tuning) {
+            return self.accept(&found, predicted);
+        }
+        *predicted
+    }
+}
+
+/// Variance of a candidate's place, square cells: it is a cell of a coarse search.
+const WIDE_CELLS: f32 = 4.0;
+/// Variance of a candidate's yaw, square radians: 3° squared.
+const WIDE_RAD: f32 = 2.7e-3;
+
+/// Returns a pose in cells.
+fn in_cells(pose: &Pose) -> [f32; 3] {
+    [pose.x_m / CELL_M, pose.y_m / CELL_M, pose.yaw_rad]
+}
+
+/// Returns a covariance in cells.
+fn to_cells(metres: &Symmetric) -> Symmetric {
+    rescaled(metres, 1.0 / CELL_M)
+}
+
+/// Returns a covariance in metres.
+fn to_metres(cells: &Symmetric) -> Symmetric {
+    rescaled(cells, CELL_M)
+}
+
+fn rescaled(p: &Symmetric, by: f32) -> Symmetric {
+    Symmetric {
+        xx: p.xx * by * by,
+        xy: p.xy * by * by,
+        yy: p.yy * by * by,
+        xt: p.xt * by,
+        yt: p.yt * by,
+        tt: p.tt,
+    }
+}

@@ -1,0 +1,256 @@
+//! The wider search of a lost robot: at which shift and turn do most beams end on obstacles?
+//!
+//! ```text
+//! score(dx, dy, turn) = Σ over beams of obstacle(end + (dx, dy)),   −16 ≤ dx, dy < 16 cells
+//! ```
+//!
+//! A turn takes all 1,024 shifts at once. A row of 32 cells is a word, and counts are kept bit by
+//! bit: plane k of a row of shifts holds bit k of 32 counts. To add a beam is to carry a word
+//! through six planes.
+//!
+//! | round | place | turns |
+//! | --- | --- | --- |
+//! | 0 | where odometry has the robot | ± 30° |
+//! | 1 | there | all |
+//! | 2 to 9 | the eight squares of 3.2 m around it | all |
+//!
+//! A step takes a few turns, and all rounds take 211 steps, which is 42 s. The best shift and turn
+//! of a round is the start of an alignment, and only an alignment with which the scan agrees ends
+//! the search.
+//!
+//! Units: map cells, radians.
+
+use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Point, Pose, RobotFrame};
+use crate::map::Tiles;
+use crate::math;
+
+/// Shifts along a side of the square.
+const SIDE: i32 = 32;
+/// Bits of a count.
+const PLANES: usize = 6;
+/// Greatest number of beams: the greatest count.
+const MOST_BEAMS: usize = (1 << PLANES) - 1;
+/// Turn from one try to the next, radians: 2°, a cell at 2.9 m.
+const TURN_RAD: f32 = 2.0 * math::PI / TURNS as f32;
+/// Tries of a whole turn.
+const TURNS: u16 = 180;
+/// Tries of the first round.
+const FIRST_TURNS: u16 = 31;
+/// Turns of a step.
+const TURNS_PER_STEP: u16 = 8;
+/// Places of the rounds, in squares.
+const PLACES: [(i32, i32); 10] = [
+    (0, 0),
+    (0, 0),
+    (1, 0),
+    (-1, 0),
+    (0, 1),
+    (0, -1),
+    (1, 1),
+    (-1, 1),
+    (1, -1),
+    (-1, -1),
+];
+
+/// The state of a search.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Search {
+    round: u8,
+    turn: u16,
+    /// Score of the best candidate, in 64ths of a beam: nearer ones win ties.
+    best: i32,
+    candidate: MapFromOdom,
+}
+
+/// The counts of the shifts: for each row of shifts its planes.
+type Counts = [[u32; PLANES]; SIDE as usize];
+
+impl Search {
+    /// Returns a search that begins.
+    pub(super) const fn new() -> Self {
+        Self {
+            round: 0,
+            turn: 0,
+            best: 0,
+            candidate: MapFromOdom::IDENTITY,
+        }
+    }
+
+    /// Tries a few turns. Returns the best candidate at the end of a round.
+    pub(super) fn advance<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        tiles: &Tiles<TILES, SLOTS>,
+        points: &[Point],
+        (odom, predicted): (&OdomPose, &MapPose),
+    ) -> Option<MapFromOdom> {
+        let &(right, up) = PLACES.get(usize::from(self.round))?;
+        let side_m = SIDE as f32 * CELL_M;
+        let place = Pose {
+            x_m: predicted.0.x_m + right as f32 * side_m,
+            y_m: predicted.0.y_m + up as f32 * side_m,
+            ..predicted.0
+        };
+        for _ in 0..TURNS_PER_STEP {
+            self.take(tiles, points, odom, &place);
+            self.turn += 1;
+            if self.turn >= self.turns() {
+                let found = (self.best > 0).then_some(self.candidate);
+                let round = self.round + 1;
+                *self = Self {
+                    round,
+                    ..Self::new()
+                };
+                return found;
+            }
+        }
+        None
+    }
+
+    /// Returns true if all rounds are over.
+    pub(super) const fn is_over(&self) -> bool {
+        self.round as usize >= PLACES.len()
+    }
+
+    const fn turns(&self) -> u16 {
+        if self.round == 0 { FIRST_TURNS } else { TURNS }
+    }
+
+    /// Tries all shifts at one turn: 0, +1, −1, +2, −2, …
+    fn take<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        tiles: &Tiles<TILES, SLOTS>,
+        points: &[Point],
+        odom: &OdomPose,
+        place: &Pose,
+    ) {
+        let half = f32::from(self.turn.div_ceil(2));
+        let sign = if self.turn % 2 == 1 { 1.0 } else { -1.0 };
+        let turned = Pose {
+            yaw_rad: math::wrap(place.yaw_rad + sign * half * TURN_RAD),
+            ..*place
+        };
+        let counts = count(tiles, points, &turned);
+        for (dy, planes) in (-SIDE / 2..).zip(&counts) {
+            let (hits, mask) = most(planes);
+            let dx = nearest(mask);
+            let score = 64 * hits as i32 - dx.abs() - dy.abs();
+            if score > self.best {
+                self.best = score;
+                let shifted = Pose {
+                    x_m: turned.x_m + dx as f32 * CELL_M,
+                    y_m: turned.y_m + dy as f32 * CELL_M,
+                    ..turned
+                };
+                self.candidate = MapFromOdom::between(odom, &MapPose(shifted));
+            }
+        }
+    }
+}
+
+/// Counts the beams that end on obstacles, for all shifts of a pose.
+fn count<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    points: &[Point],
+    pose: &Pose,
+) -> Counts {
+    let mut counts = [[0; PLANES]; SIDE as usize];
+    let stride = points.len().div_ceil(MOST_BEAMS).max(1);
+    let frame = RobotFrame::of(pose);
+    for &point in points.iter().step_by(stride) {
+        let corner = frame.to_map(point).cell().offset(-SIDE / 2, -SIDE / 2);
+        let mut rows = counts.iter_mut();
+        tiles.standing_block(corner, |row| {
+            let mut carry = row;
+            for plane in rows.next().into_iter().flatten() {
+                let both = *plane & carry;
+                *plane ^= carry;
+                carry = both;
+            }
+        });
+    }
+    counts
+}
+
+/// Returns the greatest count of a row, and the shifts that have it.
+fn most(planes: &[u32; PLANES]) -> (u32, u32) {
+    let mut mask = u32::MAX;
+    let mut count = 0;
+    for plane in planes.iter().rev() {
+        count <<= 1;
+        if mask & plane != 0 {
+            mask &= plane;
+            count |= 1;
+        }
+    }
+    (count, mask)
+}
+
+/// Returns the shift of a row that is nearest to none.
+const fn nearest(mask: u32) -> i32 {
+    let right = (mask >> (SIDE / 2)).trailing_zeros() as i32;
+    let left = (mask << (SIDE / 2)).leading_zeros() as i32 + 1;
+    if right <= left { right } else { -left }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::boxed::Box;
+
+    use super::{Counts, PLANES, SIDE, count, most, nearest};
+    use crate::geometry::{Cell, Point, Pose};
+    use crate::grid::Class;
+    use crate::map::Tiles;
+
+    #[test]
+    fn the_nearest_shift_is_nearest() {
+        assert_eq!(nearest(1 << 16), 0);
+        assert_eq!(nearest(1 << 15 | 1 << 18), -1);
+        assert_eq!(nearest(1 << 10 | 1 << 18), 2);
+        assert_eq!(nearest(1), -16);
+    }
+
+    #[test]
+    fn counts_are_those_of_single_cells() {
+        let mut tiles = Box::new(Tiles::<16, 64>::new());
+        tiles.reset(8, 8);
+        let mut seed = 7_u32;
+        for (x, y) in (-60..60).flat_map(|x| (-60..60).map(move |y| (x, y))) {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let class = if seed >> 30 == 0 {
+                Class::Obstacle
+            } else {
+                Class::Free
+            };
+            tiles.set(Cell { x, y }, class).expect("room");
+        }
+        let point = |k: i32| Point {
+            x_m: k as f32 * 0.07 - 1.0,
+            y_m: 1.5 - k as f32 * 0.05,
+        };
+        let points: std::vec::Vec<Point> = (0..60).map(point).collect();
+        let pose = Pose {
+            x_m: 0.33,
+            y_m: -0.21,
+            yaw_rad: 0.4,
+            ..Pose::default()
+        };
+        let counts: Counts = count(&tiles, &points, &pose);
+        for (dy, planes) in (-SIDE / 2..).zip(&counts) {
+            let direct = |dx: i32| {
+                let cells = points
+                    .iter()
+                    .map(|&it| pose.to_map(it).cell().offset(dx, dy));
+                cells
+                    .filter(|&cell| tiles.class(cell) == Class::Obstacle)
+                    .count() as u32
+            };
+            for dx in -SIDE / 2..SIDE / 2 {
+                let bit = dx + SIDE / 2;
+                let kept: u32 = (0..PLANES).map(|k| (planes[k] >> bit & 1) << k).sum();
+                assert_eq!(kept, direct(dx), "{dx} {dy}");
+            }
+            let greatest = (-SIDE / 2..SIDE / 2).map(direct).max();
+            assert_eq!(Some(most(planes).0), greatest);
+        }
+    }
+}

@@ -1,0 +1,441 @@
+//! Scenes: a robot that drives through boxes, with odometry that errs.
+//!
+//! The truth, the rays and the odometry are f64. The scan is exact to a millimetre.
+
+use std::boxed::Box;
+use std::vec::Vec;
+
+use super::alignment::constraints;
+use super::{Localiser, Quality};
+use crate::config::{Config, LocaliseTuning};
+use crate::geometry::{CELL_M, Cell, MapPose, Point, Pose, Twist};
+use crate::grid::Class;
+use crate::input::{INVALID_MM, Input, NO_RETURN_MM};
+use crate::map::{Map, Tiles};
+use crate::robot::LaserMount;
+
+/// A solid rectangle: least and greatest x, least and greatest y, metres.
+type Solid = [f64; 4];
+/// x, y and yaw.
+type State = [f64; 3];
+
+/// Returns the walls of a room, 0.2 m thick, outside of its inner rectangle.
+fn room([x0, x1, y0, y1]: Solid) -> Vec<Solid> {
+    std::vec![
+        [x0 - 0.2, x1 + 0.2, y0 - 0.2, y0],
+        [x0 - 0.2, x1 + 0.2, y1, y1 + 0.2],
+        [x0 - 0.2, x0, y0, y1],
+        [x1, x1 + 0.2, y0, y1],
+    ]
+}
+
+/// Returns a room with two boxes, whose views differ everywhere.
+fn furnished() -> Vec<Solid> {
+    let mut solids = room([-2.03, 6.04, -2.52, 3.01]);
+    solids.extend([[3.1, 4.2, 1.2, 1.9], [0.9, 1.4, -2.5, -1.6]]);
+    solids
+}
+
+/// Returns the distance to the first solid along a ray.
+fn cast(solids: &[Solid], [x, y]: [f64; 2], bearing: f64) -> f64 {
+    let (sin, cos) = bearing.sin_cos();
+    let enter = |solid: &Solid| {
+        let slab = |from: f64, along: f64, low: f64, high: f64| {
+            let (a, b) = ((low - from) / along, (high - from) / along);
+            (a.min(b), a.max(b))
+        };
+        let (x_in, x_out) = slab(x, cos, solid[0], solid[1]);
+        let (y_in, y_out) = slab(y, sin, solid[2], solid[3]);
+        let (near, far) = (x_in.max(y_in), x_out.min(y_out));
+        (near < far && near > 0.0).then_some(near)
+    };
+    solids.iter().filter_map(enter).fold(f64::MAX, f64::min)
+}
+
+/// Returns the pose after a distance and a turn.
+fn moved([x, y, yaw]: State, forward: f64, turn: f64) -> State {
+    let middle = yaw + 0.5 * turn;
+    let (sin, cos) = middle.sin_cos();
+    [x + forward * cos, y + forward * sin, yaw + turn]
+}
+
+fn pose([x, y, yaw]: State) -> Pose {
+    Pose {
+        x_m: x as f32,
+        y_m: y as f32,
+        yaw_rad: crate::math::wrap(yaw as f32),
+        ..Pose::default()
+    }
+}
+
+/// A robot in a scene.
+struct Scene {
+    config: Config,
+    solids: Vec<Solid>,
+    truth: State,
+    odom: State,
+    localiser: Localiser,
+    map: Box<Map<64, 400>>,
+    /// Steps of the figure.
+    driven: u32,
+    /// Changes a scan.
+    spoil: fn(usize, u16) -> u16,
+}
+
+impl Scene {
+    fn new(solids: Vec<Solid>) -> Self {
+        let laser = LaserMount::level(0.0, 0.4);
+        let config = Config {
+            localise: true,
+            ..Config::pioneer_3at([laser].into_iter().collect())
+        };
+        let mut map = Box::<Map<64, 400>>::default();
+        map.begin(&config);
+        Self {
+            config,
+            solids,
+            truth: [0.0; 3],
+            odom: [0.0; 3],
+            localiser: Localiser::new(),
+            map,
+            driven: 0,
+            spoil: |_, range| range,
+        }
+    }
+
+    fn scan(&self) -> [u16; 181] {
+        core::array::from_fn(|k| {
+            let [x, y, yaw] = self.truth;
+            let bearing = yaw + (k as f64 - 90.0).to_radians();
+            let range_mm = (1000.0 * cast(&self.solids, [x, y], bearing)).min(1e6) as u32;
+            let range = if range_mm < 12_000 {
+                range_mm as u16
+            } else {
+                NO_RETURN_MM
+            };
+            (self.spoil)(k, range)
+        })
+    }
+
+    /// Moves the robot and its odometry, each by a distance and a turn, and takes a step.
+    fn step(&mut self, truly: (f64, f64), says: (f64, f64)) {
+        self.truth = moved(self.truth, truly.0, truly.1);
+        self.odom = moved(self.odom, says.0, says.1);
+        let scan = self.scan();
+        let input = Input {
+            time_ms: 0,
+            pose: pose(self.odom),
+            velocity: Twist::default(),
+            scans: [&scan, &[]],
+        };
+        let MapPose(pose) = self
+            .localiser
+            .locate(&self.config, self.map.tiles(), &input);
+        if self.localiser.may_enter() {
+            self.map.observe(&self.config, &Input { pose, ..input });
+        }
+    }
+
+    /// Drives a figure of eight for this number of steps. Odometry is 2 % long and 4 % over.
+    fn drive(&mut self, steps: u32) {
+        for _ in 0..steps {
+            let turn = if self.driven % 158 < 79 { 0.08 } else { -0.08 };
+            self.driven += 1;
+            self.step((0.06, turn), (0.0612, 1.04 * turn));
+        }
+    }
+
+    /// Stands for this number of steps.
+    fn stand(&mut self, steps: u32) {
+        for _ in 0..steps {
+            self.step((0.0, 0.0), (0.0, 0.0));
+        }
+    }
+
+    /// Returns the errors of position and yaw.
+    fn errors(&self) -> (f64, f64) {
+        let MapPose(pose) = self.localiser.location().pose;
+        let [x, y, yaw] = self.truth;
+        let off = (f64::from(pose.x_m) - x).hypot(f64::from(pose.y_m) - y);
+        (
+            off,
+            f64::from(crate::math::wrap(pose.yaw_rad - yaw as f32)).abs(),
+        )
+    }
+
+    fn quality(&self) -> Quality {
+        self.localiser.location().quality
+    }
+
+    fn assert_found(&self) {
+        let (off_m, turned) = self.errors();
+        assert!(off_m < 0.10 && turned < 0.03, "{off_m} m, {turned} rad");
+        assert_eq!(self.quality(), Quality::Tracking);
+    }
+}
+
+#[test]
+fn in_a_room_the_drift_of_odometry_is_corrected() {
+    let mut scene = Scene::new(furnished());
+    scene.drive(400);
+    let drift = (scene.odom[0] - scene.truth[0]).hypot(scene.odom[1] - scene.truth[1]);
+    assert!(drift > 0.15, "odometry alone: {drift}");
+    scene.assert_found();
+}
+
+#[test]
+fn without_localisation_the_pose_is_odometrys_bit_for_bit() {
+    let mut scene = Scene::new(furnished());
+    scene.config.localise = false;
+    for _ in 0..20 {
+        scene.step((0.1, 0.05), (0.1, 0.06));
+        assert_eq!(scene.localiser.location().pose.0, pose(scene.odom));
+        assert!(scene.localiser.may_enter());
+    }
+}
+
+#[test]
+fn along_a_bare_corridor_odometry_keeps_its_value() {
+    let mut scene = Scene::new(std::vec![
+        [-40.0, 80.0, -1.4, -1.0],
+        [-40.0, 80.0, 1.0, 1.4]
+    ]);
+    // Odometry turns a little to the left of the truth.
+    for _ in 0..200 {
+        scene.step((0.1, 0.0), (0.1, 0.0004));
+    }
+    let Quality::Degenerate(Some(direction)) = scene.quality() else {
+        panic!("{:?}", scene.quality())
+    };
+    assert!(direction.sin().abs() < 0.05, "along x: {direction}");
+    let MapPose(found) = scene.localiser.location().pose;
+    assert!(
+        f64::from(found.y_m - 0.0).abs() < 0.06,
+        "across: {}",
+        found.y_m
+    );
+    assert!((found.x_m - 20.0).abs() < 0.1, "along: {}", found.x_m);
+    assert!(found.yaw_rad.abs() < 0.01, "{}", found.yaw_rad);
+    let [xx, _, yy, ..] = scene.localiser.location().covariance;
+    assert!(xx > 10.0 * yy, "the covariance says so: {xx} {yy}");
+}
+
+#[test]
+fn in_a_hall_beyond_the_range_odometry_holds_the_pose() {
+    let mut scene = Scene::new(room([-60.0, 60.0, -60.0, 60.0]));
+    for _ in 0..50 {
+        scene.step((0.1, 0.02), (0.1, 0.02));
+    }
+    assert_eq!(scene.quality(), Quality::Degenerate(None));
+    let (off_m, turned) = scene.errors();
+    assert!(off_m < 1e-3 && turned < 1e-4, "{off_m} {turned}");
+}
+
+#[test]
+fn after_a_slip_the_robot_is_lost_and_enters_nothing_until_it_is_found() {
+    let mut scene = Scene::new(furnished());
+    scene.drive(200);
+    let edits = scene.map.tiles().edits();
+    // The robot is shoved half a metre and 20° within a step; the wheels saw nothing of it.
+    scene.step((0.5, 0.35), (0.0, 0.0));
+    let mut was_lost = false;
+    for _ in 0..25 {
+        scene.stand(1);
+        if scene.quality() == Quality::Lost {
+            was_lost = true;
+            assert_eq!(scene.map.tiles().edits(), edits, "nothing is entered");
+        }
+    }
+    assert!(was_lost, "it says so");
+    scene.assert_found();
+}
+
+#[test]
+fn a_robot_carried_to_a_place_unlike_any_other_stays_lost() {
+    let mut scene = Scene::new(furnished());
+    scene.drive(200);
+    let edits = scene.map.tiles().edits();
+    let thing = |k: u32| {
+        let bearing = f64::from(k) * 0.35;
+        let range = 0.8 + 0.9 * f64::from(k * 7 % 5);
+        let (x, y) = (range * bearing.cos(), range * bearing.sin());
+        [x - 0.15, x + 0.15, y - 0.1, y + 0.1]
+    };
+    scene.solids = (0..18).map(thing).collect();
+    scene.truth = [0.0; 3];
+    scene.stand(500);
+    assert_eq!(scene.quality(), Quality::Lost);
+    assert!(scene.localiser.has_given_up());
+    assert_eq!(scene.map.tiles().edits(), edits);
+}
+
+#[test]
+fn wheels_that_spin_for_a_metre_do_not_move_the_robot() {
+    let mut scene = Scene::new(furnished());
+    scene.drive(200);
+    for _ in 0..10 {
+        scene.step((0.0, 0.0), (0.1, 0.0));
+    }
+    scene.stand(25);
+    scene.assert_found();
+}
+
+#[test]
+fn a_robot_that_slides_half_a_metre_while_its_wheels_stand_is_followed() {
+    let mut scene = Scene::new(furnished());
+    scene.drive(200);
+    for _ in 0..10 {
+        scene.step((0.05, 0.0), (0.0, 0.0));
+    }
+    scene.stand(25);
+    scene.assert_found();
+}
+
+#[test]
+fn a_third_of_the_beams_may_be_missing() {
+    let mut scene = Scene::new(furnished());
+    scene.spoil = |k, range| if k * 7 % 10 < 3 { INVALID_MM } else { range };
+    scene.drive(400);
+    scene.assert_found();
+}
+
+#[test]
+fn two_seconds_without_a_scan_are_bridged() {
+    let mut scene = Scene::new(furnished());
+    scene.drive(200);
+    scene.spoil = |_, _| INVALID_MM;
+    for _ in 0..10 {
+        scene.drive(1);
+        assert_eq!(scene.quality(), Quality::Degenerate(None));
+    }
+    scene.spoil = |_, range| range;
+    scene.drive(10);
+    scene.assert_found();
+}
+
+/// The system of equations, from single cells and in f64.
+#[test]
+fn the_constraints_are_those_of_a_naive_twin() {
+    let mut tiles = Box::new(Tiles::<16, 64>::new());
+    tiles.reset(8, 8);
+    for (x, y) in (-30..30).flat_map(|x| (-30..30).map(move |y| (x, y))) {
+        let stands = x == 20 || y == -18 || (y == 12 + x / 3 && x < 5) || (x, y) == (8, 4);
+        let class = if stands { Class::Obstacle } else { Class::Free };
+        tiles.set(Cell { x, y }, class).expect("room");
+    }
+    let point = |k: i32| Point {
+        x_m: 0.031 * (k % 13) as f32 * 5.0 - 0.4,
+        y_m: 0.027 * (k % 17) as f32 * 6.0 - 1.5,
+    };
+    let points: Vec<Point> = (0..150).map(point).collect();
+    let at = [1.3_f32, -2.1, 0.37];
+    let tuning = &LocaliseTuning {
+        least_information: 0.0,
+        ..LocaliseTuning::DEFAULT
+    };
+    let found = constraints(&tiles, &points, at, tuning);
+    let twin = twin(&tiles, &points, at.map(f64::from), tuning);
+    let h = [
+        found.h.xx, found.h.xy, found.h.yy, found.h.xt, found.h.yt, found.h.tt,
+    ];
+    let all = h.iter().chain(&found.b).zip(&twin);
+    for (found, wanted) in all {
+        let scale = wanted.abs().max(1.0);
+        assert!(
+            (f64::from(*found) - wanted).abs() < 1e-3 * scale,
+            "{found} {wanted}"
+        );
+    }
+}
+
+/// Returns H and b.
+fn twin(
+    tiles: &Tiles<16, 64>,
+    points: &[Point],
+    [x, y, yaw]: State,
+    tuning: &LocaliseTuning,
+) -> [f64; 9] {
+    let cell_m = f64::from(CELL_M);
+    let mut sum = [0.0; 9];
+    for point in points {
+        let (px, py) = (f64::from(point.x_m) / cell_m, f64::from(point.y_m) / cell_m);
+        let arm = [
+            yaw.cos() * px - yaw.sin() * py,
+            yaw.sin() * px + yaw.cos() * py,
+        ];
+        let end = [x + arm[0], y + arm[1]];
+        let cell = end.map(|it| it.floor());
+        let mut all = Vec::new();
+        for (dx, dy) in (-2..=2).flat_map(|dx| (-2..=2).map(move |dy| (dx, dy))) {
+            let near = Cell {
+                x: cell[0] as i32 + dx,
+                y: cell[1] as i32 + dy,
+            };
+            if tiles.class(near) == Class::Obstacle {
+                all.push([f64::from(dx), f64::from(dy)]);
+            }
+        }
+        if all.is_empty() {
+            continue;
+        }
+        let inner: Vec<State2> = all
+            .iter()
+            .filter(|it| it[0].abs() < 1.5 && it[1].abs() < 1.5)
+            .copied()
+            .collect();
+        let place = mean(if inner.is_empty() { &all } else { &inner });
+        let normals = match normals(&all) {
+            None if inner.len() > 2 => normals(&inner)
+                .filter(|it| it.len() == 1)
+                .unwrap_or_default(),
+            normals => normals.unwrap_or_default(),
+        };
+        for n in normals {
+            let gap = [0, 1].map(|k| place[k] + cell[k] + 0.5 - end[k]);
+            let r = n[0] * gap[0] + n[1] * gap[1];
+            let half = f64::from(tuning.robust_cells);
+            let weight = f64::from(tuning.beam_information) / (1.0 + r * r / (half * half));
+            let j = [n[0], n[1], n[1] * arm[0] - n[0] * arm[1]];
+            let products = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)];
+            for (sum, (a, b)) in sum.iter_mut().zip(products) {
+                *sum += weight * j[a] * j[b];
+            }
+            for (sum, j) in sum[6..].iter_mut().zip(j) {
+                *sum += weight * r * j;
+            }
+        }
+    }
+    sum
+}
+
+fn mean(cells: &[State2]) -> State2 {
+    let n = cells.len() as f64;
+    [0, 1].map(|k| cells.iter().map(|it| it[k]).sum::<f64>() / n)
+}
+
+/// Returns the directions that cells constrain; `None` for a corner.
+fn normals(cells: &[State2]) -> Option<Vec<State2>> {
+    let middle = mean(cells);
+    let spread = |i: usize, j: usize| {
+        let product = |it: &State2| (it[i] - middle[i]) * (it[j] - middle[j]);
+        cells.iter().map(product).sum::<f64>() / cells.len() as f64
+    };
+    let (xx, xy, yy) = (spread(0, 0), spread(0, 1), spread(1, 1));
+    let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
+    let variance = |a: f64| {
+        let (s, c) = a.sin_cos();
+        c * c * xx + 2.0 * s * c * xy + s * s * yy
+    };
+    let most = variance(angle);
+    let least = variance(angle + 0.5 * core::f64::consts::PI);
+    if most <= 0.5 {
+        Some(std::vec![[1.0, 0.0], [0.0, 1.0]])
+    } else if least > 0.26 || most - least < 0.5 {
+        None
+    } else {
+        Some(std::vec![[-angle.sin(), angle.cos()]])
+    }
+}
+
+/// A pair of coordinates.
+type State2 = [f64; 2];

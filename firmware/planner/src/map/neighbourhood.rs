@@ -1,0 +1,110 @@
+//! The obstacles in the square of 5 × 5 cells around a cell.
+//!
+//! ```text
+//! bit 5 (dy + 2) + dx + 2 = 1 if the cell (dx, dy) away is an obstacle, −2 ≤ dx, dy ≤ 2
+//! ```
+//!
+//! A negative obstacle does not stand, so no beam ends on it, and its bit is 0.
+//!
+//! Units: map cells.
+
+use crate::geometry::Cell;
+use crate::grid::masked;
+use crate::map::tiles::{TILE_SIDE, Tiles};
+
+/// Cells from the centre of the square to its side.
+const REACH: i32 = 2;
+/// Cells along the side of the square.
+pub(crate) const SQUARE_SIDE: i32 = 2 * REACH + 1;
+
+impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
+    /// Returns the obstacles around a cell.
+    pub(crate) fn obstacles_around(&self, centre: Cell) -> u32 {
+        let (x, y) = (centre.x - REACH, centre.y - REACH);
+        let shift = x & (TILE_SIDE - 1);
+        let mut around = 0;
+        let mut row = 0;
+        while row < SQUARE_SIDE {
+            let tile_y = (y + row) >> 5;
+            // Rows of the square in this row of tiles.
+            let last = (SQUARE_SIDE).min(((tile_y + 1) << 5) - y);
+            let left = self.standing(x >> 5, tile_y);
+            let spills = shift > TILE_SIDE - SQUARE_SIDE;
+            let right = spills.then(|| self.standing((x >> 5) + 1, tile_y));
+            while row < last {
+                let line = ((y + row) & 31) as usize;
+                let mut bits = left(line) >> shift;
+                if let Some(right) = &right {
+                    bits |= right(line) << (TILE_SIDE - shift);
+                }
+                around |= (bits & 31) << (SQUARE_SIDE * row);
+                row += 1;
+            }
+        }
+        around
+    }
+
+    /// Calls `each` with the rows of the 32 × 32 cells from this corner on, least y first: 1 for an
+    /// obstacle that stands.
+    pub(crate) fn standing_block(&self, corner: Cell, mut each: impl FnMut(u32)) {
+        let (x, shift) = (corner.x >> 5, corner.x & 31);
+        for tile_y in [corner.y >> 5, (corner.y >> 5) + 1] {
+            let (left, right) = (self.standing(x, tile_y), self.standing(x + 1, tile_y));
+            let least = (tile_y << 5).max(corner.y);
+            let end = ((tile_y + 1) << 5).min(corner.y + TILE_SIDE);
+            for y in least..end {
+                let line = (y & 31) as usize;
+                let both = u64::from(left(line)) | u64::from(right(line)) << TILE_SIDE;
+                each((both >> shift) as u32);
+            }
+        }
+    }
+
+    /// Returns the rows of a tile: 1 for an obstacle that stands.
+    #[inline(always)]
+    fn standing(&self, tile_x: i32, tile_y: i32) -> impl Fn(usize) -> u32 {
+        let planes = self.planes(self.entry(tile_x, tile_y));
+        move |line| match planes {
+            Some([low, high]) => masked(high, line) & !masked(low, line),
+            None => 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::boxed::Box;
+    use std::vec::Vec;
+
+    use crate::geometry::Cell;
+    use crate::grid::Class;
+    use crate::map::Tiles;
+
+    #[test]
+    fn the_square_and_the_block_are_those_of_single_cells() {
+        let mut tiles = Box::new(Tiles::<16, 64>::new());
+        tiles.reset(8, 8);
+        let mut seed = 1_u32;
+        for (x, y) in (-40..40).flat_map(|x| (-40..40).map(move |y| (x, y))) {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let class = Class::from_bits(seed >> 30 & 1, seed >> 31 & 1);
+            tiles.set(Cell { x, y }, class).expect("room");
+        }
+        let stands = |cell| u32::from(tiles.class(cell) == Class::Obstacle);
+        for centre in (-45..45).flat_map(|x| (-45..45).map(move |y| Cell { x, y })) {
+            let square = (0..25).map(|k| stands(centre.offset(k % 5 - 2, k / 5 - 2)) << k);
+            assert_eq!(
+                tiles.obstacles_around(centre),
+                square.sum::<u32>(),
+                "{centre:?}"
+            );
+        }
+        for corner in [(-41, -3), (-32, 0), (7, 31), (40, 2)].map(|(x, y)| Cell { x, y }) {
+            let mut rows = Vec::new();
+            tiles.standing_block(corner, |row| rows.push(row));
+            let row = |y| (0..32).map(|k| stands(corner.offset(k, y)) << k).sum();
+            let direct: Vec<u32> = (0..32).map(row).collect();
+            assert_eq!(rows, direct, "{corner:?}");
+        }
+    }
+}
