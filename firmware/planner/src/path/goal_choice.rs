@@ -81,6 +81,8 @@ pub(crate) fn is_worth(gain_m2: f32, trip_m: f32, worth: f32) -> bool {
 /// Returns the path to the frontier of the greatest utility; `None` if none that this round judges
 /// is worth the trip: then it lists them. `judged` counts the candidates that the rounds before
 /// judged in vain; it is 0 again after the last of them.
+// Its candidates leave the stack before what comes after the choice is called.
+#[inline(never)]
 pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
     residual: &mut ResidualFrontiers,
