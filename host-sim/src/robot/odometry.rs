@@ -64,7 +64,7 @@ impl Default for OdometryNoise {
 
 impl OdometryNoise {
     /// Noise as the papers' groups assume it for their filters: the variances of the random walk
-    /// are 20 times the default's. It is about the Intel log's raw odometry.
+    /// are 20 times the default's.
     #[must_use]
     pub fn papers() -> Self {
         let usual = Self::default();

@@ -63,9 +63,7 @@ impl Account {
     pub(super) fn forget(&mut self, setup: &Setup) {
         self.mirror = Mirror::new(&setup.start);
     }
-}
 
-impl Account {
     /// Returns true if the robot truly saw a cell.
     pub(super) fn has_seen(&self, cell: Cell) -> bool {
         let seen = self.seen.as_ref().unwrap_or(&self.mirror);

@@ -41,6 +41,12 @@ fn map() {
 
 #[test]
 #[ignore = "takes minutes"]
+fn localise() {
+    check("localise");
+}
+
+#[test]
+#[ignore = "takes minutes"]
 fn field() {
     check("field");
 }

@@ -22,7 +22,7 @@
 
 use crate::config::LocaliseTuning;
 use crate::geometry::{CELL_M, Cell, Point};
-use crate::localise::symmetric::Symmetric;
+use crate::localise::symmetric::{Eigen, Symmetric};
 use crate::localise::wall::{INNER, wall};
 use crate::map::{Class, Tiles};
 use crate::math;
@@ -116,30 +116,22 @@ impl Constraints {
     fn without_unobserved(mut self, least: f32) -> Self {
         let h = &self.h;
         let part = if h.tt > 0.0 { 1.0 / h.tt } else { 0.0 };
-        let (xx, xy, yy) = (
+        let eigen = Eigen::of([
             h.xx - h.xt * h.xt * part,
             h.xy - h.xt * h.yt * part,
             h.yy - h.yt * h.yt * part,
-        );
-        let (half_sum, half_gap) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-        let root = math::sqrt(half_gap * half_gap + xy * xy);
-        if half_sum + root < least {
+        ]);
+        if eigen.greatest() < least {
             self.h = Symmetric::default();
             self.b = [0.0; 3];
             self.unobserved = Unobserved::Everything;
             return self;
         }
-        if half_sum - root >= least {
+        if eigen.least() >= least {
             self.unobserved = Unobserved::Nothing;
             return self;
         }
-        let (x, y) = if half_gap > 0.0 {
-            (-xy, half_gap + root)
-        } else {
-            (root - half_gap, -xy)
-        };
-        let length = 1.0 / math::sqrt(x * x + y * y);
-        let direction = [x * length, y * length];
+        let direction = eigen.least_direction();
         self.remove(direction);
         self.unobserved = Unobserved::Direction(direction);
         self

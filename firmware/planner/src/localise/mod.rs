@@ -11,7 +11,7 @@
 //! | `wall` | the piece of wall around a beam's end |
 //! | `alignment` | Gauss–Newton, and directions that the scan does not observe |
 //! | `search` | the wider search of a robot that is lost |
-//! | `symmetric` | 3 × 3 matrices |
+//! | `symmetric` | 3 × 3 matrices, and eigenvalues of 2 × 2 |
 //!
 //! The state is the motion [`MapFromOdom`] and its covariance. Without localisation the motion is
 //! the identity, and every pose passes through unchanged, bit for bit.
@@ -117,14 +117,7 @@ impl Localiser {
         Self {
             odom: None,
             map_from_odom: MapFromOdom::IDENTITY,
-            covariance: Symmetric {
-                xx: 0.0,
-                xy: 0.0,
-                yy: 0.0,
-                xt: 0.0,
-                yt: 0.0,
-                tt: 0.0,
-            },
+            covariance: Symmetric::ZERO,
             quality: Quality::Tracking,
             contradicted: 0,
             search: Search::new(),

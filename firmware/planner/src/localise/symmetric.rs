@@ -1,4 +1,4 @@
-//! Symmetric 3 × 3 matrices over (x, y, yaw): covariances and information.
+//! Symmetric 3 × 3 matrices over (x, y, yaw): covariances and information; eigenvalues over (x, y).
 //!
 //! ```text
 //! A = ⎡ xx xy xt ⎤      A = L D Lᵀ      A⁻¹ column by column
@@ -9,6 +9,8 @@
 //! Units: cells and radians, or metres and radians, as the user says.
 
 use core::ops::Add;
+
+use crate::math;
 
 /// A pivot below this share of its diagonal element is a rounding error.
 const LEAST_PIVOT: f32 = 1e-6;
@@ -25,6 +27,16 @@ pub(crate) struct Symmetric {
 }
 
 impl Symmetric {
+    /// The zero matrix.
+    pub(crate) const ZERO: Self = Self {
+        xx: 0.0,
+        xy: 0.0,
+        yy: 0.0,
+        xt: 0.0,
+        yt: 0.0,
+        tt: 0.0,
+    };
+
     /// Returns the matrix with these diagonal elements.
     pub(crate) fn diagonal(xx: f32, yy: f32, tt: f32) -> Self {
         Self {
@@ -103,6 +115,52 @@ impl Symmetric {
     }
 }
 
+/// The eigenvalues of a symmetric 2 × 2 matrix, and the eigenvector of the least.
+///
+/// ```text
+/// λ = (xx + yy) / 2 ± root,    root² = ((xx − yy) / 2)² + xy²
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Eigen {
+    half_sum: f32,
+    half_gap: f32,
+    xy: f32,
+    /// Half of the difference of the eigenvalues.
+    pub(super) root: f32,
+}
+
+impl Eigen {
+    pub(super) fn of([xx, xy, yy]: [f32; 3]) -> Self {
+        let half_gap = 0.5 * (xx - yy);
+        Self {
+            half_sum: 0.5 * (xx + yy),
+            half_gap,
+            xy,
+            root: math::sqrt(half_gap * half_gap + xy * xy),
+        }
+    }
+
+    pub(super) fn least(&self) -> f32 {
+        self.half_sum - self.root
+    }
+
+    pub(super) fn greatest(&self) -> f32 {
+        self.half_sum + self.root
+    }
+
+    /// Returns the unit eigenvector of the least eigenvalue. The eigenvalues must differ.
+    pub(super) fn least_direction(&self) -> [f32; 2] {
+        // Of the two forms of the eigenvector this one does not cancel.
+        let (x, y) = if self.half_gap > 0.0 {
+            (-self.xy, self.half_gap + self.root)
+        } else {
+            (self.root - self.half_gap, -self.xy)
+        };
+        let length = 1.0 / math::sqrt(x * x + y * y);
+        [x * length, y * length]
+    }
+}
+
 impl Add for Symmetric {
     type Output = Self;
 
@@ -120,7 +178,24 @@ impl Add for Symmetric {
 
 #[cfg(test)]
 mod tests {
-    use super::Symmetric;
+    use super::{Eigen, Symmetric};
+
+    #[test]
+    fn a_matrix_times_its_eigenvector_is_the_multiple() {
+        for [xx, xy, yy] in [
+            [3.0, 1.0, 1.0],
+            [1.0, -2.0, 5.0],
+            [1.0, 0.0, 4.0],
+            [4.0, 0.0, 1.0],
+        ] {
+            let eigen = Eigen::of([xx, xy, yy]);
+            let [x, y] = eigen.least_direction();
+            let least = eigen.least();
+            assert!((xx * x + xy * y - least * x).abs() < 1e-5, "{eigen:?}");
+            assert!((xy * x + yy * y - least * y).abs() < 1e-5, "{eigen:?}");
+            assert!((least + eigen.greatest() - xx - yy).abs() < 1e-5);
+        }
+    }
 
     #[test]
     fn the_inverse_of_the_inverse_is_the_matrix() {

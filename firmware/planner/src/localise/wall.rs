@@ -18,8 +18,8 @@
 //! Units: map cells, from the centre of the square.
 
 use crate::grid::masked;
+use crate::localise::symmetric::Eigen;
 use crate::map::neighbourhood::SQUARE_SIDE;
-use crate::math;
 
 /// A spread with a smaller variance along than this is compact, square cells. Three cells in a row
 /// have 0.67.
@@ -109,27 +109,19 @@ impl Moments {
     fn direction(&self) -> Direction {
         let part = 1.0 / (self.n * self.n) as f32;
         let spread = |sum: i32, a: i32, b: i32| (self.n * sum - a * b) as f32 * part;
-        let (xx, xy, yy) = (
+        let eigen = Eigen::of([
             spread(self.xx, self.x, self.x),
             spread(self.xy, self.x, self.y),
             spread(self.yy, self.y, self.y),
-        );
-        let (half_sum, half_gap) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-        let root = math::sqrt(half_gap * half_gap + xy * xy);
-        if half_sum + root <= COMPACT {
+        ]);
+        if eigen.greatest() <= COMPACT {
             return Direction::Compact;
         }
-        if half_sum - root > THICK || root < 0.5 * COMPACT {
+        if eigen.least() > THICK || eigen.root < 0.5 * COMPACT {
             return Direction::Neither;
         }
-        // Of the two forms of the eigenvector this one does not cancel.
-        let (x, y) = if half_gap > 0.0 {
-            (-xy, half_gap + root)
-        } else {
-            (root - half_gap, -xy)
-        };
-        let length = 1.0 / math::sqrt(x * x + y * y);
-        Direction::Normal(x * length, y * length)
+        let [x, y] = eigen.least_direction();
+        Direction::Normal(x, y)
     }
 }
 

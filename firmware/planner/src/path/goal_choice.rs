@@ -33,7 +33,8 @@ use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::search::PathSearch;
 use crate::path::{Path, PlanningContext, PlanningScratch};
 
-/// Maximum number of candidates. Those farther off wait until the robot is nearer.
+/// Maximum number of candidates. Those farther off wait until the robot is nearer. A round that
+/// finds so many that are not worth their trips does not judge the ones behind them.
 const MOST_CANDIDATES: usize = 64;
 /// Maximum number of candidates that a round judges: a gain costs about 0.1 million instructions.
 pub(crate) const MOST_JUDGED: usize = 24;
@@ -81,7 +82,7 @@ pub(crate) fn is_worth(gain_m2: f32, trip_m: f32, worth: f32) -> bool {
 /// Returns the path to the frontier of the greatest utility; `None` if none that this round judges
 /// is worth the trip: then it lists them. `judged` counts the candidates that the rounds before
 /// judged in vain; it is 0 again after the last of them.
-// Its candidates leave the stack before what comes after the choice is called.
+// A frame of its own: the candidates leave the stack before a way is planned.
 #[inline(never)]
 pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
