@@ -51,7 +51,7 @@ const NEAR_M: f32 = 1.0;
 struct Candidate {
     /// The nearest one, and the steps to it.
     site: Site,
-    steps: u32,
+    steps: u16,
     cells: u16,
 }
 
@@ -82,8 +82,6 @@ pub(crate) fn is_worth(gain_m2: f32, trip_m: f32, worth: f32) -> bool {
 /// Returns the path to the frontier of the greatest utility; `None` if none that this round judges
 /// is worth the trip: then it lists them. `judged` counts the candidates that the rounds before
 /// judged in vain; it is 0 again after the last of them.
-// A frame of its own: the candidates leave the stack before a way is planned.
-#[inline(never)]
 pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
     residual: &mut ResidualFrontiers,
@@ -92,35 +90,48 @@ pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
     judged: &mut usize,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
+    let mut search = PathSearch::open(context.centres()?, scratch)?;
+    let best = best_candidate(&mut search, context, residual, (present, worth), judged)?;
+    let mut path = search.path_from_robot(best.site, best.steps.into());
+    stay_on_level(&mut path, best.site, context, scratch);
+    path.extend(unexplored_beside(path.goal(), context.tiles));
+    Some(path)
+}
+
+/// Returns the candidate of the greatest utility; as [`path_to_best`].
+// A frame of its own: the candidates leave the stack before a way is planned.
+#[inline(never)]
+fn best_candidate<const TILES: usize, const SLOTS: usize>(
+    search: &mut PathSearch<'_, TILES, SLOTS>,
+    context: &PlanningContext<'_, TILES, SLOTS>,
+    residual: &mut ResidualFrontiers,
+    (present, worth): (Option<PresentGoal>, f32),
+    judged: &mut usize,
+) -> Option<Candidate> {
     if *judged == 0 {
         residual.forget_not_worth_it();
     }
     let before = core::mem::take(judged);
-    let centres = context.centres()?;
     let frontier = context.skeleton.frontier()?;
-    let mut search = PathSearch::open(centres, scratch)?;
-    let candidates = candidates(&mut search, context, frontier, residual);
+    let candidates = candidates(search, context, frontier, residual);
     let choice = Choice {
         context,
         frontier,
         present,
         worth,
         most_value: most_value(&context.tuning.order),
-        search: &search,
+        search,
         robot: Heading::of(context),
     };
     let (instalment, next) = instalment(&candidates, before);
-    let Some(best) = choice.best(instalment) else {
+    let best = choice.best(instalment);
+    if best.is_none() {
         *judged = next;
         for candidate in instalment {
-            residual.list_not_worth_it(centres.cell(candidate.site), candidate.cells);
+            residual.list_not_worth_it(search.centres.cell(candidate.site), candidate.cells);
         }
-        return None;
-    };
-    let path = search.path_from_robot(best.site, best.steps);
-    let mut path = path_on_level(&path, best.site, context, scratch).unwrap_or(path);
-    path.extend(unexplored_beside(path.goal(), context.tiles));
-    Some(path)
+    }
+    best
 }
 
 /// Returns the next [`MOST_JUDGED`] after those that were judged before, and how many are judged
@@ -157,7 +168,8 @@ fn candidates<const TILES: usize, const SLOTS: usize>(
             // The farthest ones do not fit.
             let _ = candidates.push(Candidate {
                 site,
-                steps,
+                // The longest way in the map has fewer.
+                steps: u16::try_from(steps).unwrap_or(u16::MAX),
                 cells: 1,
             });
         }
@@ -225,7 +237,7 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
         let tuning: &OrderTuning = &self.context.tuning.order;
         let cell = self.search.centres.cell(candidate.site);
         let level = goal_level(self.context, self.frontier, self.present, candidate.site);
-        let path_m = (candidate.steps + LEVEL_STEPS * level) as f32 * STEP_M;
+        let path_m = (u32::from(candidate.steps) + LEVEL_STEPS * level) as f32 * STEP_M;
         if utility(self.most_value, path_m) <= least {
             return None;
         }
@@ -252,8 +264,21 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
     }
 }
 
-/// For a path that crosses other levels, returns one to the same goal that does not; `None` if
-/// there is none, or it is too long.
+/// Replaces a path that crosses other levels by one to the same goal that does not, if there is one
+/// and it is not too long.
+#[inline(never)]
+fn stay_on_level<const TILES: usize, const SLOTS: usize>(
+    path: &mut Path,
+    goal: Site,
+    context: &PlanningContext<'_, TILES, SLOTS>,
+    scratch: &mut PlanningScratch<'_>,
+) {
+    if let Some(detour) = path_on_level(path, goal, context, scratch) {
+        *path = detour;
+    }
+}
+
+/// Returns the path to the same goal on its level.
 fn path_on_level<const TILES: usize, const SLOTS: usize>(
     path: &Path,
     goal: Site,
