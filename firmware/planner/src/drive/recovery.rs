@@ -113,6 +113,7 @@ impl Search {
                     nodes,
                     Node {
                         rank: cost,
+                        parent: index,
                         is_end: true,
                         ..node
                     },

@@ -1,8 +1,8 @@
 //! Ways out of dead ends, corners and boxes made of points.
 
-use crate::drive::CollisionChecker;
 use crate::drive::recovery::*;
 use crate::drive::search_query::Leads;
+use crate::drive::{ALIGNED_RAD, CollisionChecker};
 use crate::geometry::{Point, Pose};
 use crate::robot::RobotShape;
 
@@ -79,6 +79,25 @@ fn it_backs_out_of_a_dead_end() {
     };
     let (end, _) = drive_out(&dead_end, askew, math::PI);
     assert!(end.yaw_rad.abs() < 0.4 && end.x_m < -0.2, "{end:?}");
+}
+
+/// Askew in a doorway of 0.65 m, with the field behind it: it straightens up before it backs out.
+#[test]
+fn it_straightens_up_in_a_door_before_it_backs_out() {
+    let door = walls(&[[-0.3, 0.325, -0.1, 0.325], [-0.3, -0.325, -0.1, -0.325]]);
+    for yaw_rad in [-0.2, 0.2] {
+        let askew = Pose {
+            yaw_rad,
+            ..Pose::default()
+        };
+        let (end, periods) = drive_out(&door, askew, math::PI);
+        let yaw = askew.yaw_rad + end.yaw_rad;
+        assert!(yaw.abs() < ALIGNED_RAD && end.x_m < -0.15, "{end:?}");
+        assert!(
+            periods > 2 * usize::from(GO_ON_MOTIONS),
+            "it only backs out"
+        );
+    }
 }
 
 /// Wedged at a slant in an L of 0.72 m: it gets round the corner.
