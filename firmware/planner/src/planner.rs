@@ -190,7 +190,10 @@ fn explore<const TILES: usize, const SLOTS: usize>(
                 ..Output::default()
             };
         };
-        charge(workspace, &goal);
+        if goal.is_closed {
+            state.strategy.frontier.note_closed();
+        }
+        charge(workspace, &goal.cells);
     }
     if let Some(ground) = &config.ground {
         prefer(ground, state, workspace, &input);

@@ -11,9 +11,9 @@
 
 use heapless::Vec;
 
-use crate::field::SIDE;
-use crate::field::local_grid::{LocalGrid, Rows};
+use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Point};
+use crate::path::open_stretch::OpenStretch;
 use crate::path::{Path, PlanningContext};
 use crate::roadmap::skeleton::Skeleton;
 
@@ -79,23 +79,16 @@ impl BlockedPassages {
     }
 }
 
-/// Returns the first cell of the path that the passable cells of the local grid do not lead to.
+/// Returns the first cell of the path that the local grid has no way to.
 pub(crate) fn first_unreachable<const TILES: usize, const SLOTS: usize>(
     path: &Path,
     context: &PlanningContext<'_, TILES, SLOTS>,
     grid: &mut LocalGrid,
 ) -> Option<Cell> {
-    let robot = context.pose.point().cell();
-    grid.update(context.tiles, context.footprint, robot, 1);
-    grid.free_robot(robot);
-    let reached = grid.reachable(robot)?;
-    let mut parts: Rows = [0; SIDE];
-    path.cells().iter().copied().find(|&cell| {
-        parts.fill(0);
-        grid.mark(&mut parts, cell);
-        let mut rows = parts.iter().zip(&reached);
-        rows.all(|(part, reached)| part & reached == 0)
-    })
+    let robot = context.pose.point();
+    grid.update(context.tiles, context.footprint, robot.cell(), 1);
+    grid.free_robot(robot.cell());
+    OpenStretch::of(grid, robot.cell(), path.ahead_of(robot)).closed
 }
 
 /// Returns the first cell of the path that is [`AHEAD_M`] away from the robot.

@@ -154,9 +154,9 @@ impl Path {
         &self.cells
     }
 
-    /// Returns the cells that may be the local goal, the best first: from the last one in the
-    /// circle back to the one nearest to the robot.
-    pub(crate) fn local_goals(&self, robot: Point) -> impl Iterator<Item = Cell> + '_ {
+    /// Returns the cells that may be the local goal: from the one nearest to the robot to the last
+    /// one in the circle.
+    pub(crate) fn ahead_of(&self, robot: Point) -> &[Cell] {
         let distance2 = |cell: &Cell| centre(*cell).distance2(robot);
         let ahead = self
             .cells
@@ -177,13 +177,8 @@ impl Path {
         let beyond = self.cells.get(nearest..end).unwrap_or_default();
         let within = beyond
             .iter()
-            .take_while(move |cell| distance2(cell) <= LOCAL_GOAL_M * LOCAL_GOAL_M)
+            .take_while(|cell| distance2(cell) <= LOCAL_GOAL_M * LOCAL_GOAL_M)
             .count();
-        beyond
-            .get(..within.max(1))
-            .unwrap_or(beyond)
-            .iter()
-            .rev()
-            .copied()
+        beyond.get(..within.max(1)).unwrap_or(beyond)
     }
 }

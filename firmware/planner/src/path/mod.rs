@@ -31,6 +31,7 @@ pub(crate) mod goal_cost;
 pub(crate) mod height_levels;
 pub(crate) mod map_exits;
 pub(crate) mod nearest;
+pub(crate) mod open_stretch;
 pub(crate) mod progress;
 pub(crate) mod rays;
 pub(crate) mod residual_frontiers;

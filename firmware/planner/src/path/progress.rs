@@ -29,8 +29,8 @@ const STANDING_MS: u32 = 14_000;
 const MOVED_M: f32 = 0.3;
 /// Passages blocked in a row without a move after which the robot is stuck.
 const STUCK_PASSAGES: u8 = 4;
-/// Rounds in a row with a flat field at the robot after which the passage is blocked.
-const FLAT_ROUNDS: u8 = 4;
+/// Rounds in a row with a closed path after which the passage is blocked.
+const CLOSED_ROUNDS: u8 = 4;
 
 /// Maximum number of goals that are remembered.
 const MOST_GOALS: usize = 8;
@@ -83,9 +83,9 @@ pub(crate) struct ProgressChecker {
     moved_ms: u32,
     /// The robot moved since the present try began.
     moved: bool,
-    /// The field was flat at the robot since the last round, and the number of such rounds before.
-    flat: bool,
-    flat_rounds: u8,
+    /// The path was closed since the last round, and the number of such rounds before.
+    closed: bool,
+    closed_rounds: u8,
 }
 
 impl ProgressChecker {
@@ -98,14 +98,14 @@ impl ProgressChecker {
             stood_passages: 0,
             moved_ms: 0,
             moved: false,
-            flat: false,
-            flat_rounds: 0,
+            closed: false,
+            closed_rounds: 0,
         }
     }
 
-    /// Notes that the field is flat at the robot: the local grid has no way to the local goal.
-    pub(crate) fn note_flat(&mut self) {
-        self.flat = true;
+    /// Notes that the local grid has no way along the path, or that the field is flat at the robot.
+    pub(crate) fn note_closed(&mut self) {
+        self.closed = true;
     }
 
     /// Notes where the robot is.
@@ -124,7 +124,7 @@ impl ProgressChecker {
     /// Notes that the robot waits for another one. The wait does not count.
     pub(crate) fn pause(&mut self, time_ms: u32) {
         (self.judged_ms, self.stood_ms, self.moved_ms) = (time_ms, time_ms, time_ms);
-        self.flat = false;
+        self.closed = false;
     }
 
     /// Forgets the progress towards a goal.
@@ -152,10 +152,14 @@ impl ProgressChecker {
     /// Judges the progress towards the present goal, which is `steps` away.
     pub(crate) fn judge(&mut self, goal: Cell, steps: u32, time_ms: u32) -> Verdict {
         let idle_ms = self.note_goal(goal, steps, time_ms);
-        self.flat_rounds = if self.flat { self.flat_rounds + 1 } else { 0 };
-        self.flat = false;
-        if self.flat_rounds >= FLAT_ROUNDS {
-            self.flat_rounds = 0;
+        self.closed_rounds = if self.closed {
+            self.closed_rounds + 1
+        } else {
+            0
+        };
+        self.closed = false;
+        if self.closed_rounds >= CLOSED_ROUNDS {
+            self.closed_rounds = 0;
             return Verdict::BlockUnreachable;
         }
         let reached = steps <= REACHED_STEPS;

@@ -9,36 +9,60 @@ use crate::field::local_grid::{LocalGrid, Rows, SCALES};
 use crate::geometry::Cell;
 use crate::input::Input;
 use crate::path::nearest::Centres;
+use crate::path::open_stretch::OpenStretch;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 use crate::roadmap::configuration_space::Footprint;
 
-/// Fills the local grid at the smallest scale that holds a local goal. Returns the goal's cells in
-/// it; `None` if there is no path, or no scale holds a goal.
+/// The local goal on the path.
+pub(super) struct LocalGoal {
+    /// Its cells in the local grid.
+    pub(super) cells: Rows,
+    /// The path is closed behind it, or before it.
+    pub(super) is_closed: bool,
+}
+
+/// Fills the local grid at the smallest scale that holds a local goal. Returns the goal; `None` if
+/// there is no path, or no scale holds a goal.
 pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &State<TILES, SLOTS>,
     footprint: &Footprint,
     input: &Input<'_>,
     grid: &mut LocalGrid,
-) -> Option<Rows> {
+) -> Option<LocalGoal> {
     let (robot, path) = (input.pose.point(), state.strategy.frontier.path());
     if path.is_empty() {
         return None;
     }
     let tiles = state.map.tiles();
+    let ahead = path.ahead_of(robot);
     SCALES.iter().find_map(|&scale| {
         grid.update(tiles, footprint, robot.cell(), scale);
-        if let Some(shield) = state.strategy.shield() {
+        let shield = state.strategy.shield();
+        if let Some(shield) = shield {
             shield.cells().for_each(|cell| grid.block(cell));
         }
         grid.free_robot(robot.cell());
         state
             .ground
             .block_rims(config, tiles, footprint, robot, grid);
+        // A shield is there to be gone round.
+        let stretch = match shield {
+            Some(_) => OpenStretch::default(),
+            None => OpenStretch::of(grid, robot.cell(), ahead),
+        };
         state.block_peers(footprint, input, grid, None);
-        path.local_goals(robot)
-            .find_map(|cell| goal_cells(grid, cell))
+        // Behind the open stretch a goal counts only if there is none before.
+        let open = ahead
+            .iter()
+            .rev()
+            .skip_while(|&&cell| stretch.last.is_some_and(|last| last != cell));
+        let cells = open.copied().find_map(|cell| goal_cells(grid, cell))?;
+        Some(LocalGoal {
+            cells,
+            is_closed: stretch.closed.is_some(),
+        })
     })
 }
 

@@ -197,7 +197,8 @@ fn is_blocked<const TILES: usize, const SLOTS: usize>(
         grid.mark(&mut goal, cell) && has_any(&common(&goal, &reached(grid, robot)))
     };
     let path = state.strategy.frontier.path();
-    let goal = path.local_goals(robot).find(|&cell| leads(grid, cell));
+    let mut ahead = path.ahead_of(robot).iter().rev().copied();
+    let goal = ahead.find(|&cell| leads(grid, cell));
     state.block_peers(footprint, input, grid, None);
     goal.is_some_and(|cell| !leads(grid, cell))
 }

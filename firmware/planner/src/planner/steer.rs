@@ -94,7 +94,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         // The field has no gradient in the goal's own cell: look around until the cell is explored.
         state.drive.look_around(config, &checker, input.velocity)
     } else {
-        state.strategy.frontier.note_flat();
+        state.strategy.frontier.note_closed();
         Twist::default()
     };
     let velocity = if is_stalled(state, velocity, input.time_ms) {

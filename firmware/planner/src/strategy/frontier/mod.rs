@@ -366,10 +366,9 @@ impl Frontier {
         Some((viewpoint, path?))
     }
 
-    /// Notes that the field is flat at the robot: the local grid has no way to the local goal,
-    /// although the coarser skeleton has one.
-    pub(crate) fn note_flat(&mut self) {
-        self.progress.note_flat();
+    /// Notes that the local grid has no way along the path, although the coarser skeleton has one.
+    pub(crate) fn note_closed(&mut self) {
+        self.progress.note_closed();
     }
 
     /// Decides what to try when no frontier is within reach.
