@@ -19,7 +19,7 @@ fn team(id: usize, ports: &[u16; 3], key: &Path) -> String {
     let others = (0..3).filter(|k| *k != id);
     let peers: Vec<String> = others.map(|k| format!("127.0.0.1:{}", ports[k])).collect();
     format!(
-        "id={id},bind=127.0.0.1:{},peers={},key={},pace=20",
+        "id={id},bind=127.0.0.1:{},peers={},key={},pace=6",
         ports[id],
         peers.join("+"),
         key.display()
@@ -65,7 +65,7 @@ fn three_processes_are_a_team_and_one_is_killed_and_started_again() {
     std::fs::write(&key, KEY).expect("written");
     let begin = |id: usize| start(folder, "office", id, &team(id, &ports, &key));
     let [zero, one, mut two] = [0, 1, 2].map(begin);
-    std::thread::sleep(Duration::from_millis(1_500));
+    std::thread::sleep(Duration::from_millis(4_000));
     two.kill().expect("killed");
     two.wait().expect("ended");
     // Strangers and garbage, while the robots drive.

@@ -104,10 +104,12 @@ pub(super) struct ExploreArgs {
         allow_negative_numbers = true
     )]
     pub(super) start: usize,
-    /// Source of the pose that the planner is told
-    #[arg(long, value_enum, default_value_t = OdometryArg::Truth)]
-    pub(super) odometry: OdometryArg,
-    /// Correct odometry by the level scan, on flat ground [default: on, off with --odometry truth]
+    /// Source of the pose that the planner is told [default: noisy; truth on uneven ground, for
+    /// baselines and with --team]
+    #[arg(long, value_enum)]
+    pub(super) odometry: Option<OdometryArg>,
+    /// Correct odometry by the level scan, on flat ground [default: on; off with odometry truth and
+    /// for baselines]
     #[arg(long, value_enum, value_name = "on|off", hide_possible_values = true)]
     pub(super) localise: Option<SwitchArg>,
     /// Standard deviation of roll and pitch, degrees [default: 0 with truth, else 0.5]
@@ -202,7 +204,7 @@ impl Default for ExploreArgs {
             link: None,
             seed: 0,
             start: 0,
-            odometry: OdometryArg::Truth,
+            odometry: None,
             localise: None,
             imu_noise: None,
             laser_noise: None,

@@ -275,18 +275,30 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
              lower the first or raise the second"
         );
     }
+    let uneven_ground = uneven_ground(args)?;
+    let odometry = args.odometry.unwrap_or_else(|| {
+        // Where nothing corrects a drift, or nothing aligns the maps of several robots, poses are
+        // true unless the user says otherwise.
+        let drifts =
+            uneven_ground.is_none() && on_device(&args.strategy).is_some() && args.team.is_none();
+        if drifts {
+            OdometryArg::Noisy
+        } else {
+            OdometryArg::Truth
+        }
+    });
     Ok(args.robot.applied(Mission {
         order: args.robot.order(&args.strategy)?,
         strategy: args.strategy.clone(),
-        uneven_ground: uneven_ground(args)?,
+        uneven_ground,
         link: link.to_string(),
         fault: args.fault.as_ref().map(|fault| fault.text.clone()),
         seed: args.seed,
         start: args.start,
-        odometry: args.odometry.into(),
+        odometry: odometry.into(),
         localise: match args.localise {
             Some(switch) => switch == SwitchArg::On,
-            None => args.odometry != OdometryArg::Truth,
+            None => odometry != OdometryArg::Truth,
         },
         imu_rad: args.imu_noise.map(f64::to_radians),
         laser_m: args.laser_noise,

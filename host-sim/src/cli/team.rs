@@ -176,7 +176,7 @@ fn common(args: &TeamArgs, start: usize) -> ExploreArgs {
         ground: args.ground,
         seed: args.seed,
         start,
-        odometry: args.odometry,
+        odometry: Some(args.odometry),
         time_limit: args.time_limit,
         robot: args.robot.clone(),
         ..ExploreArgs::default()

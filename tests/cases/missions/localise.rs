@@ -159,12 +159,10 @@ mod full {
     use super::{CORRIDORS, OdometryProfile, ROOMS, check, drives, worlds};
 
     #[test]
-    #[ignore = "takes minutes: 120 runs; tests/run --full runs it"]
-    fn drift_in_every_flat_world_with_five_seeds() {
+    #[ignore = "takes minutes: 600 runs; tests/run --full runs it"]
+    fn drift_in_every_flat_world_with_fifteen_seeds() {
         let worlds = worlds::builtins(&[&ROOMS[..], &CORRIDORS].concat());
-        check(
-            "localise-full",
-            &drives(&worlds, &(0..5), &[OdometryProfile::Noisy]),
-        );
+        let profiles = [OdometryProfile::Noisy, OdometryProfile::Papers];
+        check("localise-full", &drives(&worlds, &(0..15), &profiles));
     }
 }
