@@ -265,6 +265,16 @@ fn check_reference(mission: &Mission) -> Result<()> {
     Ok(())
 }
 
+/// Returns the odometry of a run whose user names none: it drifts where the device corrects it, and
+/// is true where nothing does, or nothing aligns the maps of several robots.
+fn default_odometry(args: &ExploreArgs, is_flat: bool) -> OdometryArg {
+    if is_flat && on_device(&args.strategy).is_some() && args.team.is_none() {
+        OdometryArg::Noisy
+    } else {
+        OdometryArg::Truth
+    }
+}
+
 /// Returns the settings of a run.
 pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     let working = args.working_limits.unwrap_or(Limits::WORKING);
@@ -276,17 +286,9 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         );
     }
     let uneven_ground = uneven_ground(args)?;
-    let odometry = args.odometry.unwrap_or_else(|| {
-        // Where nothing corrects a drift, or nothing aligns the maps of several robots, poses are
-        // true unless the user says otherwise.
-        let drifts =
-            uneven_ground.is_none() && on_device(&args.strategy).is_some() && args.team.is_none();
-        if drifts {
-            OdometryArg::Noisy
-        } else {
-            OdometryArg::Truth
-        }
-    });
+    let odometry = args
+        .odometry
+        .unwrap_or_else(|| default_odometry(args, uneven_ground.is_none()));
     Ok(args.robot.applied(Mission {
         order: args.robot.order(&args.strategy)?,
         strategy: args.strategy.clone(),

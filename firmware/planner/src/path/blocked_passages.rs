@@ -88,7 +88,7 @@ pub(crate) fn first_unreachable<const TILES: usize, const SLOTS: usize>(
     let robot = context.pose.point();
     grid.update(context.tiles, context.footprint, robot.cell(), 1);
     grid.free_robot(robot.cell());
-    OpenStretch::of(grid, robot.cell(), path.ahead_of(robot)).closed
+    OpenStretch::of(grid, robot.cell(), path.ahead_of(robot)).next
 }
 
 /// Returns the first cell of the path that is [`AHEAD_M`] away from the robot.

@@ -4,9 +4,13 @@
 //! | file | what it holds |
 //! | --- | --- |
 //! | [`context`] | the inputs of a planning round, its scratch memory, and its outcome |
-//! | [`cell_path`] | the path to the present goal, and the local goal on it |
+//! | [`cell_path`] | the path to the present goal, and the cells on it that may be the local goal |
+//! | [`open_stretch`] | how far the local grid leads along the path: the last cell is the local goal |
 //! | [`nearest`], [`centres`] | centre cells: the nearest to a place, by place, by map class |
 //! | [`search`] | a wave over centre cells and the path down it |
+//! | [`robot_wave`] | a wave from the robot over centre cells, and the paths back to it |
+//! | [`goal_choice`] | the frontier of the greatest utility, and if it is worth the trip |
+//! | [`gain`], [`rays`] | what a robot at a goal would see |
 //! | [`frontier_path`] | the path to the frontier of the least cost |
 //! | [`goal_cost`] | the delay after which a frontier cell's wave starts |
 //! | [`height_levels`] | the height of the ground, and the level of goals |

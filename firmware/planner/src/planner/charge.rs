@@ -18,7 +18,7 @@ use crate::roadmap::configuration_space::Footprint;
 pub(super) struct LocalGoal {
     /// Its cells in the local grid.
     pub(super) cells: Rows,
-    /// The path is closed behind it, or before it.
+    /// The local grid does not lead along the path as far as the goal could lie.
     pub(super) is_closed: bool,
 }
 
@@ -53,7 +53,7 @@ pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
             None => OpenStretch::of(grid, robot.cell(), ahead),
         };
         state.block_peers(footprint, input, grid, None);
-        // Behind the open stretch a goal counts only if there is none before.
+        // A goal behind the open stretch counts only if no cell is open.
         let open = ahead
             .iter()
             .rev()
@@ -61,7 +61,7 @@ pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
         let cells = open.copied().find_map(|cell| goal_cells(grid, cell))?;
         Some(LocalGoal {
             cells,
-            is_closed: stretch.closed.is_some(),
+            is_closed: stretch.is_closed,
         })
     })
 }
