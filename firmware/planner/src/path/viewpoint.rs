@@ -47,8 +47,8 @@ const LEAST_EDGE: u32 = 3;
 /// Gaps of a block from which rays start.
 const TRIES: u32 = 4;
 /// Limits of an instalment: tiles loaded, sweeps of the flood, cells on rays. With 60,000 cells the
-/// longest step of `cluttered` took 8.5 million instructions, and no run ended earlier. The last
-/// block may add `TRIES · RAYS · (MOST_ON + MOST_BACK)` = 23,000 cells.
+/// longest step of `cluttered` took 8.5 million instructions. The last block may add
+/// `TRIES · RAYS · (MOST_ON + MOST_BACK)` = 23,000 cells.
 const TILES_PER_STEP: u16 = 120;
 const SWEEPS_PER_STEP: u32 = 9;
 const CELLS_PER_STEP: i32 = 20_000;
