@@ -52,15 +52,14 @@ impl OpenStretch {
         };
         let mut reached: Rows = [0; SIDE];
         LocalGrid::put(&mut reached, place);
-        let mut changed = place.1..place.1 + 1;
         let (mut steps, mut length, mut before) = (0, 0, robot);
         for &cell in path {
             length += cell.x.abs_diff(before.x) + cell.y.abs_diff(before.y);
             before = cell;
             let most = (length + DETOUR_CELLS) / grid.scale.unsigned_abs().max(1);
-            while steps < most && !changed.is_empty() {
-                let wider = changed.start.saturating_sub(1)..(changed.end + 1).min(SIDE);
-                changed = flood::grow(&grid.passable, &mut reached, wider);
+            // In the open, to follow the rows that change costs more than to grow all.
+            while steps < most {
+                flood::grow(&grid.passable, &mut reached, 0..SIDE);
                 steps += 1;
             }
             let mut parts: Rows = [0; SIDE];
