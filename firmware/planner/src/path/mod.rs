@@ -5,7 +5,7 @@
 //! | --- | --- |
 //! | [`context`] | the inputs of a planning round, its scratch memory, and its outcome |
 //! | [`cell_path`] | the path to the present goal, and the cells on it that may be the local goal |
-//! | [`open_stretch`] | how far the local grid leads along the path: the last cell is the local goal |
+//! | [`open_stretch`] | how far the local grid leads along the path: its last cell is the goal |
 //! | [`nearest`], [`centres`] | centre cells: the nearest to a place, by place, by map class |
 //! | [`search`] | a wave over centre cells and the path down it |
 //! | [`robot_wave`] | a wave from the robot over centre cells, and the paths back to it |
