@@ -41,6 +41,8 @@ impl fmt::Display for Parameter {
             }
             Self::Worth => "the worth of a trip must be within 0 and 7 m²/m",
             Self::LoopLimits => "the limits of loops must be at least 0",
+            Self::Area => "the area must have sides of 0.1 to 128 m within 3200 m of the origin",
+            Self::Coverage => "the target coverage must be 1 to 1000 thousandths",
         })
     }
 }

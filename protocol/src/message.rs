@@ -44,7 +44,7 @@ pub use readout::{
 pub use refusal::{Parameter, Refusal};
 pub use residual::{MAX_FRONTIERS, ResidualFrontier, ResidualReason};
 pub use session::{
-    Control, Hull, Laser, LoopLimits, Order, Preference, Start, Strategy, UnevenGround,
+    Control, Hull, Laser, LoopLimits, Order, Preference, SpaceField, Start, Strategy, UnevenGround,
 };
 pub use team::{
     Activity, Beacon, Body, DIGEST_TILES, Digest, Member, Packet, ROAD_POINTS, ROAD_UNIT_CM, Team,

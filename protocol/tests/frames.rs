@@ -96,10 +96,12 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         range_limit_mm: u16::MAX,
     };
     let start = Request::Control(Control::Start(Start {
-        strategy: message::Strategy::Tdbvp {
-            patrol_s: u16::MAX,
+        strategy: message::Strategy::Esbpf(message::SpaceField {
+            origin: (farthest, farthest),
+            size: (farthest, farthest),
+            until_permille: u16::MAX,
             impatience_s: Some(u16::MAX),
-        },
+        }),
         box_tiles: (255, 255),
         lasers: [laser; MAX_SCANS].into_iter().collect(),
         hull: Hull {

@@ -37,6 +37,9 @@ pub const PUBLISHED: [&str; 7] = [
     "tdbvp-floor",
 ];
 
+/// Built-in worlds of the space-based potential field \[Kenealy15\].
+pub const SPACE: [&str; 3] = ["two-rooms", "c-room", "partition"];
+
 /// Returns a built-in world.
 ///
 /// # Panics
@@ -98,7 +101,7 @@ fn all_drawn_by_others() -> Vec<World> {
 
 #[cfg(test)]
 mod tests {
-    use super::{EXPLORABLE, PUBLISHED, SPECIAL, UNEVEN};
+    use super::{EXPLORABLE, PUBLISHED, SPACE, SPECIAL, UNEVEN};
 
     #[test]
     fn every_built_in_world_is_of_one_kind() {
@@ -107,6 +110,7 @@ mod tests {
             .chain(&SPECIAL)
             .chain(&UNEVEN)
             .chain(&PUBLISHED)
+            .chain(&SPACE)
             .copied()
             .collect();
         let mut there: Vec<_> = host_sim::world::builtins()

@@ -7,8 +7,9 @@
 //! the same bits on every machine.
 
 use fieldline_planner::{
-    self as planner, Cell, Config, Input, LaserMount, LoopCounts, LoopLimits, Order, Parameter,
-    Pose, PreferenceMode, ResidualReason, RobotShape, State, Strategy, Tuning, Twist, UnevenGround,
+    self as planner, Area, Cell, Config, Input, LaserMount, LoopCounts, LoopLimits, Order,
+    Parameter, Pose, PreferenceMode, ResidualReason, RobotShape, SpaceField, State, Strategy,
+    Tuning, Twist, UnevenGround,
 };
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
@@ -149,6 +150,15 @@ fn loop_limits(limits: &wire::LoopLimits) -> LoopLimits {
     }
 }
 
+fn space_field(field: &wire::SpaceField) -> SpaceField {
+    let [origin, size] = [field.origin, field.size].map(|(x, y)| (float(x), float(y)));
+    SpaceField {
+        area: Area::of_metres(origin, size),
+        until_permille: field.until_permille,
+        impatience_s: field.impatience_s,
+    }
+}
+
 /// Converts the parameters of a session from the wire. The planner checks them.
 ///
 /// # Errors
@@ -167,6 +177,8 @@ pub fn config(start: &wire::Start, tuning: &'static Tuning) -> Result<Config, wi
                 patrol_s,
                 impatience_s,
             },
+            wire::Strategy::Sbpf(field) => Strategy::Sbpf(space_field(&field)),
+            wire::Strategy::Esbpf(field) => Strategy::Esbpf(space_field(&field)),
         })
         .order(order(start.order))
         .loops(loop_limits(&start.loops))
@@ -209,6 +221,8 @@ const fn wire_parameter(parameter: Parameter) -> wire::Parameter {
         Parameter::AngularAccel => wire::Parameter::AngularAccel,
         Parameter::Period => wire::Parameter::Period,
         Parameter::LeastPreference | Parameter::MostPreference => wire::Parameter::Preference,
+        Parameter::Area => wire::Parameter::Area,
+        Parameter::Coverage => wire::Parameter::Coverage,
         Parameter::LoopLimits => wire::Parameter::LoopLimits,
         Parameter::Worth => wire::Parameter::Worth,
         // The solver's parameters do not come from the wire.
@@ -223,6 +237,8 @@ pub(crate) fn wire_status(status: planner::Status) -> wire::Status {
         planner::Status::Finished(finish) => wire::Status::Finished(match finish {
             planner::Finish::Explored => wire::Finish::Explored,
             planner::Finish::BoxedIn => wire::Finish::BoxedIn,
+            planner::Finish::Covered => wire::Finish::Covered,
+            planner::Finish::NothingAttracts => wire::Finish::NothingAttracts,
         }),
         planner::Status::Fault(fault) => wire::Status::Fault(match fault {
             planner::Fault::StartBlocked => wire::Fault::StartBlocked,
@@ -230,6 +246,7 @@ pub(crate) fn wire_status(status: planner::Status) -> wire::Status {
             planner::Fault::OutOfBox => wire::Fault::OutOfBox,
             planner::Fault::Stuck => wire::Fault::Stuck,
             planner::Fault::PoseLost => wire::Fault::PoseLost,
+            planner::Fault::Trapped => wire::Fault::Trapped,
         }),
     }
 }

@@ -148,13 +148,14 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if state.localiser.has_given_up() {
         state.status = Status::Fault(Fault::PoseLost);
     }
-    if state.localiser.is_lost() {
+    if state.localiser.is_lost() || state.status != Status::Exploring {
         return Output::standing(state.status);
     }
     // A search for a recovery owns the scratch: the robot stands and plans nothing until it is
     // over.
     if state.drive.is_searching() {
-        let output = steer(config, state, workspace, &input);
+        let lead_rad = state.strategy.heading_rad();
+        let output = steer(config, state, workspace, &input, lead_rad);
         timer.mark(Stage::Drive);
         return output;
     }
@@ -181,6 +182,10 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     } else if matches!(way, Way::Hold) {
         timer.mark(Stage::Window);
         return Output::default();
+    } else if let Some(heading_rad) = state.strategy.heading_rad() {
+        let output = steer(config, state, workspace, &input, Some(heading_rad));
+        timer.mark(Stage::Drive);
+        return output;
     } else if charge_rails(config, state, workspace, &footprint, &input).is_none() {
         let Some(goal) = local_goal(config, state, &footprint, &input, &mut workspace.local_grid)
         else {
@@ -208,7 +213,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     let output = Output {
         cycles: solution.cycles + solution.sweeps,
         budget_exhausted: solution.stop == Stop::Budget,
-        ..steer(config, state, workspace, &input)
+        ..steer(config, state, workspace, &input, None)
     };
     timer.mark(Stage::Drive);
     output
@@ -276,6 +281,15 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         &mut state.map,
         &mut state.preferences,
     );
+    let peers = state.team.peers().iter();
+    for peer in peers.filter(|peer| peer.has_claims(input.time_ms)) {
+        let place = peer.pose(input.time_ms).point();
+        state.strategy.note_peer(place);
+    }
+    let (robot, tiles) = (input.pose.point(), state.map.tiles());
+    if let Some(end) = state.strategy.survey(tiles, robot, input.time_ms, config) {
+        state.status = end;
+    }
     // Wheels that slip on a slope are no contact.
     if let GroundModel::Flat(points) = &mut state.ground
         && let Some(contact) = state.drive.feel(config, input.velocity)

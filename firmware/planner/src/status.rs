@@ -35,6 +35,10 @@ pub enum Finish {
     Explored,
     /// Less than one square metre is free around the robot.
     BoxedIn,
+    /// The target coverage of the area is reached.
+    Covered,
+    /// No cell of the area attracts the robot, below the target coverage.
+    NothingAttracts,
 }
 
 /// The reason why the planner cannot continue.
@@ -50,6 +54,8 @@ pub enum Fault {
     Stuck,
     /// The robot does not know where it is: the search around its last place found nothing.
     PoseLost,
+    /// The forces of a space-based potential field led the robot to no new cell for too long.
+    Trapped,
 }
 
 /// The reason why a frontier was left.
@@ -101,6 +107,8 @@ impl fmt::Display for Finish {
         f.write_str(match self {
             Self::Explored => "explored",
             Self::BoxedIn => "boxed in",
+            Self::Covered => "covered",
+            Self::NothingAttracts => "nothing attracts",
         })
     }
 }
@@ -113,6 +121,7 @@ impl fmt::Display for Fault {
             Self::OutOfBox => "a path leads out of the map's box",
             Self::Stuck => "the robot is stuck",
             Self::PoseLost => "the robot does not know where it is",
+            Self::Trapped => "the forces lead nowhere",
         })
     }
 }

@@ -10,6 +10,7 @@ use host_sim::link::spec::LinkSpec;
 use host_sim::network::spec::TeamSpec;
 use host_sim::robot::{Limits, LimitsError};
 use host_sim::trial::mission::OdometryProfile;
+use host_sim::trial::space::Area;
 use host_sim::trial::uneven::{self, ParameterError};
 
 use super::robot::RobotArgs;
@@ -144,6 +145,17 @@ pub(super) struct ExploreArgs {
         allow_negative_numbers = true
     )]
     pub(super) patrol_for: u16,
+    /// Share of the area whose coverage ends the run, above 0, at most 1; for sbpf and esbpf
+    #[arg(long, value_name = "SHARE", value_parser = until)]
+    pub(super) until: Option<u16>,
+    /// Known area to explore, least x and y, width and height in metres, as in 0.2,0.2,10,8; for
+    /// sbpf and esbpf [default: the bounds of the world's floor]
+    #[arg(long, value_name = "X,Y,W,H", value_parser = area, allow_negative_numbers = true)]
+    pub(super) area: Option<Area>,
+    /// Simulated seconds without a newly covered cell after which sbpf or esbpf follows a path to
+    /// a frontier, or never [default: never for sbpf, 5 for esbpf]
+    #[arg(long, value_name = "S", value_parser = impatience)]
+    pub(super) sbpf_impatience: Option<Impatience>,
     /// Simulated seconds without a new place after which tdbvp follows a path to what is left to
     /// explore [default: 15]
     #[arg(
@@ -212,6 +224,9 @@ impl Default for ExploreArgs {
             failing_limits: None,
             time_limit: 3_600_000,
             patrol_for: 0,
+            until: None,
+            area: None,
+            sbpf_impatience: None,
             tdbvp_impatience: None,
             out: None,
             realtime: false,
@@ -356,6 +371,33 @@ fn patrol_for(text: &str) -> Result<u16, String> {
     whole(text, u64::from(u16::MAX)).map(|number| number as u16)
 }
 
+/// Parses an area.
+fn area(text: &str) -> Result<Area, String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .filter_map(|part| part.trim().parse().ok())
+        .collect();
+    match numbers[..] {
+        [x, y, width, height]
+            if x.abs().max(y.abs()) <= 3_200.0
+                && [width, height]
+                    .iter()
+                    .all(|side| (0.1..=128.0).contains(side)) =>
+        {
+            Ok([x, y, width, height])
+        }
+        _ => Err("give x,y,width,height in metres, with sides of 0.1 to 128".into()),
+    }
+}
+
+/// Parses a share; returns thousandths.
+pub(super) fn until(text: &str) -> Result<u16, String> {
+    match text.parse::<f64>() {
+        Ok(share) if (0.001..=1.0).contains(&share) => Ok((share * 1000.0).round() as u16),
+        _ => Err("give a share from 0.001 to 1".into()),
+    }
+}
+
 /// Parses seconds without a new place.
 fn impatience(text: &str) -> Result<Impatience, String> {
     if text == "never" {
@@ -425,8 +467,8 @@ fn map_shape(text: &str) -> Result<(u8, u8), String> {
 #[cfg(test)]
 mod tests {
     use super::{
-        Cli, ExploreArgs, Impatience, impatience, imu_noise, laser_noise, map_shape, snapshots,
-        time_limit,
+        Cli, ExploreArgs, Impatience, area, impatience, imu_noise, laser_noise, map_shape,
+        snapshots, time_limit, until,
     };
     use clap::{CommandFactory as _, Parser as _};
 
@@ -456,6 +498,19 @@ mod tests {
         assert_eq!(impatience("never"), Ok(Impatience(None)));
         assert_eq!(impatience("60"), Ok(Impatience(Some(60))));
         assert!(impatience("65536").is_err() && impatience("ever").is_err());
+        assert_eq!((until("0.9"), until("1")), (Ok(900), Ok(1_000)));
+        assert!(until("0").is_err() && until("1.1").is_err() && until("all").is_err());
+        assert_eq!(area("-1,0.5, 10,8"), Ok([-1.0, 0.5, 10.0, 8.0]));
+        for bad in [
+            "0,0,10",
+            "0,0,10,x",
+            "0,0,0,8",
+            "0,0,10,129",
+            "9999,0,10,8",
+            "0,0,nan,8",
+        ] {
+            assert!(area(bad).is_err(), "{bad}");
+        }
         assert_eq!((snapshots("0"), snapshots("500")), (Ok(0), Ok(500)));
         assert!(snapshots("501").is_err() && snapshots("-1").is_err());
         assert_eq!(map_shape("128x32"), Ok((40, 10)));

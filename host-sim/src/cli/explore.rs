@@ -14,6 +14,7 @@ use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
 use host_sim::trial::Record;
 use host_sim::trial::mission::{self, IMPATIENCE_S, Mission, MissionError, on_device};
+use host_sim::trial::space::SpaceMission;
 use host_sim::trial::uneven;
 use host_sim::world::World;
 
@@ -40,6 +41,8 @@ pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
         args.patrol_for,
         args.tdbvp_impatience.is_some(),
     )?;
+    let has_space = args.until.is_some() || args.area.is_some() || args.sbpf_impatience.is_some();
+    strategies::check_space(&args.strategy, has_space)?;
     let mission = mission(args, &link)?;
     check_reference(&mission)?;
     check_team(args)?;
@@ -308,12 +311,22 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         failing,
         time_limit_ms: args.time_limit,
         patrol_s: args.patrol_for,
+        space: space(args),
         impatience_s: args.tdbvp_impatience.map_or(IMPATIENCE_S, |it| it.0),
         box_tiles: args.map_shape,
         check_field: args.check_field,
         snapshots: args.snapshots,
         ..Mission::default()
     }))
+}
+
+/// Returns the area and the end of a space-based potential field.
+fn space(args: &ExploreArgs) -> SpaceMission {
+    SpaceMission {
+        area_m: args.area,
+        until_permille: args.until.unwrap_or(1_000),
+        impatience_s: args.sbpf_impatience.map(|it| it.0),
+    }
 }
 
 /// Prints the report on standard output, and advice on standard error.

@@ -75,6 +75,10 @@ pub(super) fn check(strategy: &str, check_field: bool, faults: bool) -> Result<(
                  leave --check-field out"
             )
         }
+        "sbpf" | "esbpf" if check_field => bail!(
+            "--check-field has no reference for --strategy {strategy}, which sums forces; \
+             leave --check-field out"
+        ),
         name if on_device(name).is_some() => Ok(()),
         _ if check_field => {
             bail!("--strategy {strategy} solves no window; leave --check-field out")
@@ -93,6 +97,18 @@ pub(super) fn check_rails(strategy: &str, patrol_s: u16, has_impatience: bool) -
         }
         _ if has_impatience => bail!(
             "--strategy {strategy} follows no rails; leave --tdbvp-impatience out or say tdbvp"
+        ),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses an area, a target coverage and its impatience for strategies without a space field.
+pub(super) fn check_space(strategy: &str, has_space: bool) -> Result<()> {
+    match on_device(strategy) {
+        Some(Strategy::Sbpf(_) | Strategy::Esbpf(_)) => Ok(()),
+        _ if has_space => bail!(
+            "--strategy {strategy} knows no area; \
+             leave --until, --area and --sbpf-impatience out, or say esbpf"
         ),
         _ => Ok(()),
     }

@@ -17,7 +17,7 @@ use host_sim::trial::team::{
 };
 use host_sim::world::World;
 
-use super::args::{ExploreArgs, GroundArg, OdometryArg, seed, start, time_limit};
+use super::args::{ExploreArgs, GroundArg, OdometryArg, seed, start, time_limit, until};
 use super::explore::{mission, with_start};
 use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
@@ -67,6 +67,9 @@ pub(super) struct TeamArgs {
         allow_hyphen_values = true
     )]
     join: Vec<Appointment>,
+    /// Share of the area whose coverage ends a robot's run, above 0, at most 1; for sbpf and esbpf
+    #[arg(long, value_name = "SHARE", value_parser = until)]
+    until: Option<u16>,
     /// Link of all robots, or a list with the link of each, as in direct,direct,qemu [default:
     /// loopback; direct for baselines]
     #[arg(long, value_name = "LINK,LINK", value_delimiter = ',')]
@@ -125,6 +128,7 @@ fn robots(text: &str) -> Result<usize, String> {
 /// Explores a world with a team; returns true if it ended explored.
 pub(super) fn run(args: &TeamArgs) -> Result<bool> {
     let links = links(args)?;
+    strategies::check_space(&args.strategy, args.until.is_some())?;
     let (name, at) = with_start(&args.world);
     let world = World::open(name)?;
     let team = TeamMission {
@@ -178,6 +182,7 @@ fn common(args: &TeamArgs, start: usize) -> ExploreArgs {
         start,
         odometry: Some(args.odometry),
         time_limit: args.time_limit,
+        until: args.until,
         robot: args.robot.clone(),
         ..ExploreArgs::default()
     }

@@ -51,6 +51,8 @@ pub struct Report {
     /// Least gain of a trip, square metres for each metre; `null` without the order `gain`.
     #[serde(default)]
     pub worth: Option<f64>,
+    /// Area, target and impatience of strategies sbpf and esbpf; `null` for other strategies.
+    pub space_field: Option<SpaceField>,
     /// Link to the planner, as given to `--link`.
     pub link: String,
     /// Seed of every random number of the run.
@@ -108,12 +110,23 @@ pub struct Report {
     pub network: Option<Counters>,
 }
 
+/// The parameters of a space-based potential field.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SpaceField {
+    /// Least x and y, width and height of the area, world frame.
+    pub area_m: [f64; 4],
+    /// Share of the area whose coverage ends the exploration.
+    pub until: f64,
+    /// Seconds without a newly covered cell after which the robot follows a path, or `never`.
+    pub impatience: String,
+}
+
 /// End of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// `finished`, `fault`, `lost`, `time-limit`, `frozen` or `interrupted`.
     pub status: String,
-    /// Kind of finish or fault. Only `explored` is a success.
+    /// Kind of finish or fault. Only `explored` and `covered` are successes.
     pub reason: String,
     /// Frontiers left at the end.
     pub residual_frontiers: Vec<ResidualFrontier>,
@@ -332,10 +345,11 @@ impl Report {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Returns true if everything is explored.
+    /// Returns true if everything is explored, or the target coverage of an area is reached.
     #[must_use]
     pub fn explored(&self) -> bool {
-        self.outcome.status == "finished" && self.outcome.reason == "explored"
+        let reason = self.outcome.reason.as_str();
+        self.outcome.status == "finished" && matches!(reason, "explored" | "covered")
     }
 }
 
@@ -398,8 +412,10 @@ mod tests {
     }
 
     #[test]
-    fn only_finished_explored_counts_as_explored() {
+    fn only_explored_and_covered_are_successes() {
         let mut report = sample();
+        assert!(report.explored());
+        report.outcome.reason = "covered".into();
         assert!(report.explored());
         report.outcome.reason = "boxed-in".into();
         assert!(!report.explored());

@@ -67,10 +67,15 @@ impl Ending {
     #[must_use]
     pub fn advice(&self) -> Option<String> {
         let text = match self {
-            Self::Finished(Finish::Explored) => return None,
+            Self::Finished(Finish::Explored | Finish::Covered) => return None,
             Self::Finished(Finish::BoxedIn) => "the robot has no free way out of its place; \
                  choose another start with --start or robots:"
                 .into(),
+            Self::Finished(Finish::NothingAttracts) => {
+                "no cell that borders on what is covered is left to attract \
+                 the robot; --strategy esbpf follows paths to the rest"
+                    .into()
+            }
             Self::Finished(Finish::Stopped) => "the device was told to stop".into(),
             Self::Fault(why) => fault_advice(*why).into(),
             Self::Link(why) => why.to_string(),
@@ -103,6 +108,9 @@ fn fault_advice(fault: Fault) -> &'static str {
             "the world does not fit the map's box; choose its shape with --map-shape"
         }
         Fault::BadObservation => "an observation did not match the lasers of the start message",
+        Fault::Trapped => {
+            "the forces of the field lead nowhere; --sbpf-impatience 5 lets the robot follow a path"
+        }
         Fault::Stuck => "the robot did not move although it was commanded to; see run.png",
         Fault::PoseLost => "the scan contradicts the map, and no place near by agrees; see run.png",
     }

@@ -7,10 +7,12 @@
 use core::fmt;
 
 use fieldline_protocol::message::{
-    self as wire, LoopLimits, Order, Preference, Strategy, UnevenGround,
+    self as wire, LoopLimits, Order, Preference, SpaceField, Strategy, UnevenGround,
 };
+use fixed::types::I16F16;
 
 use super::account::Account;
+use super::space::SpaceMission;
 use super::{Cast, Record, Setup, Watch, run, shape, summary};
 use crate::link::{Link, LinkError};
 use crate::report::Report;
@@ -21,6 +23,9 @@ use crate::world::{Start, World, WorldError};
 /// The usual impatience of strategy tdbvp, seconds. With 60 s, three adjacent loops took 378 s
 /// instead of 343 s (means of four starts), and rooms without a loop 810 s instead of 584 s.
 pub const IMPATIENCE_S: Option<u16> = Some(15);
+
+/// The usual impatience of strategy esbpf, seconds. Strategy sbpf has none.
+const ESBPF_IMPATIENCE_S: Option<u16> = Some(5);
 
 /// Settings of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,6 +72,8 @@ pub struct Mission {
     /// Time without a new place after which the robot follows a path to what is left to explore,
     /// seconds; `None` for never; for strategy tdbvp.
     pub impatience_s: Option<u16>,
+    /// Area and end of the exploration; for strategies sbpf and esbpf.
+    pub space: SpaceMission,
     /// Shape of the map's box in tiles; chosen for the world if `None`.
     pub box_tiles: Option<(u8, u8)>,
     /// Time from one observation to the next, milliseconds.
@@ -100,6 +107,7 @@ impl Default for Mission {
             time_limit_ms: 3_600_000,
             patrol_s: 0,
             impatience_s: IMPATIENCE_S,
+            space: SpaceMission::default(),
             box_tiles: None,
             period_ms: SimConfig::default().period_ms,
             check_field: false,
@@ -194,7 +202,7 @@ impl From<LinkError> for MissionError {
 }
 
 /// Strategies on the device, by name.
-pub const STRATEGIES: [(&str, Strategy); 3] = [
+pub const STRATEGIES: [(&str, Strategy); 5] = [
     ("frontier", Strategy::Frontier),
     ("ouroboros", Strategy::Ouroboros),
     (
@@ -204,7 +212,17 @@ pub const STRATEGIES: [(&str, Strategy); 3] = [
             impatience_s: IMPATIENCE_S,
         },
     ),
+    ("sbpf", Strategy::Sbpf(NO_FIELD)),
+    ("esbpf", Strategy::Esbpf(NO_FIELD)),
 ];
+
+/// A field without an area, for the list of strategies. A mission has the area of its world.
+const NO_FIELD: SpaceField = SpaceField {
+    origin: (I16F16::ZERO, I16F16::ZERO),
+    size: (I16F16::ZERO, I16F16::ZERO),
+    until_permille: 0,
+    impatience_s: None,
+};
 
 /// Returns the strategy on the device of this name; a baseline has none.
 #[must_use]
@@ -230,6 +248,15 @@ impl Mission {
     /// Returns the order of frontiers that the device is told.
     pub(super) fn order(&self) -> Order {
         self.order.unwrap_or_else(|| self.strategy().order())
+    }
+
+    /// Returns the strategy that the device is told in a world.
+    pub(super) fn strategy_in(&self, world: &World) -> Strategy {
+        match self.strategy() {
+            Strategy::Sbpf(_) => Strategy::Sbpf(self.space.message(world, None)),
+            Strategy::Esbpf(_) => Strategy::Esbpf(self.space.message(world, ESBPF_IMPATIENCE_S)),
+            other => other,
+        }
     }
 
     /// Returns the preferences of the field; `None` on flat ground.
@@ -304,7 +331,7 @@ pub(super) fn setup(
             order: mission.order(),
             loops: mission.loops,
             localise: mission.localises(),
-            ..simulator.start_message(mission.strategy(), (across, up))
+            ..simulator.start_message(mission.strategy_in(simulator.world()), (across, up))
         },
         time_limit_ms: mission.time_limit_ms,
         check_field: mission.check_field,

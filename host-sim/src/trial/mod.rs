@@ -18,6 +18,7 @@ pub mod relief;
 pub mod series;
 pub mod shape;
 pub mod snapshot;
+pub mod space;
 mod summary;
 pub mod team;
 pub mod uneven;

@@ -40,6 +40,7 @@ pub(super) fn report(
             Some(Order::Gain { worth }) => Some(worth.to_num()),
             _ => None,
         },
+        space_field: space_field(mission, world),
         link: mission.link.clone(),
         seed: mission.seed,
         odometry: mission.odometry.name().into(),
@@ -93,8 +94,21 @@ fn impatience(mission: &Mission) -> Option<String> {
         Strategy::Tdbvp { impatience_s, .. } => {
             Some(impatience_s.map_or("never".into(), |seconds| seconds.to_string()))
         }
-        Strategy::Frontier | Strategy::Ouroboros => None,
+        _ => None,
     }
+}
+
+fn space_field(mission: &Mission, world: &World) -> Option<report::SpaceField> {
+    let (Strategy::Sbpf(field) | Strategy::Esbpf(field)) = mission.strategy_in(world) else {
+        return None;
+    };
+    let sides = [field.origin.0, field.origin.1, field.size.0, field.size.1];
+    let impatience = field.impatience_s;
+    Some(report::SpaceField {
+        area_m: sides.map(|metres| (metres.to_num::<f64>() * 100.0).round() / 100.0),
+        until: f64::from(field.until_permille) / 1000.0,
+        impatience: impatience.map_or("never".into(), |seconds| seconds.to_string()),
+    })
 }
 
 fn coverage(account: &Account) -> report::Coverage {

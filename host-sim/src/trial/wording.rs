@@ -22,6 +22,8 @@ pub fn finish(finish: Finish) -> &'static str {
         Finish::Explored => "explored",
         Finish::BoxedIn => "boxed-in",
         Finish::Stopped => "stopped",
+        Finish::Covered => "covered",
+        Finish::NothingAttracts => "nothing-attracts",
     }
 }
 
@@ -35,6 +37,7 @@ pub fn fault(fault: Fault) -> &'static str {
         Fault::BadObservation => "bad-observation",
         Fault::Stuck => "stuck",
         Fault::PoseLost => "pose-lost",
+        Fault::Trapped => "trapped",
     }
 }
 

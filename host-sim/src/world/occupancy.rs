@@ -169,6 +169,24 @@ impl Occupancy {
         &self.classes
     }
 
+    /// Returns the bounds of the free cells, metres: least x and y, greatest x and y; `None` if
+    /// there are none.
+    #[must_use]
+    pub fn free_bounds_m(&self) -> Option<[f64; 4]> {
+        let free = self.classes.iter().enumerate();
+        let free = free.filter(|(_, class)| **class == Class::Free);
+        let cells = free.map(|(k, _)| [k % self.width, k / self.width]);
+        let bounds = cells.fold(None, |bounds, [i, j]| {
+            let [i0, j0, i1, j1] = bounds.unwrap_or([i, j, i, j]);
+            Some([i0.min(i), j0.min(j), i1.max(i), j1.max(j)])
+        });
+        let [x, y] = self.origin_m;
+        bounds.map(|[i0, j0, i1, j1]| {
+            let side = |origin: f64, cells: usize| origin + cells as f64 * self.resolution_m;
+            [side(x, i0), side(y, j0), side(x, i1 + 1), side(y, j1 + 1)]
+        })
+    }
+
     /// Changes a cell; does nothing outside.
     pub fn set(&mut self, cell: GridCell, class: Class) {
         if let Some(index) = self.index(cell) {

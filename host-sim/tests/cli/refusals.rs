@@ -263,6 +263,22 @@ fn bad_arguments_are_refused_in_one_line() {
         &["frontier", "leave --tdbvp-impatience out"],
     );
     explore(&["--tdbvp-impatience", "-1"], &["-1", "or never"]);
+    for option in [
+        ["--until", "0.9"],
+        ["--area", "0,0,9,9"],
+        ["--sbpf-impatience", "9"],
+    ] {
+        explore(&option, &["frontier", "or say esbpf"]);
+    }
+    explore(&["--strategy", "sbpf", "--until", "0"], &["0.001 to 1"]);
+    explore(
+        &["--strategy", "sbpf", "--area", "0,0,9"],
+        &["x,y,width,height"],
+    );
+    explore(
+        &["--strategy", "esbpf", "--check-field"],
+        &["esbpf", "leave --check-field out"],
+    );
     explore(
         &["--strategy", "bvp", "--fault", "drop=0.1"],
         &["bvp", "leave --fault out"],

@@ -97,6 +97,42 @@ fn json_prints_one_report_per_line_and_nothing_else() {
 }
 
 #[test]
+fn a_space_field_ends_with_its_target_and_its_reason() {
+    let folder = folder();
+    let run = |strategy| {
+        let args = [
+            "explore",
+            "c-room",
+            "--json",
+            "--until",
+            "0.95",
+            "--strategy",
+            strategy,
+        ];
+        let (status, stdout, stderr) = outcome(&folder, &args);
+        let report: Value = serde_json::from_str(&stdout).expect("one report");
+        (status, stderr, report)
+    };
+    let (status, _, report) = run("esbpf");
+    assert_eq!(
+        (status, &report["outcome"]["reason"]),
+        (0, &"covered".into())
+    );
+    let field = &report["space_field"];
+    assert_eq!(field["area_m"], serde_json::json!([0.2, 0.2, 10.0, 10.0]));
+    assert_eq!(
+        (&field["until"], &field["impatience"]),
+        (&0.95.into(), &"5".into())
+    );
+    let (status, stderr, report) = run("sbpf");
+    assert_eq!(
+        (status, &report["outcome"]["reason"]),
+        (1, &"trapped".into())
+    );
+    assert!(stderr.contains("--sbpf-impatience 5"), "{stderr}");
+}
+
+#[test]
 fn one_world_goes_into_out_and_the_time_limit_ends_it() {
     let folder = folder();
     let arguments = [

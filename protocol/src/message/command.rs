@@ -35,6 +35,10 @@ pub enum Finish {
     BoxedIn,
     /// The host stopped it.
     Stopped,
+    /// The target coverage of the area is reached.
+    Covered,
+    /// No cell of the area attracts the robot, below the target coverage.
+    NothingAttracts,
 }
 
 /// Why the planner cannot continue.
@@ -53,6 +57,8 @@ pub enum Fault {
     Stuck,
     /// The robot does not know where it is: no place around its last one agrees with the scan.
     PoseLost,
+    /// The forces of a space-based potential field led the robot to no new cell for too long.
+    Trapped,
 }
 
 /// Counters of the device since its boot.

@@ -4,7 +4,7 @@ use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 #[cfg(doc)]
-use super::{Laser, MAX_BEAMS, NO_RETURN_MM, Order, Start, UnevenGround};
+use super::{Laser, MAX_BEAMS, NO_RETURN_MM, Order, SpaceField, Start, UnevenGround};
 
 /// A parameter of [`Start`], with its accepted range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
@@ -46,6 +46,10 @@ pub enum Parameter {
     LoopLimits,
     /// [`Order::Gain`]: 0 to 7.
     Worth,
+    /// [`SpaceField::size`]: 0.1 to 128 m. [`SpaceField::origin`]: within 3200 m.
+    Area,
+    /// [`SpaceField::until_permille`]: 1 to 1000.
+    Coverage,
 }
 
 /// Why the device refused a request.

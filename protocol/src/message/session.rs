@@ -49,6 +49,24 @@ pub enum Strategy {
         /// explore, seconds; `None` for never.
         impatience_s: Option<u16>,
     },
+    /// Follow a space-based potential field over an area of known size.
+    Sbpf(SpaceField),
+    /// The same field with gates and conveyor belts.
+    Esbpf(SpaceField),
+}
+
+/// Parameters of a space-based potential field.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct SpaceField {
+    /// Least x and y of the area, metres.
+    pub origin: (I16F16, I16F16),
+    /// Width and height of the area, metres.
+    pub size: (I16F16, I16F16),
+    /// Coverage that ends the exploration, thousandths of the area.
+    pub until_permille: u16,
+    /// Time without a newly covered cell after which the robot follows a path to the nearest
+    /// frontier, seconds; `None` for never.
+    pub impatience_s: Option<u16>,
 }
 
 impl Strategy {
@@ -58,7 +76,7 @@ impl Strategy {
     pub fn order(self) -> Order {
         match self {
             Self::Frontier => Order::default(),
-            Self::Ouroboros | Self::Tdbvp { .. } => Order::Nearest,
+            Self::Ouroboros | Self::Tdbvp { .. } | Self::Sbpf(_) | Self::Esbpf(_) => Order::Nearest,
         }
     }
 }

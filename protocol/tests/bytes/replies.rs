@@ -76,12 +76,15 @@ fn reply_control_with_every_status() {
         (Status::Finished(Finish::Explored), &[2, 4, 0]),
         (Status::Finished(Finish::BoxedIn), &[2, 4, 1]),
         (Status::Finished(Finish::Stopped), &[2, 4, 2]),
+        (Status::Finished(Finish::Covered), &[2, 4, 3]),
+        (Status::Finished(Finish::NothingAttracts), &[2, 4, 4]),
         (Status::Fault(Fault::StartBlocked), &[2, 5, 0]),
         (Status::Fault(Fault::MapFull), &[2, 5, 1]),
         (Status::Fault(Fault::OutOfBox), &[2, 5, 2]),
         (Status::Fault(Fault::BadObservation), &[2, 5, 3]),
         (Status::Fault(Fault::Stuck), &[2, 5, 4]),
         (Status::Fault(Fault::PoseLost), &[2, 5, 5]),
+        (Status::Fault(Fault::Trapped), &[2, 5, 6]),
     ] {
         reply_is(Reply::Control(status), body);
     }
@@ -267,6 +270,9 @@ fn reply_refused() {
         (Refusal::BadParameter(Parameter::UnevenGround), &[7, 4, 13]),
         (Refusal::BadParameter(Parameter::Hull), &[7, 4, 14]),
         (Refusal::BadParameter(Parameter::LoopLimits), &[7, 4, 15]),
+        (Refusal::BadParameter(Parameter::Worth), &[7, 4, 16]),
+        (Refusal::BadParameter(Parameter::Area), &[7, 4, 17]),
+        (Refusal::BadParameter(Parameter::Coverage), &[7, 4, 18]),
         (Refusal::NoTeam, &[7, 5]),
     ] {
         reply_is(Reply::Refused(refusal), body);

@@ -3,7 +3,7 @@
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::message::{
     Control, Hull, INVALID_MM, Laser, LoopLimits, Member, NO_RETURN_MM, Observation, Order, Pose,
-    Preference, Request, Scan, Start, Strategy, Team, Twist, UnevenGround,
+    Preference, Request, Scan, SpaceField, Start, Strategy, Team, Twist, UnevenGround,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -76,6 +76,26 @@ fn strategies_have_fixed_numbers() {
     };
     assert_eq!(bytes(None), [2, 0x88, 14, 0]);
     assert_eq!(bytes(Some(300)), [2, 0x88, 14, 1, 0xac, 2]);
+}
+
+#[test]
+fn a_space_field_is_its_area_its_target_and_its_impatience() {
+    let metres = I16F16::from_num::<f64>;
+    let field = SpaceField {
+        origin: (metres(-0.5), metres(0.25)),
+        size: (metres(10.0), metres(8.0)),
+        until_permille: 900,
+        impatience_s: Some(5),
+    };
+    let body = [
+        0xff, 0xff, 3, 0x80, 0x80, 2, // -32,768 and 16,384 of 2^-16 m
+        0x80, 0x80, 80, 0x80, 0x80, 64, // 655,360 and 524,288
+        0x84, 7, 1, 5, // 900, some, 5
+    ];
+    for (strategy, number) in [(Strategy::Sbpf(field), 3), (Strategy::Esbpf(field), 4)] {
+        let bytes = postcard::to_allocvec(&strategy).unwrap();
+        assert_eq!(bytes, [&[number], &body[..]].concat());
+    }
 }
 
 #[test]

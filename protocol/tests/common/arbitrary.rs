@@ -90,6 +90,18 @@ fn uneven_ground() -> impl Strategy<Value = UnevenGround> {
     )
 }
 
+fn space_field() -> impl Strategy<Value = message::SpaceField> {
+    let rest = any::<(u16, Option<u16>)>();
+    ([long(), long(), long(), long()], rest).prop_map(
+        |([x, y, across, up], (until_permille, impatience_s))| message::SpaceField {
+            origin: (x, y),
+            size: (across, up),
+            until_permille,
+            impatience_s,
+        },
+    )
+}
+
 fn start() -> impl Strategy<Value = Start> {
     let strategy = prop_oneof![
         Just(message::Strategy::Frontier),
@@ -98,6 +110,8 @@ fn start() -> impl Strategy<Value = Start> {
             patrol_s,
             impatience_s,
         }),
+        space_field().prop_map(message::Strategy::Sbpf),
+        space_field().prop_map(message::Strategy::Esbpf),
     ];
     (
         (
@@ -281,7 +295,13 @@ pub(crate) fn request() -> impl Strategy<Value = Request> {
 }
 
 fn status() -> impl Strategy<Value = Status> {
-    let finish = prop::sample::select(vec![Finish::Explored, Finish::BoxedIn, Finish::Stopped]);
+    let finish = prop::sample::select(vec![
+        Finish::Explored,
+        Finish::BoxedIn,
+        Finish::Stopped,
+        Finish::Covered,
+        Finish::NothingAttracts,
+    ]);
     let fault = prop::sample::select(vec![
         Fault::StartBlocked,
         Fault::MapFull,
@@ -289,6 +309,7 @@ fn status() -> impl Strategy<Value = Status> {
         Fault::BadObservation,
         Fault::Stuck,
         Fault::PoseLost,
+        Fault::Trapped,
     ]);
     prop_oneof![
         Just(Status::Idle),

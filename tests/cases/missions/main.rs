@@ -10,4 +10,5 @@ mod localise;
 mod lost_device;
 mod orders;
 mod periods;
+mod space;
 mod whole;

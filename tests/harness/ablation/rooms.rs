@@ -8,6 +8,8 @@ use crate::runs::FRONTIER;
 use Ground::{Flat, Uneven};
 use Noise::{Attitude, Odometry, Ranges};
 
+/// Strategy of forces, with paths where they lead nowhere.
+const ESBPF: &str = "esbpf";
 /// Duration of a patrol, seconds.
 const PATROL_S: u16 = 300;
 /// Standard deviation of roll and pitch of [`Attitude`], degrees.
@@ -80,7 +82,7 @@ const fn run(
 }
 
 /// The rooms.
-pub const ROOMS: [Room; 7] = [
+pub const ROOMS: [Room; 8] = [
     Room {
         name: "ground",
         runs: &[
@@ -162,6 +164,17 @@ pub const ROOMS: [Room; 7] = [
             run("cluttered", 1, TDBVP, Flat, Ranges),
         ],
         closes_loops: true,
+    },
+    Room {
+        name: "sbpf",
+        runs: &[
+            run("two-rooms", 0, ESBPF, Flat, Ranges),
+            run("c-room", 0, ESBPF, Flat, Ranges),
+            run("partition", 0, ESBPF, Flat, Ranges),
+            run("office", 0, ESBPF, Flat, Ranges),
+            run("hall", 0, ESBPF, Flat, Ranges),
+        ],
+        closes_loops: false,
     },
     Room {
         name: "ouroboros",

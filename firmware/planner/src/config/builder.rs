@@ -5,8 +5,8 @@
 use heapless::Vec;
 
 use crate::config::{
-    Config, ConfigError, GoalLevel, LoopLimits, Order, Parameter, SolverConfig, Strategy,
-    TeamPlace, Tuning, UnevenGround,
+    Area, Config, ConfigError, GoalLevel, LoopLimits, Order, Parameter, SolverConfig, SpaceField,
+    Strategy, TeamPlace, Tuning, UnevenGround,
 };
 use crate::geometry::CELL_M;
 use crate::input::NO_RETURN_MM;
@@ -23,6 +23,8 @@ const RADII_M: (f32, f32) = (0.5 * CELL_M, Config::MAX_RADIUS_M);
 /// Time in which the robot must come to rest from its greatest speed, seconds: the drive looks four
 /// seconds ahead, one period and the braking after it.
 const REST_S: f32 = 3.0;
+/// Distance of an area's corner from the origin along an axis, map cells.
+const CORNER_CELLS: f32 = 32_000.0;
 /// Distance of a laser from the robot's centre, metres.
 const MOUNT_M: f32 = 2.0;
 /// One turn, rounded up, radians.
@@ -201,6 +203,9 @@ impl ConfigBuilder {
         if let Order::Gain { worth } = config.order() {
             check(Parameter::Worth, worth, (0.0, MOST_WORTH))?;
         }
+        if let Strategy::Sbpf(field) | Strategy::Esbpf(field) = &config.strategy {
+            check_field(field)?;
+        }
         check(Parameter::Solver, config.solver.tolerance, (POSITIVE, 1.0))?;
         let cycles = f32::from(config.solver.max_cycles);
         check(Parameter::Solver, cycles, (1.0, ANY))?;
@@ -294,6 +299,26 @@ fn check_loops(loops: &LoopLimits) -> Result<(), ConfigError> {
     values.try_for_each(|value| check(Parameter::LoopLimits, value, (0.0, ANY)))
 }
 
+fn check_field(field: &SpaceField) -> Result<(), ConfigError> {
+    let Area { least, across, up } = field.area;
+    for side in [across, up] {
+        let most = f32::from(Area::MOST_CELLS);
+        check(Parameter::Area, f32::from(side), (1.0, most))?;
+    }
+    for corner in [least.x, least.y] {
+        check(
+            Parameter::Area,
+            corner as f32,
+            (-CORNER_CELLS, CORNER_CELLS),
+        )?;
+    }
+    check(
+        Parameter::Coverage,
+        f32::from(field.until_permille),
+        (1.0, 1_000.0),
+    )
+}
+
 fn check_ground(ground: &UnevenGround) -> Result<(), ConfigError> {
     let (least, most) = (ground.least_preference, ground.most_preference);
     check(Parameter::LeastPreference, least, (-STRONGEST, 0.0))?;
@@ -317,7 +342,10 @@ mod tests {
     use std::string::ToString;
 
     use super::{ConfigBuilder, RADII_M};
-    use crate::config::{Config, LoopLimits, Parameter, SolverConfig, UnevenGround};
+    use crate::config::{
+        Area, Config, LoopLimits, Parameter, SolverConfig, SpaceField, Strategy, UnevenGround,
+    };
+    use crate::geometry::Cell;
     use crate::robot::{LaserMount, RobotShape};
 
     fn flat() -> ConfigBuilder {
@@ -453,6 +481,33 @@ mod tests {
             ..table
         };
         assert_eq!(refused(uneven(steep)), Some(Parameter::UnevenGround));
+    }
+
+    #[test]
+    fn an_area_has_a_size_and_a_target() {
+        let with = |across, up, x, until_permille| {
+            let area = Area {
+                least: Cell { x, y: 0 },
+                across,
+                up,
+            };
+            let field = SpaceField {
+                until_permille,
+                ..SpaceField::over(area)
+            };
+            [Strategy::Sbpf(field), Strategy::Esbpf(field)]
+                .map(|strategy| refused(flat().strategy(strategy)))
+        };
+        assert_eq!(with(1, Area::MOST_CELLS, -32_000, 1), [None; 2]);
+        assert_eq!(with(100, 80, 0, 1_000), [None; 2]);
+        let area = [Some(Parameter::Area); 2];
+        assert_eq!(with(0, 80, 0, 1_000), area);
+        assert_eq!(with(100, Area::MOST_CELLS + 1, 0, 1_000), area);
+        assert_eq!(with(100, 80, 32_001, 1_000), area);
+        for until_permille in [0, 1_001] {
+            let refusals = with(100, 80, 0, until_permille);
+            assert_eq!(refusals, [Some(Parameter::Coverage); 2]);
+        }
     }
 
     #[test]

@@ -48,6 +48,10 @@ pub enum Parameter {
     MostPreference,
     /// Another parameter of [`UnevenGround`](crate::UnevenGround).
     UnevenGround,
+    /// Side or corner of an [`Area`](crate::Area), map cells.
+    Area,
+    /// Target coverage of an area, thousandths.
+    Coverage,
     /// A parameter of [`LoopLimits`](crate::LoopLimits).
     LoopLimits,
     /// The worth of [`Order::Gain`](crate::Order::Gain).
@@ -80,6 +84,8 @@ impl fmt::Display for Parameter {
             Self::LeastPreference => "least preference",
             Self::MostPreference => "greatest preference",
             Self::UnevenGround => "parameter of uneven ground",
+            Self::Area => "area (map cells)",
+            Self::Coverage => "target coverage (1/1000)",
             Self::LoopLimits => "limit of loops",
             Self::Worth => "worth",
             Self::Solver => "parameter of the solver",

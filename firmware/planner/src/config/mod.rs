@@ -11,6 +11,7 @@ mod ground;
 mod loops;
 mod order;
 mod solver;
+mod space;
 mod team;
 mod tuning;
 
@@ -21,9 +22,10 @@ pub use ground::{KERNEL_CELLS, PreferenceMode, UnevenGround};
 pub use loops::LoopLimits;
 pub use order::Order;
 pub use solver::{Method, SolverConfig};
+pub use space::{Area, SpaceField};
 pub use team::{Member, TeamPlace};
 pub use tuning::{
-    FieldTuning, GroundTuning, LocaliseTuning, MapTuning, OrderTuning, OuroborosTuning,
+    FieldTuning, GroundTuning, LocaliseTuning, MapTuning, OrderTuning, OuroborosTuning, SbpfTuning,
     TdbvpTuning, Tuned, Tuning, TuningError,
 };
 
@@ -48,6 +50,12 @@ pub enum Strategy {
         /// explore, seconds; `None` for never, as in \[Maffei14\]. The simulator's default is 15.
         impatience_s: Option<u16>,
     },
+    /// Follow the forces of a space-based potential field over an area of known size
+    /// \[Kenealy15, 3.1\].
+    Sbpf(SpaceField),
+    /// The same, enhanced: gates attract, and walls lead the robot along them \[Kenealy15, 3.2 and
+    /// 3.3\].
+    Esbpf(SpaceField),
 }
 
 /// The parameters of a session.

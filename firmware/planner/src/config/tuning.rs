@@ -175,6 +175,7 @@ rooms! {
     tdbvp: TdbvpTuning, "Rails of time.";
     ouroboros: OuroborosTuning, "Loop closing.";
     order: OrderTuning, "The order of goals.";
+    sbpf: SbpfTuning, "Space-based potential field.";
 }
 
 impl Tuning {

@@ -21,12 +21,14 @@ const LOOK_PERIOD_MS: u32 = 5_000;
 /// blocked.
 const STALLED_PERIODS: u32 = 5;
 
-/// Returns the velocity that follows the window's field.
+/// Returns the velocity that follows the window's field, or the heading `lead_rad` of a strategy
+/// that needs no window.
 pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     input: &Input<'_>,
+    lead_rad: Option<f32>,
 ) -> Output {
     let Workspace {
         window,
@@ -34,7 +36,8 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         scratch,
         ..
     } = workspace;
-    let Some((origin, scale)) = *window_at else {
+    let lead = lead_rad.map(|lead_rad| math::wrap(lead_rad - input.pose.yaw_rad));
+    let Some((origin, scale)) = window_at.or(lead.map(|_| (input.pose.point().cell(), 1))) else {
         return Output::default();
     };
     let heights = state.map.heights();
@@ -53,7 +56,8 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         blocked: state.blocked_direction,
     };
     let headed = |place: Place| {
-        let wanted = heading_at(window, (origin, scale), &input.pose, place)?;
+        let field = || heading_at(window, (origin, scale), &input.pose, place);
+        let wanted = lead.or_else(field)?;
         Some(match &incline {
             Some(incline) => incline.heading(place, wanted, hysteresis),
             None => (wanted, None),
@@ -74,7 +78,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         let query = SearchQuery {
             checker: &checker,
             heading_at,
-            potential_at: Some(&potential_at),
+            potential_at: lead.is_none().then_some(&potential_at as _),
         };
         let rested = state.drive.is_resting();
         let velocity = state.drive.follow(
@@ -229,7 +233,7 @@ mod tests {
             let Twist {
                 linear_mps,
                 angular_radps,
-            } = steer(&config, &mut state, &mut workspace, &input).velocity;
+            } = steer(&config, &mut state, &mut workspace, &input, None).velocity;
             assert_eq!(linear_mps, 0.0);
             angular_radps
         })
@@ -285,7 +289,7 @@ mod tests {
             velocity: Twist::default(),
             scans: [&[], &[]],
         };
-        steer(&config, &mut state, &mut workspace, &input)
+        steer(&config, &mut state, &mut workspace, &input, None)
             .heading_rad
             .to_degrees()
     }

@@ -5,26 +5,31 @@
 //! | --- | --- |
 //! | [`frontier`] | drive to the nearest frontier, until none can be reached |
 //! | [`ouroboros`] | close every loop on the way \[Jorge15, Algorithm 1\] |
+//! | [`sbpf`] | follow the forces of an area's cells \[Kenealy15\] |
 //! | [`tdbvp`] | follow rails of time, and patrol \[Maffei14, IV and V\] |
 //!
 //! Every strategy drives to frontiers in the end, so a `Strategist` always has a [`Frontier`].
 
 pub(crate) mod frontier;
 pub(crate) mod ouroboros;
+pub(crate) mod sbpf;
 pub(crate) mod tdbvp;
 
 pub(crate) use frontier::Frontier;
 pub(crate) use ouroboros::Ouroboros;
+pub(crate) use sbpf::Sbpf;
 pub(crate) use tdbvp::Tdbvp;
 
 use crate::config::{Config, Strategy, Tuning};
 use crate::field::Window;
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Point, Pose};
+use crate::map::Tiles;
 use crate::path::nearest::Centres;
 use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::roadmap::skeleton::Space;
 use crate::robot::LaserMount;
+use crate::status::Status;
 use crate::strategy::ouroboros::Shield;
 
 /// The session's strategy and its state. `SLOTS` as the map's.
@@ -35,7 +40,7 @@ pub(crate) struct Strategist<const SLOTS: usize> {
     loops: Loops<SLOTS>,
 }
 
-/// The state of a strategy that closes loops.
+/// The state of a strategy beyond the frontier.
 ///
 /// With an explicit tag, so that a value of `None` is all zeros and costs no flash in a static.
 #[derive(Debug)]
@@ -48,6 +53,7 @@ enum Loops<const SLOTS: usize> {
     None,
     Ouroboros(Ouroboros<SLOTS>),
     Tdbvp(Tdbvp<SLOTS>),
+    Sbpf(Sbpf),
 }
 
 impl<const SLOTS: usize> Strategist<SLOTS> {
@@ -59,7 +65,9 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         }
     }
 
-    /// Forgets everything and begins the strategy of `config`.
+    /// Forgets everything and begins the strategy of `config`. It is not inlined: its copy of a
+    /// strategy's state would lie on the stack below every step.
+    #[inline(never)]
     pub(crate) fn reset(&mut self, config: &Config) {
         self.frontier.reset();
         self.loops = match config.strategy {
@@ -77,14 +85,16 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
                     tuning,
                 ))
             }
+            Strategy::Sbpf(field) => Loops::Sbpf(Sbpf::new(field, false, config)),
+            Strategy::Esbpf(field) => Loops::Sbpf(Sbpf::new(field, true, config)),
         };
     }
 
     /// Returns the space whose skeleton a strategy plans on.
     pub(crate) const fn space(strategy: Strategy) -> Space {
         match strategy {
-            Strategy::Frontier | Strategy::Tdbvp { .. } => Space::KnownFree,
             Strategy::Ouroboros => Space::NotObstacle,
+            _ => Space::KnownFree,
         }
     }
 
@@ -92,7 +102,7 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     pub(crate) const fn ouroboros(&self) -> Option<&Ouroboros<SLOTS>> {
         match &self.loops {
             Loops::Ouroboros(ouroboros) => Some(ouroboros),
-            Loops::None | Loops::Tdbvp(_) => None,
+            _ => None,
         }
     }
 
@@ -105,7 +115,38 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     pub(crate) const fn tdbvp(&self) -> Option<&Tdbvp<SLOTS>> {
         match &self.loops {
             Loops::Tdbvp(tdbvp) => Some(tdbvp),
-            Loops::None | Loops::Ouroboros(_) => None,
+            _ => None,
+        }
+    }
+
+    /// Returns the heading of the strategy's own forces, radians; `None` if the window's field
+    /// leads the robot.
+    pub(crate) fn heading_rad(&self) -> Option<f32> {
+        match &self.loops {
+            Loops::Sbpf(sbpf) => sbpf.heading_rad(),
+            _ => None,
+        }
+    }
+
+    /// Notes that a peer is at a point of the map. What the peer has seen comes with its tiles.
+    pub(crate) fn note_peer(&mut self, peer: Point) {
+        if let Loops::Sbpf(sbpf) = &mut self.loops {
+            sbpf.note_peer(peer);
+        }
+    }
+
+    /// Takes over what the map knows; called in every step. Returns the status if the strategy
+    /// ends the exploration.
+    pub(crate) fn survey<const TILES: usize>(
+        &mut self,
+        tiles: &Tiles<TILES, SLOTS>,
+        robot: Point,
+        time_ms: u32,
+        config: &Config,
+    ) -> Option<Status> {
+        match &mut self.loops {
+            Loops::Sbpf(sbpf) => sbpf.survey(tiles, robot, time_ms, config),
+            _ => None,
         }
     }
 
@@ -118,7 +159,7 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         tuning: &Tuning,
     ) {
         match &mut self.loops {
-            Loops::None => {}
+            Loops::None | Loops::Sbpf(_) => {}
             Loops::Ouroboros(ouroboros) => ouroboros.note_pose(pose, &tuning.ouroboros),
             Loops::Tdbvp(tdbvp) => tdbvp.note(pose, time_ms, scan, &tuning.tdbvp),
         }
@@ -134,7 +175,7 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         tuning: &Tuning,
     ) -> Option<()> {
         match &mut self.loops {
-            Loops::None | Loops::Ouroboros(_) => None,
+            Loops::None | Loops::Ouroboros(_) | Loops::Sbpf(_) => None,
             Loops::Tdbvp(tdbvp) => tdbvp
                 .charge(&self.frontier, centres, robot, window, &tuning.tdbvp)
                 .then_some(()),
@@ -168,6 +209,7 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         match &mut self.loops {
             Loops::None => Some(self.frontier.replan(&round, scratch)),
             Loops::Ouroboros(ouroboros) => ouroboros.advance(&mut self.frontier, round, scratch),
+            Loops::Sbpf(sbpf) => Some(sbpf.advance(&mut self.frontier, &round, scratch)),
             Loops::Tdbvp(tdbvp) => Some(tdbvp.advance(&mut self.frontier, round, scratch)),
         }
     }

@@ -276,9 +276,12 @@ impl<'a> Member<'a> {
         }
     }
 
-    /// Returns true if it explored everything.
+    /// Returns true if it explored everything, or as much as it was told to.
     pub(super) fn has_explored(&self) -> bool {
-        self.record.ending == Ending::Finished(Finish::Explored)
+        matches!(
+            self.record.ending,
+            Ending::Finished(Finish::Explored | Finish::Covered)
+        )
     }
 }
 

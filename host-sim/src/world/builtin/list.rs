@@ -3,7 +3,8 @@
 
 use super::Plan::{Flat, Uneven};
 use super::{
-    Builtin, cases, cave, cluttered, hall, loops, office, poses, ring, rooms_and_trees, uneven,
+    Builtin, cases, cave, cluttered, hall, loops, office, poses, ring, rooms_and_trees, space,
+    uneven,
 };
 
 /// Every built-in world.
@@ -226,5 +227,26 @@ pub(super) const BUILTINS: &[Builtin] = &[
         places: &[],
         plan: Flat(loops::floor_72),
         starts: &poses::FLOOR,
+    },
+    Builtin {
+        name: "two-rooms",
+        description: "two rooms with doors of 1 m on a corridor beside a hall, 10 x 8 m",
+        places: &[],
+        plan: Flat(space::two_rooms),
+        starts: &[[5.2, 1.7, 1.57], [6.0, 1.7, 1.57]],
+    },
+    Builtin {
+        name: "c-room",
+        description: "a C-shaped room in the middle of a hall of 10 x 10 m",
+        places: &[],
+        plan: Flat(space::c_room),
+        starts: &[[5.2, 1.2, 1.57], [6.0, 1.2, 1.57]],
+    },
+    Builtin {
+        name: "partition",
+        description: "a room of 4 x 3.5 m that a wall of 1 m divides in part",
+        places: &[],
+        plan: Flat(space::partition),
+        starts: &[[1.2, 0.7, 1.57], [0.7, 0.7, 1.57]],
     },
 ];

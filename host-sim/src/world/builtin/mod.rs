@@ -1,5 +1,5 @@
 //! The built-in worlds: six floors to explore, three hard cases, nine worlds with uneven ground,
-//! and seven worlds of published sizes.
+//! and ten worlds of published sizes or shapes.
 //!
 //! All have cells of 5 cm, walls at least 0.2 m thick, and their lower left corner at the origin. A
 //! drawing has no parameters: it is the same on every machine.
@@ -15,6 +15,7 @@ mod places;
 mod poses;
 mod ring;
 mod rooms_and_trees;
+mod space;
 mod uneven;
 
 use super::occupancy::Occupancy;

@@ -57,6 +57,9 @@ fn drawings_do_not_change() {
         ("tdbvp-adjacent", (140_800, 1_353_605_120)),
         ("tdbvp-nested", (111_200, 3_258_082_816)),
         ("tdbvp-floor", (180_328, 1_935_914_624)),
+        ("two-rooms", (30_912, 388_566_016)),
+        ("c-room", (39_072, 608_782_848)),
+        ("partition", (5_520, 1_152_153_856)),
     ];
     assert_eq!(prints, expected);
 }
