@@ -62,3 +62,9 @@ fn tdbvp() {
 fn ouroboros() {
     check("ouroboros");
 }
+
+#[test]
+#[ignore = "takes minutes"]
+fn sbpf() {
+    check("sbpf");
+}

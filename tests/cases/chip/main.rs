@@ -7,4 +7,5 @@ mod flat;
 mod full;
 mod loops;
 mod size;
+mod space;
 mod uneven;
