@@ -166,6 +166,9 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// The first call of a round follows a new skeleton and [`Frontier::cut`]. The path, to the
     /// tractor point or to the unexplored, becomes that of `frontier`, which blocks passages and
     /// drops goals.
+    ///
+    /// It is not inlined, so that other strategies do not pay for its stack.
+    #[inline(never)]
     pub(crate) fn advance<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,

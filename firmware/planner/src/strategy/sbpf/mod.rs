@@ -132,6 +132,9 @@ impl Sbpf {
 
     /// Plans a round on a new skeleton: the path to what is left, in case that the forces lead
     /// nowhere. The robot follows the path until it has seen that frontier.
+    ///
+    /// It is not inlined, so that other strategies do not pay for its stack.
+    #[inline(never)]
     pub(super) fn advance<const TILES: usize, const SLOTS: usize>(
         &mut self,
         frontier: &mut Frontier,

@@ -217,6 +217,9 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
 
     /// Plans a round on a new skeleton: finds out if anything is left, and the path to it in case
     /// the rails lead nowhere.
+    ///
+    /// It is not inlined, so that other strategies do not pay for its stack.
+    #[inline(never)]
     pub(super) fn advance<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,
