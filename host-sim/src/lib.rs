@@ -7,6 +7,7 @@ pub mod metrics;
 pub mod network;
 pub mod picture;
 pub mod radio;
+pub mod replay;
 pub mod report;
 pub mod robot;
 pub mod sim;
