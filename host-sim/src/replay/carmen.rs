@@ -8,6 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// One laser scan of a log. `line` counts from 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogScan {
+    /// Line of the log, from 1.
     pub line: usize,
     /// Seconds.
     pub time: f64,

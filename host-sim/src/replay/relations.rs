@@ -10,23 +10,31 @@ pub type Pose = [f64; 3];
 /// The true motion from the pose at time `from` to the pose at time `to`, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Relation {
+    /// Time of the first pose, in seconds.
     pub from: f64,
+    /// Time of the second pose, in seconds.
     pub to: f64,
+    /// True motion in the frame of the first pose.
     pub delta: Pose,
 }
 
 /// Absolute errors of one relation: metres and degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelationError {
+    /// Metres.
     pub translation_m: f64,
+    /// Degrees.
     pub rotation_deg: f64,
 }
 
 /// Mean, standard deviation of the whole set, and maximum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spread {
+    /// Arithmetic mean.
     pub mean: f64,
+    /// Standard deviation, divided by n.
     pub sd: f64,
+    /// Greatest value.
     pub max: f64,
 }
 
