@@ -79,14 +79,26 @@ pub fn spread(values: &[f64]) -> Option<Spread> {
     })
 }
 
-/// The pose nearest in time, at most `gap` seconds away. `poses` ascend in time.
-pub fn nearest(poses: &[(f64, Pose)], time: f64, gap: f64) -> Option<Pose> {
+/// The pose at a time, linear between the two poses around it. `poses` ascend in time.
+///
+/// Before the first and after the last pose these hold, at most `gap` seconds away.
+pub fn pose_at(poses: &[(f64, Pose)], time: f64, gap: f64) -> Option<Pose> {
     let after = poses.partition_point(|pose| pose.0 < time);
-    let around = &poses[after.saturating_sub(1)..poses.len().min(after + 1)];
-    let best = around
-        .iter()
-        .min_by(|a, b| (a.0 - time).abs().total_cmp(&(b.0 - time).abs()))?;
-    ((best.0 - time).abs() <= gap).then_some(best.1)
+    let last = poses.get(after.checked_sub(1).unwrap_or(after))?;
+    let next = poses.get(after).unwrap_or(last);
+    if time < last.0 - gap || time > next.0 + gap {
+        return None;
+    }
+    let span = next.0 - last.0;
+    let part = if span > 0.0 {
+        (time - last.0) / span
+    } else {
+        0.0
+    };
+    let turn = next.1[2] - last.1[2];
+    let turn = turn.sin().atan2(turn.cos());
+    let between = |axis: usize| last.1[axis] + part * (next.1[axis] - last.1[axis]);
+    Some([between(0), between(1), last.1[2] + part * turn])
 }
 
 /// Read `t1 t2 x y z roll pitch yaw` lines; `offset` is taken from both times.
@@ -151,9 +163,11 @@ mod tests {
     #[test]
     fn times_outside_the_log_have_no_pose() {
         let poses = [(0.0, [1.0; 3]), (1.0, [2.0; 3])];
-        assert_eq!(nearest(&poses, 0.6, 0.5), Some([2.0; 3]));
-        assert_eq!(nearest(&poses, 9.0, 0.5), None);
-        assert_eq!(nearest(&[], 0.0, 0.5), None);
+        assert_eq!(pose_at(&poses, 0.5, 0.1), Some([1.5; 3]));
+        assert_eq!(pose_at(&poses, 1.1, 0.5), Some([2.0; 3]));
+        assert_eq!(pose_at(&poses, -0.1, 0.5), Some([1.0; 3]));
+        assert_eq!(pose_at(&poses, 9.0, 0.5), None);
+        assert_eq!(pose_at(&[], 0.0, 0.5), None);
     }
 
     #[test]
