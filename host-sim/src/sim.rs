@@ -320,6 +320,7 @@ impl<'w> Simulator<'w> {
             order: strategy.order(),
             team: None,
             localise: false,
+            survey: false,
         }
     }
 

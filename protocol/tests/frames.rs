@@ -146,6 +146,7 @@ fn the_largest_messages_fit_and_fill_their_frames() {
             yaw: farthest,
         }),
         localise: true,
+        survey: true,
     }));
     let file = "f".repeat(CRASH_FILE_BYTES).as_str().try_into().unwrap();
     let crash = Crash {

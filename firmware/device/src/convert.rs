@@ -187,7 +187,8 @@ pub fn config(start: &wire::Start, tuning: &'static Tuning) -> Result<Config, wi
         .max_speed(float(start.max_linear), float(start.max_angular))
         .acceleration(float(start.linear_accel), float(start.angular_accel))
         .period_s(f32::from(start.period_ms) / 1000.0)
-        .localise(start.localise);
+        .localise(start.localise)
+        .survey(start.survey);
     for mount in &start.lasers {
         builder = builder.laser(laser(mount));
     }

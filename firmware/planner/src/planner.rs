@@ -148,7 +148,8 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if state.localiser.has_given_up() {
         state.status = Status::Fault(Fault::PoseLost);
     }
-    if state.localiser.is_lost() || state.status != Status::Exploring {
+    let is_over = state.status != Status::Exploring;
+    if state.localiser.is_lost() || is_over || config.survey {
         return Output::standing(state.status);
     }
     // A search for a recovery owns the scratch: the robot stands and plans nothing until it is

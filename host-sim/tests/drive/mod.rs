@@ -50,6 +50,7 @@ pub(crate) fn start() -> Start {
         order: Order::default(),
         team: None,
         localise: false,
+        survey: false,
     }
 }
 

@@ -235,6 +235,9 @@ pub struct Start {
     pub team: Option<Team>,
     /// True if the device corrects odometry by the level scan. False takes odometry for the pose.
     pub localise: bool,
+    /// True if the device only localises and maps. It plans nothing, every velocity is zero, and
+    /// the status stays [`Status::Exploring`].
+    pub survey: bool,
 }
 
 /// A change of the session's state.

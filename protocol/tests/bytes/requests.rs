@@ -131,6 +131,7 @@ fn request_control_start() {
                 yaw: long(0.0),
             }),
             localise: true,
+            survey: false,
         })),
         &[
             1, 0, // Control, Start
@@ -162,6 +163,7 @@ fn request_control_start() {
             0x80, 0x80, 0x08, 0xff, 0xff, 0x03,
             0, // odometry from (1 m, −0.5 m), not turned
             1, // localise
+            0, // plan
         ],
     );
 }

@@ -116,7 +116,7 @@ fn start() -> impl Strategy<Value = Start> {
     (
         (
             strategy,
-            any::<(u8, u8, bool)>(),
+            any::<(u8, u8, bool, bool)>(),
             prop::option::of(uneven_ground()),
             prop::option::of(team()),
             order(),
@@ -128,7 +128,7 @@ fn start() -> impl Strategy<Value = Start> {
     )
         .prop_map(
             |(
-                (strategy, (across, up, localise), uneven_ground, team, order),
+                (strategy, (across, up, localise, survey), uneven_ground, team, order),
                 lasers,
                 (sizes, loops),
                 period_ms,
@@ -163,6 +163,7 @@ fn start() -> impl Strategy<Value = Start> {
                     order,
                     team,
                     localise,
+                    survey,
                 }
             },
         )

@@ -105,6 +105,14 @@ impl ConfigBuilder {
         self
     }
 
+    /// Makes the planner only localise and map: it plans nothing and commands no velocity. Default:
+    /// it explores.
+    #[must_use]
+    pub const fn survey(mut self, survey: bool) -> Self {
+        self.config.survey = survey;
+        self
+    }
+
     /// Sets the map's box in tiles of 3.2 m, across and up. Default: 20 × 20, which is 64 × 64 m.
     #[must_use]
     pub const fn box_tiles(mut self, across: u8, up: u8) -> Self {

@@ -108,6 +108,8 @@ pub struct Config {
     pub(crate) team: Option<TeamPlace>,
     /// The planner corrects odometry by the level scan. Default: false.
     pub(crate) localise: bool,
+    /// The planner only localises and maps. Default: false.
+    pub(crate) survey: bool,
 }
 
 impl Config {
@@ -149,6 +151,7 @@ impl Config {
             ground: None,
             team: None,
             localise: false,
+            survey: false,
         }
     }
 
