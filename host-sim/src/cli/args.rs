@@ -13,6 +13,7 @@ use host_sim::trial::mission::OdometryProfile;
 use host_sim::trial::space::Area;
 use host_sim::trial::uneven::{self, ParameterError};
 
+use super::replay::ReplayArgs;
 use super::robot::RobotArgs;
 use super::strategies;
 use super::team::TeamArgs;
@@ -36,6 +37,8 @@ pub(super) enum Command {
     /// Explore a world with several robots; write a folder with report, map and picture of the team
     /// and a folder of each robot
     Team(Box<TeamArgs>),
+    /// Localise and map along a recorded log; write a folder with map, trajectory and picture
+    Replay(Box<ReplayArgs>),
     /// List the built-in worlds and the kinds of generated ones
     Worlds {
         /// Print one JSON object a line

@@ -9,6 +9,7 @@ mod args;
 mod explore;
 mod pictures;
 mod progress;
+mod replay;
 mod robot;
 mod solve;
 mod strategies;
@@ -60,6 +61,7 @@ fn run(cli: &Cli) -> Result<bool> {
         None => explore::run(&ExploreArgs::default()),
         Some(Command::Explore(args)) => explore::run(args),
         Some(Command::Team(args)) => team::run(args),
+        Some(Command::Replay(args)) => replay::run(args),
         Some(Command::Worlds { json }) => worlds::run(*json).map(|()| true),
         Some(Command::Tuning { json }) => tuning::run(*json).map(|()| true),
         Some(Command::Solve(args)) => solve::run(args).map(|()| true),

@@ -4,6 +4,8 @@
 //! is `inverse(pose at its first time) ∘ pose at its second`. Its translation and its rotation
 //! are judged apart, as absolute values: mean, standard deviation, maximum.
 
+use serde::Serialize;
+
 /// x, y in metres, heading in radians.
 pub type Pose = [f64; 3];
 
@@ -18,6 +20,29 @@ pub struct Relation {
     pub delta: Pose,
 }
 
+impl Relation {
+    /// Returns the relation with earlier times.
+    #[must_use]
+    pub fn shifted(self, offset: f64) -> Self {
+        Self {
+            from: self.from - offset,
+            to: self.to - offset,
+            ..self
+        }
+    }
+
+    /// Returns the error by these poses; `None` if one of its times has no pose.
+    #[must_use]
+    pub fn error(&self, poses: &[(f64, Pose)]) -> Option<RelationError> {
+        let at = |time| pose_at(poses, time, GAP_S);
+        Some(error(self.delta, at(self.from)?, at(self.to)?))
+    }
+}
+
+/// Greatest time between the end of a trajectory and a relation that its last pose still answers,
+/// seconds.
+const GAP_S: f64 = 0.5;
+
 /// Absolute errors of one relation: metres and degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RelationError {
@@ -28,7 +53,7 @@ pub struct RelationError {
 }
 
 /// Mean, standard deviation of the whole set, and maximum.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// Arithmetic mean.
     pub mean: f64,
@@ -38,7 +63,9 @@ pub struct Spread {
     pub max: f64,
 }
 
-fn compose(a: Pose, b: Pose) -> Pose {
+/// Returns `a ∘ b`.
+#[must_use]
+pub fn compose(a: Pose, b: Pose) -> Pose {
     let (sin, cos) = a[2].sin_cos();
     [
         a[0] + cos * b[0] - sin * b[1],
@@ -47,12 +74,15 @@ fn compose(a: Pose, b: Pose) -> Pose {
     ]
 }
 
-fn inverse(a: Pose) -> Pose {
+/// Returns the inverse motion.
+#[must_use]
+pub fn inverse(a: Pose) -> Pose {
     let (sin, cos) = a[2].sin_cos();
     [-cos * a[0] - sin * a[1], sin * a[0] - cos * a[1], -a[2]]
 }
 
 /// Error of one relation whose two poses were estimated.
+#[must_use]
 pub fn error(truth: Pose, from: Pose, to: Pose) -> RelationError {
     let rest = compose(inverse(truth), compose(inverse(from), to));
     let turn = rest[2].sin().atan2(rest[2].cos());
@@ -63,6 +93,7 @@ pub fn error(truth: Pose, from: Pose, to: Pose) -> RelationError {
 }
 
 /// Spread of absolute values, `None` of an empty set.
+#[must_use]
 pub fn spread(values: &[f64]) -> Option<Spread> {
     let n = values.len() as f64;
     let max = values.iter().copied().reduce(f64::max)?;
@@ -82,6 +113,7 @@ pub fn spread(values: &[f64]) -> Option<Spread> {
 /// The pose at a time, linear between the two poses around it. `poses` ascend in time.
 ///
 /// Before the first and after the last pose these hold, at most `gap` seconds away.
+#[must_use]
 pub fn pose_at(poses: &[(f64, Pose)], time: f64, gap: f64) -> Option<Pose> {
     let after = poses.partition_point(|pose| pose.0 < time);
     let last = poses.get(after.checked_sub(1).unwrap_or(after))?;
@@ -101,8 +133,11 @@ pub fn pose_at(poses: &[(f64, Pose)], time: f64, gap: f64) -> Option<Pose> {
     Some([between(0), between(1), last.1[2] + part * turn])
 }
 
-/// Read `t1 t2 x y z roll pitch yaw` lines; `offset` is taken from both times.
-pub fn read(file: &str, text: &str, offset: f64) -> Result<Vec<Relation>, String> {
+/// Reads `t1 t2 x y z roll pitch yaw` lines.
+///
+/// # Errors
+/// The file, the line and the remedy.
+pub fn read(file: &str, text: &str) -> Result<Vec<Relation>, String> {
     let mut found = Vec::new();
     for (index, line) in text
         .lines()
@@ -117,11 +152,7 @@ pub fn read(file: &str, text: &str, offset: f64) -> Result<Vec<Relation>, String
                     .all(|number| number.is_finite()) =>
             {
                 let delta = [x, y, yaw];
-                found.push(Relation {
-                    from: from - offset,
-                    to: to - offset,
-                    delta,
-                });
+                found.push(Relation { from, to, delta });
             }
             _ => {
                 let at = index + 1;
@@ -173,9 +204,9 @@ mod tests {
     #[test]
     fn a_broken_relation_names_file_and_line() {
         let good = "10 11 1 2 0 0 0 0.5\n";
-        assert_eq!(read("r", good, 9.0).unwrap()[0].from, 1.0);
+        assert_eq!(read("r", good).unwrap()[0].shifted(9.0).from, 1.0);
         assert!(
-            read("r", &format!("{good}1 2 NaN 0 0 0 0 0"), 0.0)
+            read("r", &format!("{good}1 2 NaN 0 0 0 0 0"))
                 .unwrap_err()
                 .starts_with("r:2:")
         );

@@ -37,10 +37,7 @@ impl core::error::Error for WriteError {}
 /// # Errors
 /// As [`WriteError`].
 pub fn prepare(folder: &Path) -> Result<(), WriteError> {
-    fs::create_dir_all(folder).map_err(|source| WriteError {
-        path: folder.to_owned(),
-        source,
-    })?;
+    make(folder)?;
     remove_snapshots(folder)?;
     // If the run is killed, the folder has an empty report instead of an older run's.
     put(folder, "report.json", b"")
@@ -90,6 +87,46 @@ pub fn write_team(
     put(folder, "map.pgm", &ros_map::pgm(map))?;
     put(folder, "map.yaml", ros_map::yaml(map, "map.pgm").as_bytes())?;
     put(folder, "run.png", picture)
+}
+
+/// Makes `folder`, and changes nothing in it.
+///
+/// # Errors
+/// As [`WriteError`].
+pub fn make(folder: &Path) -> Result<(), WriteError> {
+    fs::create_dir_all(folder).map_err(|source| WriteError {
+        path: folder.to_owned(),
+        source,
+    })
+}
+
+/// Writes the files of a replay into `folder`: the map, `files`, and `relations.csv` if there are
+/// relations. Without them an earlier one is removed.
+///
+/// # Errors
+/// As [`WriteError`], at the first file that cannot be written.
+pub fn write_replay(
+    folder: &Path,
+    map: &GridMap,
+    files: &[(&str, &[u8])],
+    relations: Option<&str>,
+) -> Result<(), WriteError> {
+    const RELATIONS: &str = "relations.csv";
+    put(folder, "map.pgm", &ros_map::pgm(map))?;
+    put(folder, "map.yaml", ros_map::yaml(map, "map.pgm").as_bytes())?;
+    for (name, bytes) in files {
+        put(folder, name, bytes)?;
+    }
+    if let Some(relations) = relations {
+        return put(folder, RELATIONS, relations.as_bytes());
+    }
+    let path = folder.join(RELATIONS);
+    match fs::remove_file(&path) {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(WriteError { path, source })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Writes pictures as `snapshots/001.png` and on; makes no folder if there are none.

@@ -4,8 +4,6 @@
 //! The orientation is the unit quaternion of yaw about z, then pitch about the new y, then roll
 //! about the new x: `q = q_z(yaw) q_y(pitch) q_x(roll)`.
 
-use core::fmt::Write as _;
-
 /// A pose with its time, in the frame of the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stamped {
@@ -28,21 +26,24 @@ pub struct Stamped {
 /// Returns the text of the file, one line for each pose.
 #[must_use]
 pub fn text(poses: &[Stamped]) -> String {
-    let mut out = String::with_capacity(poses.len() * 80);
-    for pose in poses {
-        let [qx, qy, qz, qw] = quaternion(pose);
-        // Writing into a string does not fail.
-        let _ = writeln!(
-            out,
-            "{}.{:03} {:.6} {:.6} {:.6} {qx:.7} {qy:.7} {qz:.7} {qw:.7}",
-            pose.time_ms / 1000,
-            pose.time_ms % 1000,
-            pose.x_m,
-            pose.y_m,
-            pose.z_m,
-        );
-    }
-    out
+    let stamp = |pose: &Stamped| format!("{}.{:03}", pose.time_ms / 1000, pose.time_ms % 1000);
+    poses.iter().map(|pose| line(&stamp(pose), pose)).collect()
+}
+
+/// Returns the text of the file with times in seconds of another clock, one for each pose.
+#[must_use]
+pub fn at_times(times_s: &[f64], poses: &[Stamped]) -> String {
+    let rows = times_s.iter().zip(poses);
+    rows.map(|(time_s, pose)| line(&format!("{time_s:.6}"), pose))
+        .collect()
+}
+
+fn line(stamp: &str, pose: &Stamped) -> String {
+    let [qx, qy, qz, qw] = quaternion(pose);
+    format!(
+        "{stamp} {:.6} {:.6} {:.6} {qx:.7} {qy:.7} {qz:.7} {qw:.7}\n",
+        pose.x_m, pose.y_m, pose.z_m
+    )
 }
 
 fn quaternion(pose: &Stamped) -> [f64; 4] {

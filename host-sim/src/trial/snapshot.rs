@@ -137,7 +137,8 @@ fn cell_of(row: &FieldRow, column: usize) -> WindowCell {
     }
 }
 
-fn tiles(
+/// Reads every tile of the parts of the map that hold one of `places`, metres.
+pub(crate) fn tiles(
     link: &mut dyn Link,
     places: &[[f64; 2]],
 ) -> Result<BTreeMap<(i16, i16), Tile>, LinkError> {

@@ -1,0 +1,177 @@
+//! `host-sim replay`: a recorded log through the device's localisation and mapping.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, Error, Result, bail};
+use clap::Args;
+
+use fieldline_protocol::message::Status;
+use host_sim::link::spec::{LinkSpec, Options};
+use host_sim::replay::relations::{self, Pose, Relation, RelationError};
+use host_sim::replay::report::{self, Files, RelationErrors, ReplayReport};
+use host_sim::replay::{carmen, clock, run};
+use host_sim::report::folder;
+
+use super::args::seed;
+use super::progress::Interrupt;
+use super::robot::RobotArgs;
+use super::{note, say};
+
+#[derive(Clone, Debug, Args)]
+pub(super) struct ReplayArgs {
+    /// CARMEN log with FLASER lines, plain or gzip
+    #[arg(value_name = "LOG")]
+    log: PathBuf,
+    /// True motions between poses of the log, lines of `t1 t2 x y z roll pitch yaw`
+    #[arg(long, value_name = "FILE")]
+    relations: Option<PathBuf>,
+    /// Seconds by which the relations' clock is ahead of the log's [default: found by the log's
+    /// odometry]
+    #[arg(
+        long,
+        value_name = "S",
+        value_parser = finite,
+        requires = "relations",
+        allow_negative_numbers = true
+    )]
+    relations_offset: Option<f64>,
+    /// Make odometry that drifts from the log's poses, which are corrected ones: the usual noise
+    /// with variances times this [default: the log's own odometry]
+    #[arg(long, value_name = "K", value_parser = factor, allow_negative_numbers = true)]
+    degrade: Option<f64>,
+    /// Seed of the drift
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "0",
+        value_parser = seed,
+        allow_negative_numbers = true
+    )]
+    seed: u64,
+    /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback]
+    #[arg(long)]
+    link: Option<LinkSpec>,
+    /// Folder of the replay [default: out/LOG-replay-SEED]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    robot: RobotArgs,
+    /// Print only the figures, one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Replays a log; returns true if the device kept its pose up to the end.
+pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
+    let text = carmen::read(&args.log).map_err(Error::msg)?;
+    let scans = carmen::scans(&args.log.display().to_string(), &text).map_err(Error::msg)?;
+    let times = || scans.iter().map(|scan| scan.time);
+    let own: Vec<(f64, Pose)> = times()
+        .zip(scans.iter().map(|scan| scan.odometry))
+        .collect();
+    let truth = args.relations.as_ref();
+    let truth = truth.map(|file| known(args, file, &own)).transpose()?;
+    let link = args.robot.link(args.link.as_ref()).cloned();
+    let link = link.unwrap_or_default();
+    let options = Options {
+        tuning: args.robot.tuning(&link)?,
+        ..Options::default()
+    };
+    let folder = args.out.clone().unwrap_or_else(|| usual_folder(args));
+    let interrupt = Interrupt::listen()?;
+    let context = || format!("--link {link}");
+    let mut planner = link.open(&options).with_context(context)?;
+    let odometry = run::odometry(&scans, args.degrade, args.seed);
+    let mut step = |_| !interrupt.pressed();
+    let replayed = run::run(&scans, &odometry, planner.as_mut(), &mut step);
+    let replayed = replayed.with_context(context)?;
+    if replayed.poses.len() < scans.len() {
+        bail!("interrupted after {} scans", replayed.poses.len());
+    }
+    let estimated: Vec<(f64, Pose)> = times().zip(replayed.poses.iter().copied()).collect();
+    let errors = truth.map(|truth| judged(&truth, &estimated));
+    let report = ReplayReport {
+        log: args.log.display().to_string(),
+        link: link.to_string(),
+        seed: args.seed,
+        degrade: args.degrade,
+        steps: scans.len(),
+        relations: errors.as_ref().and_then(|errors| {
+            let errors: Vec<RelationError> = errors.iter().map(|(_, error)| *error).collect();
+            RelationErrors::of(&errors)
+        }),
+        occupied_cells_5cm: report::occupied_cells(&scans, &replayed.poses),
+        quality: report::shares(&replayed.qualities),
+    };
+    folder::make(&folder)?;
+    let files = Files {
+        report: &report,
+        scans: &scans,
+        replayed: &replayed,
+        relations: errors.as_deref(),
+    };
+    files.write(&folder)?;
+    say(&if args.json {
+        report.to_json_line()
+    } else {
+        report.to_text()
+    })?;
+    let log = args.log.display();
+    if replayed.status != Status::Exploring {
+        note(&format!(
+            "host-sim: {log}: the device lost its pose; the rest of the path is odometry"
+        ));
+    }
+    note(&format!("{log}: files in {}", folder.display()));
+    Ok(replayed.status == Status::Exploring)
+}
+
+/// Reads the relations, with the log's times.
+fn known(args: &ReplayArgs, file: &Path, own: &[(f64, Pose)]) -> Result<Vec<Relation>> {
+    let name = file.display();
+    let text = carmen::read(file).map_err(Error::msg)?;
+    let read = relations::read(&name.to_string(), &text).map_err(Error::msg)?;
+    let offset = args.relations_offset.or_else(|| clock::offset(&read, own));
+    let Some(offset) = offset else {
+        bail!(
+            "{name}:1: these motions are not in the odometry of {}; give the relations of this \
+             log, or --relations-offset if its odometry is bad",
+            args.log.display()
+        );
+    };
+    let shifted: Vec<Relation> = read.iter().map(|it| it.shifted(offset)).collect();
+    if judged(&shifted, own).is_empty() {
+        bail!(
+            "{name}:1: no relation has its times in {}; give the relations of this log, or another \
+             --relations-offset",
+            args.log.display()
+        );
+    }
+    if offset != 0.0 {
+        note(&format!("{name}: {offset:.3} s ahead of the log"));
+    }
+    Ok(shifted)
+}
+
+/// Returns the relations whose times the poses have, with their errors.
+fn judged(relations: &[Relation], poses: &[(f64, Pose)]) -> Vec<(Relation, RelationError)> {
+    let judged = relations.iter().map(|it| Some((*it, it.error(poses)?)));
+    judged.flatten().collect()
+}
+
+fn usual_folder(args: &ReplayArgs) -> PathBuf {
+    let name = args.log.file_name().unwrap_or_default().to_string_lossy();
+    let stem = name.split('.').next().unwrap_or_default();
+    Path::new("out").join(format!("{stem}-replay-{}", args.seed))
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| "give a number of seconds, as in 1211.353".into())
+}
+
+fn factor(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|number| (0.0..=1000.0).contains(number));
+    number.ok_or_else(|| "give a number from 0 to 1000".into())
+}

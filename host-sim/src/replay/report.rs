@@ -1,0 +1,264 @@
+//! The figures of a replay, and its files.
+//!
+//! `occupied_cells_5cm` counts cells of 5 cm that hold an end of a beam, all scans placed at their
+//! estimated poses: the sharper the map, the fewer. Beams that met nothing have no end.
+//!
+//! Units: metres, degrees.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use fieldline_protocol::message::Quality;
+use serde::Serialize;
+
+use super::carmen::LogScan;
+use super::relations::{Pose, Relation, RelationError, Spread, compose, spread};
+use super::run::Replayed;
+use super::wire::LogLaser;
+use crate::picture::{Scene, run_png};
+use crate::report::folder::{self, WriteError};
+use crate::report::tum::{self, Stamped};
+use crate::report::{GridMap, QualityShares};
+
+/// Side of the cells that are counted, metres.
+const CELL_M: f64 = 0.05;
+
+/// The figures of a replay, as in `--json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReplayReport {
+    /// The log's file.
+    pub log: String,
+    /// The link.
+    pub link: String,
+    /// Seed of the drift.
+    pub seed: u64,
+    /// Factor of the drift's variances; `None` for the log's own odometry.
+    pub degrade: Option<f64>,
+    /// Scans of the log.
+    pub steps: usize,
+    /// Errors against relations; `None` without them.
+    pub relations: Option<RelationErrors>,
+    /// Cells of 5 cm that hold an end of a beam.
+    pub occupied_cells_5cm: usize,
+    /// Shares of the steps.
+    pub quality: QualityShares,
+}
+
+/// Errors against relations, absolute values.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RelationErrors {
+    /// Relations whose times the log has.
+    pub used: usize,
+    /// Metres.
+    pub translation_m: Spread,
+    /// Degrees.
+    pub rotation_deg: Spread,
+}
+
+impl RelationErrors {
+    /// Returns the errors; `None` if there are none.
+    #[must_use]
+    pub fn of(errors: &[RelationError]) -> Option<Self> {
+        let all = |part: fn(&RelationError) -> f64| {
+            let parts: Vec<f64> = errors.iter().map(part).collect();
+            spread(&parts)
+        };
+        Some(Self {
+            used: errors.len(),
+            translation_m: all(|error| error.translation_m)?,
+            rotation_deg: all(|error| error.rotation_deg)?,
+        })
+    }
+}
+
+/// Returns the number of cells that hold an end of a beam.
+#[must_use]
+pub fn occupied_cells(scans: &[LogScan], poses: &[Pose]) -> usize {
+    let laser = LogLaser::of(scans);
+    let cell = |m: f64| (m / CELL_M).floor() as i32;
+    let mut cells = BTreeSet::new();
+    for (scan, pose) in scans.iter().zip(poses) {
+        for [x, y] in laser.ends(scan) {
+            let [x, y, _] = compose(*pose, [x, y, 0.0]);
+            cells.insert((cell(x), cell(y)));
+        }
+    }
+    cells.len()
+}
+
+/// Returns the shares of the qualities.
+#[must_use]
+pub fn shares(qualities: &[Quality]) -> QualityShares {
+    let share = |of: fn(&Quality) -> bool| {
+        let count = qualities.iter().filter(|quality| of(quality)).count();
+        count as f64 / qualities.len().max(1) as f64
+    };
+    QualityShares {
+        tracking: share(|it| *it == Quality::Tracking),
+        degenerate: share(|it| matches!(it, Quality::Degenerate { .. })),
+        lost: share(|it| *it == Quality::Lost),
+    }
+}
+
+impl ReplayReport {
+    /// Returns the report as one line of JSON.
+    #[must_use]
+    pub fn to_json_line(&self) -> String {
+        // Strings, numbers and options only.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// Returns a few lines of text.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        let shares = &self.quality;
+        let mut out = format!(
+            "{}: {}\n  quality    tracking {:.1} %, degenerate {:.1} %, lost {:.1} %\n",
+            self.log,
+            self.odometry(),
+            100.0 * shares.tracking,
+            100.0 * shares.degenerate,
+            100.0 * shares.lost,
+        );
+        if let Some(errors) = &self.relations {
+            let Spread { mean, sd, max } = errors.translation_m;
+            let turn = errors.rotation_deg;
+            // Writing into a string does not fail.
+            let _ = writeln!(
+                out,
+                "  relations  {} used; {mean:.4} ± {sd:.4} m, at most {max:.3} m; \
+                 {:.2} ± {:.2}°, at most {:.1}°",
+                errors.used, turn.mean, turn.sd, turn.max
+            );
+        }
+        let _ = write!(
+            out,
+            "  map        {} cells of 5 cm",
+            self.occupied_cells_5cm
+        );
+        out
+    }
+
+    /// Returns steps and odometry on one line.
+    fn odometry(&self) -> String {
+        let of = match self.degrade {
+            Some(k) => format!("odometry degraded by {k}, seed {}", self.seed),
+            None => "the log's own odometry".into(),
+        };
+        format!("{} scans, {of}", self.steps)
+    }
+}
+
+/// The content of a replay's folder.
+#[derive(Clone, Copy, Debug)]
+pub struct Files<'a> {
+    /// The figures.
+    pub report: &'a ReplayReport,
+    /// The log's scans.
+    pub scans: &'a [LogScan],
+    /// Poses and map.
+    pub replayed: &'a Replayed,
+    /// Relations and their errors, with the log's times; `None` without relations.
+    pub relations: Option<&'a [(Relation, RelationError)]>,
+}
+
+impl Files<'_> {
+    /// Writes every file into `folder`.
+    ///
+    /// # Errors
+    /// As [`WriteError`], at the first file that cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), WriteError> {
+        let map = GridMap::from_tiles(&self.replayed.tiles);
+        let path: Vec<Stamped> = self.path();
+        let times: Vec<f64> = self.scans.iter().map(|scan| scan.time).collect();
+        let picture = run_png(&Scene {
+            title: &self.report.log,
+            subtitle: &self.report.odometry(),
+            map: &map,
+            path: &path,
+            window: None,
+            relief: None,
+            residual: &[],
+            not_worth_it: &[],
+            planned_path: None,
+            given_up: &[],
+            ground: None,
+            room_for: None,
+        });
+        let relations = self.relations.map(csv);
+        let figures = self.report.to_json_line() + "\n";
+        folder::write_replay(
+            folder,
+            &map,
+            &[
+                ("report.json", figures.as_bytes()),
+                ("trajectory.tum", tum::at_times(&times, &path).as_bytes()),
+                ("run.png", &picture),
+            ],
+            relations.as_deref(),
+        )
+    }
+
+    fn path(&self) -> Vec<Stamped> {
+        let began = self.scans.first().map_or(0.0, |scan| scan.time);
+        let poses = self.scans.iter().zip(&self.replayed.poses);
+        poses
+            .map(|(scan, &[x_m, y_m, yaw_rad])| Stamped {
+                time_ms: ((scan.time - began) * 1000.0).round() as u32,
+                x_m,
+                y_m,
+                yaw_rad,
+                ..Stamped::default()
+            })
+            .collect()
+    }
+}
+
+/// Returns the text of `relations.csv`.
+fn csv(relations: &[(Relation, RelationError)]) -> String {
+    let mut out =
+        String::from("from_s,to_s,true_x_m,true_y_m,true_yaw_rad,translation_m,rotation_deg\n");
+    for (relation, error) in relations {
+        let [x, y, yaw] = relation.delta;
+        // Writing into a string does not fail.
+        let _ = writeln!(
+            out,
+            "{:.6},{:.6},{x:.6},{y:.6},{yaw:.6},{:.6},{:.6}",
+            relation.from, relation.to, error.translation_m, error.rotation_deg
+        );
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_are_those_of_the_command() {
+        let errors = [(0.1, 1.0), (0.3, 2.0)].map(|(translation_m, rotation_deg)| RelationError {
+            translation_m,
+            rotation_deg,
+        });
+        let report = ReplayReport {
+            log: "a.log".into(),
+            link: "direct".into(),
+            seed: 3,
+            degrade: Some(2.0),
+            steps: 2,
+            relations: RelationErrors::of(&errors),
+            occupied_cells_5cm: 7,
+            quality: shares(&[Quality::Tracking, Quality::Lost]),
+        };
+        assert_eq!(
+            report.to_json_line(),
+            "{\"log\":\"a.log\",\"link\":\"direct\",\"seed\":3,\"degrade\":2.0,\"steps\":2,\
+             \"relations\":{\"used\":2,\"translation_m\":{\"mean\":0.2,\"sd\":0.09999999999999999,\
+             \"max\":0.3},\"rotation_deg\":{\"mean\":1.5,\"sd\":0.5,\"max\":2.0}},\
+             \"occupied_cells_5cm\":7,\"quality\":{\"tracking\":0.5,\"degenerate\":0.0,\
+             \"lost\":0.5}}"
+        );
+        assert_eq!(RelationErrors::of(&[]), None);
+    }
+}
