@@ -79,6 +79,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     };
     let folder = args.out.clone().unwrap_or_else(|| usual_folder(args));
     let interrupt = Interrupt::listen()?;
+    folder::make(&folder)?;
     let context = || format!("--link {link}");
     let mut planner = link.open(&options).with_context(context)?;
     let odometry = run::odometry(&scans, args.degrade, args.seed);
@@ -103,7 +104,6 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
         occupied_cells_5cm: report::occupied_cells(&scans, &replayed.poses),
         quality: report::shares(&replayed.qualities),
     };
-    folder::make(&folder)?;
     let files = Files {
         report: &report,
         scans: &scans,

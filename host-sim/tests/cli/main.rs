@@ -2,6 +2,7 @@
 
 mod commands;
 mod refusals;
+mod replay;
 mod runs;
 
 use assert_cmd::Command;

@@ -1,0 +1,242 @@
+//! Recorded logs: a hand-made one gives the same poses over every link, and a bad one writes
+//! nothing.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::{folder, outcome, reports};
+
+/// Half the sides of the room around the start, metres.
+const ROOM_M: [f64; 2] = [4.0, 2.5];
+
+/// The robot's pose after so many steps: ahead by 5 cm a step, and a weave.
+fn pose(step: u32) -> [f64; 3] {
+    let along = 0.05 * f64::from(step);
+    [along - 1.5, 0.3 * along.sin(), 0.3 * along.cos()]
+}
+
+/// The range of a beam at this angle in the room.
+fn range_m([x, y, yaw]: [f64; 3], angle: f64) -> f64 {
+    let (sin, cos) = (yaw + angle).sin_cos();
+    let wall = |at: f64, direction: f64, half: f64| {
+        if direction.abs() < 1e-9 {
+            return f64::INFINITY;
+        }
+        (half * direction.signum() - at) / direction
+    };
+    wall(x, cos, ROOM_M[0]).min(wall(y, sin, ROOM_M[1]))
+}
+
+/// A log of a drive through the room, with `beams` over 180°.
+fn log(beams: u32) -> String {
+    let mut out = String::from("# made by hand\nPARAM laser_front_laser_fov 180 0 host 0\n");
+    for step in 0..60 {
+        let at = pose(step);
+        let gaps = if beams % 2 == 1 { beams - 1 } else { beams };
+        let angle = |beam: u32| (180.0 * f64::from(beam) / f64::from(gaps) - 90.0).to_radians();
+        let [x, y, yaw] = at;
+        let t = 0.2 * f64::from(step);
+        write!(
+            out,
+            "ODOM {x} {y} {yaw} 0.25 0 0 {t} host {t}\nFLASER {beams}"
+        )
+        .unwrap();
+        for beam in 0..beams {
+            write!(out, " {:.3}", range_m(at, angle(beam))).unwrap();
+        }
+        writeln!(out, " {x} {y} {yaw} {x} {y} {yaw} {t} host {t}").unwrap();
+    }
+    out
+}
+
+/// True motions of one second each, told by a clock that is so many seconds ahead.
+fn relations(ahead: f64) -> String {
+    let mut out = String::new();
+    for step in (0..50).step_by(5) {
+        let ([x, y, yaw], [to_x, to_y, to_yaw]) = (pose(step), pose(step + 5));
+        let (sin, cos) = yaw.sin_cos();
+        let (dx, dy) = (to_x - x, to_y - y);
+        let from = 0.2 * f64::from(step) + ahead;
+        let (along, across) = (cos * dx + sin * dy, cos * dy - sin * dx);
+        let (to, turn) = (from + 1.0, to_yaw - yaw);
+        writeln!(out, "{from} {to} {along} {across} 0 0 0 {turn}").unwrap();
+    }
+    out
+}
+
+fn with_log(beams: u32) -> TempDir {
+    let folder = folder();
+    fs::write(folder.path().join("a.log"), log(beams)).unwrap();
+    folder
+}
+
+#[test]
+fn a_replay_prints_its_figures_and_writes_its_files() {
+    for beams in [180, 181, 360] {
+        let folder = with_log(beams);
+        fs::write(folder.path().join("r"), relations(0.0)).unwrap();
+        let line = "replay a.log --relations r --link direct --json --out out";
+        let words: Vec<&str> = line.split(' ').collect();
+        let (status, stdout, stderr) = outcome(&folder, &words);
+        assert_eq!(status, 0, "{stdout}{stderr}");
+        let report = &reports(&stdout)[0];
+        let keys: Vec<&String> = report.as_object().unwrap().keys().collect();
+        let expected = "degrade link log occupied_cells_5cm quality relations seed steps";
+        assert_eq!(keys, expected.split(' ').collect::<Vec<_>>());
+        assert_eq!(report["steps"], 60);
+        assert_eq!(report["degrade"], Value::Null);
+        assert_eq!(report["relations"]["used"], 10);
+        let mean = report["relations"]["translation_m"]["mean"]
+            .as_f64()
+            .unwrap();
+        assert!(mean < 0.03, "{beams} beams: {mean}");
+        assert_eq!(report["quality"]["lost"], 0.0);
+        let names = [
+            "map.pgm",
+            "map.yaml",
+            "relations.csv",
+            "report.json",
+            "run.png",
+            "trajectory.tum",
+        ];
+        for name in names {
+            assert!(folder.path().join("out").join(name).exists(), "{name}");
+        }
+        let tum = fs::read_to_string(folder.path().join("out/trajectory.tum")).unwrap();
+        assert_eq!(tum.lines().count(), 60);
+        assert!(tum.lines().nth(5).unwrap().starts_with("1.000000 "));
+    }
+}
+
+#[test]
+fn call_and_bytes_give_the_same_poses_and_map() {
+    let folder = with_log(180);
+    let files = |link: &str| {
+        let (status, _, stderr) = outcome(
+            &folder,
+            &[
+                "replay",
+                "a.log",
+                "--degrade",
+                "2",
+                "--link",
+                link,
+                "--out",
+                link,
+            ],
+        );
+        assert_eq!(status, 0, "{stderr}");
+        ["trajectory.tum", "map.pgm"].map(|name| fs::read(folder.path().join(link).join(name)))
+    };
+    let [call, bytes] = ["direct", "loopback"].map(|link| files(link).map(Result::unwrap));
+    assert!(call == bytes);
+}
+
+#[test]
+fn drift_is_corrected_and_without_a_factor_there_is_none() {
+    let folder = with_log(181);
+    fs::write(folder.path().join("r"), relations(0.0)).unwrap();
+    let line = |more: &str| {
+        let line = format!("replay a.log --relations r --link direct --json{more}");
+        let words: Vec<&str> = line.split(' ').collect();
+        let (status, stdout, stderr) = outcome(&folder, &words);
+        assert_eq!(status, 0, "{stderr}");
+        reports(&stdout)[0].clone()
+    };
+    let (one, other) = (line(" --degrade 4 --seed 1"), line(" --degrade 4 --seed 2"));
+    assert_eq!(one, line(" --degrade 4 --seed 1"));
+    assert_ne!(one["relations"], other["relations"]);
+    assert!(one["relations"]["translation_m"]["mean"].as_f64().unwrap() < 0.05);
+}
+
+#[test]
+fn the_clock_of_relations_is_found_or_said() {
+    let folder = with_log(180);
+    fs::write(folder.path().join("r"), relations(100.0)).unwrap();
+    let said = ["--relations-offset", "100"];
+    for more in [&[][..], &said] {
+        let start = [
+            "replay",
+            "a.log",
+            "--relations",
+            "r",
+            "--link",
+            "direct",
+            "--json",
+        ];
+        let (status, stdout, stderr) = outcome(&folder, &[&start, more].concat());
+        assert_eq!(status, 0, "{stderr}");
+        assert_eq!(reports(&stdout)[0]["relations"]["used"], 10, "{stderr}");
+        assert!(stderr.contains("s ahead of the log"), "{stderr}");
+    }
+}
+
+/// The program refuses in one line, and writes nothing.
+#[track_caller]
+fn refused(folder: &TempDir, more: &[&str], words: &[&str]) {
+    let start = [
+        "replay", "bad.log", "--link", "direct", "--json", "--out", "out",
+    ];
+    let (status, stdout, stderr) = outcome(folder, &[&start, more].concat());
+    assert_eq!((status, stdout.as_str()), (2, ""), "{stderr}");
+    assert_eq!(stderr.lines().count(), 1, "{stderr}");
+    for word in words {
+        assert!(stderr.contains(word), "no {word:?} in {stderr}");
+    }
+    assert!(!folder.path().join("out").exists() && !Path::new("out").exists());
+}
+
+#[test]
+fn a_bad_log_is_refused_with_file_and_line_and_writes_nothing() {
+    let folder = folder();
+    let good = log(4);
+    let lines: Vec<&str> = good.lines().collect();
+    let first = lines
+        .iter()
+        .position(|line| line.starts_with("FLASER"))
+        .unwrap();
+    let at = format!("bad.log:{}: ", first + 1);
+    let with = |line: &str| {
+        let mut lines = lines.clone();
+        lines[first] = line;
+        lines.join("\n")
+    };
+    let nan = with("FLASER 4 1 NaN 1 1 0 0 0 0 0 0 0 host 0");
+    let short = with("FLASER 4 1 1 1 0 0 0 0 0 0 0 host 0");
+    for (text, words) in [
+        (nan.as_str(), [at.as_str(), "`NaN`", "mend or delete"]),
+        (&short, [&at, "FLASER says 4", "mend or delete"]),
+        ("", ["bad.log:1: ", "no FLASER line", "give a CARMEN log"]),
+    ] {
+        fs::write(folder.path().join("bad.log"), text).unwrap();
+        refused(&folder, &[], &words);
+    }
+    // The header of a gzip file, and nothing behind it.
+    let packed = [0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 3];
+    fs::write(folder.path().join("bad.log"), packed).unwrap();
+    refused(&folder, &[], &["bad.log:1: ", "gzip", "copy it again"]);
+    fs::remove_file(folder.path().join("bad.log")).unwrap();
+    refused(&folder, &[], &["bad.log", "give an existing file"]);
+}
+
+#[test]
+fn relations_of_another_log_are_refused() {
+    let folder = folder();
+    fs::write(folder.path().join("bad.log"), log(180)).unwrap();
+    let other = "1 2 -2 1 0 0 0 1\n2 3 0 3 0 0 0 0\n";
+    fs::write(folder.path().join("other"), other).unwrap();
+    let relations = ["--relations", "other"];
+    refused(
+        &folder,
+        &relations,
+        &["other:1: ", "bad.log", "--relations-offset"],
+    );
+    let far = ["--relations", "other", "--relations-offset", "500"];
+    refused(&folder, &far, &["other:1: ", "no relation has its times"]);
+    fs::write(folder.path().join("other"), "1 2 0 0 0 0 0 0\n1 2 NaN\n").unwrap();
+    refused(&folder, &relations, &["other:2: "]);
+}
