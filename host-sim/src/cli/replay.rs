@@ -14,7 +14,7 @@ use host_sim::report::folder;
 
 use super::args::seed;
 use super::progress::Interrupt;
-use super::robot::RobotArgs;
+use super::robot::TuneArgs;
 use super::{note, say};
 
 #[derive(Clone, Debug, Args)]
@@ -55,7 +55,7 @@ pub(super) struct ReplayArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    robot: RobotArgs,
+    tune: TuneArgs,
     /// Print only the figures, one JSON object
     #[arg(long)]
     json: bool,
@@ -71,10 +71,10 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
         .collect();
     let truth = args.relations.as_ref();
     let truth = truth.map(|file| known(args, file, &own)).transpose()?;
-    let link = args.robot.link(args.link.as_ref()).cloned();
+    let link = args.tune.link(args.link.as_ref()).cloned();
     let link = link.unwrap_or_default();
     let options = Options {
-        tuning: args.robot.tuning(&link)?,
+        tuning: args.tune.tuning(&link)?,
         ..Options::default()
     };
     let folder = args.out.clone().unwrap_or_else(|| usual_folder(args));

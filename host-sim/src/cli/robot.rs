@@ -30,6 +30,13 @@ pub(super) struct RobotArgs {
     /// for everything that can be seen. With the order gain only [default: 0.3]
     #[arg(long, value_name = "M2_PER_M", value_parser = worth)]
     worth: Option<I4F12>,
+    #[command(flatten)]
+    tune: TuneArgs,
+}
+
+/// Arguments about the planner's tuned constants.
+#[derive(Clone, Debug, Default, Args)]
+pub(super) struct TuneArgs {
     /// Sets a tuned constant, as in `ground.blind_radius_m=1.2`; `host-sim tuning` lists them
     #[arg(long, value_name = "NAME=VALUE")]
     tune: Vec<String>,
@@ -79,6 +86,18 @@ impl RobotArgs {
         }))
     }
 
+    /// As [`TuneArgs::link`].
+    pub(super) fn link<'a>(&self, link: Option<&'a LinkSpec>) -> Option<&'a LinkSpec> {
+        self.tune.link(link)
+    }
+
+    /// As [`TuneArgs::tuning`].
+    pub(super) fn tuning(&self, link: &LinkSpec) -> Result<Option<&'static Tuning>> {
+        self.tune.tuning(link)
+    }
+}
+
+impl TuneArgs {
     /// Returns the link that was asked for: a direct one if only tuned constants ask for it.
     pub(super) fn link<'a>(&self, link: Option<&'a LinkSpec>) -> Option<&'a LinkSpec> {
         let is_tuned = !self.tune.is_empty();

@@ -57,7 +57,7 @@ fn request_control_start_on_uneven_ground() {
             0x80, 0x80, 0xa0, 0x01, 0x80, 0x80, 0xc0, 0x07, // default limits of loops
             0x80, 0x80, 0x50, 0x80, 0x80, 0x10, 0x80, 0x80, 0xa0, 0x01, //
             0, 0x9a, 0x13, // by gain, worth 0.3 = 1229/4096
-            0, 0, // no team, no localisation
+            0, 0, 0, // no team, no localisation, no survey
         ],
     );
 }
@@ -163,7 +163,7 @@ fn request_control_start() {
             0x80, 0x80, 0x08, 0xff, 0xff, 0x03,
             0, // odometry from (1 m, −0.5 m), not turned
             1, // localise
-            0, // plan
+            0, // survey
         ],
     );
 }

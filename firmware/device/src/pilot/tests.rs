@@ -102,6 +102,31 @@ fn nothing_happens_before_a_start() {
 }
 
 #[test]
+fn a_survey_maps_and_localises_and_never_moves_or_ends() {
+    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let level = start().lasers[0];
+    let survey = Start {
+        lasers: [level].into_iter().collect(),
+        localise: true,
+        survey: true,
+        ..start()
+    };
+    let status = pilot.control(&mut bench.memory(), &Control::Start(survey));
+    assert_eq!(status, Ok(Status::Exploring));
+    // 4 m of free space is a closed room: a session that explores ends in it.
+    for step in 0..60 {
+        let mut scan = observation(200 * step);
+        scan.scans.truncate(1);
+        let command = pilot.observe(&mut bench.memory(), &scan, &mut ()).unwrap();
+        assert_eq!(command.status, Status::Exploring);
+        assert_eq!(command.velocity, Twist::default());
+        assert!(command.location.is_some());
+    }
+    assert!(Pilot::tile(&bench.memory(), 0, 0).is_some());
+    assert_eq!(Pilot::field_row(&bench.memory(), 0), None);
+}
+
+#[test]
 fn a_refused_start_changes_nothing() {
     let (mut pilot, mut bench) = started();
     let bad = Start {
