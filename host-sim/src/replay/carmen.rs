@@ -7,7 +7,7 @@
 //! Invariant: all scans have the same number of beams, and times never decrease.
 //! Units: metres, radians, seconds.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::{FRAC_PI_2, PI};
 use std::io::Read as _;
 use std::path::Path;
 

@@ -168,7 +168,7 @@ pub fn read(file: &str, text: &str) -> Result<Vec<Relation>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{FRAC_PI_2, PI};
+    use core::f64::consts::{FRAC_PI_2, PI};
 
     #[test]
     fn a_hand_made_graph_has_the_errors_of_the_equations() {

@@ -5,8 +5,8 @@
 //!
 //! Units: metres, degrees.
 
+use core::fmt::Write as _;
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
 use std::path::Path;
 
 use fieldline_protocol::message::Quality;

@@ -176,11 +176,11 @@ mod tests {
             (90, 90, 2.0, 88.0),
         ] {
             let scan = scan(vec![5.0; beams]);
-            let laser = LogLaser::of(std::slice::from_ref(&scan));
+            let laser = LogLaser::of(core::slice::from_ref(&scan));
             let step = laser.laser.bearing_step.to_num::<f64>().to_degrees();
             let first = laser.laser.first_bearing.to_num::<f64>().to_degrees();
             assert_eq!(usize::from(laser.laser.beams), sent);
-            assert!((step - f64::from(step_deg)).abs() < 1e-3, "{beams}: {step}");
+            assert!((step - step_deg).abs() < 1e-3, "{beams}: {step}");
             assert!((first + 90.0).abs() < 1e-3);
             let last = first + step * (sent - 1) as f64;
             assert!((last - last_deg).abs() < 0.1, "{beams}: {last}");
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn a_reading_beyond_the_limit_saw_nothing_and_one_of_zero_says_nothing() {
         let scan = scan(vec![0.0, 1.5, 81.9, 11.9]);
-        let laser = LogLaser::of(std::slice::from_ref(&scan));
+        let laser = LogLaser::of(core::slice::from_ref(&scan));
         assert_eq!(laser.laser.range_limit_mm, 12_000);
         let ranges = &laser.observation(&scan, 0, [0.0; 3]).scans[0].ranges_mm;
         assert_eq!(ranges[..], [INVALID_MM, 1500, NO_RETURN_MM, 11_900]);
@@ -202,7 +202,7 @@ mod tests {
     #[test]
     fn a_limit_below_12_m_is_the_greatest_reading() {
         let scan = scan(vec![8.191, 2.0, 8.191]);
-        let laser = LogLaser::of(std::slice::from_ref(&scan));
+        let laser = LogLaser::of(core::slice::from_ref(&scan));
         assert_eq!(laser.laser.range_limit_mm, 8191);
         assert_eq!(laser.ends(&scan).count(), 1);
     }
@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn a_constant_place_of_the_laser_is_its_mount() {
         let one = scan(vec![1.0; 2]);
-        assert!((mount(std::slice::from_ref(&one))[0] - 0.3).abs() < 1e-9);
+        assert!((mount(core::slice::from_ref(&one))[0] - 0.3).abs() < 1e-9);
         let moved = LogScan {
             laser: [1.4, 2.0, 0.0],
             ..one.clone()

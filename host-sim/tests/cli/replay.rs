@@ -1,7 +1,7 @@
 //! Recorded logs: a hand-made one gives the same poses over every link, and a bad one writes
 //! nothing.
 
-use std::fmt::Write as _;
+use core::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
