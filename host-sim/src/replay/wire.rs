@@ -115,7 +115,7 @@ impl LogLaser {
 }
 
 /// Returns the laser's pose on the robot: that of the first scan, if it is the same in all scans.
-/// A log whose laser poses were corrected has no constant one, and then the laser counts as central.
+/// A log whose laser poses were corrected has no constant one. Its laser counts as central.
 fn mount(scans: &[LogScan]) -> Pose {
     let of = |scan: &LogScan| compose(inverse(scan.odometry), scan.laser);
     let Some(first) = scans.first().map(of) else {
