@@ -137,6 +137,7 @@ impl AbsurdHost {
             order: self.order(),
             team: None,
             localise: count == 1,
+            survey: false,
         };
         for (speed, accel) in [
             (start.max_linear, &mut start.linear_accel),
