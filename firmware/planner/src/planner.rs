@@ -148,8 +148,11 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if state.localiser.has_given_up() {
         state.status = Status::Fault(Fault::PoseLost);
     }
-    let is_over = state.status != Status::Exploring;
-    if state.localiser.is_lost() || is_over || config.survey {
+    if state.localiser.is_lost() || config.survey {
+        return Output::standing(state.status);
+    }
+    tell_strategy(config, state, &input);
+    if state.status != Status::Exploring {
         return Output::standing(state.status);
     }
     // A search for a recovery owns the scratch: the robot stands and plans nothing until it is
@@ -264,7 +267,7 @@ fn sense<const TILES: usize, const SLOTS: usize>(
     if !state.started {
         state.started = true;
         state.start = input.pose.point().cell();
-        if starts_blocked(config, input) {
+        if !config.survey && starts_blocked(config, input) {
             state.status = Status::Fault(Fault::StartBlocked);
         }
     }
@@ -282,15 +285,6 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         &mut state.map,
         &mut state.preferences,
     );
-    let peers = state.team.peers().iter();
-    for peer in peers.filter(|peer| peer.has_claims(input.time_ms)) {
-        let place = peer.pose(input.time_ms).point();
-        state.strategy.note_peer(place);
-    }
-    let (robot, tiles) = (input.pose.point(), state.map.tiles());
-    if let Some(end) = state.strategy.survey(tiles, robot, input.time_ms, config) {
-        state.status = end;
-    }
     // Wheels that slip on a slope are no contact.
     if let GroundModel::Flat(points) = &mut state.ground
         && let Some(contact) = state.drive.feel(config, input.velocity)
@@ -298,6 +292,24 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         for point in contact.points(&config.robot) {
             points.add_felt(odom.0.point(), odom.0.to_map(point));
         }
+    }
+}
+
+/// Tells the strategy what the map and the peers know. The strategy may end the exploration.
+#[inline(never)]
+fn tell_strategy<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    input: &Input<'_>,
+) {
+    let peers = state.team.peers().iter();
+    for peer in peers.filter(|peer| peer.has_claims(input.time_ms)) {
+        let place = peer.pose(input.time_ms).point();
+        state.strategy.note_peer(place);
+    }
+    let (robot, tiles) = (input.pose.point(), state.map.tiles());
+    if let Some(end) = state.strategy.note_map(tiles, robot, input.time_ms, config) {
+        state.status = end;
     }
 }
 

@@ -1,4 +1,4 @@
-//! The arguments of the command line and their values.
+//! The arguments of the command line; `values.rs` parses their values.
 
 use std::path::PathBuf;
 
@@ -8,18 +8,18 @@ use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
 use host_sim::network::spec::TeamSpec;
-use host_sim::robot::{Limits, LimitsError};
+use host_sim::robot::Limits;
 use host_sim::trial::mission::OdometryProfile;
 use host_sim::trial::space::Area;
-use host_sim::trial::uneven::{self, ParameterError};
 
 use super::replay::ReplayArgs;
 use super::robot::RobotArgs;
 use super::strategies;
 use super::team::TeamArgs;
-
-/// Most pictures during a run. Each is read over the link and held until the end.
-const MOST_SNAPSHOTS: u64 = 500;
+use super::values::{
+    area, failing, ground_parameters, impatience, imu_noise, laser_noise, map_shape, patrol_for,
+    seed, snapshots, start, time_limit, until, working,
+};
 
 /// Explore simulated worlds with the Fieldline planner; without a command, explore the built-in
 /// office
@@ -353,126 +353,9 @@ pub(super) enum SolverArg {
     GaussSeidel,
 }
 
-/// Parses a number without sign or point, at most `most`.
-fn whole(text: &str, most: u64) -> Result<u64, String> {
-    let number = text.parse().ok().filter(|number| *number <= most);
-    number.ok_or_else(|| format!("give a whole number from 0 to {most}"))
-}
-
-/// Parses a seed.
-pub(super) fn seed(text: &str) -> Result<u64, String> {
-    whole(text, u64::MAX)
-}
-
-/// Parses the index of a start.
-pub(super) fn start(text: &str) -> Result<usize, String> {
-    whole(text, u64::from(u16::MAX)).map(|number| number as usize)
-}
-
-/// Parses seconds of patrol.
-fn patrol_for(text: &str) -> Result<u16, String> {
-    whole(text, u64::from(u16::MAX)).map(|number| number as u16)
-}
-
-/// Parses an area.
-fn area(text: &str) -> Result<Area, String> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .filter_map(|part| part.trim().parse().ok())
-        .collect();
-    match numbers[..] {
-        [x, y, width, height]
-            if x.abs().max(y.abs()) <= 3_200.0
-                && [width, height]
-                    .iter()
-                    .all(|side| (0.1..=128.0).contains(side)) =>
-        {
-            Ok([x, y, width, height])
-        }
-        _ => Err("give x,y,width,height in metres, with sides of 0.1 to 128".into()),
-    }
-}
-
-/// Parses a share; returns thousandths.
-pub(super) fn until(text: &str) -> Result<u16, String> {
-    match text.parse::<f64>() {
-        Ok(share) if (0.001..=1.0).contains(&share) => Ok((share * 1000.0).round() as u16),
-        _ => Err("give a share from 0.001 to 1".into()),
-    }
-}
-
-/// Parses seconds without a new place.
-fn impatience(text: &str) -> Result<Impatience, String> {
-    if text == "never" {
-        return Ok(Impatience(None));
-    }
-    let seconds = whole(text, u64::from(u16::MAX)).map_err(|error| format!("{error}, or never"))?;
-    Ok(Impatience(Some(seconds as u16)))
-}
-
-/// Parses a number of pictures.
-fn snapshots(text: &str) -> Result<usize, String> {
-    whole(text, MOST_SNAPSHOTS).map(|number| number as usize)
-}
-
-/// Parses seconds; returns milliseconds.
-pub(super) fn time_limit(text: &str) -> Result<u32, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if seconds > 0.0 && seconds <= 4e6 => Ok((seconds * 1000.0).ceil() as u32),
-        _ => Err("give simulated seconds above 0, at most 4000000".into()),
-    }
-}
-
-/// Parses changes of the usual working limits.
-fn working(text: &str) -> Result<Limits, LimitsError> {
-    Limits::WORKING.changed(text)
-}
-
-/// Parses changes of the usual failing limits.
-fn failing(text: &str) -> Result<Limits, LimitsError> {
-    Limits::FAILING.changed(text)
-}
-
-/// Parses changes of the usual parameters.
-fn ground_parameters(text: &str) -> Result<UnevenGround, ParameterError> {
-    uneven::changed(uneven::TABLE_I, text)
-}
-
-/// Parses degrees.
-fn imu_noise(text: &str) -> Result<f64, String> {
-    deviation(text, 20.0, "degrees")
-}
-
-/// Parses metres.
-fn laser_noise(text: &str) -> Result<f64, String> {
-    deviation(text, 1.0, "metres")
-}
-
-fn deviation(text: &str, most: f64, unit: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if (0.0..=most).contains(&number) => Ok(number),
-        _ => Err(format!("give {unit} from 0 to {most}")),
-    }
-}
-
-/// Parses `AxB` metres; returns tiles.
-fn map_shape(text: &str) -> Result<(u8, u8), String> {
-    let side = |text: &str| text.trim().parse::<f64>().ok();
-    let sides = text.split_once('x');
-    sides
-        .and_then(|(a, b)| side(a).zip(side(b)))
-        .and_then(|(across_m, up_m)| host_sim::trial::shape::of_metres(across_m, up_m))
-        .ok_or_else(|| {
-            "give metres across and up, each above 0 and at most 812, as in 128x32".into()
-        })
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{
-        Cli, ExploreArgs, Impatience, area, impatience, imu_noise, laser_noise, map_shape,
-        snapshots, time_limit, until,
-    };
+    use super::{Cli, ExploreArgs};
     use clap::{CommandFactory as _, Parser as _};
 
     #[test]
@@ -487,39 +370,5 @@ mod tests {
             panic!("explore");
         };
         assert_eq!(format!("{args:?}"), format!("{:?}", ExploreArgs::default()));
-    }
-
-    #[test]
-    fn quantities_are_checked() {
-        assert_eq!(time_limit("1.5"), Ok(1_500));
-        for bad in ["0", "-3", "nan", "inf", "soon", "1e9"] {
-            assert!(time_limit(bad).is_err(), "{bad}");
-        }
-        assert_eq!(imu_noise("1.5"), Ok(1.5));
-        assert!(imu_noise("21").is_err() && laser_noise("-0.1").is_err());
-        assert!(laser_noise("nan").is_err() && laser_noise("x").is_err());
-        assert_eq!(impatience("never"), Ok(Impatience(None)));
-        assert_eq!(impatience("60"), Ok(Impatience(Some(60))));
-        assert!(impatience("65536").is_err() && impatience("ever").is_err());
-        assert_eq!((until("0.9"), until("1")), (Ok(900), Ok(1_000)));
-        assert!(until("0").is_err() && until("1.1").is_err() && until("all").is_err());
-        assert_eq!(area("-1,0.5, 10,8"), Ok([-1.0, 0.5, 10.0, 8.0]));
-        for bad in [
-            "0,0,10",
-            "0,0,10,x",
-            "0,0,0,8",
-            "0,0,10,129",
-            "9999,0,10,8",
-            "0,0,nan,8",
-        ] {
-            assert!(area(bad).is_err(), "{bad}");
-        }
-        assert_eq!((snapshots("0"), snapshots("500")), (Ok(0), Ok(500)));
-        assert!(snapshots("501").is_err() && snapshots("-1").is_err());
-        assert_eq!(map_shape("128x32"), Ok((40, 10)));
-        assert_eq!(map_shape("1 x 1"), Ok((4, 4)));
-        for bad in ["128", "x", "-1x5", "0x5", "axb", "nanx3", "infx3", "3x1e9"] {
-            assert!(map_shape(bad).is_err(), "{bad}");
-        }
     }
 }

@@ -15,6 +15,7 @@ mod solve;
 mod strategies;
 mod team;
 mod tuning;
+mod values;
 mod worlds;
 
 use std::io::{self, Write as _};

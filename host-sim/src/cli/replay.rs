@@ -11,10 +11,11 @@ use host_sim::replay::relations::{self, Pose, Relation, RelationError};
 use host_sim::replay::report::{self, Files, RelationErrors, ReplayReport};
 use host_sim::replay::{carmen, clock, run};
 use host_sim::report::folder;
+use host_sim::trial::wording;
 
-use super::args::seed;
 use super::progress::Interrupt;
 use super::robot::TuneArgs;
+use super::values::seed;
 use super::{note, say};
 
 #[derive(Clone, Debug, Args)]
@@ -61,7 +62,7 @@ pub(super) struct ReplayArgs {
     json: bool,
 }
 
-/// Replays a log; returns true if the device kept its pose up to the end.
+/// Replays a log; returns true if the device went on up to the end.
 pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     let text = carmen::read(&args.log).map_err(Error::msg)?;
     let scans = carmen::scans(&args.log.display().to_string(), &text).map_err(Error::msg)?;
@@ -90,7 +91,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
         bail!("interrupted after {} scans", replayed.poses.len());
     }
     let estimated: Vec<(f64, Pose)> = times().zip(replayed.poses.iter().copied()).collect();
-    let errors = truth.map(|truth| judged(&truth, &estimated));
+    let errors = truth.map(|truth| relations::errors(&truth, &estimated));
     let report = ReplayReport {
         log: args.log.display().to_string(),
         link: link.to_string(),
@@ -119,7 +120,8 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     let log = args.log.display();
     if replayed.status != Status::Exploring {
         note(&format!(
-            "host-sim: {log}: the device lost its pose; the rest of the path is odometry"
+            "host-sim: {log}: the device ended with {}; the rest of the path is odometry",
+            wording::status(replayed.status)
         ));
     }
     note(&format!("{log}: files in {}", folder.display()));
@@ -140,7 +142,7 @@ fn known(args: &ReplayArgs, file: &Path, own: &[(f64, Pose)]) -> Result<Vec<Rela
         );
     };
     let shifted: Vec<Relation> = read.iter().map(|it| it.shifted(offset)).collect();
-    if judged(&shifted, own).is_empty() {
+    if relations::errors(&shifted, own).is_empty() {
         bail!(
             "{name}:1: no relation has its times in {}; give the relations of this log, or another \
              --relations-offset",
@@ -151,12 +153,6 @@ fn known(args: &ReplayArgs, file: &Path, own: &[(f64, Pose)]) -> Result<Vec<Rela
         note(&format!("{name}: {offset:.3} s ahead of the log"));
     }
     Ok(shifted)
-}
-
-/// Returns the relations whose times the poses have, with their errors.
-fn judged(relations: &[Relation], poses: &[(f64, Pose)]) -> Vec<(Relation, RelationError)> {
-    let judged = relations.iter().map(|it| Some((*it, it.error(poses)?)));
-    judged.flatten().collect()
 }
 
 fn usual_folder(args: &ReplayArgs) -> PathBuf {

@@ -17,11 +17,12 @@ use host_sim::trial::team::{
 };
 use host_sim::world::World;
 
-use super::args::{ExploreArgs, GroundArg, OdometryArg, seed, start, time_limit, until};
+use super::args::{ExploreArgs, GroundArg, OdometryArg};
 use super::explore::{mission, with_start};
 use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
 use super::robot::RobotArgs;
+use super::values::{seed, start, time_limit, until};
 use super::{note, say, strategies};
 
 #[derive(Clone, Debug, Args)]

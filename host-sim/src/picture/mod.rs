@@ -81,6 +81,27 @@ pub struct Scene<'a> {
     pub room_for: Option<&'a GridMap>,
 }
 
+impl<'a> Scene<'a> {
+    /// Makes a scene with a map and a path on it, and nothing else.
+    #[must_use]
+    pub const fn plain(title: &'a str, map: &'a GridMap, path: &'a [Stamped]) -> Self {
+        Self {
+            title,
+            subtitle: "",
+            map,
+            path,
+            window: None,
+            relief: None,
+            residual: &[],
+            not_worth_it: &[],
+            planned_path: None,
+            given_up: &[],
+            ground: None,
+            room_for: None,
+        }
+    }
+}
+
 /// The cells of a map.
 fn area(map: &GridMap) -> CellArea {
     CellArea {

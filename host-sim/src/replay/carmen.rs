@@ -51,7 +51,7 @@ pub fn read(path: &Path) -> Result<String, String> {
     String::from_utf8(plain).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = good.iter().filter(|&&byte| byte == b'\n').count() + 1;
-        format!("{file}:{line}: this is no text; give a CARMEN log, plain or gzip")
+        format!("{file}:{line}: this is no text; give a text file, plain or gzip")
     })
 }
 

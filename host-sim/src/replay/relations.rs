@@ -6,6 +6,8 @@
 
 use serde::Serialize;
 
+use crate::robot::wrap;
+
 /// x, y in metres, heading in radians.
 pub type Pose = [f64; 3];
 
@@ -81,14 +83,20 @@ pub fn inverse(a: Pose) -> Pose {
     [-cos * a[0] - sin * a[1], sin * a[0] - cos * a[1], -a[2]]
 }
 
+/// Returns the relations whose times the poses have, with their errors.
+#[must_use]
+pub fn errors(relations: &[Relation], poses: &[(f64, Pose)]) -> Vec<(Relation, RelationError)> {
+    let judged = relations.iter().map(|it| Some((*it, it.error(poses)?)));
+    judged.flatten().collect()
+}
+
 /// Error of one relation whose two poses were estimated.
 #[must_use]
 pub fn error(truth: Pose, from: Pose, to: Pose) -> RelationError {
     let rest = compose(inverse(truth), compose(inverse(from), to));
-    let turn = rest[2].sin().atan2(rest[2].cos());
     RelationError {
         translation_m: rest[0].hypot(rest[1]),
-        rotation_deg: turn.abs().to_degrees(),
+        rotation_deg: wrap(rest[2]).abs().to_degrees(),
     }
 }
 
@@ -127,8 +135,7 @@ pub fn pose_at(poses: &[(f64, Pose)], time: f64, gap: f64) -> Option<Pose> {
     } else {
         0.0
     };
-    let turn = next.1[2] - last.1[2];
-    let turn = turn.sin().atan2(turn.cos());
+    let turn = wrap(next.1[2] - last.1[2]);
     let between = |axis: usize| last.1[axis] + part * (next.1[axis] - last.1[axis]);
     Some([between(0), between(1), last.1[2] + part * turn])
 }

@@ -173,18 +173,8 @@ impl Files<'_> {
         let path: Vec<Stamped> = self.path();
         let times: Vec<f64> = self.scans.iter().map(|scan| scan.time).collect();
         let picture = run_png(&Scene {
-            title: &self.report.log,
             subtitle: &self.report.odometry(),
-            map: &map,
-            path: &path,
-            window: None,
-            relief: None,
-            residual: &[],
-            not_worth_it: &[],
-            planned_path: None,
-            given_up: &[],
-            ground: None,
-            room_for: None,
+            ..Scene::plain(&self.report.log, &map, &path)
         });
         let relations = self.relations.map(csv);
         let figures = self.report.to_json_line() + "\n";

@@ -1,8 +1,8 @@
 //! Space-based fields on the emulated chip: the same command stream as by call, and the cost of
 //! every step.
 //!
-//! `golden/costs-space.txt` has two small worlds: one of the paper, and one larger than the range
-//! of the lasers.
+//! `golden/costs-space.txt` has two small worlds: one of the paper, and one twice as wide
+//! as the range of the lasers.
 
 use fieldline_tests::emulator::{chip, image};
 use fieldline_tests::runs::{Run, assert_same, in_parallel};

@@ -10,5 +10,6 @@ mod localise;
 mod lost_device;
 mod orders;
 mod periods;
+mod replay;
 mod space;
 mod whole;

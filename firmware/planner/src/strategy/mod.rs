@@ -37,7 +37,7 @@ use crate::strategy::ouroboros::Shield;
 pub(crate) struct Strategist<const SLOTS: usize> {
     /// The path to the current goal, dropped goals, blocked passages, the second chance.
     pub(crate) frontier: Frontier,
-    loops: Loops<SLOTS>,
+    own: Own<SLOTS>,
 }
 
 /// The state of a strategy beyond the frontier.
@@ -49,7 +49,7 @@ pub(crate) struct Strategist<const SLOTS: usize> {
     clippy::large_enum_variant,
     reason = "no heap to box into; one lives at a time"
 )]
-enum Loops<const SLOTS: usize> {
+enum Own<const SLOTS: usize> {
     None,
     Ouroboros(Ouroboros<SLOTS>),
     Tdbvp(Tdbvp<SLOTS>),
@@ -61,7 +61,7 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     pub(crate) const fn new() -> Self {
         Self {
             frontier: Frontier::new(),
-            loops: Loops::None,
+            own: Own::None,
         }
     }
 
@@ -70,23 +70,23 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     #[inline(never)]
     pub(crate) fn reset(&mut self, config: &Config) {
         self.frontier.reset();
-        self.loops = match config.strategy {
-            Strategy::Frontier => Loops::None,
-            Strategy::Ouroboros => Loops::Ouroboros(Ouroboros::new()),
+        self.own = match config.strategy {
+            Strategy::Frontier => Own::None,
+            Strategy::Ouroboros => Own::Ouroboros(Ouroboros::new()),
             Strategy::Tdbvp {
                 patrol_s,
                 impatience_s,
             } => {
                 let tuning = &config.tuning.tdbvp;
-                Loops::Tdbvp(Tdbvp::new(
+                Own::Tdbvp(Tdbvp::new(
                     config.period_ms(),
                     patrol_s,
                     impatience_s,
                     tuning,
                 ))
             }
-            Strategy::Sbpf(field) => Loops::Sbpf(Sbpf::new(field, false, config)),
-            Strategy::Esbpf(field) => Loops::Sbpf(Sbpf::new(field, true, config)),
+            Strategy::Sbpf(field) => Own::Sbpf(Sbpf::new(field, false, config)),
+            Strategy::Esbpf(field) => Own::Sbpf(Sbpf::new(field, true, config)),
         };
     }
 
@@ -100,8 +100,8 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
 
     /// Returns the state of strategy *ouroboros*, if it is the session's.
     pub(crate) const fn ouroboros(&self) -> Option<&Ouroboros<SLOTS>> {
-        match &self.loops {
-            Loops::Ouroboros(ouroboros) => Some(ouroboros),
+        match &self.own {
+            Own::Ouroboros(ouroboros) => Some(ouroboros),
             _ => None,
         }
     }
@@ -113,8 +113,8 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
 
     /// Returns the state of strategy *tdbvp*, if it is the session's.
     pub(crate) const fn tdbvp(&self) -> Option<&Tdbvp<SLOTS>> {
-        match &self.loops {
-            Loops::Tdbvp(tdbvp) => Some(tdbvp),
+        match &self.own {
+            Own::Tdbvp(tdbvp) => Some(tdbvp),
             _ => None,
         }
     }
@@ -122,30 +122,30 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     /// Returns the heading of the strategy's own forces, radians; `None` if the window's field
     /// leads the robot.
     pub(crate) fn heading_rad(&self) -> Option<f32> {
-        match &self.loops {
-            Loops::Sbpf(sbpf) => sbpf.heading_rad(),
+        match &self.own {
+            Own::Sbpf(sbpf) => sbpf.heading_rad(),
             _ => None,
         }
     }
 
     /// Notes that a peer is at a point of the map. What the peer has seen comes with its tiles.
     pub(crate) fn note_peer(&mut self, peer: Point) {
-        if let Loops::Sbpf(sbpf) = &mut self.loops {
+        if let Own::Sbpf(sbpf) = &mut self.own {
             sbpf.note_peer(peer);
         }
     }
 
     /// Takes over what the map knows; called in every step. Returns the status if the strategy
     /// ends the exploration.
-    pub(crate) fn survey<const TILES: usize>(
+    pub(crate) fn note_map<const TILES: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
         robot: Point,
         time_ms: u32,
         config: &Config,
     ) -> Option<Status> {
-        match &mut self.loops {
-            Loops::Sbpf(sbpf) => sbpf.survey(tiles, robot, time_ms, config),
+        match &mut self.own {
+            Own::Sbpf(sbpf) => sbpf.note_map(tiles, robot, time_ms, config),
             _ => None,
         }
     }
@@ -158,10 +158,10 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         scan: Option<(&LaserMount, &[u16])>,
         tuning: &Tuning,
     ) {
-        match &mut self.loops {
-            Loops::None | Loops::Sbpf(_) => {}
-            Loops::Ouroboros(ouroboros) => ouroboros.note_pose(pose, &tuning.ouroboros),
-            Loops::Tdbvp(tdbvp) => tdbvp.note(pose, time_ms, scan, &tuning.tdbvp),
+        match &mut self.own {
+            Own::None | Own::Sbpf(_) => {}
+            Own::Ouroboros(ouroboros) => ouroboros.note_pose(pose, &tuning.ouroboros),
+            Own::Tdbvp(tdbvp) => tdbvp.note(pose, time_ms, scan, &tuning.tdbvp),
         }
     }
 
@@ -174,9 +174,9 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         window: (&mut Window, &LocalGrid),
         tuning: &Tuning,
     ) -> Option<()> {
-        match &mut self.loops {
-            Loops::None | Loops::Ouroboros(_) | Loops::Sbpf(_) => None,
-            Loops::Tdbvp(tdbvp) => tdbvp
+        match &mut self.own {
+            Own::None | Own::Ouroboros(_) | Own::Sbpf(_) => None,
+            Own::Tdbvp(tdbvp) => tdbvp
                 .charge(&self.frontier, centres, robot, window, &tuning.tdbvp)
                 .then_some(()),
         }
@@ -184,7 +184,7 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
 
     /// Ends the exploration. Returns true if the robot goes on with a patrol.
     pub(crate) fn begin_patrol(&mut self) -> bool {
-        let Loops::Tdbvp(tdbvp) = &mut self.loops else {
+        let Own::Tdbvp(tdbvp) = &mut self.own else {
             return false;
         };
         let begins = tdbvp.begin_patrol();
@@ -206,11 +206,11 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         scratch: PlanningScratch<'_>,
     ) -> Option<RoundOutcome> {
         self.frontier.cut(round.skeleton);
-        match &mut self.loops {
-            Loops::None => Some(self.frontier.replan(&round, scratch)),
-            Loops::Ouroboros(ouroboros) => ouroboros.advance(&mut self.frontier, round, scratch),
-            Loops::Sbpf(sbpf) => Some(sbpf.advance(&mut self.frontier, &round, scratch)),
-            Loops::Tdbvp(tdbvp) => Some(tdbvp.advance(&mut self.frontier, round, scratch)),
+        match &mut self.own {
+            Own::None => Some(self.frontier.replan(&round, scratch)),
+            Own::Ouroboros(ouroboros) => ouroboros.advance(&mut self.frontier, round, scratch),
+            Own::Sbpf(sbpf) => Some(sbpf.advance(&mut self.frontier, &round, scratch)),
+            Own::Tdbvp(tdbvp) => Some(tdbvp.advance(&mut self.frontier, round, scratch)),
         }
     }
 }

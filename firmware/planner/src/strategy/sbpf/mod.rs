@@ -86,7 +86,7 @@ impl Sbpf {
     /// status if the exploration ends. It is not inlined, so that other strategies do not pay for
     /// its stack.
     #[inline(never)]
-    pub(super) fn survey<const TILES: usize, const SLOTS: usize>(
+    pub(super) fn note_map<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
         robot: Point,

@@ -312,7 +312,7 @@ fn config(field: SpaceField) -> Config {
 /// Surveys a drawn area at this time. The robot stands in its middle.
 fn survey(sbpf: &mut Sbpf, lines: &[&str], time_ms: u32, config: &Config) -> Option<Status> {
     let robot = Point { x_m: 1.0, y_m: 0.8 };
-    sbpf.survey(
+    sbpf.note_map(
         &Drawing::of(lines).map(5, Cell::default()),
         robot,
         time_ms,
