@@ -152,6 +152,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         return Output::standing(state.status);
     }
     tell_strategy(config, state, &input);
+    timer.mark(Stage::Sense);
     if state.status != Status::Exploring {
         return Output::standing(state.status);
     }
