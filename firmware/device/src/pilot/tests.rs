@@ -5,7 +5,7 @@ use std::boxed::Box;
 use fieldline_planner::{State, Tuning, Workspace};
 use fieldline_protocol::message::{
     Activity, Beacon, Body, Control, Fault, Finish, Hull, Laser, LoopLimits, Member, Observation,
-    Order, Packet, Refusal, Scan, Start, Status, Strategy, Team, Twist,
+    Order, Packet, Refusal, Scan, SpaceField, Start, Status, Strategy, Team, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -105,7 +105,16 @@ fn nothing_happens_before_a_start() {
 fn a_survey_maps_and_localises_and_never_moves_or_ends() {
     let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
     let level = start().lasers[0];
+    // A strategy that would end at the first covered cell.
+    let metres = I16F16::from_num::<i32>;
+    let field = SpaceField {
+        origin: (metres(-1), metres(-1)),
+        size: (metres(2), metres(2)),
+        until_permille: 1,
+        impatience_s: None,
+    };
     let survey = Start {
+        strategy: Strategy::Esbpf(field),
         lasers: [level].into_iter().collect(),
         localise: true,
         survey: true,
@@ -117,6 +126,10 @@ fn a_survey_maps_and_localises_and_never_moves_or_ends() {
     for step in 0..60 {
         let mut scan = observation(200 * step);
         scan.scans.truncate(1);
+        if step == 0 {
+            // Somebody stands before the laser: an exploration would not start.
+            scan.scans[0].ranges_mm.fill(50);
+        }
         let command = pilot.observe(&mut bench.memory(), &scan, &mut ()).unwrap();
         assert_eq!(command.status, Status::Exploring);
         assert_eq!(command.velocity, Twist::default());
