@@ -144,16 +144,15 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     } else {
         sense(config, state, &input);
     }
-    timer.mark(Stage::Sense);
     if state.localiser.has_given_up() {
         state.status = Status::Fault(Fault::PoseLost);
     }
-    if state.localiser.is_lost() || config.survey {
-        return Output::standing(state.status);
+    let plans = !state.localiser.is_lost() && !config.survey;
+    if plans {
+        tell_strategy(config, state, &input);
     }
-    tell_strategy(config, state, &input);
     timer.mark(Stage::Sense);
-    if state.status != Status::Exploring {
+    if !plans || state.status != Status::Exploring {
         return Output::standing(state.status);
     }
     // A search for a recovery owns the scratch: the robot stands and plans nothing until it is
