@@ -215,7 +215,7 @@ mod tests {
         use std::io::Write as _;
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.gz");
-        let text: String = (0..2000)
+        let text: String = (0..2000_u64)
             .map(|k| format!("{} line\n", k * k * 7919))
             .collect();
         let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
