@@ -7,6 +7,7 @@ mod generated;
 mod hostile;
 mod links;
 mod localise;
+mod localise_parts;
 mod lost_device;
 mod orders;
 mod periods;

@@ -1,10 +1,15 @@
 //! Alignment of a scan with the map, by Gauss–Newton.
 //!
 //! ```text
-//! minimise  Σ w(r) r² + v d²,    r = n · (wall − end(p)),  d² = (p − p₀)ᵀ P⁻¹ (p − p₀)
-//! (H + v P⁻¹) δ = b + v P⁻¹ (p₀ − p),    H = Σ w J Jᵀ,  J = (n, n × (end − p))
+//! minimise  Σ w(r) r² + v d²,    r = 1 − m(end(p)),  d² = (p − p₀)ᵀ P⁻¹ (p − p₀)
+//! (H + v P⁻¹) δ = b + v P⁻¹ (p₀ − p),    H = Σ w J Jᵀ,  b = Σ w r J
+//! J = (g, g × (end − p)),    g = ∇m on an edge, n (n · ∇m) on a surface with the normal n
 //! w = 1 / (1 + (r / robust_cells)²),     v = 1 / (1 + d² / slip_gap)
 //! ```
+//!
+//! m is the map as a field, and the first sum is that of Kohlbrecher et al. (2011). The normal is
+//! ours: the cells of a wall that few beams have met are points, and would hold the scan along the
+//! wall as well.
 //!
 //! The last term is odometry: it is all that holds a direction that no beam observes. Its weight v
 //! falls where the beams agree on a pose far from it, because wheels slip. An unobserved direction
@@ -15,15 +20,13 @@
 //! λ < least_information  ⇒  H, b without v
 //! ```
 //!
-//! A beam that ends in free space with no obstacle around it contradicts the map, a beam near an
-//! obstacle agrees with it, and one in unknown space says nothing.
-//!
 //! Units: map cells, radians.
 
 use crate::config::LocaliseTuning;
-use crate::geometry::{CELL_M, Cell, Point};
+use crate::geometry::{CELL_M, Cell};
+use crate::localise::occupancy::occupancy;
+use crate::localise::scan_points::ScanPoint;
 use crate::localise::symmetric::{Eigen, Symmetric};
-use crate::localise::wall::{INNER, wall};
 use crate::map::{Class, Tiles};
 use crate::math;
 
@@ -34,12 +37,6 @@ pub(super) struct Constraints {
     pub(super) h: Symmetric,
     /// The gradient: the step that the beams ask for, times their information.
     pub(super) b: [f32; 3],
-    /// Beams that ended near an obstacle.
-    pub(super) agreeing: u16,
-    /// Those of them within a cell of one.
-    pub(super) close: u16,
-    /// Beams that ended in free space.
-    pub(super) contradicting: u16,
     /// What the scan does not observe.
     pub(super) unobserved: Unobserved,
 }
@@ -56,60 +53,114 @@ pub(super) enum Unobserved {
     Nothing,
 }
 
+/// How far a scan agrees with the map, in beams.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Agreement {
+    /// Beams that ended within two cells of an obstacle.
+    agreeing: u16,
+    /// Those of them within one.
+    close: u16,
+    /// Beams that ended in free space without an obstacle within two cells. In unknown space a beam
+    /// says nothing.
+    contradicting: u16,
+}
+
+/// A pose in cells and radians, as a motion of points in metres.
+struct Frame {
+    place: (f32, f32),
+    sin: f32,
+    cos: f32,
+}
+
+impl Frame {
+    fn of([x, y, yaw]: [f32; 3]) -> Self {
+        let (sin, cos) = math::sin_cos(yaw);
+        Self {
+            place: (x, y),
+            sin,
+            cos,
+        }
+    }
+
+    fn turn(&self, (x, y): (f32, f32)) -> (f32, f32) {
+        (self.cos * x - self.sin * y, self.sin * x + self.cos * y)
+    }
+
+    /// Returns the arm from the robot to the point's end, and the end.
+    fn reach(&self, point: &ScanPoint) -> ((f32, f32), (f32, f32)) {
+        let (x, y) = self.turn((point.end.x_m, point.end.y_m));
+        let arm = (x / CELL_M, y / CELL_M);
+        (arm, (self.place.0 + arm.0, self.place.1 + arm.1))
+    }
+}
+
 /// Returns the constraints of a scan at a pose.
 pub(super) fn constraints<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
-    points: &[Point],
-    [x, y, yaw]: [f32; 3],
+    points: &[ScanPoint],
+    pose: [f32; 3],
     tuning: &LocaliseTuning,
 ) -> Constraints {
-    let (sin, cos) = math::sin_cos(yaw);
-    let (sin, cos) = (sin / CELL_M, cos / CELL_M);
+    let frame = Frame::of(pose);
     let scale = 1.0 / (tuning.robust_cells * tuning.robust_cells);
     let mut sum = Constraints::default();
     for point in points {
-        let arm = (
-            cos * point.x_m - sin * point.y_m,
-            sin * point.x_m + cos * point.y_m,
-        );
-        let end = (x + arm.0, y + arm.1);
-        let cell = Cell {
-            x: math::floor(end.0),
-            y: math::floor(end.1),
-        };
-        let square = tiles.obstacles_around(cell);
-        if square == 0 {
-            sum.contradicting += u16::from(tiles.class(cell) == Class::Free);
-            continue;
-        }
-        sum.agreeing += 1;
-        sum.close += u16::from(square & INNER != 0);
-        let Some(wall) = wall(square) else {
+        let (arm, end) = frame.reach(point);
+        let Some(found) = occupancy(tiles, end) else {
             continue;
         };
-        let gap = (
-            wall.place.0 + cell.x as f32 + 0.5 - end.0,
-            wall.place.1 + cell.y as f32 + 0.5 - end.1,
-        );
-        let mut add = |n: (f32, f32)| {
-            let r = n.0 * gap.0 + n.1 * gap.1;
-            let weight = tuning.beam_information / (1.0 + r * r * scale);
-            let row = [n.0, n.1, n.1 * arm.0 - n.0 * arm.1];
-            sum.h.add_outer(weight, row);
-            for (b, j) in sum.b.iter_mut().zip(row) {
-                *b += weight * r * j;
+        let (gx, gy) = match point.normal {
+            None => found.gradient,
+            Some(normal) => {
+                let (x, y) = frame.turn(normal);
+                let slope = x * found.gradient.0 + y * found.gradient.1;
+                (slope * x, slope * y)
             }
         };
-        match wall.normal {
-            Some(normal) => add(normal),
-            None => {
-                add((1.0, 0.0));
-                add((0.0, 1.0));
-            }
+        let r = 1.0 - found.value;
+        let weight = tuning.beam_information / (1.0 + r * r * scale);
+        let row = [gx, gy, gy * arm.0 - gx * arm.1];
+        sum.h.add_outer(weight, row);
+        for (b, j) in sum.b.iter_mut().zip(row) {
+            *b += weight * r * j;
         }
     }
     sum.without_unobserved(tuning.least_information)
 }
+
+impl Agreement {
+    /// Returns how far a scan agrees with the map at a pose.
+    fn of<const TILES: usize, const SLOTS: usize>(
+        tiles: &Tiles<TILES, SLOTS>,
+        points: &[ScanPoint],
+        pose: [f32; 3],
+    ) -> Self {
+        let frame = Frame::of(pose);
+        let mut sum = Self::default();
+        for point in points {
+            let (_, (x, y)) = frame.reach(point);
+            let cell = Cell {
+                x: math::floor(x),
+                y: math::floor(y),
+            };
+            let square = tiles.obstacles_from::<5>(cell.offset(-2, -2));
+            sum.agreeing += u16::from(square != 0);
+            sum.close += u16::from(square & INNER != 0);
+            sum.contradicting += u16::from(square == 0 && tiles.class(cell) == Class::Free);
+        }
+        sum
+    }
+
+    /// Returns true if the scan contradicts the map.
+    pub(super) fn is_contradicted(&self, tuning: &LocaliseTuning) -> bool {
+        let counted = f32::from(self.agreeing + self.contradicting);
+        f32::from(self.contradicting) > tuning.contradicted_share * counted
+            && counted >= tuning.least_counted
+    }
+}
+
+/// The inner 3 × 3 cells of a square of 5 × 5.
+const INNER: u32 = 0b01110 << 5 | 0b01110 << 10 | 0b01110 << 15;
 
 impl Constraints {
     /// Removes the directions with too little information.
@@ -155,21 +206,6 @@ impl Constraints {
         };
         self.b = [push * u, push * w, self.b[2]];
     }
-
-    /// Returns true if the scan agrees with the map so well that a lost robot is found: it observes
-    /// both directions, and most of its `beams` end on obstacles.
-    pub(super) fn is_agreed(&self, beams: usize, tuning: &LocaliseTuning) -> bool {
-        self.unobserved == Unobserved::Nothing
-            && f32::from(self.close) >= tuning.agreed_share * beams as f32
-            && f32::from(self.close) >= tuning.least_counted
-    }
-
-    /// Returns true if the scan contradicts the map.
-    pub(super) fn is_contradicted(&self, tuning: &LocaliseTuning) -> bool {
-        let counted = f32::from(self.agreeing + self.contradicting);
-        f32::from(self.contradicting) > tuning.contradicted_share * counted
-            && counted >= tuning.least_counted
-    }
 }
 
 /// The pose after alignment.
@@ -179,14 +215,27 @@ pub(super) struct Aligned {
     pub(super) pose: [f32; 3],
     /// The information about it: odometry's and the scan's.
     pub(super) information: Symmetric,
-    /// The constraints at the pose.
-    pub(super) constraints: Constraints,
+    /// What the scan does not observe at the pose.
+    pub(super) unobserved: Unobserved,
+    /// How far the scan agrees with the map there.
+    pub(super) agreement: Agreement,
+}
+
+impl Aligned {
+    /// Returns true if the scan agrees with the map so well that a lost robot is found: it observes
+    /// both directions, and most of its `beams` end on obstacles.
+    pub(super) fn is_agreed(&self, beams: usize, tuning: &LocaliseTuning) -> bool {
+        let close = f32::from(self.agreement.close);
+        self.unobserved == Unobserved::Nothing
+            && close >= tuning.agreed_share * beams as f32
+            && close >= tuning.least_counted
+    }
 }
 
 /// Aligns a scan with the map. `prior` is odometry's pose, with its information.
 pub(super) fn align<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
-    points: &[Point],
+    points: &[ScanPoint],
     (prior, information): ([f32; 3], &Symmetric),
     start: [f32; 3],
     tuning: &LocaliseTuning,
@@ -218,7 +267,8 @@ pub(super) fn align<const TILES: usize, const SLOTS: usize>(
     Aligned {
         pose,
         information: constraints.h + information.scaled(trust),
-        constraints,
+        unobserved: constraints.unobserved,
+        agreement: Agreement::of(tiles, points, pose),
     }
 }
 

@@ -7,8 +7,8 @@
 //! | file | holds |
 //! | --- | --- |
 //! | `odometry` | how far odometry may be wrong after a step |
-//! | `scan_points` | the beams' ends |
-//! | `wall` | the piece of wall around a beam's end |
+//! | `scan_points` | the beams' ends, and the surfaces that they lie on |
+//! | `occupancy` | the map as a field with a gradient |
 //! | `alignment` | Gauss–Newton, and directions that the scan does not observe |
 //! | `search` | the wider search of a robot that is lost |
 //! | `symmetric` | 3 × 3 matrices, and eigenvalues of 2 × 2 |
@@ -21,13 +21,13 @@
 //! Units: metres, radians; cells inside the alignment.
 
 mod alignment;
+mod occupancy;
 mod odometry;
 mod scan_points;
 mod search;
 mod symmetric;
 #[cfg(test)]
 mod tests;
-mod wall;
 
 use crate::config::{Config, LocaliseTuning};
 use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose};
@@ -201,7 +201,8 @@ impl Localiser {
         pose
     }
 
-    /// Corrects the predicted pose by a scan.
+    /// Corrects the predicted pose by a scan. The scan's points leave the stack with it.
+    #[inline(never)]
     fn correct<const TILES: usize, const SLOTS: usize>(
         &mut self,
         config: &Config,
@@ -210,8 +211,7 @@ impl Localiser {
         predicted: &MapPose,
     ) -> MapPose {
         let tuning = &config.tuning.localise;
-        let stride = usize::from(tuning.beam_stride);
-        let points = scan_points::scan_points(laser, ranges_mm, &config.tuning.map, stride);
+        let points = scan_points::scan_points(config, laser, ranges_mm);
         if self.is_lost() {
             return self.search(tiles, &points, predicted, tuning);
         }
@@ -220,7 +220,7 @@ impl Localiser {
             return *predicted;
         };
         let found = align(tiles, &points, (prior, &information), prior, tuning);
-        if found.constraints.is_contradicted(tuning) {
+        if found.agreement.is_contradicted(tuning) {
             self.contradicted = self.contradicted.saturating_add(1);
             if self.contradicted >= tuning.lost_steps {
                 self.quality = Quality::Lost;
@@ -234,7 +234,7 @@ impl Localiser {
     /// Takes an alignment for the pose.
     fn accept(&mut self, found: &Aligned, predicted: &MapPose) -> MapPose {
         self.contradicted = 0;
-        self.quality = match found.constraints.unobserved {
+        self.quality = match found.unobserved {
             Unobserved::Nothing => Quality::Tracking,
             Unobserved::Direction([x, y]) => Quality::Degenerate(Some(math::atan2(y, x))),
             Unobserved::Everything => Quality::Degenerate(None),
@@ -267,7 +267,7 @@ impl Localiser {
         let wide = Symmetric::diagonal(WIDE_CELLS, WIDE_CELLS, WIDE_RAD).inverse();
         let wide = wide.unwrap_or_default();
         let found = align(tiles, points, (start, &wide), start, tuning);
-        if found.constraints.is_agreed(points.len(), tuning) {
+        if found.is_agreed(points.len(), tuning) {
             return self.accept(&found, predicted);
         }
         *predicted

@@ -1,35 +1,156 @@
-//! The ends of a level scan's beams in the robot's frame.
+//! The ends of a level scan's beams in the robot's frame, and the surface that each lies on.
 //!
-//! A beam counts if something came back and a neighbour ended near it: a lone return is false.
+//! ```text
+//!  left ·──────●──────· right      normal ⊥ right − left, if ● lies on their line
+//! ```
+//!
+//! A beam counts if something came back and a neighbour ended near it: a lone return is false. A
+//! smooth surface says nothing along itself, however rough its cells in the map are. So a beam on
+//! one measures along its normal only. A beam on an edge or a corner has no normal: it measures in
+//! both directions.
 //!
 //! Units: metres, robot frame.
 
 use heapless::Vec;
 
-use crate::config::MapTuning;
-use crate::geometry::{Point, Pose};
+use crate::config::{Config, LocaliseTuning};
+use crate::geometry::{CELL_M, Point, Pose};
 use crate::input::has_company;
 use crate::map::integrate::level_beams;
+use crate::math;
 use crate::robot::{LaserMount, MAX_BEAMS};
 
 /// Greatest number of points.
 const MAX_POINTS: usize = MAX_BEAMS as usize;
+/// A neighbour is at least this far away, metres: noise of 1 cm then turns a normal by 3°.
+const LEAST_GAP_M: f32 = 2.0 * CELL_M;
+/// A neighbour is at most this many beams away.
+const MOST_BEAMS: usize = 8;
 
 /// The points of a scan.
-pub(crate) type ScanPoints = Vec<Point, MAX_POINTS>;
+pub(crate) type ScanPoints = Vec<ScanPoint, MAX_POINTS>;
 
-/// Returns the points of every `stride`-th beam.
-pub(super) fn scan_points(
-    laser: &LaserMount,
-    ranges_mm: &[u16],
-    tuning: &MapTuning,
-    stride: usize,
-) -> ScanPoints {
-    let beams = level_beams(&Pose::default(), laser, ranges_mm, tuning);
+/// A beam's end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ScanPoint {
+    /// The end.
+    pub(crate) end: Point,
+    /// Unit normal of the surface; `None` on an edge or a corner.
+    pub(crate) normal: Option<(f32, f32)>,
+}
+
+/// Returns the points of a scan.
+pub(super) fn scan_points(config: &Config, laser: &LaserMount, ranges_mm: &[u16]) -> ScanPoints {
+    let tuning = &config.tuning.localise;
+    let stride = usize::from(tuning.beam_stride);
+    let beams = level_beams(&Pose::default(), laser, ranges_mm, &config.tuning.map);
     let counts = |number: usize| number.checked_rem(stride) == Some(0);
-    beams
+    let mut points: ScanPoints = beams
         .filter(|beam| beam.hit && counts(beam.number) && has_company(ranges_mm, beam.number))
-        .map(|beam| beam.end())
+        .map(|beam| ScanPoint {
+            end: beam.end(),
+            normal: None,
+        })
         .take(MAX_POINTS)
-        .collect()
+        .collect();
+    for k in 0..points.len() {
+        let normal = normal(&points, k, tuning);
+        if let Some(point) = points.get_mut(k) {
+            point.normal = normal;
+        }
+    }
+    points
+}
+
+/// Returns the normal of the surface at a point.
+fn normal(points: &[ScanPoint], k: usize, tuning: &LocaliseTuning) -> Option<(f32, f32)> {
+    let (before, rest) = points.split_at_checked(k)?;
+    let (point, after) = rest.split_first()?;
+    let at = point.end;
+    let is_far = |it: &&ScanPoint| square(away(at, it.end)) >= LEAST_GAP_M * LEAST_GAP_M;
+    let left = before.iter().rev().take(MOST_BEAMS).find(is_far)?;
+    let right = after.iter().take(MOST_BEAMS).find(is_far)?;
+    let line = away(left.end, right.end);
+    let length = math::sqrt(square(line));
+    let normal = (-line.1 / length, line.0 / length);
+    let side = away(left.end, at);
+    let off = normal.0 * side.0 + normal.1 * side.1;
+    let along = line.0 * side.0 + line.1 * side.1;
+    // A point that is not between its neighbours is the tip of a fold.
+    let is_between = along > 0.0 && along < length * length;
+    (off.abs() < tuning.flat_m && is_between).then_some(normal)
+}
+
+/// Returns the shift from a point to another.
+fn away(from: Point, to: Point) -> (f32, f32) {
+    (to.x_m - from.x_m, to.y_m - from.y_m)
+}
+
+fn square((x, y): (f32, f32)) -> f32 {
+    x * x + y * y
+}
+
+#[cfg(test)]
+mod tests {
+    use std::vec::Vec;
+
+    use super::{ScanPoint, normal};
+    use crate::config::LocaliseTuning;
+    use crate::geometry::Point;
+
+    /// Returns the normals of points.
+    fn normals(ends: &[(f32, f32)]) -> Vec<Option<(f32, f32)>> {
+        let point = |&(x_m, y_m): &(f32, f32)| ScanPoint {
+            end: Point { x_m, y_m },
+            normal: None,
+        };
+        let points: Vec<ScanPoint> = ends.iter().map(point).collect();
+        let normal = |k| normal(&points, k, &LocaliseTuning::DEFAULT);
+        (0..points.len()).map(normal).collect()
+    }
+
+    #[test]
+    fn a_wall_has_its_normal_whatever_its_gaps() {
+        for (step, degrees) in [(0.05_f32, 20.0_f32), (0.3, 75.0), (2.0, 140.0)] {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let ends: Vec<_> = (0..20).map(|k| step * k as f32).collect();
+            let ends: Vec<_> = ends.iter().map(|it| (3.0 + cos * it, sin * it)).collect();
+            let normals = normals(&ends);
+            assert_eq!((normals[0], normals[19]), (None, None), "the wall's ends");
+            for normal in &normals[5..15] {
+                let (x, y) = normal.expect("a surface");
+                assert!((x * cos + y * sin).abs() < 1e-5 && (x * x + y * y - 1.0).abs() < 1e-5);
+            }
+        }
+    }
+
+    #[test]
+    fn corners_edges_and_tips_have_none() {
+        let corner = [(0.0, 1.0), (0.0, 0.5), (0.0, 0.0), (0.5, 0.0), (1.0, 0.0)];
+        let found = normals(&corner);
+        assert_eq!(found[2], None);
+        assert!(found[1].is_some() && found[3].is_some());
+        // A step from a near wall to a far one.
+        let step = [
+            (1.0, 0.0),
+            (1.0, 0.3),
+            (1.0, 0.6),
+            (4.0, 2.4),
+            (4.0, 2.7),
+            (4.0, 3.0),
+        ];
+        let found = normals(&step);
+        assert_eq!((found[2], found[3]), (None, None));
+        assert!(found[1].is_some() && found[4].is_some());
+        let tip = [(0.0, 0.0), (2.0, 0.0), (1.0, 0.01)];
+        assert_eq!(normals(&tip)[1], None);
+    }
+
+    #[test]
+    fn a_point_without_two_neighbours_has_none() {
+        assert_eq!(normals(&[]), []);
+        assert_eq!(normals(&[(1.0, 0.0), (1.0, 0.5)]), [None, None]);
+        let heap = [(1.0, 0.0), (1.0, 0.05), (1.0, 0.1)];
+        assert_eq!(normals(&heap)[1], None, "all within two cells");
+    }
 }

@@ -20,7 +20,8 @@
 //!
 //! Units: map cells, radians.
 
-use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Point, Pose, RobotFrame};
+use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
+use crate::localise::scan_points::ScanPoint;
 use crate::map::Tiles;
 use crate::math;
 
@@ -80,7 +81,7 @@ impl Search {
     pub(super) fn advance<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        points: &[Point],
+        points: &[ScanPoint],
         (odom, predicted): (&OdomPose, &MapPose),
     ) -> Option<MapFromOdom> {
         let &(right, up) = PLACES.get(usize::from(self.round))?;
@@ -119,7 +120,7 @@ impl Search {
     fn take<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        points: &[Point],
+        points: &[ScanPoint],
         odom: &OdomPose,
         place: &Pose,
     ) {
@@ -150,14 +151,14 @@ impl Search {
 /// Counts the beams that end on obstacles, for all shifts of a pose.
 fn count<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
-    points: &[Point],
+    points: &[ScanPoint],
     pose: &Pose,
 ) -> Counts {
     let mut counts = [[0; PLANES]; SIDE as usize];
     let stride = points.len().div_ceil(MOST_BEAMS).max(1);
     let frame = RobotFrame::of(pose);
-    for &point in points.iter().step_by(stride) {
-        let corner = frame.to_map(point).cell().offset(-SIDE / 2, -SIDE / 2);
+    for point in points.iter().step_by(stride) {
+        let corner = frame.to_map(point.end).cell().offset(-SIDE / 2, -SIDE / 2);
         let mut rows = counts.iter_mut();
         tiles.standing_block(corner, |row| {
             let mut carry = row;
@@ -199,6 +200,7 @@ mod tests {
     use super::{Counts, PLANES, SIDE, count, most, nearest};
     use crate::geometry::{Cell, Point, Pose};
     use crate::grid::Class;
+    use crate::localise::scan_points::ScanPoint;
     use crate::map::Tiles;
 
     #[test]
@@ -223,11 +225,14 @@ mod tests {
             };
             tiles.set(Cell { x, y }, class).expect("room");
         }
-        let point = |k: i32| Point {
-            x_m: k as f32 * 0.07 - 1.0,
-            y_m: 1.5 - k as f32 * 0.05,
+        let point = |k: i32| ScanPoint {
+            end: Point {
+                x_m: k as f32 * 0.07 - 1.0,
+                y_m: 1.5 - k as f32 * 0.05,
+            },
+            normal: None,
         };
-        let points: std::vec::Vec<Point> = (0..60).map(point).collect();
+        let points: std::vec::Vec<ScanPoint> = (0..60).map(point).collect();
         let pose = Pose {
             x_m: 0.33,
             y_m: -0.21,
@@ -239,7 +244,7 @@ mod tests {
             let direct = |dx: i32| {
                 let cells = points
                     .iter()
-                    .map(|&it| pose.to_map(it).cell().offset(dx, dy));
+                    .map(|it| pose.to_map(it.end).cell().offset(dx, dy));
                 cells
                     .filter(|&cell| tiles.class(cell) == Class::Obstacle)
                     .count() as u32

@@ -6,6 +6,7 @@ use std::boxed::Box;
 use std::vec::Vec;
 
 use super::alignment::constraints;
+use super::scan_points::ScanPoint;
 use super::{Localiser, Quality};
 use crate::config::{Config, LocaliseTuning};
 use crate::geometry::{CELL_M, Cell, MapPose, Point, Pose, Twist};
@@ -323,11 +324,17 @@ fn the_constraints_are_those_of_a_naive_twin() {
         let class = if stands { Class::Obstacle } else { Class::Free };
         tiles.set(Cell { x, y }, class).expect("room");
     }
-    let point = |k: i32| Point {
-        x_m: 0.031 * (k % 13) as f32 * 5.0 - 0.4,
-        y_m: 0.027 * (k % 17) as f32 * 6.0 - 1.5,
+    let point = |k: i32| ScanPoint {
+        end: Point {
+            x_m: 0.031 * (k % 13) as f32 * 5.0 - 0.4,
+            y_m: 0.027 * (k % 17) as f32 * 6.0 - 1.5,
+        },
+        normal: (k % 3 != 0).then(|| {
+            let (sin, cos) = (0.41 * k as f32).sin_cos();
+            (cos, sin)
+        }),
     };
-    let points: Vec<Point> = (0..150).map(point).collect();
+    let points: Vec<ScanPoint> = (0..150).map(point).collect();
     let at = [1.3_f32, -2.1, 0.37];
     let tuning = &LocaliseTuning {
         least_information: 0.0,
@@ -351,91 +358,64 @@ fn the_constraints_are_those_of_a_naive_twin() {
 /// Returns H and b.
 fn twin(
     tiles: &Tiles<16, 64>,
-    points: &[Point],
+    points: &[ScanPoint],
     [x, y, yaw]: State,
     tuning: &LocaliseTuning,
 ) -> [f64; 9] {
     let cell_m = f64::from(CELL_M);
+    let turn = |a: f64, b: f64| {
+        let (sin, cos) = yaw.sin_cos();
+        [cos * a - sin * b, sin * a + cos * b]
+    };
     let mut sum = [0.0; 9];
     for point in points {
-        let (px, py) = (f64::from(point.x_m) / cell_m, f64::from(point.y_m) / cell_m);
-        let arm = [
-            yaw.cos() * px - yaw.sin() * py,
-            yaw.sin() * px + yaw.cos() * py,
-        ];
-        let end = [x + arm[0], y + arm[1]];
-        let cell = end.map(|it| it.floor());
-        let mut all = Vec::new();
-        for (dx, dy) in (-2..=2).flat_map(|dx| (-2..=2).map(move |dy| (dx, dy))) {
-            let near = Cell {
-                x: cell[0] as i32 + dx,
-                y: cell[1] as i32 + dy,
-            };
-            if tiles.class(near) == Class::Obstacle {
-                all.push([f64::from(dx), f64::from(dy)]);
-            }
-        }
-        if all.is_empty() {
+        let end = point.end;
+        let arm = turn(f64::from(end.x_m) / cell_m, f64::from(end.y_m) / cell_m);
+        let Some((value, mut g)) = field(tiles, [x + arm[0], y + arm[1]]) else {
             continue;
-        }
-        let inner: Vec<State2> = all
-            .iter()
-            .filter(|it| it[0].abs() < 1.5 && it[1].abs() < 1.5)
-            .copied()
-            .collect();
-        let place = mean(if inner.is_empty() { &all } else { &inner });
-        let normals = match normals(&all) {
-            None if inner.len() > 2 => normals(&inner)
-                .filter(|it| it.len() == 1)
-                .unwrap_or_default(),
-            normals => normals.unwrap_or_default(),
         };
-        for n in normals {
-            let gap = [0, 1].map(|k| place[k] + cell[k] + 0.5 - end[k]);
-            let r = n[0] * gap[0] + n[1] * gap[1];
-            let half = f64::from(tuning.robust_cells);
-            let weight = f64::from(tuning.beam_information) / (1.0 + r * r / (half * half));
-            let j = [n[0], n[1], n[1] * arm[0] - n[0] * arm[1]];
-            let products = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)];
-            for (sum, (a, b)) in sum.iter_mut().zip(products) {
-                *sum += weight * j[a] * j[b];
-            }
-            for (sum, j) in sum[6..].iter_mut().zip(j) {
-                *sum += weight * r * j;
-            }
+        if let Some((a, b)) = point.normal {
+            let n = turn(f64::from(a), f64::from(b));
+            let slope = n[0] * g[0] + n[1] * g[1];
+            g = n.map(|it| slope * it);
+        }
+        let r = 1.0 - value;
+        let half = f64::from(tuning.robust_cells);
+        let weight = f64::from(tuning.beam_information) / (1.0 + r * r / (half * half));
+        let j = [g[0], g[1], g[1] * arm[0] - g[0] * arm[1]];
+        let products = [(0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2)];
+        for (sum, (a, b)) in sum.iter_mut().zip(products) {
+            *sum += weight * j[a] * j[b];
+        }
+        for (sum, j) in sum[6..].iter_mut().zip(j) {
+            *sum += weight * r * j;
         }
     }
     sum
 }
 
-fn mean(cells: &[State2]) -> State2 {
-    let n = cells.len() as f64;
-    [0, 1].map(|k| cells.iter().map(|it| it[k]).sum::<f64>() / n)
-}
-
-/// Returns the directions that cells constrain; `None` for a corner.
-fn normals(cells: &[State2]) -> Option<Vec<State2>> {
-    let middle = mean(cells);
-    let spread = |i: usize, j: usize| {
-        let product = |it: &State2| (it[i] - middle[i]) * (it[j] - middle[j]);
-        cells.iter().map(product).sum::<f64>() / cells.len() as f64
-    };
-    let (xx, xy, yy) = (spread(0, 0), spread(0, 1), spread(1, 1));
-    let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
-    let variance = |a: f64| {
-        let (s, c) = a.sin_cos();
-        c * c * xx + 2.0 * s * c * xy + s * s * yy
-    };
-    let most = variance(angle);
-    let least = variance(angle + 0.5 * core::f64::consts::PI);
-    if most <= 0.5 {
-        Some(std::vec![[1.0, 0.0], [0.0, 1.0]])
-    } else if least > 0.26 || most - least < 0.5 {
-        None
-    } else {
-        Some(std::vec![[-angle.sin(), angle.cos()]])
+/// Returns the value and the gradient of the map's field: a sum of tents.
+fn field(tiles: &Tiles<16, 64>, end: [f64; 2]) -> Option<(f64, [f64; 2])> {
+    let cell = end.map(|it| it.floor() as i32);
+    let (mut value, mut gradient) = (0.0, [0.0; 2]);
+    let mut any = false;
+    for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
+        let near = Cell {
+            x: cell[0] + dx,
+            y: cell[1] + dy,
+        };
+        let off = [
+            end[0] - f64::from(near.x) - 0.5,
+            end[1] - f64::from(near.y) - 0.5,
+        ];
+        let tent = off.map(|it| 1.0 - it.abs());
+        if tiles.class(near) != Class::Obstacle || tent[0] <= 0.0 || tent[1] <= 0.0 {
+            continue;
+        }
+        any = true;
+        value += tent[0] * tent[1];
+        gradient[0] -= off[0].signum() * tent[1];
+        gradient[1] -= off[1].signum() * tent[0];
     }
+    any.then_some((value, gradient))
 }
-
-/// A pair of coordinates.
-type State2 = [f64; 2];

@@ -1,7 +1,7 @@
-//! The obstacles in the square of 5 × 5 cells around a cell.
+//! The obstacles in a square of up to 5 × 5 cells.
 //!
 //! ```text
-//! bit 5 (dy + 2) + dx + 2 = 1 if the cell (dx, dy) away is an obstacle, −2 ≤ dx, dy ≤ 2
+//! bit side · dy + dx = 1 if the cell (dx, dy) from the corner is an obstacle, 0 ≤ dx, dy < side
 //! ```
 //!
 //! A negative obstacle does not stand, so no beam ends on it, and its bit is 0.
@@ -12,24 +12,21 @@ use crate::geometry::Cell;
 use crate::grid::masked;
 use crate::map::tiles::{TILE_SIDE, Tiles};
 
-/// Cells from the centre of the square to its side.
-const REACH: i32 = 2;
-/// Cells along the side of the square.
-pub(crate) const SQUARE_SIDE: i32 = 2 * REACH + 1;
-
 impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
-    /// Returns the obstacles around a cell.
-    pub(crate) fn obstacles_around(&self, centre: Cell) -> u32 {
-        let (x, y) = (centre.x - REACH, centre.y - REACH);
+    /// Returns the obstacles in the square of `SIDE` cells, at most 5, from `corner` on.
+    #[inline]
+    pub(crate) fn obstacles_from<const SIDE: i32>(&self, corner: Cell) -> u32 {
+        const { assert!(0 < SIDE && SIDE <= 5, "the square fits a word") };
+        let Cell { x, y } = corner;
         let shift = x & (TILE_SIDE - 1);
-        let mut around = 0;
+        let mut square = 0;
         let mut row = 0;
-        while row < SQUARE_SIDE {
+        while row < SIDE {
             let tile_y = (y + row) >> 5;
             // Rows of the square in this row of tiles.
-            let last = (SQUARE_SIDE).min(((tile_y + 1) << 5) - y);
+            let last = SIDE.min(((tile_y + 1) << 5) - y);
             let left = self.standing(x >> 5, tile_y);
-            let spills = shift > TILE_SIDE - SQUARE_SIDE;
+            let spills = shift > TILE_SIDE - SIDE;
             let right = spills.then(|| self.standing((x >> 5) + 1, tile_y));
             while row < last {
                 let line = ((y + row) & 31) as usize;
@@ -37,11 +34,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
                 if let Some(right) = &right {
                     bits |= right(line) << (TILE_SIDE - shift);
                 }
-                around |= (bits & 31) << (SQUARE_SIDE * row);
+                square |= (bits & ((1 << SIDE) - 1)) << (SIDE * row);
                 row += 1;
             }
         }
-        around
+        square
     }
 
     /// Calls `each` with the rows of the 32 × 32 cells from this corner on, least y first: 1 for an
@@ -91,12 +88,20 @@ mod tests {
             tiles.set(Cell { x, y }, class).expect("room");
         }
         let stands = |cell| u32::from(tiles.class(cell) == Class::Obstacle);
-        for centre in (-45..45).flat_map(|x| (-45..45).map(move |y| Cell { x, y })) {
-            let square = (0..25).map(|k| stands(centre.offset(k % 5 - 2, k / 5 - 2)) << k);
+        let single = |corner: Cell, side: i32| -> u32 {
+            let bit = |k| stands(corner.offset(k % side, k / side)) << k;
+            (0..side * side).map(bit).sum()
+        };
+        for corner in (-45..45).flat_map(|x| (-45..45).map(move |y| Cell { x, y })) {
             assert_eq!(
-                tiles.obstacles_around(centre),
-                square.sum::<u32>(),
-                "{centre:?}"
+                tiles.obstacles_from::<5>(corner),
+                single(corner, 5),
+                "{corner:?}"
+            );
+            assert_eq!(
+                tiles.obstacles_from::<2>(corner),
+                single(corner, 2),
+                "{corner:?}"
             );
         }
         for corner in [(-41, -3), (-32, 0), (7, 31), (40, 2)].map(|(x, y)| Cell { x, y }) {

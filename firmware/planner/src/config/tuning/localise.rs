@@ -24,14 +24,17 @@ tuning! {
         beam_stride: u16 = 1, 1..=10, "beams";
         /// Greatest number of Gauss–Newton steps.
         iterations: u16 = 6, 1..=30, "1";
+        /// Greatest distance of a beam's end from the line of its neighbours on a surface. With 0
+        /// there are no surfaces, and each beam measures in both directions.
+        flat_m: f32 = 0.05, 0.0..=1.0, "m";
         /// Information of a beam about the distance to its wall. A cell is 0.3 cells wide as a
-        /// standard deviation, and neighbouring beams share their error.
-        beam_information: f32 = 1.0, 0.01..=100.0, "1/cell²";
+        /// standard deviation, and beams of one wall share their error.
+        beam_information: f32 = 6.0, 0.01..=100.0, "1/cell²";
         /// Distance from its wall at which a beam counts half.
         robust_cells: f32 = 0.7, 0.05..=10.0, "cells";
         /// Squared distance from odometry, in standard deviations, at which odometry counts half:
-        /// wheels slip.
-        slip_gap: f32 = 9.0, 1.0..=1e9, "1";
+        /// wheels slip. A poor odometry alone is often 3 deviations off.
+        slip_gap: f32 = 50.0, 1.0..=1e9, "1";
         /// A direction with less information than this is not observed.
         least_information: f32 = 4.0, 0.0..=100.0, "1/cell²";
         /// Share of contradicting beams above which a scan contradicts the map.
