@@ -1,6 +1,7 @@
 //! Explorations with odometry that drifts: corrected, not corrected, and with the true pose.
 //!
-//! `golden/localise.txt` has one seed of four worlds, `golden/localise-full.txt` five of eight.
+//! `golden/localise.txt` has one seed of four worlds, `golden/localise-full.txt` 15 of eight, and
+//! `golden/localise-data.txt` three of each flat world that others have drawn.
 //! Coverage is what the robot truly saw, judged by its true poses; wall errors are those after the
 //! best rigid alignment of the whole map.
 
@@ -164,5 +165,17 @@ mod full {
         let worlds = worlds::builtins(&[&ROOMS[..], &CORRIDORS].concat());
         let profiles = [OdometryProfile::Noisy, OdometryProfile::Papers];
         check("localise-full", &drives(&worlds, &(0..15), &profiles));
+    }
+}
+
+mod data {
+    use super::{OdometryProfile, check, drives, worlds};
+
+    #[test]
+    #[ignore = "needs worlds drawn by others (FIELDLINE_DATA), and takes half an hour"]
+    fn drift_in_worlds_drawn_by_others() {
+        let worlds = worlds::drawn_by_others();
+        let drives = drives(&worlds, &(0..3), &[OdometryProfile::Noisy]);
+        check("localise-data", &drives);
     }
 }
