@@ -9,13 +9,15 @@
 mod config;
 mod fleet;
 
-use fieldline_protocol::message::{Hull, LoopLimits, Observation, Start, Strategy, Twist};
+use fieldline_protocol::message::{
+    Hull, INVALID_MM, LoopLimits, Observation, Scan, Start, Strategy, Twist,
+};
 use fixed::types::I4F12;
 
 use crate::metrics::{Overlap, Ride, Safety};
 use crate::robot::{
-    Contacts, Drive, Footprint, LaserScanner, Mishap, Odometry, OtherRobot, Pose, Source, Velocity,
-    laser, stand,
+    Contacts, Drive, Footprint, LaserScanner, Mishap, Noise, Odometry, OtherRobot, Pose, Source,
+    Span, Velocity, laser, stand,
 };
 use crate::world::{World, WorldError};
 pub use config::SimConfig;
@@ -47,6 +49,8 @@ pub struct Simulator<'w> {
     drive: Drive,
     odometry: Odometry,
     lasers: [LaserScanner; 2],
+    /// Draws the beams that are missing.
+    missing: Noise,
     path_length_m: f64,
     in_contact: bool,
     /// The wheels on uneven ground.
@@ -106,6 +110,7 @@ impl<'w> Simulator<'w> {
                 scanner(laser::level(), [Source::LevelRange, Source::LevelFault]),
                 scanner(laser::tilted(), [Source::TiltedRange, Source::TiltedFault]),
             ],
+            missing: Noise::new(config.seed, Source::Missing),
             path_length_m: 0.0,
             in_contact: false,
             contacts: world.elevation().and(Contacts::at(world, &pose)),
@@ -131,12 +136,28 @@ impl<'w> Simulator<'w> {
             velocity: self.odometry.velocity().to_wire(),
             ..Observation::default()
         };
-        for laser in &mut self.lasers {
+        for laser in 0..self.lasers.len() {
+            let laser = &mut self.lasers[laser];
+            let mut scan = laser.scan_among(self.world, &self.others, &self.pose);
+            self.disturb(&mut scan);
             // The vector holds two scans, and there are two lasers.
-            let scan = laser.scan_among(self.world, &self.others, &self.pose);
             let _ = observation.scans.push(scan);
         }
         observation
+    }
+
+    /// Takes the information out of beams that are missing.
+    fn disturb(&mut self, scan: &mut Scan) {
+        let disturbances = &self.config.disturbances;
+        let is_dark = disturbances.is_dark(self.time_ms);
+        if !is_dark && disturbances.missing == 0.0 {
+            return;
+        }
+        for range_mm in &mut scan.ranges_mm {
+            if self.missing.uniform() < disturbances.missing || is_dark {
+                *range_mm = INVALID_MM;
+            }
+        }
     }
 
     /// Drives for one period. `None` means that no command came: the last command counts until it
@@ -168,7 +189,9 @@ impl<'w> Simulator<'w> {
         let forwards = self.drive.velocity().linear_mps >= 0.0;
         let share = self.config.traction.speed_share(&self.pose, forwards);
         let velocity = self.drive.advance(seconds, share);
-        if self.substep(velocity, seconds) {
+        let disturbances = self.config.disturbances;
+        let turns = disturbances.spins(self.time_ms) || self.substep(velocity, seconds);
+        if turns && !disturbances.pushes(self.time_ms) {
             self.wheels[0] += velocity.linear_mps * seconds;
             self.wheels[1] += velocity.angular_radps * seconds;
         }
@@ -179,9 +202,24 @@ impl<'w> Simulator<'w> {
     /// Measures the motion of a period.
     fn end_period(&mut self) {
         self.overlap.add(self.pose.x_m, self.pose.y_m);
-        let ([forward_m, turn_rad], velocity) = (self.wheels, self.drive.velocity());
-        self.odometry
-            .advance(&self.pose, forward_m, turn_rad, velocity);
+        let disturbances = &self.config.disturbances;
+        let period = Span {
+            from_ms: self.time_ms.saturating_sub(self.config.period_ms),
+            to_ms: self.time_ms,
+        };
+        let [slip_m, slip_rad] = disturbances.slip(period);
+        let velocity = if disturbances.pushes(period.from_ms) {
+            Velocity::default()
+        } else {
+            self.drive.velocity()
+        };
+        let [forward_m, turn_rad] = self.wheels;
+        self.odometry.advance(
+            &self.pose,
+            forward_m + slip_m,
+            turn_rad + slip_rad,
+            velocity,
+        );
     }
 
     /// Moves if nothing is in the way, and returns true if it did. A robot that fell or tipped

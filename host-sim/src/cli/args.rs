@@ -8,7 +8,7 @@ use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
 use host_sim::network::spec::TeamSpec;
-use host_sim::robot::Limits;
+use host_sim::robot::{Disturbances, Limits};
 use host_sim::trial::mission::OdometryProfile;
 use host_sim::trial::space::Area;
 
@@ -184,6 +184,10 @@ pub(super) struct ExploreArgs {
     /// drop=0.02,duplicate=0.02,corrupt=0.02,truncate=0.01,delay=0.01,reset@900
     #[arg(long, value_name = "SPEC")]
     pub(super) fault: Option<FaultArg>,
+    /// Faults of wheels and lasers at simulated seconds, as in
+    /// slip@60,spin@70-73,push@80-83,dark@90-92,missing=0.3
+    #[arg(long, value_name = "SPEC")]
+    pub(super) disturb: Option<Disturbances>,
     /// Extent of the device's map in metres across and up, as in 128x32 [default: chosen for the
     /// world]
     #[arg(long, value_name = "AxB", value_parser = map_shape, allow_hyphen_values = true)]
@@ -235,6 +239,7 @@ impl Default for ExploreArgs {
             realtime: false,
             team: None,
             fault: None,
+            disturb: None,
             map_shape: None,
             check_field: false,
             snapshots: 0,

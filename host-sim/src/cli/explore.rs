@@ -292,7 +292,15 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     let odometry = args
         .odometry
         .unwrap_or_else(|| default_odometry(args, uneven_ground.is_none()));
+    let disturbances = args.disturb.unwrap_or_default();
+    if disturbances.needs_wheels() && odometry == OdometryArg::Truth {
+        bail!(
+            "--disturb {disturbances} needs odometry that counts wheels; say --odometry noisy, \
+             or leave slip, spin and push out"
+        );
+    }
     Ok(args.robot.applied(Mission {
+        disturbances,
         order: args.robot.order(&args.strategy)?,
         strategy: args.strategy.clone(),
         uneven_ground,

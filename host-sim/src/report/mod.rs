@@ -63,6 +63,9 @@ pub struct Report {
     pub start: usize,
     /// Faults put on the link, as given to `--fault`.
     pub injected_faults: Option<String>,
+    /// Faults of wheels and lasers, as given to `--disturb`; the key is missing without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub disturbances: Option<String>,
     /// Noise of the sensors.
     pub noise: Noise,
     /// Remarks on the world file.

@@ -1,6 +1,7 @@
 //! The Pioneer 3-AT: footprint, wheels on the ground, drive, lasers and odometry.
 
 mod contact;
+mod disturbance;
 mod drive;
 mod footprint;
 pub mod laser;
@@ -14,6 +15,7 @@ mod traction;
 
 pub use contact::{Contacts, Mishap};
 pub(crate) use contact::{fall_along_m, is_aground, rise_along_m};
+pub use disturbance::{DisturbanceError, Disturbances, Span};
 pub use drive::{Drive, DriveLimits};
 pub use footprint::{FARTHEST_M, Footprint};
 pub use laser::{LaserNoise, LaserScanner};

@@ -32,6 +32,8 @@ pub enum Source {
     Drawing = 9,
     /// Losses and delays of the radio between robots.
     Radio = 10,
+    /// Missing beams of both lasers.
+    Missing = 11,
 }
 
 /// One stream.

@@ -1,6 +1,8 @@
 //! Parameters of a simulated run.
 
-use crate::robot::{DriveLimits, Footprint, LaserNoise, Limits, OdometryModel, RADIUS_M, Traction};
+use crate::robot::{
+    Disturbances, DriveLimits, Footprint, LaserNoise, Limits, OdometryModel, RADIUS_M, Traction,
+};
 use crate::world::Start;
 
 /// Parameters of a simulated run.
@@ -16,6 +18,8 @@ pub struct SimConfig {
     pub odometry: OdometryModel,
     /// Errors of the lasers. Default: [`LaserNoise::default`].
     pub laser_noise: LaserNoise,
+    /// Faults of wheels and lasers. Default: none.
+    pub disturbances: Disturbances,
     /// The robot's hull. Default: a Pioneer 3-AT.
     pub footprint: Footprint,
     /// Radius around the robot's centre that the planner keeps clear, metres. Default: 0.30.
@@ -44,6 +48,7 @@ impl Default for SimConfig {
             place: None,
             odometry: OdometryModel::Truth,
             laser_noise: LaserNoise::default(),
+            disturbances: Disturbances::default(),
             footprint: Footprint::PIONEER_3AT,
             radius_m: RADIUS_M,
             limits: DriveLimits::default(),

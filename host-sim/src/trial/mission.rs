@@ -16,7 +16,9 @@ use super::space::SpaceMission;
 use super::{Cast, Record, Setup, Watch, run, shape, summary};
 use crate::link::{Link, LinkError};
 use crate::report::Report;
-use crate::robot::{Footprint, LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M};
+use crate::robot::{
+    Disturbances, Footprint, LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M,
+};
 use crate::sim::{SimConfig, Simulator};
 use crate::world::{Start, World, WorldError};
 
@@ -53,6 +55,8 @@ pub struct Mission {
     pub imu_rad: Option<f64>,
     /// Standard deviation of ranges, metres; that of [`LaserNoise`] if `None`.
     pub laser_m: Option<f64>,
+    /// Faults of wheels and lasers.
+    pub disturbances: Disturbances,
     /// The robot's hull.
     pub hull: Footprint,
     /// Radius around the robot's centre that the planner keeps clear, metres.
@@ -98,6 +102,7 @@ impl Default for Mission {
             localise: false,
             imu_rad: None,
             laser_m: None,
+            disturbances: Disturbances::default(),
             hull: Footprint::PIONEER_3AT,
             radius_m: RADIUS_M,
             order: None,
@@ -295,6 +300,7 @@ impl Mission {
                 sigma_m: self.laser_m.unwrap_or(lasers.sigma_m),
                 ..lasers
             },
+            disturbances: self.disturbances,
             footprint: self.hull,
             radius_m: self.radius_m,
             working: self.working,

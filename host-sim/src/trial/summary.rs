@@ -46,6 +46,7 @@ pub(super) fn report(
         odometry: mission.odometry.name().into(),
         start: mission.start,
         injected_faults: mission.fault.clone(),
+        disturbances: disturbances(mission),
         noise: noise(simulator.config()),
         world_notes: world.notes().to_vec(),
         outcome: record.outcome(),
@@ -71,6 +72,11 @@ pub(super) fn report(
         },
         network: None,
     }
+}
+
+/// Returns the disturbances, as on the command line; `None` without any.
+fn disturbances(mission: &Mission) -> Option<String> {
+    Some(mission.disturbances.to_string()).filter(|text| !text.is_empty())
 }
 
 /// Returns the errors of the map's walls. In an uneven world an obstacle may be a slope.
