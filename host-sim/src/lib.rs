@@ -5,6 +5,7 @@ pub mod baseline;
 pub mod link;
 pub mod metrics;
 pub mod network;
+pub mod people;
 pub mod picture;
 pub mod radio;
 pub mod replay;

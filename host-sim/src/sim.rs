@@ -15,11 +15,12 @@ use fieldline_protocol::message::{
 use fixed::types::I4F12;
 
 use crate::metrics::{Overlap, Ride, Safety};
+use crate::people::People;
 use crate::robot::{
     Contacts, Drive, Footprint, LaserScanner, Mishap, Noise, Odometry, OtherRobot, Pose, Source,
-    Span, Velocity, laser, stand,
+    Span, Velocity, laser, nearest_m, stand,
 };
-use crate::world::{World, WorldError};
+use crate::world::{Ray, World, WorldError};
 pub use config::SimConfig;
 pub use fleet::{Fleet, FleetError};
 
@@ -65,6 +66,9 @@ pub struct Simulator<'w> {
     wheels: [f64; 2],
     /// The other robots of the world, where they are now; empty for a robot that is alone.
     others: Vec<OtherRobot>,
+    people: People,
+    /// The robot touches a person.
+    touches_person: bool,
     /// Index of the other robot that stopped this one in the last substep.
     bumped: Option<usize>,
 }
@@ -92,7 +96,8 @@ impl<'w> Simulator<'w> {
     /// Puts the robot at its start.
     ///
     /// # Errors
-    /// [`WorldError::Start`] if the world has no such start or the robot does not fit there.
+    /// [`WorldError::Start`] if the world has no such start or the robot does not fit there;
+    /// [`WorldError::People`] if the people have no room.
     pub fn new(world: &'w World, config: SimConfig) -> Result<Self, WorldError> {
         let pose = start_pose(world, &config)?;
         let scanner =
@@ -121,8 +126,12 @@ impl<'w> Simulator<'w> {
             overlap: Overlap::default(),
             wheels: [0.0; 2],
             others: Vec::new(),
+            people: People::none(config.seed),
+            touches_person: false,
             bumped: None,
         };
+        let (footprint, crowd) = (&config.footprint, (config.people, config.seed));
+        simulator.people = People::new(world, simulator.start(), (footprint, &pose), crowd)?;
         simulator.overlap.add(pose.x_m, pose.y_m);
         simulator.track_clearance();
         Ok(simulator)
@@ -137,8 +146,14 @@ impl<'w> Simulator<'w> {
             ..Observation::default()
         };
         for laser in 0..self.lasers.len() {
-            let laser = &mut self.lasers[laser];
-            let mut scan = laser.scan_among(self.world, &self.others, &self.pose);
+            let (world, others, people) = (self.world, &self.others, &self.people);
+            let moving = |ray: &Ray, limit_m| {
+                let robot_m = nearest_m(others, ray, limit_m);
+                people
+                    .cast(world, ray, robot_m.unwrap_or(limit_m))
+                    .or(robot_m)
+            };
+            let mut scan = self.lasers[laser].scan_among(world, moving, &self.pose);
             self.disturb(&mut scan);
             // The vector holds two scans, and there are two lasers.
             let _ = observation.scans.push(scan);
@@ -186,6 +201,8 @@ impl<'w> Simulator<'w> {
             self.drive.command(Velocity::default());
         }
         let seconds = f64::from(step_ms) / 1000.0;
+        let robot = (&self.config.footprint, &self.pose);
+        self.people.walk(self.world, robot, seconds);
         let forwards = self.drive.velocity().linear_mps >= 0.0;
         let share = self.config.traction.speed_share(&self.pose, forwards);
         let velocity = self.drive.advance(seconds, share);
@@ -232,7 +249,7 @@ impl<'w> Simulator<'w> {
         let shift = self.config.traction.shift(&self.pose, velocity, seconds);
         let next = shift.applied(&self.pose);
         self.bumped = self.bumps(&next);
-        if self.bumped.is_some() {
+        if self.bumped.is_some() || self.walks_into_somebody(&next) {
             self.drive.halt();
             return false;
         }
@@ -292,6 +309,18 @@ impl<'w> Simulator<'w> {
             };
             footprint.touches(next, other) && !parts()
         })
+    }
+
+    /// Returns true if a person is in the way to a pose; counts contacts with people.
+    fn walks_into_somebody(&mut self, next: &Pose) -> bool {
+        let footprint = &self.config.footprint;
+        let gap_m = self.people.gap_m(footprint, next);
+        let safety = &mut self.safety;
+        safety.min_person_gap_m = safety.min_person_gap_m.min(gap_m);
+        let touches = gap_m == 0.0;
+        safety.person_contacts += u32::from(touches && !self.touches_person);
+        self.touches_person = touches || (self.touches_person && gap_m < CONTACT_OVER_M);
+        touches
     }
 
     /// Counts a contact with a wall.
@@ -398,6 +427,12 @@ impl<'w> Simulator<'w> {
     #[must_use]
     pub fn pose(&self) -> &Pose {
         &self.pose
+    }
+
+    /// The people who walk about.
+    #[must_use]
+    pub fn people(&self) -> &People {
+        &self.people
     }
 
     /// The true velocity.

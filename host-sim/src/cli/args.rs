@@ -18,7 +18,7 @@ use super::strategies;
 use super::team::TeamArgs;
 use super::values::{
     area, failing, ground_parameters, impatience, imu_noise, laser_noise, map_shape, patrol_for,
-    seed, snapshots, start, time_limit, until, working,
+    people, seed, snapshots, start, time_limit, until, working,
 };
 
 /// Explore simulated worlds with the Fieldline planner; without a command, explore the built-in
@@ -188,6 +188,9 @@ pub(super) struct ExploreArgs {
     /// slip@60,spin@70-73,push@80-83,dark@90-92,missing=0.3
     #[arg(long, value_name = "SPEC")]
     pub(super) disturb: Option<Disturbances>,
+    /// Number of people who walk about, 0 to 50, on flat ground
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = people)]
+    pub(super) people: usize,
     /// Extent of the device's map in metres across and up, as in 128x32 [default: chosen for the
     /// world]
     #[arg(long, value_name = "AxB", value_parser = map_shape, allow_hyphen_values = true)]
@@ -240,6 +243,7 @@ impl Default for ExploreArgs {
             team: None,
             fault: None,
             disturb: None,
+            people: 0,
             map_shape: None,
             check_field: false,
             snapshots: 0,

@@ -301,6 +301,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     }
     Ok(args.robot.applied(Mission {
         disturbances,
+        people: args.people,
         order: args.robot.order(&args.strategy)?,
         strategy: args.strategy.clone(),
         uneven_ground,

@@ -26,6 +26,11 @@ pub(super) fn start(text: &str) -> Result<usize, String> {
     whole(text, u64::from(u16::MAX)).map(|number| number as usize)
 }
 
+/// Parses a number of people.
+pub(super) fn people(text: &str) -> Result<usize, String> {
+    whole(text, host_sim::people::MOST as u64).map(|number| number as usize)
+}
+
 /// Parses seconds of patrol.
 pub(super) fn patrol_for(text: &str) -> Result<u16, String> {
     whole(text, u64::from(u16::MAX)).map(|number| number as u16)

@@ -14,6 +14,10 @@ pub struct Safety {
     /// Least distance between the footprint's outline and anything solid, metres: 0 after a
     /// collision, and at most [`FARTHEST_M`].
     pub min_clearance_m: f64,
+    /// Contacts with people; a contact lasts until the robot is 1 cm clear.
+    pub person_contacts: u32,
+    /// Least distance between the footprint and a person, metres, at most [`FARTHEST_M`].
+    pub min_person_gap_m: f64,
 }
 
 impl Default for Safety {
@@ -23,6 +27,8 @@ impl Default for Safety {
             falls: 0,
             tips: 0,
             min_clearance_m: FARTHEST_M,
+            person_contacts: 0,
+            min_person_gap_m: FARTHEST_M,
         }
     }
 }

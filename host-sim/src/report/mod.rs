@@ -66,6 +66,9 @@ pub struct Report {
     /// Faults of wheels and lasers, as given to `--disturb`; the key is missing without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disturbances: Option<String>,
+    /// Number of people who walk about, as given to `--people`; the key is missing without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub people: Option<usize>,
     /// Noise of the sensors.
     pub noise: Noise,
     /// Remarks on the world file.
@@ -208,6 +211,13 @@ pub struct Safety {
     /// alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot_contacts: Option<u32>,
+    /// Number of times that the robot began to touch a person; the key is missing without people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub person_contacts: Option<u32>,
+    /// Least distance from the footprint to a person, at most 1 m; the key is missing without
+    /// people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min_person_gap_m: Option<f64>,
 }
 
 /// The pose that the planner took for the true one: the device's, or odometry's.

@@ -111,6 +111,15 @@ impl Footprint {
             .min(FARTHEST_M)
     }
 
+    /// The gap from the hull at a pose to a disc, seen from above; 0 if they overlap.
+    #[must_use]
+    pub fn gap_to_disc_m(&self, pose: &Pose, middle_m: [f64; 2], radius_m: f64) -> f64 {
+        let placed = self.place(pose);
+        let [a, b] = placed.half;
+        let to_middle_m = point_to_box(placed.frame.to_local(middle_m), [-a, -b, a, b]);
+        (to_middle_m - radius_m).max(0.0)
+    }
+
     /// Distance from the pose to the farthest corner of the shadow, or more, metres.
     fn reach_m(&self, pose: &Pose) -> f64 {
         if pose.pitch_rad == 0.0 && pose.roll_rad == 0.0 {

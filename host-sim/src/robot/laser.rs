@@ -12,7 +12,6 @@ use fieldline_protocol::message::{self, INVALID_MM, MAX_BEAMS, NO_RETURN_MM, Sca
 use fixed::types::{I4F12, I16F16};
 
 use super::noise::{Noise, Source};
-use super::other::{OtherRobot, nearest_m};
 use super::pose::Pose;
 use crate::world::{Ray, World};
 
@@ -119,11 +118,17 @@ impl LaserScanner {
 
     /// Measures one sweep from a pose.
     pub fn scan(&mut self, world: &World, pose: &Pose) -> Scan {
-        self.scan_among(world, &[], pose)
+        self.scan_among(world, |_, _| None, pose)
     }
 
-    /// Measures one sweep from a pose, with other robots in the world.
-    pub fn scan_among(&mut self, world: &World, others: &[OtherRobot], pose: &Pose) -> Scan {
+    /// Measures one sweep from a pose. `moving` returns the metres along a ray to the nearest of
+    /// what moves in the world, if it is within a limit.
+    pub fn scan_among(
+        &mut self,
+        world: &World,
+        moving: impl Fn(&Ray, f64) -> Option<f64>,
+        pose: &Pose,
+    ) -> Scan {
         let axes = pose.axes();
         let rotate = |v: &[f64; 3]| {
             [0, 1, 2].map(|k| axes[0][k] * v[0] + axes[1][k] * v[1] + axes[2][k] * v[2])
@@ -141,7 +146,7 @@ impl LaserScanner {
                 direction: rotate(&self.directions[beam]),
             };
             let hit_m = world.cast(&ray, self.limit_m).map(|hit| hit.range_m);
-            let nearer_m = nearest_m(others, &ray, hit_m.unwrap_or(self.limit_m));
+            let nearer_m = moving(&ray, hit_m.unwrap_or(self.limit_m));
             let code = self.measure(nearer_m.or(hit_m));
             // The vector holds MAX_BEAMS, and there are no more directions than that.
             let _ = scan.ranges_mm.push(code);

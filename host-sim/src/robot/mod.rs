@@ -22,7 +22,7 @@ pub use laser::{LaserNoise, LaserScanner};
 pub use limits::{Limits, LimitsError};
 pub use noise::{Noise, Source};
 pub use odometry::{Odometry, OdometryModel, OdometryNoise};
-pub use other::{MAST_M, OtherRobot};
+pub use other::{MAST_M, OtherRobot, nearest_m};
 pub(crate) use pose::distance_m;
 pub use pose::{Pose, Velocity, wrap};
 pub use stance::stand;

@@ -34,6 +34,8 @@ pub enum Source {
     Radio = 10,
     /// Missing beams of both lasers.
     Missing = 11,
+    /// Places, goals and speeds of people.
+    People = 12,
 }
 
 /// One stream.

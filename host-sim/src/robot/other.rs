@@ -81,7 +81,8 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 /// Metres along a ray to the nearest of some robots, if one is within `limit_m`.
-pub(super) fn nearest_m(others: &[OtherRobot], ray: &Ray, limit_m: f64) -> Option<f64> {
+#[must_use]
+pub fn nearest_m(others: &[OtherRobot], ray: &Ray, limit_m: f64) -> Option<f64> {
     let hits = others.iter().filter_map(|other| other.cast(ray, limit_m));
     hits.min_by(f64::total_cmp)
 }

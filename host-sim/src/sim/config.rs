@@ -20,6 +20,8 @@ pub struct SimConfig {
     pub laser_noise: LaserNoise,
     /// Faults of wheels and lasers. Default: none.
     pub disturbances: Disturbances,
+    /// Number of people who walk about. Default: 0.
+    pub people: usize,
     /// The robot's hull. Default: a Pioneer 3-AT.
     pub footprint: Footprint,
     /// Radius around the robot's centre that the planner keeps clear, metres. Default: 0.30.
@@ -49,6 +51,7 @@ impl Default for SimConfig {
             odometry: OdometryModel::Truth,
             laser_noise: LaserNoise::default(),
             disturbances: Disturbances::default(),
+            people: 0,
             footprint: Footprint::PIONEER_3AT,
             radius_m: RADIUS_M,
             limits: DriveLimits::default(),

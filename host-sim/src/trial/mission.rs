@@ -57,6 +57,8 @@ pub struct Mission {
     pub laser_m: Option<f64>,
     /// Faults of wheels and lasers.
     pub disturbances: Disturbances,
+    /// Number of people who walk about.
+    pub people: usize,
     /// The robot's hull.
     pub hull: Footprint,
     /// Radius around the robot's centre that the planner keeps clear, metres.
@@ -103,6 +105,7 @@ impl Default for Mission {
             imu_rad: None,
             laser_m: None,
             disturbances: Disturbances::default(),
+            people: 0,
             hull: Footprint::PIONEER_3AT,
             radius_m: RADIUS_M,
             order: None,
@@ -301,6 +304,7 @@ impl Mission {
                 ..lasers
             },
             disturbances: self.disturbances,
+            people: self.people,
             footprint: self.hull,
             radius_m: self.radius_m,
             working: self.working,

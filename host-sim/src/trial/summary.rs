@@ -47,6 +47,7 @@ pub(super) fn report(
         start: mission.start,
         injected_faults: mission.fault.clone(),
         disturbances: disturbances(mission),
+        people: Some(mission.people).filter(|count| *count > 0),
         noise: noise(simulator.config()),
         world_notes: world.notes().to_vec(),
         outcome: record.outcome(),
@@ -163,12 +164,15 @@ fn patrol(mission: &Mission, record: &Record) -> Option<report::Patrol> {
 
 fn safety(simulator: &Simulator<'_>) -> report::Safety {
     let safety = simulator.safety();
+    let has_people = simulator.config().people > 0;
     report::Safety {
         collisions: safety.collisions,
         falls: safety.falls,
         tips: safety.tips,
         min_clearance_m: Some(safety.min_clearance_m).filter(|m| m.is_finite()),
         robot_contacts: None,
+        person_contacts: has_people.then_some(safety.person_contacts),
+        min_person_gap_m: has_people.then_some(safety.min_person_gap_m),
     }
 }
 

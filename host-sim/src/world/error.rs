@@ -55,6 +55,13 @@ pub enum WorldError {
         /// The fault and the remedy.
         reason: String,
     },
+    /// People who cannot walk there.
+    People {
+        /// The world's name.
+        world: String,
+        /// The fault and the remedy.
+        reason: String,
+    },
 }
 
 impl fmt::Display for WorldError {
@@ -84,6 +91,7 @@ impl fmt::Display for WorldError {
                 index,
                 reason,
             } => write!(f, "{file}: robots[{index}]: {reason}"),
+            Self::People { world, reason } => write!(f, "{world}: {reason}"),
         }
     }
 }

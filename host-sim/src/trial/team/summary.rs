@@ -181,6 +181,8 @@ impl Whole<'_, '_, '_> {
             tips: sum(|safety| safety.tips),
             min_clearance_m: clearances.flatten().min_by(f64::total_cmp),
             robot_contacts: Some(self.fleet.meetings()),
+            person_contacts: None,
+            min_person_gap_m: None,
         }
     }
 
