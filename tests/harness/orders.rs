@@ -82,8 +82,7 @@ pub fn variants() -> Vec<Variant> {
 pub fn sweep(worlds: &[World], seeds: &[u64], variants: &[Variant]) -> Vec<Vec<Report>> {
     let mut jobs = Vec::new();
     for variant in variants {
-        // A planner refers to its constants for as long as the program runs.
-        let tuning: &'static Tuning = Box::leak(Box::new(tuning(variant)));
+        let tuning = runs::tuned(variant.tuned);
         for world in worlds {
             jobs.extend(seeds.iter().map(|&seed| (variant, tuning, world, seed)));
         }
@@ -93,16 +92,6 @@ pub fn sweep(worlds: &[World], seeds: &[u64], variants: &[Variant]) -> Vec<Vec<R
     });
     let each = worlds.len() * seeds.len();
     reports.chunks(each).map(<[Report]>::to_vec).collect()
-}
-
-fn tuning(variant: &Variant) -> Tuning {
-    let mut tuning = Tuning::DEFAULT;
-    for (name, value) in variant.tuned {
-        if let Err(error) = tuning.set(name, *value) {
-            panic!("{name}: {error}");
-        }
-    }
-    tuning
 }
 
 fn explore(variant: &Variant, tuning: &'static Tuning, world: &World, seed: u64) -> Report {

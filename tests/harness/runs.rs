@@ -7,6 +7,7 @@ use core::ops::Range;
 use core::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
 
+use fieldline_planner::Tuning;
 use host_sim::baseline::{Bvp, GreedyFrontier, Session};
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
@@ -224,6 +225,22 @@ pub fn assert_faultless<'a>(
         }
     }
     assert!(list.is_empty(), "\n{list}");
+}
+
+/// Returns the tuned constants with other values than their defaults. A planner refers to them for
+/// as long as the program runs.
+///
+/// # Panics
+/// If a constant is unknown or beyond its range.
+#[must_use]
+pub fn tuned(changes: &[(&str, f32)]) -> &'static Tuning {
+    let mut tuning = Tuning::DEFAULT;
+    for &(name, value) in changes {
+        if let Err(error) = tuning.set(name, value) {
+            panic!("{name}: {error}");
+        }
+    }
+    Box::leak(Box::new(tuning))
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 
 use core::ops::Range;
 
+use fieldline_planner::Tuning;
 use fieldline_tests::digests::Digest;
 use fieldline_tests::runs::{self, assert_faultless};
 use fieldline_tests::table::{Table, number};
@@ -30,15 +31,16 @@ const CORRIDOR_ERROR_M: f64 = 0.35;
 const LEAST_SEEN: f64 = 0.98;
 
 /// One exploration.
-struct Drive<'a> {
-    world: &'a World,
-    seed: u64,
-    odometry: OdometryProfile,
-    localise: bool,
+pub(super) struct Drive<'a> {
+    pub(super) world: &'a World,
+    pub(super) seed: u64,
+    pub(super) odometry: OdometryProfile,
+    pub(super) localise: bool,
+    pub(super) tuning: &'static Tuning,
 }
 
 impl Drive<'_> {
-    fn go(&self) -> Report {
+    pub(super) fn go(&self) -> Report {
         let mission = Mission {
             link: "direct".into(),
             seed: self.seed,
@@ -46,7 +48,7 @@ impl Drive<'_> {
             localise: self.localise,
             ..Mission::default()
         };
-        runs::explored(&mission, self.world, &mut Direct::new()).0
+        runs::explored(&mission, self.world, &mut Direct::tuned(self.tuning)).0
     }
 }
 
@@ -65,6 +67,7 @@ fn drives<'a>(
                     seed,
                     odometry,
                     localise,
+                    tuning: &Tuning::DEFAULT,
                 });
             };
             add(OdometryProfile::Truth, false);
@@ -172,7 +175,7 @@ mod data {
     use super::{OdometryProfile, check, drives, worlds};
 
     #[test]
-    #[ignore = "needs worlds drawn by others (FIELDLINE_DATA), and takes half an hour"]
+    #[ignore = "needs worlds drawn by others (FIELDLINE_DATA), and takes five minutes"]
     fn drift_in_worlds_drawn_by_others() {
         let worlds = worlds::drawn_by_others();
         let drives = drives(&worlds, &(0..3), &[OdometryProfile::Noisy]);

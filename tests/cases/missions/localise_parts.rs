@@ -3,14 +3,13 @@
 //! Explorations with noisy odometry in two worlds of rooms and two of bare corridors, with one part
 //! left out or with fewer beams.
 
-use fieldline_planner::Tuning;
 use fieldline_tests::runs::{self, in_parallel};
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::{golden, worlds};
-use host_sim::link::direct::Direct;
 use host_sim::report::Report;
-use host_sim::trial::mission::{Mission, OdometryProfile};
-use host_sim::world::World;
+use host_sim::trial::mission::OdometryProfile;
+
+use super::localise::Drive;
 
 const ROOMS: [&str; 2] = ["office", "hall"];
 const CORRIDORS: [&str; 2] = ["ouroboros-a", "ouroboros-b"];
@@ -39,35 +38,6 @@ const VARIANTS: [Variant; 9] = [
     ("wheels do not slip", true, &[("localise.slip_gap", 1e9)]),
     ("odometry alone", false, &[]),
 ];
-
-/// One exploration.
-struct Drive<'a> {
-    world: &'a World,
-    seed: u64,
-    localise: bool,
-    tuning: &'static Tuning,
-}
-
-impl Drive<'_> {
-    fn go(&self) -> Report {
-        let mission = Mission {
-            link: "direct".into(),
-            seed: self.seed,
-            odometry: OdometryProfile::Noisy,
-            localise: self.localise,
-            ..Mission::default()
-        };
-        runs::explored(&mission, self.world, &mut Direct::tuned(self.tuning)).0
-    }
-}
-
-fn tuning(changes: &[(&str, f32)]) -> &'static Tuning {
-    let mut tuning = Tuning::DEFAULT;
-    for &(name, value) in changes {
-        tuning.set(name, value).expect("a constant and its range");
-    }
-    Box::leak(Box::new(tuning))
-}
 
 /// Returns the cells of a group of worlds: mean and greatest error of the pose, wall error, ghosts.
 fn cells(reports: &[Report], worlds: &[&str]) -> Vec<String> {
@@ -111,10 +81,11 @@ mod full {
             ],
         );
         for (name, localise, changes) in VARIANTS {
-            let tuning = tuning(changes);
+            let tuning = runs::tuned(changes);
             let drive = |world, seed| Drive {
                 world,
                 seed,
+                odometry: OdometryProfile::Noisy,
                 localise,
                 tuning,
             };

@@ -16,8 +16,8 @@
 //! is taken out of H and b, because the little that is there is the map's own grain:
 //!
 //! ```text
-//! S = H over (x, y) with the yaw eliminated;  v = eigenvector of the least eigenvalue λ of S
-//! λ < least_information  ⇒  H, b without v
+//! S = H over (x, y) with the yaw eliminated;  e = eigenvector of the least eigenvalue λ of S
+//! λ < least_information  ⇒  H, b without e
 //! ```
 //!
 //! Units: map cells, radians.
@@ -188,7 +188,7 @@ impl Constraints {
         self
     }
 
-    /// Removes a direction: `H ← M H M`, `b ← M b` with `M = I − v vᵀ`.
+    /// Removes a direction: `H ← M H M`, `b ← M b` with `M = I − e eᵀ`.
     fn remove(&mut self, [x, y]: [f32; 2]) {
         // The direction across is what is left.
         let (u, w) = (-y, x);
