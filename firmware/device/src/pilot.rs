@@ -354,6 +354,7 @@ fn command(output: &Output, status: Status) -> Command {
         velocity,
         status,
         heading: convert::quantity(output.heading_rad),
+        forgot_arrivals: output.forgot_arrivals,
         cost: Cost {
             cycles: output.cycles,
             budget_exhausted: output.budget_exhausted,

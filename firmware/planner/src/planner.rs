@@ -67,6 +67,9 @@ pub struct Output {
     pub cycles: u16,
     /// True if the solver's budget ran out before its stop rule held.
     pub budget_exhausted: bool,
+    /// True if this step took obstacles that had come for gone, for a second look at what they
+    /// hide.
+    pub forgot_arrivals: bool,
 }
 
 impl Output {
@@ -122,7 +125,10 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     state.team.begin_step(input.time_ms, motion, &mut state.map);
     let output = explore(config, state, workspace, input, timer);
     state.drive.tell(output.velocity);
-    output
+    Output {
+        forgot_arrivals: core::mem::take(&mut state.forgot_arrivals),
+        ..output
+    }
 }
 
 /// Runs one step, but for the note of what the robot is told.

@@ -5,7 +5,7 @@
 //! itself gains nothing.
 
 use fieldline_planner::geometry::Cell;
-use fieldline_protocol::message::{Observation, Start, Status};
+use fieldline_protocol::message::{Command, Observation, Start};
 
 use super::mirror::Mirror;
 use super::relief::Relief;
@@ -83,15 +83,18 @@ fn seen(setup: &Setup, simulator: &Simulator<'_>) -> Option<Mirror> {
 }
 
 impl Survey for Account {
-    fn note(&mut self, observation: &Observation, truth: &Stamped, status: Status) -> f64 {
-        self.mirror.observe(observation, status);
+    fn note(&mut self, observation: &Observation, truth: &Stamped, command: &Command) -> f64 {
+        self.mirror.observe(observation, command.status);
+        if command.forgot_arrivals {
+            self.mirror.forget_arrivals();
+        }
         if let Some(seen) = &mut self.seen {
             let pose = record::unstamped(truth);
             let observation = Observation {
                 pose,
                 ..observation.clone()
             };
-            seen.observe(&observation, status);
+            seen.observe(&observation, command.status);
         }
         let time_s = f64::from(observation.time_ms) / 1000.0;
         let seen = self.seen.as_ref().unwrap_or(&self.mirror);

@@ -68,6 +68,11 @@ impl Mirror {
         }
     }
 
+    /// Takes what came for gone, as the device did in this step.
+    pub fn forget_arrivals(&mut self) {
+        self.map.forget_arrivals();
+    }
+
     /// Returns true if a cell has been measured.
     #[must_use]
     pub fn is_known(&self, cell: Cell) -> bool {
@@ -97,7 +102,7 @@ impl Mirror {
         let is_uneven = config.is_some_and(|config| config.ground().is_some());
         reach(|key| key.1).all(|y| {
             reach(|key| key.0).all(|x| {
-                let ours = self.map.tiles().packed(i32::from(x), i32::from(y));
+                let ours = self.map.shown(i32::from(x), i32::from(y));
                 let theirs = tiles.get(&(x, y)).map(|tile| tile.cells.as_slice());
                 match (&ours, theirs) {
                     (Some(ours), Some(theirs)) if is_uneven => ours

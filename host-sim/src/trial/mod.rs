@@ -46,9 +46,9 @@ const REST_MS: u32 = 3_000;
 
 /// Measures the coverage of a run.
 pub trait Survey {
-    /// Takes an observation, the true pose, and the planner's status; returns the fraction of the
+    /// Takes an observation, the true pose, and the planner's answer; returns the fraction of the
     /// explorable world that is known now.
-    fn note(&mut self, observation: &Observation, truth: &Stamped, status: Status) -> f64;
+    fn note(&mut self, observation: &Observation, truth: &Stamped, command: &Command) -> f64;
 
     /// Returns heights and preferences in a window that the planner solved; `None` on flat ground.
     fn relief(&self, _window: &Window) -> Option<Relief> {
@@ -167,7 +167,7 @@ fn step(
     let asked = Instant::now();
     let command = cast.link.observe(&observation)?;
     let round_trip_us = asked.elapsed().as_secs_f64() * 1e6;
-    let coverage = cast.survey.note(&observation, &truth, command.status);
+    let coverage = cast.survey.note(&observation, &truth, &command);
     let step = Step::new(&observation, truth, command, round_trip_us);
     record.push(step, coverage);
     if setup.check_field {

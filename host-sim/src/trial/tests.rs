@@ -130,7 +130,7 @@ impl Link for Script {
 struct Counting(u64);
 
 impl Survey for Counting {
-    fn note(&mut self, _: &Observation, _: &Stamped, _: Status) -> f64 {
+    fn note(&mut self, _: &Observation, _: &Stamped, _: &Command) -> f64 {
         self.0 += 1;
         self.0 as f64 / 1_000.0
     }

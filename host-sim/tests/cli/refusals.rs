@@ -194,6 +194,7 @@ fn bad_arguments_are_refused_in_one_line() {
         explore(&["--time-limit", bad], &[bad, "above 0"]);
     }
     explore(&["--snapshots", "501"], &["'501'", "0 to 500"]);
+    explore(&["--people", "51"], &["'51'", "0 to 50"]);
     explore(&["--patrol-for", "65536"], &["'65536'", "0 to 65535"]);
     explore(&["--imu-noise", "90"], &["'90'", "degrees from 0 to 20"]);
     explore(&["--laser-noise", "-1"], &["'-1'", "metres from 0 to 1"]);

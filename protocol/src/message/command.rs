@@ -133,6 +133,8 @@ pub struct Command {
     pub heading: I16F16,
     /// Counts of loops.
     pub loops: Loops,
+    /// True if the planner took obstacles that had come for gone, for a second look.
+    pub forgot_arrivals: bool,
     /// The pose in the map; `None` if the session takes odometry for the pose.
     pub location: Option<Location>,
     /// Counters of the link.

@@ -105,6 +105,7 @@ fn reply_command() {
                 closed: 300,
                 given_up: 2,
             },
+            forgot_arrivals: true,
             location: Some(Location {
                 x: long(1.0),
                 y: long(-0.5),
@@ -143,6 +144,7 @@ fn reply_command() {
             1,    // exploring
             0xff, 0xff, 0x03, // heading −0.5 rad = −32768/65536
             1, 0xac, 0x02, 2, // loops
+            1, // what came is forgotten
             1, // a location
             0x80, 0x80, 0x08, 0xff, 0xff, 0x03, 0x80, 0x80, 0x02, // x, y, yaw
             0x80, 0x80, 0x08, 0, 0x80, 0x80, 0x10, 0, 0xff, 0xff, 0x03, 0x80, 0x80, 0x02, 1, 1,

@@ -413,17 +413,25 @@ fn command() -> impl Strategy<Value = Command> {
     (
         twist(),
         status(),
-        (long(), loops(), prop::option::of(location())),
+        (long(), loops(), any::<bool>(), prop::option::of(location())),
         counters(),
         stages(),
         any::<(u32, u32, u16, bool)>(),
     )
         .prop_map(
-            |(velocity, status, (heading, loops, location), counters, stages, cost)| Command {
+            |(
+                velocity,
+                status,
+                (heading, loops, forgot_arrivals, location),
+                counters,
+                stages,
+                cost,
+            )| Command {
                 velocity,
                 status,
                 heading,
                 loops,
+                forgot_arrivals,
                 location,
                 counters,
                 cost: Cost {

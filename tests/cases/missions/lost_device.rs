@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use fieldline_protocol::message::{Observation, Status, Strategy, Twist};
+use fieldline_protocol::message::{Command, Observation, Strategy, Twist};
 use fieldline_tests::worlds;
 use host_sim::link::Link;
 use host_sim::report::tum::Stamped;
@@ -51,7 +51,7 @@ impl Body for Witness<'_> {
 struct Nobody;
 
 impl Survey for Nobody {
-    fn note(&mut self, _: &Observation, _: &Stamped, _: Status) -> f64 {
+    fn note(&mut self, _: &Observation, _: &Stamped, _: &Command) -> f64 {
         0.0
     }
 }

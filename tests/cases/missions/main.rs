@@ -11,6 +11,7 @@ mod localise;
 mod localise_parts;
 mod lost_device;
 mod orders;
+mod people;
 mod periods;
 mod replay;
 mod space;

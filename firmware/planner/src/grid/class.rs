@@ -19,7 +19,8 @@ pub enum Class {
     Free = 1,
     /// Something stands in it.
     Obstacle = 2,
-    /// A hole, cliff or downward slope \[Maffei20, III-B\].
+    /// A hole, cliff or downward slope \[Maffei20, III-B\]. On flat ground an obstacle that stands
+    /// where the floor was free.
     Negative = 3,
 }
 

@@ -4,6 +4,7 @@
 //! count = 0                                no evidence yet
 //! hit:   count ← min(count + 3, 15)        pass:  count ← max(count − 1, 1)
 //! class = obstacle if count ≥ 10, free if count ≤ 7, else as before (hysteresis)
+//!         an obstacle where the cell was free has come (`arrivals`)
 //! ```
 //!
 //! A free cell that beams passed often (count 1) needs three hits to become an obstacle, so a
@@ -17,6 +18,7 @@
 use crate::config::MapTuning;
 use crate::geometry::Cell;
 use crate::grid::{Class, Rolling, masked_mut, wrapped_mut};
+use crate::map::arrivals::came;
 
 /// Cells along the window's side.
 pub(crate) const EVIDENCE_SIDE: i32 = 128;
@@ -118,7 +120,7 @@ impl Evidence {
         let count = change(count);
         *pair = *pair & !(15 << shift) | count << shift;
         if count >= tuning.obstacle_count {
-            Class::Obstacle
+            came(class)
         } else if count <= tuning.free_count {
             Class::Free
         } else {
@@ -199,7 +201,7 @@ mod tests {
         class = evidence.hit(CELL, class, &TUNING);
         class = evidence.hit(CELL, class, &TUNING);
         assert_eq!(class, Class::Free);
-        assert_eq!(evidence.hit(CELL, class, &TUNING), Class::Obstacle);
+        assert_eq!(evidence.hit(CELL, class, &TUNING), Class::Negative);
     }
 
     #[test]

@@ -20,6 +20,7 @@ use crate::grid::Class;
 use crate::input::informative_range_mm;
 use crate::input::{INVALID_MM, NO_RETURN_MM};
 use crate::map::Map;
+use crate::map::arrivals::came;
 use crate::map::evidence::Evidence;
 use crate::map::tiles::{NoRoom, TileMut};
 use crate::map::traversal::Traversal;
@@ -223,7 +224,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         let now = if self.evidence.covers(cell) {
             self.evidence.hit(cell, class, tuning)
         } else {
-            Class::Obstacle
+            came(class)
         };
         if now != class {
             self.store(cell, now);

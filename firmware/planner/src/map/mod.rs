@@ -6,6 +6,7 @@
 //! | `compaction` | smaller storage for tiles with little content |
 //! | `versions`, [`exchange`], `join` | for a team: tiles with versions, and their joins |
 //! | `rows` | rows of 32 and 64 cells, for all planning |
+//! | `arrivals` | on flat ground, obstacles that came and may be gone |
 //! | `evidence` | counts for and against an obstacle around the robot, on flat ground |
 //! | `integrate`, `traversal` | beams into classes and counts |
 //! | `elevation_layer` | the elevation window into classes, on uneven ground |
@@ -13,6 +14,7 @@
 //!
 //! Units: map cells of [`CELL_M`](crate::geometry::CELL_M).
 
+pub(crate) mod arrivals;
 pub(crate) mod compaction;
 mod elevation_layer;
 pub(crate) mod evidence;

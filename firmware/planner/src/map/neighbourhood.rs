@@ -4,7 +4,8 @@
 //! bit side · dy + dx = 1 if the cell (dx, dy) from the corner is an obstacle, 0 ≤ dx, dy < side
 //! ```
 //!
-//! A negative obstacle does not stand, so no beam ends on it, and its bit is 0.
+//! An obstacle that came ([`Class::Negative`](crate::grid::Class) on flat ground) stands too. Only
+//! the localisation reads this, on flat ground.
 //!
 //! Units: map cells.
 
@@ -62,7 +63,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     fn standing(&self, tile_x: i32, tile_y: i32) -> impl Fn(usize) -> u32 {
         let planes = self.planes(self.entry(tile_x, tile_y));
         move |line| match planes {
-            Some([low, high]) => masked(high, line) & !masked(low, line),
+            Some([_, high]) => *masked(high, line),
             None => 0,
         }
     }
@@ -87,7 +88,7 @@ mod tests {
             let class = Class::from_bits(seed >> 30 & 1, seed >> 31 & 1);
             tiles.set(Cell { x, y }, class).expect("room");
         }
-        let stands = |cell| u32::from(tiles.class(cell) == Class::Obstacle);
+        let stands = |cell| u32::from(!tiles.class(cell).is_open());
         let single = |corner: Cell, side: i32| -> u32 {
             let bit = |k| stands(corner.offset(k % side, k / side)) << k;
             (0..side * side).map(bit).sum()

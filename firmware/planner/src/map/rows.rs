@@ -54,6 +54,12 @@ impl Column<'_> {
         [self.low, self.high].map(|plane| *masked(plane, row))
     }
 
+    /// Returns true if a cell is a negative obstacle.
+    pub(super) fn has_negative(&self) -> bool {
+        let mut rows = self.low.iter().zip(self.high);
+        rows.any(|(low, high)| low & high != 0)
+    }
+
     /// Returns the trail's blocks in a row.
     #[inline(always)]
     fn blocks(&self, row: usize) -> u16 {

@@ -101,6 +101,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.lent_bytes_mut().fill(0);
     }
 
+    /// Returns true if pages are lent to the elevation window: the ground is uneven.
+    pub(super) const fn is_lent(&self) -> bool {
+        self.lent > 0
+    }
+
     /// Returns the memory of the lent pages.
     pub(super) fn lent_bytes(&self) -> &[u8] {
         let lent = self.pool.get(self.capacity()..).unwrap_or_default();

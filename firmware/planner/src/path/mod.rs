@@ -17,6 +17,7 @@
 //! | [`progress`] | the progress checker: when to give up a goal or block a passage |
 //! | [`blocked_passages`] | passages that the robot could not drive through |
 //! | [`residual_frontiers`] | goals that were given up, and frontiers never reached |
+//! | [`second_look`] | whether what no path led to is tried again at the end |
 //! | [`viewpoint`] | places from which the robot can see through gaps |
 //! | [`map_exits`] | reachable places beyond which the map has no room |
 //! | [`breadcrumbs`] | the last metres of the robot's way |
@@ -41,6 +42,7 @@ pub(crate) mod rays;
 pub(crate) mod residual_frontiers;
 pub(crate) mod robot_wave;
 pub(crate) mod search;
+pub(crate) mod second_look;
 pub(crate) mod viewpoint;
 
 pub use cell_path::Path;

@@ -85,6 +85,18 @@ impl ResidualFrontiers {
             .retain(|residual| residual.reason != ResidualReason::NoProgress);
     }
 
+    /// Takes the goals back that no path led to.
+    pub(crate) fn retry_unreachable(&mut self) {
+        self.list
+            .retain(|residual| residual.reason != ResidualReason::Unreachable);
+    }
+
+    /// Returns true if no path led to a goal.
+    pub(crate) fn has_unreachable(&self) -> bool {
+        let mut list = self.list.iter();
+        list.any(|residual| residual.reason == ResidualReason::Unreachable)
+    }
+
     /// Takes a goal off the list that was reached and stayed unexplored.
     pub(crate) fn take_unobservable(&mut self) -> Option<Cell> {
         let unobservable =

@@ -21,7 +21,7 @@ pub(super) fn finish<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     footprint: &Footprint,
-    robot: Cell,
+    (robot, time_ms): (Cell, u32),
 ) {
     const DONE: Status = Status::Finished(Finish::Explored);
     if state.strategy.is_patrolling() {
@@ -31,10 +31,32 @@ pub(super) fn finish<const TILES: usize, const SLOTS: usize>(
     }
     let missing = list_ways_out(state, workspace, footprint, robot);
     state.strategy.frontier.list_unreachable(&state.skeleton);
+    if missing.is_none() && looks_again(state, time_ms) {
+        return;
+    }
     let status = conclude(state, &mut workspace.local_grid, footprint, robot, missing);
     if status != DONE || !state.strategy.begin_patrol() {
         state.status = status;
     }
+}
+
+/// Begins a second look if one may help and something came: takes it for gone. Returns true if it
+/// does. On uneven ground nothing is known to have come.
+fn looks_again<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
+    time_ms: u32,
+) -> bool {
+    let known_cells = state.map.known_cells();
+    let frontier = &mut state.strategy.frontier;
+    let begins = !state.ground.is_uneven()
+        && state.map.has_arrivals()
+        && frontier.may_look_again(known_cells, time_ms);
+    if begins {
+        state.map.forget_arrivals();
+        frontier.look_again();
+        state.forgot_arrivals = true;
+    }
+    begins
 }
 
 /// Lists the reachable cells beyond which the map has no room. Returns which room is missing. Cells

@@ -60,7 +60,12 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
             let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
             state.viewpoints.begin(state.map.tiles().extent(), scratch);
         }
-        RoundOutcome::Nothing => finish(state, workspace, footprint, input.pose.point().cell()),
+        RoundOutcome::Nothing => finish(
+            state,
+            workspace,
+            footprint,
+            (input.pose.point().cell(), input.time_ms),
+        ),
         RoundOutcome::Stuck => state.status = Status::Fault(Fault::Stuck),
         RoundOutcome::Path | RoundOutcome::Unsure => {}
     }
@@ -122,6 +127,6 @@ pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
             // The skeleton is still the one that the last round planned on.
             state.has_new_skeleton = true;
         }
-        Found::Nothing => finish(state, workspace, &narrow, robot),
+        Found::Nothing => finish(state, workspace, &narrow, (robot, input.time_ms)),
     }
 }

@@ -41,11 +41,11 @@ pub struct LoopCounts {
 
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// Returns the cells of a tile, two bits each, least x and y first: 0 unknown, 1 free, 2
-    /// obstacle, 3 negative obstacle. `None` if nothing in it was ever measured.
+    /// obstacle, 3 negative obstacle. What came and may be gone is unknown. `None` if nothing in it
+    /// was ever measured.
     #[must_use]
     pub fn tile(&self, column: i16, row: i16) -> Option<[u8; 256]> {
-        let tiles = self.map.tiles();
-        tiles.packed(i32::from(column), i32::from(row))
+        self.map.shown(i32::from(column), i32::from(row))
     }
 
     /// Returns the skeleton of a tile: 16 rows of 16 coarse cells, least y first, least x in the

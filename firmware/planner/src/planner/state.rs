@@ -48,6 +48,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     pub(super) started: bool,
     /// A skeleton is complete and no path was planned on it yet.
     pub(super) has_new_skeleton: bool,
+    /// This step took what came for gone.
+    pub(super) forgot_arrivals: bool,
     /// The robot's first cell.
     pub(super) start: Cell,
 }
@@ -87,6 +89,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             status: Status::Exploring,
             started: false,
             has_new_skeleton: false,
+            forgot_arrivals: false,
             start: Cell { x: 0, y: 0 },
         }
     }
@@ -117,6 +120,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.status = Status::Exploring;
         self.started = false;
         self.has_new_skeleton = false;
+        self.forgot_arrivals = false;
         Ok(())
     }
 

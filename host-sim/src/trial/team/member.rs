@@ -11,7 +11,9 @@
 //! and hears nothing. Joining again is a new session of its planner: a new boot, an empty map.
 //! After a broken link the robot's watchdog stops it, and it is silent for good.
 
-use fieldline_protocol::message::{self as wire, Control, Finish, Observation, Status, Twist};
+use fieldline_protocol::message::{
+    self as wire, Command, Control, Finish, Observation, Status, Twist,
+};
 use fieldline_protocol::packet::{MAX_PACKET, decode_packet, encode_packet};
 
 use super::super::account::Account;
@@ -315,8 +317,8 @@ struct Witness<'a> {
 }
 
 impl Survey for Witness<'_> {
-    fn note(&mut self, observation: &Observation, truth: &Stamped, status: Status) -> f64 {
-        let fraction = self.own.note(observation, truth, status);
+    fn note(&mut self, observation: &Observation, truth: &Stamped, command: &Command) -> f64 {
+        let fraction = self.own.note(observation, truth, command);
         let time_s = f64::from(observation.time_ms) / 1000.0;
         let own = &self.own;
         self.all.update(time_s, |cell| own.has_seen(cell));

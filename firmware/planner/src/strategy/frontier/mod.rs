@@ -6,7 +6,7 @@
 //! driven; so no run hangs on a cell that cannot be seen. When no goal is left, everything gets a
 //! *second chance* with a narrower footprint: at 10 cm a cell, a gap that the robot just fits
 //! through may look closed. After that the robot looks from [`Viewpoint`]s at what it cannot drive
-//! to.
+//! to. At the end a second look ([`SecondLook`]) tries what came in the way in the meantime.
 //!
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
 
@@ -21,6 +21,7 @@ use crate::path::goal_cost::{PresentGoal, level};
 use crate::path::progress::{ProgressChecker, Verdict};
 use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::search::path_to;
+use crate::path::second_look::SecondLook;
 use crate::path::viewpoint::Viewpoint;
 use crate::path::{Path, PlanningContext, PlanningScratch, RoundOutcome};
 use crate::roadmap::skeleton::Skeleton;
@@ -60,6 +61,7 @@ pub(crate) struct Frontier {
     stalled: bool,
     /// See [`PresentGoal::reference_m`].
     reference_m: f32,
+    second_look: SecondLook,
 }
 
 impl Frontier {
@@ -80,6 +82,7 @@ impl Frontier {
             viewpoints: 0,
             stalled: false,
             reference_m: 0.0,
+            second_look: SecondLook::new(),
         }
     }
 
@@ -177,6 +180,18 @@ impl Frontier {
         self.path.clear();
     }
 
+    /// Returns true if no path leads to some frontiers, and a second look may help.
+    pub(crate) fn may_look_again(&mut self, known_cells: u32, time_ms: u32) -> bool {
+        self.residual.has_unreachable() && self.second_look.begins(known_cells, time_ms)
+    }
+
+    /// Tries the frontiers again that no path led to.
+    pub(crate) fn look_again(&mut self) {
+        self.residual.retry_unreachable();
+        self.empty_rounds = 0;
+        self.path.clear();
+    }
+
     fn present_goal(&self) -> Option<PresentGoal> {
         (!self.path.is_empty()).then(|| PresentGoal {
             cell: self.path.goal(),
@@ -205,6 +220,7 @@ impl Frontier {
         context: &PlanningContext<'_, TILES, SLOTS>,
     ) {
         (self.viewpoint, self.empty_rounds) = (None, 0);
+        self.second_look.note_path();
         let goal = path.goal();
         if let Some(levels) = &context.levels
             && levels.of(context.tiles, goal) <= level(context, self.present_goal(), goal)
