@@ -6,8 +6,8 @@
 //! mᵢⱼ = 1 in an obstacle that stands, 0 elsewhere;  u, v from the centre of the cell (0, 0)
 //! ```
 //!
-//! Beside a straight wall `1 − m` is the distance to its middle in cells, so it is the residual of
-//! a beam that ends there (Kohlbrecher et al. 2011, eqs. 4–6).
+//! Within a cell of a straight wall `1 − m` is the distance to its middle in cells. It is the
+//! residual of a beam that ends there (Kohlbrecher et al. 2011, eqs. 4–6).
 //!
 //! Units: map cells.
 
