@@ -336,7 +336,7 @@ impl<S: Strategy> Link for Session<S> {
 
     fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
         self.calls += 1;
-        let cells = self.map.tiles().packed(x.into(), y.into());
+        let cells = self.map.shown(x.into(), y.into());
         Ok(cells.map(|cells| Tile {
             x,
             y,

@@ -160,7 +160,7 @@ mod tests {
         let mut random = Noise::new(3, Source::People);
         let mut uniform = |low: f64, high: f64| low + (high - low) * random.uniform();
         let (mut met, mut missed) = (0, 0);
-        for _ in 0..1_000 {
+        for _ in 0..2_000 {
             let person = Person::standing([uniform(3.0, 5.0), uniform(1.0, 3.0)]);
             let direction = [1.0, uniform(-0.6, 0.6), uniform(-0.4, 0.6)];
             let length = direction.iter().map(|it| it * it).sum::<f64>().sqrt();

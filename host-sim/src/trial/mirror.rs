@@ -147,7 +147,7 @@ mod tests {
         }
         let mut tiles = BTreeMap::new();
         for (x, y) in (-2..12).flat_map(|x| (-2..12).map(move |y| (x, y))) {
-            if let Some(cells) = mirror.map.tiles().packed(x.into(), y.into()) {
+            if let Some(cells) = mirror.map.shown(x.into(), y.into()) {
                 let cells = heapless::Vec::from_slice(&cells).unwrap();
                 let skeleton = heapless::Vec::new();
                 let tile = Tile {
