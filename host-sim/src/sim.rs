@@ -6,19 +6,17 @@
 //! climb, stops the robot there. A lost ground contact or a slope too steep ends the drive for
 //! good. The same world, configuration (with its seed) and commands give the same run, bit for bit.
 
+mod announcement;
 mod config;
 mod fleet;
 
-use fieldline_protocol::message::{
-    Hull, INVALID_MM, LoopLimits, Observation, Scan, Start, Strategy, Twist,
-};
-use fixed::types::I4F12;
+use fieldline_protocol::message::{INVALID_MM, Observation, Scan, Twist};
 
 use crate::metrics::{Overlap, Ride, Safety};
 use crate::people::People;
 use crate::robot::{
-    Contacts, Drive, Footprint, LaserScanner, Mishap, Noise, Odometry, OtherRobot, Pose, Source,
-    Span, Velocity, laser, nearest_m, stand,
+    Contacts, Drive, LaserScanner, Mishap, Noise, Odometry, OtherRobot, Pose, Source, Span,
+    Velocity, laser, nearest_m, stand,
 };
 use crate::world::{Ray, World, WorldError};
 pub use config::SimConfig;
@@ -71,25 +69,6 @@ pub struct Simulator<'w> {
     touches_person: bool,
     /// Index of the other robot that stopped this one in the last substep.
     bumped: Option<usize>,
-}
-
-/// The greatest number of the wire that is at most `quantity`.
-fn at_most(quantity: f64) -> I4F12 {
-    let least_step = f64::from(1_u32 << I4F12::FRAC_NBITS);
-    I4F12::saturating_from_num((quantity * least_step).floor() / least_step)
-}
-
-/// The nearest whole millimetre of a length.
-fn millimetres(length_m: f64) -> u16 {
-    (length_m * 1000.0).round() as u16
-}
-
-fn hull(footprint: &Footprint) -> Hull {
-    Hull {
-        length_mm: millimetres(2.0 * footprint.half_length_m),
-        width_mm: millimetres(2.0 * footprint.half_width_m),
-        height_mm: millimetres(footprint.height_m),
-    }
 }
 
 impl<'w> Simulator<'w> {
@@ -249,7 +228,7 @@ impl<'w> Simulator<'w> {
         let shift = self.config.traction.shift(&self.pose, velocity, seconds);
         let next = shift.applied(&self.pose);
         self.bumped = self.bumps(&next);
-        if self.bumped.is_some() || self.walks_into_somebody(&next) {
+        if self.bumped.is_some() || self.runs_into_somebody(&next) {
             self.drive.halt();
             return false;
         }
@@ -312,7 +291,7 @@ impl<'w> Simulator<'w> {
     }
 
     /// Returns true if a person is in the way to a pose; counts contacts with people.
-    fn walks_into_somebody(&mut self, next: &Pose) -> bool {
+    fn runs_into_somebody(&mut self, next: &Pose) -> bool {
         let footprint = &self.config.footprint;
         let gap_m = self.people.gap_m(footprint, next);
         let safety = &mut self.safety;
@@ -365,30 +344,6 @@ impl<'w> Simulator<'w> {
         let clearance_m = self.config.footprint.clearance_m(self.world, &self.pose);
         self.in_contact &= clearance_m < CONTACT_OVER_M;
         self.safety.min_clearance_m = self.safety.min_clearance_m.min(clearance_m);
-    }
-
-    /// The start message for the planner, with a map box of `box_tiles`.
-    #[must_use]
-    pub fn start_message(&self, strategy: Strategy, box_tiles: (u8, u8)) -> Start {
-        let limits = &self.config.limits;
-        Start {
-            strategy,
-            box_tiles,
-            lasers: [laser::level(), laser::tilted()].into_iter().collect(),
-            hull: hull(&self.config.footprint),
-            robot_radius_mm: millimetres(self.config.radius_m),
-            max_linear: I4F12::saturating_from_num(limits.linear_mps),
-            max_angular: I4F12::saturating_from_num(limits.angular_radps),
-            linear_accel: at_most(limits.acceleration_mps2.min(limits.braking_mps2)),
-            angular_accel: at_most(limits.angular_radps2),
-            period_ms: u16::try_from(self.config.period_ms).unwrap_or(u16::MAX),
-            uneven_ground: None,
-            loops: LoopLimits::default(),
-            order: strategy.order(),
-            team: None,
-            localise: false,
-            survey: false,
-        }
     }
 
     /// The world.

@@ -99,10 +99,10 @@ impl People {
 
     /// Lets all people walk for some seconds, one after another.
     pub fn walk(&mut self, world: &World, robot: (&Footprint, &Pose), seconds: f64) {
-        let mut places = self.places();
         let Some(ground) = &self.ground else {
             return;
         };
+        let mut places = self.places();
         for (index, person) in self.all.iter_mut().enumerate() {
             if person.wants_goal() {
                 person.choose(world, ground, &mut self.random);

@@ -5,7 +5,7 @@
 //! [`PATIENCE_S`] of standing it wants another goal. Metres and seconds.
 
 use crate::metrics::CellSet;
-use crate::robot::{FARTHEST_M, Footprint, Noise, Pose, distance_m};
+use crate::robot::{Footprint, Noise, Pose, distance_m};
 use crate::world::{Ray, World};
 
 /// Radius of a person, metres.
@@ -127,11 +127,10 @@ impl Person {
         hits.then_some(enter_m)
     }
 
-    /// Returns the gap from a hull at a pose, 0 if they overlap, at most [`FARTHEST_M`].
+    /// Returns the gap from a hull at a pose, metres; 0 if they overlap.
     #[must_use]
     pub fn gap_m(&self, footprint: &Footprint, pose: &Pose) -> f64 {
-        let gap_m = footprint.gap_to_disc_m(pose, self.at_m, RADIUS_M);
-        gap_m.min(FARTHEST_M)
+        footprint.gap_to_disc_m(pose, self.at_m, RADIUS_M)
     }
 }
 

@@ -1,5 +1,8 @@
 //! The whole simulator: repeatable runs, walls, stale commands, odometry errors.
 
+use fieldline_protocol::message::Strategy;
+use fixed::types::I4F12;
+
 use super::*;
 use crate::robot::{OdometryModel, OdometryNoise};
 

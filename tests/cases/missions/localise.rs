@@ -37,6 +37,7 @@ pub(super) struct Drive<'a> {
     pub(super) odometry: OdometryProfile,
     pub(super) localise: bool,
     pub(super) tuning: &'static Tuning,
+    pub(super) people: usize,
 }
 
 impl Drive<'_> {
@@ -46,6 +47,7 @@ impl Drive<'_> {
             seed: self.seed,
             odometry: self.odometry,
             localise: self.localise,
+            people: self.people,
             ..Mission::default()
         };
         runs::explored(&mission, self.world, &mut Direct::tuned(self.tuning)).0
@@ -68,6 +70,7 @@ fn drives<'a>(
                     odometry,
                     localise,
                     tuning: &Tuning::DEFAULT,
+                    people: 0,
                 });
             };
             add(OdometryProfile::Truth, false);

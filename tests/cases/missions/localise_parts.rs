@@ -88,6 +88,7 @@ mod full {
                 odometry: OdometryProfile::Noisy,
                 localise,
                 tuning,
+                people: 0,
             };
             let drives = worlds
                 .iter()

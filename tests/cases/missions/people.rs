@@ -8,50 +8,35 @@
 
 use core::ops::Range;
 
+use fieldline_planner::Tuning;
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::{golden, runs, worlds};
-use host_sim::link::direct::Direct;
 use host_sim::report::Report;
-use host_sim::trial::mission::{Mission, OdometryProfile};
+use host_sim::trial::mission::OdometryProfile;
 use host_sim::world::World;
+
+use super::localise::Drive;
 
 /// People in a world.
 const PEOPLE: usize = 10;
 /// Least share that is truly seen when a run says *explored*.
 const LEAST_SEEN: f64 = 0.97;
 
-/// One exploration.
-struct Walk<'a> {
-    world: &'a World,
-    people: usize,
-    seed: u64,
-}
-
-impl Walk<'_> {
-    fn go(&self) -> Report {
-        let mission = Mission {
-            seed: self.seed,
-            people: self.people,
-            odometry: OdometryProfile::Noisy,
-            localise: true,
-            ..Mission::default()
-        };
-        runs::explored(&mission, self.world, &mut Direct::new()).0
-    }
-}
-
 fn explore(worlds: &[World], counts: &[usize], seeds: &Range<u64>) -> Vec<Report> {
-    let mut walks = Vec::new();
+    let mut drives = Vec::new();
     for world in worlds {
         for &people in counts {
-            walks.extend(seeds.clone().map(|seed| Walk {
+            drives.extend(seeds.clone().map(|seed| Drive {
                 world,
-                people,
                 seed,
+                odometry: OdometryProfile::Noisy,
+                localise: true,
+                tuning: &Tuning::DEFAULT,
+                people,
             }));
         }
     }
-    runs::in_parallel(&walks, Walk::go)
+    runs::in_parallel(&drives, Drive::go)
 }
 
 fn table(reports: &[Report]) -> String {

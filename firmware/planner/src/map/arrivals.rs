@@ -19,8 +19,8 @@ use crate::grid::bits::ones;
 use crate::map::Map;
 use crate::map::tiles::{TILE_ROWS, TILE_SIDE};
 
-/// Lone cells that are more than false echoes: the side of a leg or of a person has as many.
-const LEAST_CELLS: u32 = 4;
+/// Fewer lone cells than this in the whole map are false echoes. A person has more from any side.
+const LEAST_LONE: u32 = 4;
 
 /// Returns the class of a cell in which something stands now, and whose class was `class`.
 pub(super) const fn came(class: Class) -> Class {
@@ -37,7 +37,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             let rows = self.lone_arrivals(tile);
             rows.iter().map(|row| row.count_ones()).sum()
         };
-        self.places().map(lone).sum::<u32>() >= LEAST_CELLS
+        self.places().map(lone).sum::<u32>() >= LEAST_LONE
     }
 
     /// Takes all lone arrivals for gone. For flat ground.

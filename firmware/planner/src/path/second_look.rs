@@ -1,13 +1,13 @@
 //! The second look: whether a frontier that no path leads to is tried again at the end.
 //!
 //! What is in the way may have come and may be gone. So the exploration ends only if the last
-//! second look showed less than [`LEAST_CELLS`] more, or if no path was found for [`PATIENCE_MS`].
-//! Each second look shows more of a finite map, so there is a last one.
+//! second look showed less than [`LEAST_MORE_CELLS`] more, or if no path was found for
+//! [`PATIENCE_MS`]. Each second look shows more of a finite map, so there is a last one.
 //!
 //! Units: map cells, milliseconds.
 
 /// What a second look must have shown, so that there is another: 1 m².
-const LEAST_CELLS: u32 = 100;
+const LEAST_MORE_CELLS: u32 = 100;
 /// Time for which the robot waits that what is in the way goes, milliseconds.
 const PATIENCE_MS: u32 = 10_000;
 
@@ -39,7 +39,7 @@ impl SecondLook {
         if let Some(since_ms) = self.waits_since_ms {
             return time_ms.wrapping_sub(since_ms) < PATIENCE_MS;
         }
-        let shows_more = known_cells >= self.known_cells.saturating_add(LEAST_CELLS);
+        let shows_more = known_cells >= self.known_cells.saturating_add(LEAST_MORE_CELLS);
         self.known_cells = known_cells;
         self.waits_since_ms = shows_more.then_some(time_ms);
         shows_more

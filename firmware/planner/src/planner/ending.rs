@@ -46,11 +46,12 @@ fn looks_again<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     time_ms: u32,
 ) -> bool {
+    if state.ground.is_uneven() || !state.map.has_arrivals() {
+        return false;
+    }
     let known_cells = state.map.known_cells();
     let frontier = &mut state.strategy.frontier;
-    let begins = !state.ground.is_uneven()
-        && state.map.has_arrivals()
-        && frontier.may_look_again(known_cells, time_ms);
+    let begins = frontier.may_look_again(known_cells, time_ms);
     if begins {
         state.map.forget_arrivals();
         frontier.look_again();

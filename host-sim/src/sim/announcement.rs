@@ -1,0 +1,55 @@
+//! The announcement: the start message, which tells a planner what is simulated.
+//!
+//! Lengths are rounded to the wire's numbers. Accelerations are rounded down, so that the planner
+//! never counts on more than there is.
+
+use fieldline_protocol::message::{Hull, LoopLimits, Start, Strategy};
+use fixed::types::I4F12;
+
+use super::Simulator;
+use crate::robot::{Footprint, laser};
+
+/// The greatest number of the wire that is at most `quantity`.
+fn at_most(quantity: f64) -> I4F12 {
+    let least_step = f64::from(1_u32 << I4F12::FRAC_NBITS);
+    I4F12::saturating_from_num((quantity * least_step).floor() / least_step)
+}
+
+/// The nearest whole millimetre of a length.
+fn millimetres(length_m: f64) -> u16 {
+    (length_m * 1000.0).round() as u16
+}
+
+fn hull(footprint: &Footprint) -> Hull {
+    Hull {
+        length_mm: millimetres(2.0 * footprint.half_length_m),
+        width_mm: millimetres(2.0 * footprint.half_width_m),
+        height_mm: millimetres(footprint.height_m),
+    }
+}
+
+impl Simulator<'_> {
+    /// The start message for the planner, with a map box of `box_tiles`.
+    #[must_use]
+    pub fn start_message(&self, strategy: Strategy, box_tiles: (u8, u8)) -> Start {
+        let limits = &self.config.limits;
+        Start {
+            strategy,
+            box_tiles,
+            lasers: [laser::level(), laser::tilted()].into_iter().collect(),
+            hull: hull(&self.config.footprint),
+            robot_radius_mm: millimetres(self.config.radius_m),
+            max_linear: I4F12::saturating_from_num(limits.linear_mps),
+            max_angular: I4F12::saturating_from_num(limits.angular_radps),
+            linear_accel: at_most(limits.acceleration_mps2.min(limits.braking_mps2)),
+            angular_accel: at_most(limits.angular_radps2),
+            period_ms: u16::try_from(self.config.period_ms).unwrap_or(u16::MAX),
+            uneven_ground: None,
+            loops: LoopLimits::default(),
+            order: strategy.order(),
+            team: None,
+            localise: false,
+            survey: false,
+        }
+    }
+}
