@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use fieldline_planner::grid::{Plane, PlaneMut, Shape, Site};
+use fieldline_planner::grid::{Plane, PlaneMut, Site, TileKey, Tiling};
 
 use crate::random::Random;
 
@@ -90,23 +90,30 @@ impl Map {
         text
     }
 
-    /// Returns the shape of the planner's plane of this size.
+    /// Returns the tiles that have a set cell, sorted: the planner's plane needs no others.
     ///
     /// # Panics
     /// If the map is too large for a plane.
     #[must_use]
-    pub fn shape(&self) -> Shape {
-        Shape::new(self.columns.div_ceil(32), self.rows).unwrap()
+    pub fn keys(&self) -> Vec<TileKey> {
+        let mut keys: Vec<TileKey> = (0..self.cells.len())
+            .filter(|&i| self.cells[i])
+            .map(|i| TileKey::at(site(i % self.columns, i / self.columns)))
+            .collect();
+        keys.sort_unstable();
+        keys.dedup();
+        keys
     }
 
-    /// Packs the map into words of a plane.
+    /// Packs the map into words of a plane of these tiles.
     ///
     /// # Panics
-    /// As [`Map::shape`].
+    /// If a set cell lies in no tile.
     #[must_use]
-    pub fn words(&self) -> Vec<u32> {
-        let mut words = vec![0; self.shape().words()];
-        let mut plane = PlaneMut::new(self.shape(), &mut words).unwrap();
+    pub fn words(&self, keys: &[TileKey]) -> Vec<u32> {
+        let tiling = Tiling::new(keys);
+        let mut words = vec![0; tiling.words()];
+        let mut plane = PlaneMut::new(tiling, &mut words).unwrap();
         for y in 0..self.rows {
             for x in 0..self.columns {
                 if self.get(x as isize, y as isize) {
@@ -122,11 +129,12 @@ impl Map {
     /// # Panics
     /// If there are too few words.
     #[must_use]
-    pub fn with_words(&self, words: &[u32]) -> Self {
-        let plane = Plane::new(self.shape(), words).unwrap();
+    pub fn with_words(&self, keys: &[TileKey], words: &[u32]) -> Self {
+        let plane = Plane::new(Tiling::new(keys), words).unwrap();
         let mut map = Self::new(self.columns, self.rows, false);
-        for s in plane.sites() {
-            map.set(usize::from(s.x), usize::from(s.y), true);
+        for at in plane.sites() {
+            let (x, y) = column_and_row(at);
+            map.set(x, y, true);
         }
         map
     }
@@ -217,7 +225,8 @@ impl Map {
         let mut steps = vec![None; self.cells.len()];
         let mut queue = VecDeque::new();
         for seed in seeds {
-            let i = usize::from(seed.y) * self.columns + usize::from(seed.x);
+            let (x, y) = column_and_row(*seed);
+            let i = y * self.columns + x;
             if self.cells[i] && steps[i].is_none() {
                 steps[i] = Some(0);
                 queue.push_back(i);
@@ -249,13 +258,26 @@ const AROUND: [(isize, isize); 8] = [
     (1, 1),
 ];
 
-/// Makes a site of a plane.
+/// The site of the map's first cell: the least one of the first tile.
+fn corner() -> Site {
+    TileKey::of(0, 0).unwrap().least()
+}
+
+/// Returns the site of a cell of a map in its plane.
 #[must_use]
 pub fn site(x: usize, y: usize) -> Site {
+    let corner = corner();
     Site {
-        x: x as u16,
-        y: y as u16,
+        x: corner.x + x as u16,
+        y: corner.y + y as u16,
     }
+}
+
+/// Returns the column and the row of a site in its map.
+#[must_use]
+pub fn column_and_row(site: Site) -> (usize, usize) {
+    let corner = corner();
+    ((site.x - corner.x).into(), (site.y - corner.y).into())
 }
 
 /// Draws anchors: single cells in the map and outside it, or the rims of a rectangle and of a disc.

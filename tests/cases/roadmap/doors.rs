@@ -143,10 +143,13 @@ fn is_open_at_20_cm(door: &Door, tiles: &Room, disc: &Footprint) -> bool {
         let middle = frame.site(half.cell()).expect("it is in the room");
         nearest(way, middle)
     });
-    let at = |site: Site| (i32::from(site.x), i32::from(site.y));
-    let open = |x: i32, y: i32| match (u16::try_from(x), u16::try_from(y)) {
-        (Ok(x), Ok(y)) => way.get(Site { x, y }),
-        _ => false,
+    let at = |site: Site| {
+        let cell = frame.cell(site);
+        (cell.x / 2, cell.y / 2)
+    };
+    let open = |x: i32, y: i32| {
+        let site = frame.site(Cell { x: 2 * x, y: 2 * y });
+        site.is_some_and(|site| way.get(site))
     };
     flood(at(one), true, open).contains(&at(other))
 }

@@ -1,28 +1,69 @@
 //! The bit-parallel thinning against the conditions of \[GuoHall89\], cell by cell, and against
 //! `OpenCV`.
 
-use fieldline_planner::grid::{PlaneMut, ShapeError};
-use fieldline_planner::roadmap::{Progress, Thinning, marks_for};
+use fieldline_planner::grid::{PlaneMut, TileKey, Tiling, TooSmall};
+use fieldline_planner::roadmap::{Progress, Thinning};
 use fieldline_tests::bitmap::{Map, any_anchors, any_map, discs, noise, rooms};
 use fieldline_tests::random::Random;
 
-type AnyThinning = Thinning<16>;
+type AnyThinning = Thinning<64>;
+
+/// A plane with the cells of a map.
+struct Sheet {
+    keys: Vec<TileKey>,
+    words: Vec<u32>,
+}
+
+impl Sheet {
+    fn of(map: &Map) -> Self {
+        let keys = map.keys();
+        let words = map.words(&keys);
+        Self { keys, words }
+    }
+
+    fn tiling(&self) -> Tiling<'_> {
+        Tiling::new(&self.keys)
+    }
+
+    /// Returns the words that a map of anchors has over the same tiles.
+    fn anchors(&self, map: &Map, anchors: &Map) -> Vec<u32> {
+        let mut held = anchors.clone();
+        for (held, cell) in held.cells.iter_mut().zip(&map.cells) {
+            *held &= cell;
+        }
+        held.words(&self.keys)
+    }
+
+    fn advance<const PAGES: usize>(
+        &mut self,
+        thinning: &mut Thinning<PAGES>,
+        anchors: &[u32],
+        budget: u32,
+    ) -> Progress {
+        let mut plane = PlaneMut::new(Tiling::new(&self.keys), &mut self.words).unwrap();
+        thinning.advance(&mut plane, anchors, budget)
+    }
+
+    fn map(&self, like: &Map) -> Map {
+        like.with_words(&self.keys, &self.words)
+    }
+}
 
 /// Thins in one go; returns the skeleton and the work.
 fn thin(map: &Map) -> (Map, u32) {
-    thin_around(map, &[])
+    thin_around(map, &Map::new(map.columns, map.rows, false))
 }
 
 /// Thins in one go around anchors; returns the skeleton and the work.
-fn thin_around(map: &Map, anchors: &[u32]) -> (Map, u32) {
-    let mut words = map.words();
-    let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
+fn thin_around(map: &Map, anchors: &Map) -> (Map, u32) {
+    let mut sheet = Sheet::of(map);
+    let anchors = sheet.anchors(map, anchors);
     let mut thinning = AnyThinning::new();
-    thinning.start(map.shape()).unwrap();
-    let Progress::Done { left } = thinning.advance(&mut plane, anchors, u32::MAX) else {
+    thinning.start(sheet.tiling()).unwrap();
+    let Progress::Done { left } = sheet.advance(&mut thinning, &anchors, u32::MAX) else {
         panic!("an endless budget was spent");
     };
-    (map.with_words(&words), u32::MAX - left)
+    (sheet.map(map), u32::MAX - left)
 }
 
 #[test]
@@ -68,7 +109,7 @@ fn anchors_stay_and_the_rest_is_thinned_around_them() {
     for round in 0..1000 {
         let map = any_map(&mut random);
         let anchors = any_anchors(&mut random, &map);
-        let (skeleton, _) = thin_around(&map, &anchors.words());
+        let (skeleton, _) = thin_around(&map, &anchors);
         let expected = map.thinned_around(&anchors);
         assert!(
             skeleton == expected,
@@ -94,7 +135,7 @@ fn anchors_change_no_count_of_pieces_and_holes() {
     for _ in 0..300 {
         let map = any_map(&mut random);
         let anchors = any_anchors(&mut random, &map);
-        let (skeleton, _) = thin_around(&map, &anchors.words());
+        let (skeleton, _) = thin_around(&map, &anchors);
         let count = |map: &Map| (map.pieces(true, true), map.pieces(false, false));
         assert_eq!(
             count(&skeleton),
@@ -111,17 +152,17 @@ fn instalments_change_nothing() {
     let mut random = Random::new(3);
     for _ in 0..300 {
         let map = any_map(&mut random);
-        let anchors = any_anchors(&mut random, &map).words();
+        let anchors = any_anchors(&mut random, &map);
         let (expected, work) = thin_around(&map, &anchors);
-        let mut words = map.words();
+        let mut sheet = Sheet::of(&map);
+        let anchors = sheet.anchors(&map, &anchors);
         let mut thinning = AnyThinning::new();
-        thinning.start(map.shape()).unwrap();
+        thinning.start(sheet.tiling()).unwrap();
         let largest = 1 + random.index(200);
         let mut spent = 0;
         loop {
             let budget = random.index(largest + 1) as u32;
-            let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
-            match thinning.advance(&mut plane, &anchors, budget) {
+            match sheet.advance(&mut thinning, &anchors, budget) {
                 Progress::Pending => spent += budget,
                 Progress::Done { left } => {
                     spent += budget - left;
@@ -129,8 +170,8 @@ fn instalments_change_nothing() {
                 }
             }
         }
-        assert_eq!(spent, work, "the work must not depend on its division");
-        assert_eq!(map.with_words(&words), expected);
+        assert!(spent <= work, "{spent} units instead of {work}");
+        assert_eq!(sheet.map(&map), expected);
     }
 }
 
@@ -140,24 +181,21 @@ fn a_new_start_forgets_a_half_done_thinning() {
     let mut thinning = AnyThinning::new();
     for round in 0..300 {
         let map = any_map(&mut random);
-        let mut words = map.words();
-        let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
-        thinning.start(map.shape()).unwrap();
+        let mut sheet = Sheet::of(&map);
+        thinning.start(sheet.tiling()).unwrap();
         if round % 3 == 0 {
-            while thinning.advance(&mut plane, &[], 50) == Progress::Pending {}
-            assert_eq!(map.with_words(&words), map.thinned(), "map {round}");
+            while sheet.advance(&mut thinning, &[], 50) == Progress::Pending {}
+            assert_eq!(sheet.map(&map), map.thinned(), "map {round}");
         } else {
-            let _ = thinning.advance(&mut plane, &[], random.index(400) as u32);
+            let _ = sheet.advance(&mut thinning, &[], random.index(400) as u32);
         }
     }
 }
 
-/// The marks of words come in groups of 32. In a plane of 3 × 11 words the last word, from column
-/// 64 of row 10 on, is alone in its group. In this map, found by search, a cell of the last word
-/// can be deleted only after its neighbour in the word before; no other change marks the word.
+/// In this map, found by search, a cell of the last word can be deleted only after its neighbour in
+/// the word before; no other change marks the word. It is tried at all places of a tile.
 #[test]
-fn a_change_marks_words_of_the_next_group() {
-    let mut map = Map::new(96, 11, false);
+fn a_change_marks_the_words_beside() {
     let picture = Map::parse(
         "\
 ..####..
@@ -169,13 +207,17 @@ fn a_change_marks_words_of_the_next_group() {
 .###....
 ",
     );
-    for y in 0..picture.rows {
-        for x in 0..picture.columns {
-            map.set(60 + x, 4 + y, picture.get(x as isize, y as isize));
+    for (left, above) in (0..16).flat_map(|x| (0..16).map(move |y| (x, y))) {
+        let mut map = Map::new(48, 48, false);
+        for y in 0..picture.rows {
+            for x in 0..picture.columns {
+                let cell = picture.get(x as isize, y as isize);
+                map.set(left + x, above + y, cell);
+            }
         }
+        let (skeleton, _) = thin(&map);
+        assert_eq!(skeleton.print(), map.thinned().print());
     }
-    let (skeleton, _) = thin(&map);
-    assert_eq!(skeleton.print(), map.thinned().print());
 }
 
 #[test]
@@ -190,12 +232,11 @@ fn wide_planes_do_not_wrap() {
         };
         map.rect(0, 0, 3, 24, true);
         map.rect(columns - 3, 0, 3, 24, true);
-        let mut words = map.words();
-        let mut thinning = Thinning::<{ marks_for(31 * 24) }>::new();
-        thinning.start(map.shape()).unwrap();
-        let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
-        while thinning.advance(&mut plane, &[], 1000) == Progress::Pending {}
-        assert_eq!(map.with_words(&words), map.thinned(), "map {round}");
+        let mut sheet = Sheet::of(&map);
+        let mut thinning = Thinning::<{ 62 * 2 }>::new();
+        thinning.start(sheet.tiling()).unwrap();
+        while sheet.advance(&mut thinning, &[], 1000) == Progress::Pending {}
+        assert_eq!(sheet.map(&map), map.thinned(), "map {round}");
     }
 }
 
@@ -203,11 +244,10 @@ fn wide_planes_do_not_wrap() {
 fn the_work_follows_the_outline_of_the_map() {
     let mut map = Map::new(320, 320, false);
     map.rect(100, 100, 120, 120, true);
-    let mut words = map.words();
-    let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
+    let mut sheet = Sheet::of(&map);
     let mut thinning = Thinning::<100>::new();
-    thinning.start(map.shape()).unwrap();
-    let Progress::Done { left } = thinning.advance(&mut plane, &[], u32::MAX) else {
+    thinning.start(sheet.tiling()).unwrap();
+    let Progress::Done { left } = sheet.advance(&mut thinning, &[], u32::MAX) else {
         panic!("an endless budget was spent");
     };
     let (work, passes) = (u32::MAX - left, u32::from(thinning.passes()));
@@ -215,21 +255,22 @@ fn the_work_follows_the_outline_of_the_map() {
         passes, 121,
         "one side a pass, and one pass to see that nothing changes"
     );
-    // A pass does at most the hall's outline, two rows and 240 words, and 100 groups; the first two
-    // passes do all words.
+    // A pass looks up at most the tiles and does the words on the hall's outline: 120 rows at two
+    // sides and 8 words at the two others; then it deletes in these tiles. The first two passes do
+    // all words of the 8 × 8 tiles.
     assert!(
-        work < passes * (2 * 5 + 240 + 100) + 2 * 3200,
+        work < passes * (2 * 64 + 2 * 120 + 2 * 8) + 2 * 64 * 9,
         "{work} units"
     );
 }
 
 #[test]
-fn a_plane_beyond_the_marks_is_refused() {
-    let map = Map::new(64, 257, true);
-    let error = AnyThinning::new().start(map.shape()).unwrap_err();
-    let expected = ShapeError::TooLarge {
-        needs: 514,
-        has: 512,
+fn more_tiles_than_pages_are_refused() {
+    let sheet = Sheet::of(&Map::new(16 * 65, 1, true));
+    let error = AnyThinning::new().start(sheet.tiling()).unwrap_err();
+    let expected = TooSmall {
+        needs: 65 * 8,
+        has: 64 * 8,
     };
     assert_eq!(error, expected);
 }
@@ -237,11 +278,10 @@ fn a_plane_beyond_the_marks_is_refused() {
 #[test]
 fn a_thinning_that_was_not_started_changes_nothing() {
     let map = Map::new(32, 1, true);
-    let mut words = map.words();
-    let mut plane = PlaneMut::new(map.shape(), &mut words).unwrap();
-    let progress = AnyThinning::new().advance(&mut plane, &[], 5);
+    let mut sheet = Sheet::of(&map);
+    let progress = sheet.advance(&mut AnyThinning::new(), &[], 5);
     assert_eq!(progress, Progress::Done { left: 5 });
-    assert_eq!(words, [u32::MAX]);
+    assert_eq!(sheet.map(&map), map);
 }
 
 /// Reads `fixtures/skeleton.txt`, which its script makes: name, map, and `OpenCV`'s skeleton of it.

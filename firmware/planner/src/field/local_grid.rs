@@ -159,6 +159,15 @@ impl LocalGrid {
         any
     }
 
+    /// Returns true if a square of the map overlaps the grid.
+    pub(crate) const fn overlaps(&self, least: Cell, side: i32) -> bool {
+        let reach = SIDE as i32 * self.scale;
+        least.x < self.origin.x + reach
+            && least.y < self.origin.y + reach
+            && self.origin.x < least.x + side
+            && self.origin.y < least.y + side
+    }
+
     /// Makes the coarse cell whose least map cell is `least` impassable.
     pub(crate) fn block(&mut self, least: Cell) {
         for part in least.quarters() {

@@ -63,40 +63,9 @@ pub(crate) const fn wrapped_mut<T, const N: usize>(array: &mut [T; N], index: us
     &mut array[index & (N - 1)]
 }
 
-/// Returns the words at `index − 1`, `index` and `index + 1`, 0 outside: one check for the three.
-#[inline(always)]
-pub(crate) fn triple(words: &[u32], index: usize) -> [u32; 3] {
-    match words
-        .get(index.wrapping_sub(1)..)
-        .and_then(|rest| rest.first_chunk::<3>())
-    {
-        Some(three) => *three,
-        None => triple_at_end(words, index),
-    }
-}
-
-#[cold]
-#[inline(never)]
-fn triple_at_end(words: &[u32], index: usize) -> [u32; 3] {
-    [
-        at(words, index.wrapping_sub(1)),
-        at(words, index),
-        at(words, index.wrapping_add(1)),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn three_words_read_zero_beyond_the_ends() {
-        let words = [1, 2, 3];
-        assert_eq!(triple(&words, 1), [1, 2, 3]);
-        assert_eq!(triple(&words, 0), [0, 1, 2]);
-        assert_eq!(triple(&words, 2), [2, 3, 0]);
-        assert_eq!(triple(&words, 9), [0, 0, 0]);
-    }
 
     #[test]
     fn a_ring_wraps_below_zero_and_above_its_end() {

@@ -1,53 +1,46 @@
 //! Memory for cells: bit planes, floods, rolling windows, toroidal tile addresses, and the
 //! accessors that replace indexing.
 //!
-//! A bit plane has one bit per cell and 32 cells per word, in memory that the caller lends:
+//! A bit plane has one bit per cell of a number of tiles, in memory that the caller lends
+//! ([`Tiling`]). It has memory for these tiles alone, wherever they lie. Cells outside read 0 and
+//! cannot be written. Row 0 is in the north, as in a picture.
 //!
-//! ```text
-//! bit k of word j of a row = column 32 j + k
-//! ```
-//!
-//! Rows follow one another, row 0 first. A printed plane shows row 0 on its first line. Cells
-//! outside a plane read 0 and cannot be written. A plane takes its shape at run time, so the same
-//! memory serves a square box and a long one.
-//!
-//! Invariant: a plane's slice holds exactly `shape.words()` words. So the index of a row and a word
-//! inside the shape is inside the slice.
+//! Invariant: a plane's slice holds exactly the words of its tiling. So the index of a site inside
+//! is inside the slice.
 //!
 //! Units: cells. The caller chooses the side of a cell.
-
-use core::fmt;
 
 pub(crate) mod bits;
 mod class;
 pub(crate) mod flood;
 mod index;
 mod rolling;
-mod shape;
 mod sites;
 mod tile_key;
 mod tile_map;
+mod tiling;
 
-pub(crate) use index::{at, inside, inside_mut, masked, masked_mut, triple, wrapped, wrapped_mut};
+pub(crate) use index::{at, inside, inside_mut, masked, masked_mut, wrapped, wrapped_mut};
 pub(crate) use rolling::Rolling;
 pub(crate) use tile_map::TileMap;
+pub(crate) use tiling::Block;
 
 pub use class::{Class, Row};
-pub use shape::{MAX_ROWS, MAX_WORDS_PER_ROW, Shape, ShapeError};
 pub use sites::{Site, Sites};
 pub use tile_key::TileKey;
+pub use tiling::{PAGE_SIDE, PAGE_WORDS, Tiling, TooSmall};
 
 /// A bit plane, read only.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane<'a> {
-    shape: Shape,
+    tiling: Tiling<'a>,
     words: &'a [u32],
 }
 
 /// A bit plane that can be changed.
 #[derive(Debug)]
 pub struct PlaneMut<'a> {
-    shape: Shape,
+    tiling: Tiling<'a>,
     words: &'a mut [u32],
 }
 
@@ -55,20 +48,20 @@ impl<'a> Plane<'a> {
     /// Creates a plane over the first words of `words`.
     ///
     /// # Errors
-    /// [`ShapeError::TooLarge`] if the memory is too small for the shape.
-    pub fn new(shape: Shape, words: &'a [u32]) -> Result<Self, ShapeError> {
-        let needs = shape.lend(words.len())?;
-        let words = words.get(..needs).unwrap_or(&[]);
-        Ok(Self { shape, words })
+    /// If the memory is too small for the tiles.
+    pub fn new(tiling: Tiling<'a>, words: &'a [u32]) -> Result<Self, TooSmall> {
+        let (needs, has) = (tiling.words(), words.len());
+        let words = words.get(..needs).ok_or(TooSmall { needs, has })?;
+        Ok(Self { tiling, words })
     }
 
-    /// Returns the numbers of rows and words.
+    /// Returns the tiles.
     #[must_use]
-    pub const fn shape(&self) -> Shape {
-        self.shape
+    pub const fn tiling(&self) -> Tiling<'a> {
+        self.tiling
     }
 
-    /// Returns all words, row after row.
+    /// Returns all words, tile after tile.
     #[must_use]
     pub const fn words(&self) -> &'a [u32] {
         self.words
@@ -78,31 +71,33 @@ impl<'a> Plane<'a> {
     #[must_use]
     #[inline]
     pub fn get(&self, site: Site) -> bool {
-        self.word(usize::from(site.y), usize::from(site.x / 32)) & site.bit() != 0
+        let word = self.tiling.index(site).map_or(0, |i| at(self.words, i));
+        word & site.bit() != 0
     }
 
-    /// Returns 32 cells of a row; 0 outside.
+    /// Returns the words of a tile; 0 outside.
     #[must_use]
-    #[inline]
-    pub fn word(&self, row: usize, word: usize) -> u32 {
-        self.shape.index(row, word).map_or(0, |i| at(self.words, i))
-    }
-
-    /// Returns the words of a row; none outside.
-    #[must_use]
-    pub fn row(&self, row: usize) -> &'a [u32] {
-        row_range(self.shape, row)
-            .and_then(|range| self.words.get(range))
-            .unwrap_or(&[])
+    pub fn page(&self, key: TileKey) -> [u32; PAGE_WORDS] {
+        let from = self.tiling.place(key).map(|place| place * PAGE_WORDS);
+        let words = from.and_then(|from| self.words.get(from..));
+        words
+            .and_then(|words| words.first_chunk().copied())
+            .unwrap_or_default()
     }
 
     /// Returns the set cells around a site, in the order of [`Site::neighbours`].
     pub fn neighbours(&self, site: Site) -> impl Iterator<Item = Site> + use<'a> {
-        let plane = *self;
-        site.neighbours().filter(move |&near| plane.get(near))
+        let mut is_set = self.query();
+        site.neighbours().filter(move |&near| is_set(near))
     }
 
-    /// Returns the set cells, row after row.
+    /// Returns a query for cells near each other: whether a cell is set.
+    pub(crate) fn query(&self) -> impl FnMut(Site) -> bool + use<'a> {
+        let (words, mut finder) = (self.words, self.tiling.finder());
+        move |site| at(words, finder.index(site)) & site.bit() != 0
+    }
+
+    /// Returns the set cells, tile after tile and row after row.
     #[must_use]
     pub fn sites(&self) -> Sites<'a> {
         Sites::new(*self)
@@ -119,26 +114,26 @@ impl<'a> PlaneMut<'a> {
     /// Creates a plane over the first words of `words`, which keep their values.
     ///
     /// # Errors
-    /// [`ShapeError::TooLarge`] if the memory is too small for the shape.
-    pub fn new(shape: Shape, words: &'a mut [u32]) -> Result<Self, ShapeError> {
-        let needs = shape.lend(words.len())?;
-        let words = words.get_mut(..needs).unwrap_or(&mut []);
-        Ok(Self { shape, words })
-    }
-
-    /// Returns the numbers of rows and words.
-    #[must_use]
-    pub const fn shape(&self) -> Shape {
-        self.shape
+    /// If the memory is too small for the tiles.
+    pub fn new(tiling: Tiling<'a>, words: &'a mut [u32]) -> Result<Self, TooSmall> {
+        let (needs, has) = (tiling.words(), words.len());
+        let words = words.get_mut(..needs).ok_or(TooSmall { needs, has })?;
+        Ok(Self { tiling, words })
     }
 
     /// Returns the plane, read only.
     #[must_use]
     pub fn view(&self) -> Plane<'_> {
         Plane {
-            shape: self.shape,
+            tiling: self.tiling,
             words: self.words,
         }
+    }
+
+    /// Returns the tiles.
+    #[must_use]
+    pub const fn tiling(&self) -> Tiling<'a> {
+        self.tiling
     }
 
     /// Returns true if the cell is set.
@@ -172,49 +167,29 @@ impl<'a> PlaneMut<'a> {
         self.words.fill(word);
     }
 
-    /// Returns all words, row after row.
+    /// Returns all words, tile after tile.
     #[must_use]
     pub fn words_mut(&mut self) -> &mut [u32] {
         self.words
     }
 
     fn word_mut(&mut self, site: Site) -> Option<&mut u32> {
-        let index = self
-            .shape
-            .index(usize::from(site.y), usize::from(site.x / 32))?;
+        let index = self.tiling.index(site)?;
         self.words.get_mut(index)
     }
 }
 
-fn row_range(shape: Shape, row: usize) -> Option<core::ops::Range<usize>> {
-    let start = shape.index(row, 0)?;
-    Some(start..start + shape.words_per_row())
-}
-
-/// Prints a plane: `#` is set, `.` is clear; one line per row, row 0 first.
-impl fmt::Display for Plane<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for row in 0..self.shape.rows() {
-            for word in self.row(row) {
-                for k in 0..32 {
-                    f.write_str(if word >> k & 1 == 1 { "#" } else { "." })?;
-                }
-            }
-            f.write_str("\n")?;
-        }
-        Ok(())
-    }
-}
-
-/// Draws a picture into a plane, from its corner (0, 0): `#` sets, any other character clears.
+/// Draws a picture into a plane, from the least cell of a tile on: `#` sets, any other character
+/// clears.
 ///
-/// A line is a row, row 0 first; blanks around a line do not count. The function clears cells
-/// beyond the picture and ignores characters beyond the plane.
-pub fn draw(plane: &mut PlaneMut<'_>, picture: &str) {
+/// A line is a row, the first one in the north; blanks around a line do not count. The function
+/// clears cells beyond the picture and ignores characters beyond the plane.
+pub fn draw(plane: &mut PlaneMut<'_>, corner: TileKey, picture: &str) {
     plane.fill(0);
+    let corner = corner.least();
     let lines = picture.lines().map(str::trim).filter(|l| !l.is_empty());
-    for (y, line) in (0_u16..).zip(lines) {
-        for (x, character) in (0_u16..).zip(line.chars()) {
+    for (y, line) in (corner.y..).zip(lines) {
+        for (x, character) in (corner.x..).zip(line.chars()) {
             if character == '#' {
                 plane.set(Site { x, y });
             }
@@ -224,44 +199,59 @@ pub fn draw(plane: &mut PlaneMut<'_>, picture: &str) {
 
 #[cfg(test)]
 mod tests {
-    use std::string::ToString;
     use std::vec::Vec;
 
-    use super::{Plane, PlaneMut, Shape, Site, draw};
+    use super::{Plane, PlaneMut, Site, TileKey, Tiling, TooSmall, draw};
 
-    #[test]
-    fn bit_k_of_word_j_is_column_32_j_plus_k() {
-        let shape = Shape::new(2, 3).unwrap();
-        let mut words = [0; 7];
-        let mut plane = PlaneMut::new(shape, &mut words).unwrap();
-        assert!(plane.set(Site { x: 33, y: 1 }));
-        assert!(!plane.set(Site { x: 33, y: 1 }));
-        assert!(plane.set(Site { x: 0, y: 2 }));
-        assert!(!plane.set(Site { x: 64, y: 0 }), "beyond the last column");
-        assert!(!plane.set(Site { x: 0, y: 3 }), "beyond the last row");
-        assert_eq!(plane.view().row(1), [0, 2]);
-        assert_eq!(plane.view().count(), 2);
-        assert!(plane.clear(Site { x: 33, y: 1 }));
-        assert!(!plane.clear(Site { x: 33, y: 1 }));
-        assert_eq!(words, [0, 0, 0, 0, 1, 0, 0]);
+    fn key(column: i32, row: i32) -> TileKey {
+        TileKey::of(column, row).unwrap()
+    }
+
+    /// The site so many columns and rows from the first tile's least one.
+    fn site(x: u16, y: u16) -> Site {
+        let least = key(0, 0).least();
+        Site {
+            x: least.x + x,
+            y: least.y + y,
+        }
     }
 
     #[test]
-    fn neighbours_come_sides_first_and_never_from_the_next_row() {
-        let shape = Shape::new(1, 3).unwrap();
-        let mut words = [u32::MAX; 3];
-        words[1] = !(1 << 30);
-        let plane = Plane::new(shape, &words).unwrap();
-        let around: Vec<(u16, u16)> = plane
-            .neighbours(Site { x: 31, y: 1 })
-            .map(|s| (s.x, s.y))
-            .collect();
-        assert_eq!(around, [(31, 0), (31, 2), (30, 0), (30, 2)]);
-        let corner: Vec<(u16, u16)> = plane
-            .neighbours(Site { x: 0, y: 0 })
-            .map(|s| (s.x, s.y))
-            .collect();
-        assert_eq!(corner, [(1, 0), (0, 1), (1, 1)]);
+    fn cells_of_the_tiles_are_kept_and_others_are_not() {
+        let keys = [key(0, 0), key(1, 0), key(0, 2)];
+        let mut words = [0; 25];
+        let mut plane = PlaneMut::new(Tiling::new(&keys), &mut words).unwrap();
+        assert!(plane.set(site(17, 3)));
+        assert!(!plane.set(site(17, 3)));
+        assert!(plane.set(site(15, 32)));
+        assert!(!plane.set(site(32, 0)), "no such tile");
+        assert!(!plane.set(site(0, 16)), "no such tile");
+        let sites: Vec<Site> = plane.view().sites().collect();
+        assert_eq!(sites, [site(17, 3), site(15, 32)]);
+        assert_eq!(plane.view().page(key(1, 0)), [0, 2 << 16, 0, 0, 0, 0, 0, 0]);
+        assert!(plane.clear(site(17, 3)));
+        assert!(!plane.clear(site(17, 3)));
+        assert_eq!(plane.view().count(), 1);
+    }
+
+    #[test]
+    fn neighbours_come_sides_first_and_from_the_tiles_beside() {
+        let keys = [key(0, 0), key(1, 1)];
+        let words = [u32::MAX; 16];
+        let plane = Plane::new(Tiling::new(&keys), &words).unwrap();
+        let around = |x, y| -> Vec<Site> { plane.neighbours(site(x, y)).collect() };
+        let corner = [site(15, 14), site(14, 15), site(14, 14), site(16, 16)];
+        assert_eq!(around(15, 15), corner);
+        assert_eq!(around(16, 15).first(), Some(&site(15, 15)));
+        assert_eq!(around(4, 4).len(), 8);
+    }
+
+    #[test]
+    fn memory_too_small_is_refused() {
+        let keys = [key(0, 0)];
+        let error = Plane::new(Tiling::new(&keys), &[0; 5]).unwrap_err();
+        assert_eq!(error, TooSmall { needs: 8, has: 5 });
+        assert!(std::format!("{error}").contains("8 words in memory of 5"));
     }
 
     #[test]
@@ -270,14 +260,9 @@ mod tests {
             #..#.
             .##..
         ";
-        let shape = Shape::new(1, 3).unwrap();
-        let mut words = [u32::MAX; 3];
-        draw(&mut PlaneMut::new(shape, &mut words).unwrap(), picture);
-        assert_eq!(words, [0b01001, 0b00110, 0]);
-        let plane = Plane::new(shape, &words).unwrap();
-        let text = plane.to_string();
-        assert!(text.starts_with("#..#...") && text.lines().count() == 3);
-        let sites: Vec<(u16, u16)> = plane.sites().map(|s| (s.x, s.y)).collect();
-        assert_eq!(sites, [(0, 0), (3, 0), (1, 1), (2, 1)]);
+        let keys = [key(0, 0)];
+        let mut words = [u32::MAX; 8];
+        draw(&mut PlaneMut::new(Tiling::new(&keys), &mut words).unwrap(), key(0, 0), picture);
+        assert_eq!(words, [0b0110 << 16 | 0b1001, 0, 0, 0, 0, 0, 0, 0]);
     }
 }

@@ -45,14 +45,20 @@ impl Site {
             .filter_map(move |&(dx, dy)| self.offset(dx, dy))
     }
 
+    /// Returns the site's word in its page; see [`Tiling`](crate::grid::Tiling).
+    #[inline]
+    pub(crate) const fn word(self) -> usize {
+        (self.y >> 1 & 7) as usize
+    }
+
     /// Returns the site's bit in its word.
     #[inline]
     pub(crate) const fn bit(self) -> u32 {
-        1 << (self.x & 31)
+        1 << ((self.y & 1) << 4 | self.x & 15)
     }
 }
 
-/// The set cells of a plane, row after row; see [`Plane::sites`].
+/// The set cells of a plane, tile after tile and row after row; see [`Plane::sites`].
 #[derive(Clone, Debug)]
 pub struct Sites<'a> {
     plane: Plane<'a>,
@@ -78,16 +84,8 @@ impl Iterator for Sites<'_> {
             self.left = *self.plane.words.get(self.next_word)?;
             self.next_word += 1;
         }
-        let bit = self.left.trailing_zeros() as usize;
+        let bit = self.left.trailing_zeros();
         self.left &= self.left - 1;
-        let per_row = self.plane.shape.words_per_row();
-        let (row, word) = (
-            (self.next_word - 1) / per_row,
-            (self.next_word - 1) % per_row,
-        );
-        Some(Site {
-            x: (word * 32 + bit) as u16,
-            y: row as u16,
-        })
+        Some(self.plane.tiling.site(self.next_word - 1, bit))
     }
 }

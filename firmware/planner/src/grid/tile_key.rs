@@ -70,6 +70,21 @@ impl TileKey {
     }
 }
 
+impl TileKey {
+    /// Returns the key of a tile so many columns and rows away, at most one each way.
+    #[inline]
+    pub(crate) const fn beside(self, columns: i32, rows: i32) -> Self {
+        Self((self.0 as i32 + (rows << 8) + columns) as u16)
+    }
+
+    /// Returns how many columns after another tile of the same row this one lies; `None` if it
+    /// lies before.
+    #[inline]
+    pub(crate) fn columns_after(self, other: Self) -> Option<usize> {
+        self.0.checked_sub(other.0).map(usize::from)
+    }
+}
+
 /// Returns the place of a key in a sorted list.
 #[inline]
 pub(crate) fn find(keys: &[TileKey], key: TileKey) -> Option<usize> {

@@ -35,6 +35,11 @@ impl<T: Copy, const N: usize> TileMap<T, N> {
         self.keys.clear();
     }
 
+    /// Returns the column and the row of the first tile.
+    pub(crate) const fn origin(&self) -> (i32, i32) {
+        self.origin
+    }
+
     /// Returns the keys, sorted.
     pub(crate) fn keys(&self) -> &[TileKey] {
         &self.keys

@@ -12,7 +12,7 @@
 //! Units: cells of [`crate::geometry::CELL_M`].
 
 use crate::geometry::Cell;
-use crate::grid::{Class, Row, TileMap, inside, inside_mut, masked, masked_mut};
+use crate::grid::{Class, Row, TileKey, TileMap, inside, inside_mut, masked, masked_mut};
 use crate::map::compaction::{Entry, FreeList, ONES, ZEROS};
 pub use crate::map::extent::{Extent, NoRoom};
 use crate::map::rows::{Column, RowReader};
@@ -129,6 +129,16 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     #[must_use]
     pub const fn box_tiles(&self) -> (i32, i32) {
         self.sides
+    }
+
+    /// Returns the column and the row of the first tile, from which the keys count.
+    pub(crate) const fn origin(&self) -> (i32, i32) {
+        self.directory.origin()
+    }
+
+    /// Returns the keys of the tiles that were touched, sorted.
+    pub(crate) fn keys(&self) -> &[TileKey] {
+        self.directory.keys()
     }
 
     /// Returns true if a cell was ever stored in this tile.

@@ -58,16 +58,13 @@ impl<'a, const TILES: usize, const SLOTS: usize> Centres<'a, TILES, SLOTS> {
         half: i32,
         mut visit: impl FnMut(Site, Cell),
     ) {
-        let steps = |from: i32, origin: i32, most: usize| {
-            let least = (from - half - origin).div_euclid(2).max(0);
-            let last = (from + half - origin).div_euclid(2).min(most as i32 - 1);
-            least..=last
-        };
-        let shape = self.cells.shape();
-        for y in steps(middle.y, self.frame.origin.y, shape.rows()) {
-            for x in steps(middle.x, self.frame.origin.x, shape.columns()) {
-                let (x, y) = (x as u16, y as u16);
-                let site = Site { x, y };
+        let even = |at: i32| at & !1;
+        let ends = |at: i32| (even(at - half)..=at + half).step_by(2);
+        for y in ends(middle.y) {
+            for x in ends(middle.x) {
+                let Some(site) = self.frame.site(Cell { x, y }) else {
+                    continue;
+                };
                 if self.cells.get(site) {
                     visit(site, self.cell(site));
                 }

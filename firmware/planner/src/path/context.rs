@@ -85,8 +85,7 @@ impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {
     ) -> Option<()> {
         let mut plane = self.skeleton.skeleton_mut()?;
         let barrier = Barrier::<MOST_BLOCKED>::raise(&mut plane, blocked).ok()?;
-        let shape = plane.shape();
-        if let Ok(residues) = Residues::new(shape, &mut *scratch.residues) {
+        if let Ok(residues) = Residues::new(plane.tiling(), &mut *scratch.residues) {
             let mut space = WaveSpace {
                 cells: plane.view(),
                 residues,
@@ -111,7 +110,7 @@ impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {
     ) -> Option<Path> {
         self.propagate(goal, blocked, Some(robot), scratch)?;
         let frame = self.skeleton.frame();
-        let residues = Residues::new(frame.shape, scratch.residues).ok()?;
+        let residues = Residues::new(self.skeleton.tiling(), scratch.residues).ok()?;
         residues.get(robot)?;
         Some(Path::down(core::iter::empty(), frame, &residues, robot))
     }

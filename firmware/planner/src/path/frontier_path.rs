@@ -90,7 +90,7 @@ pub(crate) struct OnLevel<'s> {
 /// level.
 pub(crate) fn cells_on_level<'s, const TILES: usize, const SLOTS: usize>(
     path: &Path,
-    context: &PlanningContext<'_, TILES, SLOTS>,
+    context: &'s PlanningContext<'_, TILES, SLOTS>,
     scratch: &'s mut PlanningScratch<'_>,
 ) -> Option<OnLevel<'s>> {
     let levels = context.levels.as_ref()?;
@@ -102,9 +102,10 @@ pub(crate) fn cells_on_level<'s, const TILES: usize, const SLOTS: usize>(
         .filter(|&excess| excess >= OTHER_LEVELS)?;
     let frame = context.skeleton.frame();
     // On a map so large that the plane does not fit behind the wave, the shortest path is taken.
-    let (residues, spare) = scratch.residues.split_at_mut_checked(frame.shape.words())?;
+    let tiling = context.skeleton.tiling();
+    let (residues, spare) = scratch.residues.split_at_mut_checked(tiling.words())?;
     let spare = spare.as_flattened_mut();
-    let mut on_level = PlaneMut::new(frame.shape, &mut *spare).ok()?;
+    let mut on_level = PlaneMut::new(tiling, &mut *spare).ok()?;
     on_level.fill(0);
     for site in context.skeleton.skeleton()?.sites() {
         if level(frame.cell(site)) <= least {
@@ -117,7 +118,7 @@ pub(crate) fn cells_on_level<'s, const TILES: usize, const SLOTS: usize>(
         local_grid: &mut *scratch.local_grid,
     };
     Some(OnLevel {
-        cells: Plane::new(frame.shape, spare).ok()?,
+        cells: Plane::new(tiling, spare).ok()?,
         most_steps: path.steps() + LEVEL_STEPS * excess,
         scratch,
     })

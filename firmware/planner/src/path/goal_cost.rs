@@ -224,25 +224,12 @@ fn connected_cells(frontier: Plane<'_>, first: Site) -> u16 {
 
 /// Returns true if the 5 × 5 cells around a frontier cell hold at least [`LARGE_CELLS`] others.
 fn is_large(frontier: Plane<'_>, site: Site) -> bool {
-    let (word, bit) = (usize::from(site.x / 32), site.x % 32);
+    let mut is_set = frontier.query();
     let mut count = 0;
     // Most have enough in their own row and the next.
-    [2, 3, 1, 4, 0].into_iter().any(|dy| {
-        let Some(row) = (usize::from(site.y) + dy).checked_sub(2) else {
-            return false;
-        };
-        let here = frontier.word(row, word);
-        let near = match bit {
-            0 | 1 => {
-                let before = word
-                    .checked_sub(1)
-                    .map_or(0, |word| frontier.word(row, word));
-                here << (2 - bit) | before >> (30 + bit)
-            }
-            30 | 31 => here >> (bit - 2) | frontier.word(row, word + 1) << (34 - bit),
-            _ => here >> (bit - 2),
-        };
-        count += (near & 0x1f).count_ones();
+    [0, 1, -1, 2, -2].into_iter().any(|dy| {
+        let near = (-2..=2).filter_map(|dx| site.offset(dx, dy));
+        count += near.filter(|&near| is_set(near)).count() as u32;
         count >= LARGE_CELLS
     })
 }

@@ -10,10 +10,12 @@
 //! Units: coarse cells of 20 cm, 16 × 16 in a tile.
 
 use crate::geometry::Cell;
+use crate::grid::Tiling;
 use crate::map::tiles::NoRoom;
 use crate::map::{Map, Tiles};
 use crate::roadmap::configuration_space::Footprint;
-use crate::roadmap::reachability::{Reachability, tiles_of};
+use crate::roadmap::reachability::Reachability;
+use crate::roadmap::skeleton::Frame;
 
 /// Returns which room the map lacks for what the robot can reach; `None` if none, or if the map
 /// refused nothing so far. Calls `found` with every exit, see [`for_each_exit`].
@@ -48,25 +50,27 @@ fn for_each_exit<const TILES: usize, const SLOTS: usize>(
     scratch: &mut [u32],
     mut found: impl FnMut(Cell, NoRoom),
 ) {
-    let Some(extent) = tiles.extent() else {
+    if tiles.keys().is_empty() {
         return;
-    };
+    }
     if let Err(room) = tiles.room(robot.x >> 5, robot.y >> 5) {
         // The robot has left the map.
         return found(robot, room);
     }
-    let Some(mut reachability) = Reachability::new(extent, scratch) else {
+    let (frame, tiling) = (Frame::of(tiles), Tiling::new(tiles.keys()));
+    let Some(mut reachability) = Reachability::new(frame, tiling, scratch) else {
         return;
     };
-    for tile in tiles_of(extent) {
-        reachability.load(tiles, footprint, tile);
+    for place in 0..tiles.keys().len() {
+        reachability.load(tiles, footprint, place);
     }
     reachability.start(robot);
-    while reachability.sweep() {}
-    for (tile_x, tile_y) in tiles_of(extent) {
+    while !reachability.spread(u32::MAX) {}
+    for &key in tiles.keys() {
+        let (x, y) = frame.tile(key);
         for side in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
-            if let Err(room) = tiles.room(tile_x + side.0, tile_y + side.1) {
-                reachability.along((tile_x, tile_y), side, |cell| found(cell, room));
+            if let Err(room) = tiles.room(x + side.0, y + side.1) {
+                reachability.along(key, side, |cell| found(cell, room));
             }
         }
     }

@@ -11,9 +11,10 @@
 use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows, SCALES};
 use crate::geometry::Cell;
-use crate::grid::bits::ones64;
-use crate::grid::{Plane, Site, at, flood};
+use crate::grid::bits::{ones, ones64};
+use crate::grid::{PAGE_WORDS, Plane, Site, at, flood};
 use crate::map::Tiles;
+use crate::map::tiles::TILE_SIDE;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::Frame;
 
@@ -126,16 +127,15 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
     /// Returns the passable cells of the grid that hold a centre cell.
     fn targets(&self, grid: &LocalGrid, accepts: impl Fn(Site) -> bool) -> Rows {
         let mut targets: Rows = [0; SIDE];
-        let least = (grid.origin.y - self.frame.origin.y).div_euclid(2);
-        let first = least.max(0) as usize;
-        let last = (least + SIDE as i32 * grid.scale / 2 + 1).max(0) as usize;
-        for y in first..last.min(self.frame.shape.rows()) {
-            for word in 0..self.frame.shape.words_per_row() {
-                let mut bits = self.cells.word(y, word);
-                while bits != 0 {
-                    let x = (word * 32) as u16 + bits.trailing_zeros() as u16;
-                    bits &= bits - 1;
-                    let site = Site { x, y: y as u16 };
+        let tiling = self.cells.tiling();
+        let pages = tiling.keys().iter().zip(self.cells.words().chunks(PAGE_WORDS));
+        for (place, (&key, words)) in pages.enumerate() {
+            if !grid.overlaps(self.frame.cell(key.least()), TILE_SIDE) {
+                continue;
+            }
+            for (index, &word) in (place * PAGE_WORDS..).zip(words) {
+                for bit in ones(word) {
+                    let site = tiling.site(index, bit);
                     if accepts(site) {
                         grid.mark(&mut targets, self.frame.cell(site));
                     }

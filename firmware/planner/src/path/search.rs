@@ -25,7 +25,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
         centres: Centres<'a, TILES, SLOTS>,
         scratch: &'a mut PlanningScratch<'_>,
     ) -> Option<Self> {
-        let residues = Residues::new(centres.frame.shape, &mut *scratch.residues).ok()?;
+        let residues = Residues::new(centres.cells.tiling(), &mut *scratch.residues).ok()?;
         let space = WaveSpace {
             cells: centres.cells,
             residues,

@@ -23,7 +23,7 @@
 
 use crate::config::{Order, OrderTuning};
 use crate::geometry::Cell;
-use crate::map::tiles::Extent;
+use crate::grid::Tiling;
 use crate::map::{Class, Tiles};
 use crate::path::gain::View;
 use crate::path::goal_choice::{is_worth, utility, value};
@@ -31,6 +31,7 @@ use crate::path::rays::{RAYS, along, ray};
 use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::Reachability;
+use crate::roadmap::skeleton::Frame;
 
 /// Minimum number of unexplored cells at a ray's end, 0.5 m: fewer are hardly worth the way.
 const LEAST_BEYOND: i32 = 5;
@@ -46,11 +47,11 @@ const ALONG: u16 = 32 / BLOCK as u16;
 const LEAST_EDGE: u32 = 3;
 /// Gaps of a block from which rays start.
 const TRIES: u32 = 4;
-/// Limits of an instalment: tiles loaded, sweeps of the flood, cells on rays. With 60,000 cells the
+/// Limits of an instalment: tiles loaded, tiles flooded, cells on rays. With 60,000 cells the
 /// longest step of `cluttered` took 8.5 million instructions. The last block may add
 /// `TRIES · RAYS · (MOST_ON + MOST_BACK)` = 23,000 cells.
 const TILES_PER_STEP: u16 = 120;
-const SWEEPS_PER_STEP: u32 = 9;
+const FLOODS_PER_STEP: u32 = 300;
 const CELLS_PER_STEP: i32 = 20_000;
 /// Cost of finding a block's gaps, in cells on rays: measured on the chip.
 const EDGES_CELLS: i32 = 60;
@@ -85,6 +86,9 @@ pub(crate) enum Found {
 pub(crate) struct Inputs<'a, const TILES: usize, const SLOTS: usize> {
     /// The map.
     pub(crate) tiles: &'a Tiles<TILES, SLOTS>,
+    /// The tiles that are searched, and their place.
+    pub(crate) tiling: Tiling<'a>,
+    pub(crate) frame: Frame,
     /// The robot's footprint, and the narrower one of its second chance.
     pub(crate) footprints: [&'a Footprint; 2],
     /// Where the robot stands.
@@ -99,7 +103,7 @@ pub(crate) struct Inputs<'a, const TILES: usize, const SLOTS: usize> {
 enum Phase {
     #[default]
     Idle,
-    /// Loads tile number n of the extent next.
+    /// Loads the tile at place n next.
     Load(u16),
     Flood,
     /// Searches block number n next.
@@ -112,8 +116,6 @@ pub(crate) struct Search {
     phase: Phase,
     /// The robot's own footprint reaches nothing: it stands in a narrow place.
     tight: bool,
-    /// The tiles of the map.
-    extent: Extent,
     found: bool,
     score: f32,
     best: Viewpoint,
@@ -125,10 +127,6 @@ impl Search {
         Self {
             phase: Phase::Idle,
             tight: false,
-            extent: Extent {
-                least: (0, 0),
-                greatest: (0, 0),
-            },
             found: false,
             score: 0.0,
             best: Viewpoint {
@@ -144,16 +142,14 @@ impl Search {
         self.phase != Phase::Idle
     }
 
-    /// Begins a search over the map's extent. `scratch` needs
+    /// Begins a search over these tiles. `scratch` needs
     /// [`scratch_words`](crate::roadmap::reachability::scratch_words) words, which must keep their
     /// values between the instalments.
-    pub(crate) fn begin(&mut self, extent: Option<Extent>, scratch: &mut [u32]) {
+    pub(crate) fn begin(&mut self, frame: Frame, tiling: Tiling<'_>, scratch: &mut [u32]) {
         *self = Self::new();
-        let Some(extent) = extent else {
-            return;
-        };
-        if Reachability::new(extent, scratch).is_some() {
-            (self.phase, self.extent) = (Phase::Load(0), extent);
+        let is_empty = tiling.keys().is_empty();
+        if !is_empty && Reachability::new(frame, tiling, scratch).is_some() {
+            self.phase = Phase::Load(0);
         }
     }
 
@@ -165,7 +161,7 @@ impl Search {
         residual: &mut ResidualFrontiers,
         scratch: &mut [u32],
     ) -> Found {
-        let Some(mut reachability) = Reachability::resume(self.extent, scratch) else {
+        let Some(mut reachability) = Reachability::resume(inputs.frame, inputs.tiling, scratch) else {
             self.phase = Phase::Idle;
             return Found::Nothing;
         };
@@ -173,7 +169,7 @@ impl Search {
             Phase::Idle => return Found::Nothing,
             Phase::Load(tile) => self.load(inputs, &mut reachability, tile),
             Phase::Flood => {
-                if !(0..SWEEPS_PER_STEP).all(|_| reachability.sweep()) {
+                if reachability.spread(FLOODS_PER_STEP) {
                     self.phase = Phase::Scan(0);
                 }
             }
@@ -186,13 +182,6 @@ impl Search {
         }
     }
 
-    /// Returns tile number `tile` of the extent; `None` past its end.
-    fn tile(&self, tile: u16) -> Option<(i32, i32)> {
-        let (across, number) = (self.extent.width(), i32::from(tile));
-        let (x, y) = (number % across, number / across);
-        (y < self.extent.height()).then_some((self.extent.least.0 + x, self.extent.least.1 + y))
-    }
-
     fn load<const TILES: usize, const SLOTS: usize>(
         &mut self,
         inputs: &Inputs<'_, TILES, SLOTS>,
@@ -201,9 +190,9 @@ impl Search {
     ) {
         let [wide, narrow] = inputs.footprints;
         let footprint = if self.tight { narrow } else { wide };
-        for number in first..first + TILES_PER_STEP {
-            if let Some(tile) = self.tile(number) {
-                reachability.load(inputs.tiles, footprint, tile);
+        for place in usize::from(first)..usize::from(first + TILES_PER_STEP) {
+            if place < inputs.tiling.keys().len() {
+                reachability.load(inputs.tiles, footprint, place);
                 continue;
             }
             self.phase = match (reachability.start(inputs.robot), self.tight) {
@@ -227,18 +216,16 @@ impl Search {
         let mut left = CELLS_PER_STEP;
         let mut number = first;
         while left > 0 {
-            let Some((x, y)) = self.tile(number / (ALONG * ALONG)) else {
+            let place = usize::from(number / (ALONG * ALONG));
+            let Some(&key) = inputs.tiling.keys().get(place) else {
                 self.phase = Phase::Idle;
                 return;
             };
-            left -= 1;
-            if inputs.tiles.is_touched(x, y) {
-                let corner = Cell {
-                    x: x * 32 + i32::from(number % ALONG) * BLOCK,
-                    y: y * 32 + i32::from(number / ALONG % ALONG) * BLOCK,
-                };
-                left -= EDGES_CELLS + self.scan_block(inputs, reachability, residual, corner);
-            }
+            let corner = inputs.frame.cell(key.least()).offset(
+                i32::from(number % ALONG) * BLOCK,
+                i32::from(number / ALONG % ALONG) * BLOCK,
+            );
+            left -= EDGES_CELLS + self.scan_block(inputs, reachability, residual, corner);
             number += 1;
         }
         self.phase = Phase::Scan(number);
@@ -337,6 +324,7 @@ fn look_back<const TILES: usize, const SLOTS: usize>(
     walked: &mut i32,
 ) -> Option<Viewpoint> {
     let mut best: Option<(i32, Viewpoint)> = None;
+    let mut is_reached = reachability.is_reached();
     for ray in (0..RAYS).map(ray) {
         let Some(beyond) = look_on(tiles, gap, ray, walked) else {
             continue;
@@ -348,7 +336,7 @@ fn look_back<const TILES: usize, const SLOTS: usize>(
             if tiles.class(stand) != Class::Free {
                 break;
             }
-            if reachability.is_reached(stand) {
+            if is_reached(stand) {
                 best = Some((back, Viewpoint { stand, gap, beyond }));
                 break;
             }

@@ -58,7 +58,8 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     match outcome {
         RoundOutcome::Nothing if may_search_viewpoints(state) => {
             let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
-            state.viewpoints.begin(state.map.tiles().extent(), scratch);
+            let (frame, tiling) = (state.skeleton.frame(), state.skeleton.tiling());
+            state.viewpoints.begin(frame, tiling, scratch);
         }
         RoundOutcome::Nothing => finish(
             state,
@@ -113,6 +114,9 @@ pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
     let [wide, narrow] = [config.robot_radius_m, config.tight_radius_m()].map(Footprint::new);
     let inputs = Inputs {
         tiles: state.map.tiles(),
+        // The skeleton stays the same while the search runs.
+        tiling: state.skeleton.tiling(),
+        frame: state.skeleton.frame(),
         footprints: [&wide, &narrow],
         robot,
         order: config.order(),

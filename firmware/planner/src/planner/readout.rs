@@ -9,6 +9,7 @@
 #[cfg(feature = "internals")]
 use crate::field::preference::Preferences;
 use crate::geometry::Cell;
+use crate::grid::TileKey;
 use crate::map::tiles::TILE_SIDE;
 use crate::planner::state::State;
 use crate::status::ResidualFrontier;
@@ -57,15 +58,16 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let Some(plane) = self.skeleton.skeleton() else {
             return rows;
         };
-        for (dy, bits) in rows.iter_mut().enumerate() {
-            let cell = Cell {
-                x: i32::from(column) * TILE_SIDE,
-                y: i32::from(row) * TILE_SIDE + 2 * dy as i32,
-            };
-            if let Some(site) = frame.site(cell) {
-                let word = plane.word(usize::from(site.y), usize::from(site.x / 32));
-                *bits = (word >> (site.x & 16)) as u16;
-            }
+        let corner = Cell {
+            x: i32::from(column) * TILE_SIDE,
+            y: i32::from(row) * TILE_SIDE,
+        };
+        let Some(site) = frame.site(corner) else {
+            return rows;
+        };
+        let page = plane.page(TileKey::at(site));
+        for (pair, word) in rows.chunks_exact_mut(2).zip(page) {
+            pair.copy_from_slice(&[word as u16, (word >> 16) as u16]);
         }
         rows
     }

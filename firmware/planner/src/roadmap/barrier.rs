@@ -60,28 +60,34 @@ impl core::error::Error for BarrierFull {}
 #[cfg(test)]
 mod tests {
     use super::{Barrier, BarrierFull};
-    use crate::grid::{PlaneMut, Shape, Site};
+    use crate::grid::{PlaneMut, Site, TileKey, Tiling};
+
+    fn keys() -> [TileKey; 1] {
+        [TileKey::of(0, 0).unwrap()]
+    }
 
     fn row() -> [Site; 3] {
-        [2, 3, 4].map(|x| Site { x, y: 0 })
+        let Site { x, y } = keys()[0].least();
+        [2, 3, 4].map(|columns| Site { x: x + columns, y })
     }
 
     #[test]
     fn a_barrier_lowered_leaves_no_trace() {
-        let mut words = [0b10111];
-        let mut plane = PlaneMut::new(Shape::UNIT, &mut words).unwrap();
+        let (keys, mut words) = (keys(), [0b10111, 0, 0, 0, 0, 0, 0, 0]);
+        let before = words;
+        let mut plane = PlaneMut::new(Tiling::new(&keys), &mut words).unwrap();
         let barrier = Barrier::<2>::raise(&mut plane, row()).unwrap();
-        assert_eq!(plane.words_mut(), [0b00011]);
+        assert_eq!(plane.words_mut()[0], 0b00011);
         barrier.lower(&mut plane);
-        assert_eq!(words, [0b10111], "bit 3 was clear before");
+        assert_eq!(words, before, "bit 3 was clear before");
     }
 
     #[test]
     fn a_barrier_too_small_is_not_raised() {
-        let mut words = [0b11111];
-        let mut plane = PlaneMut::new(Shape::UNIT, &mut words).unwrap();
+        let (keys, mut words) = (keys(), [0b11111; 8]);
+        let mut plane = PlaneMut::new(Tiling::new(&keys), &mut words).unwrap();
         let error = Barrier::<2>::raise(&mut plane, row()).unwrap_err();
         assert_eq!(error, BarrierFull);
-        assert_eq!(words, [0b11111]);
+        assert_eq!(words, [0b11111; 8]);
     }
 }

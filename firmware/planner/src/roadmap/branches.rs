@@ -9,8 +9,7 @@
 //!        deep inside
 //! ```
 //!
-//! A branch is a chain of passages; it ends at an end or at a junction. Nothing is stored. The 32
-//! cells of a word are judged together from three rows; a branch is followed cell by cell.
+//! A branch is a chain of passages; it ends at an end or at a junction. Nothing is stored.
 //!
 //! The corner of a spot two cells thick has one run as well, and counts as an end. Thinning leaves
 //! such spots only beside anchors.
@@ -34,83 +33,38 @@ pub(crate) enum Kind {
     Junction,
 }
 
-/// The kinds of the set cells of a word. Those in none of the three are [`Kind::Alone`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Kinds {
-    /// The [`Kind::End`]s.
-    pub(crate) ends: u32,
-    /// The [`Kind::Passage`]s.
-    pub(crate) passages: u32,
-    /// The [`Kind::Junction`]s.
-    pub(crate) junctions: u32,
-}
-
-/// Returns the kinds of the 32 cells of a word.
-pub(crate) fn kinds(plane: Plane<'_>, row: usize, word: usize) -> Kinds {
-    let here = plane.word(row, word);
-    if here == 0 {
-        return Kinds::default();
-    }
-    let (ones, twos, fours) = count(runs_begin(&around(plane, row, word)));
-    Kinds {
-        ends: here & ones & !twos,
-        passages: here & twos & !ones,
-        junctions: here & (fours | (twos & ones)),
-    }
-}
-
 /// Returns the kind of a cell; `None` if it is not set.
 pub(crate) fn kind(plane: Plane<'_>, site: Site) -> Option<Kind> {
     if !plane.get(site) {
         return None;
     }
-    let kinds = kinds(plane, usize::from(site.y), usize::from(site.x / 32));
-    let has = |cells: u32| cells & site.bit() != 0;
-    Some(if has(kinds.ends) {
-        Kind::End
-    } else if has(kinds.passages) {
-        Kind::Passage
-    } else if has(kinds.junctions) {
-        Kind::Junction
-    } else {
-        Kind::Alone
+    let mut around = 0_u8;
+    for near in plane.neighbours(site) {
+        around |= 1 << place_of(near.x.wrapping_sub(site.x), near.y.wrapping_sub(site.y));
+    }
+    // A run of set neighbours begins where the one before is clear.
+    let runs = (around & !around.rotate_left(1)).count_ones();
+    Some(match runs {
+        0 => Kind::Alone,
+        1 => Kind::End,
+        2 => Kind::Passage,
+        _ => Kind::Junction,
     })
 }
 
-/// Returns the neighbours of a word's cells: north, north-east, and so on round.
-fn around(plane: Plane<'_>, row: usize, word: usize) -> [u32; 8] {
-    let three = |row: usize| {
-        let beside = |word: usize| plane.word(row, word);
-        let here = beside(word);
-        [
-            here << 1 | beside(word.wrapping_sub(1)) >> 31,
-            here,
-            here >> 1 | beside(word + 1) << 31,
-        ]
-    };
-    let [north_west, north, north_east] = three(row.wrapping_sub(1));
-    let [west, _, east] = three(row);
-    let [south_west, south, south_east] = three(row + 1);
-    [
-        north, north_east, east, south_east, south, south_west, west, north_west,
-    ]
-}
-
-/// Returns for each direction the cells for which a run of set neighbours begins there.
-fn runs_begin(around: &[u32; 8]) -> impl Iterator<Item = u32> + '_ {
-    let before = around.iter().cycle().skip(7);
-    around
-        .iter()
-        .zip(before)
-        .map(|(here, before)| here & !before)
-}
-
-/// Counts the words that have each bit, up to four: returns ones, twos and fours.
-fn count(words: impl Iterator<Item = u32>) -> (u32, u32, u32) {
-    words.fold((0, 0, 0), |(ones, twos, fours), word| {
-        let carry = ones & word;
-        (ones ^ word, twos ^ carry, fours | (twos & carry))
-    })
+/// Returns a neighbour's place in [`RING`], by its steps mod 2¹⁶.
+const fn place_of(dx: u16, dy: u16) -> u32 {
+    const LEFT: u16 = u16::MAX;
+    match (dx, dy) {
+        (0, LEFT) => 0,
+        (1, LEFT) => 1,
+        (1, 0) => 2,
+        (1, 1) => 3,
+        (0, 1) => 4,
+        (LEFT, 1) => 5,
+        (LEFT, 0) => 6,
+        _ => 7,
+    }
 }
 
 /// The cells of a branch, from the one after its first cell to the end or junction that it leads
@@ -257,22 +211,34 @@ mod tests {
     use std::string::String;
     use std::vec::Vec;
 
-    use super::{Branch, Kind, Plane, Site, kind, kinds, ways};
-    use crate::grid::{PlaneMut, Shape, draw};
+    use super::{Branch, Kind, Plane, Site, kind, ways};
+    use crate::grid::{PlaneMut, TileKey, Tiling, draw};
 
-    fn plane(picture: &str) -> (Shape, Vec<u32>) {
-        let rows: Vec<&str> = picture.split_whitespace().collect();
-        let shape = Shape::new(2, rows.len()).unwrap();
-        let mut words = std::vec![0; shape.words()];
-        let mut plane = PlaneMut::new(shape, &mut words).unwrap();
-        draw(&mut plane, &rows.join("\n"));
-        (shape, words)
+    /// A plane of two tiles side by side.
+    struct Sheet {
+        keys: [TileKey; 2],
+        words: [u32; 16],
+    }
+
+    impl Sheet {
+        fn drawn(picture: &str) -> Self {
+            let keys = [0, 1].map(|column| TileKey::of(column, 0).unwrap());
+            let mut words = [0; 16];
+            let mut plane = PlaneMut::new(Tiling::new(&keys), &mut words).unwrap();
+            let rows: Vec<&str> = picture.split_whitespace().collect();
+            draw(&mut plane, keys[0], &rows.join("\n"));
+            Self { keys, words }
+        }
+
+        fn plane(&self) -> Plane<'_> {
+            Plane::new(Tiling::new(&self.keys), &self.words).unwrap()
+        }
     }
 
     /// Draws the kind of each cell: `e`nd, `-` passage, `x` junction, `o` alone.
     fn kinds_of(picture: &str) -> Vec<String> {
-        let (shape, words) = plane(picture);
-        let plane = Plane::new(shape, &words).unwrap();
+        let sheet = Sheet::drawn(picture);
+        let plane = sheet.plane();
         let rows = picture.split_whitespace().enumerate();
         rows.map(|(y, row)| {
             let cell = |x: usize| match kind(plane, site(x, y)) {
@@ -287,10 +253,12 @@ mod tests {
         .collect()
     }
 
+    /// The site so many columns and rows from the picture's corner.
     fn site(x: usize, y: usize) -> Site {
+        let least = TileKey::of(0, 0).unwrap().least();
         Site {
-            x: x as u16,
-            y: y as u16,
+            x: least.x + x as u16,
+            y: least.y + y as u16,
         }
     }
 
@@ -314,43 +282,40 @@ mod tests {
         assert_eq!(kinds_of(picture), expected);
     }
 
-    fn random(seed: &mut u64) -> u32 {
-        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (*seed >> 32) as u32
-    }
-
     #[test]
-    fn a_word_at_a_time_is_a_cell_at_a_time() {
-        let mut seed = 1;
-        for round in 0..200 {
-            let shape = Shape::new(1 + round % 3, 1 + round % 5).unwrap();
-            let words: Vec<u32> = (0..shape.words())
-                .map(|_| random(&mut seed) & random(&mut seed) | random(&mut seed) & 0x1111)
-                .collect();
-            let plane = Plane::new(shape, &words).unwrap();
-            for (y, x) in (0..shape.rows()).flat_map(|y| (0..shape.columns()).map(move |x| (y, x)))
-            {
+    fn the_kind_is_the_number_of_runs_of_set_neighbours() {
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (seed >> 32) as u32
+        };
+        for _ in 0..200 {
+            let mut sheet = Sheet::drawn("#");
+            sheet.words = core::array::from_fn(|_| random() & random() | random() & 0x1111);
+            let plane = sheet.plane();
+            for (y, x) in (0..16).flat_map(|y| (0..32).map(move |x| (y, x))) {
                 let around = super::RING.map(|(dx, dy)| {
-                    site(x, y)
-                        .offset(dx, dy)
-                        .is_some_and(|near| plane.get(near))
+                    let near = site(x, y).offset(dx, dy);
+                    near.is_some_and(|near| plane.get(near))
                 });
-                let runs = (0..8)
-                    .filter(|&k| around[k] && !around[(k + 7) % 8])
-                    .count();
-                let kinds = kinds(plane, y, x / 32);
-                let has = |bits: u32| bits >> (x % 32) & 1 == 1;
-                let set = plane.get(site(x, y));
-                assert_eq!(has(kinds.ends), set && runs == 1);
-                assert_eq!(has(kinds.passages), set && runs == 2);
-                assert_eq!(has(kinds.junctions), set && runs > 2);
+                let begins = |&k: &usize| around[k] && !around[(k + 7) % 8];
+                let expected = match (0..8).filter(begins).count() {
+                    0 => Kind::Alone,
+                    1 => Kind::End,
+                    2 => Kind::Passage,
+                    _ => Kind::Junction,
+                };
+                let expected = plane.get(site(x, y)).then_some(expected);
+                assert_eq!(kind(plane, site(x, y)), expected);
             }
         }
     }
 
     #[test]
     fn a_branch_is_walked_to_its_junction_and_to_its_end() {
-        let (shape, words) = plane(
+        let sheet = Sheet::drawn(
             "
             ..###...#
             .#...#.#.
@@ -359,7 +324,7 @@ mod tests {
             ..#.#....
             ...#.....",
         );
-        let plane = Plane::new(shape, &words).unwrap();
+        let plane = sheet.plane();
         let junction = site(6, 2);
         let to = |x, y| -> Vec<Site> { Branch::new(plane, junction, site(x, y)).collect() };
         assert_eq!(to(7, 1), [site(7, 1), site(8, 0)], "to the end");
@@ -376,11 +341,11 @@ mod tests {
     #[test]
     fn ways_that_touch_are_one_and_a_thing_beside_is_none() {
         let ways_of = |picture: &str| {
-            let (shape, words) = plane(picture);
-            let plane = Plane::new(shape, &words).unwrap();
-            let ways: Vec<(u16, u16)> =
-                ways(plane, site(3, 3)).iter().map(|s| (s.x, s.y)).collect();
-            ways
+            let sheet = Sheet::drawn(picture);
+            let corner = site(0, 0);
+            let ways = ways(sheet.plane(), site(3, 3));
+            let from_corner = |s: &Site| (s.x - corner.x, s.y - corner.y);
+            ways.iter().map(from_corner).collect::<Vec<_>>()
         };
         let corridor = "....... ....... ....... ####### ....... ....... .......";
         assert_eq!(ways_of(corridor), [(5, 3), (1, 3)]);

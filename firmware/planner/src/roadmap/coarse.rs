@@ -5,8 +5,8 @@
 //!
 //! Units: bits; bit k of a word is column k.
 
+use crate::grid::Block;
 use crate::grid::bits::even;
-use crate::grid::{MAX_WORDS_PER_ROW, at};
 use crate::roadmap::configuration_space::Strip;
 
 /// Returns the passable coarse cells of two rows of map cells: the explored and the unexplored
@@ -20,29 +20,11 @@ pub(super) fn coarse(lower: Strip, upper: Strip) -> [u16; 2] {
     [even(passable & !unknown), even(passable & unknown)]
 }
 
-/// Replaces the unexplored passable cells in `marks` by the border: the explored ones with an
-/// unexplored cell at a side. `cells` holds at least the explored passable cells.
-pub(super) fn mark_border(cells: &[u32], marks: &mut [u32], per_row: usize) {
-    // The unexplored cells of the row below, whose marks are replaced already.
-    let mut below = [0u32; MAX_WORDS_PER_ROW];
-    for start in (0..marks.len()).step_by(per_row.max(1)) {
-        let mut before = 0;
-        for (word, below) in below.iter_mut().enumerate().take(per_row) {
-            let index = start + word;
-            let here = at(marks, index);
-            let after = if word + 1 < per_row {
-                at(marks, index + 1)
-            } else {
-                0
-            };
-            let sides = here << 1 | before >> 31 | here >> 1 | after << 31;
-            let beside = sides | *below | at(marks, index + per_row);
-            if let Some(mark) = marks.get_mut(index) {
-                *mark = beside & at(cells, index) & !here;
-            }
-            (before, *below) = (here, here);
-        }
-    }
+/// Returns the border in word k of a page: its explored cells with an unexplored cell at a side.
+/// `unexplored` has the unexplored cells of the page and of those around it.
+pub(super) fn border(cells: u32, unexplored: &Block, k: usize) -> u32 {
+    let [north, _, east, _, south, _, west, _] = unexplored.neighbours(k);
+    (north | east | south | west) & cells & !unexplored.word(k)
 }
 
 #[cfg(test)]
@@ -50,7 +32,8 @@ mod tests {
     use std::string::String;
     use std::vec::Vec;
 
-    use super::{coarse, mark_border};
+    use super::{border, coarse};
+    use crate::grid::{Block, PAGE_WORDS, PlaneMut, TileKey, Tiling, draw};
     use crate::roadmap::configuration_space::Strip;
 
     struct Random(u64);
@@ -85,65 +68,32 @@ mod tests {
         }
     }
 
-    /// Marks the border in a picture of `.` explored, `?` unexplored, `#` obstacle, one word a row.
-    fn border(picture: &str) -> String {
-        let rows: Vec<&str> = picture.split_whitespace().collect();
-        let bits = |of: &str| -> Vec<u32> {
-            let row = |row: &&str| {
-                (0..)
-                    .zip(row.chars())
-                    .map(|(k, c)| u32::from(of.contains(c)) << k)
-                    .sum()
-            };
-            rows.iter().map(row).collect()
-        };
-        let mut marks = bits("?");
-        mark_border(&bits(".?"), &mut marks, 1);
-        let mut text = String::new();
-        for (row, mark) in rows.iter().zip(marks) {
-            for (k, c) in row.chars().enumerate() {
-                text.push(if mark >> k & 1 == 1 { '*' } else { c });
-            }
-            text.push(' ');
-        }
-        text
-    }
-
+    /// `.` is explored, `?` unexplored, `#` an obstacle, `*` the border.
     #[test]
     fn the_border_is_on_the_explored_side() {
         let picture = "..... ..?.. .#??? ..##?";
-        assert_eq!(border(picture), "..*.. .*?** .#??? ..##? ");
-    }
-
-    #[test]
-    fn the_border_crosses_words_and_ends_at_the_rim() {
-        let mut random = Random(2);
-        for round in 0..200 {
-            let (per_row, rows) = (1 + round % 4, 1 + round % 7);
-            let columns = per_row * 32;
-            let open: Vec<u32> = (0..per_row * rows)
-                .map(|_| random.next() | random.next())
-                .collect();
-            let unexplored: Vec<u32> = open.iter().map(|word| word & random.next()).collect();
-            let explored: Vec<u32> = (open.iter().zip(&unexplored))
-                .map(|(open, unexplored)| open & !unexplored)
-                .collect();
-            for cells in [&explored, &open] {
-                let mut marks = unexplored.clone();
-                mark_border(cells, &mut marks, per_row);
-                let at = |words: &[u32], x: usize, y: usize| {
-                    x < columns && y < rows && words[y * per_row + x / 32] >> (x % 32) & 1 == 1
-                };
-                for (x, y) in (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))) {
-                    let is_unexplored = |x, y| at(&unexplored, x, y);
-                    let is_explored = |x, y| at(&explored, x, y);
-                    let sides = [(0, 1), (2, 1), (1, 0), (1, 2)]
-                        .map(|(dx, dy)| ((x + dx).wrapping_sub(1), (y + dy).wrapping_sub(1)));
-                    let expected =
-                        is_explored(x, y) && sides.iter().any(|&(x, y)| is_unexplored(x, y));
-                    assert_eq!(at(&marks, x, y), expected, "{columns} x {rows} at {x} {y}");
-                }
+        let keys = [TileKey::of(0, 0).unwrap()];
+        let tiling = Tiling::new(&keys);
+        let plane = |of: &str| {
+            let marked = |c: char| if of.contains(c) { '#' } else { '.' };
+            let rows = picture.split_whitespace();
+            let rows: Vec<String> = rows.map(|row| row.chars().map(marked).collect()).collect();
+            let mut words = [0; PAGE_WORDS];
+            let mut plane = PlaneMut::new(tiling, &mut words).unwrap();
+            draw(&mut plane, keys[0], &rows.join("\n"));
+            words
+        };
+        let (cells, unexplored) = (plane(".?"), plane("?"));
+        let block = Block::read(tiling, &unexplored, 0);
+        let marks: [u32; PAGE_WORDS] = core::array::from_fn(|k| border(cells[k], &block, k));
+        let mut text = String::new();
+        for (y, row) in picture.split_whitespace().enumerate() {
+            for (x, c) in row.chars().enumerate() {
+                let mark = marks[y / 2] >> (16 * (y % 2) + x) & 1;
+                text.push(if mark == 1 { '*' } else { c });
             }
+            text.push(' ');
         }
+        assert_eq!(text, "..*.. .*?** .#??? ..##? ");
     }
 }

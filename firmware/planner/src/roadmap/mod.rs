@@ -39,7 +39,7 @@ mod wavefront;
 
 pub use barrier::{Barrier, BarrierFull};
 pub use residues::{Descent, Residues};
-pub use thinning::{Thinning, marks_for};
+pub use thinning::Thinning;
 pub use wavefront::{WaveSpace, Wavefront};
 
 /// The state of a thinning after an instalment.

@@ -6,7 +6,7 @@
 //!
 //! Units: steps along the plane, a diagonal one counting as one.
 
-use crate::grid::{Shape, ShapeError, Site};
+use crate::grid::{Site, Tiling, TooSmall};
 
 /// The residue of a cell that was not reached.
 const UNREACHED: u8 = 3;
@@ -17,7 +17,7 @@ const UNREACHED: u8 = 3;
 /// as words.
 #[derive(Debug)]
 pub struct Residues<'a> {
-    shape: Shape,
+    tiling: Tiling<'a>,
     pairs: &'a mut [[u32; 2]],
 }
 
@@ -25,31 +25,30 @@ impl<'a> Residues<'a> {
     /// Makes residues over the first pairs of `pairs`, which keep their values.
     ///
     /// # Errors
-    /// If there are fewer pairs than the shape has words.
-    pub fn new(shape: Shape, pairs: &'a mut [[u32; 2]]) -> Result<Self, ShapeError> {
-        let (needs, has) = (shape.words(), pairs.len());
-        let pairs = pairs
-            .get_mut(..needs)
-            .ok_or(ShapeError::TooLarge { needs, has })?;
-        Ok(Self { shape, pairs })
+    /// If there are fewer pairs than a plane of these tiles has words.
+    pub fn new(tiling: Tiling<'a>, pairs: &'a mut [[u32; 2]]) -> Result<Self, TooSmall> {
+        let (needs, has) = (tiling.words(), pairs.len());
+        let pairs = pairs.get_mut(..needs).ok_or(TooSmall { needs, has })?;
+        Ok(Self { tiling, pairs })
     }
 
-    /// Returns the shape of the plane.
+    /// Returns the tiles of the plane.
     #[must_use]
-    pub const fn shape(&self) -> Shape {
-        self.shape
+    pub const fn tiling(&self) -> Tiling<'a> {
+        self.tiling
     }
 
     /// Returns the distance modulo 3; `None` if the wave did not reach the cell.
     #[must_use]
     pub fn get(&self, site: Site) -> Option<u8> {
-        let index = self
-            .shape
-            .index(usize::from(site.y), usize::from(site.x / 32))?;
-        let [low, high] = self.pair(index);
-        let bit = site.x & 31;
-        let residue = (low >> bit & 1) | (high >> bit & 1) << 1;
-        (residue as u8 != UNREACHED).then_some(residue as u8)
+        let residue = self.residue(self.tiling.index(site)?, site);
+        (residue != UNREACHED).then_some(residue)
+    }
+
+    /// Returns the residue of a site whose word has this index.
+    fn residue(&self, index: usize, site: Site) -> u8 {
+        let [low, high] = self.pair(index).map(|word| word & site.bit() != 0);
+        u8::from(low) | u8::from(high) << 1
     }
 
     /// Returns the neighbour one step nearer to the wave's seeds: of several the first in the order
@@ -57,9 +56,14 @@ impl<'a> Residues<'a> {
     /// did not reach the cell.
     #[must_use]
     pub fn descend(&self, from: Site) -> Option<Site> {
-        let nearer = (self.get(from)? + 2) % 3;
-        from.neighbours()
-            .find(|&near| self.get(near) == Some(nearer))
+        let mut finder = self.tiling.finder();
+        let mut residue = |site| self.residue(finder.index(site), site);
+        let here = residue(from);
+        if here == UNREACHED {
+            return None;
+        }
+        let nearer = (here + 2) % 3;
+        from.neighbours().find(|&near| residue(near) == nearer)
     }
 
     /// Returns the way from a cell down to a seed, without the cell itself.

@@ -10,16 +10,23 @@
 //! to leave are goals: an unexplored patch beside a wide way leaves none, and the exploration may
 //! end early.
 //!
+//! The planes have memory for the tiles that the map has touched, wherever they lie.
+//!
 //! Units: coarse cells of 20 cm; a tile is 16 × 16 of them.
 
+use heapless::Vec;
+
 use crate::geometry::{CELL_M, Cell};
-use crate::grid::{Plane, PlaneMut, Shape, Site};
+use crate::grid::{Block, PAGE_SIDE, PAGE_WORDS, Plane, PlaneMut, Site, TileKey, Tiling};
 use crate::map::Tiles;
-use crate::map::tiles::Extent;
+use crate::map::tiles::TILE_SIDE;
 use crate::math;
 use crate::roadmap::coarse;
 use crate::roadmap::configuration_space::{Footprint, Strip, for_each_strip};
 use crate::roadmap::{Progress, Thinning};
+
+/// Steps to the four sides of a tile.
+const SIDES: [(i32, i32); 4] = [(-1, 0), (1, 0), (0, -1), (0, 1)];
 
 /// The space whose skeleton is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,83 +34,66 @@ pub enum Space {
     /// The explored passable cells. It has fewer cells to thin, and paths run on measured ground.
     #[default]
     KnownFree,
-    /// All passable cells, explored or not, in a box slightly larger than the known area, so that
+    /// All passable cells, explored or not, in the touched tiles and those beside them, so that
     /// paths may run through the unexplored \[Jorge15, step 1\].
     NotObstacle,
 }
 
-/// The place of a plane in the map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The place of the planes in the map.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Frame {
-    /// The least map cell of the plane, a tile's corner.
-    pub origin: Cell,
-    /// Rows and words of the plane.
-    pub shape: Shape,
+    /// Column and row of the map's first tile.
+    origin: (i32, i32),
 }
 
 impl Frame {
-    /// The frame of no plane.
-    const NONE: Self = Self {
-        origin: Cell { x: 0, y: 0 },
-        shape: Shape::UNIT,
-    };
-
-    /// Returns the frame of a map's extent, a tile larger on each side where the box (in tiles) has
-    /// room: paths may run outside the known area.
-    fn around(extent: Extent, (width, height): (i32, i32)) -> Self {
-        let widen = |least: i32, greatest: i32, most: i32| {
-            let spare = most - (greatest - least + 1);
-            let below = (spare > 1) as i32;
-            let above = (spare > 0) as i32;
-            (least - below, greatest - least + 1 + below + above)
-        };
-        let (x, across) = widen(extent.least.0, extent.greatest.0, width);
-        let (y, up) = widen(extent.least.1, extent.greatest.1, height);
-        // A word is two tiles wide. Sides within the box are within the limits of a shape.
-        let shape =
-            Shape::new((across as usize).div_ceil(2), up as usize * 16).unwrap_or(Shape::UNIT);
+    /// Returns the place of planes over a map.
+    pub(crate) fn of<const TILES: usize, const SLOTS: usize>(tiles: &Tiles<TILES, SLOTS>) -> Self {
         Self {
-            origin: Cell {
-                x: x * 32,
-                y: y * 32,
-            },
-            shape,
+            origin: tiles.origin(),
         }
     }
 
-    /// Returns the site of a map cell; `None` outside the plane.
+    /// Returns the least site of the first tile.
+    const fn middle() -> Site {
+        match TileKey::of(0, 0) {
+            Some(key) => key.least(),
+            None => Site { x: 0, y: 0 },
+        }
+    }
+
+    /// Returns the site of a map cell; `None` if it is too far from the first tile.
     #[must_use]
     pub fn site(&self, cell: Cell) -> Option<Site> {
-        let x = u16::try_from((cell.x - self.origin.x) >> 1).ok()?;
-        let y = u16::try_from((cell.y - self.origin.y) >> 1).ok()?;
+        let Site { x, y } = Self::middle();
+        let steps = |at: i32, origin: i32| (at >> 1).wrapping_sub(origin * PAGE_SIDE as i32);
+        let x = u16::try_from(steps(cell.x, self.origin.0).wrapping_add(x.into())).ok()?;
+        let y = u16::try_from(steps(cell.y, self.origin.1).wrapping_add(y.into())).ok()?;
         let site = Site { x, y };
-        self.shape.contains(site).then_some(site)
+        (TileKey::at(site) != TileKey::NONE).then_some(site)
     }
 
     /// Returns the least of a site's four map cells.
     #[must_use]
     pub fn cell(&self, site: Site) -> Cell {
+        let Site { x, y } = Self::middle();
         Cell {
-            x: self.origin.x + i32::from(site.x) * 2,
-            y: self.origin.y + i32::from(site.y) * 2,
+            x: self.origin.0 * TILE_SIDE + (i32::from(site.x) - i32::from(x)) * 2,
+            y: self.origin.1 * TILE_SIDE + (i32::from(site.y) - i32::from(y)) * 2,
         }
     }
 
-    /// Returns the number of tiles in a row, with the spare half of the last word.
-    const fn tiles_across(&self) -> usize {
-        self.shape.words_per_row() * 2
-    }
-
-    /// Returns the number of tiles.
-    const fn tiles(&self) -> usize {
-        self.tiles_across() * (self.shape.rows() / 16)
+    /// Returns the column and the row of a tile.
+    pub(crate) const fn tile(self, key: TileKey) -> (i32, i32) {
+        let (columns, rows) = key.offset();
+        (self.origin.0 + columns, self.origin.1 + rows)
     }
 }
 
 /// The stage of a round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
-    /// Loading tile number n of the frame.
+    /// Loading the tile at place n.
     Load(usize),
     /// Thinning the plane.
     Thin,
@@ -112,19 +102,21 @@ enum Stage {
 /// Cost of loading a tile, in units of a thinning: a word judged, about 100 instructions.
 const TILE_UNITS: u32 = 40;
 
-type Words<const SLOTS: usize> = [[u32; 8]; SLOTS];
+type Words<const SLOTS: usize> = [[u32; PAGE_WORDS]; SLOTS];
+type Keys<const SLOTS: usize> = Vec<TileKey, SLOTS>;
 
 /// The published skeleton and the round in progress, for `SLOTS` tiles of 16 × 16 coarse cells.
 #[derive(Debug)]
 pub struct Skeleton<const SLOTS: usize> {
-    /// The published skeleton.
+    /// The published skeleton and its tiles.
     skeleton: Words<SLOTS>,
+    keys: Keys<SLOTS>,
     frame: Frame,
     /// The planes of the round in progress. Between the rounds, `next_frontier` holds the frontier
     /// cells of the published skeleton.
     next: Words<SLOTS>,
     next_frontier: Words<SLOTS>,
-    next_frame: Frame,
+    next_keys: Keys<SLOTS>,
     stage: Stage,
     space: Space,
     thinning: Thinning<SLOTS>,
@@ -135,11 +127,12 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            skeleton: [[0; 8]; SLOTS],
-            frame: Frame::NONE,
-            next: [[0; 8]; SLOTS],
-            next_frontier: [[0; 8]; SLOTS],
-            next_frame: Frame::NONE,
+            skeleton: [[0; PAGE_WORDS]; SLOTS],
+            keys: Vec::new(),
+            frame: Frame { origin: (0, 0) },
+            next: [[0; PAGE_WORDS]; SLOTS],
+            next_frontier: [[0; PAGE_WORDS]; SLOTS],
+            next_keys: Vec::new(),
             stage: Stage::Load(0),
             space: Space::KnownFree,
             thinning: Thinning::new(),
@@ -149,33 +142,42 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
     /// Forgets everything, and thins this space from now on.
     pub fn reset(&mut self, space: Space) {
         self.space = space;
-        self.skeleton.as_flattened_mut().fill(0);
-        self.frame = Frame::NONE;
+        self.keys.clear();
         self.stage = Stage::Load(0);
     }
 
-    /// Returns the place of the published plane.
+    /// Returns the place of the planes.
     #[must_use]
     pub const fn frame(&self) -> Frame {
         self.frame
     }
 
+    /// Returns the tiles of the published skeleton.
+    #[must_use]
+    pub fn tiling(&self) -> Tiling<'_> {
+        Tiling::new(&self.keys)
+    }
+
     /// Returns the centre cells of the published skeleton; `None` before the first one.
     #[must_use]
     pub fn skeleton(&self) -> Option<Plane<'_>> {
-        Plane::new(self.frame.shape, self.skeleton.as_flattened()).ok()
+        let plane = Plane::new(Tiling::new(&self.keys), self.skeleton.as_flattened());
+        plane.ok().filter(|_| !self.keys.is_empty())
     }
 
     /// Returns the published skeleton for a blocker; see [`crate::roadmap::Barrier`].
     pub fn skeleton_mut(&mut self) -> Option<PlaneMut<'_>> {
-        PlaneMut::new(self.frame.shape, self.skeleton.as_flattened_mut()).ok()
+        let is_published = !self.keys.is_empty();
+        let words = self.skeleton.as_flattened_mut();
+        let plane = PlaneMut::new(Tiling::new(&self.keys), words);
+        plane.ok().filter(|_| is_published)
     }
 
     /// Takes the cells within `radius_m` of a map cell out of the published skeleton.
     pub fn cut(&mut self, around: Cell, radius_m: f32) {
         let reach = math::floor(radius_m / (2.0 * CELL_M)) + 1;
         let frame = self.frame;
-        let Ok(mut plane) = PlaneMut::new(frame.shape, self.skeleton.as_flattened_mut()) else {
+        let Some(mut plane) = self.skeleton_mut() else {
             return;
         };
         for dy in -reach..=reach {
@@ -196,10 +198,10 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
     /// which needs their memory.
     #[must_use]
     pub fn frontier(&self) -> Option<Plane<'_>> {
-        if self.stage != Stage::Load(0) {
+        if self.stage != Stage::Load(0) || self.keys.is_empty() {
             return None;
         }
-        Plane::new(self.frame.shape, self.next_frontier.as_flattened()).ok()
+        Plane::new(Tiling::new(&self.keys), self.next_frontier.as_flattened()).ok()
     }
 
     /// Continues the round with at most `budget` units of work. Returns true if it published a
@@ -212,22 +214,47 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
     ) -> bool {
         let mut left = budget;
         if self.stage == Stage::Load(0) {
-            let Some(extent) = tiles.extent() else {
-                return false;
-            };
-            self.next_frame = Frame::around(extent, tiles.box_tiles());
+            self.begin(tiles);
         }
-        while let Stage::Load(tile) = self.stage {
+        while let Stage::Load(place) = self.stage {
+            let Some(&key) = self.next_keys.get(place) else {
+                if place == 0 {
+                    // The map is empty.
+                    return false;
+                }
+                self.begin_thinning(tiles);
+                break;
+            };
             if left < TILE_UNITS {
                 return false;
             }
-            left -= self.load(tiles, disc, tile);
-            self.stage = Stage::Load(tile + 1);
-            if tile + 1 == self.next_frame.tiles() {
-                self.begin_thinning();
-            }
+            left -= self.load(tiles, disc, (place, key));
+            self.stage = Stage::Load(place + 1);
         }
         self.thin(left)
+    }
+
+    /// Begins a round: lists its tiles.
+    fn begin<const TILES: usize>(&mut self, tiles: &Tiles<TILES, SLOTS>) {
+        self.frame = Frame::of(tiles);
+        self.next_keys.clear();
+        // The lists have the same length.
+        let _ = self.next_keys.extend_from_slice(tiles.keys());
+        if self.space == Space::KnownFree {
+            return;
+        }
+        for &key in tiles.keys() {
+            for (columns, rows) in (-1..=1).flat_map(|x| (-1..=1).map(move |y| (x, y))) {
+                let beside = key.beside(columns, rows);
+                let (x, y) = self.frame.tile(beside);
+                if tiles.room(x, y).is_ok()
+                    && let Err(place) = self.next_keys.binary_search(&beside)
+                {
+                    // On a full list, no path runs through what lies there.
+                    let _ = self.next_keys.insert(place, beside);
+                }
+            }
+        }
     }
 
     /// Loads one tile. Returns the units of work that it took.
@@ -235,23 +262,16 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
         disc: &Footprint,
-        tile: usize,
+        (place, key): (usize, TileKey),
     ) -> u32 {
-        let frame = self.next_frame;
-        let (across, up) = (tile % frame.tiles_across(), tile / frame.tiles_across());
-        let corner = (
-            frame.origin.x + across as i32 * 32,
-            frame.origin.y + up as i32 * 32,
-        );
-        let (tile_x, tile_y) = (corner.0 >> 5, corner.1 >> 5);
+        let (tile_x, tile_y) = self.frame.tile(key);
+        let corner = (tile_x * TILE_SIDE, tile_y * TILE_SIDE);
         let seen = tiles.is_touched(tile_x, tile_y);
-        // A tile that was never touched is unexplored. One that the map has no room for stays so:
-        // its border is no frontier.
-        let has_room = tiles.room(tile_x, tile_y).is_ok();
-        let mut rows = [[0, if has_room { u16::MAX } else { 0 }]; 16];
+        // A tile that was never touched is unexplored.
+        let mut rows = [[0, u16::MAX]; PAGE_SIDE];
         if seen {
             let mut lower = Strip::default();
-            for_each_strip(tiles, disc, corner, 32, |y, strip| {
+            for_each_strip(tiles, disc, corner, TILE_SIDE, |y, strip| {
                 if (y - corner.1) & 1 == 0 {
                     lower = strip;
                 } else if let Some(row) = rows.get_mut(((y - corner.1) / 2) as usize) {
@@ -259,42 +279,65 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
                 }
             });
         }
-        let (word, shift) = (across / 2, across % 2 * 16);
-        for (k, [explored, unexplored]) in rows.into_iter().enumerate() {
-            let index = (up * 16 + k) * frame.shape.words_per_row() + word;
-            let cells = match self.space {
-                Space::KnownFree => explored,
-                Space::NotObstacle => explored | unexplored,
-            };
-            for (plane, half) in [
-                (&mut self.next, cells),
-                (&mut self.next_frontier, unexplored),
-            ] {
-                if let Some(out) = plane.as_flattened_mut().get_mut(index) {
-                    *out = *out & !(0xffff << shift) | u32::from(half) << shift;
-                }
+        let is_cell = match self.space {
+            Space::KnownFree => 0,
+            Space::NotObstacle => u16::MAX,
+        };
+        if let Some((cells, marks)) =
+            (self.next.get_mut(place)).zip(self.next_frontier.get_mut(place))
+        {
+            for ((cells, marks), pair) in cells.iter_mut().zip(marks).zip(rows.chunks_exact(2)) {
+                let [[first, first_unexplored], [second, second_unexplored]] = *pair else {
+                    continue;
+                };
+                let word = |lower: u16, upper: u16| u32::from(lower) | u32::from(upper) << 16;
+                *cells = word(
+                    first | first_unexplored & is_cell,
+                    second | second_unexplored & is_cell,
+                );
+                *marks = word(first_unexplored, second_unexplored);
             }
         }
         if seen { TILE_UNITS } else { 2 }
     }
 
     /// Turns the unexplored cells into frontier cells after the last tile, and begins to thin.
-    fn begin_thinning(&mut self) {
-        let shape = self.next_frame.shape;
-        let cells = self.next.as_flattened();
-        let marks = self.next_frontier.as_flattened_mut();
-        let marks = marks.get_mut(..shape.words()).unwrap_or_default();
-        coarse::mark_border(cells, marks, shape.words_per_row());
+    fn begin_thinning<const TILES: usize>(&mut self, tiles: &Tiles<TILES, SLOTS>) {
+        let tiling = Tiling::new(&self.next_keys);
+        let unexplored = self.next_frontier.as_flattened();
+        let border = self.thinning.spare();
+        for (place, &key) in self.next_keys.iter().enumerate() {
+            let mut block = Block::read(tiling, unexplored, place);
+            for (columns, rows) in SIDES {
+                let beside = key.beside(columns, rows);
+                let (x, y) = self.frame.tile(beside);
+                // A tile that is not in the list is unexplored. If the map has no room for it, its
+                // border is no frontier.
+                if tiling.place(beside).is_none() && tiles.room(x, y).is_ok() {
+                    block.fill_beyond((columns, rows));
+                }
+            }
+            let cells = self.next.get(place).into_iter().flatten();
+            let border = border.get_mut(place * PAGE_WORDS..).into_iter().flatten();
+            for (k, (&cells, border)) in cells.zip(border).enumerate() {
+                *border = coarse::border(cells, &block, k);
+            }
+        }
+        let words = tiling.words();
+        let marks = self.next_frontier.as_flattened_mut().iter_mut();
+        for (mark, &border) in marks.zip(border.iter()).take(words) {
+            *mark = border;
+        }
         self.stage = Stage::Thin;
-        // The frame fits the box, so the marks suffice.
-        let _ = self.thinning.start(shape);
+        // The tiles fit the list, so the pages suffice.
+        let _ = self.thinning.start(tiling);
     }
 
     /// Continues the thinning. Returns true if it published the skeleton.
     fn thin(&mut self, budget: u32) -> bool {
-        let shape = self.next_frame.shape;
+        let tiling = Tiling::new(&self.next_keys);
         let anchors = self.next_frontier.as_flattened();
-        let Ok(mut plane) = PlaneMut::new(shape, self.next.as_flattened_mut()) else {
+        let Ok(mut plane) = PlaneMut::new(tiling, self.next.as_flattened_mut()) else {
             return false;
         };
         match self.thinning.advance(&mut plane, anchors, budget) {
@@ -305,7 +348,7 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
                     *frontier &= skeleton;
                 }
                 self.skeleton = self.next;
-                self.frame = self.next_frame;
+                self.keys.clone_from(&self.next_keys);
                 self.stage = Stage::Load(0);
                 true
             }

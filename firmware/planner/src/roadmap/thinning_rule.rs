@@ -17,52 +17,7 @@
 //!
 //! North is towards row 0, east towards greater columns.
 
-use crate::grid::{Shape, triple};
-
-/// Returns the cells of a word that the first (or second) subiteration deletes.
-#[inline(always)]
-pub(super) fn deletions<const SECOND: bool>(shape: Shape, words: &[u32], index: u32) -> u32 {
-    let (per_row, rows) = (shape.words_per_row() as u32, shape.rows() as u32);
-    let row = index / per_row;
-    let sides = sides(index - row * per_row, per_row);
-    if row.wrapping_sub(1) < rows.wrapping_sub(2)
-        && let Some([above, here, below]) = rows_around(per_row, words, index)
-    {
-        return judge::<SECOND>(above, here, below, sides);
-    }
-    deletions_at_end::<SECOND>(shape, words, index, sides)
-}
-
-/// Returns the three words around an index in each of three rows; `None` where memory ends.
-#[inline(always)]
-fn rows_around(per_row: u32, words: &[u32], index: u32) -> Option<[&[u32; 3]; 3]> {
-    let per_row = per_row as usize;
-    // The bound of the type lets the compiler see that the last row's check covers the others.
-    let from = usize::from(index as u16).checked_sub(per_row + 1)?;
-    let three = |from: usize| words.get(from..from + 3)?.first_chunk::<3>();
-    let below = three(from + 2 * per_row)?;
-    Some([three(from)?, three(from + per_row)?, below])
-}
-
-/// [`deletions`] for a word in the first or the last row, or at an end of memory.
-#[inline(never)]
-fn deletions_at_end<const SECOND: bool>(
-    shape: Shape,
-    words: &[u32],
-    index: u32,
-    sides: u32,
-) -> u32 {
-    let (index, per_row) = (index as usize, shape.words_per_row());
-    let triple = |index: usize| {
-        if index < shape.words() {
-            triple(words, index)
-        } else {
-            [0; 3]
-        }
-    };
-    let above = triple(index.wrapping_sub(per_row));
-    judge::<SECOND>(&above, &triple(index), &triple(index + per_row), sides)
-}
+use crate::grid::Block;
 
 /// The eight neighbours of 32 cells.
 #[derive(Clone, Copy, Debug)]
@@ -77,61 +32,33 @@ struct Neighbourhood {
     north_west: u32,
 }
 
-/// Returns bit 31 if word `word` of a row has one on its left, and bit 0 if it has one on its
-/// right.
-#[inline(always)]
-const fn sides(word: u32, per_row: u32) -> u32 {
-    let (left, right) = (word.wrapping_neg(), (word + 1).wrapping_sub(per_row));
-    left & 1 << 31 | right >> 31
-}
-
-/// Returns the cells of the middle word that the first (or second) subiteration deletes.
-///
-/// The words on the left count if bit 31 of `sides` is set, those on the right if bit 0 is. It is
-/// not inlined and has few arguments: inlined, it runs out of registers.
-#[inline(never)]
-fn judge<const SECOND: bool>(
-    [above_left, north, above_right]: &[u32; 3],
-    [left, here, right]: &[u32; 3],
-    [below_left, south, below_right]: &[u32; 3],
-    sides: u32,
-) -> u32 {
-    let (north, here, south) = (*north, *here, *south);
+/// Returns the cells of word k of a page that the first (or second) subiteration deletes.
+pub(super) fn deletions(block: &Block, k: usize, second: bool) -> u32 {
+    let here = block.word(k);
     if here == 0 {
         return 0;
     }
-    let (east, west) = (eastern(here, right & sides), western(here, left & sides));
-    // A cell with all four sides set has C = 0.
-    if here & !(north & south & east & west) == 0 {
-        return 0;
-    }
+    let [
+        north,
+        north_east,
+        east,
+        south_east,
+        south,
+        south_west,
+        west,
+        north_west,
+    ] = block.neighbours(k);
     let around = Neighbourhood {
         north,
-        north_east: eastern(north, above_right & sides),
+        north_east,
         east,
-        south_east: eastern(south, below_right & sides),
+        south_east,
         south,
-        south_west: western(south, below_left & sides),
+        south_west,
         west,
-        north_west: western(north, above_left & sides),
+        north_west,
     };
-    here & if SECOND {
-        neighbourhoods_deleted(around.turned())
-    } else {
-        neighbourhoods_deleted(around)
-    }
-}
-
-/// Returns each cell's eastern neighbour.
-#[inline(always)]
-const fn eastern(here: u32, right: u32) -> u32 {
-    here >> 1 | right << 31
-}
-
-/// Returns each cell's western neighbour.
-#[inline(always)]
-const fn western(here: u32, left: u32) -> u32 {
-    here << 1 | left >> 31
+    here & neighbourhoods_deleted(if second { around.turned() } else { around })
 }
 
 impl Neighbourhood {
@@ -180,7 +107,7 @@ const fn neighbourhoods_deleted(around: Neighbourhood) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Neighbourhood, neighbourhoods_deleted, sides};
+    use super::{Neighbourhood, neighbourhoods_deleted};
 
     /// The definition term by term; p\[0\] is p2.
     fn deletes(p: [bool; 8], second: bool) -> bool {
@@ -201,14 +128,6 @@ mod tests {
             (p6 || p7 || !p9) && p8
         };
         count(c) == 1 && (2..=3).contains(&n) && !m
-    }
-
-    #[test]
-    fn words_at_the_ends_of_a_row_have_one_side() {
-        assert_eq!(sides(0, 1), 0);
-        assert_eq!([sides(0, 2), sides(1, 2)], [1, 1 << 31]);
-        let inner = 1 << 31 | 1;
-        assert_eq!([sides(1, 3), sides(15, 31), sides(29, 31)], [inner; 3]);
     }
 
     #[test]

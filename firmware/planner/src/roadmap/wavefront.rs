@@ -5,19 +5,19 @@
 //! papers' potential of a point source amounts to these \[Jorge15, steps 3 and 5\].
 //!
 //! Cells wait for their turn in a ring. A cell that finds the ring full is reached all the same,
-//! and its row is *noted*. After the cells of a level, the wave scans the noted rows for open cells
-//! next to one of this level. That costs time and changes no distance, since a cell of an earlier
-//! level with the same residue has no open neighbour left.
+//! and its page is *noted*. With the cells of a level, the wave expands all cells of the noted pages
+//! that have the level's residue. That costs time and changes no distance, since a cell of an
+//! earlier level with the same residue has no open neighbour left.
 //!
 //! Invariant between two calls: every reached cell with an open neighbour is in the ring or in a
-//! noted row.
+//! noted page.
 //!
 //! Units: steps; sites of the plane.
 
-use core::ops::RangeInclusive;
+use core::ops::Range;
 
 use crate::grid::bits::ones;
-use crate::grid::{Plane, Site, at};
+use crate::grid::{PAGE_SIDE, PAGE_WORDS, Plane, Site, at};
 use crate::roadmap::residues::{Residue, Residues};
 
 /// The memory that a wave runs on, lent for each call.
@@ -26,7 +26,7 @@ pub struct WaveSpace<'a> {
     /// The cells that the wave may enter: the skeleton. A blocker is a cell taken out of it, see
     /// [`super::Barrier`].
     pub cells: Plane<'a>,
-    /// The distances, in the shape of the cells.
+    /// The distances, over the tiles of the cells.
     pub residues: Residues<'a>,
     /// The queue, an entry a word. Any length will do; more than 1,000 entries are rare.
     pub ring: &'a mut [u32],
@@ -40,18 +40,18 @@ pub struct Wavefront {
     /// Residues of the present level and of the next.
     here: Residue,
     next: Residue,
-    /// Rows with cells of the next level that found the ring full.
-    noted: Rows,
+    /// Pages with cells of the next level that found the ring full.
+    noted: Pages,
 }
 
-/// A span of rows, empty when `first > last`.
+/// A span of pages by their places, empty when `first > last`.
 #[derive(Clone, Copy, Debug)]
-struct Rows {
+struct Pages {
     first: usize,
     last: usize,
 }
 
-impl Rows {
+impl Pages {
     const NONE: Self = Self {
         first: usize::MAX,
         last: 0,
@@ -61,14 +61,37 @@ impl Rows {
         self.first > self.last
     }
 
-    fn include(&mut self, row: usize) {
-        self.first = self.first.min(row);
-        self.last = self.last.max(row);
+    fn include(&mut self, page: usize) {
+        self.first = self.first.min(page);
+        self.last = self.last.max(page);
     }
 
-    /// Returns the rows with one more at either end, of `rows` rows.
-    fn widened(self, rows: usize) -> RangeInclusive<usize> {
-        self.first.saturating_sub(1)..=(self.last + 1).min(rows - 1)
+    /// Returns the indices of the pages' words.
+    const fn words(self) -> Range<usize> {
+        if self.is_empty() {
+            return 0..0;
+        }
+        self.first * PAGE_WORDS..(self.last + 1) * PAGE_WORDS
+    }
+}
+
+/// A cell: the index of its word, and its bit.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    index: usize,
+    bit: u32,
+}
+
+impl Entry {
+    const fn packed(self) -> u32 {
+        (self.index as u32) << 5 | self.bit
+    }
+
+    const fn unpacked(word: u32) -> Self {
+        Self {
+            index: (word >> 5) as usize,
+            bit: word & 31,
+        }
     }
 }
 
@@ -81,17 +104,12 @@ impl Wavefront {
             len: 0,
             here: Residue::ZERO.next().next(),
             next: Residue::ZERO,
-            noted: Rows::NONE,
+            noted: Pages::NONE,
         }
     }
 
     /// Starts anew: no cell is reached, and there is no seed.
     pub fn start(&mut self, space: &mut WaveSpace<'_>) {
-        debug_assert_eq!(
-            space.cells.shape(),
-            space.residues.shape(),
-            "unequal shapes"
-        );
         *self = Self::new();
         space.residues.clear();
     }
@@ -99,9 +117,8 @@ impl Wavefront {
     /// Lets the wave start from a cell too. Returns true if the cell is on the way and was not
     /// reached yet.
     pub fn seed(&mut self, space: &mut WaveSpace<'_>, site: Site) -> bool {
-        let (row, word) = (usize::from(site.y), usize::from(site.x / 32));
-        let index = space.cells.shape().index(row, word);
-        index.is_some_and(|index| self.enter(space, index, site.bit(), (row, word)))
+        let index = space.cells.tiling().index(site);
+        index.is_some_and(|index| self.enter(space, index, site.bit()))
     }
 
     /// Runs the wave until it reaches `until` or has been everywhere.
@@ -135,27 +152,18 @@ impl Wavefront {
         marks: Plane<'_>,
         mut visit: impl FnMut(Site),
     ) {
-        for offset in 0..self.len {
-            let site = unpack(at(space.ring, self.place(space, offset)));
-            if marks.get(site) {
-                visit(site);
+        let tiling = marks.tiling();
+        let mut visit = |Entry { index, bit }| {
+            if at(marks.words(), index) >> bit & 1 != 0 {
+                visit(tiling.site(index, bit));
             }
+        };
+        for offset in 0..self.len {
+            visit(Entry::unpacked(at(space.ring, self.place(space, offset))));
         }
-        if self.noted.is_empty() {
-            return;
-        }
-        let shape = marks.shape();
-        for row in self.noted.first..=self.noted.last {
-            for word in 0..shape.words_per_row() {
-                let reached = shape
-                    .index(row, word)
-                    .map_or(0, |index| space.residues.with(index, self.next));
-                for bit in ones(reached & marks.word(row, word)) {
-                    visit(Site {
-                        x: (word * 32) as u16 + bit as u16,
-                        y: row as u16,
-                    });
-                }
+        for index in self.noted.words() {
+            for bit in ones(space.residues.with(index, self.next)) {
+                visit(Entry { index, bit });
             }
         }
     }
@@ -163,19 +171,16 @@ impl Wavefront {
     /// Expands the cells of the next level, which becomes the present one.
     fn run_level(&mut self, space: &mut WaveSpace<'_>) {
         (self.here, self.next) = (self.next, self.next.next());
-        let noted = core::mem::replace(&mut self.noted, Rows::NONE);
+        let noted = core::mem::replace(&mut self.noted, Pages::NONE);
         for _ in 0..self.len {
-            let site = unpack(at(space.ring, self.head));
+            let entry = Entry::unpacked(at(space.ring, self.head));
             self.head = self.place(space, 1);
             self.len -= 1;
-            self.expand(space, site);
+            self.expand(space, entry);
         }
-        if noted.is_empty() {
-            return;
-        }
-        for row in noted.widened(space.cells.shape().rows()) {
-            for word in 0..space.cells.shape().words_per_row() {
-                self.enter_from_around(space, row, word);
+        for index in noted.words() {
+            for bit in ones(space.residues.with(index, self.here)) {
+                self.expand(space, Entry { index, bit });
             }
         }
     }
@@ -186,82 +191,77 @@ impl Wavefront {
     }
 
     /// Enters the open neighbours of a cell.
-    fn expand(&mut self, space: &mut WaveSpace<'_>, site: Site) {
-        let shape = space.cells.shape();
-        let (per_row, rows) = (shape.words_per_row(), shape.rows());
-        let (row, word) = (usize::from(site.y), usize::from(site.x / 32));
-        let bit = site.bit();
-        let window = bit << 1 | bit | bit >> 1;
-        let index = row * per_row + word;
-        if row != 0 {
-            self.enter(space, index - per_row, window, (row - 1, word));
+    fn expand(&mut self, space: &mut WaveSpace<'_>, entry: Entry) {
+        const LAST: u32 = PAGE_SIDE as u32 - 1;
+        let (place, k) = (entry.index / PAGE_WORDS, entry.index % PAGE_WORDS);
+        let (column, row) = (entry.bit & LAST, 2 * k as u32 + (entry.bit >> 4));
+        let columns = (7 << column) >> 1 & 0xffff;
+        self.enter_rows(space, place, row, columns);
+        let tiling = space.cells.tiling();
+        let side = match column {
+            0 => Some((-1, 1 << LAST)),
+            LAST => Some((1, 1)),
+            _ => None,
+        };
+        if let Some((side, mask)) = side {
+            self.enter_rows(space, tiling.beside(place, side, 0), row, mask);
         }
-        self.enter(space, index, window, (row, word));
-        if row + 1 != rows {
-            self.enter(space, index + per_row, window, (row + 1, word));
-        }
-        if bit == 1 && word != 0 {
-            self.expand_into(space, (row, word - 1), 1 << 31);
-        } else if bit == 1 << 31 && word + 1 != per_row {
-            self.expand_into(space, (row, word + 1), 1);
+        // The row beyond: the last one of the tile in the north, or the first one in the south.
+        let (beyond, word, shift) = match row {
+            0 => (-1, PAGE_WORDS - 1, 16),
+            LAST => (1, 0, 0),
+            _ => return,
+        };
+        let there = tiling.beside(place, 0, beyond);
+        self.enter(space, there * PAGE_WORDS + word, columns << shift);
+        if let Some((side, mask)) = side {
+            let there = tiling.beside(place, side, beyond);
+            self.enter(space, there * PAGE_WORDS + word, mask << shift);
         }
     }
 
-    /// Enters the open cells in the column `mask` of the word beside a cell, in its row and those
-    /// above and below.
-    #[inline(never)]
-    fn expand_into(&mut self, space: &mut WaveSpace<'_>, (row, word): (usize, usize), mask: u32) {
-        for row in row.saturating_sub(1)..row + 2 {
-            if let Some(index) = space.cells.shape().index(row, word) {
-                self.enter(space, index, mask, (row, word));
-            }
+    /// Enters the open cells in these columns of a row of a page, and of the rows above and below
+    /// it in the page.
+    fn enter_rows(&mut self, space: &mut WaveSpace<'_>, place: usize, row: u32, columns: u32) {
+        let k = (row / 2) as usize;
+        let index = place * PAGE_WORDS + k;
+        self.enter(space, index, columns | columns << 16);
+        if row % 2 == 0 && k > 0 {
+            self.enter(space, index - 1, columns << 16);
+        } else if row % 2 == 1 && k + 1 < PAGE_WORDS {
+            self.enter(space, index + 1, columns);
         }
     }
 
     /// Enters the open cells of `mask` in a word. Returns true if there are any.
-    #[inline(always)]
-    fn enter(
-        &mut self,
-        space: &mut WaveSpace<'_>,
-        index: usize,
-        mask: u32,
-        place: (usize, usize),
-    ) -> bool {
+    #[inline]
+    fn enter(&mut self, space: &mut WaveSpace<'_>, index: usize, mask: u32) -> bool {
         let open = mask & at(space.cells.words(), index) & space.residues.unreached(index);
         if open != 0 {
-            self.reach(space, index, open, place);
+            self.reach(space, index, open);
         }
         open != 0
     }
 
     /// Reaches the cells of `open` and queues them for the next level.
     #[inline(never)]
-    fn reach(
-        &mut self,
-        space: &mut WaveSpace<'_>,
-        index: usize,
-        open: u32,
-        (row, word): (usize, usize),
-    ) {
+    fn reach(&mut self, space: &mut WaveSpace<'_>, index: usize, open: u32) {
         space.residues.reach(index, open, self.next);
-        let mut rest = open;
-        while rest != 0 {
-            let column = word * 32 + rest.trailing_zeros() as usize;
-            rest &= rest - 1;
-            self.queue(space, row, column);
+        for bit in ones(open) {
+            self.queue(space, Entry { index, bit });
         }
     }
 
-    /// Appends a cell to the ring; if that is full, notes its row.
-    fn queue(&mut self, space: &mut WaveSpace<'_>, row: usize, column: usize) {
+    /// Appends a cell to the ring; if that is full, notes its page.
+    fn queue(&mut self, space: &mut WaveSpace<'_>, entry: Entry) {
         let place = self.place(space, self.len);
         let full = self.len == space.ring.len();
         match space.ring.get_mut(place) {
-            Some(entry) if !full => {
-                *entry = (row << 16 | column) as u32;
+            Some(word) if !full => {
+                *word = entry.packed();
                 self.len += 1;
             }
-            _ => self.noted.include(row),
+            _ => self.noted.include(entry.index / PAGE_WORDS),
         }
     }
 
@@ -274,37 +274,10 @@ impl Wavefront {
             place - space.ring.len()
         }
     }
-
-    /// Enters the open cells of a word that have a neighbour of the present level.
-    fn enter_from_around(&mut self, space: &mut WaveSpace<'_>, row: usize, word: usize) {
-        let shape = space.cells.shape();
-        let index = row * shape.words_per_row() + word;
-        if at(space.cells.words(), index) & space.residues.unreached(index) == 0 {
-            return;
-        }
-        let mut near = 0;
-        for row in row.saturating_sub(1)..(row + 2).min(shape.rows()) {
-            let level = |word: usize| {
-                let index = shape.index(row, word);
-                index.map_or(0, |index| space.residues.with(index, self.here))
-            };
-            let here = level(word);
-            near |= here | here << 1 | here >> 1;
-            near |= level(word.wrapping_sub(1)) >> 31 | level(word + 1) << 31;
-        }
-        self.enter(space, index, near, (row, word));
-    }
 }
 
 impl Default for Wavefront {
     fn default() -> Self {
         Self::new()
-    }
-}
-
-const fn unpack(entry: u32) -> Site {
-    Site {
-        x: entry as u16,
-        y: (entry >> 16) as u16,
     }
 }

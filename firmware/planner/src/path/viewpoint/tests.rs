@@ -6,12 +6,14 @@ use std::vec::Vec;
 
 use crate::config::{Order, Tuning};
 use crate::geometry::Cell;
+use crate::grid::Tiling;
 use crate::map::{Class, Tiles};
 use crate::path::rays::along;
 use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::viewpoint::{Found, Inputs, Search, Viewpoint};
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::scratch_words;
+use crate::roadmap::skeleton::Frame;
 use crate::status::ResidualReason;
 
 const SLOTS: usize = 24;
@@ -53,8 +55,11 @@ fn drawn(picture: &[&str]) -> (Box<Map>, Cell) {
 /// Runs a search from beginning to end, in scratch memory that holds anything.
 fn search(tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Viewpoint> {
     let mut scratch = std::vec![0xdead_beef; scratch_words(SLOTS)];
+    let (frame, tiling) = (Frame::of(tiles), Tiling::new(tiles.keys()));
     let inputs = Inputs {
         tiles,
+        tiling,
+        frame,
         footprints: [&Footprint::new(0.3), &Footprint::new(0.22)],
         robot,
         order: Order::Nearest,
@@ -65,7 +70,7 @@ fn search(tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Viewpoint> {
         residual.give_up(cell, ResidualReason::Unobservable);
     }
     let mut search = Search::new();
-    search.begin(tiles.extent(), &mut scratch);
+    search.begin(frame, tiling, &mut scratch);
     for _ in 0..100 {
         match search.advance(&inputs, &mut residual, &mut scratch) {
             Found::Pending => assert!(search.is_running()),
@@ -215,9 +220,9 @@ fn a_robot_in_a_narrow_place_looks_too() {
 #[test]
 fn without_a_map_or_memory_nothing_is_found() {
     let mut search = Search::new();
-    search.begin(None, &mut [0; scratch_words(SLOTS)]);
+    search.begin(Frame::default(), Tiling::new(&[]), &mut [0; scratch_words(SLOTS)]);
     assert!(!search.is_running());
     let (tiles, _) = drawn(&GAP);
-    search.begin(tiles.extent(), &mut [0; 10]);
+    search.begin(Frame::of(&tiles), Tiling::new(tiles.keys()), &mut [0; 10]);
     assert!(!search.is_running());
 }

@@ -146,7 +146,7 @@ impl Scene {
     /// Plans a round, with memory for so many pairs behind the wave.
     fn replan(&mut self, frontier: &mut Frontier, reference_m: Option<f32>, pairs: usize) {
         let context = self.context(reference_m);
-        let words = context.skeleton.frame().shape.words();
+        let words = context.skeleton.tiling().words();
         let (mut residues, mut queue) = (vec![[0; 2]; words + pairs], vec![0; 1024]);
         let scratch = PlanningScratch {
             residues: &mut residues,

@@ -111,7 +111,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
         round.propagate(tractor, surroundings(robot), None, scratch)?;
         let tuning = &round.tuning.ouroboros;
         let centres = round.centres()?;
-        let residues = Residues::new(centres.frame.shape, scratch.residues).ok()?;
+        let residues = Residues::new(centres.cells.tiling(), scratch.residues).ok()?;
         let here = round.pose.point().cell();
         let came = self.crumbs.came_from(here)?;
         let road = LoopRoad::find(&centres, &residues, (robot, came))?;
@@ -210,7 +210,7 @@ fn renew<const TILES: usize, const SLOTS: usize>(
 ) -> Option<Shield> {
     spread_ahead_of(previous, round, scratch, robot)?;
     let centres = round.centres()?;
-    let residues = Residues::new(centres.frame.shape, scratch.residues).ok()?;
+    let residues = Residues::new(centres.cells.tiling(), scratch.residues).ok()?;
     let back = back_to_shield(&centres, &residues, robot)?;
     let tuning = &round.tuning.ouroboros;
     let next = build_shield(&centres, back, round.pose.point().cell(), tuning);

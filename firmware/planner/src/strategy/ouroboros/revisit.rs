@@ -154,7 +154,7 @@ fn loop_m<const TILES: usize, const SLOTS: usize>(
     let heads = ways(round.skeleton.skeleton()?, at);
     let (&from, others) = heads.split_first()?;
     round.propagate(from, surroundings(at), None, scratch)?;
-    let residues = Residues::new(round.skeleton.frame().shape, scratch.residues).ok()?;
+    let residues = Residues::new(round.skeleton.tiling(), scratch.residues).ok()?;
     let reached = others.iter().filter(|head| residues.get(**head).is_some());
     let steps = reached.map(|&head| residues.descent(head).count()).min()?;
     // From one head through the cell to the other are four steps more.

@@ -183,7 +183,7 @@ impl Scene {
         let mut memory = Memory::new();
         let robot = self.spread(self.find('T').unwrap(), &mut memory);
         let (centres, pose) = (self.centres(), self.pose);
-        let residues = Residues::new(centres.frame.shape, &mut memory.residues).unwrap();
+        let residues = Residues::new(centres.cells.tiling(), &mut memory.residues).unwrap();
         let road = LoopRoad::find(&centres, &residues, (robot, behind(&pose, 10)))?;
         let walk = |head: Site| -> Vec<Cell> {
             let sites = core::iter::once(head).chain(residues.descent(head));
@@ -225,7 +225,7 @@ impl Scene {
         let robot = round.nearest(here, &mut memory.lend()).unwrap();
         spread_ahead_of(previous, &mut round, &mut memory.lend(), robot).unwrap();
         let centres = self.centres();
-        let residues = Residues::new(centres.frame.shape, &mut memory.residues).unwrap();
+        let residues = Residues::new(centres.cells.tiling(), &mut memory.residues).unwrap();
         let back: Vec<Site> = back_to_shield(&centres, &residues, robot)
             .unwrap()
             .collect();
