@@ -87,7 +87,7 @@ fn a_session_follows_the_rules_of_the_device() {
             Ok(Status::Exploring)
         );
         let mut bad = start;
-        bad.box_tiles = (200, 200);
+        bad.robot_radius_mm = 0;
         assert!(link.control(&Control::Start(bad)).is_err(), "{name}");
         assert_eq!(link.control(&Control::Pause), Ok(Status::Paused));
         let stands = link.observe(&Observation::default()).expect("an answer");
@@ -105,5 +105,5 @@ fn start() -> fieldline_protocol::message::Start {
     use host_sim::sim::{SimConfig, Simulator};
     let world = World::builtin("loop").expect("a built-in world");
     let simulator = Simulator::new(&world, SimConfig::default()).expect("the start is free");
-    simulator.start_message(Strategy::Frontier, (20, 20))
+    simulator.start_message(Strategy::Frontier)
 }

@@ -331,7 +331,7 @@ fn a_requested_reset_is_no_error() {
 fn roads(link: &mut dyn Link) -> Vec<[Path; 2]> {
     let world = World::builtin("office").expect("built in");
     let mut simulator = Simulator::new(&world, SimConfig::default()).expect("the start is free");
-    let start = simulator.start_message(Strategy::Frontier, (20, 20));
+    let start = simulator.start_message(Strategy::Frontier);
     link.control(&Control::Start(start)).unwrap();
     let mut roads = Vec::new();
     for step in 0..100 {

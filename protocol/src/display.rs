@@ -53,10 +53,6 @@ impl fmt::Display for Refusal {
             Self::NotGreeted => f.write_str("no hello since the device booted; send a hello first"),
             Self::NotStarted => f.write_str("no session is running; start one first"),
             Self::OutOfOrder => f.write_str("the request is older than the last one answered"),
-            Self::BadBox => f.write_str(
-                "the map's box must have an even number of tiles across, \
-                 at least 4 tiles per side, and at most as many tiles as the device has tile slots",
-            ),
             Self::BadParameter(parameter) => write!(f, "bad parameter: {parameter}"),
             Self::NoTeam => f.write_str("the session has no team; start it with one"),
         }

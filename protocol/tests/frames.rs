@@ -102,7 +102,6 @@ fn the_largest_messages_fit_and_fill_their_frames() {
             until_permille: u16::MAX,
             impatience_s: Some(u16::MAX),
         }),
-        box_tiles: (255, 255),
         lasers: [laser; MAX_SCANS].into_iter().collect(),
         hull: Hull {
             length_mm: u16::MAX,

@@ -164,7 +164,6 @@ fn space_field(field: &wire::SpaceField) -> SpaceField {
 /// # Errors
 /// [`wire::Parameter`]: the first parameter that is out of its range.
 pub fn config(start: &wire::Start, tuning: &'static Tuning) -> Result<Config, wire::Parameter> {
-    let (across, up) = start.box_tiles;
     let mut builder = Config::builder(hull(&start.hull))
         .tuning(tuning)
         .strategy(match start.strategy {
@@ -182,7 +181,6 @@ pub fn config(start: &wire::Start, tuning: &'static Tuning) -> Result<Config, wi
         })
         .order(order(start.order))
         .loops(loop_limits(&start.loops))
-        .box_tiles(across, up)
         .radius_m(f32::from(start.robot_radius_mm) / 1000.0)
         .max_speed(float(start.max_linear), float(start.max_angular))
         .acceleration(float(start.linear_accel), float(start.angular_accel))

@@ -31,10 +31,11 @@ pub use session::{Boot, Session};
 ///
 /// At 5 Hz two observations are then missing, and the robot has driven 35 cm at its full 0.7 m/s.
 pub const STALE_MS: u16 = 500;
-/// Number of tiles in the map's pool of the default image: 1556 m². With more tiles, the stack
-/// would not fit into the chip's memory.
-pub const TILES: usize = 152;
-/// Number of tile slots in the map's box of the default image: 20 × 20 tiles are 64 × 64 m.
-pub const SLOTS: usize = 400;
+/// Number of tiles in the map's pool of the default image: 2048 m². More would take the memory that
+/// is left for localisation.
+pub const TILES: usize = 200;
+/// Number of tiles that the map of the default image may have, those that need little or no place
+/// in the pool included.
+pub const SLOTS: usize = 250;
 /// The planner's state in the default image.
 pub type State = fieldline_planner::State<TILES, SLOTS>;

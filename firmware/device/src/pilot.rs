@@ -17,8 +17,8 @@
 //! give the same commands.
 
 use fieldline_planner::{
-    self as planner, BoxTooLarge, CellKind, Config, FIELD_SIDE as SIDE, Output, StageTimer, State,
-    Tuning, Workspace, step,
+    self as planner, CellKind, Config, FIELD_SIDE as SIDE, Output, StageTimer, State, Tuning,
+    Workspace, step,
 };
 use fieldline_protocol::message::{
     Activity, Body, Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS,
@@ -148,12 +148,9 @@ impl Pilot {
         start: &Start,
     ) -> Result<(), Refusal> {
         let config = convert::config(start, memory.tuning).map_err(Refusal::BadParameter)?;
-        let reset = memory.state.reset(&config);
-        reset.map_err(|BoxTooLarge { .. }| Refusal::BadBox)?;
+        memory.state.reset(&config);
         info!(
-            "session started: box {=u8} x {=u8} tiles, {=usize} lasers, radius {=u16} mm",
-            start.box_tiles.0,
-            start.box_tiles.1,
+            "session started: {=usize} lasers, radius {=u16} mm",
             start.lasers.len(),
             start.robot_radius_mm
         );

@@ -107,10 +107,10 @@ pub mod strategy;
 pub mod team;
 
 pub use config::{
-    Area, BoxTooLarge, Config, ConfigBuilder, ConfigError, FieldTuning, Goal, GoalLevel,
-    GroundTuning, LocaliseTuning, LoopLimits, MapTuning, Member, Method, Order, OrderTuning,
-    OuroborosTuning, Parameter, PreferenceMode, SbpfTuning, SolverConfig, SpaceField, Strategy,
-    TdbvpTuning, TeamPlace, Tuned, Tuning, TuningError, UnevenGround,
+    Area, Config, ConfigBuilder, ConfigError, FieldTuning, Goal, GoalLevel, GroundTuning,
+    LocaliseTuning, LoopLimits, MapTuning, Member, Method, Order, OrderTuning, OuroborosTuning,
+    Parameter, PreferenceMode, SbpfTuning, SolverConfig, SpaceField, Strategy, TdbvpTuning,
+    TeamPlace, Tuned, Tuning, TuningError, UnevenGround,
 };
 pub use field::SIDE as FIELD_SIDE;
 pub use geometry::{CELL_M, Cell, MapPose, Point, Pose, Twist};

@@ -94,12 +94,11 @@ impl Output {
 ///
 /// let config = Config::builder(RobotShape::PIONEER_3AT)
 ///     .laser(LaserMount::level(0.10, 0.40))
-///     .box_tiles(8, 8)
 ///     .build()?;
-/// // 16 tiles of memory in a box of at most 64 tiles.
-/// let mut state = Box::new(State::<16, 64>::new());
+/// // A map of at most 20 tiles, 16 of them with obstacles.
+/// let mut state = Box::new(State::<16, 20>::new());
 /// let mut workspace = Box::new(Workspace::new());
-/// state.reset(&config)?;
+/// state.reset(&config);
 /// let ranges_mm = [2_000; 181];
 /// let input = Input {
 ///     time_ms: 0,
@@ -109,7 +108,7 @@ impl Output {
 /// };
 /// let output: Output = step(&config, &mut state, &mut workspace, input, &mut ());
 /// assert!(output.velocity.linear_mps.abs() <= config.max_speed().linear_mps);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// # Ok::<(), fieldline_planner::ConfigError>(())
 /// ```
 pub fn step<const TILES: usize, const SLOTS: usize>(
     config: &Config,
@@ -244,10 +243,12 @@ fn advance_plan<const TILES: usize, const SLOTS: usize>(
         state.has_new_skeleton = !replan(config, state, workspace, footprint, input);
         timer.mark(Stage::Plan);
     } else {
-        state.has_new_skeleton =
-            state
-                .skeleton
-                .advance(state.map.tiles(), footprint, THINNING_WORDS);
+        state.has_new_skeleton = state.skeleton.advance(
+            state.map.tiles(),
+            footprint,
+            bytemuck::cast_slice_mut(&mut workspace.scratch),
+            THINNING_WORDS,
+        );
         timer.mark(Stage::Topology);
     }
     planned

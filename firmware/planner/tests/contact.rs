@@ -87,7 +87,7 @@ fn a_held_robot_stops_pushing_and_the_run_ends() {
         .period_s(PERIOD_S)
         .build()
         .expect("valid");
-    let mut planner = Box::new(Planner::<F405>::new(&config).expect("fits"));
+    let mut planner = Box::new(Planner::<F405>::new(&config));
     let mut robot = Robot {
         pose: Pose::default(),
         velocity: Twist::default(),

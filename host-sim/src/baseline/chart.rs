@@ -2,15 +2,14 @@
 //!
 //! A cell is *passable* if the robot's centre may be there: outside of the planner's own footprint
 //! around each obstacle cell. All other cells count as obstacles, so an unknown cell into which the
-//! robot does not fit is no goal. The chart reaches one tile beyond the known extent, unless the
-//! box of the map ends there: a cell that the map cannot store is no goal either.
+//! robot does not fit is no goal. The chart reaches one tile beyond the known extent.
 //!
 //! Invariant: the cells of the outermost ring are not passable, so a passable cell has eight
 //! neighbours by plain index arithmetic. Units: map cells of 10 cm; index = row · width + column.
 
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::map::Tiles;
-use fieldline_planner::map::tiles::{Extent, TILE_SIDE};
+use fieldline_planner::map::tiles::TILE_SIDE;
 use fieldline_planner::roadmap::configuration_space::{Footprint, for_each_strip};
 
 use crate::metrics::CellArea;
@@ -29,8 +28,8 @@ pub struct Chart {
     flags: Vec<u8>,
     /// Cells that are passable only because the robot stands beside them.
     freed: Vec<usize>,
-    /// Extent and edit count of the map at the last copy.
-    drawn: Option<(Extent, u32)>,
+    /// Edit count of the map at the last copy.
+    drawn: Option<u32>,
 }
 
 impl Chart {
@@ -47,17 +46,17 @@ impl Chart {
         footprint: &Footprint,
         robot: Point,
     ) {
-        let Some(extent) = tiles.extent() else {
+        let Some(area) = around(tiles) else {
             *self = Self::new();
             return;
         };
         for index in self.freed.drain(..) {
             self.flags[index] &= !PASSABLE;
         }
-        let state = Some((extent, tiles.edits()));
+        let state = Some(tiles.edits());
         if self.drawn != state {
             self.drawn = state;
-            self.area = around(extent, tiles.box_tiles());
+            self.area = area;
             self.flags.clear();
             self.flags.resize(self.area.len(), 0);
             self.copy(tiles, footprint);
@@ -211,24 +210,21 @@ impl Chart {
     }
 }
 
-/// The cells of a map's extent, widened by one tile on each side if the box of the map has room.
-fn around(extent: Extent, (across, up): (i32, i32)) -> CellArea {
-    let widen = |least: i32, greatest: i32, most: i32| {
-        let spare = most - (greatest - least + 1);
-        (
-            least - i32::from(spare > 1),
-            greatest + i32::from(spare > 0),
-        )
+/// Returns the cells of a map's extent, widened by one tile on each side; `None` if it is empty.
+fn around<const TILES: usize, const SLOTS: usize>(tiles: &Tiles<TILES, SLOTS>) -> Option<CellArea> {
+    let ends = |of: fn((i32, i32)) -> i32| {
+        let least = tiles.touched().map(of).min()?;
+        let greatest = tiles.touched().map(of).max()?;
+        Some((least - 1, usize::try_from(greatest - least + 3).ok()?))
     };
-    let (west, east) = widen(extent.least.0, extent.greatest.0, across);
-    let (south, north) = widen(extent.least.1, extent.greatest.1, up);
-    let cells = |tiles: i32| usize::try_from(tiles * TILE_SIDE).unwrap_or(0);
-    CellArea {
+    let ((west, across), (south, up)) = (ends(|(x, _)| x)?, ends(|(_, y)| y)?);
+    let side = TILE_SIDE as usize;
+    Some(CellArea {
         x: west * TILE_SIDE,
         y: south * TILE_SIDE,
-        width: cells(east - west + 1),
-        height: cells(north - south + 1),
-    }
+        width: across * side,
+        height: up * side,
+    })
 }
 
 /// Charts from characters, for the tests of the baselines.
@@ -251,9 +247,7 @@ pub(super) mod sketch {
     /// Does the same for a robot of this radius, metres.
     pub(crate) fn chart_for(rows: &[&str], radius_m: f32) -> (Chart, Point) {
         let mut tiles: Box<Tiles<128, 128>> = Box::new(Tiles::new());
-        let long = rows.iter().any(|row| row.len() > 200);
-        let (across, up) = if long { (32, 4) } else { (10, 10) };
-        tiles.reset(across, up);
+        tiles.reset();
         let mut robot = Cell::default();
         for (y, row) in (0..).zip(rows.iter().rev()) {
             for (x, character) in (0..).zip(row.chars()) {

@@ -21,8 +21,8 @@ use fieldline_planner::config::{Config, Tuning};
 use fieldline_planner::drive::{CollisionChecker, Drive, Place, SCRATCH_WORDS, SearchQuery};
 use fieldline_planner::geometry::{Cell, Point, Pose, Twist};
 use fieldline_planner::input::Input;
+use fieldline_planner::map::Map;
 use fieldline_planner::map::obstacle_points::{self, ObstaclePoints};
-use fieldline_planner::map::{Map, Tiles};
 use fieldline_planner::math;
 use fieldline_planner::planner::starts_blocked;
 use fieldline_planner::roadmap::configuration_space::Footprint;
@@ -98,10 +98,6 @@ impl<S: Strategy> Session<S> {
 
     fn start(&mut self, start: &Start) -> Result<(), Refusal> {
         let config = convert::config(start, &Tuning::DEFAULT).map_err(Refusal::BadParameter)?;
-        let (across, up) = config.box_tiles();
-        if !Tiles::<TILES, SLOTS>::fits(across, up) {
-            return Err(Refusal::BadBox);
-        }
         self.map.begin(&config);
         self.obstacle_points.clear();
         self.heights = HeightGrid::default();

@@ -17,8 +17,8 @@ use super::robot::RobotArgs;
 use super::strategies;
 use super::team::TeamArgs;
 use super::values::{
-    area, failing, ground_parameters, impatience, imu_noise, laser_noise, map_shape, patrol_for,
-    people, seed, snapshots, start, time_limit, until, working,
+    area, failing, ground_parameters, impatience, imu_noise, laser_noise, patrol_for, people, seed,
+    snapshots, start, time_limit, until, working,
 };
 
 /// Explore simulated worlds with the Fieldline planner; without a command, explore the built-in
@@ -191,10 +191,6 @@ pub(super) struct ExploreArgs {
     /// Number of people who walk about, 0 to 50, on flat ground
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = people)]
     pub(super) people: usize,
-    /// Extent of the device's map in metres across and up, as in 128x32 [default: chosen for the
-    /// world]
-    #[arg(long, value_name = "AxB", value_parser = map_shape, allow_hyphen_values = true)]
-    pub(super) map_shape: Option<(u8, u8)>,
     /// Compare every step's heading with that of the converged window
     #[arg(long)]
     pub(super) check_field: bool,
@@ -244,7 +240,6 @@ impl Default for ExploreArgs {
             fault: None,
             disturb: None,
             people: 0,
-            map_shape: None,
             check_field: false,
             snapshots: 0,
             robot: RobotArgs::default(),

@@ -322,7 +322,6 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         patrol_s: args.patrol_for,
         space: space(args),
         impatience_s: args.tdbvp_impatience.map_or(IMPATIENCE_S, |it| it.0),
-        box_tiles: args.map_shape,
         check_field: args.check_field,
         snapshots: args.snapshots,
         ..Mission::default()

@@ -117,18 +117,6 @@ fn deviation(text: &str, most: f64, unit: &str) -> Result<f64, String> {
     }
 }
 
-/// Parses `AxB` metres; returns tiles.
-pub(super) fn map_shape(text: &str) -> Result<(u8, u8), String> {
-    let side = |text: &str| text.trim().parse::<f64>().ok();
-    let sides = text.split_once('x');
-    sides
-        .and_then(|(a, b)| side(a).zip(side(b)))
-        .and_then(|(across_m, up_m)| host_sim::trial::shape::of_metres(across_m, up_m))
-        .ok_or_else(|| {
-            "give metres across and up, each above 0 and at most 812, as in 128x32".into()
-        })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,10 +148,5 @@ mod tests {
         }
         assert_eq!((snapshots("0"), snapshots("500")), (Ok(0), Ok(500)));
         assert!(snapshots("501").is_err() && snapshots("-1").is_err());
-        assert_eq!(map_shape("128x32"), Ok((40, 10)));
-        assert_eq!(map_shape("1 x 1"), Ok((4, 4)));
-        for bad in ["128", "x", "-1x5", "0x5", "axb", "nanx3", "infx3", "3x1e9"] {
-            assert!(map_shape(bad).is_err(), "{bad}");
-        }
     }
 }

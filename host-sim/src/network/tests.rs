@@ -52,7 +52,7 @@ fn member(carrier: impl Carrier + 'static, key: Key, id: u8) -> Networked {
 fn steps(member: &mut Networked, steps: u32) {
     let world = World::builtin("office").expect("built in");
     let mut simulator = Simulator::new(&world, SimConfig::default()).expect("fits");
-    let start: Start = simulator.start_message(Strategy::Frontier, (12, 12));
+    let start: Start = simulator.start_message(Strategy::Frontier);
     member.control(&Control::Start(start)).expect("starts");
     for _ in 0..steps {
         let command = member.observe(&simulator.observe()).expect("a command");

@@ -59,8 +59,8 @@ pub fn run(
     step: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Replayed, LinkError> {
     let laser = LogLaser::of(scans);
-    let slots = link.hello()?.tile_slots;
-    let mut status = link.control(&Control::Start(start(&laser, slots)))?;
+    link.hello()?;
+    let mut status = link.control(&Control::Start(start(&laser)))?;
     let began = scans.first().map_or(0.0, |scan| scan.time);
     let (mut poses, mut qualities) = (Vec::new(), Vec::new());
     let mut map_from_odom = [0.0; 3];

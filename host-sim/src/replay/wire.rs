@@ -16,7 +16,6 @@ use fixed::types::{I4F12, I16F16};
 use super::carmen::LogScan;
 use super::relations::{Pose, compose, inverse};
 use crate::robot::{self, Velocity, wrap};
-use crate::trial::shape;
 
 /// Greatest range limit, metres: that of the simulated lasers.
 const LIMIT_M: f64 = 12.0;
@@ -132,12 +131,10 @@ fn mount(scans: &[LogScan]) -> Pose {
     }
 }
 
-/// Returns the start message of a session that localises and maps, for a device with so many slots
-/// for tiles.
+/// Returns the start message of a session that localises and maps.
 #[must_use]
-pub fn start(laser: &LogLaser, slots: u16) -> Start {
+pub fn start(laser: &LogLaser) -> Start {
     Start {
-        box_tiles: shape::for_world([0.0; 2], slots),
         lasers: [laser.laser].into_iter().collect(),
         robot_radius_mm: 300,
         max_linear: I4F12::lit("0.7"),

@@ -29,13 +29,12 @@ fn hull(footprint: &Footprint) -> Hull {
 }
 
 impl Simulator<'_> {
-    /// The start message for the planner, with a map box of `box_tiles`.
+    /// The start message for the planner.
     #[must_use]
-    pub fn start_message(&self, strategy: Strategy, box_tiles: (u8, u8)) -> Start {
+    pub fn start_message(&self, strategy: Strategy) -> Start {
         let limits = &self.config.limits;
         Start {
             strategy,
-            box_tiles,
             lasers: [laser::level(), laser::tilted()].into_iter().collect(),
             hull: hull(&self.config.footprint),
             robot_radius_mm: millimetres(self.config.radius_m),

@@ -184,7 +184,7 @@ fn a_robot_that_drives_into_a_hole_falls_once_and_stays() {
 fn the_start_message_announces_what_is_simulated() {
     let world = office();
     let sim = Simulator::new(&world, SimConfig::default()).expect("fits");
-    let start = sim.start_message(Strategy::Frontier, (20, 20));
+    let start = sim.start_message(Strategy::Frontier);
     assert_eq!(start.robot_radius_mm, 300);
     assert_eq!((start.lasers[0].beams, start.lasers[1].beams), (181, 181));
     assert_eq!(start.lasers[0].range_limit_mm, 12_000);

@@ -104,9 +104,7 @@ fn fault_advice(fault: Fault) -> &'static str {
              change robots: of the world, or choose another --start"
         }
         Fault::MapFull => "the device's map is full; use a larger image or a smaller world",
-        Fault::OutOfBox => {
-            "the world does not fit the map's box; choose its shape with --map-shape"
-        }
+        Fault::OutOfBox => "the world is larger than the map, which ends 403 m from its start",
         Fault::BadObservation => "an observation did not match the lasers of the start message",
         Fault::Trapped => {
             "the forces of the field lead nowhere; --sbpf-impatience 5 lets the robot follow a path"

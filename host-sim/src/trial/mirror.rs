@@ -141,7 +141,7 @@ mod tests {
     fn seen_from_the_start() -> (Mirror, BTreeMap<(i16, i16), Tile>) {
         let world = World::builtin("office").unwrap();
         let mut sim = Simulator::new(&world, SimConfig::default()).unwrap();
-        let mut mirror = Mirror::new(&sim.start_message(Strategy::Frontier, (20, 20)));
+        let mut mirror = Mirror::new(&sim.start_message(Strategy::Frontier));
         for _ in 0..5 {
             mirror.observe(&sim.observe(), Status::Exploring);
         }
@@ -213,7 +213,7 @@ mod tests {
     fn a_paused_device_enters_nothing() {
         let world = World::builtin("office").unwrap();
         let mut sim = Simulator::new(&world, SimConfig::default()).unwrap();
-        let mut mirror = Mirror::new(&sim.start_message(Strategy::Frontier, (20, 20)));
+        let mut mirror = Mirror::new(&sim.start_message(Strategy::Frontier));
         mirror.observe(&sim.observe(), Status::Paused);
         assert!(mirror.equals(&BTreeMap::new()));
     }

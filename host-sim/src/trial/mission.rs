@@ -13,7 +13,7 @@ use fixed::types::I16F16;
 
 use super::account::Account;
 use super::space::SpaceMission;
-use super::{Cast, Record, Setup, Watch, run, shape, summary};
+use super::{Cast, Record, Setup, Watch, run, summary};
 use crate::link::{Link, LinkError};
 use crate::report::Report;
 use crate::robot::{
@@ -80,8 +80,6 @@ pub struct Mission {
     pub impatience_s: Option<u16>,
     /// Area and end of the exploration; for strategies sbpf and esbpf.
     pub space: SpaceMission,
-    /// Shape of the map's box in tiles; chosen for the world if `None`.
-    pub box_tiles: Option<(u8, u8)>,
     /// Time from one observation to the next, milliseconds.
     pub period_ms: u32,
     /// Compare every heading with that of the converged window.
@@ -116,7 +114,6 @@ impl Default for Mission {
             patrol_s: 0,
             impatience_s: IMPATIENCE_S,
             space: SpaceMission::default(),
-            box_tiles: None,
             period_ms: SimConfig::default().period_ms,
             check_field: false,
             snapshots: 0,
@@ -169,15 +166,6 @@ pub enum MissionError {
     World(WorldError),
     /// The device did not answer the hello.
     Link(LinkError),
-    /// The map's box has more tiles than the device has slots.
-    Box {
-        /// Tiles across.
-        across: u8,
-        /// Tiles up.
-        up: u8,
-        /// The device's slots.
-        slots: u16,
-    },
 }
 
 impl fmt::Display for MissionError {
@@ -185,12 +173,6 @@ impl fmt::Display for MissionError {
         match self {
             Self::World(error) => error.fmt(f),
             Self::Link(error) => error.fmt(f),
-            Self::Box { across, up, slots } => write!(
-                f,
-                "a map of {across} x {up} tiles of {} m does not fit the device's {slots} tiles; \
-                 choose a smaller --map-shape",
-                shape::TILE_M
-            ),
         }
     }
 }
@@ -322,31 +304,20 @@ pub fn check(mission: &Mission, world: &World) -> Result<(), WorldError> {
     Simulator::new(world, mission.sim_config()).map(|_| ())
 }
 
-/// Returns the settings of a run by a device with so many slots for tiles.
-pub(super) fn setup(
-    mission: &Mission,
-    simulator: &Simulator<'_>,
-    slots: u16,
-) -> Result<Setup, MissionError> {
-    let size_m = simulator.world().size_m();
-    let (across, up) = mission
-        .box_tiles
-        .unwrap_or_else(|| shape::for_world(size_m, slots));
-    if u32::from(across) * u32::from(up) > u32::from(slots) {
-        return Err(MissionError::Box { across, up, slots });
-    }
-    Ok(Setup {
+/// Returns the settings of a run.
+pub(super) fn setup(mission: &Mission, simulator: &Simulator<'_>) -> Setup {
+    Setup {
         start: wire::Start {
             uneven_ground: mission.uneven_ground,
             order: mission.order(),
             loops: mission.loops,
             localise: mission.localises(),
-            ..simulator.start_message(mission.strategy_in(simulator.world()), (across, up))
+            ..simulator.start_message(mission.strategy_in(simulator.world()))
         },
         time_limit_ms: mission.time_limit_ms,
         check_field: mission.check_field,
         snapshots: mission.snapshots,
-    })
+    }
 }
 
 /// Explores `world` over `link`.
@@ -360,7 +331,8 @@ pub fn explore(
     watch: &mut dyn Watch,
 ) -> Result<(Report, Record), MissionError> {
     let mut simulator = Simulator::new(world, mission.sim_config())?;
-    let setup = setup(mission, &simulator, link.hello()?.tile_slots)?;
+    link.hello()?;
+    let setup = setup(mission, &simulator);
     let mut account = Account::new(&setup, &simulator);
     let mut record = run(
         &setup,

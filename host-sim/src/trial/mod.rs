@@ -16,7 +16,6 @@ pub mod planned_path;
 pub mod record;
 pub mod relief;
 pub mod series;
-pub mod shape;
 pub mod snapshot;
 pub mod space;
 mod summary;

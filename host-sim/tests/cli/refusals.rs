@@ -207,9 +207,6 @@ fn bad_arguments_are_refused_in_one_line() {
         &["--working-limits climb=40", "--failing-limits"],
     );
     refused(&folder, &["explore", "loop@7"], &["robots[7]", "2 starts"]);
-    for bad in ["64", "-5x5", "nanx5", "infx5", "0x9"] {
-        explore(&["--map-shape", bad], &[bad, "128x32"]);
-    }
     for bad in ["", ","] {
         explore(&["--fault", bad], &["no fault is named", "drop=P"]);
     }
@@ -304,7 +301,6 @@ fn bad_arguments_are_refused_in_one_line() {
         &["--link direct"],
     );
     refused(&folder, &["explore", ""], &["has no name", "office"]);
-    explore(&["--map-shape", "500x500"], &["--map-shape", "400"]);
     fs::write(folder.path().join("file"), "").unwrap();
     explore(&["--out", "file/sub"], &["file/sub", "--out"]);
     explore(&["--out", "file"], &["file", "--out"]);

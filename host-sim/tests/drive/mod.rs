@@ -36,7 +36,6 @@ pub(crate) fn start() -> Start {
     };
     Start {
         strategy: Strategy::Frontier,
-        box_tiles: (20, 20),
         lasers: [level, tilted].into_iter().collect(),
         hull: Hull::default(),
         robot_radius_mm: 300,

@@ -46,9 +46,10 @@ pub struct Identity {
     pub build: heapless::String<BUILD_BYTES>,
     /// Number of boots since power-on.
     pub boots: u32,
-    /// Number of tile slots: the maximum area of the map's box, tiles.
+    /// Maximum number of tiles that the map can have.
     pub tile_slots: u16,
-    /// Number of tiles in the map's pool: the maximum number of tiles that can hold cells.
+    /// Number of tiles in the map's pool. A tile that is all free or has no obstacle needs little or
+    /// no place in it.
     pub tile_pool: u16,
     /// Length of the longest frame that the device accepts, bytes.
     pub max_frame: u16,

@@ -61,8 +61,6 @@ pub enum Refusal {
     NotStarted,
     /// The sequence number is older than the last one answered.
     OutOfOrder,
-    /// The shape of the map's box does not fit the device's tile slots.
-    BadBox,
     /// A parameter is out of its range.
     BadParameter(Parameter),
     /// The session has no team: [`Start::team`] is `None`.

@@ -204,9 +204,6 @@ impl Default for LoopLimits {
 pub struct Start {
     /// The strategy that plans.
     pub strategy: Strategy,
-    /// Size of the map's box in tiles of 3.2 m, across and up. Both are at least 4 and the number
-    /// across is even. Their product is at most [`Identity::tile_slots`].
-    pub box_tiles: (u8, u8),
     /// The laser scanners.
     pub lasers: Vec<Laser, MAX_SCANS>,
     /// The robot's hull.

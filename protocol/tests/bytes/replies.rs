@@ -255,27 +255,26 @@ fn reply_refused() {
         (Refusal::NotGreeted, &[7, 0][..]),
         (Refusal::NotStarted, &[7, 1]),
         (Refusal::OutOfOrder, &[7, 2]),
-        (Refusal::BadBox, &[7, 3]),
-        (Refusal::BadParameter(Parameter::Lasers), &[7, 4, 0]),
-        (Refusal::BadParameter(Parameter::Beams), &[7, 4, 1]),
-        (Refusal::BadParameter(Parameter::RangeLimit), &[7, 4, 2]),
-        (Refusal::BadParameter(Parameter::Bearing), &[7, 4, 3]),
-        (Refusal::BadParameter(Parameter::Pitch), &[7, 4, 4]),
-        (Refusal::BadParameter(Parameter::Mount), &[7, 4, 5]),
-        (Refusal::BadParameter(Parameter::Radius), &[7, 4, 6]),
-        (Refusal::BadParameter(Parameter::MaxLinear), &[7, 4, 7]),
-        (Refusal::BadParameter(Parameter::MaxAngular), &[7, 4, 8]),
-        (Refusal::BadParameter(Parameter::LinearAccel), &[7, 4, 9]),
-        (Refusal::BadParameter(Parameter::AngularAccel), &[7, 4, 10]),
-        (Refusal::BadParameter(Parameter::Period), &[7, 4, 11]),
-        (Refusal::BadParameter(Parameter::Preference), &[7, 4, 12]),
-        (Refusal::BadParameter(Parameter::UnevenGround), &[7, 4, 13]),
-        (Refusal::BadParameter(Parameter::Hull), &[7, 4, 14]),
-        (Refusal::BadParameter(Parameter::LoopLimits), &[7, 4, 15]),
-        (Refusal::BadParameter(Parameter::Worth), &[7, 4, 16]),
-        (Refusal::BadParameter(Parameter::Area), &[7, 4, 17]),
-        (Refusal::BadParameter(Parameter::Coverage), &[7, 4, 18]),
-        (Refusal::NoTeam, &[7, 5]),
+        (Refusal::BadParameter(Parameter::Lasers), &[7, 3, 0]),
+        (Refusal::BadParameter(Parameter::Beams), &[7, 3, 1]),
+        (Refusal::BadParameter(Parameter::RangeLimit), &[7, 3, 2]),
+        (Refusal::BadParameter(Parameter::Bearing), &[7, 3, 3]),
+        (Refusal::BadParameter(Parameter::Pitch), &[7, 3, 4]),
+        (Refusal::BadParameter(Parameter::Mount), &[7, 3, 5]),
+        (Refusal::BadParameter(Parameter::Radius), &[7, 3, 6]),
+        (Refusal::BadParameter(Parameter::MaxLinear), &[7, 3, 7]),
+        (Refusal::BadParameter(Parameter::MaxAngular), &[7, 3, 8]),
+        (Refusal::BadParameter(Parameter::LinearAccel), &[7, 3, 9]),
+        (Refusal::BadParameter(Parameter::AngularAccel), &[7, 3, 10]),
+        (Refusal::BadParameter(Parameter::Period), &[7, 3, 11]),
+        (Refusal::BadParameter(Parameter::Preference), &[7, 3, 12]),
+        (Refusal::BadParameter(Parameter::UnevenGround), &[7, 3, 13]),
+        (Refusal::BadParameter(Parameter::Hull), &[7, 3, 14]),
+        (Refusal::BadParameter(Parameter::LoopLimits), &[7, 3, 15]),
+        (Refusal::BadParameter(Parameter::Worth), &[7, 3, 16]),
+        (Refusal::BadParameter(Parameter::Area), &[7, 3, 17]),
+        (Refusal::BadParameter(Parameter::Coverage), &[7, 3, 18]),
+        (Refusal::NoTeam, &[7, 4]),
     ] {
         reply_is(Reply::Refused(refusal), body);
     }
@@ -304,9 +303,9 @@ fn reply_crash() {
     }
 }
 
-/// Number 6 is free: no refusal has it.
+/// Number 5 is free: no refusal has it.
 #[test]
 fn an_unknown_refusal_is_not_a_reply() {
-    assert_eq!(replies(&frame(Kind::Reply, 1, &[7, 3])).0.len(), 1);
-    assert_eq!(replies(&frame(Kind::Reply, 1, &[7, 6])).0, []);
+    assert_eq!(replies(&frame(Kind::Reply, 1, &[7, 2])).0.len(), 1);
+    assert_eq!(replies(&frame(Kind::Reply, 1, &[7, 5])).0, []);
 }

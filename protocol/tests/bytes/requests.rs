@@ -39,7 +39,6 @@ fn request_control_start_on_uneven_ground() {
         &[
             1, 0, // Control, Start
             0, // frontier
-            0, 0, // box
             0, // no lasers
             0xfc, 0x03, 0xf1, 0x03, 0x95, 0x02, // hull of the 3-AT
             0, 0, 0, 0, 0, 0, // radius, speeds, accelerations, period
@@ -113,7 +112,6 @@ fn request_control_start() {
     request_is(
         Request::Control(Control::Start(Start {
             strategy: Strategy::Frontier,
-            box_tiles: (20, 12),
             lasers: [laser].into_iter().collect(),
             hull: Hull::default(),
             robot_radius_mm: 300,
@@ -135,8 +133,8 @@ fn request_control_start() {
         })),
         &[
             1, 0, // Control, Start
-            0, 20, 12, // Frontier, box
-            1,  // one laser
+            0, // Frontier
+            1, // one laser
             0x80, 0x20, // x 0.5 m = 2048/4096, zigzag 4096
             0xff, 0x0f, // y −0.25 m = −1024/4096, zigzag 2047
             0x80, 0x40, // z 1 m

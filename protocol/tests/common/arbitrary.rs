@@ -116,7 +116,7 @@ fn start() -> impl Strategy<Value = Start> {
     (
         (
             strategy,
-            any::<(u8, u8, bool, bool)>(),
+            any::<(bool, bool)>(),
             prop::option::of(uneven_ground()),
             prop::option::of(team()),
             order(),
@@ -128,7 +128,7 @@ fn start() -> impl Strategy<Value = Start> {
     )
         .prop_map(
             |(
-                (strategy, (across, up, localise, survey), uneven_ground, team, order),
+                (strategy, (localise, survey), uneven_ground, team, order),
                 lasers,
                 (sizes, loops),
                 period_ms,
@@ -139,7 +139,6 @@ fn start() -> impl Strategy<Value = Start> {
                 let [max_linear, max_angular, linear_accel, angular_accel] = limits;
                 Start {
                     strategy,
-                    box_tiles: (across, up),
                     lasers,
                     hull: Hull {
                         length_mm,
@@ -506,7 +505,6 @@ fn refusal() -> impl Strategy<Value = Refusal> {
         Refusal::NotGreeted,
         Refusal::NotStarted,
         Refusal::OutOfOrder,
-        Refusal::BadBox,
         Refusal::NoTeam,
         Refusal::BadParameter(Parameter::Beams),
         Refusal::BadParameter(Parameter::MaxAngular),

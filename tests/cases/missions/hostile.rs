@@ -120,10 +120,6 @@ impl AbsurdHost {
         };
         let mut start = Start {
             strategy: Strategy::Frontier,
-            box_tiles: (
-                2 * self.random.between(2, 10) as u8,
-                self.random.between(4, 20) as u8,
-            ),
             lasers: (0..count).map(|k| self.laser(k == 0)).collect(),
             hull: self.hull(),
             robot_radius_mm: self.random.between(50, 600) as u16,
@@ -147,7 +143,6 @@ impl AbsurdHost {
             *accel = I4F12::from_bits(self.random.between(least, i64::from(i16::MAX)) as i16);
         }
         if self.random.once_in(30) {
-            start.box_tiles = (self.random.bits() as u8, self.random.bits() as u8);
             start.robot_radius_mm = self.random.bits() as u16;
             start.max_linear = self.narrow();
         }

@@ -60,7 +60,7 @@ impl Survey for Nobody {
 fn witnessed(link: &mut dyn Link, world: &World) -> (Record, Vec<Period>) {
     let robot = Simulator::new(world, SimConfig::default()).expect("the start is free");
     let setup = Setup {
-        start: robot.start_message(Strategy::Frontier, (20, 20)),
+        start: robot.start_message(Strategy::Frontier),
         time_limit_ms: 600_000,
         check_field: false,
         snapshots: 0,

@@ -19,7 +19,11 @@ fn the_shortest_and_the_longest_period_explore() {
         let report = at(period_ms).expect("the period is allowed");
         assert!(report.explored(), "{period_ms} ms: {:?}", report.outcome);
         assert_eq!(report.safety.collisions, 0, "{period_ms} ms");
-        assert!(report.coverage.fraction > 0.98, "{period_ms} ms");
+        assert!(
+            report.coverage.fraction > 0.98,
+            "{period_ms} ms: {}",
+            report.coverage.fraction
+        );
     }
 }
 

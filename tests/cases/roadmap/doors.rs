@@ -74,7 +74,7 @@ impl Door {
     /// centre it covers.
     fn draw(&self, touched: bool) -> Room {
         let mut tiles = Room::new();
-        tiles.reset(4, 4);
+        tiles.reset();
         let inside = |cell: Cell| (0..ROOM).contains(&cell.x) && (0..ROOM).contains(&cell.y);
         let mut set = |cell: Cell, class| {
             if inside(cell) {
@@ -136,7 +136,7 @@ fn is_open_at_10_cm(door: &Door, tiles: &Room, disc: &Footprint) -> bool {
 /// Returns true if the skeleton has a way from half to half.
 fn is_open_at_20_cm(door: &Door, tiles: &Room, disc: &Footprint) -> bool {
     let mut topology: Skeleton<16> = Skeleton::new();
-    while !topology.advance(tiles, disc, u32::MAX) {}
+    while !topology.advance(tiles, disc, &mut [0; 16 * 8], u32::MAX) {}
     let way = topology.skeleton().expect("it was published");
     let frame = topology.frame();
     let [one, other] = door.halves().map(|half| {

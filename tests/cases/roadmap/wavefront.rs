@@ -160,7 +160,10 @@ fn a_barrier_sends_the_wave_the_other_way_round() {
     };
     let free = walk(&mut memory);
     assert_eq!(free.len(), 7);
-    assert!(free.iter().all(|s| column_and_row(*s).1 < 2), "along the north: {free:?}");
+    assert!(
+        free.iter().all(|s| column_and_row(*s).1 < 2),
+        "along the north: {free:?}"
+    );
     let mut way = memory.way.clone();
     let keys = ring.keys();
     let mut plane = PlaneMut::new(Tiling::new(&keys), &mut way).unwrap();
@@ -168,7 +171,10 @@ fn a_barrier_sends_the_wave_the_other_way_round() {
     memory.way.copy_from_slice(plane.words_mut());
     let blocked = walk(&mut memory);
     assert_eq!(blocked.len(), 9);
-    assert!(blocked.iter().any(|s| column_and_row(*s).1 == 3), "round the south");
+    assert!(
+        blocked.iter().any(|s| column_and_row(*s).1 == 3),
+        "round the south"
+    );
     barrier.lower(&mut plane);
     memory.way.copy_from_slice(plane.words_mut());
     assert_eq!(walk(&mut memory), free);

@@ -272,29 +272,6 @@ fn limits_of_uneven_ground_are_checked() {
     assert_eq!(checked(&one_laser), refused);
 }
 
-#[test]
-fn the_box_must_fit_the_slots() {
-    for (box_tiles, fits) in [
-        ((20, 20), true),
-        ((30, 12), true),
-        ((100, 4), true),
-        ((4, 4), true),
-        ((21, 19), false),
-        ((22, 20), false),
-        ((0, 20), false),
-        ((20, 0), false),
-        ((2, 100), false),
-        ((254, 255), false),
-    ] {
-        let start = Start {
-            box_tiles,
-            ..start()
-        };
-        let expected = if fits { Ok(()) } else { Err(Refusal::BadBox) };
-        assert_eq!(checked(&start), expected, "{box_tiles:?}");
-    }
-}
-
 /// The wire and the planner write the default worth down twice. It may differ by the wire's digits.
 #[test]
 fn the_default_order_of_a_strategy_is_the_planners() {
@@ -352,7 +329,6 @@ fn scans_must_match_the_lasers() {
 #[test]
 fn a_session_takes_its_limits_from_the_host() {
     let start = Start {
-        box_tiles: (30, 12),
         robot_radius_mm: 250,
         max_linear: I4F12::lit("0.5"),
         max_angular: I4F12::lit("1.5"),
@@ -369,7 +345,6 @@ fn a_session_takes_its_limits_from_the_host() {
     };
     let config = config(&start, &Tuning::DEFAULT).expect("valid");
     assert_eq!(*config.robot(), RobotShape::rectangle(0.9, 0.6, 0.4));
-    assert_eq!(config.box_tiles(), (30, 12));
     assert_eq!(
         [
             config.radius_m(),

@@ -5,7 +5,7 @@ use std::boxed::Box;
 use fieldline_planner::{State, Tuning, Workspace};
 use fieldline_protocol::message::{
     Activity, Beacon, Body, Control, Fault, Finish, Hull, Laser, LoopLimits, Member, Observation,
-    Order, Packet, Refusal, Scan, SpaceField, Start, Status, Strategy, Team, Twist,
+    Order, Packet, Parameter, Refusal, Scan, SpaceField, Start, Status, Strategy, Team, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -29,7 +29,6 @@ pub(crate) fn start() -> Start {
     };
     Start {
         strategy: Strategy::Frontier,
-        box_tiles: (20, 20),
         lasers: [level, tilted].into_iter().collect(),
         hull: Hull::default(),
         robot_radius_mm: 300,
@@ -143,11 +142,11 @@ fn a_survey_maps_and_localises_and_never_moves_or_ends() {
 fn a_refused_start_changes_nothing() {
     let (mut pilot, mut bench) = started();
     let bad = Start {
-        box_tiles: (0, 1),
+        robot_radius_mm: 0,
         ..start()
     };
     let refused = pilot.control(&mut bench.memory(), &Control::Start(bad));
-    assert_eq!(refused, Err(Refusal::BadBox));
+    assert_eq!(refused, Err(Refusal::BadParameter(Parameter::Radius)));
     assert_eq!(pilot.status(), Status::Exploring);
 }
 

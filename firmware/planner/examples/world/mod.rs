@@ -75,8 +75,7 @@ fn scan(pose: &Pose, laser: &LaserMount) -> Vec<u16> {
 /// # Errors
 /// The status, if it is not "explored" in the end.
 pub(crate) fn explore(config: &Config) -> Result<(Box<Planner<F405>>, u32), String> {
-    let planner = Planner::new(config).map_err(|error| error.to_string())?;
-    let mut planner = Box::new(planner);
+    let mut planner = Box::new(Planner::<F405>::new(config));
     let (mut pose, mut velocity) = (Pose::default(), Twist::default());
     let period_s = config.period_s();
     for step in 0..MAX_STEPS {

@@ -113,13 +113,6 @@ impl ConfigBuilder {
         self
     }
 
-    /// Sets the map's box in tiles of 3.2 m, across and up. Default: 20 × 20, which is 64 × 64 m.
-    #[must_use]
-    pub const fn box_tiles(mut self, across: u8, up: u8) -> Self {
-        self.config.box_tiles = (across, up);
-        self
-    }
-
     /// Sets the radius of the disc that paths are planned for, metres: 0.05 to 0.6. Default:
     /// [`RobotShape::planning_radius_m`].
     #[must_use]

@@ -134,26 +134,3 @@ impl fmt::Display for ConfigError {
 }
 
 impl core::error::Error for ConfigError {}
-
-/// The map's box has more tile places than the capacity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BoxTooLarge {
-    /// The box in tiles, across and up.
-    pub box_tiles: (u8, u8),
-    /// Number of tile places of the capacity.
-    pub slots: usize,
-}
-
-impl fmt::Display for BoxTooLarge {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (across, up) = self.box_tiles;
-        write!(
-            f,
-            "a box of {across} x {up} tiles does not fit {} tile places; both sides must be at \
-             least 4 tiles, and the number across even",
-            self.slots
-        )
-    }
-}
-
-impl core::error::Error for BoxTooLarge {}

@@ -16,7 +16,7 @@ mod team;
 mod tuning;
 
 pub use builder::ConfigBuilder;
-pub use error::{BoxTooLarge, ConfigError, Parameter};
+pub use error::{ConfigError, Parameter};
 pub use goal::{Goal, GoalLevel};
 pub use ground::{KERNEL_CELLS, PreferenceMode, UnevenGround};
 pub use loops::LoopLimits;
@@ -84,8 +84,6 @@ pub struct Config {
     pub(crate) robot: RobotShape,
     /// The laser scanners; the first one is level.
     pub(crate) lasers: Vec<LaserMount, 2>,
-    /// The map's box in tiles of 3.2 m, across and up.
-    pub(crate) box_tiles: (u8, u8),
     /// Radius of the disc that paths are planned for, metres.
     pub(crate) robot_radius_m: f32,
     /// Greatest speed, metres per second. Default: 0.7 (Pioneer 3-AT).
@@ -136,7 +134,6 @@ impl Config {
             goal_level: None,
             robot,
             lasers,
-            box_tiles: (20, 20),
             robot_radius_m: robot.planning_radius_m(),
             max_linear_mps: 0.7,
             max_angular_radps: 2.44,
@@ -187,12 +184,6 @@ impl Config {
     #[must_use]
     pub fn lasers(&self) -> &[LaserMount] {
         &self.lasers
-    }
-
-    /// Returns the map's box in tiles of 3.2 m, across and up.
-    #[must_use]
-    pub const fn box_tiles(&self) -> (u8, u8) {
-        self.box_tiles
     }
 
     /// Returns the radius of the disc that paths are planned for, metres.

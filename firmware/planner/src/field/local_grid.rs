@@ -273,7 +273,7 @@ mod tests {
 
     fn room() -> Tiles<16, 64> {
         let mut tiles = Tiles::new();
-        tiles.reset(8, 8);
+        tiles.reset();
         for y in -40..40 {
             for x in -40..40 {
                 let wall = x == -30 || y == 21 || (x == 7 && y % 9 != 0);

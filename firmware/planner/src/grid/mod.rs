@@ -262,7 +262,11 @@ mod tests {
         ";
         let keys = [key(0, 0)];
         let mut words = [u32::MAX; 8];
-        draw(&mut PlaneMut::new(Tiling::new(&keys), &mut words).unwrap(), key(0, 0), picture);
+        draw(
+            &mut PlaneMut::new(Tiling::new(&keys), &mut words).unwrap(),
+            key(0, 0),
+            picture,
+        );
         assert_eq!(words, [0b0110 << 16 | 0b1001, 0, 0, 0, 0, 0, 0, 0]);
     }
 }

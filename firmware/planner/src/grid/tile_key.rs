@@ -16,8 +16,6 @@ use crate::grid::Site;
 
 /// Cells of a plane along a tile's side, as a power of two.
 const SHIFT: u16 = 4;
-/// Tiles from the first one to the end of the range, in either direction.
-const REACH: i32 = 126;
 /// Column and row of the first tile.
 const MIDDLE: i32 = 128;
 
@@ -26,6 +24,8 @@ const MIDDLE: i32 = 128;
 pub struct TileKey(u16);
 
 impl TileKey {
+    /// Tiles from the first one to the end of the range, in either direction: 403 m.
+    pub const REACH: i32 = 126;
     /// The key of no tile.
     pub(crate) const NONE: Self = Self(0);
 
@@ -34,7 +34,11 @@ impl TileKey {
     #[must_use]
     #[inline]
     pub const fn of(columns: i32, rows: i32) -> Option<Self> {
-        if columns < -REACH || columns > REACH || rows < -REACH || rows > REACH {
+        if columns < -Self::REACH
+            || columns > Self::REACH
+            || rows < -Self::REACH
+            || rows > Self::REACH
+        {
             return None;
         }
         Some(Self(((rows + MIDDLE) << 8 | (columns + MIDDLE)) as u16))

@@ -61,6 +61,11 @@ impl<T: Copy, const N: usize> TileMap<T, N> {
         TileKey::of(columns, rows)
     }
 
+    /// Returns true if a tile is within range of the first one, or would be the first.
+    pub(crate) fn reaches(&self, tile: (i32, i32)) -> bool {
+        self.keys.is_empty() || self.key(tile).is_some()
+    }
+
     /// Returns true if there is no place for another tile.
     pub(crate) fn is_full(&self) -> bool {
         self.keys.is_full()

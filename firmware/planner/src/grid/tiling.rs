@@ -273,7 +273,17 @@ mod tests {
 
     /// Keys of tiles that touch each other in many ways.
     fn keys() -> Vec<TileKey> {
-        let at = [(0, 0), (1, 0), (3, 0), (0, 1), (2, 1), (3, 1), (1, 3), (2, 3), (1, 4)];
+        let at = [
+            (0, 0),
+            (1, 0),
+            (3, 0),
+            (0, 1),
+            (2, 1),
+            (3, 1),
+            (1, 3),
+            (2, 3),
+            (1, 4),
+        ];
         at.map(|(x, y)| TileKey::of(x, y).unwrap()).to_vec()
     }
 
@@ -318,9 +328,22 @@ mod tests {
                 seed ^ seed >> 15
             })
             .collect();
-        let get = |site: Site| tiling.index(site).is_some_and(|i| words[i] & site.bit() != 0);
+        let get = |site: Site| {
+            tiling
+                .index(site)
+                .is_some_and(|i| words[i] & site.bit() != 0)
+        };
         // North is towards row 0.
-        let ring = [(0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1)];
+        let ring = [
+            (0, -1),
+            (1, -1),
+            (1, 0),
+            (1, 1),
+            (0, 1),
+            (-1, 1),
+            (-1, 0),
+            (-1, -1),
+        ];
         for index in 0..tiling.words() {
             let block = Block::read(tiling, &words, index / PAGE_WORDS);
             let k = index % PAGE_WORDS;

@@ -61,7 +61,7 @@ mod tests {
 
     fn tiles(obstacles: impl Fn(i32, i32) -> bool) -> Box<Tiles<16, 64>> {
         let mut tiles = Box::new(Tiles::<16, 64>::new());
-        tiles.reset(8, 8);
+        tiles.reset();
         for (x, y) in (-40..40).flat_map(|x| (-40..40).map(move |y| (x, y))) {
             let class = if obstacles(x, y) {
                 Class::Obstacle

@@ -214,7 +214,7 @@ mod tests {
     #[test]
     fn counts_are_those_of_single_cells() {
         let mut tiles = Box::new(Tiles::<16, 64>::new());
-        tiles.reset(8, 8);
+        tiles.reset();
         let mut seed = 7_u32;
         for (x, y) in (-60..60).flat_map(|x| (-60..60).map(move |y| (x, y))) {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

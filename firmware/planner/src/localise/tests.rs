@@ -318,7 +318,7 @@ fn two_seconds_without_a_scan_are_bridged() {
 #[test]
 fn the_constraints_are_those_of_a_naive_twin() {
     let mut tiles = Box::new(Tiles::<16, 64>::new());
-    tiles.reset(8, 8);
+    tiles.reset();
     for (x, y) in (-30..30).flat_map(|x| (-30..30).map(move |y| (x, y))) {
         let stands = x == 20 || y == -18 || (y == 12 + x / 3 && x < 5) || (x, y) == (8, 4);
         let class = if stands { Class::Obstacle } else { Class::Free };

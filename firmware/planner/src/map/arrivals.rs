@@ -33,16 +33,24 @@ pub(super) const fn came(class: Class) -> Class {
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Returns true if something came that may be gone. For flat ground.
     pub(crate) fn has_arrivals(&self) -> bool {
-        let lone = |tile| -> u32 {
+        let mut lone = 0;
+        for place in 0.. {
+            let Some(tile) = self.tile_at(place) else {
+                break;
+            };
             let rows = self.lone_arrivals(tile);
-            rows.iter().map(|row| row.count_ones()).sum()
-        };
-        self.places().map(lone).sum::<u32>() >= LEAST_LONE
+            lone += rows.iter().map(|row| row.count_ones()).sum::<u32>();
+        }
+        lone >= LEAST_LONE
     }
 
     /// Takes all lone arrivals for gone. For flat ground.
     pub fn forget_arrivals(&mut self) {
-        for (tile_x, tile_y) in self.places() {
+        // The tiles stay the same: only their cells change.
+        for place in 0.. {
+            let Some((tile_x, tile_y)) = self.tile_at(place) else {
+                break;
+            };
             let (x, first_y) = (tile_x * TILE_SIDE, tile_y * TILE_SIDE);
             for (y, lone) in (first_y..).zip(self.lone_arrivals((tile_x, tile_y))) {
                 for k in ones(lone) {
@@ -56,13 +64,15 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 
     /// Returns the number of cells that were measured.
     pub(crate) fn known_cells(&self) -> u32 {
-        let known = |(tile_x, tile_y): (i32, i32)| -> u32 {
-            let rows = tile_y * TILE_SIDE..(tile_y + 1) * TILE_SIDE;
-            let mut reader = self.tiles.reader(tile_x * TILE_SIDE);
-            let known = rows.map(|y| !reader.row(y).unknown() as u32);
-            known.map(u32::count_ones).sum()
-        };
-        self.places().map(known).sum()
+        let mut known = 0;
+        for &key in self.tiles.keys() {
+            let (x, y) = self.tiles.directory.tile(key);
+            let mut reader = self.tiles.reader(x * TILE_SIDE);
+            for y in y * TILE_SIDE..(y + 1) * TILE_SIDE {
+                known += (!reader.row(y).unknown() as u32).count_ones();
+            }
+        }
+        known
     }
 
     /// Returns a tile's cells as [`Tiles::packed`](crate::map::Tiles::packed) does. On flat ground
@@ -85,17 +95,10 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         Some(bytes)
     }
 
-    /// Returns the places of the tiles within the extent.
-    fn places(&self) -> impl Iterator<Item = (i32, i32)> + use<TILES, SLOTS> {
-        let (width, count, least) = match self.tiles.extent() {
-            Some(extent) => (
-                extent.width(),
-                extent.width() * extent.height(),
-                extent.least,
-            ),
-            None => (1, 0, (0, 0)),
-        };
-        (0..count).map(move |k| (least.0 + k % width, least.1 + k / width))
+    /// Returns the column and the row of the tile at a place in the directory.
+    fn tile_at(&self, place: usize) -> Option<(i32, i32)> {
+        let key = *self.tiles.keys().get(place)?;
+        Some(self.tiles.directory.tile(key))
     }
 
     /// Returns the lone arrivals of a tile, row by row. It is large and has three callers, so it is
@@ -148,7 +151,7 @@ mod tests {
     /// Draws a map, least y first: `.` free, `#` wall, `o` came, blank unknown.
     fn drawn(picture: &[&str]) -> Box<Plan> {
         let mut map = Box::new(Plan::new());
-        map.reset(8, 8);
+        map.reset();
         for (y, row) in (28..).zip(picture) {
             for (x, mark) in (28..).zip(row.chars()) {
                 let class = match mark {

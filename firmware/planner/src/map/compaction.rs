@@ -347,7 +347,7 @@ mod tests {
 
     fn small() -> Box<Small> {
         let mut tiles = Box::<Small>::default();
-        tiles.reset(20, 20);
+        tiles.reset();
         tiles
     }
 

@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! | --- | --- |
-//! | [`tiles`], `tile`, `extent` | the class of every cell, for the whole run |
+//! | [`tiles`], `tile` | the class of every cell, for the whole run |
 //! | `compaction` | smaller storage for tiles with little content |
 //! | `versions`, [`exchange`], `join` | for a team: tiles with versions, and their joins |
 //! | `rows` | rows of 32 and 64 cells, for all planning |
@@ -19,7 +19,6 @@ pub(crate) mod compaction;
 mod elevation_layer;
 pub(crate) mod evidence;
 pub(crate) mod exchange;
-mod extent;
 pub(crate) mod integrate;
 pub(crate) mod join;
 pub(crate) mod neighbourhood;
@@ -83,15 +82,15 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 
     /// Clears the map and begins a session.
     pub fn begin(&mut self, config: &Config) {
-        self.reset(config.box_tiles.0, config.box_tiles.1);
+        self.reset();
         if config.ground.is_some() {
             self.lend_memory_to_elevation();
         }
     }
 
-    /// Clears the map; the box becomes `width` × `height` tiles.
-    pub(crate) fn reset(&mut self, width: u8, height: u8) {
-        self.tiles.reset(width, height);
+    /// Clears the map.
+    pub(crate) fn reset(&mut self) {
+        self.tiles.reset();
         self.evidence.reset(Cell::default());
         self.last_cell = None;
         self.has_surveyed = false;

@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn the_square_and_the_block_are_those_of_single_cells() {
         let mut tiles = Box::new(Tiles::<16, 64>::new());
-        tiles.reset(8, 8);
+        tiles.reset();
         let mut seed = 1_u32;
         for (x, y) in (-40..40).flat_map(|x| (-40..40).map(move |y| (x, y))) {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -381,7 +381,7 @@ mod tests {
     /// Returns the clearance between the robot and a row of cells of a class across its path.
     fn room_before(class: Class) -> f32 {
         let mut tiles = Tiles::<16, 64>::new();
-        tiles.reset(8, 8);
+        tiles.reset();
         for (x, y) in (-10..=6).flat_map(|x| (-10..10).map(move |y| (x, y))) {
             let class = if x == 6 { class } else { Class::Free };
             tiles.set(Cell { x, y }, class).expect("room");

@@ -166,7 +166,7 @@ mod tests {
     #[test]
     fn a_line_is_the_middle_of_a_row() {
         let mut tiles = Tiles::<16, 16>::new();
-        tiles.reset(4, 4);
+        tiles.reset();
         let mut seed = 3u32;
         for _ in 0..4000 {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -8,16 +8,23 @@
 //! as narrow as the robot behind it. The trail keeps the passage open. It is kept with the page, so
 //! a tile that is compacted forgets it: nothing stands there.
 //!
-//! Invariant: `extent` covers every tile in use and fits the box.
 //! Units: cells of [`crate::geometry::CELL_M`].
 
 use crate::geometry::Cell;
 use crate::grid::{Class, Row, TileKey, TileMap, inside, inside_mut, masked, masked_mut};
 use crate::map::compaction::{Entry, FreeList, ONES, ZEROS};
-pub use crate::map::extent::{Extent, NoRoom};
 use crate::map::rows::{Column, RowReader};
 pub(super) use crate::map::tile::{Cells, Plane, TileMut};
 use crate::map::versions::Versions;
+
+/// The reason why the map has no room for a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoRoom {
+    /// It is more than [`TileKey::REACH`] tiles from the first one.
+    Box,
+    /// Every page of the pool is in use, or the directory is full.
+    Pool,
+}
 
 /// Cells along a tile's side.
 pub const TILE_SIDE: i32 = 32;
@@ -38,15 +45,12 @@ pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     pub(super) free: FreeList,
     /// Pages at the pool's end that are lent to the elevation window.
     lent: u16,
-    /// Width and height of the box.
-    sides: (i32, i32),
-    extent: Option<Extent>,
     /// Number of changes of any cell; wraps.
     pub(super) edits: u32,
 }
 
 impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
-    /// Creates an empty pool without a box; [`Self::reset`] gives it one.
+    /// Creates an empty pool.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -56,35 +60,15 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             versions: Versions::new(),
             free: FreeList::EMPTY,
             lent: 0,
-            sides: (0, 0),
-            extent: None,
             edits: 0,
         }
     }
 
-    /// Returns true if the pool can have a box of `width` × `height` tiles: both sides are at least
-    /// 4, the width is even (the skeleton's words are two tiles wide), and the product is at most
-    /// `SLOTS`.
-    #[must_use]
-    pub const fn fits(width: u8, height: u8) -> bool {
-        width >= 4
-            && height >= 4
-            && width.is_multiple_of(2)
-            && width as usize * height as usize <= SLOTS
-    }
-
-    /// Clears the map; the box becomes `width` × `height` tiles. A box that does not
-    /// [`fit`](Self::fits) has no slots.
-    pub fn reset(&mut self, width: u8, height: u8) {
+    /// Clears the map.
+    pub fn reset(&mut self) {
         self.directory.clear();
         self.free = FreeList::EMPTY;
         self.lent = 0;
-        self.sides = if Self::fits(width, height) {
-            (width.into(), height.into())
-        } else {
-            (0, 0)
-        };
-        self.extent = None;
         self.edits = self.edits.wrapping_add(1);
     }
 
@@ -119,18 +103,6 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         bytemuck::cast_slice_mut(lent)
     }
 
-    /// Returns the bounds of the tiles in use.
-    #[must_use]
-    pub const fn extent(&self) -> Option<Extent> {
-        self.extent
-    }
-
-    /// Returns the width and the height of the box, tiles.
-    #[must_use]
-    pub const fn box_tiles(&self) -> (i32, i32) {
-        self.sides
-    }
-
     /// Returns the column and the row of the first tile, from which the keys count.
     pub(crate) const fn origin(&self) -> (i32, i32) {
         self.directory.origin()
@@ -139,6 +111,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Returns the keys of the tiles that were touched, sorted.
     pub(crate) fn keys(&self) -> &[TileKey] {
         self.directory.keys()
+    }
+
+    /// Returns the columns and the rows of the tiles that were touched.
+    pub fn touched(&self) -> impl Iterator<Item = (i32, i32)> {
+        self.keys().iter().map(|&key| self.directory.tile(key))
     }
 
     /// Returns true if a cell was ever stored in this tile.
@@ -186,33 +163,20 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// Returns the extent grown by a tile outside it.
-    fn grown(&self, tile_x: i32, tile_y: i32) -> Result<Extent, NoRoom> {
-        let grown = match self.extent {
-            Some(extent) => extent.with(tile_x, tile_y),
-            None => Extent {
-                least: (tile_x, tile_y),
-                greatest: (tile_x, tile_y),
-            },
-        };
-        if grown.width() > self.sides.0 || grown.height() > self.sides.1 {
+    /// Checks that a tile is stored or can be.
+    ///
+    /// # Errors
+    /// [`NoRoom`] if it is too far off, or the pool is full.
+    pub(crate) fn room(&self, tile_x: i32, tile_y: i32) -> Result<(), NoRoom> {
+        if self.is_touched(tile_x, tile_y) {
+            Ok(())
+        } else if !self.directory.reaches((tile_x, tile_y)) {
             Err(NoRoom::Box)
         } else if !self.has_page() || self.directory.is_full() {
             Err(NoRoom::Pool)
         } else {
-            Ok(grown)
+            Ok(())
         }
-    }
-
-    /// Checks that a tile is stored or can be.
-    ///
-    /// # Errors
-    /// [`NoRoom`] if the box or the pool cannot hold it.
-    pub(crate) fn room(&self, tile_x: i32, tile_y: i32) -> Result<(), NoRoom> {
-        if self.is_touched(tile_x, tile_y) {
-            return Ok(());
-        }
-        self.grown(tile_x, tile_y).map(|_| ())
     }
 
     /// Returns the page of a tile; takes a fresh one on first touch. A compact tile has no page.
@@ -226,13 +190,12 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
 
     /// Gives an untouched tile a fresh page.
     fn add(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
-        let extent = self.grown(tile_x, tile_y)?;
+        self.room(tile_x, tile_y)?;
         let page = self.take_page()?;
         self.directory
             .get_or_add((tile_x, tile_y), Entry::Page(page).word())
             .ok_or(NoRoom::Box)?;
         self.fill_page(page, [ZEROS; 2]);
-        self.extent = Some(extent);
         Ok(page)
     }
 
@@ -262,7 +225,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// the class is free.
     ///
     /// # Errors
-    /// [`NoRoom`] if the box or the pool cannot hold it; the map is then unchanged.
+    /// [`NoRoom`] if it is too far off, or the pool is full; the map is then unchanged.
     pub fn set(&mut self, cell: Cell, class: Class) -> Result<(), NoRoom> {
         let tile = (cell.x >> 5, cell.y >> 5);
         if class == Class::Free && matches!(self.entry(tile.0, tile.1), Entry::AllFree(_)) {
@@ -307,7 +270,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Opens a tile to read and write its cells; takes a page on first touch.
     ///
     /// # Errors
-    /// [`NoRoom`] if the box or the pool cannot hold it; the map is then unchanged.
+    /// [`NoRoom`] if it is too far off, or the pool is full; the map is then unchanged.
     pub(super) fn open(&mut self, (tile_x, tile_y): (i32, i32)) -> Result<TileMut<'_>, NoRoom> {
         let index = self.touch(tile_x, tile_y)?;
         Ok(TileMut {

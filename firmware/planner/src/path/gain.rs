@@ -144,7 +144,7 @@ mod tests {
     /// A map of 20 × 20 m with these classes; `None` is unexplored.
     fn map(class: impl Fn(i32, i32) -> Option<Class>) -> Map {
         let mut tiles = Map::default();
-        tiles.reset(8, 8);
+        tiles.reset();
         for (x, y) in (-100..100).flat_map(|x| (-100..100).map(move |y| (x, y))) {
             if let Some(class) = class(x, y) {
                 tiles.set(Cell { x, y }, class).expect("room");

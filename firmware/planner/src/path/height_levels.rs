@@ -267,7 +267,7 @@ mod tests {
     /// 0 to 100 cells.
     fn climbed() -> (HeightLevels<24>, Box<Tiles<24, 64>>) {
         let mut tiles = Box::new(Tiles::new());
-        tiles.reset(8, 8);
+        tiles.reset();
         for x in -30..140 {
             for y in -20..20 {
                 tiles.set(at(x, y), Class::Free).expect("room");
@@ -369,7 +369,7 @@ mod tests {
     #[test]
     fn heights_beyond_the_range_are_the_farthest() {
         let mut tiles = Box::<Tiles<4, 64>>::default();
-        tiles.reset(8, 8);
+        tiles.reset();
         tiles.set(at(1, 1), Class::Free).expect("room");
         let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
         let mut origin = Cell::default();

@@ -83,18 +83,25 @@ mod tests {
 
     use super::for_each_exit;
     use crate::geometry::Cell;
-    use crate::map::tiles::NoRoom;
+    use crate::grid::TileKey;
+    use crate::map::tiles::{NoRoom, TILE_SIDE};
     use crate::map::{Class, Tiles};
     use crate::roadmap::configuration_space::Footprint;
     use crate::roadmap::reachability::scratch_words;
 
     const SLOTS: usize = 24;
 
-    /// Makes a map in a box of 4 × 4 tiles (cells 0 to 127 each way) from a picture. A character is
+    /// Makes a map that ends at column 127 from a picture. A character is
     /// 4 × 4 cells, the greatest y first; `R` is the robot.
     fn drawn(picture: &[&str]) -> (Box<Tiles<20, SLOTS>>, Cell) {
         let mut tiles = Box::new(Tiles::new());
-        tiles.reset(4, 4);
+        tiles.reset();
+        // The map begins so far in the west that it ends 128 cells from here in the east.
+        let west = Cell {
+            x: (3 - TileKey::REACH) * TILE_SIDE,
+            y: 0,
+        };
+        tiles.set(west, Class::Obstacle).unwrap();
         let mut robot = None;
         for (row, line) in picture.iter().rev().enumerate() {
             for (column, letter) in line.chars().enumerate() {
@@ -220,7 +227,7 @@ mod tests {
     #[test]
     fn a_full_pool_ends_the_map_inside_the_box() {
         let mut tiles: Box<Tiles<2, SLOTS>> = Box::default();
-        tiles.reset(4, 4);
+        tiles.reset();
         for y in 0..32 {
             for x in 0..64 {
                 let wall = y < 2 || (y > 29 && x < 32) || !(2..=61).contains(&x);

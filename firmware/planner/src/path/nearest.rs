@@ -128,7 +128,10 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
     fn targets(&self, grid: &LocalGrid, accepts: impl Fn(Site) -> bool) -> Rows {
         let mut targets: Rows = [0; SIDE];
         let tiling = self.cells.tiling();
-        let pages = tiling.keys().iter().zip(self.cells.words().chunks(PAGE_WORDS));
+        let pages = tiling
+            .keys()
+            .iter()
+            .zip(self.cells.words().chunks(PAGE_WORDS));
         for (place, (&key, words)) in pages.enumerate() {
             if !grid.overlaps(self.frame.cell(key.least()), TILE_SIDE) {
                 continue;

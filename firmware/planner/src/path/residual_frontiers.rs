@@ -116,8 +116,14 @@ impl ResidualFrontiers {
         }
     }
 
-    /// Lists a cell beyond which the map has no room. A group beside it has the same reason.
+    /// Lists a cell beyond which the map has no room. A group beside it has the same reason. On a
+    /// full list, something that is not worth the trip gives way.
     pub(crate) fn list_map_exit(&mut self, cell: Cell) {
+        if self.list.is_full()
+            && let Some(k) = self.list.iter().position(is_not_worth_it)
+        {
+            self.list.swap_remove(k);
+        }
         if let Some(group) = self.count(cell, ResidualReason::OutOfBounds) {
             group.reason = ResidualReason::OutOfBounds;
         }
@@ -140,6 +146,10 @@ impl ResidualFrontiers {
         self.list.push(group).ok()?;
         self.list.last_mut()
     }
+}
+
+fn is_not_worth_it(residual: &ResidualFrontier) -> bool {
+    residual.reason == ResidualReason::NotWorthIt
 }
 
 /// Returns true if two cells are less than a radius apart, metres.

@@ -161,7 +161,8 @@ impl Search {
         residual: &mut ResidualFrontiers,
         scratch: &mut [u32],
     ) -> Found {
-        let Some(mut reachability) = Reachability::resume(inputs.frame, inputs.tiling, scratch) else {
+        let Some(mut reachability) = Reachability::resume(inputs.frame, inputs.tiling, scratch)
+        else {
             self.phase = Phase::Idle;
             return Found::Nothing;
         };

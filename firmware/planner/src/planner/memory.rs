@@ -3,7 +3,7 @@
 //! A chip with split memory, as the STM32F405, holds [`State`] and [`Workspace`] itself and calls
 //! [`step`]. Both ways give the same bits.
 
-use crate::config::{BoxTooLarge, Config};
+use crate::config::Config;
 use crate::geometry::Cell;
 use crate::input::Input;
 use crate::localise::Location;
@@ -13,29 +13,31 @@ use crate::status::{ResidualFrontier, Status};
 use crate::team::packet::Packet;
 use crate::team::peers::{Peer, Peers};
 
-/// The capacity of a planner: `TILES` map tiles of 3.2 × 3.2 m in the pool, and a box of `SLOTS`
-/// tile places that they may lie in.
+/// The capacity of a planner: `TILES` map tiles of 3.2 × 3.2 m in the pool, and `SLOTS` tiles that
+/// the map may have, wherever they lie. Tiles that are all free, or have no obstacle, need little or
+/// no place in the pool.
 ///
 /// ```
-/// use fieldline_planner::{BoxTooLarge, Capacity, Config, LaserMount, Memory, Planner, RobotShape};
+/// use fieldline_planner::{Capacity, Config, LaserMount, Memory, Planner, RobotShape};
 ///
-/// type Small = Capacity<16, 64>;
+/// type Small = Capacity<16, 20>;
 ///
-/// fn places<M: Memory>(config: &Config) -> Result<(), BoxTooLarge> {
-///     Planner::<M>::new(config).map(drop)
+/// /// A planner of any capacity, on the heap.
+/// fn planner<M: Memory>(config: &Config) -> Box<Planner<M>> {
+///     Box::new(Planner::new(config))
 /// }
 /// let config = Config::builder(RobotShape::PIONEER_3AT)
 ///     .laser(LaserMount::level(0.10, 0.40))
 ///     .build()?;
-/// // The default box has 20 x 20 tiles.
-/// assert_eq!(places::<Small>(&config), Err(BoxTooLarge { box_tiles: (20, 20), slots: 64 }));
+/// let planner = planner::<Small>(&config);
+/// assert!(size_of_val(&*planner) < 110_000);
 /// # Ok::<(), fieldline_planner::ConfigError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Capacity<const TILES: usize, const SLOTS: usize>;
 
-/// The capacity of the image for an STM32F405: 1,556 m² of touched tiles in a box of 4,096 m².
-pub type F405 = Capacity<152, 400>;
+/// The capacity of the image for an STM32F405: 2,048 m² of touched tiles in the pool.
+pub type F405 = Capacity<200, 250>;
 
 /// A capacity that a [`Planner`] can have. Only [`Capacity`] implements it.
 pub trait Memory: sealed::Memory {}
@@ -51,7 +53,7 @@ impl<const TILES: usize, const SLOTS: usize> Memory for Capacity<TILES, SLOTS> {
 /// let config = Config::builder(RobotShape::PIONEER_3AT)
 ///     .laser(LaserMount::level(0.10, 0.40))
 ///     .build()?;
-/// let mut planner = Box::new(Planner::<F405>::new(&config)?);
+/// let mut planner = Box::new(Planner::<F405>::new(&config));
 /// // A wall 2 m away on all sides.
 /// let ranges_mm = [2_000; 181];
 /// let output = planner.step(&Input {
@@ -72,28 +74,21 @@ pub struct Planner<M: Memory> {
 
 impl<M: Memory> Planner<M> {
     /// Returns a planner at the beginning of a session.
-    ///
-    /// # Errors
-    /// [`BoxTooLarge`] if the configuration's box does not fit the capacity.
-    pub fn new(config: &Config) -> Result<Self, BoxTooLarge> {
+    #[must_use]
+    pub fn new(config: &Config) -> Self {
         let mut planner = Self {
             config: config.clone(),
             state: sealed::Planning::empty(),
             workspace: Workspace::new(),
         };
-        planner.restart(config)?;
-        Ok(planner)
+        planner.restart(config);
+        planner
     }
 
     /// Forgets everything and begins a session with another configuration.
-    ///
-    /// # Errors
-    /// [`BoxTooLarge`] if the configuration's box does not fit the capacity. The present session
-    /// continues then.
-    pub fn restart(&mut self, config: &Config) -> Result<(), BoxTooLarge> {
-        sealed::Planning::reset(&mut self.state, config)?;
+    pub fn restart(&mut self, config: &Config) {
+        sealed::Planning::reset(&mut self.state, config);
         self.config = config.clone();
-        Ok(())
     }
 
     /// Runs one step: from scans and odometry to a velocity.
@@ -130,7 +125,7 @@ impl<M: Memory> Planner<M> {
     ///         })
     ///         .build()
     ///         .unwrap();
-    ///     Box::new(Planner::<F405>::new(&config).unwrap())
+    ///     Box::new(Planner::<F405>::new(&config))
     /// });
     /// let ranges_mm = [2_000; 181];
     /// let input = Input {
@@ -207,8 +202,8 @@ mod sealed {
     use core::fmt::Debug;
 
     use super::{
-        BoxTooLarge, Capacity, Cell, Config, Input, Location, Output, Packet, Peers,
-        ResidualFrontier, StageTimer, State, Status, Workspace, step,
+        Capacity, Cell, Config, Input, Location, Output, Packet, Peers, ResidualFrontier,
+        StageTimer, State, Status, Workspace, step,
     };
 
     /// A capacity.
@@ -224,7 +219,7 @@ mod sealed {
     /// A [`State`] of any capacity.
     pub trait Planning {
         fn empty() -> Self;
-        fn reset(&mut self, config: &Config) -> Result<(), BoxTooLarge>;
+        fn reset(&mut self, config: &Config);
         fn step(
             &mut self,
             config: &Config,
@@ -247,8 +242,8 @@ mod sealed {
             Self::new()
         }
 
-        fn reset(&mut self, config: &Config) -> Result<(), BoxTooLarge> {
-            Self::reset(self, config)
+        fn reset(&mut self, config: &Config) {
+            Self::reset(self, config);
         }
 
         fn step(
@@ -292,34 +287,5 @@ mod sealed {
         fn tile(&self, column: i16, row: i16) -> Option<[u8; 256]> {
             Self::tile(self, column, row)
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::boxed::Box;
-    use std::string::ToString;
-
-    use super::{F405, Planner};
-    use crate::config::Config;
-    use crate::robot::{LaserMount, RobotShape};
-
-    fn config(across: u8, up: u8) -> Config {
-        Config::builder(RobotShape::PIONEER_3AT)
-            .laser(LaserMount::level(0.1, 0.4))
-            .box_tiles(across, up)
-            .build()
-            .expect("valid")
-    }
-
-    #[test]
-    fn a_box_that_does_not_fit_is_refused_and_the_session_goes_on() {
-        let error = Planner::<F405>::new(&config(40, 20)).expect_err("800 places");
-        assert!(error.to_string().contains("40 x 20 tiles does not fit 400"));
-        let mut planner = Box::new(Planner::<F405>::new(&config(20, 20)).expect("400 places"));
-        planner.restart(&config(3, 20)).expect_err("too narrow");
-        assert_eq!(planner.config().box_tiles, (20, 20));
-        planner.restart(&config(40, 10)).expect("400 places");
-        assert_eq!(planner.config().box_tiles, (40, 10));
     }
 }

@@ -6,13 +6,13 @@
 
 use super::ground_model::GroundModel;
 use super::workspace::{RING, SCRATCH};
-use crate::config::{BoxTooLarge, Config};
+use crate::config::Config;
 use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{self, Drive};
 use crate::field::preference::Preferences;
 use crate::geometry::Cell;
 use crate::localise::{Localiser, Location};
-use crate::map::{Map, Tiles};
+use crate::map::Map;
 use crate::path::viewpoint;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability;
@@ -23,8 +23,8 @@ use crate::team::Team;
 
 /// The planner's memory from step to step.
 ///
-/// `TILES` is the number of map tiles in the pool, `SLOTS` the number of tile places in the map's
-/// box.
+/// `TILES` is the number of map tiles in the pool, `SLOTS` the number of tiles that the map may
+/// have. Tiles with little content need no place in the pool.
 #[derive(Debug)]
 pub struct State<const TILES: usize, const SLOTS: usize> {
     pub(super) localiser: Localiser,
@@ -95,17 +95,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     }
 
     /// Forgets everything and begins a session with `config`.
-    ///
-    /// # Errors
-    /// [`BoxTooLarge`] if the configuration's box does not fit. Nothing is forgotten then.
-    pub fn reset(&mut self, config: &Config) -> Result<(), BoxTooLarge> {
-        let (across, up) = config.box_tiles;
-        if !Tiles::<TILES, SLOTS>::fits(across, up) {
-            return Err(BoxTooLarge {
-                box_tiles: config.box_tiles,
-                slots: SLOTS,
-            });
-        }
+    pub fn reset(&mut self, config: &Config) {
         self.localiser = Localiser::new();
         self.map.begin(config);
         self.preferences = Preferences::new();
@@ -121,7 +111,6 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.started = false;
         self.has_new_skeleton = false;
         self.forgot_arrivals = false;
-        Ok(())
     }
 
     /// Returns the planner's status after the last step.

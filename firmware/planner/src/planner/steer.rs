@@ -220,7 +220,7 @@ mod tests {
             ..Config::pioneer_3at(heapless::Vec::new())
         };
         let mut state = Box::<State<20, 400>>::default();
-        state.reset(&config).expect("the box fits");
+        state.reset(&config);
         let mut workspace = Box::<Workspace>::default();
         workspace.window_at = Some((Cell { x: -30, y: -30 }, 1));
         times_ms.map(|time_ms| {
@@ -266,7 +266,7 @@ mod tests {
             ..Config::pioneer_3at(heapless::Vec::new())
         };
         let mut state = Box::<State<152, 400>>::default();
-        state.reset(&config).expect("the box fits");
+        state.reset(&config);
         state
             .map
             .set_ground_heights(Cell::default(), |cell| Some(0.03 * cell.y as f32));

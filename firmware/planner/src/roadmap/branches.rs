@@ -286,9 +286,7 @@ mod tests {
     fn the_kind_is_the_number_of_runs_of_set_neighbours() {
         let mut seed = 1_u64;
         let mut random = || {
-            seed = seed
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             (seed >> 32) as u32
         };
         for _ in 0..200 {

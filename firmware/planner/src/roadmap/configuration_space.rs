@@ -176,7 +176,7 @@ mod tests {
 
     fn scattered() -> Tiles<9, 24> {
         let mut tiles = Tiles::new();
-        tiles.reset(6, 4);
+        tiles.reset();
         let mut seed = 1u32;
         for _ in 0..300 {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -223,7 +223,7 @@ mod tests {
     fn doors_of_five_cells_and_more_stay_open() {
         for gap in 3..9 {
             let mut tiles: Tiles<9, 24> = Tiles::new();
-            tiles.reset(6, 4);
+            tiles.reset();
             for x in 0..30 {
                 let open = (10..10 + gap).contains(&x);
                 tiles

@@ -48,11 +48,7 @@ pub(crate) struct Reachability<'a> {
 
 impl<'a> Reachability<'a> {
     /// Makes empty planes; `None` if the memory is too small, see [`scratch_words`].
-    pub(crate) fn new(
-        frame: Frame,
-        tiling: Tiling<'a>,
-        scratch: &'a mut [u32],
-    ) -> Option<Self> {
+    pub(crate) fn new(frame: Frame, tiling: Tiling<'a>, scratch: &'a mut [u32]) -> Option<Self> {
         let reachability = Self::resume(frame, tiling, scratch)?;
         reachability.open.fill(0);
         reachability.reached.fill(0);
@@ -61,11 +57,7 @@ impl<'a> Reachability<'a> {
     }
 
     /// Takes up the flood of these tiles that the memory holds.
-    pub(crate) fn resume(
-        frame: Frame,
-        tiling: Tiling<'a>,
-        scratch: &'a mut [u32],
-    ) -> Option<Self> {
+    pub(crate) fn resume(frame: Frame, tiling: Tiling<'a>, scratch: &'a mut [u32]) -> Option<Self> {
         let words = tiling.words();
         let (open, rest) = scratch.split_at_mut_checked(words)?;
         let (reached, rest) = rest.split_at_mut_checked(words)?;
@@ -142,7 +134,11 @@ impl<'a> Reachability<'a> {
 
     /// Returns the first tile that is awake, and lets it sleep.
     fn take_awake(&mut self) -> Option<usize> {
-        let (number, word) = self.awake.iter_mut().enumerate().find(|(_, it)| **it != 0)?;
+        let (number, word) = self
+            .awake
+            .iter_mut()
+            .enumerate()
+            .find(|(_, it)| **it != 0)?;
         let bit = word.trailing_zeros() as usize;
         *word &= *word - 1;
         Some(number * PER_WORD + bit)

@@ -204,12 +204,13 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
         Plane::new(Tiling::new(&self.keys), self.next_frontier.as_flattened()).ok()
     }
 
-    /// Continues the round with at most `budget` units of work. Returns true if it published a
-    /// skeleton.
+    /// Continues the round with about `budget` units of work. `scratch` needs [`PAGE_WORDS`] words
+    /// for each tile and may hold anything. Returns true if it published a skeleton.
     pub fn advance<const TILES: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
         disc: &Footprint,
+        scratch: &mut [u32],
         budget: u32,
     ) -> bool {
         let mut left = budget;
@@ -222,7 +223,7 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
                     // The map is empty.
                     return false;
                 }
-                self.begin_thinning(tiles);
+                self.begin_thinning(tiles, scratch);
                 break;
             };
             if left < TILE_UNITS {
@@ -231,7 +232,7 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
             left -= self.load(tiles, disc, (place, key));
             self.stage = Stage::Load(place + 1);
         }
-        self.thin(left)
+        self.thin(scratch, left)
     }
 
     /// Begins a round: lists its tiles.
@@ -302,10 +303,13 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
     }
 
     /// Turns the unexplored cells into frontier cells after the last tile, and begins to thin.
-    fn begin_thinning<const TILES: usize>(&mut self, tiles: &Tiles<TILES, SLOTS>) {
+    fn begin_thinning<const TILES: usize>(
+        &mut self,
+        tiles: &Tiles<TILES, SLOTS>,
+        border: &mut [u32],
+    ) {
         let tiling = Tiling::new(&self.next_keys);
         let unexplored = self.next_frontier.as_flattened();
-        let border = self.thinning.spare();
         for (place, &key) in self.next_keys.iter().enumerate() {
             let mut block = Block::read(tiling, unexplored, place);
             for (columns, rows) in SIDES {
@@ -334,13 +338,13 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
     }
 
     /// Continues the thinning. Returns true if it published the skeleton.
-    fn thin(&mut self, budget: u32) -> bool {
+    fn thin(&mut self, losses: &mut [u32], budget: u32) -> bool {
         let tiling = Tiling::new(&self.next_keys);
         let anchors = self.next_frontier.as_flattened();
         let Ok(mut plane) = PlaneMut::new(tiling, self.next.as_flattened_mut()) else {
             return false;
         };
-        match self.thinning.advance(&mut plane, anchors, budget) {
+        match self.thinning.advance(&mut plane, anchors, losses, budget) {
             Progress::Pending => false,
             Progress::Done { .. } => {
                 let frontier = self.next_frontier.as_flattened_mut().iter_mut();

@@ -6,7 +6,8 @@
 //!
 //! A pass looks only at words that may change: a word can lose a cell only if a cell of it or next
 //! to it changed in one of the last two subiterations. Two bits a word, one for each subiteration,
-//! say so. What a pass deletes waits in a plane of its own until the last word is judged.
+//! say so. What a pass deletes waits in lent memory until the last word is judged, so a pass is not
+//! divided.
 //!
 //! Units: words of the plane, tile by tile.
 
@@ -16,21 +17,15 @@ use crate::roadmap::thinning_rule::deletions;
 
 /// The state of a thinning of up to `PAGES` tiles.
 ///
-/// Invariant between two calls: the pages before the present one are judged, and the plane still
-/// has the cells that they lose.
+/// Between two calls no pass is under way.
 #[derive(Clone, Debug)]
 pub struct Thinning<const PAGES: usize> {
-    /// The cells that the present pass deletes.
-    losses: [[u32; PAGE_WORDS]; PAGES],
     /// Per subiteration, the words of each page that its last pass touched.
     touched: [[u8; PAGES]; 2],
     /// The second subiteration is on.
     second: bool,
-    /// The next page to be judged, of so many.
-    next: usize,
     pages: usize,
-    /// The present pass deletes something, and the one before it deleted nothing.
-    deletes: bool,
+    /// The last pass deleted nothing.
     quiet_before: bool,
     passes: u16,
     running: bool,
@@ -41,12 +36,9 @@ impl<const PAGES: usize> Thinning<PAGES> {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            losses: [[0; PAGE_WORDS]; PAGES],
             touched: [[0; PAGES]; 2],
             second: false,
-            next: 0,
             pages: 0,
-            deletes: false,
             quiet_before: false,
             passes: 0,
             running: false,
@@ -63,17 +55,10 @@ impl<const PAGES: usize> Thinning<PAGES> {
             return Err(TooSmall { needs, has });
         }
         self.pages = tiling.keys().len();
-        self.losses.as_flattened_mut().fill(0);
         self.touched.as_flattened_mut().fill(u8::MAX);
-        (self.second, self.next) = (false, 0);
-        (self.deletes, self.quiet_before) = (false, false);
+        (self.second, self.quiet_before) = (false, false);
         (self.passes, self.running) = (0, true);
         Ok(())
-    }
-
-    /// Returns memory for a plane, which the next start clears.
-    pub(super) const fn spare(&mut self) -> &mut [u32] {
-        self.losses.as_flattened_mut()
     }
 
     /// Returns the number of subiterations since the start.
@@ -82,78 +67,100 @@ impl<const PAGES: usize> Thinning<PAGES> {
         self.passes
     }
 
-    /// Continues with at most `budget` units of work, on the plane that it was started with and
-    /// that nobody wrote to since. `anchors` has words as the plane; its cells are never deleted.
-    /// An empty slice has none.
+    /// Continues with about `budget` units of work, on the plane that it was started with and that
+    /// nobody wrote to since. `anchors` has words as the plane; its cells are never deleted. An
+    /// empty slice has none. `losses` needs as many words as the plane and may hold anything.
     ///
-    /// A unit is a word judged, or a page whose words are looked up. The last page may cost more
-    /// than is left. The result does not depend on how the work is divided into budgets.
-    pub fn advance(&mut self, plane: &mut PlaneMut<'_>, anchors: &[u32], budget: u32) -> Progress {
-        let tiling = plane.tiling();
+    /// A unit is a word judged, or a page whose words are looked up. The first pass of a call runs
+    /// whatever it costs, if there is a budget at all. The result does not depend on how the work is
+    /// divided into budgets.
+    pub fn advance(
+        &mut self,
+        plane: &mut PlaneMut<'_>,
+        anchors: &[u32],
+        losses: &mut [u32],
+        budget: u32,
+    ) -> Progress {
         debug_assert!(
-            !self.running || tiling.keys().len() == self.pages,
+            !self.running || plane.tiling().keys().len() == self.pages,
             "another plane than at the start"
         );
-        let words = plane.words_mut();
         let mut left = budget;
         while self.running {
-            while self.next < self.pages {
-                if left == 0 {
-                    return Progress::Pending;
-                }
-                let cost = self.judge(tiling, words, anchors);
-                left = left.saturating_sub(cost);
-                self.next += 1;
+            let cost = self.cost();
+            if left == 0 || (cost > left && left < budget) {
+                return Progress::Pending;
             }
-            left = left.saturating_sub(self.end_pass(tiling, words));
+            left = left.saturating_sub(cost);
+            self.pass(plane, anchors, losses);
         }
         Progress::Done { left }
     }
 
-    /// Judges the words of the next page that may change. Returns the units of work.
-    fn judge(&mut self, tiling: Tiling<'_>, words: &[u32], anchors: &[u32]) -> u32 {
-        let place = self.next;
+    /// Returns the words of a page that the next pass judges.
+    fn active(&self, place: usize) -> u8 {
         let [first, second] = &self.touched;
-        let active = at(first, place) | at(second, place);
-        let Some(losses) = self.losses.get_mut(place).filter(|_| active != 0) else {
-            return 0;
-        };
-        let block = Block::read(tiling, words, place);
-        for (k, lost) in losses.iter_mut().enumerate() {
-            if active >> k & 1 != 0 {
-                let anchors = at(anchors, place * PAGE_WORDS + k);
-                *lost = deletions(&block, k, self.second) & !anchors;
-                self.deletes |= *lost != 0;
-            }
-        }
-        1 + active.count_ones()
+        at(first, place) | at(second, place)
     }
 
-    /// Deletes what the pass lost, and begins the next one. Returns the units of work.
-    fn end_pass(&mut self, tiling: Tiling<'_>, words: &mut [u32]) -> u32 {
+    /// Returns the units of work of the next pass.
+    fn cost(&self) -> u32 {
+        let of_page = |place| match self.active(place) {
+            0 => 0,
+            active => 1 + active.count_ones(),
+        };
+        1 + (0..self.pages).map(of_page).sum::<u32>()
+    }
+
+    /// Runs a subiteration.
+    fn pass(&mut self, plane: &mut PlaneMut<'_>, anchors: &[u32], losses: &mut [u32]) {
+        let tiling = plane.tiling();
+        let words = plane.words_mut();
+        let mut deletes = false;
+        for (place, losses) in losses
+            .chunks_exact_mut(PAGE_WORDS)
+            .take(self.pages)
+            .enumerate()
+        {
+            losses.fill(0);
+            let active = self.active(place);
+            if active == 0 {
+                continue;
+            }
+            let block = Block::read(tiling, words, place);
+            for (k, lost) in losses.iter_mut().enumerate() {
+                if active >> k & 1 != 0 {
+                    let anchors = at(anchors, place * PAGE_WORDS + k);
+                    *lost = deletions(&block, k, self.second) & !anchors;
+                    deletes |= *lost != 0;
+                }
+            }
+        }
         let [first, second] = &mut self.touched;
         let touched = if self.second { second } else { first };
         touched.fill(0);
-        let mut units = 1;
-        if self.deletes {
-            let pages = words.chunks_exact_mut(PAGE_WORDS).zip(&mut self.losses);
-            for (place, (page, losses)) in pages.enumerate() {
-                if *losses == [0; PAGE_WORDS] {
-                    continue;
-                }
-                units += 1;
-                touch(touched, &tiling.around(place), losses);
-                for (word, lost) in page.iter_mut().zip(losses) {
-                    *word &= !core::mem::take(lost);
-                }
-            }
+        if deletes {
+            delete(tiling, words, losses, touched);
         }
         self.passes = self.passes.saturating_add(1);
-        self.running = self.deletes || !self.quiet_before;
-        self.quiet_before = !core::mem::take(&mut self.deletes);
+        self.running = deletes || !self.quiet_before;
+        self.quiet_before = !deletes;
         self.second = !self.second;
-        self.next = 0;
-        units
+    }
+}
+
+/// Deletes the cells of `losses`, and marks the words that this touches.
+fn delete(tiling: Tiling<'_>, words: &mut [u32], losses: &[u32], touched: &mut [u8]) {
+    let (losses, _) = losses.as_chunks::<PAGE_WORDS>();
+    let pages = words.chunks_exact_mut(PAGE_WORDS).zip(losses);
+    for (place, (page, losses)) in pages.enumerate() {
+        if *losses == [0; PAGE_WORDS] {
+            continue;
+        }
+        touch(touched, &tiling.around(place), losses);
+        for (word, lost) in page.iter_mut().zip(losses) {
+            *word &= !lost;
+        }
     }
 }
 

@@ -226,10 +226,11 @@ impl Wavefront {
         let k = (row / 2) as usize;
         let index = place * PAGE_WORDS + k;
         self.enter(space, index, columns | columns << 16);
-        if row % 2 == 0 && k > 0 {
-            self.enter(space, index - 1, columns << 16);
-        } else if row % 2 == 1 && k + 1 < PAGE_WORDS {
+        let is_lower = row & 1 == 1;
+        if is_lower && k + 1 < PAGE_WORDS {
             self.enter(space, index + 1, columns);
+        } else if !is_lower && k > 0 {
+            self.enter(space, index - 1, columns << 16);
         }
     }
 

@@ -39,7 +39,7 @@ impl Robot {
             ..TeamPlace::default()
         }));
         let mut map = Box::<SmallMap>::default();
-        map.reset(8, 8);
+        map.reset();
         Self { team, map }
     }
 

@@ -261,10 +261,9 @@ fn begin<'a>(
     let mut members: Vec<Member<'a>> = Vec::new();
     for (robot, link) in links.iter_mut().enumerate().take(fleet.len()) {
         let of_robot = |error: MissionError| TeamError::Robot { robot, error };
-        let hello = link.hello().map_err(|error| of_robot(error.into()))?;
+        link.hello().map_err(|error| of_robot(error.into()))?;
         let simulator: &Simulator<'_> = &fleet.robots()[robot];
-        let mut setup =
-            mission::setup(&missions[robot], simulator, hello.tile_slots).map_err(of_robot)?;
+        let mut setup = mission::setup(&missions[robot], simulator);
         setup.start.team = team.radio.on.then(|| Member::of_wire(robot));
         let account = match members.first() {
             Some(first) => first.account.beside(&setup, simulator),

@@ -3,7 +3,6 @@
 use core::fmt;
 
 use super::{KINDS, Kind};
-use crate::trial::shape::{self, TILE_M};
 use crate::world::WorldError;
 use crate::world::canvas::Canvas;
 
@@ -11,8 +10,8 @@ use crate::world::canvas::Canvas;
 const LEAST_M: f64 = 8.0;
 /// Longest side, metres.
 const MOST_M: f64 = 128.0;
-/// Tiles of the largest map that a planner has on the chip and in the simulator.
-const SLOTS: u16 = fieldline_device::SLOTS as u16;
+/// Largest area, square metres.
+const MOST_M2: f64 = 4_096.0;
 
 /// The name of a generated world. It has everything that decides the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,14 +73,9 @@ fn read_size(word: &str, text: &str) -> Result<[f64; 2], String> {
             "a size of {text} m is too small; say {LEAST_M}x{LEAST_M} or more"
         ));
     }
-    let (across, up) = shape::for_world(size_m, SLOTS);
-    let holds = [across, up].map(|tiles| f64::from(tiles) * TILE_M);
-    if size_m.iter().any(|m| *m > MOST_M) || size_m[0] > holds[0] || size_m[1] > holds[1] {
-        let side_m = f64::from(SLOTS.isqrt()) * TILE_M;
-        let short_m = f64::from(SLOTS) * TILE_M * TILE_M / MOST_M;
+    if size_m.iter().any(|m| *m > MOST_M) || size_m[0] * size_m[1] > MOST_M2 {
         return Err(format!(
-            "a size of {text} m is too large for the planner's map of {SLOTS} tiles of {TILE_M} m; \
-             say {side_m}x{side_m}, {MOST_M}x{short_m} or less"
+            "a size of {text} m is too large; say 64x64, 128x32 or less"
         ));
     }
     Ok(size_m)

@@ -1,11 +1,11 @@
-//! Cells, extents and pools of small maps.
+//! Cells, ranges and pools of small maps.
 
 use crate::geometry::Cell;
 use crate::map::tiles::{Class, NoRoom, Tiles};
 
 fn small() -> Tiles<4, 24> {
     let mut tiles = Tiles::new();
-    tiles.reset(6, 4);
+    tiles.reset();
     tiles
 }
 
@@ -52,7 +52,7 @@ fn a_row_spans_three_tiles() {
 }
 
 #[test]
-fn the_extent_must_fit_the_box_wherever_it_starts() {
+fn a_tile_must_be_within_range_of_the_first_one() {
     let mut tiles = small();
     let origin = Cell { x: 1000, y: -1000 };
     tiles.set(origin, Class::Free).unwrap();
@@ -60,7 +60,7 @@ fn the_extent_must_fit_the_box_wherever_it_starts() {
         tiles.set(
             Cell {
                 x: 1000,
-                y: -1000 + 128
+                y: -1000 + 127 * 32
             },
             Class::Free
         ),
@@ -70,7 +70,7 @@ fn the_extent_must_fit_the_box_wherever_it_starts() {
         .set(
             Cell {
                 x: 1000,
-                y: -1000 + 32,
+                y: -1000 + 126 * 32,
             },
             Class::Free,
         )
@@ -78,10 +78,10 @@ fn the_extent_must_fit_the_box_wherever_it_starts() {
     assert_eq!(
         tiles.class(Cell {
             x: 1000,
-            y: -1000 + 128
+            y: -1000 + 127 * 32
         }),
         Class::Unknown,
-        "no ghost across the torus"
+        "it was refused"
     );
 }
 

@@ -21,7 +21,7 @@ type Map = Tiles<20, SLOTS>;
 
 fn drawn(picture: &[&str]) -> (Box<Map>, Cell) {
     let mut tiles = Box::new(Map::new());
-    tiles.reset(4, 4);
+    tiles.reset();
     let mut robot = Cell::default();
     for (row, line) in picture.iter().rev().enumerate() {
         for (column, letter) in line.chars().enumerate() {
@@ -220,7 +220,11 @@ fn a_robot_in_a_narrow_place_looks_too() {
 #[test]
 fn without_a_map_or_memory_nothing_is_found() {
     let mut search = Search::new();
-    search.begin(Frame::default(), Tiling::new(&[]), &mut [0; scratch_words(SLOTS)]);
+    search.begin(
+        Frame::default(),
+        Tiling::new(&[]),
+        &mut [0; scratch_words(SLOTS)],
+    );
     assert!(!search.is_running());
     let (tiles, _) = drawn(&GAP);
     search.begin(Frame::of(&tiles), Tiling::new(tiles.keys()), &mut [0; 10]);

@@ -13,7 +13,7 @@ const SPACES: [Space; 2] = [Space::KnownFree, Space::NotObstacle];
 /// The scene's coarse cells, row 0 first: `#` obstacle, `.` free, `?` never measured.
 fn scene(picture: &str) -> Tiles<9, 24> {
     let mut tiles = Tiles::new();
-    tiles.reset(6, 4);
+    tiles.reset();
     for (y, row) in (0..).zip(picture.split_whitespace()) {
         for (x, character) in (0..).zip(row.chars()) {
             let class = match character {
@@ -37,7 +37,7 @@ fn publish(space: Space, tiles: &Tiles<9, 24>, budget: u32) -> Skeleton<24> {
     let mut skeleton = Skeleton::new();
     skeleton.reset(space);
     // The robot is a point: a cell is passable if it is not an obstacle.
-    while !skeleton.advance(tiles, &Footprint::new(0.05), budget) {}
+    while !skeleton.advance(tiles, &Footprint::new(0.05), &mut [0; 24 * 8], budget) {}
     skeleton
 }
 
@@ -147,7 +147,7 @@ fn an_unexplored_corner_beside_a_wide_way_is_a_frontier() {
 /// many tiles.
 fn frontier_of_a_free_tile<const TILES: usize>() -> usize {
     let mut tiles = Tiles::<TILES, 24>::new();
-    tiles.reset(6, 4);
+    tiles.reset();
     for k in 0..32 * 32 {
         let cell = Cell {
             x: k % 32,
@@ -157,7 +157,7 @@ fn frontier_of_a_free_tile<const TILES: usize>() -> usize {
     }
     let mut skeleton = Skeleton::<24>::new();
     skeleton.reset(Space::KnownFree);
-    while !skeleton.advance(&tiles, &Footprint::new(0.05), 10_000) {}
+    while !skeleton.advance(&tiles, &Footprint::new(0.05), &mut [0; 24 * 8], 10_000) {}
     skeleton.frontier().unwrap().count()
 }
 

@@ -27,7 +27,7 @@ const ENDS: [i32; 2] = [-40, 60];
 
 fn corridor() -> Box<Tiles<24, 64>> {
     let mut tiles = Box::<Tiles<24, 64>>::default();
-    tiles.reset(8, 8);
+    tiles.reset();
     let [west, east] = ENDS;
     for x in west..east {
         for y in -HALF..=HALF {
@@ -104,7 +104,7 @@ impl Scene {
         let footprint = Footprint::new(0.3);
         let mut skeleton = Box::new(Skeleton::<64>::new());
         skeleton.reset(Space::KnownFree);
-        while !skeleton.advance(&tiles, &footprint, u32::MAX) {}
+        while !skeleton.advance(&tiles, &footprint, &mut [0; 64 * 8], u32::MAX) {}
         Self {
             tiles,
             heights,
@@ -329,7 +329,7 @@ fn a_goal_is_not_left_for_the_levels_on_the_way_to_it() {
 /// north.
 fn corridor_with_a_way_round() -> Box<Tiles<24, 64>> {
     let mut tiles = Box::<Tiles<24, 64>>::default();
-    tiles.reset(8, 8);
+    tiles.reset();
     let is_free = |x: i32, y: i32| {
         let straight = (-4..80).contains(&x) && y.abs() < 6;
         let aside = (-4..8).contains(&x) || (54..66).contains(&x);

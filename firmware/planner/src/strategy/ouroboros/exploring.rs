@@ -60,7 +60,7 @@ impl Exploration {
             .map(|r| r.chars().collect())
             .collect();
         let mut tiles = Tiles::new();
-        tiles.reset(8, 6);
+        tiles.reset();
         let mut skeleton = Skeleton::new();
         skeleton.reset(Space::NotObstacle);
         let strategy = Ouroboros::new();
@@ -131,7 +131,10 @@ impl Exploration {
     fn plan(&mut self, time_ms: u32) -> RoundOutcome {
         let footprint = Footprint::new(POINT_M);
         self.strategy.note_pose(&self.pose, &TUNING);
-        while !self.skeleton.advance(&self.tiles, &footprint, u32::MAX) {}
+        while !self
+            .skeleton
+            .advance(&self.tiles, &footprint, &mut [0; SLOTS * 8], u32::MAX)
+        {}
         self.frontier.cut(&mut self.skeleton);
         let before = self.skeleton.skeleton().unwrap().words().to_vec();
         for calls in 1.. {

@@ -112,7 +112,7 @@ impl Scene {
             .map(|row| row.chars().collect())
             .collect();
         let mut tiles = Tiles::new();
-        tiles.reset(8, 6);
+        tiles.reset();
         let mut pose = Pose::default();
         for (y, row) in picture.iter().enumerate() {
             for (x, &character) in row.iter().enumerate() {
@@ -139,7 +139,7 @@ impl Scene {
         let footprint = Footprint::new(POINT_M);
         let mut skeleton = Skeleton::new();
         skeleton.reset(Space::NotObstacle);
-        while !skeleton.advance(&tiles, &footprint, u32::MAX) {}
+        while !skeleton.advance(&tiles, &footprint, &mut [0; SLOTS * 8], u32::MAX) {}
         Self {
             picture,
             tiles,

@@ -60,7 +60,7 @@ impl Drawing {
     /// Draws the area into a map, with obstacles of one map cell.
     fn map(&self, scale: i32, least: Cell) -> Box<Map> {
         let mut map = Box::new(Map::new());
-        map.reset(8, 8);
+        map.reset();
         for (y, row) in (0..).zip(&self.0) {
             for (x, &cell) in (0..).zip(row) {
                 for k in 0..scale * scale {

@@ -65,7 +65,7 @@ impl Scene {
             pending: PendingVisits::new(),
             robot: Cell::default(),
         };
-        scene.tiles.reset(8, 8);
+        scene.tiles.reset();
         for (y, row) in picture.split_whitespace().enumerate() {
             for (x, c) in row.chars().enumerate() {
                 let least = Cell {
@@ -87,7 +87,10 @@ impl Scene {
         }
         scene.skeleton.reset(Space::KnownFree);
         let footprint = Footprint::new(0.1);
-        while !scene.skeleton.advance(&scene.tiles, &footprint, u32::MAX) {}
+        while !scene
+            .skeleton
+            .advance(&scene.tiles, &footprint, &mut [0; 64 * 8], u32::MAX)
+        {}
         for x in 3..=scene.robot.x {
             let y = scene.robot.y;
             scene.pending.note(Cell { x, y });
