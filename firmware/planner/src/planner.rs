@@ -52,7 +52,7 @@ use steer::{look_about, steer};
 const BLOCKED_M: f32 = 0.12;
 
 /// Thinning budget of a step, words of 32 coarse cells.
-const THINNING_WORDS: u32 = 6_000;
+const THINNING_WORDS: u32 = 3_000;
 
 /// The output of a step.
 #[derive(Clone, Copy, Debug, Default)]

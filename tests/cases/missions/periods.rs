@@ -1,5 +1,6 @@
 //! The step period: 100 to 400 ms explore equally well; the device refuses others.
 
+use crate::whole::LEAST_COVERAGE;
 use fieldline_tests::worlds;
 use host_sim::link::direct::Direct;
 use host_sim::trial::mission::{Mission, MissionError, explore};
@@ -20,7 +21,7 @@ fn the_shortest_and_the_longest_period_explore() {
         assert!(report.explored(), "{period_ms} ms: {:?}", report.outcome);
         assert_eq!(report.safety.collisions, 0, "{period_ms} ms");
         assert!(
-            report.coverage.fraction > 0.98,
+            report.coverage.fraction > LEAST_COVERAGE,
             "{period_ms} ms: {}",
             report.coverage.fraction
         );

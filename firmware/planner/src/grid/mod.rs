@@ -1,5 +1,5 @@
-//! Memory for cells: bit planes, floods, rolling windows, toroidal tile addresses, and the
-//! accessors that replace indexing.
+//! Memory for cells: bit planes over tiles, floods, rolling windows, and the accessors that replace
+//! indexing.
 //!
 //! A bit plane has one bit per cell of a number of tiles, in memory that the caller lends
 //! ([`Tiling`]). It has memory for these tiles alone, wherever they lie. Cells outside read 0 and

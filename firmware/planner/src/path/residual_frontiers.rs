@@ -119,8 +119,11 @@ impl ResidualFrontiers {
     /// Lists a cell beyond which the map has no room. A group beside it has the same reason. On a
     /// full list, something that is not worth the trip gives way.
     pub(crate) fn list_map_exit(&mut self, cell: Cell) {
+        let has_group = |residual: &ResidualFrontier| is_near(residual.cell, cell, GROUP_RADIUS_M);
+        let gives_way = self.list.iter().position(is_not_worth_it);
         if self.list.is_full()
-            && let Some(k) = self.list.iter().position(is_not_worth_it)
+            && !self.list.iter().any(has_group)
+            && let Some(k) = gives_way
         {
             self.list.swap_remove(k);
         }
