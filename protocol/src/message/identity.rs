@@ -48,8 +48,8 @@ pub struct Identity {
     pub boots: u32,
     /// Maximum number of tiles that the map can have.
     pub tile_slots: u16,
-    /// Number of tiles in the map's pool. A tile that is all free or has no obstacle needs little or
-    /// no place in it.
+    /// Number of tiles in the map's pool. A tile that is all free or has no obstacle needs little
+    /// or no place in it.
     pub tile_pool: u16,
     /// Length of the longest frame that the device accepts, bytes.
     pub max_frame: u16,

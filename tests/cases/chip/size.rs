@@ -10,8 +10,8 @@ use fieldline_tests::elf::Image;
 use fieldline_tests::table::Table;
 use fieldline_tests::{costs, emulator, golden};
 
-/// Flash that the image may take of the chip's 1 MB. Planes over scattered tiles took 7 KB of it, and
-/// gave back 22 KB of the memory, which is scarce.
+/// Flash that the image may take of the chip's 1 MB. Planes over scattered tiles took 7 KB of it,
+/// and gave back 22 KB of the memory, which is scarce.
 const MOST_FLASH: u64 = 336 * 1024;
 /// The chip's main memory.
 const SRAM: Range<u64> = 0x2000_0000..0x2002_0000;

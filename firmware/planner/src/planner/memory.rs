@@ -14,8 +14,8 @@ use crate::team::packet::Packet;
 use crate::team::peers::{Peer, Peers};
 
 /// The capacity of a planner: `TILES` map tiles of 3.2 × 3.2 m in the pool, and `SLOTS` tiles that
-/// the map may have, wherever they lie. Tiles that are all free, or have no obstacle, need little or
-/// no place in the pool.
+/// the map may have, wherever they lie. Tiles that are all free, or have no obstacle, need little
+/// or no place in the pool.
 ///
 /// ```
 /// use fieldline_planner::{Capacity, Config, LaserMount, Memory, Planner, RobotShape};

@@ -72,8 +72,8 @@ impl<const PAGES: usize> Thinning<PAGES> {
     /// empty slice has none. `losses` needs as many words as the plane and may hold anything.
     ///
     /// A unit is a word judged, or a page whose words are looked up. The first pass of a call runs
-    /// whatever it costs, if there is a budget at all. The result does not depend on how the work is
-    /// divided into budgets.
+    /// whatever it costs, if there is a budget at all. The result does not depend on how the work
+    /// is divided into budgets.
     pub fn advance(
         &mut self,
         plane: &mut PlaneMut<'_>,

@@ -5,8 +5,8 @@
 //! papers' potential of a point source amounts to these \[Jorge15, steps 3 and 5\].
 //!
 //! Cells wait for their turn in a ring. A cell that finds the ring full is reached all the same,
-//! and its page is *noted*. With the cells of a level, the wave expands all cells of the noted pages
-//! that have the level's residue. That costs time and changes no distance, since a cell of an
+//! and its page is *noted*. With the cells of a level, the wave expands all cells of the noted
+//! pages that have the level's residue. That costs time and changes no distance, since a cell of an
 //! earlier level with the same residue has no open neighbour left.
 //!
 //! Invariant between two calls: every reached cell with an open neighbour is in the ring or in a
