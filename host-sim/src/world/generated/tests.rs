@@ -212,8 +212,7 @@ fn small_worlds_have_a_start_too() {
 #[test]
 fn a_bad_seed_or_size_is_refused_by_name_and_remedy() {
     let seed = "the seed must be a whole number from 0 to 18446744073709551615; say";
-    let large = "is too large for the planner's map of 400 tiles of 3.2 m; \
-                 say 64x64, 128x32 or less";
+    let large = "is too large; say 64x64, 128x32 or less";
     for (name, reason) in [
         ("maze", format!("{seed} maze:1")),
         ("rooms:", format!("{seed} rooms:1")),
