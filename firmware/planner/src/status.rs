@@ -48,7 +48,7 @@ pub enum Fault {
     StartBlocked,
     /// A frontier is reachable, and every tile of the map's pool is in use.
     MapFull,
-    /// A reachable frontier lies beyond the map's box.
+    /// A reachable frontier lies beyond the map's range.
     OutOfBox,
     /// The robot did not move for too long, although it was commanded to move.
     Stuck,
@@ -65,7 +65,7 @@ pub enum ResidualReason {
     Unreachable,
     /// The robot was there and could not see it.
     Unobservable,
-    /// It lies beyond the map's box.
+    /// It lies beyond the map's range.
     OutOfBounds,
     /// The robot did not come nearer to it.
     NoProgress,
@@ -118,7 +118,7 @@ impl fmt::Display for Fault {
         f.write_str(match self {
             Self::StartBlocked => "the robot started inside an obstacle",
             Self::MapFull => "the map is full",
-            Self::OutOfBox => "a path leads out of the map's box",
+            Self::OutOfBox => "a path leads out of the map's range",
             Self::Stuck => "the robot is stuck",
             Self::PoseLost => "the robot does not know where it is",
             Self::Trapped => "the forces lead nowhere",

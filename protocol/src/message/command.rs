@@ -48,7 +48,7 @@ pub enum Fault {
     StartBlocked,
     /// A way leads to further space, and every tile of the map's pool is in use.
     MapFull,
-    /// A way leads to further space, and it leaves the map's box.
+    /// A way leads to further space, and it leaves the map's range.
     OutOfBox,
     /// The scans of the observation do not match the session's lasers. The planner made no step.
     /// This fault ends with the next correct observation.

@@ -15,7 +15,7 @@ pub enum ResidualReason {
     Unreachable,
     /// The robot reached it and still did not see the cells behind it.
     Unobservable,
-    /// It lies beyond the map's box.
+    /// It lies beyond the map's range.
     OutOfBounds,
     /// The robot made no progress towards it.
     NoProgress,

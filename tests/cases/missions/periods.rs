@@ -1,13 +1,19 @@
 //! The step period: 100 to 400 ms explore equally well; the device refuses others.
 
-use crate::whole::LEAST_COVERAGE;
+use fieldline_protocol::message::Order;
 use fieldline_tests::worlds;
+use fixed::types::I4F12;
 use host_sim::link::direct::Direct;
 use host_sim::trial::mission::{Mission, MissionError, explore};
 
+use crate::whole::LEAST_COVERAGE;
+
 fn at(period_ms: u32) -> Result<host_sim::report::Report, MissionError> {
+    // What is not worth the trip is left at any period.
+    let worth = I4F12::ZERO;
     let mission = Mission {
         period_ms,
+        order: Some(Order::Gain { worth }),
         ..Mission::default()
     };
     let world = worlds::builtin("narrow-doors");

@@ -78,7 +78,7 @@ impl Door {
         let inside = |cell: Cell| (0..ROOM).contains(&cell.x) && (0..ROOM).contains(&cell.y);
         let mut set = |cell: Cell, class| {
             if inside(cell) {
-                tiles.set(cell, class).expect("the room fits the box");
+                tiles.set(cell, class).expect("the room fits the map");
             }
         };
         for cell in (0..ROOM).flat_map(|y| (0..ROOM).map(move |x| Cell { x, y })) {

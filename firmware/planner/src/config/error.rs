@@ -1,5 +1,4 @@
-//! Errors of a configuration: the parameter that is out of its range, and the box that does not
-//! fit.
+//! The error of a configuration: the parameter that is out of its range.
 
 use core::fmt;
 

@@ -124,8 +124,7 @@ impl Config {
         ConfigBuilder::new(robot)
     }
 
-    /// Returns the defaults for a robot with these lasers, in the largest square box of the default
-    /// image.
+    /// Returns the defaults for a robot with these lasers.
     const fn new(robot: RobotShape, lasers: Vec<LaserMount, 2>) -> Self {
         Self {
             strategy: Strategy::Frontier,

@@ -26,7 +26,9 @@ pub(crate) use tile_map::TileMap;
 pub(crate) use tiling::Block;
 
 pub use class::{Class, Row};
+pub(crate) use sites::RING;
 pub use sites::{Site, Sites};
+pub(crate) use tile_key::SIDES;
 pub use tile_key::TileKey;
 pub use tiling::{PAGE_SIDE, PAGE_WORDS, Tiling, TooSmall};
 

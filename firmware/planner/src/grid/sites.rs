@@ -26,6 +26,18 @@ const STEPS: [(i8, i8); 8] = [
     (1, 1),
 ];
 
+/// Steps to the eight neighbours round a cell, from the north on. Sides have even places.
+pub(crate) const RING: [(i8, i8); 8] = [
+    (0, -1),
+    (1, -1),
+    (1, 0),
+    (1, 1),
+    (0, 1),
+    (-1, 1),
+    (-1, 0),
+    (-1, -1),
+];
+
 impl Site {
     /// Returns the site `dx` columns and `dy` rows away; `None` if it leaves the range of the type.
     #[must_use]

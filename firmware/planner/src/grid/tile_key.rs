@@ -19,6 +19,9 @@ const SHIFT: u16 = 4;
 /// Column and row of the first tile.
 const MIDDLE: i32 = 128;
 
+/// Steps to the tiles at the four sides: columns and rows.
+pub(crate) const SIDES: [(i32, i32); 4] = [(-1, 0), (1, 0), (0, -1), (0, 1)];
+
 /// The place of a tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TileKey(u16);

@@ -14,6 +14,7 @@
 
 use core::fmt;
 
+use crate::grid::tile_key::find;
 use crate::grid::{Site, TileKey, at, masked};
 
 /// Words of a page.
@@ -72,7 +73,7 @@ impl<'a> Tiling<'a> {
     /// Returns a tile's place in the list.
     #[must_use]
     pub fn place(self, key: TileKey) -> Option<usize> {
-        self.keys.binary_search(&key).ok()
+        find(self.keys, key)
     }
 
     /// Returns the index of a site's word; `None` outside the tiles.
@@ -269,7 +270,7 @@ mod tests {
     use std::vec::Vec;
 
     use super::{Block, PAGE_WORDS, Tiling};
-    use crate::grid::{Site, TileKey};
+    use crate::grid::{RING, Site, TileKey};
 
     /// Keys of tiles that touch each other in many ways.
     fn keys() -> Vec<TileKey> {
@@ -333,22 +334,11 @@ mod tests {
                 .index(site)
                 .is_some_and(|i| words[i] & site.bit() != 0)
         };
-        // North is towards row 0.
-        let ring = [
-            (0, -1),
-            (1, -1),
-            (1, 0),
-            (1, 1),
-            (0, 1),
-            (-1, 1),
-            (-1, 0),
-            (-1, -1),
-        ];
         for index in 0..tiling.words() {
             let block = Block::read(tiling, &words, index / PAGE_WORDS);
             let k = index % PAGE_WORDS;
             assert_eq!(block.word(k), words[index]);
-            for (word, (dx, dy)) in block.neighbours(k).into_iter().zip(ring) {
+            for (word, (dx, dy)) in block.neighbours(k).into_iter().zip(RING) {
                 for bit in 0..32 {
                     let near = tiling.site(index, bit).offset(dx, dy).unwrap();
                     assert_eq!(word >> bit & 1 == 1, get(near), "{index} {bit} {dx} {dy}");

@@ -46,7 +46,7 @@ use crate::input::Input;
 /// one or two.
 const MAX_STEP_CELLS: i32 = 10;
 
-/// The map, with `TILES` pages in the pool and `SLOTS` slots in the box.
+/// The map, with `TILES` pages in the pool and `SLOTS` tiles in the directory.
 #[derive(Debug)]
 pub struct Map<const TILES: usize, const SLOTS: usize> {
     pub(crate) tiles: Tiles<TILES, SLOTS>,
@@ -156,7 +156,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         &self.tiles
     }
 
-    /// Returns true if a beam met a cell that the box has no slot for.
+    /// Returns true if a beam met a cell that is too far from the first tile.
     #[must_use]
     pub const fn out_of_box(&self) -> bool {
         self.out_of_box

@@ -46,17 +46,6 @@ const RANKS: u32 = RANK_STEPS.len() as u32;
 /// Bits of a cost class, and classes in a word.
 const BITS: usize = 5;
 const PER_WORD: usize = u32::BITS as usize / BITS;
-/// The eight neighbours of a cell.
-const NEIGHBOURS: [(i16, i16); 8] = [
-    (1, 0),
-    (1, 1),
-    (0, 1),
-    (-1, 1),
-    (-1, 0),
-    (-1, -1),
-    (0, -1),
-    (1, -1),
-];
 /// The class of a frontier cell that was given up.
 const GIVEN_UP: u32 = (1 << BITS) - 1;
 const _CHECKS: () = assert!(
@@ -206,15 +195,8 @@ fn connected_cells(frontier: Plane<'_>, first: Site) -> u16 {
     let mut next = 0;
     while let Some(&site) = found.get(next) {
         next += 1;
-        for (dx, dy) in NEIGHBOURS {
-            let beside = site
-                .x
-                .checked_add_signed(dx)
-                .zip(site.y.checked_add_signed(dy));
-            let Some(beside) = beside.map(|(x, y)| Site { x, y }) else {
-                continue;
-            };
-            if frontier.get(beside) && !found.contains(&beside) && found.push(beside).is_err() {
+        for beside in frontier.neighbours(site) {
+            if !found.contains(&beside) && found.push(beside).is_err() {
                 return Goal::MAX_CELLS;
             }
         }

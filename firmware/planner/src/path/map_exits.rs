@@ -1,7 +1,7 @@
 //! Map exits: places that the robot can reach and beyond which the map has no room.
 //!
-//! Something seen beyond the map's box, through a window or a gap, does not make an exploration
-//! incomplete; a door out of the box does. So the explored passable cells are flooded from the
+//! Something seen beyond the map's range, through a window or a gap, does not make an exploration
+//! incomplete; a door out of it does. So the explored passable cells are flooded from the
 //! robot ([`Reachability`]). Where the flood comes to the side of a tile behind which nothing can
 //! be stored, there is an exit.
 //!
@@ -10,7 +10,7 @@
 //! Units: coarse cells of 20 cm, 16 × 16 in a tile.
 
 use crate::geometry::Cell;
-use crate::grid::Tiling;
+use crate::grid::{SIDES, Tiling};
 use crate::map::tiles::NoRoom;
 use crate::map::{Map, Tiles};
 use crate::roadmap::configuration_space::Footprint;
@@ -68,7 +68,7 @@ fn for_each_exit<const TILES: usize, const SLOTS: usize>(
     while !reachability.spread(u32::MAX) {}
     for &key in tiles.keys() {
         let (x, y) = frame.tile(key);
-        for side in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
+        for side in SIDES {
             if let Err(room) = tiles.room(x + side.0, y + side.1) {
                 reachability.along(key, side, |cell| found(cell, room));
             }

@@ -36,7 +36,7 @@ impl ResidualFrontiers {
     /// Returns the goals that were given up.
     fn given_up(&self) -> impl Iterator<Item = &ResidualFrontier> {
         let list = self.list.iter();
-        list.filter(|residual| residual.reason != ResidualReason::NotWorthIt)
+        list.filter(|residual| !is_not_worth_it(residual))
     }
 
     /// Returns true if as many goals were given up as there is room for.
@@ -52,11 +52,8 @@ impl ResidualFrontiers {
 
     /// Gives up a goal. A full list loses one that is not worth the trip, or else its oldest one.
     pub(crate) fn give_up(&mut self, cell: Cell, reason: ResidualReason) {
-        if self.list.is_full() {
-            let is_left =
-                |residual: &ResidualFrontier| residual.reason == ResidualReason::NotWorthIt;
-            let place = self.list.iter().position(is_left).unwrap_or(0);
-            self.list.remove(place);
+        if !self.has_room() {
+            self.list.remove(0);
         }
         // There is room now.
         let _ = self.list.push(ResidualFrontier {
@@ -75,8 +72,7 @@ impl ResidualFrontiers {
 
     /// Takes off the list what was not worth the trip.
     pub(crate) fn forget_not_worth_it(&mut self) {
-        self.list
-            .retain(|residual| residual.reason != ResidualReason::NotWorthIt);
+        self.list.retain(|residual| !is_not_worth_it(residual));
     }
 
     /// Takes the goals back that were given up because the robot came no nearer.
@@ -120,16 +116,24 @@ impl ResidualFrontiers {
     /// full list, something that is not worth the trip gives way.
     pub(crate) fn list_map_exit(&mut self, cell: Cell) {
         let has_group = |residual: &ResidualFrontier| is_near(residual.cell, cell, GROUP_RADIUS_M);
-        let gives_way = self.list.iter().position(is_not_worth_it);
-        if self.list.is_full()
-            && !self.list.iter().any(has_group)
-            && let Some(k) = gives_way
-        {
-            self.list.swap_remove(k);
+        if !self.list.iter().any(has_group) {
+            // A list full of exits has no room for another.
+            let _ = self.has_room();
         }
         if let Some(group) = self.count(cell, ResidualReason::OutOfBounds) {
             group.reason = ResidualReason::OutOfBounds;
         }
+    }
+
+    /// Returns true if there is room. On a full list, something that is not worth the trip gives
+    /// way.
+    fn has_room(&mut self) -> bool {
+        if self.list.is_full()
+            && let Some(place) = self.list.iter().position(is_not_worth_it)
+        {
+            self.list.remove(place);
+        }
+        !self.list.is_full()
     }
 
     /// Counts a cell to the first group near it, or begins a group. Returns the group; `None` if

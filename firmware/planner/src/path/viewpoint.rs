@@ -51,6 +51,7 @@ const TRIES: u32 = 4;
 /// longest step of `cluttered` took 8.5 million instructions. The last block may add
 /// `TRIES · RAYS · (MOST_ON + MOST_BACK)` = 23,000 cells.
 const TILES_PER_STEP: u16 = 120;
+/// A flood of a tile takes some 3,000 instructions.
 const FLOODS_PER_STEP: u32 = 300;
 const CELLS_PER_STEP: i32 = 20_000;
 /// Cost of finding a block's gaps, in cells on rays: measured on the chip.

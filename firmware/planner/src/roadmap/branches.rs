@@ -18,7 +18,7 @@
 //!
 //! D. Rutovitz, "Pattern recognition", Journal of the Royal Statistical Society A 129(4), 1966.
 
-use crate::grid::{Plane, Site};
+use crate::grid::{Plane, RING, Site};
 
 /// The kind of a set cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,9 +38,11 @@ pub(crate) fn kind(plane: Plane<'_>, site: Site) -> Option<Kind> {
     if !plane.get(site) {
         return None;
     }
+    let mut is_set = plane.query();
     let mut around = 0_u8;
-    for near in plane.neighbours(site) {
-        around |= 1 << place_of(near.x.wrapping_sub(site.x), near.y.wrapping_sub(site.y));
+    for (k, (dx, dy)) in RING.into_iter().enumerate() {
+        let near = site.offset(dx, dy);
+        around |= u8::from(near.is_some_and(&mut is_set)) << k;
     }
     // A run of set neighbours begins where the one before is clear.
     let runs = (around & !around.rotate_left(1)).count_ones();
@@ -50,21 +52,6 @@ pub(crate) fn kind(plane: Plane<'_>, site: Site) -> Option<Kind> {
         2 => Kind::Passage,
         _ => Kind::Junction,
     })
-}
-
-/// Returns a neighbour's place in [`RING`], by its steps mod 2¹⁶.
-const fn place_of(dx: u16, dy: u16) -> u32 {
-    const LEFT: u16 = u16::MAX;
-    match (dx, dy) {
-        (0, LEFT) => 0,
-        (1, LEFT) => 1,
-        (1, 0) => 2,
-        (1, 1) => 3,
-        (0, 1) => 4,
-        (LEFT, 1) => 5,
-        (LEFT, 0) => 6,
-        _ => 7,
-    }
 }
 
 /// The cells of a branch, from the one after its first cell to the end or junction that it leads
@@ -104,18 +91,6 @@ impl<'a> Branch<'a> {
         (run..end).find(|k| k % 2 == 0).or(Some(run)).and_then(ring)
     }
 }
-
-/// Steps to the neighbours round a cell, from the north on. Sides have even places.
-const RING: [(i8, i8); 8] = [
-    (0, -1),
-    (1, -1),
-    (1, 0),
-    (1, 1),
-    (0, 1),
-    (-1, 1),
-    (-1, 0),
-    (-1, -1),
-];
 
 impl Iterator for Branch<'_> {
     type Item = Site;
@@ -211,7 +186,7 @@ mod tests {
     use std::string::String;
     use std::vec::Vec;
 
-    use super::{Branch, Kind, Plane, Site, kind, ways};
+    use super::{Branch, Kind, Plane, RING, Site, kind, ways};
     use crate::grid::{PlaneMut, TileKey, Tiling, draw};
 
     /// A plane of two tiles side by side.
@@ -294,7 +269,7 @@ mod tests {
             sheet.words = core::array::from_fn(|_| random() & random() | random() & 0x1111);
             let plane = sheet.plane();
             for (y, x) in (0..16).flat_map(|y| (0..32).map(move |x| (y, x))) {
-                let around = super::RING.map(|(dx, dy)| {
+                let around = RING.map(|(dx, dy)| {
                     let near = site(x, y).offset(dx, dy);
                     near.is_some_and(|near| plane.get(near))
                 });

@@ -14,7 +14,9 @@
 
 use crate::geometry::Cell;
 use crate::grid::bits::halve;
-use crate::grid::{Block, PAGE_SIDE, PAGE_WORDS, TileKey, Tiling, at, inside, inside_mut, masked};
+use crate::grid::{
+    Block, PAGE_SIDE, PAGE_WORDS, SIDES, TileKey, Tiling, at, inside, inside_mut, masked,
+};
 use crate::map::Tiles;
 use crate::map::tiles::TILE_SIDE;
 use crate::roadmap::configuration_space::{Footprint, for_each_strip};
@@ -128,7 +130,7 @@ impl<'a> Reachability<'a> {
     /// Lets a tile and those beside it be flooded.
     fn wake_around(&mut self, place: usize) {
         self.wake(place);
-        for (columns, rows) in [(-1, 0), (1, 0), (0, -1), (0, 1)] {
+        for (columns, rows) in SIDES {
             self.wake(self.tiling.beside(place, columns, rows));
         }
     }

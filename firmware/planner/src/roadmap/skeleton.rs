@@ -17,16 +17,13 @@
 use heapless::Vec;
 
 use crate::geometry::{CELL_M, Cell};
-use crate::grid::{Block, PAGE_SIDE, PAGE_WORDS, Plane, PlaneMut, Site, TileKey, Tiling};
+use crate::grid::{Block, PAGE_SIDE, PAGE_WORDS, Plane, PlaneMut, SIDES, Site, TileKey, Tiling};
 use crate::map::Tiles;
 use crate::map::tiles::TILE_SIDE;
 use crate::math;
 use crate::roadmap::coarse;
 use crate::roadmap::configuration_space::{Footprint, Strip, for_each_strip};
 use crate::roadmap::{Progress, Thinning};
-
-/// Steps to the four sides of a tile.
-const SIDES: [(i32, i32); 4] = [(-1, 0), (1, 0), (0, -1), (0, 1)];
 
 /// The space whose skeleton is computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -19,78 +19,24 @@
 
 use crate::grid::Block;
 
-/// The eight neighbours of 32 cells.
-#[derive(Clone, Copy, Debug)]
-struct Neighbourhood {
-    north: u32,
-    north_east: u32,
-    east: u32,
-    south_east: u32,
-    south: u32,
-    south_west: u32,
-    west: u32,
-    north_west: u32,
-}
-
 /// Returns the cells of word k of a page that the first (or second) subiteration deletes.
 pub(super) fn deletions(block: &Block, k: usize, second: bool) -> u32 {
     let here = block.word(k);
     if here == 0 {
         return 0;
     }
-    let [
-        north,
-        north_east,
-        east,
-        south_east,
-        south,
-        south_west,
-        west,
-        north_west,
-    ] = block.neighbours(k);
-    let around = Neighbourhood {
-        north,
-        north_east,
-        east,
-        south_east,
-        south,
-        south_west,
-        west,
-        north_west,
-    };
-    here & neighbourhoods_deleted(if second { around.turned() } else { around })
-}
-
-impl Neighbourhood {
-    /// Returns the neighbourhood turned by 180°.
-    #[inline(always)]
-    const fn turned(self) -> Self {
-        Self {
-            north: self.south,
-            north_east: self.south_west,
-            east: self.west,
-            south_east: self.north_west,
-            south: self.north,
-            south_west: self.north_east,
-            west: self.east,
-            north_west: self.south_east,
-        }
+    let mut around = block.neighbours(k);
+    if second {
+        // By 180°: they go round the cell.
+        around.rotate_left(4);
     }
+    here & neighbourhoods_deleted(around)
 }
 
-/// Returns the cells, if set, that the first subiteration deletes.
+/// Returns the cells, if set, that the first subiteration deletes, from their neighbours: north,
+/// north-east, and so on round.
 #[inline(always)]
-const fn neighbourhoods_deleted(around: Neighbourhood) -> u32 {
-    let Neighbourhood {
-        north: n,
-        north_east: ne,
-        east: e,
-        south_east: se,
-        south: s,
-        south_west: sw,
-        west: w,
-        north_west: nw,
-    } = around;
+const fn neighbourhoods_deleted([n, ne, e, se, s, sw, w, nw]: [u32; 8]) -> u32 {
     let south_sides = s | sw;
     // West clear, east set.
     let turn = s & !nw;
@@ -107,7 +53,7 @@ const fn neighbourhoods_deleted(around: Neighbourhood) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Neighbourhood, neighbourhoods_deleted};
+    use super::neighbourhoods_deleted;
 
     /// The definition term by term; p\[0\] is p2.
     fn deletes(p: [bool; 8], second: bool) -> bool {
@@ -135,23 +81,15 @@ mod tests {
         for code in 0..256_u32 {
             let p = core::array::from_fn(|k| code >> k & 1 == 1);
             let bit = |k: usize| if p[k] { u32::MAX } else { 0 };
-            let around = Neighbourhood {
-                north: bit(0),
-                north_east: bit(1),
-                east: bit(2),
-                south_east: bit(3),
-                south: bit(4),
-                south_west: bit(5),
-                west: bit(6),
-                north_west: bit(7),
-            };
+            let mut around: [u32; 8] = core::array::from_fn(bit);
             let all = |yes: bool| if yes { u32::MAX } else { 0 };
             assert_eq!(
                 neighbourhoods_deleted(around),
                 all(deletes(p, false)),
                 "first, {code:08b}"
             );
-            let turned = neighbourhoods_deleted(around.turned());
+            around.rotate_left(4);
+            let turned = neighbourhoods_deleted(around);
             assert_eq!(turned, all(deletes(p, true)), "second, {code:08b}");
         }
     }

@@ -75,7 +75,7 @@ impl Drawing {
                         y: least.y + y * scale + k / scale,
                     };
                     if class != Class::Unknown {
-                        map.set(at, class).expect("the box holds the area");
+                        map.set(at, class).expect("the map holds the area");
                     }
                 }
             }
