@@ -92,7 +92,7 @@ fn the_log_is_decoded_with_the_image() {
         "{text}"
     );
     assert!(
-        text.contains("INFO session started: box 20 x 20 tiles, 2 lasers, radius 300 mm"),
+        text.contains("INFO session started: 2 lasers, radius 300 mm"),
         "{text}"
     );
 }
