@@ -18,8 +18,6 @@ fn ports() -> [u16; 3] {
 fn team(id: usize, ports: &[u16; 3], key: &Path) -> String {
     let others = (0..3).filter(|k| *k != id);
     let peers: Vec<String> = others.map(|k| format!("127.0.0.1:{}", ports[k])).collect();
-    // At six times real time a stall of the machine of 0.1 s is a silence of 0.6 s, and a peer's
-    // claims end after 2 s.
     format!(
         "id={id},bind=127.0.0.1:{},peers={},key={},pace=6",
         ports[id],

@@ -12,16 +12,19 @@
 //! | [`spec`] | a process's place in a team, by name |
 //! | [`carrier`] | what carries datagrams |
 //! | [`udp`] | unicast to peers, multicast to find them |
+//! | `lockstep` | no process runs ahead of the others |
 //!
 //! Whatever arrives, nothing panics: a datagram that is no good is dropped and counted.
 
 pub mod carrier;
 pub mod envelope;
+mod lockstep;
 pub mod spec;
 pub mod udp;
 
+use core::time::Duration;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use fieldline_protocol::message::{
     Command, Control, FieldRow, Identity, Member, Observation, Packet, Path, ResidualFrontier,
@@ -33,11 +36,14 @@ use serde::{Deserialize, Serialize};
 use crate::link::{Link, LinkError, LinkStats};
 use carrier::{Arrived, Carrier};
 use envelope::{Heard, Key, Kind, Letter, Refused};
+use lockstep::Lockstep;
 
 /// Most packets that a planner says in a step. A device that says more is not asked on.
 const MOST_SAID: usize = 8;
 /// Most datagrams that are taken before an observation: a flood must not stop the robot.
 const MOST_TAKEN: usize = 256;
+/// Time from one look for datagrams to the next while peers are slower.
+const LOOK_EVERY: Duration = Duration::from_millis(1);
 
 /// What happened to datagrams; as in a report.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -88,6 +94,7 @@ pub struct Networked {
     session: u64,
     counter: u64,
     heard: Heard,
+    lockstep: Lockstep,
     account: Account,
 }
 
@@ -110,6 +117,7 @@ impl Networked {
             session,
             counter: 0,
             heard: Heard::default(),
+            lockstep: Lockstep::default(),
             account: Account::default(),
         }
     }
@@ -131,6 +139,17 @@ impl Networked {
         })
     }
 
+    /// Passes on what arrives until every peer has come as far as this robot.
+    fn keep_together(&mut self) -> Result<(), LinkError> {
+        self.listen()?;
+        while self.lockstep.waits(Instant::now()) {
+            std::thread::sleep(LOOK_EVERY);
+            self.listen()?;
+        }
+        self.lockstep.step();
+        Ok(())
+    }
+
     /// Passes on what arrived.
     fn listen(&mut self) -> Result<(), LinkError> {
         for _ in 0..MOST_TAKEN {
@@ -138,6 +157,7 @@ impl Networked {
                 break;
             };
             if let Some(packet) = self.accept(&arrived) {
+                self.lockstep.hear(packet.from.id, Instant::now());
                 self.link.hear(&packet)?;
             }
         }
@@ -230,7 +250,7 @@ impl Link for Networked {
     }
 
     fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        self.listen()?;
+        self.keep_together()?;
         let command = self.link.observe(observation)?;
         self.speak()?;
         Ok(command)
