@@ -150,6 +150,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     } else {
         sense(config, state, &input);
     }
+    note_surroundings(config, state, &input);
     if state.localiser.has_given_up() {
         state.status = Status::Fault(Fault::PoseLost);
     }
@@ -264,8 +265,8 @@ const fn budget(config: &Config, planned: bool) -> SolverConfig {
     }
 }
 
-/// Enters scans and odometry into the map and the ground model. It is large and called from two
-/// places, so it is not inlined.
+/// Enters scans and odometry into the map. It is large and called from two places, so it is not
+/// inlined.
 #[inline(never)]
 fn sense<const TILES: usize, const SLOTS: usize>(
     config: &Config,
@@ -282,11 +283,21 @@ fn sense<const TILES: usize, const SLOTS: usize>(
     if state.localiser.may_enter() {
         state.map.observe(config, input);
     }
-    let odom = state.localiser.odom();
     let level = level_scans(config, input).find(|(_, ranges_mm)| !ranges_mm.is_empty());
     state
         .strategy
         .note(&input.pose, input.time_ms, level, config.tuning);
+}
+
+/// Enters scans and odometry into the ground model. What protects the hull takes every beam, also
+/// one that seems to end in a peer: a wall may stand there instead, beside a peer that has moved.
+#[inline(never)]
+fn note_surroundings<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    input: &Input<'_>,
+) {
+    let odom = state.localiser.odom();
     state.ground.observe(
         config,
         (input, &odom),

@@ -1,4 +1,4 @@
-//! How much faster a team is than a robot: hours.
+//! How much faster a team is than a robot: minutes.
 
 use core::ops::Range;
 
@@ -10,7 +10,7 @@ use fieldline_tests::{golden, worlds};
 const SEEDS: Range<u64> = 0..5;
 
 #[test]
-#[ignore = "takes hours: 240 runs of up to four robots; tests/run --full runs it"]
+#[ignore = "takes minutes: 240 runs of up to four robots; tests/run --full runs it"]
 fn two_three_and_four_robots_beside_one() {
     let worlds = worlds::builtins(&["office", "hall", "cave"]);
     let mut runs = Vec::new();

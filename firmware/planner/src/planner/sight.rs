@@ -69,3 +69,68 @@ fn free_before_peers<const TILES: usize, const SLOTS: usize>(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::boxed::Box;
+
+    use super::sense_without_peers;
+    use crate::config::{Config, Member, TeamPlace};
+    use crate::geometry::{Cell, Point, Pose, Twist};
+    use crate::input::Input;
+    use crate::map::Class;
+    use crate::planner::ground_model::GroundModel;
+    use crate::planner::note_surroundings;
+    use crate::planner::state::State;
+    use crate::robot::{LaserMount, RobotShape};
+    use crate::team::packet::{Beacon, Body, Packet};
+
+    /// The hull of a silent peer grows, and so may hide a wall from the map.
+    #[test]
+    fn a_wall_that_seems_a_peer_is_no_cell_of_the_map_and_still_an_obstacle_for_the_hull() {
+        let member = Member { id: 0, boot: 0 };
+        let config = Config::builder(RobotShape::PIONEER_3AT)
+            .laser(LaserMount::level(0.10, 0.40))
+            .team(TeamPlace {
+                member,
+                ..TeamPlace::default()
+            })
+            .build()
+            .expect("valid");
+        let mut state = Box::new(State::<20, 64>::new());
+        state.reset(&config);
+        let place = Pose {
+            x_m: 1.6,
+            ..Pose::default()
+        };
+        let beacon = Beacon {
+            half_cm: (26, 25),
+            ..Beacon::default()
+        };
+        let packet = Packet {
+            from: Member { id: 1, boot: 0 },
+            sequence: 1,
+            body: Body::Beacon(beacon.at(&place)),
+        };
+        state.hear(&config, &packet);
+        let ranges_mm = [900; 181];
+        let input = Input {
+            time_ms: 2_000,
+            pose: Pose::default(),
+            velocity: Twist::default(),
+            scans: [&ranges_mm, &[]],
+        };
+        sense_without_peers(&config, &mut state, &input);
+        note_surroundings(&config, &mut state, &input);
+        // Ahead, and to the left, where no peer is.
+        let is_wall = |x, y| state.map.tiles().class(Cell { x, y }) == Class::Obstacle;
+        assert!(!(8..12).any(|x| is_wall(x, 0)));
+        assert!((8..12).any(|y| is_wall(1, y)));
+        let GroundModel::Flat(points) = &state.ground else {
+            panic!("the ground is flat");
+        };
+        let is_ahead = |point: &&Point| point.y_m.abs() < 0.1;
+        let ahead = points.points().iter().find(is_ahead).expect("a point");
+        assert!((ahead.x_m - 1.0).abs() < 0.01, "{ahead:?}");
+    }
+}
