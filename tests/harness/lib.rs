@@ -13,6 +13,7 @@
 //! | [`uneven`] | whole explorations of uneven ground, and their table |
 //! | [`truth`] | maps of uneven ground against the true ground |
 //! | [`teams`] | explorations by teams, and their tables |
+//! | [`meetings`] | robots that meet where there is no room to pass |
 //! | [`history`] | every change of every map cell, with its time |
 //! | [`watched`] | a link that is read after every step |
 //! | [`worlds`] | the built-in worlds by kind; worlds drawn by others |
@@ -45,6 +46,7 @@ pub mod flatness;
 pub mod golden;
 pub mod history;
 pub mod loops;
+pub mod meetings;
 pub mod orders;
 pub mod places;
 pub mod plot;

@@ -230,7 +230,8 @@ const fn wire_parameter(parameter: Parameter) -> wire::Parameter {
 }
 
 /// Converts the planner's status for the wire.
-pub(crate) fn wire_status(status: planner::Status) -> wire::Status {
+#[must_use]
+pub fn wire_status(status: planner::Status) -> wire::Status {
     match status {
         planner::Status::Exploring => wire::Status::Exploring,
         planner::Status::Finished(finish) => wire::Status::Finished(match finish {
