@@ -23,13 +23,13 @@ use fieldline_protocol::message::{
 };
 use host_sim::link::{Link, LinkError, LinkStats};
 use host_sim::report::TeamReport;
-use host_sim::report::tum::Stamped;
 use host_sim::trial::mission::Mission;
 use host_sim::trial::team::{TeamMission, TeamRecord, explore};
 use host_sim::world::{Class, GridCell, Occupancy, Start, World};
 
 use crate::random::Random;
-use crate::table::{Table, number};
+use crate::table::Table;
+use crate::teams::longest_stand_s;
 
 /// Simulated time within which all is explored.
 pub const LIMIT_S: u32 = 300;
@@ -40,8 +40,6 @@ const ORIGIN_M: [f64; 2] = [-10.0, -6.0];
 const SIZE_M: [f64; 2] = [20.0, 12.0];
 /// Robots whose centres are nearer have met.
 const MET_M: f64 = 2.0;
-/// A robot that moved less than this stands.
-const MOVED_M: f64 = 0.1;
 
 /// A place without room to pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -333,15 +331,11 @@ impl Meeting {
             Ok(run) => run,
             Err(error) => panic!("{}, seed {seed}: {error}", narrow.name()),
         };
-        let stood = record.robots.iter().map(|robot| {
-            let truths: Vec<Stamped> = robot.steps.iter().map(|step| step.truth).collect();
-            longest_stand_s(&truths)
-        });
         Self {
             narrow,
             seed,
             least_m: least_m(&record),
-            stood_s: stood.fold(0.0, f64::max),
+            stood_s: longest_stand_s(&record),
             report,
             record,
         }
@@ -376,21 +370,6 @@ fn least_m(record: &TeamRecord) -> f64 {
         both.map(|(a, b)| (a.truth.x_m - b.truth.x_m).hypot(a.truth.y_m - b.truth.y_m))
     });
     gaps.fold(f64::INFINITY, f64::min)
-}
-
-/// Returns the longest time within which the robot moved less than [`MOVED_M`].
-fn longest_stand_s(path: &[Stamped]) -> f64 {
-    let Some(mut from) = path.first().copied() else {
-        return 0.0;
-    };
-    let mut longest_ms = 0;
-    for at in path {
-        if (at.x_m - from.x_m).hypot(at.y_m - from.y_m) > MOVED_M {
-            from = *at;
-        }
-        longest_ms = longest_ms.max(at.time_ms - from.time_ms);
-    }
-    f64::from(longest_ms) / 1000.0
 }
 
 /// Makes a table with one line for each place, over the seeds.

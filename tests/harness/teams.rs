@@ -8,11 +8,14 @@ use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::report::TeamReport;
 use host_sim::trial::mission::Mission;
-use host_sim::trial::team::{Appointment, TeamMission, Timetable, explore};
+use host_sim::trial::team::{Appointment, TeamMission, TeamRecord, Timetable, explore};
 use host_sim::world::World;
 
 use crate::digests::Digest;
 use crate::table::{Table, number};
+
+/// A robot that moved less than this stands, metres.
+const MOVED_M: f64 = 0.1;
 
 /// One exploration by a team over direct links.
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +57,25 @@ impl<'a> TeamRun<'a> {
     /// If the team cannot begin.
     #[must_use]
     pub fn go(&self) -> TeamReport {
+        self.go_recorded().0
+    }
+
+    /// Explores; returns the robots' records as well.
+    ///
+    /// # Panics
+    /// If the team cannot begin.
+    #[must_use]
+    pub fn go_recorded(&self) -> (TeamReport, TeamRecord) {
+        let link = |_| -> Box<dyn Link> { Box::new(Direct::new()) };
+        self.go_by((0..self.robots).map(link).collect())
+    }
+
+    /// Explores over these links, one for each robot.
+    ///
+    /// # Panics
+    /// If the team cannot begin.
+    #[must_use]
+    pub fn go_by(&self, mut links: Vec<Box<dyn Link>>) -> (TeamReport, TeamRecord) {
         let mission = Mission {
             seed: self.seed,
             ..Mission::default()
@@ -67,10 +89,8 @@ impl<'a> TeamRun<'a> {
             },
             ..TeamMission::of(mission, self.robots)
         };
-        let link = |_| -> Box<dyn Link> { Box::new(Direct::new()) };
-        let mut links: Vec<Box<dyn Link>> = (0..self.robots).map(link).collect();
         match explore(&team, self.world, &mut links, &mut ()) {
-            Ok((report, _)) => report,
+            Ok(run) => run,
             Err(error) => panic!("{}: {error}", self.world.name()),
         }
     }
@@ -94,6 +114,26 @@ impl<'a> TeamRun<'a> {
     pub fn digest(&self, report: &TeamReport) -> Digest {
         Digest::of(&report.whole, &self.settings())
     }
+}
+
+/// Returns the longest time for which a robot stood while it explored, seconds.
+#[must_use]
+pub fn longest_stand_s(record: &TeamRecord) -> f64 {
+    let robots = record.robots.iter().map(|robot| {
+        let mut path = robot.steps.iter().map(|step| step.truth);
+        let Some(mut from) = path.next() else {
+            return 0;
+        };
+        let mut longest_ms = 0;
+        for at in path {
+            if (at.x_m - from.x_m).hypot(at.y_m - from.y_m) > MOVED_M {
+                from = at;
+            }
+            longest_ms = longest_ms.max(at.time_ms - from.time_ms);
+        }
+        longest_ms
+    });
+    f64::from(robots.max().unwrap_or(0)) / 1000.0
 }
 
 fn appointments(words: &[&str]) -> Vec<Appointment> {
@@ -149,6 +189,73 @@ pub fn table(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
                 .team
                 .maps_equal
                 .map_or("-".into(), |it| it.to_string()),
+        ]);
+    }
+    table
+}
+
+/// Makes a table with one line for each kind of run, over its seeds; runs of a kind stand together.
+///
+/// *Stood* is the longest time for which a robot stood while it explored, in the mean and at most.
+#[must_use]
+pub fn dropouts(runs: &[TeamRun<'_>], ended: &[(TeamReport, TeamRecord)]) -> Table {
+    let mut table = Table::new(
+        2,
+        &[
+            "world",
+            "team",
+            "explored",
+            "equal maps",
+            "least known %",
+            "T99 s",
+            "end s",
+            "at most",
+            "stood s",
+            "at most",
+            "after another",
+            "hits",
+            "contacts",
+            "kB",
+            "lost",
+        ],
+    );
+    let all: Vec<_> = runs.iter().zip(ended).collect();
+    let kind = |run: &TeamRun<'_>| (run.world.name().to_owned(), run.settings());
+    for same in all.chunk_by(|(a, _), (b, _)| kind(a) == kind(b)) {
+        let of = |of: fn(&TeamReport) -> f64| -> Vec<f64> {
+            same.iter().map(|(_, (report, _))| of(report)).collect()
+        };
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        let count = |is: fn(&TeamReport) -> bool| same.iter().filter(|(_, it)| is(&it.0)).count();
+        let known = of(|it| it.whole.coverage.fraction);
+        let t99_s: Option<Vec<f64>> = same
+            .iter()
+            .map(|(_, (it, _))| it.whole.coverage.t99_s)
+            .collect();
+        let end_s = of(|it| it.whole.sim_time_s);
+        let stood_s: Vec<f64> = same.iter().map(|(_, it)| longest_stand_s(&it.1)).collect();
+        let sum = |values: &[f64]| format!("{:.0}", values.iter().sum::<f64>());
+        let (world, settings) = kind(same[0].0);
+        table.row(vec![
+            world,
+            settings,
+            format!("{} of {}", count(|it| it.whole.explored()), same.len()),
+            count(|it| it.team.maps_equal == Some(true)).to_string(),
+            format!("{:.2}", known.iter().copied().fold(1.0, f64::min) * 100.0),
+            number(t99_s.map(|times| mean(&times)), 1),
+            format!("{:.1}", mean(&end_s)),
+            format!("{:.1}", most(&end_s)),
+            format!("{:.1}", mean(&stood_s)),
+            format!("{:.1}", most(&stood_s)),
+            format!("{:.2}", mean(&of(|it| it.team.driven_after_another))),
+            sum(&of(|it| it.whole.safety.collisions.into())),
+            sum(&of(|it| it.whole.safety.robot_contacts.unwrap_or(0).into())),
+            format!(
+                "{:.0}",
+                mean(&of(|it| it.radio.traffic.sent_bytes as f64 / 1e3))
+            ),
+            sum(&of(|it| it.radio.traffic.lost as f64)),
         ]);
     }
     table

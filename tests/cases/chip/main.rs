@@ -8,4 +8,5 @@ mod full;
 mod loops;
 mod size;
 mod space;
+mod team;
 mod uneven;

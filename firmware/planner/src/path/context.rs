@@ -16,6 +16,7 @@ use crate::path::nearest::Centres;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::Skeleton;
 use crate::roadmap::{Barrier, Residues, WaveSpace, Wavefront};
+use crate::team::Team;
 
 /// Length of a step along the skeleton, metres. A diagonal step counts the same.
 pub(crate) const STEP_M: f32 = 2.0 * CELL_M;
@@ -48,6 +49,8 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) levels: Option<LevelCost<'a, TILES>>,
     /// True if blocked passages are opened again when no goal can be reached.
     pub(crate) reopens_passages: bool,
+    /// The team; `None` for a robot alone.
+    pub(crate) team: Option<&'a Team>,
     /// True if a peer stands in the way that may drive on: without a path the robot waits.
     pub(crate) waits_for_peers: bool,
 }

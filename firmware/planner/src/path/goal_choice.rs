@@ -7,8 +7,8 @@
 //! G is the unexplored area that may be seen from the goal ([`crate::path::gain`]). θ is the angle
 //! from the robot's heading to the first metre of the path. The level is that of
 //! [`crate::path::height_levels`] and of the user's own order. The present goal's gain counts more,
-//! so the robot keeps it until another one is clearly better. A goal is *worth* its trip if it is
-//! open, or G ≥ worth · max(t, 1 m).
+//! so the robot keeps it until another one is clearly better. What another robot claims counts less
+//! ([`crate::path::claims`]). A goal is *worth* its trip if it is open, or G ≥ worth · max(t, 1 m).
 //!
 //! Frontier cells near each other are one *candidate*: the nearest by path stands for them. One
 //! wave from the robot finds them all, the nearest first, with their paths
@@ -23,6 +23,7 @@ use crate::config::OrderTuning;
 use crate::geometry::{Cell, Point};
 use crate::grid::{Plane, Site};
 use crate::math;
+use crate::path::claims::Claims;
 use crate::path::context::STEP_M;
 use crate::path::frontier_path::{cells_on_level, unexplored_beside};
 use crate::path::gain::View;
@@ -113,6 +114,7 @@ fn best_candidate<const TILES: usize, const SLOTS: usize>(
     }
     let before = core::mem::take(judged);
     let frontier = context.skeleton.frontier()?;
+    let claims = Claims::find(search, context, frontier);
     let candidates = candidates(search, context, frontier, residual);
     let choice = Choice {
         context,
@@ -120,6 +122,7 @@ fn best_candidate<const TILES: usize, const SLOTS: usize>(
         present,
         worth,
         most_value: most_value(&context.tuning.order),
+        claims: &claims,
         search,
         robot: Heading::of(context),
     };
@@ -214,6 +217,7 @@ struct Choice<'a, const TILES: usize, const SLOTS: usize> {
     present: Option<PresentGoal>,
     worth: f32,
     most_value: f32,
+    claims: &'a Claims,
     search: &'a PathSearch<'a, TILES, SLOTS>,
     robot: Heading,
 }
@@ -245,7 +249,11 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
         let is_present = self.present.is_some_and(|present| present.is_beside(cell));
         let kept = if is_present { tuning.keep } else { 1.0 };
         let gain_m2 = kept * view.gain_m2();
-        let value = value(tuning, gain_m2);
+        let is_claimed = self
+            .claims
+            .hold(candidate.site, cell, candidate.steps, tuning.gain_m);
+        let claimed = if is_claimed { tuning.claimed } else { 1.0 };
+        let value = value(tuning, claimed * gain_m2);
         if utility(value, path_m) <= least {
             return None;
         }

@@ -10,6 +10,7 @@
 //! | [`search`] | a wave over centre cells and the path down it |
 //! | [`robot_wave`] | a wave from the robot over centre cells, and the paths back to it |
 //! | [`goal_choice`] | the frontier of the greatest utility, and if it is worth the trip |
+//! | [`claims`] | goals that another robot is nearer to |
 //! | [`gain`], [`rays`] | what a robot at a goal would see |
 //! | [`frontier_path`] | the path to the frontier of the least cost |
 //! | [`goal_cost`] | the delay after which a frontier cell's wave starts |
@@ -28,6 +29,7 @@ pub(crate) mod blocked_passages;
 pub(crate) mod breadcrumbs;
 pub(crate) mod cell_path;
 pub(crate) mod centres;
+pub(crate) mod claims;
 pub(crate) mod context;
 pub(crate) mod frontier_path;
 pub(crate) mod gain;

@@ -52,6 +52,36 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
         }
     }
 
+    /// Spreads a wave that enters these cells, each after its steps; those with the fewest come
+    /// first. Calls `visit` as [`Self::spread_from`].
+    pub(crate) fn spread_entering(
+        &mut self,
+        entries: &[(Site, u32)],
+        marks: Plane<'_>,
+        mut visit: impl FnMut(Site, u32),
+    ) {
+        let space = &mut self.space;
+        let mut wave = Wavefront::new();
+        wave.start(space);
+        let (mut level, mut entries) = (0, entries.iter().peekable());
+        loop {
+            while let Some((site, _)) = entries.next_if(|(_, steps)| *steps <= level) {
+                wave.seed(space, *site);
+            }
+            if wave.is_over() {
+                // The wave is at the next entry at once.
+                let Some((_, steps)) = entries.peek() else {
+                    return;
+                };
+                level = *steps;
+                continue;
+            }
+            wave.for_each_new(space, marks, |site| visit(site, level));
+            wave.run_levels(space, 1);
+            level += 1;
+        }
+    }
+
     /// Returns the path from the robot to a cell that its wave reached, `steps` away.
     pub(crate) fn path_from_robot(&self, goal: Site, steps: u32) -> Path {
         let frame = self.centres.frame;

@@ -55,6 +55,11 @@ impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
         self.centres.nearest(from, self.local_grid, is_reached)
     }
 
+    /// Returns the centre cell nearest to a place, and the coarse steps there.
+    pub(crate) fn entry_near(&mut self, from: Cell) -> Option<(Site, u32)> {
+        self.centres.nearest(from, self.local_grid, |_| true)
+    }
+
     /// Returns the path from a place to where the wave began; `None` if no centre cell that the
     /// wave reached is near the place.
     pub(crate) fn path(&mut self, from: Cell) -> Option<Path> {

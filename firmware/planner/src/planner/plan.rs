@@ -47,6 +47,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         tuning: config.tuning,
         levels: state.ground.level_cost(config, &state.preferences),
         reopens_passages: state.ground.reopens_passages(),
+        team: state.team.is_member().then_some(&state.team),
         waits_for_peers,
     };
     let Some(outcome) = state.strategy.advance(context, scratch) else {

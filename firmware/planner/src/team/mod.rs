@@ -128,6 +128,12 @@ impl Team {
         self.way.nearest(&self.peers, now_ms, robot, is_met)
     }
 
+    /// Returns the peers that may move: they explore as this robot does.
+    pub(crate) fn rivals(&self, now_ms: u32) -> impl Iterator<Item = &Peer> {
+        let peers = self.peers.iter();
+        peers.filter(move |peer| self.way.may_move(peer, now_ms))
+    }
+
     /// Returns true if a peer has the right of way before this robot.
     pub(crate) fn is_before_me(&self, peer: &Peer) -> bool {
         self.member

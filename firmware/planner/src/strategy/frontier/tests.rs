@@ -139,6 +139,7 @@ impl Scene {
                 reference_m,
             }),
             reopens_passages: reference_m.is_some(),
+            team: None,
             waits_for_peers: false,
         }
     }

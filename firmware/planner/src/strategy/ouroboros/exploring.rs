@@ -151,6 +151,7 @@ impl Exploration {
                 tuning: &Tuning::DEFAULT,
                 levels: None,
                 reopens_passages: false,
+                team: None,
                 waits_for_peers: false,
             };
             let outcome = self

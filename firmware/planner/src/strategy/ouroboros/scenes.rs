@@ -170,6 +170,7 @@ impl Scene {
             tuning: &Tuning::DEFAULT,
             levels: None,
             reopens_passages: false,
+            team: None,
             waits_for_peers: false,
         }
     }
