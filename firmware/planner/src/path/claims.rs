@@ -55,9 +55,13 @@ impl Claims {
         let mut entries: Vec<(Site, u32), MOST_PEERS> = Vec::new();
         for peer in team.rivals(context.time_ms) {
             let place = peer.pose(context.time_ms).point().cell();
-            if let Some(entry) = search.entry_near(place) {
-                let _ = entries.push(entry);
-                claims.goals.extend(peer.beacon.goal_cell());
+            let Some(entry) = search.entry_near(place) else {
+                continue;
+            };
+            // Both lists have room for all peers.
+            let _ = entries.push(entry);
+            if let Some(goal) = peer.beacon.goal_cell() {
+                let _ = claims.goals.push(goal);
             }
         }
         if claims.goals.is_empty() {
@@ -68,6 +72,7 @@ impl Claims {
             let is_in = |(first, _): &(Site, u16)| is_in_group(*first, site);
             if !claims.groups.iter().any(is_in) {
                 let steps = u16::try_from(steps).unwrap_or(u16::MAX);
+                // The farthest ones do not fit.
                 let _ = claims.groups.push((site, steps));
             }
         });
@@ -87,4 +92,47 @@ impl Claims {
 
 fn is_in_group(first: Site, site: Site) -> bool {
     first.x.abs_diff(site.x) <= GROUP_CELLS && first.y.abs_diff(site.y) <= GROUP_CELLS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const fn site(x: u16) -> Site {
+        Site { x, y: 10 }
+    }
+
+    fn cell(x: i32) -> Cell {
+        Cell { x, y: 20 }
+    }
+
+    /// A peer with 8 steps to the frontier at site 10, and 30 to that at site 40.
+    fn claims(goal: Option<Cell>) -> Claims {
+        Claims {
+            groups: [(site(10), 8), (site(40), 30)].into_iter().collect(),
+            goals: goal.into_iter().collect(),
+        }
+    }
+
+    #[test]
+    fn a_peer_holds_what_it_sees_from_its_goal_if_it_is_nearer() {
+        let claims = claims(Some(cell(20)));
+        assert!(claims.hold(site(10), cell(20), 9, 3.0));
+        assert!(claims.hold(site(14), cell(28), 9, 3.0), "of the same group");
+        assert!(!claims.hold(site(10), cell(20), 8, 3.0), "as near");
+        assert!(!claims.hold(site(10), cell(20), 3, 3.0), "nearer");
+        assert!(
+            !claims.hold(site(40), cell(80), 99, 3.0),
+            "far from its goal"
+        );
+        assert!(
+            !claims.hold(site(20), cell(40), 99, 3.0),
+            "not reached by it"
+        );
+    }
+
+    #[test]
+    fn a_peer_without_a_goal_holds_nothing() {
+        assert!(!claims(None).hold(site(10), cell(20), 9, 3.0));
+    }
 }

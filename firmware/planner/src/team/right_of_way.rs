@@ -296,6 +296,23 @@ mod tests {
     }
 
     #[test]
+    fn only_a_peer_that_is_heard_and_explores_counts_as_moving() {
+        let moves = |activity, now_ms| {
+            let peers = peers(2, activity, 1.0);
+            let peer = peers.iter().next().expect("a peer");
+            RightOfWay::new().may_move(peer, now_ms)
+        };
+        assert!(moves(Activity::Exploring, 2_000) && !moves(Activity::Exploring, 2_001));
+        let stands = [
+            Activity::Standing,
+            Activity::Finished,
+            Activity::Faulted,
+            Activity::Gone,
+        ];
+        assert!(stands.iter().all(|activity| !moves(*activity, 0)));
+    }
+
+    #[test]
     fn the_distance_to_a_road_is_that_to_its_nearest_stretch() {
         let at = |x_m, y_m| Point { x_m, y_m };
         let road = [at(0.0, 0.0), at(2.0, 0.0), at(2.0, 2.0)];

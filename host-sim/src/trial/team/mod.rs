@@ -6,8 +6,8 @@
 //! the earliest. The same settings give the same records, except for measured times.
 //!
 //! The team has ended when no robot explores and none is to join. Then the robots stand and talk
-//! for [`SETTLE_MS`] more, so that what was said last is repaired if it was lost; that time counts
-//! nowhere.
+//! for [`SETTLE_MS`] more, and until nobody said more than beacons for [`QUIET_MS`], at most
+//! [`MOST_SETTLE_MS`]. So what was lost is repaired. That time counts nowhere.
 
 mod member;
 mod starts;
@@ -34,6 +34,12 @@ pub use timetable::{Appointment, AppointmentError, Timetable, TimetableError};
 /// Time for the last exchange after the team has ended, milliseconds. A digest of every tile of a
 /// full map takes 8 s.
 pub const SETTLE_MS: u32 = 20_000;
+
+/// Silence after which the last exchange is over, milliseconds: five digests of one robot.
+pub const QUIET_MS: u32 = 5_000;
+/// Greatest time for the last exchange, milliseconds. With half of the packets lost a tile needs
+/// eight digests in the mean.
+pub const MOST_SETTLE_MS: u32 = 180_000;
 
 /// Settings of a team's run.
 #[derive(Clone, Debug, PartialEq)]
@@ -311,10 +317,25 @@ impl<'w> Run<'_, 'w> {
     fn settle(&mut self, fleet: &mut Fleet<'w>) {
         let period_ms = fleet.robots()[0].config().period_ms;
         let talks = self.team.radio.on && !self.interrupted;
-        let time_ms = if talks { SETTLE_MS } else { REST_MS };
-        for _ in 0..time_ms.div_ceil(period_ms.max(1)) {
+        let (least_ms, most_ms) = if talks {
+            (SETTLE_MS, MOST_SETTLE_MS)
+        } else {
+            (REST_MS, REST_MS)
+        };
+        let (mut passed_ms, mut quiet_ms) = (0, 0);
+        while passed_ms < least_ms || (passed_ms < most_ms && quiet_ms < QUIET_MS) {
+            let said = self.said();
             self.period(fleet);
+            // Every robot that talks says a beacon.
+            let is_quiet = self.said() - said <= self.members.len() as u64;
+            passed_ms += period_ms.max(1);
+            quiet_ms = if is_quiet { quiet_ms + period_ms } else { 0 };
         }
+    }
+
+    /// Returns the number of packets that all robots said so far.
+    fn said(&self) -> u64 {
+        self.members.iter().map(|member| member.talk.said).sum()
     }
 
     fn end_all(&mut self, ending: &Ending) {
