@@ -1,5 +1,6 @@
 //! Whole explorations by teams: the radio, leaving and joining, and how much faster a team is.
 
+mod claims;
 mod dropout;
 mod full;
 mod meetings;
