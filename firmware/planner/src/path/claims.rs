@@ -67,7 +67,6 @@ impl Claims {
         if claims.goals.is_empty() {
             return claims;
         }
-        entries.sort_unstable_by_key(|&(_, steps)| steps);
         search.spread_entering(&entries, frontier, |site, steps| {
             let is_in = |(first, _): &(Site, u16)| is_in_group(*first, site);
             if !claims.groups.iter().any(is_in) {

@@ -52,8 +52,8 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
         }
     }
 
-    /// Spreads a wave that enters these cells, each after its steps; those with the fewest come
-    /// first. Calls `visit` as [`Self::spread_from`].
+    /// Spreads a wave that enters these cells, each after its steps. Calls `visit` as
+    /// [`Self::spread_from`].
     pub(crate) fn spread_entering(
         &mut self,
         entries: &[(Site, u32)],
@@ -63,17 +63,18 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
         let space = &mut self.space;
         let mut wave = Wavefront::new();
         wave.start(space);
-        let (mut level, mut entries) = (0, entries.iter().peekable());
+        let mut level = 0;
         loop {
-            while let Some((site, _)) = entries.next_if(|(_, steps)| *steps <= level) {
+            for (site, _) in entries.iter().filter(|(_, steps)| *steps == level) {
                 wave.seed(space, *site);
             }
             if wave.is_over() {
                 // The wave is at the next entry at once.
-                let Some((_, steps)) = entries.peek() else {
+                let later = entries.iter().map(|(_, steps)| *steps);
+                let Some(next) = later.filter(|steps| *steps > level).min() else {
                     return;
                 };
-                level = *steps;
+                level = next;
                 continue;
             }
             wave.for_each_new(space, marks, |site| visit(site, level));
