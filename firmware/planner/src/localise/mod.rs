@@ -30,7 +30,7 @@ mod symmetric;
 mod tests;
 
 use crate::config::{Config, LocaliseTuning};
-use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose};
+use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
 use crate::input::Input;
 use crate::map::Tiles;
 use crate::math;
@@ -211,10 +211,12 @@ impl Localiser {
         predicted: &MapPose,
     ) -> MapPose {
         let tuning = &config.tuning.localise;
-        let points = scan_points::scan_points(config, laser, ranges_mm);
+        let mut points = scan_points::scan_points(config, laser, ranges_mm);
         if self.is_lost() {
             return self.search(tiles, &points, predicted, tuning);
         }
+        let frame = RobotFrame::of(&predicted.0);
+        points.retain(|point| !tiles.has_lone_arrival(frame.to_map(point.end).cell()));
         let prior = in_cells(&predicted.0);
         let Some(information) = to_cells(&self.covariance).inverse() else {
             return *predicted;
