@@ -53,9 +53,12 @@ pub(super) enum Unobserved {
     Nothing,
 }
 
-/// How far a scan agrees with the map, in beams.
+/// How far a scan agrees with the map, in beams that end on a surface. A person has none: nothing
+/// of it is flat for the 0.4 m which a normal takes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Agreement {
+    /// All of them.
+    beams: u16,
     /// Beams that ended within two cells of an obstacle.
     agreeing: u16,
     /// Those of them within one.
@@ -137,13 +140,14 @@ impl Agreement {
     ) -> Self {
         let frame = Frame::of(pose);
         let mut sum = Self::default();
-        for point in points {
+        for point in points.iter().filter(|point| point.normal.is_some()) {
             let (_, (x, y)) = frame.reach(point);
             let cell = Cell {
                 x: math::floor(x),
                 y: math::floor(y),
             };
             let square = tiles.obstacles_from::<5>(cell.offset(-2, -2));
+            sum.beams += 1;
             sum.agreeing += u16::from(square != 0);
             sum.close += u16::from(square & INNER != 0);
             sum.contradicting += u16::from(square == 0 && tiles.class(cell) == Class::Free);
@@ -156,6 +160,11 @@ impl Agreement {
         let counted = f32::from(self.agreeing + self.contradicting);
         f32::from(self.contradicting) > tuning.contradicted_share * counted
             && counted >= tuning.least_counted
+    }
+
+    /// Returns true if the scan agrees with the map again: what contradicted it has gone.
+    pub(super) fn is_regained(&self, tuning: &LocaliseTuning) -> bool {
+        !self.is_contradicted(tuning) && f32::from(self.close) >= tuning.least_counted
     }
 }
 
@@ -223,11 +232,11 @@ pub(super) struct Aligned {
 
 impl Aligned {
     /// Returns true if the scan agrees with the map so well that a lost robot is found: it observes
-    /// both directions, and most of its `beams` end on obstacles.
-    pub(super) fn is_agreed(&self, beams: usize, tuning: &LocaliseTuning) -> bool {
+    /// both directions, and most beams end on obstacles.
+    pub(super) fn is_agreed(&self, tuning: &LocaliseTuning) -> bool {
         let close = f32::from(self.agreement.close);
         self.unobserved == Unobserved::Nothing
-            && close >= tuning.agreed_share * beams as f32
+            && close >= tuning.agreed_share * f32::from(self.agreement.beams)
             && close >= tuning.least_counted
     }
 }

@@ -212,9 +212,6 @@ impl Localiser {
     ) -> MapPose {
         let tuning = &config.tuning.localise;
         let mut points = scan_points::scan_points(config, laser, ranges_mm);
-        if self.is_lost() {
-            return self.search(tiles, &points, predicted, tuning);
-        }
         let frame = RobotFrame::of(&predicted.0);
         points.retain(|point| !tiles.has_lone_arrival(frame.to_map(point.end).cell()));
         let prior = in_cells(&predicted.0);
@@ -222,6 +219,9 @@ impl Localiser {
             return *predicted;
         };
         let found = align(tiles, &points, (prior, &information), prior, tuning);
+        if self.is_lost() && !found.agreement.is_regained(tuning) {
+            return self.search(tiles, &points, predicted, tuning);
+        }
         if found.agreement.is_contradicted(tuning) {
             self.contradicted = self.contradicted.saturating_add(1);
             if self.contradicted >= tuning.lost_steps {
@@ -269,7 +269,7 @@ impl Localiser {
         let wide = Symmetric::diagonal(WIDE_CELLS, WIDE_CELLS, WIDE_RAD).inverse();
         let wide = wide.unwrap_or_default();
         let found = align(tiles, points, (start, &wide), start, tuning);
-        if found.is_agreed(points.len(), tuning) {
+        if found.is_agreed(tuning) {
             return self.accept(&found, predicted);
         }
         *predicted

@@ -38,7 +38,7 @@ tuning! {
         /// A direction with less information than this is not observed.
         least_information: f32 = 4.0, 0.0..=100.0, "1/cell²";
         /// Share of contradicting beams above which a scan contradicts the map.
-        contradicted_share: f32 = 0.5, 0.1..=1.0, "1";
+        contradicted_share: f32 = 0.1, 0.01..=1.0, "1";
         /// Share of all beams that end within a cell of an obstacle, from which on a lost robot is
         /// found.
         agreed_share: f32 = 0.8, 0.5..=1.0, "1";
