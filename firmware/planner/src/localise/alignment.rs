@@ -155,16 +155,17 @@ impl Agreement {
         sum
     }
 
-    /// Returns true if the scan contradicts the map.
-    pub(super) fn is_contradicted(&self, tuning: &LocaliseTuning) -> bool {
+    /// Returns true if the scan contradicts the map. One that `doubts` already is held to half of
+    /// the share: a wrong place near by agrees better than the one before.
+    pub(super) fn is_contradicted(&self, doubts: bool, tuning: &LocaliseTuning) -> bool {
         let counted = f32::from(self.agreeing + self.contradicting);
-        f32::from(self.contradicting) > tuning.contradicted_share * counted
-            && counted >= tuning.least_counted
+        let share = tuning.contradicted_share * if doubts { 0.5 } else { 1.0 };
+        f32::from(self.contradicting) > share * counted && counted >= tuning.least_counted
     }
 
     /// Returns true if the scan agrees with the map again: what contradicted it has gone.
     pub(super) fn is_regained(&self, tuning: &LocaliseTuning) -> bool {
-        !self.is_contradicted(tuning) && f32::from(self.close) >= tuning.least_counted
+        !self.is_contradicted(true, tuning) && f32::from(self.close) >= tuning.least_counted
     }
 }
 

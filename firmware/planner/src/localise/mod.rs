@@ -222,7 +222,7 @@ impl Localiser {
         if self.is_lost() && !found.agreement.is_regained(tuning) {
             return self.search(tiles, &points, predicted, tuning);
         }
-        if found.agreement.is_contradicted(tuning) {
+        if found.agreement.is_contradicted(self.contradicted > 0, tuning) {
             self.contradicted = self.contradicted.saturating_add(1);
             if self.contradicted >= tuning.lost_steps {
                 self.quality = Quality::Lost;

@@ -44,7 +44,7 @@ tuning! {
         agreed_share: f32 = 0.8, 0.5..=1.0, "1";
         /// Fewest beams on known ground with which a scan can contradict the map, or
         /// find a lost robot.
-        least_counted: f32 = 30.0, 1.0..=181.0, "beams";
+        least_counted: f32 = 20.0, 1.0..=181.0, "beams";
         /// Consecutive contradicting scans after which the robot is lost.
         lost_steps: u8 = 3, 1..=50, "steps";
     }
