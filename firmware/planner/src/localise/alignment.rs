@@ -53,19 +53,36 @@ pub(super) enum Unobserved {
     Nothing,
 }
 
-/// How far a scan agrees with the map, in beams that end on a surface. A person has none: nothing
-/// of it is flat for the 0.4 m which a normal takes.
+/// Beams whose end the map knows.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Agreement {
-    /// All of them.
-    beams: u16,
-    /// Beams that ended within two cells of an obstacle.
+struct Tally {
+    /// Those that ended within two cells of an obstacle.
     agreeing: u16,
-    /// Those of them within one.
-    close: u16,
-    /// Beams that ended in free space without an obstacle within two cells. In unknown space a beam
+    /// Those that ended in free space without an obstacle within two cells. In unknown space a beam
     /// says nothing.
     contradicting: u16,
+}
+
+impl Tally {
+    /// Returns true if more than this share of at least `least` beams contradicts the map.
+    fn contradicts(&self, share: f32, least: f32) -> bool {
+        let counted = f32::from(self.agreeing + self.contradicting);
+        f32::from(self.contradicting) > share * counted && counted >= least
+    }
+}
+
+/// How far a scan agrees with the map.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Agreement {
+    /// All beams. Those that end on people contradict the map too.
+    all: Tally,
+    /// Beams that end on a surface. A person has none: nothing of it is flat for the 0.4 m which a
+    /// normal takes.
+    surfaces: Tally,
+    /// Number of beams that end on a surface, wherever.
+    beams: u16,
+    /// Those of them that ended within a cell of an obstacle.
+    close: u16,
 }
 
 /// A pose in cells and radians, as a motion of points in metres.
@@ -140,27 +157,35 @@ impl Agreement {
     ) -> Self {
         let frame = Frame::of(pose);
         let mut sum = Self::default();
-        for point in points.iter().filter(|point| point.normal.is_some()) {
+        for point in points {
             let (_, (x, y)) = frame.reach(point);
             let cell = Cell {
                 x: math::floor(x),
                 y: math::floor(y),
             };
             let square = tiles.obstacles_from::<5>(cell.offset(-2, -2));
-            sum.beams += 1;
-            sum.agreeing += u16::from(square != 0);
-            sum.close += u16::from(square & INNER != 0);
-            sum.contradicting += u16::from(square == 0 && tiles.class(cell) == Class::Free);
+            let agrees = u16::from(square != 0);
+            let contradicts = u16::from(square == 0 && tiles.class(cell) == Class::Free);
+            sum.all.agreeing += agrees;
+            sum.all.contradicting += contradicts;
+            if point.normal.is_some() {
+                sum.surfaces.agreeing += agrees;
+                sum.surfaces.contradicting += contradicts;
+                sum.beams += 1;
+                sum.close += u16::from(square & INNER != 0);
+            }
         }
         sum
     }
 
     /// Returns true if the scan contradicts the map. One that `doubts` already is held to half of
-    /// the share: a wrong place near by agrees better than the one before.
+    /// the shares: a wrong place near by agrees better than the one before.
     pub(super) fn is_contradicted(&self, doubts: bool, tuning: &LocaliseTuning) -> bool {
-        let counted = f32::from(self.agreeing + self.contradicting);
-        let share = tuning.contradicted_share * if doubts { 0.5 } else { 1.0 };
-        f32::from(self.contradicting) > share * counted && counted >= tuning.least_counted
+        let part = if doubts { 0.5 } else { 1.0 };
+        let least = tuning.least_counted;
+        let surfaces = part * tuning.contradicted_surfaces;
+        let beams = part * tuning.contradicted_share;
+        self.surfaces.contradicts(surfaces, least) || self.all.contradicts(beams, least)
     }
 
     /// Returns true if the scan agrees with the map again: what contradicted it has gone.

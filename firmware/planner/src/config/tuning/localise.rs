@@ -37,8 +37,12 @@ tuning! {
         slip_gap: f32 = 50.0, 1.0..=1e9, "1";
         /// A direction with less information than this is not observed.
         least_information: f32 = 4.0, 0.0..=100.0, "1/cell²";
-        /// Share of contradicting beams above which a scan contradicts the map.
-        contradicted_share: f32 = 0.1, 0.01..=1.0, "1";
+        /// Share of contradicting beams above which a scan contradicts the map. People near the
+        /// robot hide up to a third of what the map knows.
+        contradicted_share: f32 = 0.4, 0.01..=1.0, "1";
+        /// The same share of the beams that end on a surface. It is at most 0.07 where nothing
+        /// moves.
+        contradicted_surfaces: f32 = 0.1, 0.01..=1.0, "1";
         /// Share of all beams that end within a cell of an obstacle, from which on a lost robot is
         /// found.
         agreed_share: f32 = 0.8, 0.5..=1.0, "1";
