@@ -188,9 +188,15 @@ impl Agreement {
         self.surfaces.contradicts(surfaces, least) || self.all.contradicts(beams, least)
     }
 
-    /// Returns true if the scan agrees with the map again: what contradicted it has gone.
-    pub(super) fn is_regained(&self, tuning: &LocaliseTuning) -> bool {
-        !self.is_contradicted(true, tuning) && f32::from(self.close) >= tuning.least_counted
+    /// Returns true if most surfaces contradict the map.
+    pub(super) fn is_refuted(&self, tuning: &LocaliseTuning) -> bool {
+        self.surfaces.contradicts(0.5, tuning.least_counted)
+    }
+
+    /// Returns true if the scan agrees with the map here and much better than elsewhere.
+    pub(super) fn is_better_than(&self, elsewhere: &Self, tuning: &LocaliseTuning) -> bool {
+        let more = f32::from(self.close) - f32::from(elsewhere.close);
+        !self.is_contradicted(false, tuning) && more >= tuning.better_share * f32::from(self.beams)
     }
 }
 

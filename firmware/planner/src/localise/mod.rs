@@ -100,6 +100,8 @@ pub struct Localiser {
     quality: Quality,
     /// Consecutive steps whose scan contradicted the map.
     contradicted: u8,
+    /// Steps for which only a scan most of whose surfaces contradict the map is doubted.
+    trusted_steps: u8,
     /// The search of a robot that is lost.
     search: Search,
 }
@@ -120,6 +122,7 @@ impl Localiser {
             covariance: Symmetric::ZERO,
             quality: Quality::Tracking,
             contradicted: 0,
+            trusted_steps: 0,
             search: Search::new(),
         }
     }
@@ -219,18 +222,24 @@ impl Localiser {
             return *predicted;
         };
         let found = align(tiles, &points, (prior, &information), prior, tuning);
-        if self.is_lost() && !found.agreement.is_regained(tuning) {
-            return self.search(tiles, &points, predicted, tuning);
+        self.trusted_steps = self.trusted_steps.saturating_sub(1);
+        let is_doubtful = if self.trusted_steps > 0 {
+            found.agreement.is_refuted(tuning)
+        } else {
+            found.agreement.is_contradicted(self.contradicted > 0, tuning)
+        };
+        if !is_doubtful {
+            return self.accept(&found, predicted);
         }
-        if found.agreement.is_contradicted(self.contradicted > 0, tuning) {
-            self.contradicted = self.contradicted.saturating_add(1);
-            if self.contradicted >= tuning.lost_steps {
-                self.quality = Quality::Lost;
-                self.search = Search::new();
-            }
-            return *predicted;
+        if self.is_lost() {
+            return self.search(tiles, &points, (&found, predicted), tuning);
         }
-        self.accept(&found, predicted)
+        self.contradicted = self.contradicted.saturating_add(1);
+        if self.contradicted >= tuning.lost_steps {
+            self.quality = Quality::Lost;
+            self.search = Search::new();
+        }
+        *predicted
     }
 
     /// Takes an alignment for the pose.
@@ -254,23 +263,37 @@ impl Localiser {
     }
 
     /// Searches on. Returns the predicted pose until the scan agrees with the map at another one.
+    ///
+    /// If no place near by is much better, and no more than half of the surfaces contradict the
+    /// map, then what contradicts it came or is a fold of the map: the robot goes on.
     fn search<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
         points: &ScanPoints,
-        predicted: &MapPose,
+        (here, predicted): (&Aligned, &MapPose),
         tuning: &LocaliseTuning,
     ) -> MapPose {
         let odom = self.odom();
-        let Some(candidate) = self.search.advance(tiles, points, (&odom, predicted)) else {
-            return *predicted;
-        };
-        let start = in_cells(&candidate.apply(&odom).0);
-        let wide = Symmetric::diagonal(WIDE_CELLS, WIDE_CELLS, WIDE_RAD).inverse();
-        let wide = wide.unwrap_or_default();
-        let found = align(tiles, points, (start, &wide), start, tuning);
-        if found.is_agreed(tuning) {
-            return self.accept(&found, predicted);
+        let was_near = self.search.is_near();
+        let candidate = self.search.advance(tiles, points, (&odom, predicted));
+        if let Some(candidate) = candidate {
+            let start = in_cells(&candidate.apply(&odom).0);
+            let wide = Symmetric::diagonal(WIDE_CELLS, WIDE_CELLS, WIDE_RAD).inverse();
+            let wide = wide.unwrap_or_default();
+            let found = align(tiles, points, (start, &wide), start, tuning);
+            let is_taken = if was_near {
+                found.agreement.is_better_than(&here.agreement, tuning)
+            } else {
+                found.is_agreed(tuning)
+            };
+            if is_taken {
+                return self.accept(&found, predicted);
+            }
+        }
+        let is_nowhere_near = was_near && !self.search.is_near();
+        if is_nowhere_near && !here.agreement.is_refuted(tuning) {
+            self.trusted_steps = tuning.trusted_steps;
+            return self.accept(here, predicted);
         }
         *predicted
     }

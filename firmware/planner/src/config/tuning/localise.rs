@@ -43,6 +43,12 @@ tuning! {
         /// The same share of the beams that end on a surface. It is at most 0.07 where nothing
         /// moves.
         contradicted_surfaces: f32 = 0.1, 0.01..=1.0, "1";
+        /// Share of the surfaces by which more must agree at another place near by, before a robot
+        /// that doubts its own takes it.
+        better_share: f32 = 0.2, 0.0..=1.0, "1";
+        /// Steps for which a robot that found no better place does not doubt its own again, unless
+        /// most surfaces contradict the map.
+        trusted_steps: u8 = 50, 0..=250, "steps";
         /// Share of all beams that end within a cell of an obstacle, from which on a lost robot is
         /// found.
         agreed_share: f32 = 0.8, 0.5..=1.0, "1";
