@@ -216,7 +216,10 @@ impl Localiser {
         let tuning = &config.tuning.localise;
         let mut points = scan_points::scan_points(config, laser, ranges_mm);
         let frame = RobotFrame::of(&predicted.0);
-        points.retain(|point| !tiles.has_lone_arrival(frame.to_map(point.end).cell()));
+        // Walls of a fold came too, but they are surfaces, which people have not.
+        points.retain(|point| {
+            point.normal.is_some() || !tiles.has_lone_arrival(frame.to_map(point.end).cell())
+        });
         let prior = in_cells(&predicted.0);
         let Some(information) = to_cells(&self.covariance).inverse() else {
             return *predicted;
@@ -226,7 +229,9 @@ impl Localiser {
         let is_doubtful = if self.trusted_steps > 0 {
             found.agreement.is_refuted(tuning)
         } else {
-            found.agreement.is_contradicted(self.contradicted > 0, tuning)
+            found
+                .agreement
+                .is_contradicted(self.contradicted > 0, tuning)
         };
         if !is_doubtful {
             return self.accept(&found, predicted);

@@ -68,7 +68,10 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     pub(crate) fn standing_block(&self, corner: Cell, mut each: impl FnMut(u32)) {
         let (x, shift) = (corner.x >> 5, corner.x & 31);
         for tile_y in [corner.y >> 5, (corner.y >> 5) + 1] {
-            let (left, right) = (self.plane::<HIGH>(x, tile_y), self.plane::<HIGH>(x + 1, tile_y));
+            let (left, right) = (
+                self.plane::<HIGH>(x, tile_y),
+                self.plane::<HIGH>(x + 1, tile_y),
+            );
             let least = (tile_y << 5).max(corner.y);
             let end = ((tile_y + 1) << 5).min(corner.y + TILE_SIDE);
             for y in least..end {
@@ -98,6 +101,26 @@ mod tests {
     use crate::geometry::Cell;
     use crate::grid::Class;
     use crate::map::Tiles;
+
+    #[test]
+    fn a_lone_arrival_has_neither_walls_nor_unknown_cells_beside_it() {
+        let mut tiles = Box::new(Tiles::<16, 64>::new());
+        tiles.reset();
+        for (x, y) in (20..44).flat_map(|x| (20..44).map(move |y| (x, y))) {
+            tiles.set(Cell { x, y }, Class::Free).expect("room");
+        }
+        let here = Cell { x: 31, y: 33 };
+        assert!(!tiles.has_lone_arrival(here), "nothing stands there");
+        tiles
+            .set(here.offset(1, -2), Class::Negative)
+            .expect("room");
+        assert!(tiles.has_lone_arrival(here));
+        assert!(!tiles.has_lone_arrival(here.offset(-2, 0)), "too far off");
+        for beside in [Class::Obstacle, Class::Unknown] {
+            tiles.set(here.offset(-2, 2), beside).expect("room");
+            assert!(!tiles.has_lone_arrival(here), "{beside:?}");
+        }
+    }
 
     #[test]
     fn the_square_and_the_block_are_those_of_single_cells() {
