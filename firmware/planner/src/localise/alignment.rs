@@ -188,9 +188,11 @@ impl Agreement {
         self.surfaces.contradicts(surfaces, least) || self.all.contradicts(beams, least)
     }
 
-    /// Returns true if most surfaces contradict the map.
+    /// Returns true if the scan refutes the place: half of the surfaces contradict the map, or so
+    /// many beams as no crowd around the robot stops.
     pub(super) fn is_refuted(&self, tuning: &LocaliseTuning) -> bool {
-        self.surfaces.contradicts(0.5, tuning.least_counted)
+        let least = tuning.least_counted;
+        self.surfaces.contradicts(0.5, least) || self.all.contradicts(0.75, least)
     }
 
     /// Returns true if the scan agrees with the map here and much better than elsewhere.

@@ -100,7 +100,7 @@ pub struct Localiser {
     quality: Quality,
     /// Consecutive steps whose scan contradicted the map.
     contradicted: u8,
-    /// Steps for which only a scan most of whose surfaces contradict the map is doubted.
+    /// Steps for which only a scan that refutes the place is doubted.
     trusted_steps: u8,
     /// The search of a robot that is lost.
     search: Search,
@@ -269,8 +269,8 @@ impl Localiser {
 
     /// Searches on. Returns the predicted pose until the scan agrees with the map at another one.
     ///
-    /// If no place near by is much better, and no more than half of the surfaces contradict the
-    /// map, then what contradicts it came or is a fold of the map: the robot goes on.
+    /// If no place near by is much better, and the scan does not refute this one, then what
+    /// contradicts the map came or is a fold of the map: the robot goes on.
     fn search<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,

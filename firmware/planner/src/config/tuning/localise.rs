@@ -47,12 +47,12 @@ tuning! {
         /// that doubts its own takes it.
         better_share: f32 = 0.2, 0.0..=1.0, "1";
         /// Steps for which a robot that found no better place does not doubt its own again, unless
-        /// most surfaces contradict the map.
+        /// the scan refutes it.
         trusted_steps: u8 = 50, 0..=250, "steps";
-        /// Share of all beams that end within a cell of an obstacle, from which on a lost robot is
-        /// found.
+        /// Share of the surfaces that lie within a cell of an obstacle, from which on a robot that
+        /// searches far off is found.
         agreed_share: f32 = 0.8, 0.5..=1.0, "1";
-        /// Fewest beams on known ground with which a scan can contradict the map, or
+        /// Fewest beams or surfaces on known ground with which a scan can contradict the map, or
         /// find a lost robot.
         least_counted: f32 = 20.0, 1.0..=181.0, "beams";
         /// Consecutive contradicting scans after which the robot is lost.
