@@ -87,7 +87,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     fn plane<const PLANE: usize>(&self, tile_x: i32, tile_y: i32) -> impl Fn(usize) -> u32 {
         let planes = self.planes(self.entry(tile_x, tile_y));
         move |line| match planes {
-            Some(planes) => *masked(masked(&planes, PLANE), line),
+            Some([low, high]) => *masked(if PLANE == LOW { low } else { high }, line),
             None => 0,
         }
     }
