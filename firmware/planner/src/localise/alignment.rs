@@ -53,16 +53,36 @@ pub(super) enum Unobserved {
     Nothing,
 }
 
-/// How far a scan agrees with the map, in beams.
+/// Beams whose end the map knows.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Agreement {
-    /// Beams that ended within two cells of an obstacle.
+struct Tally {
+    /// Those that ended within two cells of an obstacle.
     agreeing: u16,
-    /// Those of them within one.
-    close: u16,
-    /// Beams that ended in free space without an obstacle within two cells. In unknown space a beam
+    /// Those that ended in free space without an obstacle within two cells. In unknown space a beam
     /// says nothing.
     contradicting: u16,
+}
+
+impl Tally {
+    /// Returns true if more than this share of at least `least` beams contradicts the map.
+    fn contradicts(&self, share: f32, least: f32) -> bool {
+        let counted = f32::from(self.agreeing + self.contradicting);
+        f32::from(self.contradicting) > share * counted && counted >= least
+    }
+}
+
+/// How far a scan agrees with the map.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Agreement {
+    /// All beams. Those that end on people contradict the map too.
+    all: Tally,
+    /// Beams that end on a surface. A person has none: nothing of it is flat for the 0.4 m which a
+    /// normal takes.
+    surfaces: Tally,
+    /// Number of beams that end on a surface, wherever.
+    beams: u16,
+    /// Those of them that ended within a cell of an obstacle.
+    close: u16,
 }
 
 /// A pose in cells and radians, as a motion of points in metres.
@@ -144,18 +164,41 @@ impl Agreement {
                 y: math::floor(y),
             };
             let square = tiles.obstacles_from::<5>(cell.offset(-2, -2));
-            sum.agreeing += u16::from(square != 0);
-            sum.close += u16::from(square & INNER != 0);
-            sum.contradicting += u16::from(square == 0 && tiles.class(cell) == Class::Free);
+            let agrees = u16::from(square != 0);
+            let contradicts = u16::from(square == 0 && tiles.class(cell) == Class::Free);
+            sum.all.agreeing += agrees;
+            sum.all.contradicting += contradicts;
+            if point.normal.is_some() {
+                sum.surfaces.agreeing += agrees;
+                sum.surfaces.contradicting += contradicts;
+                sum.beams += 1;
+                sum.close += u16::from(square & INNER != 0);
+            }
         }
         sum
     }
 
-    /// Returns true if the scan contradicts the map.
-    pub(super) fn is_contradicted(&self, tuning: &LocaliseTuning) -> bool {
-        let counted = f32::from(self.agreeing + self.contradicting);
-        f32::from(self.contradicting) > tuning.contradicted_share * counted
-            && counted >= tuning.least_counted
+    /// Returns true if the scan contradicts the map. One that `doubts` already is held to half of
+    /// the shares: a wrong place near by agrees better than the one before.
+    pub(super) fn is_contradicted(&self, doubts: bool, tuning: &LocaliseTuning) -> bool {
+        let part = if doubts { 0.5 } else { 1.0 };
+        let least = tuning.least_counted;
+        let surfaces = part * tuning.contradicted_surfaces;
+        let beams = part * tuning.contradicted_share;
+        self.surfaces.contradicts(surfaces, least) || self.all.contradicts(beams, least)
+    }
+
+    /// Returns true if the scan refutes the place: half of the surfaces contradict the map, or so
+    /// many beams as no crowd around the robot stops.
+    pub(super) fn is_refuted(&self, tuning: &LocaliseTuning) -> bool {
+        let least = tuning.least_counted;
+        self.surfaces.contradicts(0.5, least) || self.all.contradicts(0.75, least)
+    }
+
+    /// Returns true if the scan agrees with the map here and much better than elsewhere.
+    pub(super) fn is_better_than(&self, elsewhere: &Self, tuning: &LocaliseTuning) -> bool {
+        let more = f32::from(self.close) - f32::from(elsewhere.close);
+        !self.is_contradicted(false, tuning) && more >= tuning.better_share * f32::from(self.beams)
     }
 }
 
@@ -223,11 +266,11 @@ pub(super) struct Aligned {
 
 impl Aligned {
     /// Returns true if the scan agrees with the map so well that a lost robot is found: it observes
-    /// both directions, and most of its `beams` end on obstacles.
-    pub(super) fn is_agreed(&self, beams: usize, tuning: &LocaliseTuning) -> bool {
+    /// both directions, and most beams end on obstacles.
+    pub(super) fn is_agreed(&self, tuning: &LocaliseTuning) -> bool {
         let close = f32::from(self.agreement.close);
         self.unobserved == Unobserved::Nothing
-            && close >= tuning.agreed_share * beams as f32
+            && close >= tuning.agreed_share * f32::from(self.agreement.beams)
             && close >= tuning.least_counted
     }
 }

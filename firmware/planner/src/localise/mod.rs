@@ -30,7 +30,7 @@ mod symmetric;
 mod tests;
 
 use crate::config::{Config, LocaliseTuning};
-use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose};
+use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
 use crate::input::Input;
 use crate::map::Tiles;
 use crate::math;
@@ -100,6 +100,8 @@ pub struct Localiser {
     quality: Quality,
     /// Consecutive steps whose scan contradicted the map.
     contradicted: u8,
+    /// Steps for which only a scan that refutes the place is doubted.
+    trusted_steps: u8,
     /// The search of a robot that is lost.
     search: Search,
 }
@@ -120,6 +122,7 @@ impl Localiser {
             covariance: Symmetric::ZERO,
             quality: Quality::Tracking,
             contradicted: 0,
+            trusted_steps: 0,
             search: Search::new(),
         }
     }
@@ -211,24 +214,37 @@ impl Localiser {
         predicted: &MapPose,
     ) -> MapPose {
         let tuning = &config.tuning.localise;
-        let points = scan_points::scan_points(config, laser, ranges_mm);
-        if self.is_lost() {
-            return self.search(tiles, &points, predicted, tuning);
-        }
+        let mut points = scan_points::scan_points(config, laser, ranges_mm);
+        let frame = RobotFrame::of(&predicted.0);
+        // Walls of a fold came too, but they are surfaces, which people have not.
+        points.retain(|point| {
+            point.normal.is_some() || !tiles.has_lone_arrival(frame.to_map(point.end).cell())
+        });
         let prior = in_cells(&predicted.0);
         let Some(information) = to_cells(&self.covariance).inverse() else {
             return *predicted;
         };
         let found = align(tiles, &points, (prior, &information), prior, tuning);
-        if found.agreement.is_contradicted(tuning) {
-            self.contradicted = self.contradicted.saturating_add(1);
-            if self.contradicted >= tuning.lost_steps {
-                self.quality = Quality::Lost;
-                self.search = Search::new();
-            }
-            return *predicted;
+        self.trusted_steps = self.trusted_steps.saturating_sub(1);
+        let is_doubtful = if self.trusted_steps > 0 {
+            found.agreement.is_refuted(tuning)
+        } else {
+            found
+                .agreement
+                .is_contradicted(self.contradicted > 0, tuning)
+        };
+        if !is_doubtful {
+            return self.accept(&found, predicted);
         }
-        self.accept(&found, predicted)
+        if self.is_lost() {
+            return self.search(tiles, &points, (&found, predicted), tuning);
+        }
+        self.contradicted = self.contradicted.saturating_add(1);
+        if self.contradicted >= tuning.lost_steps {
+            self.quality = Quality::Lost;
+            self.search = Search::new();
+        }
+        *predicted
     }
 
     /// Takes an alignment for the pose.
@@ -252,23 +268,37 @@ impl Localiser {
     }
 
     /// Searches on. Returns the predicted pose until the scan agrees with the map at another one.
+    ///
+    /// If no place near by is much better, and the scan does not refute this one, then what
+    /// contradicts the map came or is a fold of the map: the robot goes on.
     fn search<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
         points: &ScanPoints,
-        predicted: &MapPose,
+        (here, predicted): (&Aligned, &MapPose),
         tuning: &LocaliseTuning,
     ) -> MapPose {
         let odom = self.odom();
-        let Some(candidate) = self.search.advance(tiles, points, (&odom, predicted)) else {
-            return *predicted;
-        };
-        let start = in_cells(&candidate.apply(&odom).0);
-        let wide = Symmetric::diagonal(WIDE_CELLS, WIDE_CELLS, WIDE_RAD).inverse();
-        let wide = wide.unwrap_or_default();
-        let found = align(tiles, points, (start, &wide), start, tuning);
-        if found.is_agreed(points.len(), tuning) {
-            return self.accept(&found, predicted);
+        let was_near = self.search.is_near();
+        let candidate = self.search.advance(tiles, points, (&odom, predicted));
+        if let Some(candidate) = candidate {
+            let start = in_cells(&candidate.apply(&odom).0);
+            let wide = Symmetric::diagonal(WIDE_CELLS, WIDE_CELLS, WIDE_RAD).inverse();
+            let wide = wide.unwrap_or_default();
+            let found = align(tiles, points, (start, &wide), start, tuning);
+            let is_taken = if was_near {
+                found.agreement.is_better_than(&here.agreement, tuning)
+            } else {
+                found.is_agreed(tuning)
+            };
+            if is_taken {
+                return self.accept(&found, predicted);
+            }
+        }
+        let is_nowhere_near = was_near && !self.search.is_near();
+        if is_nowhere_near && !here.agreement.is_refuted(tuning) {
+            self.trusted_steps = tuning.trusted_steps;
+            return self.accept(here, predicted);
         }
         *predicted
     }

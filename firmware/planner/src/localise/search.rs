@@ -107,6 +107,11 @@ impl Search {
         None
     }
 
+    /// Returns true in the first round.
+    pub(super) const fn is_near(&self) -> bool {
+        self.round == 0
+    }
+
     /// Returns true if all rounds are over.
     pub(super) const fn is_over(&self) -> bool {
         self.round as usize >= PLACES.len()

@@ -13,10 +13,31 @@ use crate::geometry::Cell;
 use crate::grid::masked;
 use crate::map::tiles::{TILE_SIDE, Tiles};
 
+/// The plane of the low bits of the classes.
+const LOW: usize = 0;
+/// The plane of the high bits.
+const HIGH: usize = 1;
+
 impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Returns the obstacles in the square of `SIDE` cells, at most 5, from `corner` on.
     #[inline]
     pub(crate) fn obstacles_from<const SIDE: i32>(&self, corner: Cell) -> u32 {
+        self.square::<SIDE, HIGH>(corner)
+    }
+
+    /// Returns true if what stands within two cells of a cell came, and has neither a wall nor
+    /// unknown cells beside it there: a person, not a wall whose cells noise had freed. For flat
+    /// ground.
+    pub(crate) fn has_lone_arrival(&self, cell: Cell) -> bool {
+        const WHOLE: u32 = (1 << 25) - 1;
+        let corner = cell.offset(-2, -2);
+        // The low bit of free cells and of what came is set, that of walls and unknown cells not.
+        self.square::<5, LOW>(corner) == WHOLE && self.square::<5, HIGH>(corner) != 0
+    }
+
+    /// Returns a bit of each cell in the square of `SIDE` cells, at most 5, from `corner` on.
+    #[inline]
+    fn square<const SIDE: i32, const PLANE: usize>(&self, corner: Cell) -> u32 {
         const { assert!(0 < SIDE && SIDE <= 5, "the square fits a word") };
         let Cell { x, y } = corner;
         let shift = x & (TILE_SIDE - 1);
@@ -26,9 +47,9 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             let tile_y = (y + row) >> 5;
             // Rows of the square in this row of tiles.
             let last = SIDE.min(((tile_y + 1) << 5) - y);
-            let left = self.standing(x >> 5, tile_y);
+            let left = self.plane::<PLANE>(x >> 5, tile_y);
             let spills = shift > TILE_SIDE - SIDE;
-            let right = spills.then(|| self.standing((x >> 5) + 1, tile_y));
+            let right = spills.then(|| self.plane::<PLANE>((x >> 5) + 1, tile_y));
             while row < last {
                 let line = ((y + row) & 31) as usize;
                 let mut bits = left(line) >> shift;
@@ -47,7 +68,10 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     pub(crate) fn standing_block(&self, corner: Cell, mut each: impl FnMut(u32)) {
         let (x, shift) = (corner.x >> 5, corner.x & 31);
         for tile_y in [corner.y >> 5, (corner.y >> 5) + 1] {
-            let (left, right) = (self.standing(x, tile_y), self.standing(x + 1, tile_y));
+            let (left, right) = (
+                self.plane::<HIGH>(x, tile_y),
+                self.plane::<HIGH>(x + 1, tile_y),
+            );
             let least = (tile_y << 5).max(corner.y);
             let end = ((tile_y + 1) << 5).min(corner.y + TILE_SIDE);
             for y in least..end {
@@ -58,12 +82,12 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// Returns the rows of a tile: 1 for an obstacle that stands.
+    /// Returns the rows of a plane of a tile. In the high one an obstacle that stands is 1.
     #[inline(always)]
-    fn standing(&self, tile_x: i32, tile_y: i32) -> impl Fn(usize) -> u32 {
+    fn plane<const PLANE: usize>(&self, tile_x: i32, tile_y: i32) -> impl Fn(usize) -> u32 {
         let planes = self.planes(self.entry(tile_x, tile_y));
         move |line| match planes {
-            Some([_, high]) => *masked(high, line),
+            Some([low, high]) => *masked(if PLANE == LOW { low } else { high }, line),
             None => 0,
         }
     }
@@ -77,6 +101,26 @@ mod tests {
     use crate::geometry::Cell;
     use crate::grid::Class;
     use crate::map::Tiles;
+
+    #[test]
+    fn a_lone_arrival_has_neither_walls_nor_unknown_cells_beside_it() {
+        let mut tiles = Box::new(Tiles::<16, 64>::new());
+        tiles.reset();
+        for (x, y) in (20..44).flat_map(|x| (20..44).map(move |y| (x, y))) {
+            tiles.set(Cell { x, y }, Class::Free).expect("room");
+        }
+        let here = Cell { x: 31, y: 33 };
+        assert!(!tiles.has_lone_arrival(here), "nothing stands there");
+        tiles
+            .set(here.offset(1, -2), Class::Negative)
+            .expect("room");
+        assert!(tiles.has_lone_arrival(here));
+        assert!(!tiles.has_lone_arrival(here.offset(-2, 0)), "too far off");
+        for beside in [Class::Obstacle, Class::Unknown] {
+            tiles.set(here.offset(-2, 2), beside).expect("room");
+            assert!(!tiles.has_lone_arrival(here), "{beside:?}");
+        }
+    }
 
     #[test]
     fn the_square_and_the_block_are_those_of_single_cells() {

@@ -37,14 +37,24 @@ tuning! {
         slip_gap: f32 = 50.0, 1.0..=1e9, "1";
         /// A direction with less information than this is not observed.
         least_information: f32 = 4.0, 0.0..=100.0, "1/cell²";
-        /// Share of contradicting beams above which a scan contradicts the map.
-        contradicted_share: f32 = 0.5, 0.1..=1.0, "1";
-        /// Share of all beams that end within a cell of an obstacle, from which on a lost robot is
-        /// found.
+        /// Share of contradicting beams above which a scan contradicts the map. People near the
+        /// robot hide up to a third of what the map knows.
+        contradicted_share: f32 = 0.5, 0.01..=1.0, "1";
+        /// The same share of the beams that end on a surface. It is at most 0.16 among simulated
+        /// people. With 0.1 recorded logs of real rooms raise doubts, and lose their place.
+        contradicted_surfaces: f32 = 0.3, 0.01..=1.0, "1";
+        /// Share of the surfaces by which more must agree at another place near by, before a robot
+        /// that doubts its own takes it.
+        better_share: f32 = 0.2, 0.0..=1.0, "1";
+        /// Steps for which a robot that found no better place does not doubt its own again, unless
+        /// the scan refutes it.
+        trusted_steps: u8 = 50, 0..=250, "steps";
+        /// Share of the surfaces that lie within a cell of an obstacle, from which on a robot that
+        /// searches far off is found.
         agreed_share: f32 = 0.8, 0.5..=1.0, "1";
-        /// Fewest beams on known ground with which a scan can contradict the map, or
+        /// Fewest beams or surfaces on known ground with which a scan can contradict the map, or
         /// find a lost robot.
-        least_counted: f32 = 30.0, 1.0..=181.0, "beams";
+        least_counted: f32 = 20.0, 1.0..=181.0, "beams";
         /// Consecutive contradicting scans after which the robot is lost.
         lost_steps: u8 = 3, 1..=50, "steps";
     }
