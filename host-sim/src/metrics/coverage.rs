@@ -56,20 +56,10 @@ impl Coverage {
     /// Finds the cells that a disc of `radius_m` from `start` can see within `range_m`.
     #[must_use]
     pub fn new(world: &World, start: Start, radius_m: f64, range_m: f64) -> Self {
-        let reach = CellSet::reach(world, start, radius_m);
-        let free = CellSet::free(world, start);
-        let grid = world.occupancy();
-        let cells = map_cells(world)
-            .filter(|cell| {
-                let [x, y] = centre_m(*cell);
-                let place = grid.cell_at(x, y);
-                // A line of sight is free, so it stays in the free cells around the start.
-                reach.contains(place)
-                    || (free.contains(place) && visible(world, &reach, [x, y], range_m))
-            })
-            .collect();
+        let key = [start.x_m, start.y_m, start.yaw_rad, radius_m, range_m].map(f64::to_bits);
+        let cells = || visible_cells(world, start, radius_m, range_m);
         Self {
-            cells,
+            cells: world.seen().get(key, cells),
             known: 0,
             seen_at_s: [None; MILESTONES.len()],
         }
@@ -202,6 +192,22 @@ pub fn truth(world: &World, cell: Cell) -> Truth {
 /// The centre of a map cell, metres.
 pub(super) fn centre_m(cell: Cell) -> [f64; 2] {
     [cell.x, cell.y].map(|k| (f64::from(k) + 0.5) * MAP_CELL_M)
+}
+
+/// Returns the cells that a disc of `radius_m` from `start` can see within `range_m`.
+fn visible_cells(world: &World, start: Start, radius_m: f64, range_m: f64) -> Vec<Cell> {
+    let reach = CellSet::reach(world, start, radius_m);
+    let free = CellSet::free(world, start);
+    let grid = world.occupancy();
+    map_cells(world)
+        .filter(|cell| {
+            let [x, y] = centre_m(*cell);
+            let place = grid.cell_at(x, y);
+            // A line of sight is free, so it stays in the free cells around the start.
+            reach.contains(place)
+                || (free.contains(place) && visible(world, &reach, [x, y], range_m))
+        })
+        .collect()
 }
 
 /// Returns true if some ray from a point hits a reached cell before anything solid.

@@ -17,6 +17,7 @@ mod generated;
 mod ground_ray;
 mod heights;
 mod image;
+mod memo;
 mod occupancy;
 mod pgm;
 mod png_file;
@@ -33,6 +34,7 @@ pub use elevation::{Elevation, HeightScale};
 pub use error::WorldError;
 pub use generated::{KINDS, Kind};
 pub use image::{Image, ImageError, MAX_PIXELS};
+use memo::Memo;
 pub use occupancy::{Class, GridCell, Occupancy, Thresholds};
 pub use ray::{Hit, Ray, Surface};
 pub(crate) use traversal::GridTraversal;
@@ -77,6 +79,7 @@ pub struct World {
     wall_height_m: f64,
     starts: Vec<Start>,
     notes: Vec<String>,
+    seen: Memo,
 }
 
 impl World {
@@ -160,6 +163,7 @@ impl World {
             wall_height_m,
             starts,
             notes: Vec::new(),
+            seen: Memo::default(),
         }
     }
 
@@ -188,6 +192,11 @@ impl World {
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// Results for this world that take long and that other runs need again.
+    pub(crate) fn seen(&self) -> &Memo {
+        &self.seen
     }
 
     /// Free, wall and unknown cells.
