@@ -9,7 +9,8 @@
 //!  dead end   ▭ ═════╝     1.2 m wide; the first robot wants out, the other two want in
 //! ```
 //!
-//! Robots have *met* if their centres were less than 2 m apart. They are *blocked* for good if not all
+//! Robots have *met* if their centres were less than 2 m apart. They are *blocked* for good if not
+//! all
 //! have explored everything within [`LIMIT_S`]. Units: metres, seconds, radians.
 
 use core::f64::consts::PI;

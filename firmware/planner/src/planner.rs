@@ -46,7 +46,7 @@ use ground_model::GroundModel;
 use make_way::{Way, make_way};
 use plan::{replan, search_viewpoints};
 use prefer::{note_flatness, prefer};
-use steer::{look_about, steer};
+use steer::{look_about, retreat, steer};
 
 /// A range below this is inside the robot's own hull, metres.
 const BLOCKED_M: f32 = 0.12;
@@ -151,6 +151,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         sense(config, state, &input);
     }
     note_surroundings(config, state, &input);
+    state.drive.note_pose(&state.localiser.odom());
     if state.localiser.has_given_up() {
         state.status = Status::Fault(Fault::PoseLost);
     }
@@ -161,6 +162,9 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     timer.mark(Stage::Sense);
     if !plans || state.status != Status::Exploring {
         return Output::standing(state.status);
+    }
+    if state.drive.is_searching() || state.viewpoints.is_running() {
+        state.strategy.frontier.hold(config.period_ms());
     }
     // A search for a recovery owns the scratch: the robot stands and plans nothing until it is
     // over.
@@ -179,6 +183,14 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     let planned = advance_plan(config, state, workspace, &footprint, &input, timer);
     if state.status != Status::Exploring {
         return Output::standing(state.status);
+    }
+    if state.drive.is_retreating() {
+        let velocity = retreat(config, state, &input);
+        timer.mark(Stage::Drive);
+        return Output {
+            velocity,
+            ..Output::default()
+        };
     }
     let way = if state.team.is_member() {
         make_way(config, state, workspace, &footprint, &input)

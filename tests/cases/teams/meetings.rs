@@ -7,7 +7,8 @@ use fieldline_tests::golden;
 use fieldline_tests::meetings::{ALL, Meeting, Narrow, summary, table};
 use fieldline_tests::runs::in_parallel;
 
-/// Lets robots meet with every seed. Nobody touches anything, nobody is blocked for good, and in four
+/// Lets robots meet with every seed. Nobody touches anything, nobody is blocked for good, and in
+/// four
 /// of five runs the robots really meet.
 fn meet(file: &str, seeds: Range<u64>) {
     let kinds = ALL.into_iter();

@@ -96,6 +96,8 @@ pub struct CollisionChecker {
     hull: Hull,
     /// Slopes of the ground, where they bound the headings.
     incline: Option<Incline>,
+    /// Another robot is near.
+    has_company: bool,
 }
 
 /// The robot's outline seen from above, metres from its centre.
@@ -143,6 +145,17 @@ pub(super) fn towards(from: f32, to: f32, most: f32) -> f32 {
     from + (to - from).clamp(-most, most)
 }
 
+/// Returns the point of a cell at this centre that is nearest to the robot's centre, by half a cell
+/// and a margin, metres.
+fn inflated(centre: Point, margin_m: f32) -> Point {
+    let away = centre.distance_m(Point::default());
+    let part = ((away - 0.5 * CELL_M - margin_m) / away.max(1e-3)).max(0.0);
+    Point {
+        x_m: centre.x_m * part,
+        y_m: centre.y_m * part,
+    }
+}
+
 impl CollisionChecker {
     /// Returns a checker of these obstacle points of the map, for a robot at `pose`.
     #[must_use]
@@ -160,7 +173,14 @@ impl CollisionChecker {
             robot: *robot,
             hull: Hull::level(robot),
             incline: None,
+            has_company: false,
         }
+    }
+
+    /// Returns true if another robot is near, which will drive on.
+    #[must_use]
+    pub(crate) const fn has_company(&self) -> bool {
+        self.has_company
     }
 
     /// Sets the slopes that bound the headings.
@@ -198,6 +218,7 @@ impl CollisionChecker {
     pub(crate) fn keep_off_hulls(&mut self, pose: &Pose, points: impl Iterator<Item = Point>) {
         let frame = RobotFrame::of(pose);
         for at in points.map(|point| frame.to_robot(point)) {
+            self.has_company = true;
             let clearance_m = self.hull.overhang(at.x_m, at.y_m);
             if clearance_m > -FALSE_ECHO_M {
                 // Points beyond the capacity are dropped: those of the other robots remain.
@@ -207,17 +228,21 @@ impl CollisionChecker {
     }
 
     /// Adds the obstacle cells of the map (their centres) that are out of view and have no obstacle
-    /// point.
+    /// point, each inflated by half a cell.
     pub(crate) fn remember(&mut self, pose: &Pose, cells: impl Iterator<Item = Point>) {
         let frame = RobotFrame::of(pose);
         let seen = self.threats.len();
         for at in cells.map(|cell| frame.to_robot(cell)) {
-            let clearance_m = self.hull.overhang(at.x_m, at.y_m);
+            let edge = inflated(at, 0.0);
+            let clearance_m = self.hull.overhang(edge.x_m, edge.y_m);
             let near = |threat: &Threat| threat.at.distance2(at) < KNOWN_M * KNOWN_M;
             let points = self.threats.get(..seen).unwrap_or_default();
             if at.x_m < IN_VIEW_M && clearance_m > 0.0 && !points.iter().any(near) {
                 // Cells beyond the capacity are dropped: others behind the robot remain.
-                let _ = self.threats.push(Threat { at, clearance_m });
+                let _ = self.threats.push(Threat {
+                    at: edge,
+                    clearance_m,
+                });
             }
         }
     }
@@ -229,13 +254,7 @@ impl CollisionChecker {
         self.hull = Hull::leaning(&self.robot, pose);
         self.threats.clear();
         for (cell, margin_m) in cells {
-            let at = frame.to_robot(cell);
-            let away = at.distance_m(Point::default());
-            let part = ((away - 0.5 * CELL_M - margin_m) / away.max(1e-3)).max(0.0);
-            let at = Point {
-                x_m: at.x_m * part,
-                y_m: at.y_m * part,
-            };
+            let at = inflated(frame.to_robot(cell), margin_m);
             let clearance_m = self.hull.overhang(at.x_m, at.y_m);
             if clearance_m > 0.0 {
                 // Cells beyond the capacity are dropped: others around the robot remain.
@@ -395,7 +414,9 @@ mod tests {
         assert!((place.x_m - 1.0).abs() < 1e-3 && (place.y_m - 1.0).abs() < 1e-3);
     }
 
-    /// A wall 0.1 m behind the hull: obstacle points in its left half, map cells in all of it.
+    /// A wall 0.1 m behind the hull: obstacle points in its left half, map cells in all of it,
+    /// which
+    /// begin half a cell earlier.
     #[test]
     fn map_cells_behind_the_robot_stop_it_where_there_is_no_point() {
         let back = -ROBOT.half_length_m - 0.1;
@@ -407,11 +428,11 @@ mod tests {
         let mut checker = CollisionChecker::new(&ROBOT, &Pose::default(), &half);
         checker.remember(&Pose::default(), (-3..4).map(wall));
         assert_eq!(checker.points(), 3 + 4, "cells with a point are left out");
-        assert!(checker.is_arc_clear(Place::default(), -0.08, 0.0, 0.0));
-        assert!(!checker.is_arc_clear(Place::default(), -0.15, 0.0, 0.0));
+        assert!(checker.is_arc_clear(Place::default(), -0.04, 0.0, 0.0));
+        assert!(!checker.is_arc_clear(Place::default(), -0.08, 0.0, 0.0));
         let mut right = CollisionChecker::empty(&ROBOT);
         right.remember(&Pose::default(), (-3..0).map(wall));
-        assert!(!right.is_arc_clear(Place::default(), -0.15, 0.0, 0.0));
+        assert!(!right.is_arc_clear(Place::default(), -0.08, 0.0, 0.0));
     }
 
     /// Map cells ahead are in view of the laser; a cell under the robot is no obstacle.

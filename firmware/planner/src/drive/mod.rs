@@ -5,7 +5,8 @@
 //! every obstacle point while the robot follows the candidate for one period and then brakes to a
 //! stop, from its measured velocity and within its acceleration limits. The drive takes the first
 //! admissible candidate, in order of distance from the wish. If there is none, the robot turns on
-//! the spot or drives straight back. If it cannot, a recovery leads out.
+//! the spot or drives straight back. If it cannot, a recovery leads out. If none is found either,
+//! the robot is *wedged*: it retreats along its own track to a place where it can turn.
 //!
 //! Invariant: after every commanded velocity a stop is possible that touches nothing known, so the
 //! zero command is always safe.
@@ -18,8 +19,10 @@ mod incline;
 mod motion;
 mod open_list;
 mod recovery;
+mod roll_out;
 mod search_query;
 pub(crate) mod side_slope;
+mod track;
 
 pub use collision::{CollisionChecker, Place};
 pub(crate) use incline::Incline;
@@ -27,34 +30,22 @@ pub use recovery::SCRATCH_WORDS;
 pub use search_query::SearchQuery;
 
 use crate::config::Config;
-use crate::geometry::Twist;
+use crate::geometry::{OdomPose, Twist};
 use crate::math;
 use contact::{Contact, ContactSense};
 use motion::{MotionSet, Recovery};
 use recovery::{Search, SearchBudget, SearchOutcome};
-use search_query::{Attempt, Leads};
+use roll_out::roll_out;
+use track::Track;
 
 /// Clearance at speed, metres: three sigma of a range and one of the odometry between two scans.
 const MARGIN_M: f32 = 0.06;
 /// Clearance while creeping through a narrow place, metres: two sigma of a range.
 const CREEP_MARGIN_M: f32 = 0.025;
-/// Requirements on a recovery, each weaker than the one before. The nearest of many points of a
-/// wall is two sigma nearer than the wall, so the free space is wider than the smaller margin. The
-/// last attempt only moves the robot to another pose.
-const ATTEMPTS: [Attempt; 3] = [
-    Attempt {
-        margin_m: 0.03,
-        leads: Leads::Farther,
-    },
-    Attempt {
-        margin_m: 0.012,
-        leads: Leads::Farther,
-    },
-    Attempt {
-        margin_m: 0.012,
-        leads: Leads::Elsewhere,
-    },
-];
+/// Clearances of a recovery, metres: that of the first search, and of the next one. The nearest of
+/// many points of a wall is two sigma nearer than the wall, so the free space is wider than the
+/// smaller one.
+const SEARCH_MARGINS_M: [f32; 2] = [0.03, 0.012];
 /// Clearance while a recovery is driven, metres.
 const RECOVERY_MARGIN_M: f32 = 0.008;
 /// Greatest speed that counts as creeping, and the speed of reversing, metres per second.
@@ -91,6 +82,9 @@ const FIRST_BUDGET: SearchBudget = SearchBudget {
 /// Steps between a search that found nothing and the next one, where the ground bounds the
 /// headings: about the steps of two skeletons.
 const REST_STEPS: u8 = 20;
+/// Steps for which the robot creeps on as far as it goes, after a search that found nothing: time
+/// for a hull's length. The points of a tight gap are often seen better from within.
+const SQUEEZE_STEPS: u8 = 30;
 /// Greatest difference of the error to half a turn for driving straight back, radians.
 const REVERSE_RAD: f32 = 0.35;
 /// Turn rate while reversing, per radian of that difference, 1/s.
@@ -110,6 +104,13 @@ pub struct Drive {
     /// Steps until the next search may begin, after one that found nothing.
     rest_steps: u8,
     contact: ContactSense,
+    track: Track,
+    /// The robot goes back along its track.
+    retreats: bool,
+    /// The last searches found no recovery.
+    wedged: bool,
+    /// Steps for which the robot still creeps on where no roll-out leads through.
+    squeeze_steps: u8,
 }
 
 impl Drive {
@@ -122,6 +123,10 @@ impl Drive {
             looks_right: false,
             rest_steps: 0,
             contact: ContactSense::new(),
+            track: Track::new(),
+            retreats: false,
+            wedged: false,
+            squeeze_steps: 0,
         }
     }
 
@@ -130,11 +135,53 @@ impl Drive {
         self.contact.tell(told);
     }
 
-    /// Compares the measured velocity with what was told. A contact ends recovery and search.
+    /// Notes where the robot is.
+    pub(crate) fn note_pose(&mut self, OdomPose(pose): &OdomPose) {
+        if !self.retreats {
+            self.track.record(pose);
+        }
+    }
+
+    /// Returns true while the robot goes back along its track.
+    pub(crate) const fn is_retreating(&self) -> bool {
+        self.retreats
+    }
+
+    /// Returns true once for each time that the robot was wedged.
+    pub(crate) const fn take_wedged(&mut self) -> bool {
+        core::mem::replace(&mut self.wedged, false)
+    }
+
+    /// Returns the velocity back along the track; zero at its end. `checker` has the obstacle
+    /// points that the robot has measured, and no cells of the map: there is room on the track.
+    pub(crate) fn retreat(
+        &mut self,
+        config: &Config,
+        OdomPose(pose): &OdomPose,
+        checker: &CollisionChecker,
+        now: Twist,
+    ) -> Twist {
+        let twist = self.track.back(pose, config.period_s);
+        let twist = twist.filter(|twist| checker.admits(*twist, now, config, RECOVERY_MARGIN_M));
+        self.retreats = twist.is_some();
+        twist.unwrap_or_default()
+    }
+
+    /// Ends the retreat where the robot can turn. `checker` has all obstacles.
+    pub(crate) fn end_retreat(&mut self, checker: &CollisionChecker) {
+        self.retreats &= !can_turn_about(checker);
+    }
+
+    /// Compares the measured velocity with what was told. A contact ends recovery, search and
+    /// retreat.
     pub(crate) fn feel(&mut self, config: &Config, measured: Twist) -> Option<Contact> {
         let contact = self.contact.feel(config, measured)?;
         self.recovery.clear();
         self.search = None;
+        if self.retreats {
+            self.track.clear();
+            self.retreats = false;
+        }
         Some(contact)
     }
 
@@ -175,14 +222,16 @@ impl Drive {
             let Some(error) = (query.heading_at)(Place::default()) else {
                 return Twist::default();
             };
-            if let Some(twist) = direct_candidate(config, error, now, checker) {
+            let rolls = self.squeeze_steps == 0 && !checker.has_company();
+            self.squeeze_steps = self.squeeze_steps.saturating_sub(1);
+            if let Some(twist) = direct_candidate(config, error, now, query, rolls) {
                 return twist;
             }
             if is_moving(now) || self.is_resting() {
                 return Twist::default();
             }
             let first = MotionSet::of(config.period_s, |twist| admits(&twist));
-            self.search = Some(Search::start(ATTEMPTS[0], first, scratch));
+            self.search = Some(Search::start(SEARCH_MARGINS_M[0], first, scratch));
             budget = FIRST_BUDGET;
         }
         self.continue_search(query, budget, scratch);
@@ -237,12 +286,18 @@ impl Drive {
                 self.search = None;
             }
             SearchOutcome::Nothing => {
-                let mut attempts = ATTEMPTS.iter();
-                attempts.find(|&&attempt| attempt == search.attempt);
-                let first = search.first;
-                self.search = attempts
-                    .next()
-                    .map(|&attempt| Search::start(attempt, first, scratch));
+                let (margin_m, first) = (search.margin_m, search.first);
+                let next = SEARCH_MARGINS_M.into_iter().find(|&next| next < margin_m);
+                self.search = next.map(|next| Search::start(next, first, scratch));
+                // On a slope that bounds the headings, the robot takes another heading instead.
+                // What
+                // another robot closes will be open again.
+                let may_wait = query.checker.bounds_headings() || query.checker.has_company();
+                if next.is_none() && !may_wait {
+                    self.wedged = self.squeeze_steps > 0;
+                    self.squeeze_steps = if self.wedged { 0 } else { SQUEEZE_STEPS };
+                    self.retreats = self.wedged && !can_turn_about(query.checker);
+                }
             }
         }
     }
@@ -254,19 +309,27 @@ impl Default for Drive {
     }
 }
 
+/// Returns true if there is room for half a turn on the spot, and so for every turn of a rectangle.
+fn can_turn_about(checker: &CollisionChecker) -> bool {
+    checker.is_arc_clear(Place::default(), 0.0, math::PI, CREEP_MARGIN_M)
+}
+
 fn is_moving(now: Twist) -> bool {
     now.linear_mps.abs() > STANDING_MPS || now.angular_radps.abs() > STANDING_RADPS
 }
 
-/// Returns the first admissible velocity that needs no recovery: ahead, a turn on the spot,
-/// straight back, or a turn of the robot's back towards the heading on a slope too steep to turn
+/// Returns the first admissible velocity that needs no recovery: ahead (at creeping speed only if
+/// the robot can roll on, where `rolls` asks for it), a turn on the spot, straight back, or a turn
+/// of the robot's back towards the heading on a slope too steep to turn
 /// fully.
-fn direct_candidate(
+fn direct_candidate<H: Fn(Place) -> Option<f32>>(
     config: &Config,
     error: f32,
     now: Twist,
-    checker: &CollisionChecker,
+    query: &SearchQuery<'_, H>,
+    rolls: bool,
 ) -> Option<Twist> {
+    let checker = query.checker;
     let admits = |&twist: &Twist| {
         let creeps = twist.linear_mps.abs() <= CREEP_MPS;
         let margin_m = if creeps { CREEP_MARGIN_M } else { MARGIN_M };
@@ -276,8 +339,15 @@ fn direct_candidate(
     let can_turn = |turn| checker.is_arc_clear(Place::default(), 0.0, turn, CREEP_MARGIN_M);
     let turn = |error| turns(config, error).into_iter().flatten().find(admits);
     let opposite = math::wrap(error + math::PI);
-    ahead(config, error)
-        .find(admits)
+    // A gap that the robot cannot follow the field through would wedge it.
+    let may_go_on = |&twist: &Twist| {
+        !rolls || twist.linear_mps > CREEP_MPS || {
+            let [_, least_m] = SEARCH_MARGINS_M;
+            roll_out(query, Place::default(), false, least_m, &mut 0).is_some()
+        }
+    };
+    let wish = ahead(config, error).find(admits);
+    wish.filter(may_go_on)
         .or_else(|| turn(error).filter(|_| can_turn(error)))
         .or_else(|| back(opposite).filter(admits))
         .or_else(|| {

@@ -56,9 +56,11 @@ pub(super) const MOTIONS: [Motion; 8] = [
     motion(-LENGTH_M, -CURVE_RAD, 1.5),
 ];
 
-/// Number of the straight motion forwards.
+/// Number of the turn to the left; that to the right comes next.
+pub(super) const TURN_LEFT: u8 = 0;
+/// Number of the straight motion forwards; those in a curve to the left and to the right come next.
 pub(super) const FORWARD: u8 = 2;
-/// Number of the straight motion backwards.
+/// Number of the straight motion backwards; the curves come next.
 pub(super) const BACKWARD: u8 = 5;
 
 /// A set of motions: bit k is motion k.

@@ -3,9 +3,9 @@
 //!
 //! In a passage narrower than its diagonal the robot cannot turn everywhere, and following the
 //! field alone wedges it. The search (A* over poses, similar to hybrid A*) starts at the robot's
-//! pose. It ends at a pose from which the robot can follow the field: aligned with the field's
-//! heading *there* with [`GO_ON_M`] free ahead, or, at a higher cost, aligned against it with as
-//! much free behind. The end must be farther along the field than the start; otherwise the robot
+//! pose. It ends at a pose from which the robot can follow the field for its own length
+//! ([`crate::drive::roll_out`]): aligned with the field's heading *there*, or, at a higher cost,
+//! against it. The end must be farther along the field than the start; otherwise the robot
 //! oscillates before a tight corner. Poses are exact; of those in the same cell of 3 cm × 3 cm ×
 //! 7.5° only the first counts. The search runs in instalments while the robot stands, so every step
 //! is short.
@@ -15,15 +15,11 @@
 //! Units: metres, radians; robot frame at the start.
 
 use crate::drive::collision::Place;
-use crate::drive::motion::{BACKWARD, FORWARD, LENGTH_M, MOTIONS, MotionSet, Recovery, TURN_RAD};
+use crate::drive::motion::{LENGTH_M, MOTIONS, MotionSet, Recovery, TURN_RAD};
 use crate::drive::open_list::{Node, OpenList};
-use crate::drive::search_query::{Attempt, SearchQuery};
+use crate::drive::search_query::SearchQuery;
 use crate::math;
 
-/// Straight motions at the end, so that every recovery moves the robot on.
-const GO_ON_MOTIONS: u8 = 8;
-/// Free length that they need, metres.
-const GO_ON_M: f32 = GO_ON_MOTIONS as f32 * LENGTH_M;
 /// Cost of an end against the field, in motions.
 const REVERSE_COST: f32 = 12.0;
 /// Cells to each side of the start within which poses count, cells of [`LENGTH_M`].
@@ -51,8 +47,8 @@ pub(super) enum SearchOutcome {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Search {
     open: OpenList,
-    /// The conditions on the recovery.
-    pub(super) attempt: Attempt,
+    /// Clearance of its poses, metres.
+    pub(super) margin_m: f32,
     /// The motions with which it may begin.
     pub(super) first: MotionSet,
 }
@@ -69,10 +65,10 @@ pub(super) struct SearchBudget {
 impl Search {
     /// Begins at the robot's pose, with one of the motions `first`: those that the robot can start
     /// with from its present velocity.
-    pub(super) fn start(attempt: Attempt, first: MotionSet, scratch: &mut [u32]) -> Self {
+    pub(super) fn start(margin_m: f32, first: MotionSet, scratch: &mut [u32]) -> Self {
         let mut search = Self {
             open: OpenList::default(),
-            attempt,
+            margin_m,
             first,
         };
         if let Some((visited, nodes)) = scratch.split_at_mut_checked(VISITED_WORDS) {
@@ -102,12 +98,14 @@ impl Search {
                 return SearchOutcome::Nothing;
             };
             if node.is_end {
-                return SearchOutcome::Found(self.trace(nodes, index, BACKWARD));
+                let on = query.leads_on(node.place, true, self.margin_m, &mut points);
+                return SearchOutcome::Found(self.trace(nodes, index, &on.unwrap_or_default()));
             }
-            if query.leads_on(node.place, GO_ON_M, self.attempt, &mut points) {
-                return SearchOutcome::Found(self.trace(nodes, index, FORWARD));
+            if let Some(on) = query.leads_on(node.place, false, self.margin_m, &mut points) {
+                return SearchOutcome::Found(self.trace(nodes, index, &on));
             }
-            if query.leads_on(node.place, -GO_ON_M, self.attempt, &mut points) {
+            let on = query.leads_on(node.place, true, self.margin_m, &mut points);
+            if on.is_some() {
                 let cost = node.cost + REVERSE_COST;
                 self.open.push(
                     nodes,
@@ -146,7 +144,7 @@ impl Search {
                 continue;
             }
             tried += 1;
-            if !query.checker.is_clear(place, self.attempt.margin_m) {
+            if !query.checker.is_clear(place, self.margin_m) {
                 continue;
             }
             let cost = node.cost + motion.cost;
@@ -168,13 +166,13 @@ impl Search {
         Some(tried)
     }
 
-    /// Returns the motions from the start to a node and the straight ones after it, the first one
-    /// last; of a recovery that is too long, its beginning.
-    fn trace(&self, nodes: &[u32], end: u16, go_on: u8) -> Recovery {
+    /// Returns the motions from the start to a node and those after it, the first one last; of a
+    /// recovery that is too long, its beginning.
+    fn trace(&self, nodes: &[u32], end: u16, on: &[u8]) -> Recovery {
         let mut recovery = Recovery::new();
-        for _ in 0..GO_ON_MOTIONS {
+        for &number in on.iter().rev() {
             // A new recovery has room.
-            let _ = recovery.motions.push(go_on);
+            let _ = recovery.motions.push(number);
         }
         let mut index = end;
         while let Some(node) = self.open.node(nodes, index).filter(|_| index != 0) {

@@ -15,6 +15,7 @@ use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Point};
 use crate::path::open_stretch::OpenStretch;
 use crate::path::{Path, PlanningContext};
+use crate::roadmap::reachability::Reachability;
 use crate::roadmap::skeleton::Skeleton;
 
 /// Maximum number of blocked passages. On scanned buildings, two of `aria_columbia` and two of
@@ -69,13 +70,24 @@ impl BlockedPassages {
 
     /// Cuts the published skeleton around each blocked passage.
     pub(crate) fn cut<const SLOTS: usize>(&self, skeleton: &mut Skeleton<SLOTS>) {
-        for &[x, y] in &self.cells {
-            let cell = Cell {
-                x: x.into(),
-                y: y.into(),
-            };
+        for cell in self.cells() {
             skeleton.cut(cell, CUT_RADIUS_M);
         }
+    }
+
+    /// Closes the cells around each blocked passage, except for those that the robot stands in.
+    pub(crate) fn close(&self, robot: Cell, reachability: &mut Reachability<'_>) {
+        let is_apart = |cell: &Cell| cell.distance2(robot) > CUT_RADIUS_M * CUT_RADIUS_M;
+        for cell in self.cells().filter(is_apart) {
+            reachability.close(cell, CUT_RADIUS_M);
+        }
+    }
+
+    fn cells(&self) -> impl Iterator<Item = Cell> {
+        self.cells.iter().map(|&[x, y]| Cell {
+            x: x.into(),
+            y: y.into(),
+        })
     }
 }
 

@@ -28,6 +28,8 @@ pub struct Path {
     /// Steps to the goal, those of cells not kept included.
     steps: u32,
     goal: Cell,
+    /// See [`Self::shares_trip`].
+    shares_trip: bool,
 }
 
 /// The centre of a coarse cell.
@@ -47,6 +49,7 @@ impl Path {
             cells: Vec::new(),
             steps: 0,
             goal: Cell { x: 0, y: 0 },
+            shares_trip: false,
         }
     }
 
@@ -123,6 +126,16 @@ impl Path {
         let _ = self.cells.push(cell);
         self.steps += 1;
         self.goal = cell;
+    }
+
+    /// Returns true if the goal is worth its trip only together with other goals.
+    pub(crate) const fn shares_trip(&self) -> bool {
+        self.shares_trip
+    }
+
+    /// Sets whether the goal is worth its trip only together with other goals.
+    pub(crate) const fn set_shares_trip(&mut self, shares_trip: bool) {
+        self.shares_trip = shares_trip;
     }
 
     /// Returns true for the empty path.

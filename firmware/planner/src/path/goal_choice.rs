@@ -8,21 +8,24 @@
 //! from the robot's heading to the first metre of the path. The level is that of
 //! [`crate::path::height_levels`] and of the user's own order. The present goal's gain counts more,
 //! so the robot keeps it until another one is clearly better. What another robot claims counts less
-//! ([`crate::path::claims`]). A goal is *worth* its trip if it is open, or G ≥ worth · max(t, 1 m).
+//! ([`crate::path::claims`]). A goal is *worth* its trip if it is open, or G ≥ worth · max(t, 1 m),
+//! or together with others ([`crate::path::shared_trip`]).
 //!
 //! Frontier cells near each other are one *candidate*: the nearest by path stands for them. One
 //! wave from the robot finds them all, the nearest first, with their paths
-//! ([`crate::path::robot_wave`]). A round judges the nearest [`MOST_JUDGED`]. If none is worth its
-//! trip, the next round judges the ones behind them.
+//! ([`crate::path::robot_wave`], [`crate::path::candidates`]). A round judges the nearest
+//! [`MOST_JUDGED`]. If none is worth its trip, the next round judges the ones behind them, and so
+//! on until none is left.
 //!
 //! Units: metres, square metres; coarse steps of 20 cm.
 
-use heapless::Vec;
+use core::ops::Range;
 
 use crate::config::OrderTuning;
 use crate::geometry::{Cell, Point};
 use crate::grid::{Plane, Site};
 use crate::math;
+use crate::path::candidates::{self, Candidate, Candidates};
 use crate::path::claims::Claims;
 use crate::path::context::STEP_M;
 use crate::path::frontier_path::{cells_on_level, unexplored_beside};
@@ -32,32 +35,16 @@ use crate::path::height_levels::LEVEL_STEPS;
 use crate::path::nearest::Centres;
 use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::search::PathSearch;
+use crate::path::shared_trip::{AllJudged, Judged, begin_of_trip};
 use crate::path::{Path, PlanningContext, PlanningScratch};
 
-/// Maximum number of candidates. Those farther off wait until the robot is nearer. A round that
-/// finds so many that are not worth their trips does not judge the ones behind them.
-const MOST_CANDIDATES: usize = 64;
 /// Maximum number of candidates that a round judges: a gain costs about 0.1 million instructions.
 pub(crate) const MOST_JUDGED: usize = 24;
-/// A frontier cell at most this far from a candidate along either axis belongs to it, coarse cells.
-const GROUP_CELLS: u16 = 5;
 /// Distance from the robot at which the direction of a path is taken, metres.
 const AHEAD_M: f32 = 1.0;
 /// Length that is added to every trip, metres, so that a goal at the robot is worth no more than
 /// its gain.
 const NEAR_M: f32 = 1.0;
-
-/// Frontier cells near each other.
-#[derive(Clone, Copy, Debug)]
-struct Candidate {
-    /// The nearest one, and the steps to it.
-    site: Site,
-    steps: u16,
-    cells: u16,
-}
-
-/// The candidates, the nearest first.
-type Candidates = Vec<Candidate, MOST_CANDIDATES>;
 
 /// Returns the value of a gain.
 pub(crate) fn value(tuning: &OrderTuning, gain_m2: f32) -> f32 {
@@ -91,31 +78,47 @@ pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
     judged: &mut usize,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
-    let mut search = PathSearch::open(context.centres()?, scratch)?;
-    let best = best_candidate(&mut search, context, residual, (present, worth), judged)?;
+    let entries = scratch.queue.len().checked_sub(candidates::WORDS)?;
+    let (queue, words) = scratch.queue.split_at_mut(entries);
+    let mut rest = PlanningScratch {
+        residues: &mut *scratch.residues,
+        queue,
+        local_grid: &mut *scratch.local_grid,
+    };
+    let mut search = PathSearch::open(context.centres()?, &mut rest)?;
+    let judging = (present, worth, words);
+    let (best, shares_trip) = best_candidate(&mut search, context, residual, judging, judged)?;
     let mut path = search.path_from_robot(best.site, best.steps.into());
+    path.set_shares_trip(shares_trip);
     stay_on_level(&mut path, best.site, context, scratch);
     path.extend(unexplored_beside(path.goal(), context.tiles));
     Some(path)
 }
 
-/// Returns the candidate of the greatest utility; as [`path_to_best`].
-// A frame of its own: the candidates leave the stack before a way is planned.
+/// Returns the candidate of the greatest utility, and true if it is worth its trip only together
+/// with others; as [`path_to_best`].
 #[inline(never)]
 fn best_candidate<const TILES: usize, const SLOTS: usize>(
     search: &mut PathSearch<'_, TILES, SLOTS>,
     context: &PlanningContext<'_, TILES, SLOTS>,
     residual: &mut ResidualFrontiers,
-    (present, worth): (Option<PresentGoal>, f32),
+    (present, worth, words): (Option<PresentGoal>, f32, &mut [u32]),
     judged: &mut usize,
-) -> Option<Candidate> {
+) -> Option<(Candidate, bool)> {
     if *judged == 0 {
         residual.forget_not_worth_it();
     }
     let before = core::mem::take(judged);
     let frontier = context.skeleton.frontier()?;
     let claims = Claims::find(search, context, frontier);
-    let candidates = candidates(search, context, frontier, residual);
+    let mut candidates = Candidates::new(words);
+    let (centres, robot) = (search.centres, context.pose.point().cell());
+    search.spread_from(robot, frontier, |site, steps| {
+        if !residual.is_given_up(centres.cell(site)) {
+            candidates.add(site, steps);
+        }
+    });
+    let (instalment, next) = instalment(candidates.len(), before);
     let choice = Choice {
         context,
         frontier,
@@ -126,58 +129,33 @@ fn best_candidate<const TILES: usize, const SLOTS: usize>(
         search,
         robot: Heading::of(context),
     };
-    let (instalment, next) = instalment(&candidates, before);
-    let best = choice.best(instalment);
+    let is_present = |it: &Candidate| {
+        let shared = present.filter(|present| present.shares_trip);
+        shared.is_some_and(|present| present.is_beside(centres.cell(it.site)))
+    };
+    // The goal of a shared trip may be far behind those that are not worth theirs.
+    let beyond = candidates
+        .range(instalment.end..candidates.len())
+        .find(is_present);
+    let best = choice.best(candidates.range(instalment.clone()).chain(beyond));
     if best.is_none() {
         *judged = next;
-        for candidate in instalment {
+        for candidate in candidates.range(instalment) {
             residual.list_not_worth_it(search.centres.cell(candidate.site), candidate.cells);
         }
     }
     best
 }
 
-/// Returns the next [`MOST_JUDGED`] after those that were judged before, and how many are judged
-/// then: 0 if these are the last.
-fn instalment<T>(all: &[T], before: usize) -> (&[T], usize) {
-    let rest = all.get(before..).unwrap_or(&[]);
-    match rest.get(..MOST_JUDGED) {
-        Some(next) if next.len() < rest.len() => (next, before + MOST_JUDGED),
-        _ => (rest, 0),
+/// Returns the places of the next [`MOST_JUDGED`] of `all` candidates after those that were judged
+/// before, and how many are judged then: 0 if these are the last.
+fn instalment(all: usize, before: usize) -> (Range<usize>, usize) {
+    let next = before + MOST_JUDGED;
+    if next < all {
+        (before..next, next)
+    } else {
+        (before.min(all)..all, 0)
     }
-}
-
-/// Finds the candidates, with a wave that stays for their paths.
-fn candidates<const TILES: usize, const SLOTS: usize>(
-    search: &mut PathSearch<'_, TILES, SLOTS>,
-    context: &PlanningContext<'_, TILES, SLOTS>,
-    frontier: Plane<'_>,
-    residual: &ResidualFrontiers,
-) -> Candidates {
-    let mut candidates = Candidates::new();
-    let centres = search.centres;
-    let robot = context.pose.point().cell();
-    search.spread_from(robot, frontier, |site, steps| {
-        let is_near = |candidate: &&mut Candidate| {
-            candidate.site.x.abs_diff(site.x) <= GROUP_CELLS
-                && candidate.site.y.abs_diff(site.y) <= GROUP_CELLS
-        };
-        if residual.is_given_up(centres.cell(site)) {
-            return;
-        }
-        if let Some(candidate) = candidates.iter_mut().find(is_near) {
-            candidate.cells = candidate.cells.saturating_add(1);
-        } else {
-            // The farthest ones do not fit.
-            let _ = candidates.push(Candidate {
-                site,
-                // The longest way in the map has fewer.
-                steps: u16::try_from(steps).unwrap_or(u16::MAX),
-                cells: 1,
-            });
-        }
-    });
-    candidates
 }
 
 /// The robot's cell, and a unit vector along its heading.
@@ -223,21 +201,31 @@ struct Choice<'a, const TILES: usize, const SLOTS: usize> {
 }
 
 impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
-    /// Returns the candidate of the greatest utility that is worth its trip.
-    fn best(&self, candidates: &[Candidate]) -> Option<Candidate> {
-        let mut best: Option<(f32, Candidate)> = None;
-        for &candidate in candidates {
-            let least = best.map_or(0.0, |(utility, _)| utility);
-            if let Some(utility) = self.utility_above(least, candidate) {
-                best = Some((utility, candidate));
+    /// Returns the candidate of the greatest utility that is worth its trip, or else the one with
+    /// which a shared trip begins, and true.
+    fn best(&self, candidates: impl Iterator<Item = Candidate>) -> Option<(Candidate, bool)> {
+        let mut best: Option<(f32, Candidate, bool)> = None;
+        let mut judged = AllJudged::new();
+        for candidate in candidates {
+            let least = best.map_or(0.0, |(utility, ..)| utility);
+            if let Some((utility, shares)) = self.utility_above(least, candidate, &mut judged) {
+                best = Some((utility, candidate, shares));
             }
         }
-        best.map(|(_, candidate)| candidate)
+        let alone = best.map(|(_, candidate, shares)| (candidate, shares));
+        alone.or_else(|| Some((begin_of_trip(&judged, self.worth)?, true)))
     }
 
-    /// Returns a candidate's utility if it is greater than `least` and worth the trip. What costs
-    /// more to compute comes later: most candidates are too far off for any gain.
-    fn utility_above(&self, least: f32, candidate: Candidate) -> Option<f32> {
+    /// Returns a candidate's utility if it is greater than `least` and worth the trip, and true if
+    /// it is so as the present goal of a shared trip. What costs more to compute comes later: most
+    /// candidates are too far off for any gain. One that is not worth the trip is added to
+    /// `judged`.
+    fn utility_above(
+        &self,
+        least: f32,
+        candidate: Candidate,
+        judged: &mut AllJudged,
+    ) -> Option<(f32, bool)> {
         let tuning: &OrderTuning = &self.context.tuning.order;
         let cell = self.search.centres.cell(candidate.site);
         let level = goal_level(self.context, self.frontier, self.present, candidate.site);
@@ -262,8 +250,25 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
             .first_cell_near(self.robot.cell, candidate.site, AHEAD_M);
         let trip_m = path_m + tuning.turn_m * self.robot.turn_to(ahead);
         let utility = utility(value, trip_m);
-        let is_worth = || is_worth(gain_m2, trip_m, self.worth) || view.is_open(self.clearance());
-        (utility > least && is_worth()).then_some(utility)
+        if utility <= least {
+            return None;
+        }
+        let shares_trip = self.present.is_some_and(|present| present.shares_trip);
+        if is_worth(gain_m2, trip_m, self.worth) || view.is_open(self.clearance()) {
+            return Some((utility, false));
+        }
+        // A trip that was worth it goes on as long as there is something to see at its goal.
+        if is_present && shares_trip && is_worth(gain_m2, 0.0, self.worth) {
+            return Some((utility, true));
+        }
+        // There is room for all of a round.
+        let _ = judged.push(Judged {
+            candidate,
+            cell,
+            gain_m2,
+            trip_m,
+        });
+        None
     }
 
     /// Returns the distance that the robot's centre keeps from obstacles, cells.
@@ -281,7 +286,8 @@ fn stay_on_level<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
     scratch: &mut PlanningScratch<'_>,
 ) {
-    if let Some(detour) = path_on_level(path, goal, context, scratch) {
+    if let Some(mut detour) = path_on_level(path, goal, context, scratch) {
+        detour.set_shares_trip(path.shares_trip());
         *path = detour;
     }
 }
@@ -322,7 +328,7 @@ mod tests {
             let all: Vec<usize> = (0..count).collect();
             let (mut seen, mut judged) = (Vec::<usize>::new(), 0);
             loop {
-                let (part, next) = instalment(&all, judged);
+                let (part, next) = instalment(count, judged);
                 assert!(part.len() <= MOST_JUDGED);
                 seen.extend(part);
                 judged = next;
@@ -333,6 +339,6 @@ mod tests {
             assert_eq!(seen, all);
         }
         // Candidates may become fewer between two rounds.
-        assert_eq!(instalment(&[7; 3], 2 * MOST_JUDGED), (&[][..], 0));
+        assert_eq!(instalment(3, 2 * MOST_JUDGED), (3..3, 0));
     }
 }

@@ -61,6 +61,8 @@ pub(crate) struct PresentGoal {
     /// The height from which its level is the least, of those that the robot visited since the goal
     /// was chosen, metres.
     pub(crate) reference_m: f32,
+    /// It is worth its trip only together with other goals.
+    pub(crate) shares_trip: bool,
 }
 
 impl PresentGoal {

@@ -9,7 +9,9 @@
 //! | [`nearest`], [`centres`] | centre cells: the nearest to a place, by place, by map class |
 //! | [`search`] | a wave over centre cells and the path down it |
 //! | [`robot_wave`] | a wave from the robot over centre cells, and the paths back to it |
+//! | [`candidates`] | frontier cells near each other, in lent memory |
 //! | [`goal_choice`] | the frontier of the greatest utility, and if it is worth the trip |
+//! | [`shared_trip`] | goals that are worth a trip together only |
 //! | [`claims`] | goals that another robot is nearer to |
 //! | [`gain`], [`rays`] | what a robot at a goal would see |
 //! | [`frontier_path`] | the path to the frontier of the least cost |
@@ -27,6 +29,7 @@
 
 pub(crate) mod blocked_passages;
 pub(crate) mod breadcrumbs;
+pub(crate) mod candidates;
 pub(crate) mod cell_path;
 pub(crate) mod centres;
 pub(crate) mod claims;
@@ -45,6 +48,7 @@ pub(crate) mod residual_frontiers;
 pub(crate) mod robot_wave;
 pub(crate) mod search;
 pub(crate) mod second_look;
+pub(crate) mod shared_trip;
 pub(crate) mod viewpoint;
 
 pub use cell_path::Path;

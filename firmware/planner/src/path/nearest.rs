@@ -59,19 +59,21 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         })
     }
 
-    /// Calls `visit` with the centre cells near a robot at `from` and the coarse steps there, the
-    /// nearest first: those at most [`ENTRY_STEPS`] farther off than the nearest one. Returns false
-    /// if there are none.
+    /// Calls `visit` with the centre cells near a robot at `from` that `accepts` holds for and the
+    /// coarse steps there, the nearest first: those at most [`ENTRY_STEPS`] farther off than the
+    /// nearest one. Takes the first of these scales of the grid that has some. Returns false if
+    /// there are none.
     pub(crate) fn entries(
         &self,
         from: Cell,
-        grid: &mut LocalGrid,
+        (grid, scales): (&mut LocalGrid, &[i32]),
+        accepts: impl Fn(Site) -> bool,
         mut visit: impl FnMut(Site, u32),
     ) -> bool {
-        SCALES.iter().any(|&scale| {
+        scales.iter().any(|&scale| {
             grid.update(self.tiles, self.footprint, from, scale);
             grid.free_robot(from);
-            let mut targets = self.targets(grid, |_| true);
+            let mut targets = self.targets(grid, &accepts);
             let mut reached: Rows = [0; SIDE];
             if let Some(place) = grid.place(from) {
                 LocalGrid::put(&mut reached, place);
@@ -83,7 +85,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
                     if let Some(row) = targets.get_mut(y) {
                         *row &= !met;
                     }
-                    for site in self.sites_in_row(grid, y, met) {
+                    for site in self.sites_in_row(grid, y, met, &accepts) {
                         most.get_or_insert(steps + 2 * ENTRY_STEPS / scale as u32);
                         visit(site, steps * scale as u32 / 2);
                     }
@@ -149,13 +151,19 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
     }
 
     /// Returns a centre cell for each of a row's places that are set, where it has one.
-    fn sites_in_row(&self, grid: &LocalGrid, y: usize, places: u64) -> impl Iterator<Item = Site> {
+    fn sites_in_row(
+        &self,
+        grid: &LocalGrid,
+        y: usize,
+        places: u64,
+        accepts: impl Fn(Site) -> bool,
+    ) -> impl Iterator<Item = Site> {
         ones64(places).filter_map(move |x| {
             let place = Site {
                 x: x as u16,
                 y: y as u16,
             };
-            self.site_in(grid, place, |_| true)
+            self.site_in(grid, place, &accepts)
         })
     }
 

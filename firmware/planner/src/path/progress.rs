@@ -22,8 +22,8 @@ const REACHED_STEPS: u32 = 3;
 /// Time at a reached goal after which it is given up, milliseconds: half a turn on the spot, with a
 /// scanner that sees the half in front.
 const LOOK_MS: u32 = 5_000;
-/// Time without a move after which the passage is blocked, milliseconds. The search for a recovery
-/// may take half of it.
+/// Time without a move after which the passage is blocked, milliseconds: a recovery, and the start
+/// of a way through a narrow place. Searches do not count.
 const STANDING_MS: u32 = 14_000;
 /// A robot that moved less than this stands, metres.
 const MOVED_M: f32 = 0.3;
@@ -116,6 +116,11 @@ impl ProgressChecker {
         }
     }
 
+    /// Notes that the passage ahead of the robot was blocked.
+    pub(crate) const fn note_wedged(&mut self) {
+        self.stood_passages = self.stood_passages.saturating_add(1);
+    }
+
     /// Returns the time since the robot last moved, milliseconds.
     pub(crate) const fn standing_ms(&self, time_ms: u32) -> u32 {
         time_ms.saturating_sub(self.moved_ms)
@@ -125,6 +130,13 @@ impl ProgressChecker {
     pub(crate) fn pause(&mut self, time_ms: u32) {
         (self.judged_ms, self.stood_ms, self.moved_ms) = (time_ms, time_ms, time_ms);
         self.closed = false;
+    }
+
+    /// Notes that in this period the robot was not asked to move, because it searches. The period
+    /// does not count.
+    pub(crate) const fn hold(&mut self, period_ms: u32) {
+        self.judged_ms += period_ms;
+        self.stood_ms += period_ms;
     }
 
     /// Forgets the progress towards a goal.

@@ -3,53 +3,78 @@
 //!
 //! The wave enters the centre cells near the robot one after another, each after as many steps as
 //! the robot needs to it. So the path to a goal begins where robot and path together have the
-//! fewest steps.
+//! fewest steps. The nearest centre cells may belong to a piece of the skeleton that leads nowhere.
+//! So further waves enter the pieces that the ones before did not reach.
 //!
 //! Units: coarse steps of 20 cm; sites of the skeleton's plane.
 
+use heapless::Vec;
+
+use crate::field::local_grid::SCALES;
 use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
 use crate::path::Path;
 use crate::path::search::PathSearch;
 use crate::roadmap::Wavefront;
 
+/// Maximum number of pieces of the skeleton that the wave enters. In the local grid, 6 m wide, few
+/// lie side by side.
+const MOST_PIECES: usize = 4;
+/// Maximum number of centre cells at which the wave enters a piece.
+const MOST_ENTRIES: usize = 64;
+
 impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
     /// Spreads a wave from the robot as far as the centre cells go. Calls `visit` with each cell of
-    /// `marks` and the steps to it, the nearest first.
+    /// `marks` and the steps to it, the nearest first on each piece of the skeleton.
     pub(crate) fn spread_from(
         &mut self,
         robot: Cell,
         marks: Plane<'_>,
         mut visit: impl FnMut(Site, u32),
     ) {
+        let mut wave = Wavefront::new();
+        wave.start(&mut self.space);
+        let mut entered = false;
+        for piece in 0..MOST_PIECES {
+            // Cells of the larger scales may join what a wall divides.
+            let scales = if piece == 0 {
+                &SCALES[..]
+            } else {
+                &SCALES[..1]
+            };
+            if !self.enter_piece(&mut wave, (robot, scales), marks, &mut visit) {
+                break;
+            }
+            entered = true;
+        }
+        if !entered && let Some((site, line)) = self.centres.nearest_in_line(robot, |_| true) {
+            let entry = (site, line.count() as u32);
+            self.run(&mut wave, &[entry], marks, &mut visit);
+        }
+    }
+
+    /// Spreads the wave over the nearest piece of the skeleton that it has not reached. Returns
+    /// false if there is none near the robot.
+    fn enter_piece(
+        &mut self,
+        wave: &mut Wavefront,
+        (robot, scales): (Cell, &[i32]),
+        marks: Plane<'_>,
+        visit: &mut impl FnMut(Site, u32),
+    ) -> bool {
+        let mut entries = Vec::<(Site, u32), MOST_ENTRIES>::new();
         let Self {
             centres,
             space,
             local_grid,
         } = self;
-        let mut wave = Wavefront::new();
-        wave.start(space);
-        let mut level = 0;
-        let enter = |site, steps| {
-            while level < steps && !wave.is_over() {
-                wave.for_each_new(space, marks, |site| visit(site, level));
-                wave.run_levels(space, 1);
-                level += 1;
-            }
-            level = level.max(steps);
-            wave.seed(space, site);
-        };
-        if !centres.entries(robot, local_grid, enter)
-            && let Some((site, line)) = centres.nearest_in_line(robot, |_| true)
-        {
-            level = line.count() as u32;
-            wave.seed(space, site);
-        }
-        while !wave.is_over() {
-            wave.for_each_new(space, marks, |site| visit(site, level));
-            wave.run_levels(space, 1);
-            level += 1;
-        }
+        let is_new = |site| space.residues.get(site).is_none();
+        let any = centres.entries(robot, (local_grid, scales), is_new, |site, steps| {
+            // What does not fit is farther off than others.
+            let _ = entries.push((site, steps));
+        });
+        self.run(wave, &entries, marks, visit);
+        any
     }
 
     /// Spreads a wave that enters these cells, each after its steps. Calls `visit` as
@@ -60,9 +85,20 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
         marks: Plane<'_>,
         mut visit: impl FnMut(Site, u32),
     ) {
-        let space = &mut self.space;
         let mut wave = Wavefront::new();
-        wave.start(space);
+        wave.start(&mut self.space);
+        self.run(&mut wave, entries, marks, &mut visit);
+    }
+
+    /// Runs the wave to its end, through these entries.
+    fn run(
+        &mut self,
+        wave: &mut Wavefront,
+        entries: &[(Site, u32)],
+        marks: Plane<'_>,
+        visit: &mut impl FnMut(Site, u32),
+    ) {
+        let space = &mut self.space;
         let mut level = 0;
         loop {
             for (site, _) in entries.iter().filter(|(_, steps)| *steps == level) {

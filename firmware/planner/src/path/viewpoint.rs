@@ -25,6 +25,7 @@ use crate::config::{Order, OrderTuning};
 use crate::geometry::Cell;
 use crate::grid::Tiling;
 use crate::map::{Class, Tiles};
+use crate::path::blocked_passages::BlockedPassages;
 use crate::path::gain::View;
 use crate::path::goal_choice::{is_worth, utility, value};
 use crate::path::rays::{RAYS, along, ray};
@@ -94,6 +95,8 @@ pub(crate) struct Inputs<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) footprints: [&'a Footprint; 2],
     /// Where the robot stands.
     pub(crate) robot: Cell,
+    /// Passages that the robot could not drive through.
+    pub(crate) blocked: &'a BlockedPassages,
     /// The order in which viewpoints are taken: also by gain, or the nearest first.
     pub(crate) order: Order,
     /// The tuned constants of the order.
@@ -197,6 +200,7 @@ impl Search {
                 reachability.load(inputs.tiles, footprint, place);
                 continue;
             }
+            inputs.blocked.close(inputs.robot, reachability);
             self.phase = match (reachability.start(inputs.robot), self.tight) {
                 (true, _) => Phase::Flood,
                 (false, false) => Phase::Load(0),

@@ -128,6 +128,13 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
+    /// Adds the obstacles around the robot that lasers and hull have met.
+    pub(super) fn obstruct_measured(&self, odom: &OdomPose, checker: &mut CollisionChecker) {
+        if let Self::Flat(points) = self {
+            checker.see(&odom.0, points.points());
+        }
+    }
+
     /// Adds the obstacles around the robot that its hull must not touch. In place: a checker is
     /// large, and a second one does not fit on the chip's stack.
     pub(super) fn obstruct<const SLOTS: usize>(
@@ -137,9 +144,9 @@ impl<const TILES: usize> GroundModel<TILES> {
         (pose, odom): (&Pose, &OdomPose),
         checker: &mut CollisionChecker,
     ) {
+        self.obstruct_measured(odom, checker);
         match self {
-            Self::Flat(points) => {
-                checker.see(&odom.0, points.points());
+            Self::Flat(_) => {
                 let cells =
                     obstacle_points::obstacle_cells(tiles, pose.point(), &config.tuning.map);
                 checker.remember(pose, cells);

@@ -113,6 +113,7 @@ pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
 ) {
     let robot = input.pose.point().cell();
     let [wide, narrow] = [config.robot_radius_m, config.tight_radius_m()].map(Footprint::new);
+    let (residual, blocked) = state.strategy.frontier.given_up_mut();
     let inputs = Inputs {
         tiles: state.map.tiles(),
         // The skeleton stays the same while the search runs.
@@ -120,10 +121,10 @@ pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
         frame: state.skeleton.frame(),
         footprints: [&wide, &narrow],
         robot,
+        blocked,
         order: config.order(),
         tuning: &config.tuning.order,
     };
-    let residual = state.strategy.frontier.residual_mut();
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
     match state.viewpoints.advance(&inputs, residual, scratch) {
         Found::Pending => {}

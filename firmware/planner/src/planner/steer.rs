@@ -101,6 +101,9 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         state.strategy.frontier.note_closed();
         Twist::default()
     };
+    if state.drive.take_wedged() {
+        state.strategy.frontier.note_wedged(input.pose.point());
+    }
     let velocity = if is_stalled(state, velocity, input.time_ms) {
         state.drive.look_around(config, &checker, input.velocity)
     } else {
@@ -128,6 +131,23 @@ pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
     within_limits(config, wish)
 }
 
+/// Returns the velocity back along the robot's own track, up to a place where it can turn.
+#[inline(never)]
+pub(super) fn retreat<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    input: &Input<'_>,
+) -> Twist {
+    let odom = state.localiser.odom();
+    let mut checker = CollisionChecker::empty(&config.robot);
+    state.ground.obstruct_measured(&odom, &mut checker);
+    keep_off_peers(&mut checker, state, config, input);
+    let velocity = state.drive.retreat(config, &odom, &checker, input.velocity);
+    obstruct(&mut checker, state, config, input);
+    state.drive.end_retreat(&checker);
+    within_limits(config, velocity)
+}
+
 /// Adds what the drive must not touch: the obstacles near by, and the other robots.
 #[inline(never)]
 fn obstruct<const TILES: usize, const SLOTS: usize>(
@@ -139,6 +159,16 @@ fn obstruct<const TILES: usize, const SLOTS: usize>(
     let tiles = state.map.tiles();
     let poses = (&input.pose, &state.localiser.odom());
     state.ground.obstruct(config, tiles, poses, checker);
+    keep_off_peers(checker, state, config, input);
+}
+
+/// Adds the other robots.
+fn keep_off_peers<const TILES: usize, const SLOTS: usize>(
+    checker: &mut CollisionChecker,
+    state: &State<TILES, SLOTS>,
+    config: &Config,
+    input: &Input<'_>,
+) {
     let robot = input.pose.point();
     let hulls = state.team.peers().near(input.time_ms, robot, config);
     checker.keep_off_hulls(&input.pose, hulls.flat_map(Hull::outline));

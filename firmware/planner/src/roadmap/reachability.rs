@@ -12,13 +12,14 @@
 //!
 //! Units: coarse cells of 20 cm, 16 × 16 in a tile.
 
-use crate::geometry::Cell;
+use crate::geometry::{CELL_M, Cell};
 use crate::grid::bits::halve;
 use crate::grid::{
     Block, PAGE_SIDE, PAGE_WORDS, SIDES, TileKey, Tiling, at, inside, inside_mut, masked,
 };
 use crate::map::Tiles;
 use crate::map::tiles::TILE_SIDE;
+use crate::math;
 use crate::roadmap::configuration_space::{Footprint, for_each_strip};
 use crate::roadmap::skeleton::Frame;
 
@@ -104,6 +105,24 @@ impl<'a> Reachability<'a> {
             }
         });
         write(self.open, place, &rows);
+    }
+
+    /// Closes the loaded cells within `radius_m` of a cell.
+    pub(crate) fn close(&mut self, cell: Cell, radius_m: f32) {
+        let reach = math::floor(radius_m / (2.0 * CELL_M)) + 1;
+        for (dx, dy) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy))) {
+            let near = cell.offset(2 * dx, 2 * dy);
+            let site = self
+                .frame
+                .site(near)
+                .filter(|_| near.distance2(cell) <= radius_m * radius_m);
+            let index = site.and_then(|site| Some((self.tiling.index(site)?, site.bit())));
+            if let Some((index, bit)) = index
+                && let Some(word) = self.open.get_mut(index)
+            {
+                *word &= !bit;
+            }
+        }
     }
 
     /// Reaches the open cells around the robot. Returns true if there are any.

@@ -8,6 +8,7 @@ use crate::config::{Order, Tuning};
 use crate::geometry::Cell;
 use crate::grid::Tiling;
 use crate::map::{Class, Tiles};
+use crate::path::blocked_passages::BlockedPassages;
 use crate::path::rays::along;
 use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::viewpoint::{Found, Inputs, Search, Viewpoint};
@@ -56,7 +57,9 @@ fn drawn(picture: &[&str]) -> (Box<Map>, Cell) {
 fn search(tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Viewpoint> {
     let mut scratch = std::vec![0xdead_beef; scratch_words(SLOTS)];
     let (frame, tiling) = (Frame::of(tiles), Tiling::new(tiles.keys()));
+    let blocked = BlockedPassages::new();
     let inputs = Inputs {
+        blocked: &blocked,
         tiles,
         tiling,
         frame,

@@ -11,7 +11,7 @@
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
 
 use crate::field::local_grid::LocalGrid;
-use crate::geometry::Cell;
+use crate::geometry::{Cell, Point};
 use crate::map::Class;
 use crate::math;
 use crate::path::blocked_passages::{BlockedPassages, ahead, first_unreachable};
@@ -121,6 +121,11 @@ impl Frontier {
         self.progress.pause(time_ms);
     }
 
+    /// Notes that in this period the robot was not asked to move.
+    pub(crate) const fn hold(&mut self, period_ms: u32) {
+        self.progress.hold(period_ms);
+    }
+
     /// Opens the passage that was blocked last.
     pub(crate) fn open_last_passage(&mut self) {
         self.blocked.open_last();
@@ -196,6 +201,7 @@ impl Frontier {
         (!self.path.is_empty()).then(|| PresentGoal {
             cell: self.path.goal(),
             reference_m: self.reference_m,
+            shares_trip: self.path.shares_trip(),
         })
     }
 
@@ -245,7 +251,7 @@ impl Frontier {
         } else if let Some((viewpoint, path)) = self.path_to_viewpoint(context, &mut scratch) {
             let along_centre = path.steps();
             self.path = path.leading_to(viewpoint.stand);
-            return self.go_and_look(viewpoint, along_centre, context);
+            return self.go_and_look(viewpoint, along_centre, context, scratch.local_grid);
         } else if context.waits_for_peers || self.judged > 0 {
             self.path.clear();
             return RoundOutcome::Unsure;
@@ -299,6 +305,16 @@ impl Frontier {
         self.forget_path();
     }
 
+    /// Notes that the drive found no way on. The passage ahead is blocked.
+    pub(crate) fn note_wedged(&mut self, robot: Point) {
+        self.progress.note_wedged();
+        self.stalled = true;
+        if let Some(passage) = ahead(&self.path, robot) {
+            self.blocked.block(passage);
+        }
+        self.forget_path();
+    }
+
     /// Goes on along the path, or begins the next try if the robot is stuck or `has_enough` goals
     /// were given up.
     fn go_on_or_retry(&mut self, has_enough: bool) -> RoundOutcome {
@@ -328,9 +344,9 @@ impl Frontier {
         self.viewpoints < MOST_VIEWPOINTS && !self.residual.is_full()
     }
 
-    /// Returns the goals that were given up, for a search to add to.
-    pub(crate) const fn residual_mut(&mut self) -> &mut ResidualFrontiers {
-        &mut self.residual
+    /// Returns the goals that were given up, for a search to add to, and the blocked passages.
+    pub(crate) const fn given_up_mut(&mut self) -> (&mut ResidualFrontiers, &BlockedPassages) {
+        (&mut self.residual, &self.blocked)
     }
 
     /// Goes to a viewpoint next.
@@ -346,17 +362,25 @@ impl Frontier {
         viewpoint: Viewpoint,
         along_centre: u32,
         context: &PlanningContext<'_, TILES, SLOTS>,
+        grid: &mut LocalGrid,
     ) -> RoundOutcome {
         let robot = context.pose.point();
         let straight_m = math::sqrt(viewpoint.stand.corner().distance2(robot));
         let steps = along_centre.max((straight_m / STEP_M) as u32);
-        let reason = match self.progress.judge(viewpoint.stand, steps, context.time_ms) {
+        let verdict = self.progress.judge(viewpoint.stand, steps, context.time_ms);
+        let reason = match verdict {
             Verdict::GoOn => return RoundOutcome::Path,
-            Verdict::Drop(reason) => reason,
-            Verdict::BlockUnreachable | Verdict::BlockAhead => ResidualReason::Unreachable,
+            Verdict::Drop(reason) => Some(reason),
+            Verdict::BlockAhead => Some(ResidualReason::Unreachable),
+            // The stand can be reached, maybe by another way.
+            Verdict::BlockUnreachable => None,
         };
-        self.give_up(viewpoint.gap, reason);
-        self.viewpoint = None;
+        if let Some(reason) = reason {
+            self.give_up(viewpoint.gap, reason);
+            self.viewpoint = None;
+        } else {
+            self.block_passage(verdict, context, grid);
+        }
         match (self.progress.is_stuck(), self.only_looks) {
             (false, _) => RoundOutcome::Unsure,
             (true, true) if !self.progress.moved() => RoundOutcome::Stuck,

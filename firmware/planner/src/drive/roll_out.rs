@@ -1,0 +1,103 @@
+//! Roll-out: the short motions of a robot that follows the field from a place, for its own length.
+//!
+//! A place from which the field leads on can still be a trap: askew before a gap, the robot would
+//! turn in it and touch. So a robot that creeps, and the end of a recovery, are judged by what
+//! comes
+//! next. The roll-out follows the field as the drive does: it turns on the spot where the field
+//! leads aside, and in a curve where it nearly leads ahead. Where that touches, it takes another
+//! motion ahead.
+//!
+//! Invariant: every place of a roll-out keeps the margin.
+//! Units: metres, radians; robot frame at the start.
+
+use heapless::Vec;
+
+use crate::drive::collision::Place;
+use crate::drive::motion::{BACKWARD, FORWARD, LENGTH_M, MOTIONS, TURN_LEFT};
+use crate::drive::search_query::SearchQuery;
+use crate::math;
+
+/// Length of a roll-out, metres: nearly that of a hull, so that it leads through a wall's gap.
+pub(super) const ROLL_M: f32 = 0.45;
+/// Maximum number of its motions: straight on, and half a turn.
+const MOST_MOTIONS: usize = 40;
+/// Greatest error without a curve, and without a turn on the spot, radians.
+const STRAIGHT_RAD: f32 = 0.05;
+const CURVE_RAD: f32 = 0.3;
+/// The field turns by more than this at its goal only, radians.
+const GOAL_RAD: f32 = 2.0;
+
+/// The numbers of a roll-out's motions, the first one first.
+pub(super) type RollOut = Vec<u8, MOST_MOTIONS>;
+
+/// Returns the roll-out from a place, with the robot's front ahead or its back, and its end; `None`
+/// if it comes nearer to an obstacle than the margin. Adds to `points` the obstacle points of each
+/// checked place.
+#[inline(never)]
+pub(super) fn roll_out<H: Fn(Place) -> Option<f32>>(
+    query: &SearchQuery<'_, H>,
+    from: Place,
+    backwards: bool,
+    margin_m: f32,
+    points: &mut u32,
+) -> Option<(RollOut, Place)> {
+    let straight = if backwards { BACKWARD } else { FORWARD };
+    let (mut motions, mut place, mut rolled_m) = (RollOut::new(), from, 0.0);
+    while rolled_m < ROLL_M && !motions.is_full() {
+        let Some(error) = query.misalignment(place) else {
+            break;
+        };
+        let error = if backwards {
+            math::wrap(error + math::PI)
+        } else {
+            error
+        };
+        if error.abs() > GOAL_RAD && rolled_m > 0.0 {
+            break;
+        }
+        let (number, next) = next(query, place, error, straight, margin_m, points)?;
+        if number >= FORWARD {
+            rolled_m += LENGTH_M;
+        }
+        place = next;
+        // There is room: the loop ends when it is full.
+        let _ = motions.push(number);
+    }
+    const { assert!(ROLL_M / LENGTH_M < MOST_MOTIONS as f32) };
+    (rolled_m > 0.0).then_some((motions, place))
+}
+
+/// Returns the next motion and its end: the one that the field wants, or else the straight one or
+/// a curve, as the drive takes the nearest velocity that it can; `None` if all touch.
+fn next<H: Fn(Place) -> Option<f32>>(
+    query: &SearchQuery<'_, H>,
+    place: Place,
+    error: f32,
+    straight: u8,
+    margin_m: f32,
+    points: &mut u32,
+) -> Option<(u8, Place)> {
+    let to_the_right = u8::from(error < 0.0);
+    let wanted = if error.abs() > CURVE_RAD {
+        TURN_LEFT + to_the_right
+    } else if error.abs() > STRAIGHT_RAD {
+        straight + 1 + to_the_right
+    } else {
+        straight
+    };
+    let others = [
+        straight,
+        straight + 1 + to_the_right,
+        straight + 2 - to_the_right,
+    ];
+    let mut tried = core::iter::once(wanted).chain(others.into_iter().filter(|&it| it != wanted));
+    tried.find_map(|number| {
+        let motion = MOTIONS.get(usize::from(number))?;
+        let next = place.after(motion.length_m, motion.turn_rad);
+        *points += query.checker.points();
+        query
+            .checker
+            .is_clear(next, margin_m)
+            .then_some((number, next))
+    })
+}
