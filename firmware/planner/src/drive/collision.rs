@@ -415,8 +415,7 @@ mod tests {
     }
 
     /// A wall 0.1 m behind the hull: obstacle points in its left half, map cells in all of it,
-    /// which
-    /// begin half a cell earlier.
+    /// which begin half a cell earlier.
     #[test]
     fn map_cells_behind_the_robot_stop_it_where_there_is_no_point() {
         let back = -ROBOT.half_length_m - 0.1;

@@ -290,8 +290,7 @@ impl Drive {
                 let next = SEARCH_MARGINS_M.into_iter().find(|&next| next < margin_m);
                 self.search = next.map(|next| Search::start(next, first, scratch));
                 // On a slope that bounds the headings, the robot takes another heading instead.
-                // What
-                // another robot closes will be open again.
+                // What another robot closes will be open again.
                 let may_wait = query.checker.bounds_headings() || query.checker.has_company();
                 if next.is_none() && !may_wait {
                     self.wedged = self.squeeze_steps > 0;

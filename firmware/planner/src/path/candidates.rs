@@ -2,9 +2,9 @@
 //!
 //! A wave from the robot adds frontier cells, the nearest first. A cell joins a candidate that is
 //! at most [`GROUP_CELLS`] away along either axis, or else is the next candidate. The list lies in
-//! lent memory. It holds more candidates than a full map has room for side by side.
+//! lent memory. What does not fit is dropped.
 //!
-//! Invariant: the candidates are in the order of their steps.
+//! Invariant: the candidates of a piece of the skeleton are in the order of their steps.
 //!
 //! Units: sites of the skeleton's plane; coarse steps of 20 cm.
 
@@ -14,8 +14,8 @@ use crate::grid::{Site, at};
 
 /// A frontier cell at most this far from a candidate along either axis belongs to it, coarse cells.
 const GROUP_CELLS: u16 = 5;
-/// Capacity. Two candidates are more than 1 m apart, and a map has 2,560 m² with the pool of an
-/// image: in the runs of [`crate::path::goal_choice`] at most 150 were seen.
+/// Capacity. Two candidates are more than 1 m apart along an axis, and a map has 2,560 m² with the
+/// pool of an image. Those that do not fit are not judged.
 const MOST: usize = 512;
 /// Words of a candidate.
 const EACH: usize = 2;
