@@ -3,8 +3,8 @@
 //! A place from which the field leads on can still be a trap: askew before a gap, the robot would
 //! turn in it and touch. So a robot that creeps, and the end of a recovery, are judged by what
 //! comes next. The roll-out follows the field as the drive does: it turns on the spot where the
-//! field leads aside, and in a curve where it nearly leads ahead. Where that touches, it takes another
-//! motion ahead.
+//! field leads aside, and in a curve where it nearly leads ahead. Where that touches, it takes
+//! another motion ahead.
 //!
 //! Invariant: every place of a roll-out keeps the margin.
 //! Units: metres, radians; robot frame at the start.
