@@ -9,11 +9,19 @@
 //! ```
 //!
 //! So no cell counts twice, and no cell needs a mark. What lies behind unexplored cells is taken
-//! for visible.
+//! for visible. Most gaps that a robot does not fit through are pieces of a wall that were not seen
+//! yet. So unexplored cells behind such a gap whose far side was not seen count only as deep as the
+//! robot is wide. Counted in full, they promise several square metres outside of a building, and
+//! the robot drives there for nothing. Ratios to `greedy-frontier`, means of 60 runs in built-in and
+//! generated worlds:
 //!
-//! A place is *open* if the robot may drive from it in a straight line to an unexplored cell at the
-//! end of its reach. How much is unexplored beyond cannot be told. Most gaps that a robot does not
-//! fit through are pieces of a wall that were not seen yet, so they make no place open.
+//! | behind narrow gaps | T90 | T95 | T99 | end | known % |
+//! | --- | --- | --- | --- | --- | --- |
+//! | all counts | 0.91 | 0.87 | 0.93 | 1.09 | 99.56 |
+//! | as deep as the robot is wide | 0.91 | 0.89 | 0.94 | 0.99 | 99.51 |
+//!
+//! A place is *open* if the robot may drive from it in a straight line through unexplored cells up
+//! to the end of its reach. How much is unexplored beyond cannot be told.
 //!
 //! Units: map cells, square metres.
 
@@ -39,16 +47,22 @@ type Square = [u64; SIDE];
 pub(crate) struct View {
     unknown: Square,
     closed: Square,
+    /// Cells in which the robot's centre is too near to an obstacle.
+    near: Square,
     /// Length of the rays, cells.
     reach: i32,
+    /// Width of the robot, cells.
+    width: i32,
 }
 
 impl View {
-    /// Reads the map around a cell, up to `reach_m` metres.
+    /// Reads the map around a cell, up to `reach_m` metres, for a robot that keeps its centre
+    /// `clearance` cells from every obstacle.
     pub(crate) fn of<const TILES: usize, const SLOTS: usize>(
         tiles: &Tiles<TILES, SLOTS>,
         from: Cell,
         reach_m: f32,
+        clearance: i32,
     ) -> Self {
         let mut reader = tiles.reader(from.x - MOST_REACH);
         let (mut unknown, mut closed) = ([0; SIDE], [0; SIDE]);
@@ -56,10 +70,14 @@ impl View {
             let row = reader.row(from.y - MOST_REACH + y as i32);
             (*unknown, *closed) = (row.unknown(), row.obstacle());
         }
+        let mut near = closed;
+        (0..clearance).for_each(|_| widen(&mut near));
         Self {
             unknown,
             closed,
+            near,
             reach: ((reach_m / CELL_M) as i32).min(MOST_REACH),
+            width: 2 * clearance + 1,
         }
     }
 
@@ -79,30 +97,47 @@ impl View {
         self.along_m2((0..RAYS).map(ray).filter(is_ahead))
     }
 
-    /// Returns true if the place is open for a robot that keeps its centre so many cells from every
-    /// obstacle.
-    pub(crate) fn is_open(&self, clearance: i32) -> bool {
-        let mut closed = self.closed;
-        for _ in 0..clearance {
-            widen(&mut closed);
-        }
-        let is_open = |ray| {
-            holds(&self.unknown, along(MIDDLE, ray, self.reach))
-                && !(1..=self.reach).any(|k| holds(&closed, along(MIDDLE, ray, k)))
-        };
-        (0..RAYS).map(ray).any(is_open)
+    /// Returns true if the place is open.
+    pub(crate) fn is_open(&self) -> bool {
+        let is_unknown = |cell: &Cell| holds(&self.unknown, *cell);
+        let is_near = |cell: &Cell| holds(&self.near, *cell);
+        (0..RAYS).map(ray).any(|ray| {
+            let mut way = (1..=self.reach).map(|k| along(MIDDLE, ray, k));
+            let first = way.find(|cell| is_unknown(cell) || is_near(cell));
+            first.is_some_and(|first| !is_near(&first))
+                && way.all(|cell| is_unknown(&cell) && !is_near(&cell))
+        })
     }
 
     /// Returns the unexplored area along these rays, square metres.
     fn along_m2(&self, rays: impl Iterator<Item = (i32, i32)>) -> f32 {
-        let mut cells = 0;
-        for ray in rays {
-            let way = (1..=self.reach).map(|k| (k, along(MIDDLE, ray, k)));
-            for (k, cell) in way.take_while(|&(_, cell)| !holds(&self.closed, cell)) {
-                cells += i32::from(holds(&self.unknown, cell)) * k;
+        let cells: i32 = rays.map(|ray| self.along(ray)).sum();
+        cells as f32 * (2.0 * CELL_M * CELL_M / RAYS_A_SIDE as f32)
+    }
+
+    /// Returns the unexplored cells that a ray stands for.
+    fn along(&self, ray: (i32, i32)) -> i32 {
+        let (mut before, mut run, mut nearest, mut depth, mut most) = (0, 0, 0, 0, 0);
+        for k in 1..=self.reach {
+            let cell = along(MIDDLE, ray, k);
+            if holds(&self.closed, cell) {
+                return before + run;
+            }
+            if holds(&self.unknown, cell) {
+                if depth == 0 {
+                    let is_narrow = holds(&self.near, cell);
+                    most = if is_narrow { self.width } else { self.reach };
+                }
+                (depth, run) = (depth + 1, run + k);
+                if depth <= most {
+                    nearest = run;
+                }
+            } else {
+                before += run;
+                (run, nearest, depth) = (0, 0, 0);
             }
         }
-        cells as f32 * (2.0 * CELL_M * CELL_M / RAYS_A_SIDE as f32)
+        before + nearest
     }
 }
 
@@ -153,8 +188,13 @@ mod tests {
         tiles
     }
 
+    /// The view of a robot that keeps so many cells from obstacles.
+    fn seen(tiles: &Map, clearance: i32) -> View {
+        View::of(tiles, ORIGIN, 3.0, clearance)
+    }
+
     fn view(tiles: &Map) -> View {
-        View::of(tiles, ORIGIN, 3.0)
+        seen(tiles, 0)
     }
 
     /// The unexplored area within reach, square metres, if nothing closes it.
@@ -191,26 +231,48 @@ mod tests {
         };
         let view = view(&map(wall));
         assert_eq!(view.gain_m2(), 0.0);
-        assert!(!view.is_open(0));
+        assert!(!view.is_open());
     }
 
     /// What is seen of a wall at x = 10 with a gap of so many cells.
-    fn gap(cells: i32) -> View {
-        view(&map(|x, y| match x {
+    fn gap(cells: i32, clearance: i32) -> View {
+        let map = map(|x, y| match x {
             10 => (!(-cells / 2..cells - cells / 2).contains(&y)).then_some(Class::Obstacle),
             x if x < 10 => Some(Class::Free),
             _ => None,
-        }))
+        });
+        seen(&map, clearance)
     }
 
     #[test]
     fn a_place_is_open_if_the_robot_fits_through_what_is_in_front_of_it() {
         for (cells, clearance) in [(1, 0), (4, 2), (7, 3), (8, 3)] {
-            let fits = cells > 2 * clearance;
-            assert_eq!(gap(cells).is_open(clearance), fits, "{cells} cells");
-            assert!(gap(cells).gain_m2() > 0.0, "{cells} cells");
+            let (fits, gap) = (cells > 2 * clearance, gap(cells, clearance));
+            assert_eq!(gap.is_open(), fits, "{cells} cells");
+            assert!(gap.gain_m2() > 0.0, "{cells} cells");
         }
-        assert!(gap(16).gain_m2() > gap(8).gain_m2());
+        assert!(gap(16, 3).gain_m2() > gap(8, 3).gain_m2());
+    }
+
+    #[test]
+    fn a_gap_that_the_robot_does_not_fit_through_promises_no_more_than_its_own_depth() {
+        let (narrow, wide) = (gap(5, 3).gain_m2(), gap(5, 0).gain_m2());
+        assert!(narrow > 0.1 && 2.0 * narrow < wide, "{narrow} {wide}");
+        // A far side that was seen bounds the area, so all of it counts.
+        let pocket = |x: i32, y: i32| match (x, y) {
+            (10, -2..=2) => None,
+            (10, _) | (20, _) => Some(Class::Obstacle),
+            (11..20, _) => None,
+            _ => Some(Class::Free),
+        };
+        let [narrow, wide] = [3, 0].map(|clearance| seen(&map(pocket), clearance).gain_m2());
+        assert!(is_about(narrow, wide), "{narrow} {wide}");
+    }
+
+    #[test]
+    fn a_place_from_which_other_unexplored_cells_are_seen_over_free_ones_is_not_open() {
+        let strips = |x: i32, _: i32| (!(1..3).contains(&x) && x < 25).then_some(Class::Free);
+        assert!(!view(&map(strips)).is_open());
     }
 
     #[test]
@@ -220,7 +282,7 @@ mod tests {
             (!is_pocket).then_some(Class::Free)
         };
         let view = view(&map(pocket));
-        assert!(view.gain_m2() > 0.5 && !view.is_open(0));
+        assert!(view.gain_m2() > 0.5 && !view.is_open());
     }
 
     #[test]

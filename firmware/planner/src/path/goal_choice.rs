@@ -233,7 +233,7 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
         if utility(self.most_value, path_m) <= least {
             return None;
         }
-        let view = View::of(self.context.tiles, cell, tuning.gain_m);
+        let view = View::of(self.context.tiles, cell, tuning.gain_m, self.clearance());
         let is_present = self.present.is_some_and(|present| present.is_beside(cell));
         let kept = if is_present { tuning.keep } else { 1.0 };
         let gain_m2 = kept * view.gain_m2();
@@ -254,7 +254,7 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
             return None;
         }
         let shares_trip = self.present.is_some_and(|present| present.shares_trip);
-        if is_worth(gain_m2, trip_m, self.worth) || view.is_open(self.clearance()) {
+        if is_worth(gain_m2, trip_m, self.worth) || view.is_open() {
             return Some((utility, false));
         }
         // A trip that was worth it goes on as long as there is something to see at its goal.

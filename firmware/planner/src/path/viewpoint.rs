@@ -276,7 +276,12 @@ impl Search {
         let trip_m = inputs.robot.distance_m(stand) + stand.distance_m(gap);
         let score = match inputs.order {
             Order::Gain { worth } => {
-                let view = View::of(inputs.tiles, stand, inputs.tuning.gain_m);
+                let view = View::of(
+                    inputs.tiles,
+                    stand,
+                    inputs.tuning.gain_m,
+                    inputs.footprints[0].reach(),
+                );
                 let gain_m2 = view.gain_towards_m2((beyond.x - stand.x, beyond.y - stand.y));
                 if !is_worth(gain_m2, trip_m, worth) {
                     residual.list_not_worth_it(gap, 1);
