@@ -19,8 +19,9 @@ use crate::status::ResidualReason;
 const NO_PROGRESS_MS: u32 = 12_000;
 /// A goal this near is reached, coarse steps.
 const REACHED_STEPS: u32 = 3;
-/// Time at a reached goal after which it is given up, milliseconds: half a turn on the spot, with a
-/// scanner that sees the half in front.
+/// Time at a reached goal without a move after which it is given up, milliseconds: half a turn on
+/// the spot, with a scanner that sees the half in front. A robot that moves may drive after a
+/// frontier that recedes.
 const LOOK_MS: u32 = 5_000;
 /// Time without a move after which the passage is blocked, milliseconds: a recovery, and the start
 /// of a way through a narrow place. Searches do not count.
@@ -187,7 +188,7 @@ impl ProgressChecker {
             };
         }
         let moves = stood_ms <= NO_PROGRESS_MS / 2;
-        if reached && idle_ms > LOOK_MS {
+        if reached && idle_ms.min(stood_ms) > LOOK_MS {
             Verdict::Drop(ResidualReason::Unobservable)
         } else if moves && idle_ms > NO_PROGRESS_MS {
             Verdict::Drop(ResidualReason::NoProgress)
@@ -261,11 +262,34 @@ mod tests {
         assert_eq!(when_ms, NO_PROGRESS_MS + 500);
     }
 
+    /// Returns the first verdict other than "go on", and its time, for a robot at a reached goal
+    /// that moves so far in a round of half a second.
+    fn at_goal(moves_m: f32) -> (u32, Verdict) {
+        let mut progress = ProgressChecker::new();
+        let verdicts = (0..100).map(|k| {
+            let at = Point {
+                x_m: moves_m * k as f32,
+                y_m: 0.0,
+            };
+            progress.note_motion(at, 500 * k);
+            (500 * k, progress.judge(NEAR, 2, 500 * k))
+        });
+        let mut other = verdicts.filter(|&(_, verdict)| verdict != Verdict::GoOn);
+        other.next().expect("a verdict")
+    }
+
     #[test]
     fn a_goal_that_is_reached_is_looked_at_and_dropped() {
-        let (when_ms, last) = verdict(|_| (NEAR, 2));
+        let (when_ms, last) = at_goal(0.0);
         assert_eq!(last, Verdict::Drop(ResidualReason::Unobservable));
         assert_eq!(when_ms, LOOK_MS + 500);
+    }
+
+    #[test]
+    fn a_frontier_that_recedes_before_the_robot_is_followed_for_longer() {
+        let (when_ms, last) = at_goal(0.5);
+        assert_eq!(last, Verdict::Drop(ResidualReason::NoProgress));
+        assert_eq!(when_ms, NO_PROGRESS_MS + 500);
     }
 
     /// Neither comes nearer than it was the first time.
