@@ -223,13 +223,9 @@ impl<S: Strategy> Session<S> {
             };
             let potential_there =
                 |place: Place| strategy.potential_at(&scene, to_map(&pose, place));
-            let query = SearchQuery {
-                checker: &checker,
-                heading_at: heading_there,
-                potential_at: Some(&potential_there),
-            };
+            let mut query = SearchQuery::new(&checker, heading_there, Some(&potential_there));
             self.drive
-                .follow(config, &query, input.velocity, &mut self.scratch)
+                .follow(config, &mut query, input.velocity, &mut self.scratch)
         } else {
             look_around(config, input, &checker)
         };

@@ -263,6 +263,16 @@ impl CollisionChecker {
         }
     }
 
+    /// Returns the obstacle points.
+    pub(crate) fn places_of_points(&self) -> impl Iterator<Item = Point> {
+        self.threats.iter().map(|threat| threat.at)
+    }
+
+    /// Returns half the hull's width, metres.
+    pub(crate) const fn half_width_m(&self) -> f32 {
+        self.robot.half_width_m
+    }
+
     /// Returns the number of obstacle points.
     #[must_use]
     pub(crate) fn points(&self) -> u32 {

@@ -6,7 +6,8 @@
 //! stop, from its measured velocity and within its acceleration limits. The drive takes the first
 //! admissible candidate, in order of distance from the wish. If there is none, the robot turns on
 //! the spot or drives straight back. If it cannot, a recovery leads out. If none is found either,
-//! the robot is *wedged*: it retreats along its own track to a place where it can turn.
+//! the robot is *wedged*: it retreats along its own track to a place where it can turn. Where it
+//! cannot drive faster than it creeps, a *lane* takes the place of the field's heading.
 //!
 //! Invariant: after every commanded velocity a stop is possible that touches nothing known, so the
 //! zero command is always safe.
@@ -16,6 +17,7 @@
 mod collision;
 pub(crate) mod contact;
 mod incline;
+mod lane;
 mod motion;
 mod open_list;
 mod recovery;
@@ -33,6 +35,7 @@ use crate::config::Config;
 use crate::geometry::{OdomPose, Twist};
 use crate::math;
 use contact::{Contact, ContactSense};
+use lane::Lane;
 use motion::{MotionSet, Recovery};
 use recovery::{Search, SearchBudget, SearchOutcome};
 use roll_out::roll_out;
@@ -111,6 +114,8 @@ pub struct Drive {
     wedged: bool,
     /// Steps for which the robot still creeps on where no roll-out leads through.
     squeeze_steps: u8,
+    /// The lane of the search.
+    lane: Option<Lane>,
 }
 
 impl Drive {
@@ -127,6 +132,7 @@ impl Drive {
             retreats: false,
             wedged: false,
             squeeze_steps: 0,
+            lane: None,
         }
     }
 
@@ -205,12 +211,13 @@ impl Drive {
     pub fn follow<H: Fn(Place) -> Option<f32>>(
         &mut self,
         config: &Config,
-        query: &SearchQuery<'_, H>,
+        query: &mut SearchQuery<'_, H>,
         now: Twist,
         scratch: &mut [u32],
     ) -> Twist {
         self.rest_steps = self.rest_steps.saturating_sub(1);
         let checker = query.checker;
+        query.lane = self.lane;
         let admits = |&twist: &Twist| checker.admits(twist, now, config, RECOVERY_MARGIN_M);
         let mut budget = SEARCH_BUDGET;
         if self.search.is_none() {
@@ -219,9 +226,12 @@ impl Drive {
                 return twist;
             }
             self.recovery.clear();
-            let Some(error) = (query.heading_at)(Place::default()) else {
+            let Some(field) = (query.heading_at)(Place::default()) else {
                 return Twist::default();
             };
+            self.lane = lane(config, field, now, checker);
+            query.lane = self.lane;
+            let error = query.misalignment(Place::default()).unwrap_or(field);
             let rolls = self.squeeze_steps == 0 && !checker.has_company();
             self.squeeze_steps = self.squeeze_steps.saturating_sub(1);
             if let Some(twist) = direct_candidate(config, error, now, query, rolls) {
@@ -293,7 +303,7 @@ impl Drive {
                 // What another robot closes will be open again.
                 let may_wait = query.checker.bounds_headings() || query.checker.has_company();
                 if next.is_none() && !may_wait {
-                    self.wedged = self.squeeze_steps > 0;
+                    self.wedged = self.squeeze_steps > 0 || !query.squeezes;
                     self.squeeze_steps = if self.wedged { 0 } else { SQUEEZE_STEPS };
                     self.retreats = self.wedged && !can_turn_about(query.checker);
                 }
@@ -306,6 +316,20 @@ impl Default for Drive {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// Returns the lane to follow, if there is one and the robot cannot follow the field at speed.
+fn lane(config: &Config, field: f32, now: Twist, checker: &CollisionChecker) -> Option<Lane> {
+    if checker.has_company() || checker.bounds_headings() {
+        return None;
+    }
+    let is_quick = |twist: &Twist| twist.linear_mps > CREEP_MPS;
+    let mut quick = ahead(config, field).filter(is_quick);
+    if quick.any(|twist| checker.admits(twist, now, config, MARGIN_M)) {
+        return None;
+    }
+    let [_, least_m] = SEARCH_MARGINS_M;
+    Lane::find(checker, field, least_m)
 }
 
 /// Returns true if there is room for half a turn on the spot, and so for every turn of a rectangle.

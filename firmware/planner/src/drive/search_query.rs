@@ -3,6 +3,7 @@
 //! Units: metres, radians; robot frame at the start.
 
 use crate::drive::collision::{CollisionChecker, Place};
+use crate::drive::lane::Lane;
 use crate::drive::roll_out::{RollOut, roll_out};
 use crate::math;
 
@@ -23,12 +24,34 @@ pub struct SearchQuery<'a, H> {
     pub heading_at: H,
     /// q of a place's cell, which grows along the field; `None` if recoveries need no progress.
     pub potential_at: Option<&'a dyn Fn(Place) -> f32>,
+    /// The robot creeps on for a while where no search finds a way. Otherwise it leaves the
+    /// passage at once.
+    pub squeezes: bool,
+    /// The lane that the robot follows instead of the field.
+    pub(super) lane: Option<Lane>,
 }
 
-impl<H: Fn(Place) -> Option<f32>> SearchQuery<'_, H> {
-    /// Returns the turn of a robot at a place to the field's heading, radians.
+impl<'a, H: Fn(Place) -> Option<f32>> SearchQuery<'a, H> {
+    /// Returns a query without a lane.
+    pub const fn new(
+        checker: &'a CollisionChecker,
+        heading_at: H,
+        potential_at: Option<&'a dyn Fn(Place) -> f32>,
+    ) -> Self {
+        Self {
+            checker,
+            heading_at,
+            potential_at,
+            squeezes: true,
+            lane: None,
+        }
+    }
+
+    /// Returns the turn of a robot at a place to the heading of the lane or the field, radians.
     pub(super) fn misalignment(&self, place: Place) -> Option<f32> {
-        (self.heading_at)(place).map(|heading| math::wrap(heading - place.yaw_rad))
+        let lane = self.lane.as_ref().and_then(|lane| lane.heading_at(place));
+        let heading = lane.or_else(|| (self.heading_at)(place))?;
+        Some(math::wrap(heading - place.yaw_rad))
     }
 
     /// Returns true if a place is farther along the field than the robot.
@@ -38,8 +61,7 @@ impl<H: Fn(Place) -> Option<f32>> SearchQuery<'_, H> {
     }
 
     /// Returns the way on along the field, if the robot's front or back points along it and there
-    /// is
-    /// room for the way. Adds to `points` the number of obstacle points for each checked place.
+    /// is room for the way. Adds to `points` the number of obstacle points for each checked place.
     pub(super) fn leads_on(
         &self,
         place: Place,

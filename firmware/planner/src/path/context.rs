@@ -47,8 +47,6 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) tuning: &'a Tuning,
     /// The cost of goals by height, where height levels are on.
     pub(crate) levels: Option<LevelCost<'a, TILES>>,
-    /// True if blocked passages are opened again when no goal can be reached.
-    pub(crate) reopens_passages: bool,
     /// The team; `None` for a robot alone.
     pub(crate) team: Option<&'a Team>,
     /// True if a peer stands in the way that may drive on: without a path the robot waits.

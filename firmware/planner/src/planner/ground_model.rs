@@ -89,12 +89,6 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
-    /// Returns true if blocked passages are opened again when no goal can be reached: one that was
-    /// seen from one side only may close the only way up.
-    pub(super) const fn reopens_passages(&self) -> bool {
-        self.is_uneven()
-    }
-
     /// Returns the cost of goals by their height; `None` where heights do not choose goals.
     pub(super) fn level_cost<'a>(
         &'a self,
@@ -190,7 +184,7 @@ mod tests {
     use crate::field::preference::Preferences;
 
     #[test]
-    fn levels_and_blocked_passages_are_independent_of_the_preference() {
+    fn levels_are_independent_of_the_preference() {
         for mode in [
             PreferenceMode::Off,
             PreferenceMode::Height,
@@ -209,12 +203,10 @@ mod tests {
                 let model = Box::new(GroundModel::<24>::of(&config));
                 let cost = model.level_cost(&config, &Preferences::new());
                 assert_eq!(cost.is_some(), levels, "{mode:?}");
-                assert!(model.reopens_passages(), "{mode:?}, levels {levels}");
             }
         }
         let flat = Config::pioneer_3at(heapless::Vec::new());
         let model = Box::new(GroundModel::<24>::of(&flat));
         assert!(model.level_cost(&flat, &Preferences::new()).is_none());
-        assert!(!model.reopens_passages());
     }
 }

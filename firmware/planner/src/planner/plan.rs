@@ -46,7 +46,6 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         order: config.order(),
         tuning: config.tuning,
         levels: state.ground.level_cost(config, &state.preferences),
-        reopens_passages: state.ground.reopens_passages(),
         team: state.team.is_member().then_some(&state.team),
         waits_for_peers,
     };

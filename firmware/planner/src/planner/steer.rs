@@ -75,15 +75,14 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
             let (x, y) = local_grid::position((origin, scale), input.pose.to_map(place.point()));
             potential_at(window, x, y)
         };
-        let query = SearchQuery {
-            checker: &checker,
-            heading_at,
-            potential_at: lead.is_none().then_some(&potential_at as _),
-        };
+        let potential_at = lead.is_none().then_some(&potential_at as _);
+        let mut query = SearchQuery::new(&checker, heading_at, potential_at);
+        // A gap that is hardly wider than the hull may let the robot in and not out again.
+        query.squeezes = state.strategy.frontier.has_second_chance();
         let rested = state.drive.is_resting();
         let velocity = state.drive.follow(
             config,
-            &query,
+            &mut query,
             input.velocity,
             bytemuck::cast_slice_mut(scratch),
         );

@@ -31,11 +31,7 @@ fn search(points: &[Point], pose: Pose, heading: f32) -> Option<(Recovery, Colli
     let mut scratch = std::vec![0; SCRATCH_WORDS];
     let checker = CollisionChecker::new(&RobotShape::PIONEER_3AT, &pose, points);
     let heading_at = |_: Place| Some(math::wrap(heading - pose.yaw_rad));
-    let query = SearchQuery {
-        checker: &checker,
-        heading_at,
-        potential_at: None,
-    };
+    let query = SearchQuery::new(&checker, heading_at, None);
     let mut search = Search::start(0.02, MotionSet::ALL, &mut scratch);
     loop {
         match search.advance(&query, BUDGET, &mut scratch) {

@@ -150,7 +150,6 @@ impl Exploration {
                 order: Order::Nearest,
                 tuning: &Tuning::DEFAULT,
                 levels: None,
-                reopens_passages: false,
                 team: None,
                 waits_for_peers: false,
             };

@@ -169,7 +169,6 @@ impl Scene {
             order: Order::Nearest,
             tuning: &Tuning::DEFAULT,
             levels: None,
-            reopens_passages: false,
             team: None,
             waits_for_peers: false,
         }
