@@ -213,6 +213,11 @@ impl Drive {
         let checker = query.checker;
         let admits = |&twist: &Twist| checker.admits(twist, now, config, RECOVERY_MARGIN_M);
         let mut budget = SEARCH_BUDGET;
+        // Recovery and search count with robots where they were.
+        if checker.has_company() && is_open(config, now, query) {
+            self.recovery.clear();
+            self.search = None;
+        }
         if self.search.is_none() {
             let planned = self.recovery.next(config.period_s);
             if let Some(twist) = planned.filter(admits) {
@@ -315,6 +320,20 @@ fn can_turn_about(checker: &CollisionChecker) -> bool {
 
 fn is_moving(now: Twist) -> bool {
     now.linear_mps.abs() > STANDING_MPS || now.angular_radps.abs() > STANDING_RADPS
+}
+
+/// Returns true if the robot can follow the field faster than it creeps.
+fn is_open<H: Fn(Place) -> Option<f32>>(
+    config: &Config,
+    now: Twist,
+    query: &SearchQuery<'_, H>,
+) -> bool {
+    let Some(error) = (query.heading_at)(Place::default()) else {
+        return false;
+    };
+    ahead(config, error)
+        .filter(|twist| twist.linear_mps > CREEP_MPS)
+        .any(|twist| query.checker.admits(twist, now, config, MARGIN_M))
 }
 
 /// Returns the first admissible velocity that needs no recovery: ahead (at creeping speed only if
