@@ -4,6 +4,8 @@
 //! robots, a *hit* one with the world. *After another* is the share of the path that another robot
 //! had driven before, *twice* the share of the known ground that more than one robot measured.
 
+use core::ops::Range;
+
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::report::TeamReport;
@@ -22,6 +24,8 @@ const MOVED_M: f64 = 0.1;
 pub struct TeamRun<'a> {
     /// World to explore.
     pub world: &'a World,
+    /// Name of the strategy.
+    pub strategy: &'a str,
     /// Number of robots.
     pub robots: usize,
     /// True if they start apart.
@@ -37,11 +41,12 @@ pub struct TeamRun<'a> {
 }
 
 impl<'a> TeamRun<'a> {
-    /// Makes the usual run: side by side, a radio that loses nothing, seed 0.
+    /// Makes the usual run: `frontier`, side by side, a radio that loses nothing, seed 0.
     #[must_use]
     pub const fn of(world: &'a World, robots: usize) -> Self {
         Self {
             world,
+            strategy: "frontier",
             robots,
             apart: false,
             radio: "loss=0",
@@ -77,6 +82,7 @@ impl<'a> TeamRun<'a> {
     #[must_use]
     pub fn go_by(&self, mut links: Vec<Box<dyn Link>>) -> (TeamReport, TeamRecord) {
         let mission = Mission {
+            strategy: self.strategy.into(),
             seed: self.seed,
             ..Mission::default()
         };
@@ -106,6 +112,9 @@ impl<'a> TeamRun<'a> {
         ];
         words.extend(self.leave.iter().map(|it| format!("leave={it}")));
         words.extend(self.join.iter().map(|it| format!("join={it}")));
+        if self.strategy != "frontier" {
+            words.push(self.strategy.into());
+        }
         words.join(",")
     }
 
@@ -261,10 +270,39 @@ pub fn dropouts(runs: &[TeamRun<'_>], ended: &[(TeamReport, TeamRecord)]) -> Tab
     table
 }
 
+/// Returns the runs of a speed-up table: each world with each start and radio, one to four robots.
+#[must_use]
+pub fn groups<'a>(
+    worlds: &'a [World],
+    strategy: &'a str,
+    radios: &[&'a str],
+    seeds: &Range<u64>,
+) -> Vec<TeamRun<'a>> {
+    let starts = [false, true].into_iter();
+    let kinds = starts.flat_map(|apart| radios.iter().map(move |radio| (apart, *radio)));
+    let kinds: Vec<(bool, &str)> = kinds.collect();
+    let mut runs = Vec::new();
+    for (world, (apart, radio)) in worlds
+        .iter()
+        .flat_map(|it| kinds.iter().map(move |k| (it, *k)))
+    {
+        for robots in 1..=4 {
+            runs.extend(seeds.clone().map(|seed| TeamRun {
+                strategy,
+                apart,
+                radio,
+                seed,
+                ..TeamRun::of(world, robots)
+            }));
+        }
+    }
+    runs
+}
+
 /// Makes a table with one line for each world, start, radio and number of robots, over the seeds.
 ///
-/// Runs of one line stand together, and the runs of one robot of a group come first. `speed-up` is
-/// the mean T99 of one robot over that of the team; it needs 99 % in every run.
+/// Runs of one line stand together, and the runs of one robot of a group come first. A *speed-up*
+/// is the mean time of one robot over that of the team; it needs the share in every run.
 #[must_use]
 pub fn speed_up(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
     let mut table = Table::new(
@@ -274,6 +312,8 @@ pub fn speed_up(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
             "starts",
             "radio",
             "robots",
+            "T90 s",
+            "speed-up",
             "T99 s",
             "speed-up",
             "path m",
@@ -287,15 +327,21 @@ pub fn speed_up(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
     let all: Vec<(&TeamRun<'_>, &TeamReport)> = runs.iter().zip(reports).collect();
     let group = |it: &TeamRun<'_>| (it.world.name().to_owned(), it.apart, it.radio.to_owned());
     for same in all.chunk_by(|(a, _), (b, _)| group(a) == group(b)) {
-        let mut alone_s = None;
+        let mut alone_s = [None; 2];
         for line in same.chunk_by(|(a, _), (b, _)| a.robots == b.robots) {
             let (run, count) = (line[0].0, line.len() as f64);
-            let times: Option<Vec<f64>> =
-                line.iter().map(|(_, it)| it.whole.coverage.t99_s).collect();
-            let t99_s = times.map(|times| times.iter().sum::<f64>() / count);
+            let time = |of: fn(&TeamReport) -> Option<f64>| {
+                let times: Option<Vec<f64>> = line.iter().map(|(_, it)| of(it)).collect();
+                times.map(|times| times.iter().sum::<f64>() / count)
+            };
+            let times_s = [
+                time(|it| it.whole.coverage.t90_s),
+                time(|it| it.whole.coverage.t99_s),
+            ];
             if run.robots == 1 {
-                alone_s = t99_s;
+                alone_s = times_s;
             }
+            let faster = |k: usize| alone_s[k].zip(times_s[k]).map(|(alone, team)| alone / team);
             let mean =
                 |of: fn(&TeamReport) -> f64| line.iter().map(|(_, it)| of(it)).sum::<f64>() / count;
             let sum = |of: fn(&TeamReport) -> u32| line.iter().map(|(_, it)| of(it)).sum::<u32>();
@@ -304,8 +350,10 @@ pub fn speed_up(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
                 if run.apart { "apart" } else { "beside" }.into(),
                 run.radio.into(),
                 run.robots.to_string(),
-                number(t99_s, 1),
-                number(alone_s.zip(t99_s).map(|(alone, team)| alone / team), 2),
+                number(times_s[0], 1),
+                number(faster(0), 2),
+                number(times_s[1], 1),
+                number(faster(1), 2),
                 format!("{:.1}", mean(|it| it.whole.path_length_m)),
                 format!("{:.2}", mean(|it| it.team.driven_after_another)),
                 format!("{:.2}", mean(|it| it.team.measured_twice)),

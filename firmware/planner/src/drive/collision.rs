@@ -96,7 +96,7 @@ pub struct CollisionChecker {
     hull: Hull,
     /// Slopes of the ground, where they bound the headings.
     incline: Option<Incline>,
-    /// Another robot is near.
+    /// Another robot is near that may drive on.
     has_company: bool,
 }
 
@@ -177,7 +177,7 @@ impl CollisionChecker {
         }
     }
 
-    /// Returns true if another robot is near, which will drive on.
+    /// Returns true if another robot is near that may drive on.
     #[must_use]
     pub(crate) const fn has_company(&self) -> bool {
         self.has_company
@@ -214,11 +214,16 @@ impl CollisionChecker {
         }
     }
 
-    /// Adds points on the hulls of other robots.
-    pub(crate) fn keep_off_hulls(&mut self, pose: &Pose, points: impl Iterator<Item = Point>) {
+    /// Adds points on the hull of another robot, which may drive on or stands.
+    pub(crate) fn keep_off_hull(
+        &mut self,
+        pose: &Pose,
+        points: impl Iterator<Item = Point>,
+        may_move: bool,
+    ) {
+        self.has_company |= may_move;
         let frame = RobotFrame::of(pose);
         for at in points.map(|point| frame.to_robot(point)) {
-            self.has_company = true;
             let clearance_m = self.hull.overhang(at.x_m, at.y_m);
             if clearance_m > -FALSE_ECHO_M {
                 // Points beyond the capacity are dropped: those of the other robots remain.

@@ -220,13 +220,19 @@ impl Drive {
         query.lane = self.lane;
         let admits = |&twist: &Twist| checker.admits(twist, now, config, RECOVERY_MARGIN_M);
         let mut budget = SEARCH_BUDGET;
+        let field = (query.heading_at)(Place::default());
+        // Recovery and search count with robots where they were.
+        if checker.has_company() && field.is_some_and(|it| is_open(config, it, now, checker)) {
+            self.recovery.clear();
+            self.search = None;
+        }
         if self.search.is_none() {
             let planned = self.recovery.next(config.period_s);
             if let Some(twist) = planned.filter(admits) {
                 return twist;
             }
             self.recovery.clear();
-            let Some(field) = (query.heading_at)(Place::default()) else {
+            let Some(field) = field else {
                 return Twist::default();
             };
             self.lane = lane(config, field, now, checker);
@@ -318,14 +324,18 @@ impl Default for Drive {
     }
 }
 
-/// Returns the lane to follow, if there is one and the robot cannot follow the field at speed.
+/// Returns true if the robot can follow the field's heading faster than it creeps.
+fn is_open(config: &Config, field: f32, now: Twist, checker: &CollisionChecker) -> bool {
+    ahead(config, field)
+        .filter(|twist| twist.linear_mps > CREEP_MPS)
+        .any(|twist| checker.admits(twist, now, config, MARGIN_M))
+}
+
+/// Returns the lane to follow, if there is one and the robot would creep. Beside another robot and
+/// on slopes that bound the headings there is none.
 fn lane(config: &Config, field: f32, now: Twist, checker: &CollisionChecker) -> Option<Lane> {
-    if checker.has_company() || checker.bounds_headings() {
-        return None;
-    }
-    let is_quick = |twist: &Twist| twist.linear_mps > CREEP_MPS;
-    let mut quick = ahead(config, field).filter(is_quick);
-    if quick.any(|twist| checker.admits(twist, now, config, MARGIN_M)) {
+    let is_free = !checker.has_company() && !checker.bounds_headings();
+    if !is_free || is_open(config, field, now, checker) {
         return None;
     }
     let [_, least_m] = SEARCH_MARGINS_M;
@@ -420,4 +430,39 @@ fn turns(config: &Config, error: f32) -> Option<[Twist; 2]> {
 fn turn_rate(config: &Config, error: f32) -> f32 {
     let most = TURN_PART * config.max_angular_radps;
     (TURN_GAIN * error).clamp(-most, most)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point, Pose};
+    use crate::robot::RobotShape;
+
+    /// Returns the speed of a robot that has a recovery backwards and free ground ahead, with
+    /// another robot 2 m beside it.
+    fn speed_mps(peer_may_move: bool) -> f32 {
+        let config = Config::pioneer_3at(heapless::Vec::new());
+        let mut checker = CollisionChecker::empty(&RobotShape::PIONEER_3AT);
+        let beside = Point { x_m: 0.0, y_m: 2.0 };
+        checker.keep_off_hull(&Pose::default(), core::iter::once(beside), peer_may_move);
+        let mut query = SearchQuery::new(&checker, |_: Place| Some(0.0), None);
+        let mut drive = Drive::new();
+        for _ in 0..8 {
+            drive
+                .recovery
+                .motions
+                .push(motion::BACKWARD)
+                .expect("there is room");
+        }
+        let mut scratch = std::vec![0; SCRATCH_WORDS];
+        drive
+            .follow(&config, &mut query, Twist::default(), &mut scratch)
+            .linear_mps
+    }
+
+    #[test]
+    fn a_recovery_ends_when_a_robot_that_drives_on_has_left_the_way_open() {
+        assert!(speed_mps(true) > CREEP_MPS);
+        assert!(speed_mps(false) < 0.0, "walls do not leave");
+    }
 }

@@ -111,10 +111,7 @@ pub(super) fn make_way<const TILES: usize, const SLOTS: usize>(
     }
     let off_m = off_road_m(config);
     let other = state.team.way.other(state.team.peers(), now_ms).cloned();
-    let makes_way = matches!(state.team.way.stance(), Stance::Yielding | Stance::Cornered);
-    if let Some(other) = other.filter(|_| makes_way)
-        && state.team.is_before_me(&other)
-    {
+    if let Some(other) = other.filter(|other| state.team.still_yields_to(other)) {
         if distance2(&road_near(&other, now_ms, robot), robot) < off_m * off_m {
             state.team.way.take(Stance::Yielding, &other, now_ms);
             return retreat(config, state, workspace, footprint, (&other, input));

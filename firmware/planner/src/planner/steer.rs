@@ -13,7 +13,6 @@ use crate::math;
 use crate::planner::Output;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
-use crate::team::hull::Hull;
 
 /// The period of looking around, milliseconds: the time of half a turn.
 const LOOK_PERIOD_MS: u32 = 5_000;
@@ -169,8 +168,10 @@ fn keep_off_peers<const TILES: usize, const SLOTS: usize>(
     input: &Input<'_>,
 ) {
     let robot = input.pose.point();
-    let hulls = state.team.peers().near(input.time_ms, robot, config);
-    checker.keep_off_hulls(&input.pose, hulls.flat_map(Hull::outline));
+    for (peer, hull) in state.team.peers().near(input.time_ms, robot, config) {
+        let may_move = state.team.way.may_move(peer, input.time_ms);
+        checker.keep_off_hull(&input.pose, hull.outline(), may_move);
+    }
 }
 
 /// Returns true if the robot is stalled on uneven ground and should look around: a turn may measure

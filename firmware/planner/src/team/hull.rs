@@ -211,16 +211,16 @@ impl Peers {
             .filter(move |(_, hull)| hull.centre.distance2(robot) <= NEAR_M * NEAR_M)
     }
 
-    /// Returns the places that the peers near the robot take until they can stand.
+    /// Returns the peers near the robot, each with the place that it takes until it can stand.
     pub(crate) fn near(
         &self,
         now_ms: u32,
         robot: Point,
         config: &Config,
-    ) -> impl Iterator<Item = Hull> {
+    ) -> impl Iterator<Item = (&Peer, Hull)> {
         self.iter()
-            .map(move |peer| Hull::swept(peer, now_ms, config))
-            .filter(move |hull| hull.centre.distance2(robot) <= NEAR_M * NEAR_M)
+            .map(move |peer| (peer, Hull::swept(peer, now_ms, config)))
+            .filter(move |(_, hull)| hull.centre.distance2(robot) <= NEAR_M * NEAR_M)
     }
 }
 
@@ -296,7 +296,7 @@ mod tests {
         let config = Config::pioneer_3at(heapless::Vec::new());
         let outline = |speed_mps| -> (f32, f32) {
             let peers = peers(2.0, 0.0, speed_mps);
-            let hull = peers
+            let (_, hull) = peers
                 .near(0, Point::default(), &config)
                 .next()
                 .expect("near");
@@ -318,7 +318,7 @@ mod tests {
     fn the_points_of_an_outline_leave_no_gap_for_a_robot() {
         let config = Config::pioneer_3at(heapless::Vec::new());
         let peers = peers(2.0, 0.0, 0.7);
-        let hull = peers
+        let (_, hull) = peers
             .near(0, Point::default(), &config)
             .next()
             .expect("near");

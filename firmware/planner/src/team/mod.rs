@@ -134,6 +134,12 @@ impl Team {
         peers.filter(move |peer| self.way.may_move(peer, now_ms))
     }
 
+    /// Returns true if this robot makes way for a peer and goes on to do so.
+    pub(crate) fn still_yields_to(&self, peer: &Peer) -> bool {
+        self.member
+            .is_some_and(|me| self.way.still_yields_to(peer, me.id))
+    }
+
     /// Returns true if a peer has the right of way before this robot.
     pub(crate) fn is_before_me(&self, peer: &Peer) -> bool {
         self.member

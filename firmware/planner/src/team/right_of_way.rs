@@ -223,6 +223,21 @@ impl RightOfWay {
             .min_by(|a, b| distance2(a).total_cmp(&distance2(b)))
     }
 
+    /// Returns true if this robot, which yields or is cornered, goes on to yield to a peer.
+    ///
+    /// A cornered robot is before everyone, so that those that corner it make way. To the peer that
+    /// it makes way for it is still one that yields, unless that peer is cornered as well.
+    pub(crate) fn still_yields_to(&self, peer: &Peer, me: u8) -> bool {
+        match (self.stance, peer.beacon.activity) {
+            (Stance::Cornered, Activity::Yielding) => false,
+            (Stance::Cornered, Activity::Cornered) | (Stance::Yielding, _) => {
+                self.is_before(peer, me)
+            }
+            (Stance::Cornered, _) => true,
+            (Stance::Free | Stance::Holding, _) => false,
+        }
+    }
+
     /// Returns true if a peer has the right of way before this robot.
     pub(crate) fn is_before(&self, peer: &Peer, me: u8) -> bool {
         let rank = |activity: Activity, id: u8| {
@@ -274,6 +289,22 @@ mod tests {
             };
             assert_ne!(sees(&one, 1, &other, 2), sees(&other, 2, &one, 1));
         }
+    }
+
+    /// A robot between two others: the one ahead has the right of way, the one behind corners it.
+    #[test]
+    fn a_cornered_robot_goes_on_to_yield_until_the_other_makes_way() {
+        let way = RightOfWay {
+            stance: Stance::Cornered,
+            ..RightOfWay::new()
+        };
+        let yields_to = |id, activity| {
+            let peers = peers(id, activity, 1.0);
+            peers.iter().all(|peer| way.still_yields_to(peer, 2))
+        };
+        assert!(yields_to(1, Activity::Exploring) && yields_to(1, Activity::Holding));
+        assert!(!yields_to(1, Activity::Yielding), "it makes way itself");
+        assert!(yields_to(1, Activity::Cornered) && !yields_to(3, Activity::Cornered));
     }
 
     #[test]
