@@ -32,7 +32,7 @@ mod tests;
 use crate::config::{Config, LocaliseTuning};
 use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
 use crate::input::Input;
-use crate::map::Tiles;
+use crate::map::{Map, Tiles};
 use crate::math;
 use crate::robot::LaserMount;
 use alignment::{Aligned, Unobserved, align};
@@ -98,6 +98,8 @@ pub struct Localiser {
     /// Covariance of the pose in the map, metres and radians.
     covariance: Symmetric,
     quality: Quality,
+    /// Height of the map above the odometry's, metres; 0 on flat ground.
+    rise_m: f32,
     /// Consecutive steps whose scan contradicted the map.
     contradicted: u8,
     /// Steps for which only a scan that refutes the place is doubted.
@@ -121,6 +123,7 @@ impl Localiser {
             map_from_odom: MapFromOdom::IDENTITY,
             covariance: Symmetric::ZERO,
             quality: Quality::Tracking,
+            rise_m: 0.0,
             contradicted: 0,
             trusted_steps: 0,
             search: Search::new(),
@@ -175,9 +178,10 @@ impl Localiser {
     pub fn locate<const TILES: usize, const SLOTS: usize>(
         &mut self,
         config: &Config,
-        tiles: &Tiles<TILES, SLOTS>,
+        map: &Map<TILES, SLOTS>,
         input: &Input<'_>,
     ) -> MapPose {
+        let tiles = map.tiles();
         let odom = OdomPose(input.pose);
         let last = self.odom.replace(odom);
         if !config.localise {
@@ -192,8 +196,8 @@ impl Localiser {
             tuning,
         );
         let lasers = config.lasers.iter().zip(input.scans);
-        let level = lasers.filter(|(laser, _)| laser.is_level() && config.ground.is_none());
-        let pose = match level.into_iter().next() {
+        let level = lasers.filter(|(laser, _)| laser.is_level());
+        let mut pose = match level.into_iter().next() {
             Some(level) => self.correct(config, tiles, level, &predicted),
             None => {
                 self.quality = Quality::Degenerate(None);
@@ -201,6 +205,13 @@ impl Localiser {
             }
         };
         self.map_from_odom = MapFromOdom::between(&odom, &pose);
+        if config.ground.is_some() {
+            pose.0.z_m += self.rise_m;
+            let reach_m = config.tuning.map.stand_radius_m;
+            let off_m = map.heights().mean_over_plane_m(&pose.0, reach_m);
+            self.rise_m += off_m.unwrap_or(0.0);
+            pose.0.z_m += off_m.unwrap_or(0.0);
+        }
         pose
     }
 
@@ -214,11 +225,13 @@ impl Localiser {
         predicted: &MapPose,
     ) -> MapPose {
         let tuning = &config.tuning.localise;
-        let mut points = scan_points::scan_points(config, laser, ranges_mm);
+        let mut points = scan_points::scan_points(config, &predicted.0, laser, ranges_mm);
         let frame = RobotFrame::of(&predicted.0);
         // Walls of a fold came too, but they are surfaces, which people have not.
         points.retain(|point| {
-            point.normal.is_some() || !tiles.has_lone_arrival(frame.to_map(point.end).cell())
+            config.ground.is_some()
+                || point.normal.is_some()
+                || !tiles.has_lone_arrival(frame.to_map(point.end).cell())
         });
         let prior = in_cells(&predicted.0);
         let Some(information) = to_cells(&self.covariance).inverse() else {
@@ -226,7 +239,9 @@ impl Localiser {
         };
         let found = align(tiles, &points, (prior, &information), prior, tuning);
         self.trusted_steps = self.trusted_steps.saturating_sub(1);
-        let is_doubtful = if self.trusted_steps > 0 {
+        let is_doubtful = if config.ground.is_some() {
+            false
+        } else if self.trusted_steps > 0 {
             found.agreement.is_refuted(tuning)
         } else {
             found

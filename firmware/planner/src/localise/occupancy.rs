@@ -33,7 +33,7 @@ pub(super) fn occupancy<const TILES: usize, const SLOTS: usize>(
         x: math::floor(x - 0.5),
         y: math::floor(y - 0.5),
     };
-    let square = tiles.obstacles_from::<2>(corner);
+    let square = tiles.obstacles_from::<2>(corner) | tiles.landmarks_from(corner);
     if square == 0 {
         return None;
     }

@@ -15,6 +15,7 @@ use heapless::Vec;
 
 use crate::config::{Config, LocaliseTuning};
 use crate::geometry::{CELL_M, Point, Pose};
+use crate::ground::ray::{Attitude, Mount};
 use crate::input::has_company;
 use crate::map::integrate::level_beams;
 use crate::math;
@@ -40,19 +41,38 @@ pub(crate) struct ScanPoint {
 }
 
 /// Returns the points of a scan.
-pub(super) fn scan_points(config: &Config, laser: &LaserMount, ranges_mm: &[u16]) -> ScanPoints {
+pub(super) fn scan_points(
+    config: &Config,
+    pose: &Pose,
+    laser: &LaserMount,
+    ranges_mm: &[u16],
+) -> ScanPoints {
     let tuning = &config.tuning.localise;
     let stride = usize::from(tuning.beam_stride);
     let beams = level_beams(&Pose::default(), laser, ranges_mm, &config.tuning.map);
     let counts = |number: usize| number.checked_rem(stride) == Some(0);
-    let mut points: ScanPoints = beams
-        .filter(|beam| beam.hit && counts(beam.number) && has_company(ranges_mm, beam.number))
-        .map(|beam| ScanPoint {
-            end: beam.end(),
-            normal: None,
-        })
-        .take(MAX_POINTS)
-        .collect();
+    let beams =
+        beams.filter(|beam| beam.hit && counts(beam.number) && has_company(ranges_mm, beam.number));
+    let point = |end: Point| ScanPoint { end, normal: None };
+    let mut points: ScanPoints = if config.ground.is_some() {
+        let attitude = Attitude::of(&Pose {
+            roll_rad: pose.roll_rad,
+            pitch_rad: pose.pitch_rad,
+            ..Pose::default()
+        });
+        let mount = Mount::new(&attitude, laser);
+        let depth_m = config.tuning.ground.hit_depth_m;
+        beams
+            .filter_map(|beam| attitude.ray(&mount, beam.number, beam.length_m))
+            .map(|ray| point(ray.at(ray.length_m + depth_m)))
+            .take(MAX_POINTS)
+            .collect()
+    } else {
+        beams
+            .map(|beam| point(beam.end()))
+            .take(MAX_POINTS)
+            .collect()
+    };
     for k in 0..points.len() {
         let normal = normal(&points, k, tuning);
         if let Some(point) = points.get_mut(k) {

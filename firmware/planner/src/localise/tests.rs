@@ -129,9 +129,7 @@ impl Scene {
             velocity: Twist::default(),
             scans: [&scan, &[]],
         };
-        let MapPose(pose) = self
-            .localiser
-            .locate(&self.config, self.map.tiles(), &input);
+        let MapPose(pose) = self.localiser.locate(&self.config, &self.map, &input);
         if self.localiser.may_enter() {
             self.map.observe(&self.config, &Input { pose, ..input });
         }

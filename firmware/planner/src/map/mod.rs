@@ -21,6 +21,7 @@ pub(crate) mod evidence;
 pub(crate) mod exchange;
 pub(crate) mod integrate;
 pub(crate) mod join;
+pub(crate) mod landmarks;
 pub(crate) mod neighbourhood;
 pub mod obstacle_points;
 pub(crate) mod rows;
@@ -84,7 +85,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     pub fn begin(&mut self, config: &Config) {
         self.reset();
         if config.ground.is_some() {
-            self.lend_memory_to_elevation();
+            self.lend_memory_to_elevation(config.localise);
         }
     }
 
