@@ -3,7 +3,7 @@
 //! ```text
 //! m(x, y) = (1 − v) ((1 − u) m₀₀ + u m₁₀) + v ((1 − u) m₀₁ + u m₁₁)      bilinear
 //! ∇m = ((1 − v)(m₁₀ − m₀₀) + v (m₁₁ − m₀₁), (1 − u)(m₀₁ − m₀₀) + u (m₁₁ − m₁₀))
-//! mᵢⱼ = 1 in an obstacle that stands, 0 elsewhere;  u, v from the centre of the cell (0, 0)
+//! mᵢⱼ = 1 in an obstacle that stands or a landmark, 0 elsewhere;  u, v from the centre of the cell (0, 0)
 //! ```
 //!
 //! Within a cell of a straight wall `1 − m` is the distance to its middle in cells. It is the
@@ -24,7 +24,7 @@ pub(super) struct Occupancy {
     pub(super) gradient: (f32, f32),
 }
 
-/// Returns the field at a place; `None` without an obstacle within a cell.
+/// Returns the field at a place; `None` without an obstacle or a landmark within a cell.
 pub(super) fn occupancy<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     (x, y): (f32, f32),

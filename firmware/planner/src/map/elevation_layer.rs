@@ -31,10 +31,17 @@ const fn beam_phase(time_ms: u32, period_ms: u32) -> usize {
 }
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
-    /// Lends the pages that hold the marks to the elevation window.
-    pub(super) fn lend_memory_to_elevation(&mut self, has_landmarks: bool) {
-        let landmarks = if has_landmarks { landmarks::PAGES } else { 0 };
-        self.tiles.lend(MARK_TILES + landmarks);
+    /// Lends the pages that hold the marks to the elevation window, and those of the landmarks to a
+    /// session that corrects its odometry.
+    pub(super) fn lend_memory_to_elevation(&mut self, localise: bool) {
+        let with_landmarks = MARK_TILES + landmarks::PAGES;
+        // A small pool has no room for landmarks.
+        let has_landmarks = localise && TILES >= 2 * with_landmarks;
+        self.tiles.lend(if has_landmarks {
+            with_landmarks
+        } else {
+            MARK_TILES
+        });
     }
 
     /// Returns the elevation window; on flat ground it has no heights.

@@ -8,10 +8,10 @@
 //! ```text
 //! landmark(c) = bit(c) and the map has no ground at c
 //! bit(c) ← 1   if a level beam ends at c, outside of the elevation window and within REACH_M,
-//!              where the map knows nothing, and neither an obstacle nor a bit is beside c
+//!              where the map knows nothing, and neither an obstacle nor a landmark is beside c
 //! ```
 //!
-//! Ground that is measured later removes a landmark by itself. The bits lie in a window of
+//! A beam that runs down leaves none, because it meets ground. Ground that is measured later removes a landmark by itself. The bits lie in a window of
 //! 25.6 × 25.6 m that rolls with the robot. Their memory is 32 pages of the pool, lent while a
 //! session on uneven ground corrects its odometry.
 //!
@@ -112,6 +112,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                 .filter(|beam| beam.hit && beam.length_m < REACH_M)
                 .filter(|beam| has_company(ranges_mm, beam.number))
                 .filter_map(|beam| attitude.ray(&mount, beam.number, beam.length_m))
+                .filter(|ray| ray.slope > config.tuning.localise.landmark_slope)
                 .map(|ray| ray.hit_cell(depth_m));
             for cell in ends {
                 let is_far = !Rolling::<WINDOW_SIDE, 1>::covers(self.window, cell);
@@ -130,5 +131,119 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         is_alone
             && self.tiles.class(cell) == Class::Unknown
             && !around.any(|cell| self.tiles.is_landmark(cell))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::boxed::Box;
+
+    use crate::config::{Config, UnevenGround};
+    use crate::geometry::{Cell, Pose, Twist};
+    use crate::grid::Class;
+    use crate::input::{Input, NO_RETURN_MM};
+    use crate::map::Map;
+    use crate::robot::LaserMount;
+
+    type Scene = Box<Map<152, 400>>;
+
+    fn config(localise: bool) -> Config {
+        let laser = LaserMount::level(0.0, 0.40);
+        Config {
+            ground: Some(UnevenGround::TABLE_I),
+            localise,
+            ..Config::pioneer_3at([laser].into_iter().collect())
+        }
+    }
+
+    fn scene(localise: bool) -> Scene {
+        let mut map = Scene::default();
+        map.begin(&config(localise));
+        map
+    }
+
+    /// Shows the map a straight wall at x = 8 m from a robot at x, with this pitch.
+    fn see(map: &mut Scene, x_m: f32, pitch_rad: f32) {
+        let ranges_mm: [u16; 181] = core::array::from_fn(|k| {
+            let bearing = (k as f32 - 90.0).to_radians();
+            let range_mm = 1000.0 * (8.0 - x_m) / bearing.cos();
+            if bearing.abs() < 0.6 {
+                range_mm as u16
+            } else {
+                NO_RETURN_MM
+            }
+        });
+        let pose = Pose {
+            x_m,
+            pitch_rad,
+            ..Pose::default()
+        };
+        let input = Input {
+            time_ms: 0,
+            pose,
+            velocity: Twist::default(),
+            scans: [&ranges_mm, &[]],
+        };
+        map.observe(&config(true), &input);
+    }
+
+    /// Returns the number of landmarks in the column of the wall.
+    fn count(map: &Scene) -> usize {
+        let wall = (-60..60).map(|y| Cell { x: 80, y });
+        wall.filter(|&cell| map.tiles().is_landmark(cell)).count()
+    }
+
+    #[test]
+    fn a_far_wall_is_a_landmark_and_no_obstacle() {
+        let mut map = scene(true);
+        see(&mut map, 0.0, 0.0);
+        assert!(count(&map) > 15, "{}", count(&map));
+        let square = map.tiles().landmarks_from(Cell { x: 80, y: 0 });
+        assert_eq!(square & 0b1010, 0, "nothing behind the wall: {square:b}");
+        for x in 40..100 {
+            let class = map.class(Cell { x, y: 0 });
+            assert_eq!(class, Class::Unknown, "{x}");
+        }
+    }
+
+    #[test]
+    fn without_localisation_and_from_beams_that_run_down_there_are_none() {
+        let mut map = scene(false);
+        see(&mut map, 0.0, 0.0);
+        assert_eq!(count(&map), 0);
+        let mut map = scene(true);
+        see(&mut map, 0.0, 0.06);
+        assert_eq!(count(&map), 0);
+    }
+
+    #[test]
+    fn known_ground_is_no_landmark() {
+        let mut map = scene(true);
+        see(&mut map, 0.0, 0.0);
+        let before = count(&map);
+        let wall = (-60..60).map(|y| Cell { x: 80, y });
+        let cell = wall.into_iter().find(|&cell| map.tiles().is_landmark(cell));
+        let cell = cell.expect("a landmark");
+        map.tiles.set(cell, Class::Free).expect("room");
+        assert_eq!(count(&map), before - 1);
+    }
+
+    /// A cell that left the window is forgotten, and its twin that enters is empty.
+    #[test]
+    fn landmarks_leave_with_the_window() {
+        let mut map = scene(true);
+        see(&mut map, 0.0, 0.0);
+        let before = count(&map);
+        let there = (0..80).map(|k| -0.1 * k as f32);
+        for x_m in there.clone() {
+            see(&mut map, x_m, 0.06);
+        }
+        assert_eq!(count(&map), 0, "nearly 16 m west of the wall");
+        for x_m in there.rev() {
+            see(&mut map, x_m, 0.06);
+        }
+        assert_eq!(count(&map), 0, "back again");
+        see(&mut map, 0.0, 0.0);
+        assert_eq!(count(&map), before);
     }
 }

@@ -10,6 +10,7 @@
 //! | `evidence` | counts for and against an obstacle around the robot, on flat ground |
 //! | `integrate`, `traversal` | beams into classes and counts |
 //! | `elevation_layer` | the elevation window into classes, on uneven ground |
+//! | `landmarks` | what beams met far off on uneven ground, for the localiser alone |
 //! | [`obstacle_points`] | single returns near the robot, finer than cells |
 //!
 //! Units: map cells of [`CELL_M`](crate::geometry::CELL_M).
