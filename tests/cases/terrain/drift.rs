@@ -170,8 +170,75 @@ fn drift_on_uneven_ground_is_corrected() {
     });
 }
 
+/// Worlds of the parts: holes, a slope that winds, a drop without a floor.
+const PARTS_WORLDS: [&str; 3] = ["holes", "spiral", "causeway"];
+/// Name, and constants with other values.
+type Part = (&'static str, &'static [(&'static str, f32)]);
+const PARTS: [Part; 6] = [
+    ("all parts", &[]),
+    ("no landmarks", &[("localise.landmark_slope", 1.0)]),
+    (
+        "landmarks of every beam",
+        &[("localise.landmark_slope", -1.0)],
+    ),
+    ("beams count in full", &[("localise.uneven_share", 1.0)]),
+    ("beams count a fifth", &[("localise.uneven_share", 0.2)]),
+    (
+        "beams count a hundredth",
+        &[("localise.uneven_share", 0.01)],
+    ),
+];
+
 mod full {
-    use super::{check, worlds};
+    use super::*;
+
+    #[test]
+    #[ignore = "takes minutes: 54 runs; tests/run --full runs it"]
+    fn parts_of_the_localisation_on_uneven_ground() {
+        let worlds = worlds::builtins(&PARTS_WORLDS);
+        // No constant was chosen on these seeds.
+        let seeds = 100..103;
+        let names = [
+            "part",
+            "runs",
+            "explored",
+            "fell",
+            "mean m",
+            "worst m",
+            "least seen %",
+        ];
+        let mut table = Table::new(1, &names);
+        for (name, constants) in PARTS {
+            let tuning = runs::tuned(constants);
+            let of = |world| seeds.clone().map(move |seed| (world, seed));
+            let to_run: Vec<_> = worlds.iter().flat_map(of).collect();
+            let reports = in_parallel(&to_run, |(world, seed)| {
+                let mission = Mission {
+                    odometry: OdometryProfile::Noisy,
+                    localise: true,
+                    ..UnevenRun::of(world, 0, *seed).mission()
+                };
+                explored(&mission, world, &mut Direct::tuned(tuning)).0
+            });
+            let all: Vec<&Report> = reports.iter().collect();
+            let error = |report: &Report| report.localization.mean_error_m;
+            let seen = all.iter().map(|it| it.coverage.fraction);
+            let well = |it: &&&Report| it.explored() && it.coverage.fraction >= LEAST_SEEN;
+            table.row(vec![
+                name.into(),
+                all.len().to_string(),
+                all.iter().filter(well).count().to_string(),
+                all.iter()
+                    .filter(|it| it.safety.falls > 0)
+                    .count()
+                    .to_string(),
+                number(runs::mean(&all, error), 3),
+                number(all.iter().filter_map(|it| error(it)).reduce(f64::max), 3),
+                number(seen.reduce(f64::min).map(|it| 100.0 * it), 2),
+            ]);
+        }
+        golden::compare("terrain-drift-parts.txt", &table.to_string());
+    }
 
     #[test]
     #[ignore = "takes minutes: 81 runs; tests/run --full runs it"]
