@@ -142,7 +142,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if state.status != Status::Exploring {
         return Output::standing(state.status);
     }
-    let MapPose(pose) = state.localiser.locate(config, state.map.tiles(), &input);
+    let MapPose(pose) = state.localiser.locate(config, &state.map, &input);
     let input = Input { pose, ..input };
     let peers = state.team.peers();
     if peers.may_be_seen(input.time_ms, &input.pose, &config.lasers) {

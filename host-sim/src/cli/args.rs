@@ -112,8 +112,7 @@ pub(super) struct ExploreArgs {
     /// baselines and with --team]
     #[arg(long, value_enum)]
     pub(super) odometry: Option<OdometryArg>,
-    /// Correct odometry by the level scan, on flat ground [default: on; off with odometry truth and
-    /// for baselines]
+    /// Correct odometry by the level scan [default: on; off with odometry truth and for baselines]
     #[arg(long, value_enum, value_name = "on|off", hide_possible_values = true)]
     pub(super) localise: Option<SwitchArg>,
     /// Standard deviation of roll and pitch, degrees [default: 0 with truth, else 0.5]

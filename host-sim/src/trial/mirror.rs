@@ -58,7 +58,7 @@ impl Mirror {
         let Some(input) = convert::input(observation, config.lasers()) else {
             return;
         };
-        let MapPose(pose) = self.localiser.locate(config, self.map.tiles(), &input);
+        let MapPose(pose) = self.localiser.locate(config, &self.map, &input);
         self.pose = pose;
         if self.localiser.may_enter() {
             self.map.observe(config, &Input { pose, ..input });

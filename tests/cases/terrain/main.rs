@@ -1,6 +1,7 @@
 //! Whole explorations of uneven ground.
 
 mod data;
+mod drift;
 mod full;
 mod roll;
 mod scenarios;

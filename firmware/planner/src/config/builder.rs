@@ -97,8 +97,7 @@ impl ConfigBuilder {
         self
     }
 
-    /// Corrects the odometry by the level scan, on flat ground. Default: the odometry is taken for
-    /// the pose.
+    /// Corrects the odometry by the level scan. Default: the odometry is taken for the pose.
     #[must_use]
     pub const fn localise(mut self, localise: bool) -> Self {
         self.config.localise = localise;

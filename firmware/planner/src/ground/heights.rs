@@ -16,8 +16,10 @@
 use fixed::types::I7F9;
 
 use crate::config::GroundTuning;
-use crate::geometry::Cell;
+use crate::geometry::{CELL_M, Cell, Pose};
 use crate::grid::{Rolling, at};
+use crate::ground::ray::Attitude;
+use crate::math;
 
 /// Cells along the window's side.
 pub const WINDOW_SIDE: i32 = 64;
@@ -149,6 +151,27 @@ impl<'a> Heights<'a> {
     #[must_use]
     pub fn height_m(&self, cell: Cell) -> Option<f32> {
         self.fixed(cell).map(metres)
+    }
+
+    /// Returns how far the measured ground lies over the robot's plane in the mean, within a
+    /// distance from the robot, metres; `None` if no cell there was measured twice.
+    pub(crate) fn mean_over_plane_m(&self, pose: &Pose, reach_m: f32) -> Option<f32> {
+        let attitude = Attitude::of(pose);
+        let (robot, reach) = (pose.point(), math::floor(reach_m / CELL_M) + 1);
+        let middle = robot.cell();
+        let (mut sum_m, mut count) = (0.0, 0_u16);
+        for (dx, dy) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy))) {
+            let cell = middle.offset(dx, dy);
+            let centre = cell.centre();
+            if centre.distance2(robot) > reach_m * reach_m || self.count(cell) < 2 {
+                continue;
+            }
+            if let Some(height_m) = self.height_m(cell) {
+                sum_m += height_m - attitude.plane_m(centre);
+                count += 1;
+            }
+        }
+        (count > 0).then(|| sum_m / f32::from(count))
     }
 
     /// Returns the mean height of a cell that was met only with low confidence, metres.

@@ -16,6 +16,10 @@
 //! The state is the motion [`MapFromOdom`] and its covariance. Without localisation the motion is
 //! the identity, and every pose passes through unchanged, bit for bit.
 //!
+//! On uneven ground only beams that end on obstacles of the map or on landmarks
+//! (`map/landmarks.rs`) are matched, and the height follows the ground that the map has under the
+//! robot. A beam may end on ground there, so a scan never contradicts the map.
+//!
 //! Invariant: a correction changes the motion only. The odometry frame, and with it the obstacle
 //! points beside the robot, never moves.
 //! Units: metres, radians; cells inside the alignment.
@@ -32,7 +36,7 @@ mod tests;
 use crate::config::{Config, LocaliseTuning};
 use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
 use crate::input::Input;
-use crate::map::Tiles;
+use crate::map::{Map, Tiles};
 use crate::math;
 use crate::robot::LaserMount;
 use alignment::{Aligned, Unobserved, align};
@@ -98,6 +102,8 @@ pub struct Localiser {
     /// Covariance of the pose in the map, metres and radians.
     covariance: Symmetric,
     quality: Quality,
+    /// Height of the map above the odometry's, metres; 0 on flat ground.
+    rise_m: f32,
     /// Consecutive steps whose scan contradicted the map.
     contradicted: u8,
     /// Steps for which only a scan that refutes the place is doubted.
@@ -121,6 +127,7 @@ impl Localiser {
             map_from_odom: MapFromOdom::IDENTITY,
             covariance: Symmetric::ZERO,
             quality: Quality::Tracking,
+            rise_m: 0.0,
             contradicted: 0,
             trusted_steps: 0,
             search: Search::new(),
@@ -136,10 +143,14 @@ impl Localiser {
     /// Returns a pose of the odometry in the map, with the last correction.
     #[must_use]
     pub fn to_map(&self, odom: &OdomPose) -> MapPose {
-        if self.map_from_odom == MapFromOdom::IDENTITY {
+        if self.map_from_odom == MapFromOdom::IDENTITY && self.rise_m == 0.0 {
             return MapPose(odom.0);
         }
-        self.map_from_odom.apply(odom)
+        let MapPose(pose) = self.map_from_odom.apply(odom);
+        MapPose(Pose {
+            z_m: pose.z_m + self.rise_m,
+            ..pose
+        })
     }
 
     /// Returns true if the last scan may be entered into the map.
@@ -175,9 +186,10 @@ impl Localiser {
     pub fn locate<const TILES: usize, const SLOTS: usize>(
         &mut self,
         config: &Config,
-        tiles: &Tiles<TILES, SLOTS>,
+        map: &Map<TILES, SLOTS>,
         input: &Input<'_>,
     ) -> MapPose {
+        let tiles = map.tiles();
         let odom = OdomPose(input.pose);
         let last = self.odom.replace(odom);
         if !config.localise {
@@ -192,8 +204,8 @@ impl Localiser {
             tuning,
         );
         let lasers = config.lasers.iter().zip(input.scans);
-        let level = lasers.filter(|(laser, _)| laser.is_level() && config.ground.is_none());
-        let pose = match level.into_iter().next() {
+        let level = lasers.filter(|(laser, _)| laser.is_level());
+        let mut pose = match level.into_iter().next() {
             Some(level) => self.correct(config, tiles, level, &predicted),
             None => {
                 self.quality = Quality::Degenerate(None);
@@ -201,7 +213,24 @@ impl Localiser {
             }
         };
         self.map_from_odom = MapFromOdom::between(&odom, &pose);
+        if config.ground.is_some() {
+            self.settle(map, &mut pose.0, config.tuning.map.stand_radius_m);
+        }
         pose
+    }
+
+    /// Puts the robot on the ground that the map has under it. A correction on a slope is also one
+    /// of the height: without it the ground that is measured next would lie beside what is known.
+    fn settle<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        map: &Map<TILES, SLOTS>,
+        pose: &mut Pose,
+        reach_m: f32,
+    ) {
+        if let Some(off_m) = map.heights().mean_over_plane_m(pose, reach_m) {
+            self.rise_m += off_m;
+            pose.z_m += off_m;
+        }
     }
 
     /// Corrects the predicted pose by a scan. The scan's points leave the stack with it.
@@ -213,12 +242,19 @@ impl Localiser {
         (laser, ranges_mm): (&LaserMount, &[u16]),
         predicted: &MapPose,
     ) -> MapPose {
-        let tuning = &config.tuning.localise;
-        let mut points = scan_points::scan_points(config, laser, ranges_mm);
+        let is_uneven = config.ground.is_some();
+        let tuning = &if is_uneven {
+            config.tuning.localise.on_uneven_ground()
+        } else {
+            config.tuning.localise
+        };
+        let mut points = scan_points::scan_points(config, &predicted.0, laser, ranges_mm);
         let frame = RobotFrame::of(&predicted.0);
         // Walls of a fold came too, but they are surfaces, which people have not.
         points.retain(|point| {
-            point.normal.is_some() || !tiles.has_lone_arrival(frame.to_map(point.end).cell())
+            is_uneven
+                || point.normal.is_some()
+                || !tiles.has_lone_arrival(frame.to_map(point.end).cell())
         });
         let prior = in_cells(&predicted.0);
         let Some(information) = to_cells(&self.covariance).inverse() else {
@@ -226,7 +262,10 @@ impl Localiser {
         };
         let found = align(tiles, &points, (prior, &information), prior, tuning);
         self.trusted_steps = self.trusted_steps.saturating_sub(1);
-        let is_doubtful = if self.trusted_steps > 0 {
+        // A beam may end on ground that is free, so nothing contradicts the map there.
+        let is_doubtful = if is_uneven {
+            false
+        } else if self.trusted_steps > 0 {
             found.agreement.is_refuted(tuning)
         } else {
             found

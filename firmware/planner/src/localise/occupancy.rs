@@ -3,7 +3,8 @@
 //! ```text
 //! m(x, y) = (1 − v) ((1 − u) m₀₀ + u m₁₀) + v ((1 − u) m₀₁ + u m₁₁)      bilinear
 //! ∇m = ((1 − v)(m₁₀ − m₀₀) + v (m₁₁ − m₀₁), (1 − u)(m₀₁ − m₀₀) + u (m₁₁ − m₁₀))
-//! mᵢⱼ = 1 in an obstacle that stands, 0 elsewhere;  u, v from the centre of the cell (0, 0)
+//! mᵢⱼ = 1 in an obstacle that stands or a landmark, 0 elsewhere
+//! u, v: from the centre of the cell (0, 0)
 //! ```
 //!
 //! Within a cell of a straight wall `1 − m` is the distance to its middle in cells. It is the
@@ -24,7 +25,7 @@ pub(super) struct Occupancy {
     pub(super) gradient: (f32, f32),
 }
 
-/// Returns the field at a place; `None` without an obstacle within a cell.
+/// Returns the field at a place; `None` without an obstacle or a landmark within a cell.
 pub(super) fn occupancy<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     (x, y): (f32, f32),
@@ -33,7 +34,7 @@ pub(super) fn occupancy<const TILES: usize, const SLOTS: usize>(
         x: math::floor(x - 0.5),
         y: math::floor(y - 0.5),
     };
-    let square = tiles.obstacles_from::<2>(corner);
+    let square = tiles.obstacles_from::<2>(corner) | tiles.landmarks_from(corner);
     if square == 0 {
         return None;
     }

@@ -9,12 +9,16 @@
 //! one measures along its normal only. A beam on an edge or a corner has no normal: it measures in
 //! both directions.
 //!
+//! On uneven ground the ends are seen from above: the robot's roll and pitch turn each beam. They
+//! lie as far behind the surface as the map's obstacles do.
+//!
 //! Units: metres, robot frame.
 
 use heapless::Vec;
 
 use crate::config::{Config, LocaliseTuning};
 use crate::geometry::{CELL_M, Point, Pose};
+use crate::ground::ray::{Attitude, Mount};
 use crate::input::has_company;
 use crate::map::integrate::level_beams;
 use crate::math;
@@ -40,19 +44,38 @@ pub(crate) struct ScanPoint {
 }
 
 /// Returns the points of a scan.
-pub(super) fn scan_points(config: &Config, laser: &LaserMount, ranges_mm: &[u16]) -> ScanPoints {
+pub(super) fn scan_points(
+    config: &Config,
+    pose: &Pose,
+    laser: &LaserMount,
+    ranges_mm: &[u16],
+) -> ScanPoints {
     let tuning = &config.tuning.localise;
     let stride = usize::from(tuning.beam_stride);
     let beams = level_beams(&Pose::default(), laser, ranges_mm, &config.tuning.map);
     let counts = |number: usize| number.checked_rem(stride) == Some(0);
-    let mut points: ScanPoints = beams
-        .filter(|beam| beam.hit && counts(beam.number) && has_company(ranges_mm, beam.number))
-        .map(|beam| ScanPoint {
-            end: beam.end(),
-            normal: None,
-        })
-        .take(MAX_POINTS)
-        .collect();
+    let beams =
+        beams.filter(|beam| beam.hit && counts(beam.number) && has_company(ranges_mm, beam.number));
+    let point = |end: Point| ScanPoint { end, normal: None };
+    let mut points: ScanPoints = if config.ground.is_some() {
+        let attitude = Attitude::of(&Pose {
+            roll_rad: pose.roll_rad,
+            pitch_rad: pose.pitch_rad,
+            ..Pose::default()
+        });
+        let mount = Mount::new(&attitude, laser);
+        let depth_m = config.tuning.ground.hit_depth_m;
+        beams
+            .filter_map(|beam| attitude.ray(&mount, beam.number, beam.length_m))
+            .map(|ray| point(ray.at(ray.length_m + depth_m)))
+            .take(MAX_POINTS)
+            .collect()
+    } else {
+        beams
+            .map(|beam| point(beam.end()))
+            .take(MAX_POINTS)
+            .collect()
+    };
     for k in 0..points.len() {
         let normal = normal(&points, k, tuning);
         if let Some(point) = points.get_mut(k) {
@@ -94,9 +117,12 @@ fn square((x, y): (f32, f32)) -> f32 {
 mod tests {
     use std::vec::Vec;
 
-    use super::{ScanPoint, normal};
-    use crate::config::LocaliseTuning;
-    use crate::geometry::Point;
+    use super::{ScanPoint, normal, scan_points};
+    use crate::config::{Config, LocaliseTuning, UnevenGround};
+    use crate::geometry::{Point, Pose};
+    use crate::ground::ray::{Attitude, Mount};
+    use crate::input::NO_RETURN_MM;
+    use crate::robot::LaserMount;
 
     /// Returns the normals of points.
     fn normals(ends: &[(f32, f32)]) -> Vec<Option<(f32, f32)>> {
@@ -152,5 +178,48 @@ mod tests {
         assert_eq!(normals(&[(1.0, 0.0), (1.0, 0.5)]), [None, None]);
         let heap = [(1.0, 0.0), (1.0, 0.05), (1.0, 0.1)];
         assert_eq!(normals(&heap)[1], None, "all within two cells");
+    }
+
+    /// The ends on an upright wall lie in its plane, however the robot is tilted.
+    #[test]
+    fn the_ends_of_a_tilted_robot_are_seen_from_above() {
+        let laser = LaserMount::level(0.1, 0.4);
+        let config = Config {
+            ground: Some(UnevenGround::TABLE_I),
+            ..Config::pioneer_3at([laser].into_iter().collect())
+        };
+        for (roll_rad, pitch_rad) in [(0.0, 0.0), (0.2, 0.0), (0.0, -0.25), (-0.15, 0.2)] {
+            let pose = Pose {
+                x_m: 4.0,
+                yaw_rad: 1.0,
+                roll_rad,
+                pitch_rad,
+                ..Pose::default()
+            };
+            let attitude = Attitude::of(&Pose {
+                x_m: 0.0,
+                yaw_rad: 0.0,
+                ..pose
+            });
+            let mount = Mount::new(&attitude, &laser);
+            let ranges_mm: [u16; 181] = core::array::from_fn(|number| {
+                let ray = attitude.ray(&mount, number, 1.0).expect("not upright");
+                let range_m = (3.0 - ray.from.x_m) / (ray.along.0 * ray.length_m);
+                if (30..150).contains(&number) {
+                    (1000.0 * range_m) as u16
+                } else {
+                    NO_RETURN_MM
+                }
+            });
+            let points = scan_points(&config, &pose, &laser, &ranges_mm);
+            assert!(points.len() > 100);
+            for point in &points {
+                // Behind the wall by the depth, along a beam.
+                let behind_m = point.end.x_m - 3.0;
+                assert!((0.01..0.032).contains(&behind_m), "{behind_m} {point:?}");
+            }
+            let middle = points[points.len() / 2].normal.expect("a surface");
+            assert!(middle.0.abs() > 0.999, "{middle:?}");
+        }
     }
 }

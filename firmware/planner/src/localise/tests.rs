@@ -8,7 +8,7 @@ use std::vec::Vec;
 use super::alignment::constraints;
 use super::scan_points::ScanPoint;
 use super::{Localiser, Quality};
-use crate::config::{Config, LocaliseTuning};
+use crate::config::{Config, LocaliseTuning, UnevenGround};
 use crate::geometry::{CELL_M, Cell, MapPose, Point, Pose, Twist};
 use crate::grid::Class;
 use crate::input::{INVALID_MM, Input, NO_RETURN_MM};
@@ -129,9 +129,7 @@ impl Scene {
             velocity: Twist::default(),
             scans: [&scan, &[]],
         };
-        let MapPose(pose) = self
-            .localiser
-            .locate(&self.config, self.map.tiles(), &input);
+        let MapPose(pose) = self.localiser.locate(&self.config, &self.map, &input);
         if self.localiser.may_enter() {
             self.map.observe(&self.config, &Input { pose, ..input });
         }
@@ -418,4 +416,45 @@ fn field(tiles: &Tiles<16, 64>, end: [f64; 2]) -> Option<(f64, [f64; 2])> {
         gradient[1] -= off[1].signum() * tent[0];
     }
     any.then_some((value, gradient))
+}
+
+/// On a slope a wrong height would put the ground that is measured next beside what is known.
+#[test]
+fn the_robot_stands_on_the_ground_that_the_map_has_under_it() {
+    let config = Config {
+        localise: true,
+        ground: Some(UnevenGround::TABLE_I),
+        ..Config::pioneer_3at(heapless::Vec::new())
+    };
+    let slope = 0.25_f32;
+    let mut map = Box::<Map<152, 400>>::default();
+    map.begin(&config);
+    // Twice: a height that was measured once may be a false return.
+    for _ in 0..2 {
+        map.set_ground_heights(Cell { x: 0, y: 0 }, |cell| Some(slope * cell.centre().x_m));
+    }
+    let mut localiser = Localiser::new();
+    let mut locate = |x_m: f32, error_m: f32| {
+        let pose = Pose {
+            x_m,
+            z_m: slope * x_m + error_m,
+            pitch_rad: -slope.atan(),
+            ..Pose::default()
+        };
+        let input = Input {
+            time_ms: 0,
+            pose,
+            velocity: Twist::default(),
+            scans: [&[], &[]],
+        };
+        let MapPose(found) = localiser.locate(&config, &map, &input);
+        found.z_m - slope * x_m
+    };
+    assert!(locate(0.0, 0.0).abs() < 0.01);
+    assert!(locate(0.4, 0.12).abs() < 0.01, "odometry is too high");
+    assert!(locate(0.8, -0.08).abs() < 0.01, "and too low");
+    assert!(
+        (locate(20.0, -0.08) - 0.0).abs() < 0.01,
+        "it stays so on new ground"
+    );
 }

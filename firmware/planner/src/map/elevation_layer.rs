@@ -16,10 +16,10 @@ use crate::ground::elevation::{WINDOW_CELLS, WINDOW_SIDE};
 use crate::ground::survey::Survey;
 use crate::ground::{Elevation, Heights};
 use crate::input::Input;
-use crate::map::{Class, Map, SideTable, Tiles};
+use crate::map::{Class, Map, SideTable, Tiles, landmarks};
 
 /// Pages that hold the marks.
-const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::Cells>();
+pub(super) const MARK_TILES: usize = WINDOW_CELLS / size_of::<super::tiles::Cells>();
 
 /// Phases of the beams through a doorway to a known wall. A step evaluates one phase, to save time.
 /// Each beam comes within a second.
@@ -31,15 +31,23 @@ const fn beam_phase(time_ms: u32, period_ms: u32) -> usize {
 }
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
-    /// Lends the pages that hold the marks to the elevation window.
-    pub(super) fn lend_memory_to_elevation(&mut self) {
-        self.tiles.lend(MARK_TILES);
+    /// Lends the pages that hold the marks to the elevation window, and those of the landmarks to a
+    /// session that corrects its odometry.
+    pub(super) fn lend_memory_to_elevation(&mut self, localise: bool) {
+        let with_landmarks = MARK_TILES + landmarks::PAGES;
+        // A small pool has no room for landmarks.
+        let has_landmarks = localise && TILES >= 2 * with_landmarks;
+        self.tiles.lend(if has_landmarks {
+            with_landmarks
+        } else {
+            MARK_TILES
+        });
     }
 
     /// Returns the elevation window; on flat ground it has no heights.
     #[must_use]
     pub fn heights(&self) -> Heights<'_> {
-        Heights::new(self.evidence.bytes(), self.tiles.lent_bytes(), self.window)
+        Heights::new(self.evidence.bytes(), self.tiles.mark_bytes(), self.window)
     }
 
     /// Enters scans and pose into the window, and the window's classes into the tiles.
@@ -54,9 +62,10 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             pose: self.attitude.update(&input.pose, tuning),
             ..*input
         };
+        let window = self.window;
         let mut elevation = Elevation::new(
             self.evidence.bytes_mut(),
-            self.tiles.lent_bytes_mut(),
+            self.tiles.mark_bytes_mut(),
             &mut self.window,
             tuning,
         );
@@ -64,6 +73,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             .with_attitude(&self.attitude)
             .run(config, input, !self.has_surveyed);
         self.has_surveyed = true;
+        self.mark_landmarks(config, input, window);
         if self.attitude.is_exact(tuning) {
             self.view_doorways(config, ground, input);
         }
@@ -211,7 +221,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     ) {
         let mut elevation = Elevation::new(
             self.evidence.bytes_mut(),
-            self.tiles.lent_bytes_mut(),
+            self.tiles.mark_bytes_mut(),
             &mut self.window,
             &crate::config::GroundTuning::DEFAULT,
         );

@@ -10,6 +10,7 @@
 //! | `evidence` | counts for and against an obstacle around the robot, on flat ground |
 //! | `integrate`, `traversal` | beams into classes and counts |
 //! | `elevation_layer` | the elevation window into classes, on uneven ground |
+//! | `landmarks` | what beams met far off on uneven ground, for the localiser alone |
 //! | [`obstacle_points`] | single returns near the robot, finer than cells |
 //!
 //! Units: map cells of [`CELL_M`](crate::geometry::CELL_M).
@@ -21,6 +22,7 @@ pub(crate) mod evidence;
 pub(crate) mod exchange;
 pub(crate) mod integrate;
 pub(crate) mod join;
+pub(crate) mod landmarks;
 pub(crate) mod neighbourhood;
 pub mod obstacle_points;
 pub(crate) mod rows;
@@ -84,7 +86,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     pub fn begin(&mut self, config: &Config) {
         self.reset();
         if config.ground.is_some() {
-            self.lend_memory_to_elevation();
+            self.lend_memory_to_elevation(config.localise);
         }
     }
 

@@ -13,6 +13,7 @@
 use crate::geometry::Cell;
 use crate::grid::{Class, Row, TileKey, TileMap, inside, inside_mut, masked, masked_mut};
 use crate::map::compaction::{Entry, FreeList, ONES, ZEROS};
+use crate::map::elevation_layer::MARK_TILES;
 use crate::map::rows::{Column, RowReader};
 pub(super) use crate::map::tile::{Cells, Plane, TileMut};
 use crate::map::versions::Versions;
@@ -82,7 +83,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     pub(super) fn lend(&mut self, tiles: usize) {
         let tiles = if tiles < TILES { tiles } else { TILES };
         self.lent = tiles as u16;
-        self.lent_bytes_mut().fill(0);
+        bytemuck::cast_slice_mut::<_, u8>(self.lent_mut()).fill(0);
     }
 
     /// Returns true if pages are lent to the elevation window: the ground is uneven.
@@ -90,17 +91,38 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.lent > 0
     }
 
-    /// Returns the memory of the lent pages.
-    pub(super) fn lent_bytes(&self) -> &[u8] {
+    /// Returns the lent pages of the marks, and those of the landmarks.
+    fn lent(&self) -> (&[Cells], &[Cells]) {
         let lent = self.pool.get(self.capacity()..).unwrap_or_default();
-        bytemuck::cast_slice(lent)
+        lent.split_at_checked(MARK_TILES).unwrap_or((lent, &[]))
     }
 
-    /// Returns the memory of the lent pages.
-    pub(super) fn lent_bytes_mut(&mut self) -> &mut [u8] {
+    fn lent_mut(&mut self) -> &mut [Cells] {
         let capacity = self.capacity();
-        let lent = self.pool.get_mut(capacity..).unwrap_or_default();
-        bytemuck::cast_slice_mut(lent)
+        self.pool.get_mut(capacity..).unwrap_or_default()
+    }
+
+    /// Returns the memory of the elevation window's marks.
+    pub(super) fn mark_bytes(&self) -> &[u8] {
+        bytemuck::cast_slice(self.lent().0)
+    }
+
+    /// Returns the memory of the elevation window's marks.
+    pub(super) fn mark_bytes_mut(&mut self) -> &mut [u8] {
+        let lent = self.lent_mut();
+        let marks = MARK_TILES.min(lent.len());
+        bytemuck::cast_slice_mut(lent.get_mut(..marks).unwrap_or_default())
+    }
+
+    /// Returns the memory of the landmarks.
+    pub(super) fn landmark_bytes(&self) -> &[u8] {
+        bytemuck::cast_slice(self.lent().1)
+    }
+
+    /// Returns the memory of the landmarks.
+    pub(super) fn landmark_bytes_mut(&mut self) -> &mut [u8] {
+        let landmarks = self.lent_mut().get_mut(MARK_TILES..);
+        bytemuck::cast_slice_mut(landmarks.unwrap_or_default())
     }
 
     /// Returns the column and the row of the first tile, from which the keys count.

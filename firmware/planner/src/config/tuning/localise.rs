@@ -55,7 +55,27 @@ tuning! {
         /// Fewest beams or surfaces on known ground with which a scan can contradict the map, or
         /// find a lost robot.
         least_counted: f32 = 20.0, 1.0..=181.0, "beams";
+        /// Share of a beam's information that counts on uneven ground, where many beams end on
+        /// ground and not on walls.
+        uneven_share: f32 = 0.05, 0.001..=1.0, "1";
+        /// Least slope of a level beam that may leave a landmark on uneven ground. One that runs
+        /// down more steeply meets ground.
+        landmark_slope: f32 = -0.03, -1.0..=1.0, "1";
         /// Consecutive contradicting scans after which the robot is lost.
         lost_steps: u8 = 3, 1..=50, "steps";
+    }
+}
+
+impl LocaliseTuning {
+    /// Returns the constants as they count on uneven ground: beams count less, and never more than
+    /// odometry where they agree on a pose far from it. Wheels slip there too, but ground that is
+    /// taken for a wall misleads more often.
+    pub(crate) fn on_uneven_ground(&self) -> Self {
+        Self {
+            beam_information: self.uneven_share * self.beam_information,
+            least_information: self.uneven_share * self.least_information,
+            slip_gap: f32::INFINITY,
+            ..*self
+        }
     }
 }
