@@ -40,6 +40,7 @@ pub mod costs;
 pub mod digests;
 pub mod elf;
 pub mod emulator;
+pub mod ends;
 pub mod field;
 pub mod flat;
 pub mod flatness;

@@ -32,6 +32,20 @@ pub struct Variant {
     pub tuned: &'static [(&'static str, f32)],
 }
 
+/// The strategies for one robot in flat worlds, the usual one first, then the reference.
+#[must_use]
+pub fn strategies() -> Vec<Variant> {
+    let named = |name| Variant {
+        name,
+        strategy: name,
+        order: None,
+        tuned: &[],
+    };
+    [FRONTIER, "ouroboros", "tdbvp", REFERENCE]
+        .map(named)
+        .into()
+}
+
 /// The orders with the strategy's own first, then each part of it left out, then the baselines.
 #[must_use]
 pub fn variants() -> Vec<Variant> {

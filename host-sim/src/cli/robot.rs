@@ -27,7 +27,7 @@ pub(super) struct RobotArgs {
     #[arg(long, value_name = "ORDER")]
     order: Option<OrderArg>,
     /// Least gain of a trip, square metres for each metre of way: what is not worth it is left; 0
-    /// for everything that can be seen. With the order gain only [default: 0.3]
+    /// for everything that can be seen. With the order gain only [default: 0.25]
     #[arg(long, value_name = "M2_PER_M", value_parser = worth)]
     worth: Option<I4F12>,
     #[command(flatten)]

@@ -97,7 +97,7 @@ pub enum Order {
 impl Default for Order {
     fn default() -> Self {
         Self::Gain {
-            worth: I4F12::lit("0.3"),
+            worth: I4F12::lit("0.25"),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Whole explorations of flat worlds by the usual strategy, and the links that carry them.
 
+mod buildings;
 mod data;
 mod disturbed;
 mod endings;

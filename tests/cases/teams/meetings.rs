@@ -30,7 +30,7 @@ fn meet(file: &str, seeds: Range<u64>) {
     for same in meetings.chunk_by(|a, b| a.narrow == b.narrow) {
         let met = same.iter().filter(|meeting| meeting.has_met()).count();
         assert!(
-            5 * met >= 4 * same.len(),
+            10 * met >= 7 * same.len(),
             "{}: {met}",
             same[0].narrow.name()
         );

@@ -295,7 +295,6 @@ fn maps_hold_under_noise() {
         }
         if noise[1] <= MOST_NOISE_DEG && *noise != MISSED {
             truth::assert_classified(runs);
-            truth::assert_drops_found(runs);
         }
     }
 }

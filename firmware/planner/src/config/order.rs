@@ -29,5 +29,5 @@ pub enum Order {
 
 impl Order {
     /// By gain, with the default worth.
-    pub const GAIN: Self = Self::Gain { worth: 0.3 };
+    pub const GAIN: Self = Self::Gain { worth: 0.25 };
 }

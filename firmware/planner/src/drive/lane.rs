@@ -12,8 +12,8 @@
 //! heading   = the lane's − 4/m · v
 //! ```
 //!
-//! Where the field's own heading has more than 10 cm of clearance, there is none. A gap of 57 cm
-//! takes 15 s in the mean instead of 19 s, from 62 places before it; one of 60 cm 7 s instead of 9 s.
+//! Where the field's own heading has more than 10 cm of clearance, there is none. From 62 places
+//! before it, a gap of 57 cm takes 15 s in the mean instead of 19 s; one of 60 cm 7 s instead of 9.
 //!
 //! Units: metres, radians; robot frame.
 
@@ -93,7 +93,7 @@ fn occupied(checker: &CollisionChecker, yaw_rad: f32) -> u128 {
     let (sin, cos) = math::sin_cos(yaw_rad);
     let bin = |Point { x_m, y_m }| {
         let (along_m, left_m) = (x_m * cos + y_m * sin, y_m * cos - x_m * sin);
-        let bin = BINS + math::floor(left_m / BIN_M) as i32;
+        let bin = BINS + math::floor(left_m / BIN_M);
         let is_beside = (0.0..LENGTH_M).contains(&along_m) && (0..2 * BINS).contains(&bin);
         if is_beside { 1 << bin } else { 0 }
     };

@@ -86,7 +86,13 @@ const FIRST_BUDGET: SearchBudget = SearchBudget {
 /// headings: about the steps of two skeletons.
 const REST_STEPS: u8 = 20;
 /// Steps for which the robot creeps on as far as it goes, after a search that found nothing: time
-/// for a hull's length. The points of a tight gap are often seen better from within.
+/// for a hull's length. The points of a tight gap are often seen better from within. It does so
+/// only when nothing else is left to explore, because the gap may not let it out again. In
+/// `aria_columbia`, five seeds, lanes followed:
+///
+/// | the robot creeps on | at once | when nothing else is left |
+/// | --- | --- | --- |
+/// | runs of five that know 97 % at the end | 3 | 4 |
 const SQUEEZE_STEPS: u8 = 30;
 /// Greatest difference of the error to half a turn for driving straight back, radians.
 const REVERSE_RAD: f32 = 0.35;
@@ -235,12 +241,7 @@ impl Drive {
             let Some(field) = field else {
                 return Twist::default();
             };
-            self.lane = lane(config, field, now, checker);
-            query.lane = self.lane;
-            let error = query.misalignment(Place::default()).unwrap_or(field);
-            let rolls = self.squeeze_steps == 0 && !checker.has_company();
-            self.squeeze_steps = self.squeeze_steps.saturating_sub(1);
-            if let Some(twist) = direct_candidate(config, error, now, query, rolls) {
+            if let Some(twist) = self.direct(config, field, now, query) {
                 return twist;
             }
             if is_moving(now) || self.is_resting() {
@@ -257,6 +258,29 @@ impl Drive {
             self.rest_steps = REST_STEPS;
         }
         Twist::default()
+    }
+
+    /// Returns the first admissible velocity that needs no recovery: along the lane, if there is
+    /// one, or else along the field's heading.
+    fn direct<H: Fn(Place) -> Option<f32>>(
+        &mut self,
+        config: &Config,
+        field: f32,
+        now: Twist,
+        query: &mut SearchQuery<'_, H>,
+    ) -> Option<Twist> {
+        let rolls = self.squeeze_steps == 0 && !query.checker.has_company();
+        self.squeeze_steps = self.squeeze_steps.saturating_sub(1);
+        self.lane = lane(config, field, now, query.checker);
+        query.lane = self.lane;
+        let in_lane = query.lane.and_then(|_| {
+            let error = query.misalignment(Place::default())?;
+            direct_candidate(config, error, now, query, rolls)
+        });
+        query.lane = None;
+        let found = in_lane.or_else(|| direct_candidate(config, field, now, query, rolls));
+        query.lane = self.lane;
+        found
     }
 
     /// Turns on the spot to look around, as far as there is room: to one side, then to the other.
@@ -331,11 +355,12 @@ fn is_open(config: &Config, field: f32, now: Twist, checker: &CollisionChecker) 
         .any(|twist| checker.admits(twist, now, config, MARGIN_M))
 }
 
-/// Returns the lane to follow, if there is one and the robot would creep. Beside another robot and
-/// on slopes that bound the headings there is none.
+/// Returns the lane to follow, if there is one and the robot would creep ahead. Beside another
+/// robot and on slopes that bound the headings there is none.
 fn lane(config: &Config, field: f32, now: Twist, checker: &CollisionChecker) -> Option<Lane> {
     let is_free = !checker.has_company() && !checker.bounds_headings();
-    if !is_free || is_open(config, field, now, checker) {
+    let turns_first = field.abs() > TURN_FIRST_RAD;
+    if !is_free || turns_first || is_open(config, field, now, checker) {
         return None;
     }
     let [_, least_m] = SEARCH_MARGINS_M;
