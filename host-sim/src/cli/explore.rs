@@ -8,6 +8,8 @@ use anyhow::{Context as _, Result, bail};
 use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
+use host_sim::network::carrier::Carrier;
+use host_sim::network::spec::TeamSpec;
 use host_sim::network::udp::Udp;
 use host_sim::network::{self, Networked};
 use host_sim::report::{Report, folder};
@@ -206,12 +208,21 @@ fn join(
         return Ok((planner, None));
     };
     let key = team.read_key().context("--team")?;
-    let carrier = Udp::open(team)
-        .map_err(anyhow::Error::msg)
-        .context("--team")?;
-    let member = Networked::new(planner, Box::new(carrier), key, team.id);
+    let carrier = carrier(team).map_err(anyhow::Error::msg);
+    let member = Networked::new(planner, carrier.context("--team")?, key, team.id);
     let account = member.account();
     Ok((Box::new(member), Some(account)))
+}
+
+/// Opens what carries the packets of a team.
+fn carrier(team: &TeamSpec) -> Result<Box<dyn Carrier>, String> {
+    if team.zenoh.is_none() && team.zenoh_listen.is_none() {
+        return Ok(Box::new(Udp::open(team)?));
+    }
+    #[cfg(feature = "zenoh")]
+    return Ok(Box::new(network::zenoh::Zenoh::open(team)?));
+    #[cfg(not(feature = "zenoh"))]
+    Err("this program was built without zenoh; build it with --features host-sim/zenoh".into())
 }
 
 /// Returns the parameters of uneven ground; `None` on flat ground.

@@ -12,6 +12,7 @@
 //! | [`spec`] | a process's place in a team, by name |
 //! | [`carrier`] | what carries datagrams |
 //! | [`udp`] | unicast to peers, multicast to find them |
+//! | `zenoh` | a zenoh router or peers; feature `zenoh` |
 //! | `lockstep` | no process runs ahead of the others |
 //!
 //! Whatever arrives, nothing panics: a datagram that is no good is dropped and counted.
@@ -21,6 +22,8 @@ pub mod envelope;
 mod lockstep;
 pub mod spec;
 pub mod udp;
+#[cfg(feature = "zenoh")]
+pub mod zenoh;
 
 use core::time::Duration;
 use std::sync::{Arc, Mutex, PoisonError};

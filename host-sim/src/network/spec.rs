@@ -7,6 +7,8 @@
 //! | `peers=A:P+B:P` | where the others hear packets | none |
 //! | `find=GROUP:PORT` | IPv4 multicast group in which members find each other | none |
 //! | `interface=ADDRESS` | the network card for the group | the system's choice |
+//! | `zenoh=LOCATOR` | a zenoh router or peer, as in `tcp/10.0.0.1:7447`, instead of UDP | none |
+//! | `zenoh-listen=LOCATOR` | where zenoh peers may connect | none |
 //! | `key=FILE` | file with the team's key, 16 bytes or more | none |
 //! | `pace=N` | simulated seconds in one second | 1 |
 
@@ -38,6 +40,10 @@ pub struct TeamSpec {
     pub find: Option<SocketAddrV4>,
     /// The network card for the group.
     pub interface: Ipv4Addr,
+    /// A zenoh router or peer to connect to.
+    pub zenoh: Option<String>,
+    /// Where zenoh peers may connect.
+    pub zenoh_listen: Option<String>,
     /// File with the key.
     pub key: Option<PathBuf>,
     /// Simulated seconds in one second.
@@ -49,8 +55,10 @@ pub struct TeamSpec {
 pub enum TeamSpecError {
     /// `id` is missing.
     NoId,
-    /// Nobody can be reached: neither `peers` nor `find` is given.
+    /// Nobody can be reached: none of `peers`, `find` and the zenoh words is given.
     NoPeers,
+    /// Words of UDP stand beside words of zenoh.
+    TwoCarriers,
     /// A word is not known.
     Unknown(String),
     /// A word is given twice.
@@ -79,10 +87,15 @@ impl fmt::Display for TeamSpecError {
                 "nobody can be reached; say peers=ADDRESS:PORT+ADDRESS:PORT, \
                  or find=GROUP:PORT as in find=239.70.76.1:47100",
             ),
+            Self::TwoCarriers => f.write_str(
+                "packets go over UDP or over zenoh; \
+                 leave bind, peers, find and interface out, or zenoh and zenoh-listen",
+            ),
             Self::Unknown(word) => write!(
                 f,
                 "unknown word '{word}'; use id=N, bind=A:P, peers=A:P+A:P, find=GROUP:PORT, \
-                 interface=A, key=FILE, pace=N, separated by commas"
+                 interface=A, zenoh=LOCATOR, zenoh-listen=LOCATOR, key=FILE, pace=N, \
+                 separated by commas"
             ),
             Self::Twice(name) => write!(f, "'{name}' is given twice; keep one"),
             Self::Value { word, kind } => write!(f, "bad value in '{word}'; it must be {kind}"),
@@ -108,8 +121,12 @@ impl FromStr for TeamSpec {
             words.read(word)?;
         }
         let id = words.id.ok_or(TeamSpecError::NoId)?;
-        if words.peers.is_none() && words.find.is_none() {
+        let has_zenoh = words.zenoh.is_some() || words.zenoh_listen.is_some();
+        if !has_zenoh && words.peers.is_none() && words.find.is_none() {
             return Err(TeamSpecError::NoPeers);
+        }
+        if has_zenoh && words.has_udp() {
+            return Err(TeamSpecError::TwoCarriers);
         }
         let usual = SocketAddr::from((Ipv4Addr::UNSPECIFIED, PORT + u16::from(id)));
         Ok(Self {
@@ -118,6 +135,8 @@ impl FromStr for TeamSpec {
             peers: words.peers.unwrap_or_default(),
             find: words.find,
             interface: words.interface.unwrap_or(Ipv4Addr::UNSPECIFIED),
+            zenoh: words.zenoh,
+            zenoh_listen: words.zenoh_listen,
             key: words.key,
             pace: words.pace.unwrap_or(1.0),
         })
@@ -157,11 +176,21 @@ struct Words {
     peers: Option<Vec<SocketAddr>>,
     find: Option<SocketAddrV4>,
     interface: Option<Ipv4Addr>,
+    zenoh: Option<String>,
+    zenoh_listen: Option<String>,
     key: Option<PathBuf>,
     pace: Option<f64>,
 }
 
 impl Words {
+    /// Returns true if a word of UDP was read.
+    const fn has_udp(&self) -> bool {
+        self.bind.is_some()
+            || self.peers.is_some()
+            || self.find.is_some()
+            || self.interface.is_some()
+    }
+
     fn read(&mut self, word: &str) -> Result<(), TeamSpecError> {
         let unknown = || TeamSpecError::Unknown(word.into());
         let (name, value) = word.split_once('=').ok_or_else(unknown)?;
@@ -201,6 +230,16 @@ impl Words {
                 let card = value.parse().map_err(|_| bad("an IPv4 address"))?;
                 self.interface.replace(card).is_some()
             }
+            "zenoh" | "zenoh-listen" => {
+                let kind = "a locator, as in tcp/10.0.0.1:7447";
+                let locator = Some(value).filter(|it| it.starts_with("tcp/"));
+                let locator = locator.ok_or_else(|| bad(kind))?.to_owned();
+                let place = match name {
+                    "zenoh" => &mut self.zenoh,
+                    _ => &mut self.zenoh_listen,
+                };
+                place.replace(locator).is_some()
+            }
             "key" => self.key.replace(PathBuf::from(value)).is_some(),
             "pace" => {
                 let pace = value.parse().ok();
@@ -236,6 +275,18 @@ mod tests {
     }
 
     #[test]
+    fn zenoh_is_read_and_stands_alone() {
+        let spec: TeamSpec = "id=1,zenoh=tcp/10.0.0.1:7447".parse().unwrap();
+        assert_eq!(spec.zenoh.as_deref(), Some("tcp/10.0.0.1:7447"));
+        let spec: TeamSpec = "id=1,zenoh-listen=tcp/127.0.0.1:7447".parse().unwrap();
+        assert_eq!(spec.zenoh_listen.as_deref(), Some("tcp/127.0.0.1:7447"));
+        for udp in ["peers=127.0.0.1:1", "find=239.1.2.3:9", "bind=127.0.0.1:1"] {
+            let error = format!("id=1,zenoh=tcp/a:1,{udp}").parse::<TeamSpec>();
+            assert_eq!(error.unwrap_err(), TeamSpecError::TwoCarriers, "{udp}");
+        }
+    }
+
+    #[test]
     fn an_invalid_specification_is_named() {
         let error = |text: &str| text.parse::<TeamSpec>().unwrap_err();
         assert_eq!(error(""), TeamSpecError::NoId);
@@ -254,6 +305,7 @@ mod tests {
             "find=10.0.0.1:9",
             "interface=x",
             "pace=0",
+            "zenoh=10.0.0.1:7447",
         ] {
             assert!(matches!(error(text), TeamSpecError::Value { .. }), "{text}");
         }
