@@ -1,9 +1,9 @@
 //! Real and built-in buildings by every strategy for one robot, beside the reference: true odometry,
 //! five seeds, over the direct link.
 //!
-//! `golden/buildings-data.txt` and `golden/buildings-full.txt` say how the runs ended, their least
-//! clearances, and times as ratios to `greedy-frontier`. They name the runs that did not end as
-//! they should, so that `host-sim explore WORLD` repeats them.
+//! The tables say how the runs ended, their least clearances, and times as ratios to
+//! `greedy-frontier`. They name the runs that did not end as they should, so that `host-sim explore
+//! WORLD` repeats them.
 
 use core::fmt::Write as _;
 

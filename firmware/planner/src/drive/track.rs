@@ -17,8 +17,8 @@ use crate::drive::collision::Place;
 use crate::geometry::{Pose, RobotFrame, Twist};
 use crate::math;
 
-/// Differences that are kept: at least 3 m of way.
-const MOST: usize = 60;
+/// Differences that are kept: at least 2.8 m of way.
+const MOST: usize = 56;
 /// A pose this far from the last one is recorded, metres; or turned this much, radians. The hull's
 /// corners move as far in both.
 const STEP_M: f32 = 0.05;

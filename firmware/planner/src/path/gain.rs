@@ -104,10 +104,9 @@ impl View {
         let is_unknown = |cell: &Cell| holds(&self.unknown, *cell);
         (0..RAYS).map(ray).any(|ray| {
             let way = || (1..=self.reach).map(|k| along(MIDDLE, ray, k));
-            let unknown = way().filter(is_unknown).count();
-            way().next_back().is_some_and(|end| is_unknown(&end))
-                && 2 * unknown >= self.reach as usize
+            is_unknown(&along(MIDDLE, ray, self.reach))
                 && !way().any(|cell| holds(&self.near, cell))
+                && 2 * way().filter(is_unknown).count() >= self.reach as usize
         })
     }
 
@@ -134,7 +133,7 @@ impl View {
                 if depth <= most {
                     nearest = run;
                 }
-            } else {
+            } else if depth > 0 {
                 before += run;
                 (run, nearest, depth) = (0, 0, 0);
             }
