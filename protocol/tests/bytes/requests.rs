@@ -55,7 +55,7 @@ fn request_control_start_on_uneven_ground() {
             0x80, 0x04, // step 1/16 m = 256/4096
             0x80, 0x80, 0xa0, 0x01, 0x80, 0x80, 0xc0, 0x07, // default limits of loops
             0x80, 0x80, 0x50, 0x80, 0x80, 0x10, 0x80, 0x80, 0xa0, 0x01, //
-            0, 0x9a, 0x13, // by gain, worth 0.3 = 1229/4096
+            0, 0x80, 0x10, // by gain, worth 0.25 = 1024/4096
             0, 0, 0, // no team, no localisation, no survey
         ],
     );
