@@ -17,8 +17,8 @@ pub fn is_good(report: &Report) -> bool {
     report.explored() && contacts(report) == 0 && report.coverage.fraction >= LEAST_COVERAGE
 }
 
-/// Makes a table with one line for each group, by its name: how its runs ended, and figures over all
-/// of them. `listed` counts the runs that are not good.
+/// Makes a table with one line for each group, by its name: how its runs ended, and figures over
+/// all of them. `listed` counts the runs that are not good.
 #[must_use]
 pub fn summary(title: &str, groups: &[(&str, &[Report])]) -> Table {
     let mut table = Table::new(

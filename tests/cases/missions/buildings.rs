@@ -1,5 +1,5 @@
-//! Real and built-in buildings by every strategy for one robot, beside the reference: true odometry,
-//! five seeds, over the direct link.
+//! Real and built-in buildings by every strategy for one robot, beside the reference: true
+//! odometry, five seeds, over the direct link.
 //!
 //! The tables say how the runs ended, their least clearances, and times as ratios to
 //! `greedy-frontier`. They name the runs that did not end as they should, so that `host-sim explore
