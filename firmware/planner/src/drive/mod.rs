@@ -92,7 +92,7 @@ const REST_STEPS: u8 = 20;
 ///
 /// | the robot creeps on | at once | when nothing else is left |
 /// | --- | --- | --- |
-/// | runs of five that know 97 % at the end | 3 | 4 |
+/// | runs of five that know 90 % at the end | 3 | 4 |
 const SQUEEZE_STEPS: u8 = 30;
 /// Greatest difference of the error to half a turn for driving straight back, radians.
 const REVERSE_RAD: f32 = 0.35;
