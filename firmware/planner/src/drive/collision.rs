@@ -15,6 +15,7 @@
 use heapless::Vec;
 
 use crate::config::Config;
+use crate::drive::hull::{Hull, Place};
 use crate::drive::incline::Incline;
 use crate::geometry::{CELL_M, Point, Pose, RobotFrame, Twist};
 use crate::map::obstacle_points::MAX_POINTS;
@@ -47,40 +48,6 @@ const ROUNDING_M: f32 = 1e-5;
 /// A remaining time, speed or turn rate below this is zero: s, m/s, rad/s.
 const ZERO: f32 = 1e-3;
 
-/// A place of the robot relative to its present pose.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Place {
-    /// Metres ahead.
-    pub x_m: f32,
-    /// Metres to the left.
-    pub y_m: f32,
-    /// Radians to the left.
-    pub yaw_rad: f32,
-}
-
-impl Place {
-    /// Returns the position in the robot's frame.
-    #[must_use]
-    pub const fn point(self) -> Point {
-        Point {
-            x_m: self.x_m,
-            y_m: self.y_m,
-        }
-    }
-
-    /// Returns the place after an arc of `length_m` (negative is backwards) that turns by
-    /// `turn_rad`.
-    #[must_use]
-    pub(crate) fn after(self, length_m: f32, turn_rad: f32) -> Self {
-        let (sin, cos) = math::sin_cos(self.yaw_rad + 0.5 * turn_rad);
-        Self {
-            x_m: self.x_m + length_m * cos,
-            y_m: self.y_m + length_m * sin,
-            yaw_rad: self.yaw_rad + turn_rad,
-        }
-    }
-}
-
 /// An obstacle point, with its distance from the hull at the present pose.
 #[derive(Clone, Copy, Debug)]
 struct Threat {
@@ -98,46 +65,6 @@ pub struct CollisionChecker {
     incline: Option<Incline>,
     /// Another robot is near that may drive on.
     has_company: bool,
-}
-
-/// The robot's outline seen from above, metres from its centre.
-#[derive(Clone, Copy, Debug)]
-struct Hull {
-    front: f32,
-    back: f32,
-    left: f32,
-    right: f32,
-}
-
-impl Hull {
-    /// Returns the hull on level ground.
-    const fn level(robot: &RobotShape) -> Self {
-        Self {
-            front: robot.half_length_m,
-            back: robot.half_length_m,
-            left: robot.half_width_m,
-            right: robot.half_width_m,
-        }
-    }
-
-    /// Returns the hull of a tilted robot: its top reaches out over the ground downhill.
-    fn leaning(robot: &RobotShape, pose: &Pose) -> Self {
-        let reach = |angle: f32| robot.height_m * math::sin_cos(angle).0;
-        let (nose, right) = (reach(pose.pitch_rad), reach(pose.roll_rad));
-        Self {
-            front: robot.half_length_m + nose.max(0.0),
-            back: robot.half_length_m + (-nose).max(0.0),
-            left: robot.half_width_m + (-right).max(0.0),
-            right: robot.half_width_m + right.max(0.0),
-        }
-    }
-
-    /// Returns the distance of a point by the larger overhang; negative inside.
-    fn overhang(&self, x_m: f32, y_m: f32) -> f32 {
-        let along = x_m.abs() - if x_m < 0.0 { self.back } else { self.front };
-        let across = y_m.abs() - if y_m < 0.0 { self.right } else { self.left };
-        if along > across { along } else { across }
-    }
 }
 
 /// Returns `from` moved towards `to` by at most `most`.
@@ -418,15 +345,6 @@ mod tests {
         let near = wall_ahead(ROBOT.half_length_m + 0.01);
         assert!(near.is_arc_clear(Place::default(), -0.1, 0.0, 0.05));
         assert!(!near.is_arc_clear(Place::default(), 0.1, 0.0, 0.05));
-    }
-
-    #[test]
-    fn the_place_after_a_quarter_circle() {
-        let mut place = Place::default();
-        for _ in 0..90 {
-            place = place.after(math::PI / 180.0, math::PI / 180.0);
-        }
-        assert!((place.x_m - 1.0).abs() < 1e-3 && (place.y_m - 1.0).abs() < 1e-3);
     }
 
     /// A wall 0.1 m behind the hull: obstacle points in its left half, map cells in all of it,

@@ -8,7 +8,7 @@
 //! Units: metres, tangents, radians; robot frame, x forward.
 
 use crate::config::UnevenGround;
-use crate::drive::collision::Place;
+use crate::drive::hull::Place;
 use crate::drive::side_slope::{Hysteresis, Slope, SlopeDirection};
 use crate::geometry::{Point, Pose, RobotFrame};
 use crate::ground::Heights;

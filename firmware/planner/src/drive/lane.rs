@@ -17,7 +17,8 @@
 //!
 //! Units: metres, radians; robot frame.
 
-use crate::drive::collision::{CollisionChecker, Place};
+use crate::drive::collision::CollisionChecker;
+use crate::drive::hull::Place;
 use crate::geometry::Point;
 use crate::math;
 

@@ -16,6 +16,8 @@
 
 mod collision;
 pub(crate) mod contact;
+mod direct;
+mod hull;
 mod incline;
 mod lane;
 mod motion;
@@ -26,7 +28,8 @@ mod search_query;
 pub(crate) mod side_slope;
 mod track;
 
-pub use collision::{CollisionChecker, Place};
+pub use collision::CollisionChecker;
+pub use hull::Place;
 pub(crate) use incline::Incline;
 pub use recovery::SCRATCH_WORDS;
 pub use search_query::SearchQuery;
@@ -35,39 +38,18 @@ use crate::config::Config;
 use crate::geometry::{OdomPose, Twist};
 use crate::math;
 use contact::{Contact, ContactSense};
+use direct::CREEP_MARGIN_M;
 use lane::Lane;
 use motion::{MotionSet, Recovery};
 use recovery::{Search, SearchBudget, SearchOutcome};
-use roll_out::roll_out;
 use track::Track;
 
-/// Clearance at speed, metres: three sigma of a range and one of the odometry between two scans.
-const MARGIN_M: f32 = 0.06;
-/// Clearance while creeping through a narrow place, metres: two sigma of a range.
-const CREEP_MARGIN_M: f32 = 0.025;
 /// Clearances of a recovery, metres: that of the first search, and of the next one. The nearest of
 /// many points of a wall is two sigma nearer than the wall, so the free space is wider than the
 /// smaller one.
 const SEARCH_MARGINS_M: [f32; 2] = [0.03, 0.012];
 /// Clearance while a recovery is driven, metres.
 const RECOVERY_MARGIN_M: f32 = 0.008;
-/// Greatest speed that counts as creeping, and the speed of reversing, metres per second.
-const CREEP_MPS: f32 = 0.15;
-/// Wished turn rate per radian of error, 1/s.
-const TURN_GAIN: f32 = 2.0;
-/// Greatest wished turn rate, as a part of the robot's.
-const TURN_PART: f32 = 0.6;
-/// Slower turn rate that is tried next, as a part of the wished one.
-const SLOW_TURN_PART: f32 = 0.4;
-/// Least error for which the robot turns on the spot first, radians.
-const TURN_FIRST_RAD: f32 = 0.9;
-/// Greatest error that needs no turn on the spot, radians.
-const ALIGNED_RAD: f32 = 0.12;
-/// Speeds of the candidates ahead, as parts of the wished one, in the order of trial.
-const SPEED_PARTS: [f32; 3] = [1.0, 0.5, 0.2];
-/// Turn rates of the candidates ahead beside the wished one, radians per second, in the order of
-/// trial for each speed.
-const TURN_OFFSETS_RADPS: [f32; 5] = [0.0, 0.25, -0.25, 0.6, -0.6];
 
 /// Turn rate of a robot that looks around, radians per second.
 const LOOK_AROUND_RADPS: f32 = 0.6;
@@ -94,10 +76,6 @@ const REST_STEPS: u8 = 20;
 /// | --- | --- | --- |
 /// | runs of five that know 90 % at the end | 3 | 4 |
 const SQUEEZE_STEPS: u8 = 30;
-/// Greatest difference of the error to half a turn for driving straight back, radians.
-const REVERSE_RAD: f32 = 0.35;
-/// Turn rate while reversing, per radian of that difference, 1/s.
-const REVERSE_GAIN: f32 = 0.5;
 /// Greatest speed of a robot that counts as standing, metres per second.
 const STANDING_MPS: f32 = 0.02;
 /// Greatest turn rate of a robot that counts as standing, radians per second.
@@ -228,7 +206,9 @@ impl Drive {
         let mut budget = SEARCH_BUDGET;
         let field = (query.heading_at)(Place::default());
         // Recovery and search count with robots where they were.
-        if checker.has_company() && field.is_some_and(|it| is_open(config, it, now, checker)) {
+        if checker.has_company()
+            && field.is_some_and(|it| direct::is_open(config, it, now, checker))
+        {
             self.recovery.clear();
             self.search = None;
         }
@@ -271,14 +251,14 @@ impl Drive {
     ) -> Option<Twist> {
         let rolls = self.squeeze_steps == 0 && !query.checker.has_company();
         self.squeeze_steps = self.squeeze_steps.saturating_sub(1);
-        self.lane = lane(config, field, now, query.checker);
+        self.lane = direct::lane(config, field, now, query.checker);
         query.lane = self.lane;
         let in_lane = query.lane.and_then(|_| {
             let error = query.misalignment(Place::default())?;
-            direct_candidate(config, error, now, query, rolls)
+            direct::velocity(config, error, now, query, rolls)
         });
         query.lane = None;
-        let found = in_lane.or_else(|| direct_candidate(config, field, now, query, rolls));
+        let found = in_lane.or_else(|| direct::velocity(config, field, now, query, rolls));
         query.lane = self.lane;
         found
     }
@@ -348,25 +328,6 @@ impl Default for Drive {
     }
 }
 
-/// Returns true if the robot can follow the field's heading faster than it creeps.
-fn is_open(config: &Config, field: f32, now: Twist, checker: &CollisionChecker) -> bool {
-    ahead(config, field)
-        .filter(|twist| twist.linear_mps > CREEP_MPS)
-        .any(|twist| checker.admits(twist, now, config, MARGIN_M))
-}
-
-/// Returns the lane to follow, if there is one and the robot would creep ahead. Beside another
-/// robot and on slopes that bound the headings there is none.
-fn lane(config: &Config, field: f32, now: Twist, checker: &CollisionChecker) -> Option<Lane> {
-    let is_free = !checker.has_company() && !checker.bounds_headings();
-    let turns_first = field.abs() > TURN_FIRST_RAD;
-    if !is_free || turns_first || is_open(config, field, now, checker) {
-        return None;
-    }
-    let [_, least_m] = SEARCH_MARGINS_M;
-    Lane::find(checker, field, least_m)
-}
-
 /// Returns true if there is room for half a turn on the spot, and so for every turn of a rectangle.
 fn can_turn_about(checker: &CollisionChecker) -> bool {
     checker.is_arc_clear(Place::default(), 0.0, math::PI, CREEP_MARGIN_M)
@@ -376,89 +337,9 @@ fn is_moving(now: Twist) -> bool {
     now.linear_mps.abs() > STANDING_MPS || now.angular_radps.abs() > STANDING_RADPS
 }
 
-/// Returns the first admissible velocity that needs no recovery: ahead (at creeping speed only if
-/// the robot can roll on, where `rolls` asks for it), a turn on the spot, straight back, or a turn
-/// of the robot's back towards the heading on a slope too steep to turn
-/// fully.
-fn direct_candidate<H: Fn(Place) -> Option<f32>>(
-    config: &Config,
-    error: f32,
-    now: Twist,
-    query: &SearchQuery<'_, H>,
-    rolls: bool,
-) -> Option<Twist> {
-    let checker = query.checker;
-    let admits = |&twist: &Twist| {
-        let creeps = twist.linear_mps.abs() <= CREEP_MPS;
-        let margin_m = if creeps { CREEP_MARGIN_M } else { MARGIN_M };
-        checker.admits(twist, now, config, margin_m)
-    };
-    // A turn that the robot cannot finish would wedge it.
-    let can_turn = |turn| checker.is_arc_clear(Place::default(), 0.0, turn, CREEP_MARGIN_M);
-    let turn = |error| turns(config, error).into_iter().flatten().find(admits);
-    let opposite = math::wrap(error + math::PI);
-    // A gap that the robot cannot follow the field through would wedge it.
-    let may_go_on = |&twist: &Twist| {
-        !rolls || twist.linear_mps > CREEP_MPS || {
-            let [_, least_m] = SEARCH_MARGINS_M;
-            roll_out(query, Place::default(), false, least_m, &mut 0).is_some()
-        }
-    };
-    let wish = ahead(config, error).find(admits);
-    wish.filter(may_go_on)
-        .or_else(|| turn(error).filter(|_| can_turn(error)))
-        .or_else(|| back(opposite).filter(admits))
-        .or_else(|| {
-            let turns_back = checker.is_steep() && can_turn(opposite);
-            turns_back.then(|| turn(opposite)).flatten()
-        })
-}
-
-/// Returns the velocity straight back, if `opposite`, the error of the robot's back, is small.
-fn back(opposite: f32) -> Option<Twist> {
-    (opposite.abs() < REVERSE_RAD).then_some(Twist {
-        linear_mps: -CREEP_MPS,
-        angular_radps: REVERSE_GAIN * opposite,
-    })
-}
-
-/// Returns the candidates ahead, the wish first; none if the robot has to turn first.
-fn ahead(config: &Config, error: f32) -> impl Iterator<Item = Twist> {
-    let wish_radps = turn_rate(config, error);
-    let (_, cos) = math::sin_cos(error);
-    let wish_mps = if error.abs() > TURN_FIRST_RAD {
-        0.0
-    } else {
-        config.max_linear_mps * cos * cos
-    };
-    let most = config.max_angular_radps;
-    let speeds = SPEED_PARTS.into_iter().filter(move |_| wish_mps > 0.0);
-    speeds.flat_map(move |part| {
-        TURN_OFFSETS_RADPS.map(|offset| Twist {
-            linear_mps: wish_mps * part,
-            angular_radps: (wish_radps + offset).clamp(-most, most),
-        })
-    })
-}
-
-/// Returns the turns on the spot towards the heading, the quick one first; none if it is aligned.
-fn turns(config: &Config, error: f32) -> Option<[Twist; 2]> {
-    let quick = turn_rate(config, error);
-    (error.abs() > ALIGNED_RAD).then(|| {
-        [quick, SLOW_TURN_PART * quick].map(|angular_radps| Twist {
-            linear_mps: 0.0,
-            angular_radps,
-        })
-    })
-}
-
-fn turn_rate(config: &Config, error: f32) -> f32 {
-    let most = TURN_PART * config.max_angular_radps;
-    (TURN_GAIN * error).clamp(-most, most)
-}
-
 #[cfg(test)]
 mod tests {
+    use super::direct::CREEP_MPS;
     use super::*;
     use crate::geometry::{Point, Pose};
     use crate::robot::RobotShape;

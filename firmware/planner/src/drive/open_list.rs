@@ -5,7 +5,7 @@
 //! Invariant: the first `waiting` entries of the heap are a heap of open nodes, the least rank
 //! first. Ties are resolved by the place in the heap, the same on every machine.
 
-use crate::drive::collision::Place;
+use crate::drive::hull::Place;
 use crate::grid::at;
 
 /// Capacity of a search, poses.

@@ -14,7 +14,7 @@
 //!
 //! Units: metres, radians; robot frame at the start.
 
-use crate::drive::collision::Place;
+use crate::drive::hull::Place;
 use crate::drive::motion::{LENGTH_M, MOTIONS, MotionSet, Recovery, TURN_RAD};
 use crate::drive::open_list::{Node, OpenList};
 use crate::drive::search_query::SearchQuery;

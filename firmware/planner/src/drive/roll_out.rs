@@ -11,7 +11,7 @@
 
 use heapless::Vec;
 
-use crate::drive::collision::Place;
+use crate::drive::hull::Place;
 use crate::drive::motion::{BACKWARD, FORWARD, LENGTH_M, MOTIONS, TURN_LEFT};
 use crate::drive::search_query::SearchQuery;
 use crate::math;

@@ -2,7 +2,8 @@
 //!
 //! Units: metres, radians; robot frame at the start.
 
-use crate::drive::collision::{CollisionChecker, Place};
+use crate::drive::collision::CollisionChecker;
+use crate::drive::hull::Place;
 use crate::drive::lane::Lane;
 use crate::drive::roll_out::{RollOut, roll_out};
 use crate::math;

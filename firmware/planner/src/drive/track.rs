@@ -13,7 +13,7 @@
 //! Invariant: the older poses are those that were recorded, within a millimetre and 0.3°.
 //! Units: metres, radians; odometry frame.
 
-use crate::drive::collision::Place;
+use crate::drive::hull::Place;
 use crate::geometry::{Pose, RobotFrame, Twist};
 use crate::math;
 

@@ -1,8 +1,9 @@
 //! Ways out of dead ends, corners and boxes made of points.
 
+use crate::drive::CollisionChecker;
+use crate::drive::direct::ALIGNED_RAD;
 use crate::drive::recovery::*;
 use crate::drive::roll_out::ROLL_M;
-use crate::drive::{ALIGNED_RAD, CollisionChecker};
 use crate::geometry::{Point, Pose};
 use crate::robot::RobotShape;
 
