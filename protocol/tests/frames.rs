@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::arbitrary::{reply, request};
+use common::arbitrary::{replies::reply, requests::request};
 use common::{
     checked_frame, hello, largest_observation, replies, reply_frame, request_frame, requests,
 };

@@ -1,0 +1,187 @@
+//! What a host asks and tells.
+
+use fieldline_protocol::message::{
+    self, Control, Hull, Laser, LoopLimits, Observation, Order, Preference, Request, Scan, Start,
+    UnevenGround,
+};
+use proptest::prelude::*;
+
+use super::team::{packet, team};
+use super::{list, long, pose, short, twist};
+use crate::common::hello;
+
+fn laser() -> impl Strategy<Value = Laser> {
+    (
+        short(),
+        short(),
+        short(),
+        short(),
+        long(),
+        long(),
+        any::<(u16, u16)>(),
+    )
+        .prop_map(
+            |(x, y, z, pitch, first_bearing, bearing_step, (beams, range_limit_mm))| Laser {
+                x,
+                y,
+                z,
+                pitch,
+                first_bearing,
+                bearing_step,
+                beams,
+                range_limit_mm,
+            },
+        )
+}
+
+fn uneven_ground() -> impl Strategy<Value = UnevenGround> {
+    let preference = prop_oneof![
+        Just(Preference::Off),
+        Just(Preference::Height),
+        Just(Preference::Global),
+        Just(Preference::Both),
+    ];
+    let heights = [short(), short(), short(), short()];
+    let preferences = [short(), short(), short(), short(), short()];
+    (preference, any::<bool>(), heights, preferences, long()).prop_map(
+        |(preference, levels, [obstacle, near, hole, step], preferences, global_scale)| {
+            let [least, most, height_scale, climb, roll] = preferences;
+            UnevenGround {
+                preference,
+                levels,
+                obstacle,
+                near,
+                hole,
+                least,
+                most,
+                height_scale,
+                global_scale,
+                climb,
+                roll,
+                step,
+            }
+        },
+    )
+}
+
+fn space_field() -> impl Strategy<Value = message::SpaceField> {
+    let rest = any::<(u16, Option<u16>)>();
+    ([long(), long(), long(), long()], rest).prop_map(
+        |([x, y, across, up], (until_permille, impatience_s))| message::SpaceField {
+            origin: (x, y),
+            size: (across, up),
+            until_permille,
+            impatience_s,
+        },
+    )
+}
+
+fn start() -> impl Strategy<Value = Start> {
+    let strategy = prop_oneof![
+        Just(message::Strategy::Frontier),
+        Just(message::Strategy::Ouroboros),
+        any::<(u16, Option<u16>)>().prop_map(|(patrol_s, impatience_s)| message::Strategy::Tdbvp {
+            patrol_s,
+            impatience_s,
+        }),
+        space_field().prop_map(message::Strategy::Sbpf),
+        space_field().prop_map(message::Strategy::Esbpf),
+    ];
+    (
+        (
+            strategy,
+            any::<(bool, bool)>(),
+            prop::option::of(uneven_ground()),
+            prop::option::of(team()),
+            order(),
+        ),
+        list(laser()),
+        (any::<[u16; 4]>(), [long(), long(), long(), long(), long()]),
+        any::<u16>(),
+        [short(), short(), short(), short()],
+    )
+        .prop_map(
+            |(
+                (strategy, (localise, survey), uneven_ground, team, order),
+                lasers,
+                (sizes, loops),
+                period_ms,
+                limits,
+            )| {
+                let [length_mm, width_mm, height_mm, robot_radius_mm] = sizes;
+                let [least, most, most_per_frontier, detour, slack] = loops;
+                let [max_linear, max_angular, linear_accel, angular_accel] = limits;
+                Start {
+                    strategy,
+                    lasers,
+                    hull: Hull {
+                        length_mm,
+                        width_mm,
+                        height_mm,
+                    },
+                    robot_radius_mm,
+                    max_linear,
+                    max_angular,
+                    linear_accel,
+                    angular_accel,
+                    period_ms,
+                    uneven_ground,
+                    loops: LoopLimits {
+                        least,
+                        most,
+                        most_per_frontier,
+                        detour,
+                        slack,
+                    },
+                    order,
+                    team,
+                    localise,
+                    survey,
+                }
+            },
+        )
+}
+
+fn order() -> impl Strategy<Value = Order> {
+    prop_oneof![
+        short().prop_map(|worth| Order::Gain { worth }),
+        Just(Order::Nearest),
+    ]
+}
+
+fn control() -> impl Strategy<Value = Control> {
+    prop_oneof![
+        start().prop_map(Control::Start),
+        Just(Control::Pause),
+        Just(Control::Resume),
+        Just(Control::Stop),
+        Just(Control::Reset),
+    ]
+}
+
+fn observation() -> impl Strategy<Value = Observation> {
+    let scan = list(any::<u16>()).prop_map(|ranges_mm| Scan { ranges_mm });
+    (any::<u32>(), pose(), twist(), list(scan)).prop_map(|(time_ms, pose, velocity, scans)| {
+        Observation {
+            time_ms,
+            pose,
+            velocity,
+            scans,
+        }
+    })
+}
+
+/// Any request except a hello of another version.
+pub(crate) fn request() -> impl Strategy<Value = Request> {
+    prop_oneof![
+        any::<u32>().prop_map(hello),
+        control().prop_map(Request::Control),
+        observation().prop_map(Request::Observation),
+        any::<(i16, i16)>().prop_map(|(x, y)| Request::Tile { x, y }),
+        any::<u8>().prop_map(|row| Request::FieldRow { row }),
+        Just(Request::Frontiers),
+        any::<u8>().prop_map(|from| Request::Path { from }),
+        packet().prop_map(Request::Hear),
+        Just(Request::Say),
+    ]
+}
