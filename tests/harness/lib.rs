@@ -11,6 +11,7 @@
 //! | [`flatness`] | how flat the field around the robot was in a run |
 //! | [`loops`] | the table of explorations that close loops, with the papers' ratios |
 //! | [`uneven`] | whole explorations of uneven ground, and their table |
+//! | [`odometry`] | explorations with odometry that drifts, and their tables |
 //! | [`truth`] | maps of uneven ground against the true ground |
 //! | [`teams`] | explorations by teams, and their tables |
 //! | [`meetings`] | robots that meet where there is no room to pass |
@@ -48,6 +49,7 @@ pub mod golden;
 pub mod history;
 pub mod loops;
 pub mod meetings;
+pub mod odometry;
 pub mod orders;
 pub mod places;
 pub mod plot;

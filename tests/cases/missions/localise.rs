@@ -5,17 +5,13 @@
 //! Coverage is what the robot truly saw, judged by its true poses; wall errors are those after the
 //! best rigid alignment of the whole map.
 
-use core::ops::Range;
-
-use fieldline_planner::Tuning;
 use fieldline_tests::digests::Digest;
+use fieldline_tests::odometry::{self, Drive, Setting, sweep};
 use fieldline_tests::runs::{self, assert_faultless};
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::{golden, worlds};
-use host_sim::link::direct::Direct;
 use host_sim::report::Report;
-use host_sim::trial::mission::{Mission, OdometryProfile};
-use host_sim::world::World;
+use host_sim::trial::mission::OdometryProfile;
 
 /// Worlds whose scans hold the pose in every direction nearly everywhere.
 const ROOMS: [&str; 5] = ["office", "cave", "cluttered", "narrow-doors", "hall"];
@@ -30,98 +26,21 @@ const CORRIDOR_ERROR_M: f64 = 0.35;
 /// Least share that is truly seen at the end.
 const LEAST_SEEN: f64 = 0.98;
 
-/// One exploration.
-pub(super) struct Drive<'a> {
-    pub(super) world: &'a World,
-    pub(super) seed: u64,
-    pub(super) odometry: OdometryProfile,
-    pub(super) localise: bool,
-    pub(super) tuning: &'static Tuning,
-    pub(super) people: usize,
-}
-
-impl Drive<'_> {
-    pub(super) fn go(&self) -> Report {
-        let mission = Mission {
-            link: "direct".into(),
-            seed: self.seed,
-            odometry: self.odometry,
-            localise: self.localise,
-            people: self.people,
-            ..Mission::default()
-        };
-        runs::explored(&mission, self.world, &mut Direct::tuned(self.tuning)).0
-    }
-}
-
-/// Returns the runs of each world and seed: true odometry, noise corrected, noise as it is.
-fn drives<'a>(
-    worlds: &'a [World],
-    seeds: &Range<u64>,
-    noise: &[OdometryProfile],
-) -> Vec<Drive<'a>> {
-    let mut drives = Vec::new();
-    for world in worlds {
-        for seed in seeds.clone() {
-            let mut add = |odometry, localise| {
-                drives.push(Drive {
-                    world,
-                    seed,
-                    odometry,
-                    localise,
-                    tuning: &Tuning::DEFAULT,
-                    people: 0,
-                });
-            };
-            add(OdometryProfile::Truth, false);
-            for &odometry in noise {
-                add(odometry, true);
-                add(odometry, false);
-            }
-        }
-    }
-    drives
-}
-
 fn table(reports: &[Report]) -> Table {
-    let columns = [
-        "world",
-        "odometry",
-        "localise",
-        "end",
-        "seed",
-        "seen %",
-        "s",
-        "mean m",
-        "max m",
-        "end m",
-        "wall p95 m",
-        "ghosts %",
-        "lost %",
-        "touched",
-    ];
-    let mut table = Table::new(4, &columns);
-    for report in reports {
+    let more = ["end m", "wall p95 m", "ghosts %", "lost %", "touched"];
+    odometry::table(reports, &["odometry", "localise"], &more, |report| {
         let at = &report.localization;
         let percent = |share: Option<f64>| number(share.map(|it| 100.0 * it), 2);
-        table.row(vec![
-            report.world.clone(),
-            report.odometry.clone(),
-            if at.corrected { "on" } else { "off" }.into(),
-            report.outcome.reason.clone(),
-            report.seed.to_string(),
-            percent(Some(report.coverage.fraction)),
-            number(Some(report.sim_time_s), 1),
-            number(at.mean_error_m, 3),
-            number(at.max_error_m, 3),
+        let corrected = if at.corrected { "on" } else { "off" };
+        let more = vec![
             number(at.end_error_m, 3),
             number(report.map.map(|map| map.wall_error_m.p95), 3),
             percent(report.map.map(|map| map.ghost_share)),
             percent(at.quality.map(|quality| quality.lost)),
             report.safety.collisions.to_string(),
-        ]);
-    }
-    table
+        ];
+        (vec![report.odometry.clone(), corrected.into()], more)
+    })
 }
 
 /// Compares the runs with golden table `name`. Returns those that were corrected.
@@ -145,43 +64,39 @@ fn is_room(report: &Report) -> bool {
 #[test]
 fn the_chip_corrects_its_own_drift() {
     let worlds = worlds::builtins(&QUICK);
-    let drives = drives(&worlds, &(0..1), &[OdometryProfile::Noisy]);
-    let corrected = check("localise", &drives);
+    let settings = Setting::beside_truth(&[OdometryProfile::Noisy]);
+    let corrected = check("localise", &sweep(&worlds, &(0..1), &settings));
     assert_faultless(&corrected, |report| {
-        let mut faults = runs::faults(report, LEAST_SEEN);
-        let mean_m = report.localization.mean_error_m.unwrap_or(f64::MAX);
-        let most_m = if is_room(report) {
+        let most_mean_m = if is_room(report) {
             ROOM_ERROR_M
         } else {
             CORRIDOR_ERROR_M
         };
-        if mean_m > most_m {
-            faults.push(format!("mean error {mean_m:.3} m"));
-        }
-        faults
+        odometry::faults(report, LEAST_SEEN, most_mean_m)
     });
 }
 
 mod full {
-    use super::{CORRIDORS, OdometryProfile, ROOMS, check, drives, worlds};
+    use super::{CORRIDORS, OdometryProfile, ROOMS, Setting, check, sweep, worlds};
 
     #[test]
     #[ignore = "takes minutes: 600 runs; tests/run --full runs it"]
     fn drift_in_every_flat_world_with_fifteen_seeds() {
         let worlds = worlds::builtins(&[&ROOMS[..], &CORRIDORS].concat());
         let profiles = [OdometryProfile::Noisy, OdometryProfile::Papers];
-        check("localise-full", &drives(&worlds, &(0..15), &profiles));
+        let settings = Setting::beside_truth(&profiles);
+        check("localise-full", &sweep(&worlds, &(0..15), &settings));
     }
 }
 
 mod data {
-    use super::{OdometryProfile, check, drives, worlds};
+    use super::{OdometryProfile, Setting, check, sweep, worlds};
 
     #[test]
     #[ignore = "needs worlds drawn by others (FIELDLINE_DATA), and takes five minutes"]
     fn drift_in_worlds_drawn_by_others() {
         let worlds = worlds::drawn_by_others();
-        let drives = drives(&worlds, &(0..3), &[OdometryProfile::Noisy]);
-        check("localise-data", &drives);
+        let settings = Setting::beside_truth(&[OdometryProfile::Noisy]);
+        check("localise-data", &sweep(&worlds, &(0..3), &settings));
     }
 }

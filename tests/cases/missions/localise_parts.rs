@@ -3,40 +3,44 @@
 //! Explorations with noisy odometry in two worlds of rooms and two of bare corridors, with one part
 //! left out or with fewer beams.
 
+use fieldline_tests::odometry::{Drive, Setting, sweep};
 use fieldline_tests::runs::{self, in_parallel};
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::{golden, worlds};
 use host_sim::report::Report;
-use host_sim::trial::mission::OdometryProfile;
-
-use super::localise::Drive;
+use host_sim::trial::mission::OdometryProfile::Noisy;
 
 const ROOMS: [&str; 2] = ["office", "hall"];
 const CORRIDORS: [&str; 2] = ["ouroboros-a", "ouroboros-b"];
 /// No constant was chosen on these seeds.
 const SEEDS: core::ops::Range<u64> = 100..110;
 
-/// Name, whether odometry is corrected, and constants with other values.
-type Variant = (&'static str, bool, &'static [(&'static str, f32)]);
+/// Name, odometry, and constants with other values.
+type Variant = (&'static str, Setting, &'static [(&'static str, f32)]);
 
+const CORRECTED: Setting = Setting::corrected(Noisy);
 const VARIANTS: [Variant; 9] = [
-    ("181 beams", true, &[]),
-    ("91 beams", true, &[("localise.beam_stride", 2.0)]),
-    ("61 beams", true, &[("localise.beam_stride", 3.0)]),
-    ("31 beams", true, &[("localise.beam_stride", 6.0)]),
-    ("no normals", true, &[("localise.flat_m", 0.0)]),
+    ("181 beams", CORRECTED, &[]),
+    ("91 beams", CORRECTED, &[("localise.beam_stride", 2.0)]),
+    ("61 beams", CORRECTED, &[("localise.beam_stride", 3.0)]),
+    ("31 beams", CORRECTED, &[("localise.beam_stride", 6.0)]),
+    ("no normals", CORRECTED, &[("localise.flat_m", 0.0)]),
     (
         "no robust weights",
-        true,
+        CORRECTED,
         &[("localise.robust_cells", 10.0)],
     ),
     (
         "no degeneracy rule",
-        true,
+        CORRECTED,
         &[("localise.least_information", 0.0)],
     ),
-    ("wheels do not slip", true, &[("localise.slip_gap", 1e9)]),
-    ("odometry alone", false, &[]),
+    (
+        "wheels do not slip",
+        CORRECTED,
+        &[("localise.slip_gap", 1e9)],
+    ),
+    ("odometry alone", Setting::uncorrected(Noisy), &[]),
 ];
 
 /// Returns the cells of a group of worlds: mean and greatest error of the pose, wall error, ghosts.
@@ -80,20 +84,10 @@ mod full {
                 "touched",
             ],
         );
-        for (name, localise, changes) in VARIANTS {
+        for (name, setting, changes) in VARIANTS {
             let tuning = runs::tuned(changes);
-            let drive = |world, seed| Drive {
-                world,
-                seed,
-                odometry: OdometryProfile::Noisy,
-                localise,
-                tuning,
-                people: 0,
-            };
-            let drives = worlds
-                .iter()
-                .flat_map(|world| SEEDS.map(move |seed| drive(world, seed)));
-            let drives: Vec<Drive<'_>> = drives.collect();
+            let usual = sweep(&worlds, &SEEDS, &[setting]).into_iter();
+            let drives: Vec<_> = usual.map(|drive| Drive { tuning, ..drive }).collect();
             let reports = in_parallel(&drives, Drive::go);
             let seen = reports.iter().map(|it| 100.0 * it.coverage.fraction);
             let touched: u32 = reports.iter().map(|it| it.safety.collisions).sum();

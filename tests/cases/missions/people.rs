@@ -8,14 +8,12 @@
 
 use core::ops::Range;
 
-use fieldline_planner::Tuning;
-use fieldline_tests::table::{Table, number};
+use fieldline_tests::odometry::{self, Drive, Setting, sweep};
+use fieldline_tests::table::number;
 use fieldline_tests::{golden, runs, worlds};
 use host_sim::report::Report;
 use host_sim::trial::mission::OdometryProfile;
 use host_sim::world::World;
-
-use super::localise::Drive;
 
 /// People in a world.
 const PEOPLE: usize = 10;
@@ -23,57 +21,36 @@ const PEOPLE: usize = 10;
 const LEAST_SEEN: f64 = 0.97;
 
 fn explore(worlds: &[World], counts: &[usize], seeds: &Range<u64>) -> Vec<Report> {
+    let settings = [Setting::corrected(OdometryProfile::Noisy)];
     let mut drives = Vec::new();
     for world in worlds {
         for &people in counts {
-            drives.extend(seeds.clone().map(|seed| Drive {
-                world,
-                seed,
-                odometry: OdometryProfile::Noisy,
-                localise: true,
-                tuning: &Tuning::DEFAULT,
-                people,
-            }));
+            let alone = sweep(core::slice::from_ref(world), seeds, &settings);
+            drives.extend(alone.into_iter().map(|drive| Drive { people, ..drive }));
         }
     }
     runs::in_parallel(&drives, Drive::go)
 }
 
 fn table(reports: &[Report]) -> String {
-    let columns = [
-        "world",
-        "people",
-        "end",
-        "seed",
-        "seen %",
-        "s",
-        "mean m",
-        "max m",
+    let more = [
         "wall p95 m",
         "ghosts %",
         "gap m",
         "touched",
         "people touched",
     ];
-    let mut table = Table::new(3, &columns);
-    for report in reports {
-        let (at, safety) = (&report.localization, &report.safety);
-        table.row(vec![
-            report.world.clone(),
-            report.people.unwrap_or(0).to_string(),
-            report.outcome.reason.clone(),
-            report.seed.to_string(),
-            number(Some(100.0 * report.coverage.fraction), 2),
-            number(Some(report.sim_time_s), 1),
-            number(at.mean_error_m, 3),
-            number(at.max_error_m, 3),
+    let table = odometry::table(reports, &["people"], &more, |report| {
+        let safety = &report.safety;
+        let more = vec![
             number(report.map.map(|map| map.wall_error_m.p95), 3),
             number(report.map.map(|map| 100.0 * map.ghost_share), 2),
             number(safety.min_person_gap_m, 3),
             safety.collisions.to_string(),
             number(safety.person_contacts.map(f64::from), 0),
-        ]);
-    }
+        ];
+        (vec![report.people.unwrap_or(0).to_string()], more)
+    });
     table.to_string()
 }
 

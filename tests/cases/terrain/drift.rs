@@ -9,13 +9,12 @@ use core::fmt::Write as _;
 use core::ops::Range;
 
 use fieldline_tests::digests::Digest;
-use fieldline_tests::runs::{self, assert_faultless, explored, in_parallel};
+use fieldline_tests::odometry::{self, Drive, Setting, sweep};
+use fieldline_tests::runs::{self, assert_faultless, in_parallel};
 use fieldline_tests::table::{Table, number};
-use fieldline_tests::uneven::UnevenRun;
 use fieldline_tests::{golden, worlds};
-use host_sim::link::direct::Direct;
 use host_sim::report::Report;
-use host_sim::trial::mission::{Mission, OdometryProfile};
+use host_sim::trial::mission::OdometryProfile::Noisy;
 use host_sim::world::World;
 
 /// Worlds of the quick table.
@@ -25,36 +24,14 @@ const LEAST_SEEN: f64 = 0.97;
 /// Greatest mean position error of the quick runs, metres.
 const MOST_MEAN_M: f64 = 0.35;
 
-/// Odometry, and whether the device corrects it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Setting {
-    Truth,
-    On,
-    Off,
-}
-
-impl Setting {
-    const ALL: [Self; 3] = [Self::Truth, Self::On, Self::Off];
-
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Truth => "truth",
-            Self::On => "noisy, on",
-            Self::Off => "noisy, off",
-        }
-    }
-
-    fn go(self, world: &World, seed: u64) -> Report {
-        let odometry = match self {
-            Self::Truth => OdometryProfile::Truth,
-            Self::On | Self::Off => OdometryProfile::Noisy,
-        };
-        let mission = Mission {
-            odometry,
-            localise: self == Self::On,
-            ..UnevenRun::of(world, 0, seed).mission()
-        };
-        explored(&mission, world, &mut Direct::new()).0
+/// Returns the odometry of a run, as tables name it, and its settings in [`digests`].
+///
+/// [`digests`]: fieldline_tests::digests
+fn names(report: &Report) -> [&'static str; 2] {
+    match (report.odometry.as_str(), report.localization.corrected) {
+        ("truth", _) => ["truth", "drift-truth"],
+        (_, true) => ["noisy, on", "drift-on"],
+        (_, false) => ["noisy, off", "drift-off"],
     }
 }
 
@@ -62,52 +39,28 @@ fn is_false(report: &Report) -> bool {
     report.explored() && report.coverage.fraction < LEAST_SEEN
 }
 
-fn table(runs: &[(Setting, Report)]) -> Table {
-    let columns = [
-        "world",
-        "odometry",
-        "end",
-        "seed",
-        "seen %",
-        "s",
-        "mean m",
-        "max m",
-        "degenerate %",
-        "touched",
-        "falls",
-        "tips",
-    ];
-    let mut table = Table::new(3, &columns);
-    for (setting, report) in runs {
+fn table(reports: &[Report]) -> Table {
+    let more = ["degenerate %", "touched", "falls", "tips"];
+    odometry::table(reports, &["odometry"], &more, |report| {
         let (at, safety) = (&report.localization, &report.safety);
         let degenerate = at.quality.map(|quality| 100.0 * quality.degenerate);
-        table.row(vec![
-            report.world.clone(),
-            setting.name().into(),
-            report.outcome.reason.clone(),
-            report.seed.to_string(),
-            number(Some(100.0 * report.coverage.fraction), 2),
-            number(Some(report.sim_time_s), 1),
-            number(at.mean_error_m, 3),
-            number(at.max_error_m, 3),
-            number(degenerate.filter(|_| *setting == Setting::On), 1),
+        let [name, _] = names(report);
+        let more = vec![
+            number(degenerate, 1),
             safety.collisions.to_string(),
             safety.falls.to_string(),
             safety.tips.to_string(),
-        ]);
-    }
-    table
+        ];
+        (vec![name.into()], more)
+    })
 }
 
-/// Returns a line for each setting: how many runs did what.
-fn sums(runs: &[(Setting, Report)]) -> String {
+/// Returns a line for each odometry: how many runs did what.
+fn sums(reports: &[Report]) -> String {
     let mut text = String::new();
-    for setting in Setting::ALL {
-        let of: Vec<&Report> = runs
-            .iter()
-            .filter(|it| it.0 == setting)
-            .map(|it| &it.1)
-            .collect();
+    for name in ["truth", "noisy, on", "noisy, off"] {
+        let of = reports.iter().filter(|it| names(it)[0] == name);
+        let of: Vec<&Report> = of.collect();
         let count = |holds: fn(&Report) -> bool| of.iter().filter(|it| holds(it)).count();
         let errors = of.iter().filter_map(|it| it.localization.mean_error_m);
         let mut errors: Vec<f64> = errors.collect();
@@ -117,7 +70,7 @@ fn sums(runs: &[(Setting, Report)]) -> String {
             text,
             "{}: {} runs, {} explored, {} of them false; {} touched, {} fell, {} tipped; \
              median mean error {} m, greatest {} m",
-            setting.name(),
+            name,
             of.len(),
             count(Report::explored),
             count(is_false),
@@ -133,40 +86,21 @@ fn sums(runs: &[(Setting, Report)]) -> String {
 
 /// Compares the runs with golden table `name`. Returns those that were corrected.
 fn check(name: &str, worlds: &[World], seeds: &Range<u64>) -> Vec<Report> {
-    let mut to_run = Vec::new();
-    for world in worlds {
-        for seed in seeds.clone() {
-            to_run.extend(Setting::ALL.map(|setting| (setting, world, seed)));
-        }
-    }
-    let reports = in_parallel(&to_run, |(setting, world, seed)| setting.go(world, *seed));
-    let settings = to_run.iter().map(|it| it.0);
-    let runs: Vec<(Setting, Report)> = settings.zip(reports).collect();
-    let digest = |(setting, report): &(Setting, Report)| {
-        let setting = match setting {
-            Setting::Truth => "drift-truth",
-            Setting::On => "drift-on",
-            Setting::Off => "drift-off",
-        };
-        Digest::of(report, setting)
-    };
-    let digests: Vec<Digest> = runs.iter().map(digest).collect();
-    let text = format!("{}\n{}", table(&runs), sums(&runs));
+    let drives = sweep(worlds, seeds, &Setting::beside_truth(&[Noisy]));
+    let reports = in_parallel(&drives, Drive::go);
+    let digest = |report: &Report| Digest::of(report, names(report)[1]);
+    let digests: Vec<Digest> = reports.iter().map(digest).collect();
+    let text = format!("{}\n{}", table(&reports), sums(&reports));
     golden::compare_runs(name, &text, &digests);
-    let corrected = runs.into_iter().filter(|it| it.0 == Setting::On);
-    corrected.map(|it| it.1).collect()
+    let corrected = reports.into_iter().filter(|it| it.localization.corrected);
+    corrected.collect()
 }
 
 #[test]
 fn drift_on_uneven_ground_is_corrected() {
     let corrected = check("terrain-drift", &worlds::builtins(&QUICK), &(0..1));
     assert_faultless(&corrected, |report| {
-        let mut faults = runs::faults(report, LEAST_SEEN);
-        let mean_m = report.localization.mean_error_m.unwrap_or(f64::MAX);
-        if mean_m > MOST_MEAN_M {
-            faults.push(format!("mean error {mean_m:.3} m"));
-        }
-        faults
+        odometry::faults(report, LEAST_SEEN, MOST_MEAN_M)
     });
 }
 
@@ -210,16 +144,9 @@ mod full {
         let mut table = Table::new(1, &names);
         for (name, constants) in PARTS {
             let tuning = runs::tuned(constants);
-            let of = |world| seeds.clone().map(move |seed| (world, seed));
-            let to_run: Vec<_> = worlds.iter().flat_map(of).collect();
-            let reports = in_parallel(&to_run, |(world, seed)| {
-                let mission = Mission {
-                    odometry: OdometryProfile::Noisy,
-                    localise: true,
-                    ..UnevenRun::of(world, 0, *seed).mission()
-                };
-                explored(&mission, world, &mut Direct::tuned(tuning)).0
-            });
+            let usual = sweep(&worlds, &seeds, &[Setting::corrected(Noisy)]).into_iter();
+            let drives: Vec<_> = usual.map(|drive| Drive { tuning, ..drive }).collect();
+            let reports = in_parallel(&drives, Drive::go);
             let all: Vec<&Report> = reports.iter().collect();
             let error = |report: &Report| report.localization.mean_error_m;
             let seen = all.iter().map(|it| it.coverage.fraction);
