@@ -122,9 +122,9 @@ impl Incline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::GroundTuning;
     use crate::geometry::Cell;
-    use crate::ground::elevation::{Elevation, WINDOW_CELLS};
+    use crate::ground::elevation::WINDOW_CELLS;
+    use crate::ground::elevation::tests::OwnedWindow;
 
     /// 15° across, 20° up.
     const GROUND: UnevenGround = UnevenGround {
@@ -135,15 +135,8 @@ mod tests {
     /// Returns the slopes around a robot at (0, 0), on ground that rises to the north by 0.34 m per
     /// metre from `y_m` on.
     fn slope_from(y_m: f32, yaw_rad: f32) -> Incline {
-        let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
-        let mut origin = Cell::default();
-        let mut window = Elevation::new(
-            &mut heights,
-            &mut marks,
-            &mut origin,
-            &GroundTuning::DEFAULT,
-        );
-        window.follow(Cell::default());
+        let mut owned = OwnedWindow::new(Cell::default());
+        let mut window = owned.write();
         for x in -20..20 {
             for y in -20..20 {
                 let cell = Cell { x, y };

@@ -191,9 +191,8 @@ fn mean(pairs: impl Iterator<Item = (Option<f32>, Option<f32>)>) -> Option<f32> 
 #[cfg(test)]
 mod tests {
     use super::{Hysteresis, KEPT_PART, Slope, SlopeDirection};
-    use crate::config::GroundTuning;
     use crate::geometry::Cell;
-    use crate::ground::elevation::{Elevation, WINDOW_CELLS};
+    use crate::ground::elevation::tests::OwnedWindow;
     use crate::math::{self, PI};
 
     const MOST: f32 = 0.268;
@@ -339,15 +338,8 @@ mod tests {
 
     #[test]
     fn slopes_are_measured_where_both_sides_are_known() {
-        let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
-        let mut origin = Cell::default();
-        let mut window = Elevation::new(
-            &mut heights,
-            &mut marks,
-            &mut origin,
-            &GroundTuning::DEFAULT,
-        );
-        window.follow(Cell::default());
+        let mut owned = OwnedWindow::new(Cell::default());
+        let mut window = owned.write();
         for x in -10..5 {
             for y in -10..10 {
                 let at = Cell { x, y }.centre();

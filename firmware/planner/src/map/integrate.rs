@@ -337,18 +337,7 @@ mod tests {
 
     const TUNING: MapTuning = MapTuning::DEFAULT;
 
-    fn laser() -> LaserMount {
-        LaserMount {
-            x_m: 0.0,
-            y_m: 0.0,
-            z_m: 0.4,
-            pitch_rad: 0.0,
-            first_bearing_rad: -math::PI / 2.0,
-            bearing_step_rad: math::PI / 180.0,
-            beams: 181,
-            range_limit_mm: 12_000,
-        }
-    }
+    const LASER: LaserMount = LaserMount::level(0.0, 0.4);
 
     /// The slow twin of [`Map::free_along`]: cell by cell, with the map's public methods.
     fn free_slowly<const SIZE: usize>(map: &mut Map<SIZE, SIZE>, beam: &Beam) {
@@ -421,11 +410,11 @@ mod tests {
                 ..Pose::default()
             };
             let ranges = scan(&mut seed);
-            fast.integrate(&TUNING, &pose, &laser(), &ranges);
-            for beam in level_beams(&pose, &laser(), &ranges, &TUNING) {
+            fast.integrate(&TUNING, &pose, &LASER, &ranges);
+            for beam in level_beams(&pose, &LASER, &ranges, &TUNING) {
                 free_slowly(&mut slow, &beam);
             }
-            for beam in level_beams(&pose, &laser(), &ranges, &TUNING).filter(|beam| beam.hit) {
+            for beam in level_beams(&pose, &LASER, &ranges, &TUNING).filter(|beam| beam.hit) {
                 slow.hit(&TUNING, beam.end().cell());
             }
             for map in [&mut fast, &mut slow] {

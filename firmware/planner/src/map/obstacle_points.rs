@@ -289,25 +289,14 @@ mod tests {
     const ROBOT: RobotShape = RobotShape::PIONEER_3AT;
     const CONFIG: Config = Config::pioneer_3at(Vec::new());
 
-    fn laser() -> LaserMount {
-        LaserMount {
-            x_m: 0.0,
-            y_m: 0.0,
-            z_m: 0.4,
-            pitch_rad: 0.0,
-            first_bearing_rad: -math::PI / 2.0,
-            bearing_step_rad: math::PI / 180.0,
-            beams: 181,
-            range_limit_mm: 12_000,
-        }
-    }
+    const LASER: LaserMount = LaserMount::level(0.0, 0.4);
 
     #[test]
     fn a_lone_false_return_is_not_kept() {
         let mut obstacles = ObstaclePoints::new();
         let mut scan = [NO_RETURN_MM; 181];
         scan[90] = 500;
-        obstacles.update(&CONFIG, &Pose::default(), &laser(), &scan);
+        obstacles.update(&CONFIG, &Pose::default(), &LASER, &scan);
         assert!(obstacles.points().is_empty());
     }
 
@@ -324,15 +313,15 @@ mod tests {
     fn a_point_is_remembered_behind_the_robot_and_forgotten_when_seen_through() {
         let mut obstacles = ObstaclePoints::new();
         let here = Pose::default();
-        obstacles.update(&CONFIG, &here, &laser(), &thing(0, 800));
+        obstacles.update(&CONFIG, &here, &LASER, &thing(0, 800));
         assert!(!obstacles.points().is_empty());
         let turned = Pose {
             yaw_rad: math::PI,
             ..here
         };
-        obstacles.update(&CONFIG, &turned, &laser(), &[NO_RETURN_MM; 181]);
+        obstacles.update(&CONFIG, &turned, &LASER, &[NO_RETURN_MM; 181]);
         assert!(!obstacles.points().is_empty(), "out of view");
-        obstacles.update(&CONFIG, &here, &laser(), &[NO_RETURN_MM; 181]);
+        obstacles.update(&CONFIG, &here, &LASER, &[NO_RETURN_MM; 181]);
         assert!(obstacles.points().is_empty(), "seen through");
     }
 
@@ -342,10 +331,10 @@ mod tests {
         let mut obstacles = ObstaclePoints::new();
         let here = Pose::default();
         obstacles.add_felt(here.point(), Point { x_m: 0.3, y_m: 0.1 });
-        obstacles.update(&CONFIG, &here, &laser(), &[NO_RETURN_MM; 181]);
+        obstacles.update(&CONFIG, &here, &LASER, &[NO_RETURN_MM; 181]);
         assert_eq!(obstacles.points().len(), 1, "seen through, and felt");
         let away = Pose { x_m: -1.0, ..here };
-        obstacles.update(&CONFIG, &away, &laser(), &[NO_RETURN_MM; 181]);
+        obstacles.update(&CONFIG, &away, &LASER, &[NO_RETURN_MM; 181]);
         assert!(obstacles.points().is_empty());
     }
 
@@ -353,15 +342,15 @@ mod tests {
     fn a_hidden_point_stays_and_a_far_one_goes() {
         let mut obstacles = ObstaclePoints::new();
         let here = Pose::default();
-        obstacles.update(&CONFIG, &here, &laser(), &thing(0, 1000));
+        obstacles.update(&CONFIG, &here, &LASER, &thing(0, 1000));
         let count = obstacles.points().len();
-        obstacles.update(&CONFIG, &here, &laser(), &thing(0, 500));
+        obstacles.update(&CONFIG, &here, &LASER, &thing(0, 500));
         assert!(
             obstacles.points().len() > count,
             "hidden behind the nearer thing"
         );
         let away = Pose { x_m: -2.0, ..here };
-        obstacles.update(&CONFIG, &away, &laser(), &[INVALID_MM; 181]);
+        obstacles.update(&CONFIG, &away, &LASER, &[INVALID_MM; 181]);
         assert!(obstacles.points().is_empty());
     }
 
@@ -373,7 +362,7 @@ mod tests {
                 yaw_rad: k as f32 * 0.7,
                 ..Pose::default()
             };
-            obstacles.update(&CONFIG, &pose, &laser(), &[400 + (k % 7) as u16 * 100; 181]);
+            obstacles.update(&CONFIG, &pose, &LASER, &[400 + (k % 7) as u16 * 100; 181]);
             assert!(obstacles.points().len() <= MAX_POINTS);
         }
     }

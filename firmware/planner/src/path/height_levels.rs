@@ -252,9 +252,9 @@ mod tests {
     use std::boxed::Box;
 
     use super::{BLOCK, HeightLevels, LevelCost, MOST_LEVEL};
-    use crate::config::{GroundTuning, UnevenGround};
+    use crate::config::UnevenGround;
     use crate::geometry::Cell;
-    use crate::ground::elevation::{Elevation, WINDOW_CELLS};
+    use crate::ground::elevation::tests::OwnedWindow;
     use crate::map::{Class, Tiles};
 
     const SLOPE: f32 = 0.3;
@@ -273,16 +273,10 @@ mod tests {
                 tiles.set(at(x, y), Class::Free).expect("room");
             }
         }
-        let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
-        let mut origin = Cell::default();
+        let mut owned = OwnedWindow::new(at(0, 0));
         let mut map = HeightLevels::new();
         for robot in (0..=100).step_by(5) {
-            let mut window = Elevation::new(
-                &mut heights,
-                &mut marks,
-                &mut origin,
-                &GroundTuning::DEFAULT,
-            );
+            let mut window = owned.write();
             window.follow(at(robot, 0));
             for x in robot - 32..robot + 32 {
                 for y in -20..20 {
@@ -371,15 +365,8 @@ mod tests {
         let mut tiles = Box::<Tiles<4, 64>>::default();
         tiles.reset();
         tiles.set(at(1, 1), Class::Free).expect("room");
-        let (mut heights, mut marks) = ([0; 2 * WINDOW_CELLS], [0; WINDOW_CELLS]);
-        let mut origin = Cell::default();
-        let mut window = Elevation::new(
-            &mut heights,
-            &mut marks,
-            &mut origin,
-            &GroundTuning::DEFAULT,
-        );
-        window.follow(at(0, 0));
+        let mut owned = OwnedWindow::new(at(0, 0));
+        let mut window = owned.write();
         for k in 0..64 {
             window.measure(at(k % 8, k / 8), -40.0);
         }

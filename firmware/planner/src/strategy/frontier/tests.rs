@@ -5,11 +5,11 @@ use core::f32::consts::PI;
 use std::boxed::Box;
 use std::vec;
 
-use crate::config::{GroundTuning, LoopLimits, Order, Tuning, UnevenGround};
+use crate::config::{LoopLimits, Order, Tuning, UnevenGround};
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
-use crate::ground::elevation::{Elevation, WINDOW_CELLS};
+use crate::ground::elevation::tests::OwnedWindow;
 use crate::map::{Class, Tiles};
 use crate::path::goal_cost::GoalCost;
 use crate::path::height_levels::{HeightLevels, LevelCost};
@@ -49,16 +49,10 @@ fn measured(
     ys: core::ops::Range<i32>,
     height_m: impl Fn(Cell) -> f32,
 ) -> Box<HeightLevels<24>> {
-    let (mut heights, mut marks) = (vec![0; 2 * WINDOW_CELLS], vec![0; WINDOW_CELLS]);
-    let mut origin = Cell::default();
+    let mut owned = OwnedWindow::new(Cell::default());
     let mut levels = Box::<HeightLevels<24>>::default();
     for middle in middle {
-        let mut window = Elevation::new(
-            &mut heights,
-            &mut marks,
-            &mut origin,
-            &GroundTuning::DEFAULT,
-        );
+        let mut window = owned.write();
         window.follow(middle);
         for x in middle.x - 32..middle.x + 32 {
             for y in ys.clone() {
