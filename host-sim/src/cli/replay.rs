@@ -10,7 +10,7 @@ use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::replay::relations::{self, Pose, Relation, RelationError};
 use host_sim::replay::report::{self, Files, RelationErrors, ReplayReport};
 use host_sim::replay::{carmen, clock, run};
-use host_sim::report::folder;
+use host_sim::report::{QualityShares, folder};
 use host_sim::trial::wording;
 
 use super::progress::Interrupt;
@@ -103,7 +103,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
             RelationErrors::of(&errors)
         }),
         occupied_cells_5cm: report::occupied_cells(&scans, &replayed.poses),
-        quality: report::shares(&replayed.qualities),
+        quality: QualityShares::of(&replayed.qualities),
     };
     let files = Files {
         report: &report,

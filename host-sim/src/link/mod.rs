@@ -29,6 +29,7 @@ pub mod line;
 pub mod logs;
 pub mod loopback;
 pub mod qemu;
+pub(crate) mod said;
 pub mod serial;
 pub mod spec;
 pub mod stream;

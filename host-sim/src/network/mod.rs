@@ -33,16 +33,15 @@ use fieldline_protocol::message::{
     Command, Control, FieldRow, Identity, Member, Observation, Packet, Path, ResidualFrontier,
     Status, Team, Tile,
 };
-use fieldline_protocol::packet::{MAX_PACKET, decode_packet, encode_packet};
+use fieldline_protocol::packet::decode_packet;
 use serde::{Deserialize, Serialize};
 
+use crate::link::said::Said;
 use crate::link::{Link, LinkError, LinkStats};
 use carrier::{Arrived, Carrier};
 use envelope::{Heard, Key, Kind, Letter, Refused};
 use lockstep::Lockstep;
 
-/// Most packets that a planner says in a step. A device that says more is not asked on.
-const MOST_SAID: usize = 8;
 /// Most datagrams that are taken before an observation: a flood must not stop the robot.
 const MOST_TAKEN: usize = 256;
 /// Time from one look for datagrams to the next while peers are slower.
@@ -215,15 +214,9 @@ impl Networked {
             let hello = self.seal(Kind::Hello, &port.to_le_bytes());
             self.carrier.say_hello(&hello);
         }
-        let mut bytes = [0; MAX_PACKET];
-        for _ in 0..MOST_SAID {
-            let Some(packet) = self.link.say()? else {
-                break;
-            };
-            let Ok(length) = encode_packet(&packet, &mut bytes) else {
-                continue;
-            };
-            let datagram = self.seal(Kind::Packet, &bytes[..length]);
+        let mut said = Said::new();
+        while let Some(bytes) = said.next(self.link.as_mut())? {
+            let datagram = self.seal(Kind::Packet, bytes);
             let sent = self.carrier.send(&datagram);
             self.account.add(|it| {
                 it.said += 1;

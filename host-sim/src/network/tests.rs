@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use fieldline_protocol::message::{Beacon, Body, Start, Strategy};
+use fieldline_protocol::packet::{MAX_PACKET, encode_packet};
 use fixed::types::I4F12;
 
 use super::spec::TeamSpec;

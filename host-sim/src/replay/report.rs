@@ -9,7 +9,6 @@ use core::fmt::Write as _;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use fieldline_protocol::message::Quality;
 use serde::Serialize;
 
 use super::carmen::LogScan;
@@ -19,7 +18,7 @@ use super::wire::LogLaser;
 use crate::picture::{Scene, run_png};
 use crate::report::folder::{self, WriteError};
 use crate::report::tum::{self, Stamped};
-use crate::report::{GridMap, QualityShares};
+use crate::report::{GridMap, QualityShares, json_line};
 
 /// Side of the cells that are counted, metres.
 const CELL_M: f64 = 0.05;
@@ -87,26 +86,11 @@ pub fn occupied_cells(scans: &[LogScan], poses: &[Pose]) -> usize {
     cells.len()
 }
 
-/// Returns the shares of the qualities.
-#[must_use]
-pub fn shares(qualities: &[Quality]) -> QualityShares {
-    let share = |of: fn(&Quality) -> bool| {
-        let count = qualities.iter().filter(|quality| of(quality)).count();
-        count as f64 / qualities.len().max(1) as f64
-    };
-    QualityShares {
-        tracking: share(|it| *it == Quality::Tracking),
-        degenerate: share(|it| matches!(it, Quality::Degenerate { .. })),
-        lost: share(|it| *it == Quality::Lost),
-    }
-}
-
 impl ReplayReport {
     /// Returns the report as one line of JSON.
     #[must_use]
     pub fn to_json_line(&self) -> String {
-        // Strings, numbers and options only.
-        serde_json::to_string(self).unwrap_or_default()
+        json_line(self)
     }
 
     /// Returns a few lines of text.
@@ -223,6 +207,8 @@ fn csv(relations: &[(Relation, RelationError)]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use fieldline_protocol::message::Quality;
+
     use super::*;
 
     #[test]
@@ -239,7 +225,7 @@ mod tests {
             steps: 2,
             relations: RelationErrors::of(&errors),
             occupied_cells_5cm: 7,
-            quality: shares(&[Quality::Tracking, Quality::Lost]),
+            quality: QualityShares::of(&[Quality::Tracking, Quality::Lost]),
         };
         assert_eq!(
             report.to_json_line(),

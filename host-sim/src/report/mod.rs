@@ -8,6 +8,7 @@
 pub mod commands;
 pub mod folder;
 pub mod grid_map;
+mod localization;
 pub mod loop_closing;
 pub mod ros_map;
 pub mod team;
@@ -20,6 +21,7 @@ use serde::{Deserialize, Serialize};
 pub use crate::link::LinkStats;
 pub use crate::network::Counters;
 pub use grid_map::{GridMap, MapCell};
+pub use localization::{Localization, QualityShares};
 pub use loop_closing::{GivenUp, LoopClosing};
 pub use team::TeamReport;
 pub use true_ground::TrueGround;
@@ -220,32 +222,6 @@ pub struct Safety {
     pub min_person_gap_m: Option<f64>,
 }
 
-/// The pose that the planner took for the true one: the device's, or odometry's.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Localization {
-    /// True if the device corrected odometry.
-    pub corrected: bool,
-    /// Mean distance to the true position over the steps.
-    pub mean_error_m: Option<f64>,
-    /// Greatest distance over the steps.
-    pub max_error_m: Option<f64>,
-    /// Distance in the last step.
-    pub end_error_m: Option<f64>,
-    /// Share of the steps of each quality; `null` if the device corrects nothing.
-    pub quality: Option<QualityShares>,
-}
-
-/// Share of the steps of each quality.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct QualityShares {
-    /// The scan held the pose.
-    pub tracking: f64,
-    /// Odometry alone held it in some direction.
-    pub degenerate: f64,
-    /// The scan contradicted the map.
-    pub lost: f64,
-}
-
 /// The map's obstacle cells against the true surfaces, after the best rigid alignment of the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MapErrors {
@@ -347,15 +323,13 @@ impl Report {
     /// Returns the text of the file: indented JSON and a newline.
     #[must_use]
     pub fn to_json_pretty(&self) -> String {
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
-        text.push('\n');
-        text
+        json_pretty(self)
     }
 
     /// Returns the report on one line, without a newline.
     #[must_use]
     pub fn to_json_line(&self) -> String {
-        serde_json::to_string(self).unwrap_or_default()
+        json_line(self)
     }
 
     /// Returns true if everything is explored, or the target coverage of an area is reached.
@@ -364,6 +338,18 @@ impl Report {
         let reason = self.outcome.reason.as_str();
         self.outcome.status == "finished" && matches!(reason, "explored" | "covered")
     }
+}
+
+/// Returns indented JSON and a newline. Reports hold only what JSON can, so there is always a text.
+fn json_pretty(report: &impl Serialize) -> String {
+    let mut text = serde_json::to_string_pretty(report).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+/// Returns JSON on one line, without a newline.
+pub(crate) fn json_line(report: &impl Serialize) -> String {
+    serde_json::to_string(report).unwrap_or_default()
 }
 
 impl Percentiles {

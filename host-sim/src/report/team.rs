@@ -77,15 +77,13 @@ impl TeamReport {
     /// Returns the text of the file: indented JSON and a newline.
     #[must_use]
     pub fn to_json_pretty(&self) -> String {
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_default();
-        text.push('\n');
-        text
+        super::json_pretty(self)
     }
 
     /// Returns the report on one line, without a newline.
     #[must_use]
     pub fn to_json_line(&self) -> String {
-        serde_json::to_string(self).unwrap_or_default()
+        super::json_line(self)
     }
 
     /// Returns world, strategy, number of robots and seed on one line.

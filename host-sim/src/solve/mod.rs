@@ -215,7 +215,7 @@ impl Answer {
     /// The answer as one line of JSON, without a newline.
     #[must_use]
     pub fn to_json_line(&self) -> String {
-        serde_json::to_string(self).unwrap_or_default()
+        crate::report::json_line(self)
     }
 
     /// The answer as two lines of text.

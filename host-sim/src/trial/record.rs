@@ -216,19 +216,12 @@ impl Record {
         let steps = errors.len() as f64;
         let located = self.steps.iter().filter_map(|step| step.command.location);
         let qualities: Vec<Quality> = located.map(|location| location.quality).collect();
-        let share = |of: fn(&Quality) -> bool| {
-            qualities.iter().filter(|quality| of(quality)).count() as f64 / qualities.len() as f64
-        };
         report::Localization {
             corrected: !qualities.is_empty(),
             mean_error_m: (steps > 0.0).then(|| errors.iter().sum::<f64>() / steps),
             max_error_m: errors.iter().copied().reduce(f64::max),
             end_error_m: errors.last().copied(),
-            quality: (!qualities.is_empty()).then(|| report::QualityShares {
-                tracking: share(|it| *it == Quality::Tracking),
-                degenerate: share(|it| matches!(it, Quality::Degenerate { .. })),
-                lost: share(|it| *it == Quality::Lost),
-            }),
+            quality: (!qualities.is_empty()).then(|| report::QualityShares::of(&qualities)),
         }
     }
 

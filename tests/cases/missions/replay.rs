@@ -14,6 +14,7 @@ mod data {
     use host_sim::replay::relations::{self, Pose, Relation, RelationError};
     use host_sim::replay::report::{self, RelationErrors};
     use host_sim::replay::{clock, run};
+    use host_sim::report::QualityShares;
 
     /// Factors of the drift's variances.
     const DRIFTS: [f64; 3] = [1.0, 2.0, 4.0];
@@ -120,7 +121,7 @@ mod data {
         let short = errors(log, poses, is_short);
         let long = errors(log, poses, |relation| !is_short(relation));
         let metres = |errors: &Option<RelationErrors>| errors.map(|it| it.translation_m.mean);
-        let shares = report::shares(&replayed.qualities);
+        let shares = QualityShares::of(&replayed.qualities);
         let cells = |poses: &[Pose]| report::occupied_cells(&log.scans, poses).to_string();
         vec![
             log.name.clone(),

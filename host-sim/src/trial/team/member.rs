@@ -14,7 +14,7 @@
 use fieldline_protocol::message::{
     self as wire, Command, Control, Finish, Observation, Status, Twist,
 };
-use fieldline_protocol::packet::{MAX_PACKET, decode_packet, encode_packet};
+use fieldline_protocol::packet::decode_packet;
 
 use super::super::account::Account;
 use super::super::freeze::FreezeDetector;
@@ -22,14 +22,12 @@ use super::super::record::{self, Record};
 use super::super::series::Series;
 use super::super::snapshot::{self, Snapshot};
 use super::super::{Body, Cast, Ending, Setup, Survey, ended, step};
+use crate::link::said::Said;
 use crate::link::{Link, LinkError};
 use crate::metrics::Coverage;
 use crate::radio::{Radio, Station};
 use crate::report::tum::Stamped;
 use crate::sim::{Fleet, Loss};
-
-/// Most packets that a planner says in a step. A device that says more is not asked on.
-const MOST_SAID: usize = 8;
 
 /// A robot's place in the team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -232,19 +230,13 @@ impl<'a> Member<'a> {
         if self.setup.start.team.is_none() {
             return Ok(());
         }
-        let mut bytes = [0; MAX_PACKET];
-        for _ in 0..MOST_SAID {
-            let Some(packet) = self.link.say()? else {
-                break;
-            };
-            let Ok(length) = encode_packet(&packet, &mut bytes) else {
-                continue;
-            };
+        let mut said = Said::new();
+        while let Some(bytes) = said.next(self.link)? {
             common
                 .radio
-                .send(time_ms, self.number, &bytes[..length], common.stations);
+                .send(time_ms, self.number, bytes, common.stations);
             self.talk.said += 1;
-            self.talk.said_bytes += length as u64;
+            self.talk.said_bytes += bytes.len() as u64;
         }
         Ok(())
     }
