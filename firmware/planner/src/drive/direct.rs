@@ -18,8 +18,9 @@
 //! 4. on a slope too steep to turn fully: a turn of the robot's back towards the heading.
 //!
 //! Invariant: until the robot has braked to a stop it keeps 6 cm from every obstacle point, or
-//! 2.5 cm if it creeps or turns on the spot. It approaches a point that is nearer already by no more
-//! than the slack of the collision checker. It begins no turn on the spot that it cannot finish.
+//! 2.5 cm if it creeps or turns on the spot. It approaches a point that is nearer already by no
+//! more than the slack of the collision checker. It begins no turn on the spot that it cannot
+//! finish.
 //!
 //! Units: metres, seconds, radians; robot frame, x forward.
 

@@ -5,8 +5,8 @@
 //! overhang = max(|x| − front or back, |y| − left or right)        of a point in the robot's frame
 //! ```
 //!
-//! On a slope the top of the hull reaches out over the ground downhill, by its height times the sine
-//! of the tilt.
+//! On a slope the top of the hull reaches out over the ground downhill, by its height times the
+//! sine of the tilt.
 //!
 //! Invariant: the overhang of a point outside is at most its distance from the rectangle, so a
 //! margin of the overhang is a margin of the distance.

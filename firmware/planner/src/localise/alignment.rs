@@ -7,7 +7,7 @@
 //! w = 1 / (1 + (r / robust_cells)²),     v = 1 / (1 + d² / slip_gap)
 //! ```
 //!
-//! m is the map as a field, and the first sum is that of Kohlbrecher et al. (2011). The normal is
+//! m is the map as a field, and the first sum is that of \[Kohlbrecher11\]. The normal is
 //! ours: the cells of a wall that few beams have met are points, and would hold the scan along the
 //! wall as well.
 //!

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Within a cell of a straight wall `1 − m` is the distance to its middle in cells. It is the
-//! residual of a beam that ends there (Kohlbrecher et al. 2011, eqs. 4–6).
+//! residual of a beam that ends there \[Kohlbrecher11, eqs. 4–6\].
 //!
 //! Units: map cells.
 
