@@ -7,12 +7,10 @@ use host_sim::report::Report;
 use crate::golden;
 use crate::table::Table;
 
-/// Most instructions of a step on flat ground: about 50 ms at 168 MHz.
+/// Most instructions of a step on flat ground, alone or in a team: about 50 ms at 168 MHz.
 pub const MOST_INSTRUCTIONS: f64 = 6e6;
 /// Most instructions of a step on uneven ground.
 pub const MOST_UNEVEN: f64 = 7e6;
-/// The same in a team of four. The aim is 6 million; judging goals takes the rest.
-const MOST_IN_TEAM: f64 = 6.5e6;
 
 /// Share by which figures may differ from the golden ones: compilers arrange the code differently.
 pub const DRIFT: f64 = 0.05;
@@ -51,12 +49,12 @@ pub fn table(reports: &[Report]) -> Table {
 }
 
 /// Asserts that every step was counted and that none took too long.
-fn assert_within_budget(reports: &[Report], on_flat_ground: f64) {
+fn assert_within_budget(reports: &[Report]) {
     for report in reports {
         let most = if report.true_ground.is_some() {
             MOST_UNEVEN
         } else {
-            on_flat_ground
+            MOST_INSTRUCTIONS
         };
         let world = &report.world;
         let Some(of) = report.planner.instructions else {
@@ -76,14 +74,5 @@ fn assert_within_budget(reports: &[Report], on_flat_ground: f64) {
 /// If the figures differ, or a run exceeds the budget.
 pub fn check(name: &str, reports: &[Report]) {
     golden::compare_about(name, &table(reports).to_string(), DRIFT);
-    assert_within_budget(reports, MOST_INSTRUCTIONS);
-}
-
-/// Compares the chips of a team as [`check`] does.
-///
-/// # Panics
-/// As [`check`].
-pub fn check_team(name: &str, reports: &[Report]) {
-    golden::compare_about(name, &table(reports).to_string(), DRIFT);
-    assert_within_budget(reports, MOST_IN_TEAM);
+    assert_within_budget(reports);
 }

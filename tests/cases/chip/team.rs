@@ -39,5 +39,5 @@ fn chips_in_a_team_explore_as_robots_by_call_do_within_their_budget() {
         .take(CHIPS)
         .map(|it| it.report.clone())
         .collect();
-    costs::check_team("costs-team.txt", &chips);
+    costs::check("costs-team.txt", &chips);
 }

@@ -45,7 +45,7 @@ pub(crate) const fn twice(bits: u16) -> u32 {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::{even, halve, twice};
 
     /// A xorshift generator.

@@ -38,7 +38,7 @@ use crate::path::search::PathSearch;
 use crate::path::shared_trip::{AllJudged, Judged, begin_of_trip};
 use crate::path::{Path, PlanningContext, PlanningScratch};
 
-/// Maximum number of candidates that a round judges: a gain costs about 0.1 million instructions.
+/// Maximum number of candidates that a round judges: a gain costs about 50,000 instructions.
 pub(crate) const MOST_JUDGED: usize = 24;
 /// Distance from the robot at which the direction of a path is taken, metres.
 const AHEAD_M: f32 = 1.0;
