@@ -83,7 +83,7 @@ pub(super) fn velocity<H: Fn(Place) -> Option<f32>>(
     let may_go_on = |&twist: &Twist| {
         !rolls || twist.linear_mps > CREEP_MPS || {
             let [_, least_m] = SEARCH_MARGINS_M;
-            roll_out(query, Place::default(), false, least_m, &mut 0).is_some()
+            roll_out(query, (Place::default(), false), least_m, &mut 0, |_| true).is_some()
         }
     };
     let wish = ahead(config, error).find(admits);

@@ -37,6 +37,7 @@ pub use search_query::SearchQuery;
 use crate::config::Config;
 use crate::geometry::{OdomPose, Twist};
 use crate::math;
+use collision::LEAST_MARGIN_M;
 use contact::{Contact, ContactSense};
 use direct::CREEP_MARGIN_M;
 use lane::Lane;
@@ -44,12 +45,9 @@ use motion::{MotionSet, Recovery};
 use recovery::{Search, SearchBudget, SearchOutcome};
 use track::Track;
 
-/// Clearances of a recovery, metres: that of the first search, and of the next one. The nearest of
-/// many points of a wall is two sigma nearer than the wall, so the free space is wider than the
-/// smaller one.
-const SEARCH_MARGINS_M: [f32; 2] = [0.03, 0.012];
-/// Clearance while a recovery is driven, metres.
-const RECOVERY_MARGIN_M: f32 = 0.008;
+/// Clearances of a recovery, metres: that of the first search, and of the next one. The next one is
+/// hardly more than what the robot keeps while it drives the recovery.
+const SEARCH_MARGINS_M: [f32; 2] = [0.03, 0.02];
 
 /// Turn rate of a robot that looks around, radians per second.
 const LOOK_AROUND_RADPS: f32 = 0.6;
@@ -152,7 +150,7 @@ impl Drive {
         now: Twist,
     ) -> Twist {
         let twist = self.track.back(pose, config.period_s);
-        let twist = twist.filter(|twist| checker.admits(*twist, now, config, RECOVERY_MARGIN_M));
+        let twist = twist.filter(|twist| checker.admits(*twist, now, config, LEAST_MARGIN_M));
         self.retreats = twist.is_some();
         twist.unwrap_or_default()
     }
@@ -202,7 +200,7 @@ impl Drive {
         self.rest_steps = self.rest_steps.saturating_sub(1);
         let checker = query.checker;
         query.lane = self.lane;
-        let admits = |&twist: &Twist| checker.admits(twist, now, config, RECOVERY_MARGIN_M);
+        let admits = |&twist: &Twist| checker.admits(twist, now, config, LEAST_MARGIN_M);
         let mut budget = SEARCH_BUDGET;
         let field = (query.heading_at)(Place::default());
         // Recovery and search count with robots where they were.

@@ -1,19 +1,37 @@
 //! The poses of a search and its open list: a binary heap by rank, in the caller's scratch memory.
 //!
-//! A node is five words; the heap holds node numbers.
+//! A node is three words; the heap holds node numbers, two a word:
+//!
+//! | word | bits 31 to 16 | bits 15 to 0 |
+//! | --- | --- | --- |
+//! | 0 | y, 2⁻¹⁴ m | x, 2⁻¹⁴ m |
+//! | 1 | parent, motion, end: 11, 4 and 1 bits | yaw, 2⁻¹³ rad |
+//! | 2 | cost, hundredths | rank, hundredths |
 //!
 //! Invariant: the first `waiting` entries of the heap are a heap of open nodes, the least rank
 //! first. Ties are resolved by the place in the heap, the same on every machine.
 
 use crate::drive::hull::Place;
+use crate::drive::motion::MOTIONS;
 use crate::grid::at;
+use crate::math;
 
 /// Capacity of a search, poses.
-pub(super) const MOST_NODES: usize = 1100;
-const NODE_WORDS: usize = 5;
+pub(super) const MOST_NODES: usize = 1770;
+const NODE_WORDS: usize = 3;
 
 /// Words that the nodes and the heap need.
-pub(super) const WORDS: usize = MOST_NODES * NODE_WORDS + MOST_NODES;
+pub(super) const WORDS: usize = MOST_NODES * NODE_WORDS + MOST_NODES.div_ceil(2);
+
+/// Units of a stored place: 0.06 mm and 0.007°. Poses lie within 2 m.
+const METRE: f32 = (1 << 14) as f32;
+const RADIAN: f32 = (1 << 13) as f32;
+/// Bits of a motion's number.
+const MOTION_BITS: u32 = 4;
+const _CHECKS: () = assert!(
+    MOST_NODES < 1 << (15 - MOTION_BITS) && MOTIONS.len() <= 1 << MOTION_BITS,
+    "a node's link fits into 16 bits"
+);
 
 /// A pose of the search.
 #[derive(Clone, Copy, Debug)]
@@ -44,31 +62,39 @@ impl Node {
         }
     }
 
+    /// Returns the node as it is stored: its place is rounded, its yaw wrapped.
     fn words(self) -> [u32; NODE_WORDS] {
+        let rounded = |value: f32, units: f32| math::floor(value * units + 0.5) as u16;
         // Costs are sums of tenths; 16 bits of hundredths hold more than the cost of any recovery.
         let hundredths = |cost: f32| (cost * 100.0) as u16;
+        let pair = |high: u16, low: u16| u32::from(high) << 16 | u32::from(low);
+        let motion = u16::from(self.motion) << 1;
+        let link = self.parent << (MOTION_BITS + 1) | motion | u16::from(self.is_end);
         [
-            self.place.x_m.to_bits(),
-            self.place.y_m.to_bits(),
-            self.place.yaw_rad.to_bits(),
-            u32::from(hundredths(self.cost)) << 16 | u32::from(hundredths(self.rank)),
-            u32::from(self.parent) << 16 | u32::from(self.motion) << 1 | u32::from(self.is_end),
+            pair(
+                rounded(self.place.y_m, METRE),
+                rounded(self.place.x_m, METRE),
+            ),
+            pair(link, rounded(math::wrap(self.place.yaw_rad), RADIAN)),
+            pair(hundredths(self.cost), hundredths(self.rank)),
         ]
     }
 
-    fn from_words([x, y, yaw, costs, link]: [u32; NODE_WORDS]) -> Self {
+    fn from_words([point, pose, costs]: [u32; NODE_WORDS]) -> Self {
+        let value = |half: u32, units: f32| f32::from(half as u16 as i16) / units;
         let place = Place {
-            x_m: f32::from_bits(x),
-            y_m: f32::from_bits(y),
-            yaw_rad: f32::from_bits(yaw),
+            x_m: value(point, METRE),
+            y_m: value(point >> 16, METRE),
+            yaw_rad: value(pose, RADIAN),
         };
         let cost = |hundredths: u32| (hundredths & 0xffff) as f32 * 0.01;
+        let link = pose >> 16;
         Self {
             place,
             cost: cost(costs >> 16),
             rank: cost(costs),
-            parent: (link >> 16) as u16,
-            motion: (link >> 1 & 0x7f) as u8,
+            parent: (link >> (MOTION_BITS + 1)) as u16,
+            motion: (link >> 1) as u8 & ((1 << MOTION_BITS) - 1),
             is_end: link & 1 == 1,
         }
     }
@@ -84,25 +110,31 @@ pub(super) struct OpenList {
 /// Returns the rank of a node, in hundredths.
 fn rank(words: &[u32], node: u32) -> u32 {
     words
-        .get(node as usize * NODE_WORDS + 3)
+        .get(node as usize * NODE_WORDS + 2)
         .map_or(u32::MAX, |costs| costs & 0xffff)
 }
 
-const fn place_of(entry: usize) -> usize {
-    MOST_NODES * NODE_WORDS + entry
+/// Returns the word of a heap's entry, and the bits below the entry.
+const fn place_of(entry: usize) -> (usize, usize) {
+    (MOST_NODES * NODE_WORDS + entry / 2, entry % 2 * 16)
 }
 
 fn entry(words: &[u32], index: usize) -> u32 {
-    at(words, place_of(index))
+    let (word, below) = place_of(index);
+    at(words, word) >> below & 0xffff
+}
+
+fn set_entry(words: &mut [u32], index: usize, node: u32) {
+    let (word, below) = place_of(index);
+    if let Some(word) = words.get_mut(word) {
+        *word = *word & !(0xffff << below) | node << below;
+    }
 }
 
 fn swap(words: &mut [u32], one: usize, other: usize) {
     let (a, b) = (entry(words, one), entry(words, other));
-    for (at, value) in [(one, b), (other, a)] {
-        if let Some(place) = words.get_mut(place_of(at)) {
-            *place = value;
-        }
-    }
+    set_entry(words, one, b);
+    set_entry(words, other, a);
 }
 
 impl OpenList {
@@ -116,10 +148,7 @@ impl OpenList {
             return false;
         };
         place.copy_from_slice(&node.words());
-        let Some(last) = words.get_mut(place_of(self.waiting)) else {
-            return false;
-        };
-        *last = number as u32;
+        set_entry(words, self.waiting, number as u32);
         self.nodes += 1;
         self.sift_up(words, self.waiting);
         self.waiting += 1;
@@ -187,9 +216,9 @@ mod tests {
         for k in 0..500_u16 {
             let rank = f32::from(k * 37 % 500) * 0.5;
             let place = Place {
-                x_m: rank,
-                y_m: -rank,
-                yaw_rad: 0.5 * rank,
+                x_m: 0.005 * rank,
+                y_m: -0.005 * rank,
+                yaw_rad: 0.05 * rank,
             };
             let node = Node {
                 place,
@@ -204,7 +233,10 @@ mod tests {
         for k in 0..500 {
             let (number, node) = open.pop(&mut words).unwrap();
             let rank = k as f32 * 0.5;
-            assert!((node.rank - rank).abs() < 0.01 && node.place.x_m == rank);
+            assert!((node.rank - rank).abs() < 0.01);
+            assert!((node.place.x_m - 0.005 * rank).abs() < 4e-5);
+            assert!((node.place.y_m + 0.005 * rank).abs() < 4e-5);
+            assert!(math::wrap(node.place.yaw_rad - 0.05 * rank).abs() < 1e-4);
             assert_eq!(
                 (node.parent, node.motion, node.is_end),
                 (number, 5, number % 2 == 0)

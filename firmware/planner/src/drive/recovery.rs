@@ -4,11 +4,11 @@
 //! In a passage narrower than its diagonal the robot cannot turn everywhere, and following the
 //! field alone wedges it. The search (A* over poses, similar to hybrid A*) starts at the robot's
 //! pose. It ends at a pose from which the robot can follow the field for its own length
-//! ([`crate::drive::roll_out`]): aligned with the field's heading *there*, or, at a higher cost,
-//! against it. The end must be farther along the field than the start; otherwise the robot
-//! oscillates before a tight corner. Poses are exact; of those in the same cell of 3 cm × 3 cm ×
-//! 7.5° only the first counts. The search runs in instalments while the robot stands, so every step
-//! is short.
+//! ([`crate::drive::roll_out`]): with room to turn to the field's heading *there*, or, at a higher
+//! cost, with its back along it. The end must be farther along the field than the start; otherwise
+//! the robot oscillates before a tight corner. Of the poses in the same cell of 3 cm × 3 cm × 7.5°
+//! only the first counts. The search runs in instalments while the robot stands, so every step is
+//! short.
 //!
 //! Invariant: every pose of a recovery keeps the margin.
 //!
@@ -17,13 +17,14 @@
 use crate::drive::hull::Place;
 use crate::drive::motion::{LENGTH_M, MOTIONS, MotionSet, Recovery, TURN_RAD};
 use crate::drive::open_list::{Node, OpenList};
+use crate::drive::roll_out::RollOut;
 use crate::drive::search_query::SearchQuery;
 use crate::math;
 
 /// Cost of an end against the field, in motions.
 const REVERSE_COST: f32 = 12.0;
 /// Cells to each side of the start within which poses count, cells of [`LENGTH_M`].
-const REACH: i32 = 18;
+const REACH: i32 = 22;
 const SIDE: usize = 2 * REACH as usize + 1;
 /// Headings that are distinguished: a full turn in steps of [`TURN_RAD`].
 const DIRECTIONS: usize = 48;
@@ -101,11 +102,13 @@ impl Search {
                 let on = query.leads_on(node.place, true, self.margin_m, &mut points);
                 return SearchOutcome::Found(self.trace(nodes, index, &on.unwrap_or_default()));
             }
-            if let Some(on) = query.leads_on(node.place, false, self.margin_m, &mut points) {
+            let may_begin = |on: &RollOut| index != 0 || self.may_begin(on);
+            let on = query.leads_on(node.place, false, self.margin_m, &mut points);
+            if let Some(on) = on.filter(may_begin) {
                 return SearchOutcome::Found(self.trace(nodes, index, &on));
             }
             let on = query.leads_on(node.place, true, self.margin_m, &mut points);
-            if on.is_some() {
+            if on.is_some_and(|on| may_begin(&on)) {
                 let cost = node.cost + REVERSE_COST;
                 self.open.push(
                     nodes,
@@ -125,7 +128,14 @@ impl Search {
         SearchOutcome::Pending
     }
 
-    /// Adds the poses one motion away. Returns how many were tried, or `None` if the open list is
+    /// Returns true if the robot can start with a roll-out from its present velocity.
+    fn may_begin(&self, on: &RollOut) -> bool {
+        on.first()
+            .is_some_and(|&first| self.first.has(usize::from(first)))
+    }
+
+    /// Adds the poses one motion away. Returns how many places were
+    /// checked, or `None` if the open list is
     /// full.
     fn expand<H: Fn(Place) -> Option<f32>>(
         &mut self,
@@ -143,8 +153,9 @@ impl Search {
             if !visit(visited, place) {
                 continue;
             }
-            tried += 1;
-            if !query.checker.is_clear(place, self.margin_m) {
+            let (length_m, turn_rad, checker) = (motion.length_m, motion.turn_rad, query.checker);
+            tried += checker.places_on(length_m, turn_rad, self.margin_m);
+            if !checker.is_arc_clear(node.place, length_m, turn_rad, self.margin_m) {
                 continue;
             }
             let cost = node.cost + motion.cost;

@@ -18,8 +18,8 @@ use crate::math;
 
 /// Length of a roll-out, metres: nearly that of a hull, so that it leads through a wall's gap.
 pub(super) const ROLL_M: f32 = 0.45;
-/// Maximum number of its motions: straight on, and half a turn.
-const MOST_MOTIONS: usize = 40;
+/// Maximum number of its motions: half a turn, and 1.2 m straight on.
+const MOST_MOTIONS: usize = 64;
 /// Greatest error without a curve, and without a turn on the spot, radians.
 const STRAIGHT_RAD: f32 = 0.05;
 const CURVE_RAD: f32 = 0.3;
@@ -30,19 +30,19 @@ const GOAL_RAD: f32 = 2.0;
 pub(super) type RollOut = Vec<u8, MOST_MOTIONS>;
 
 /// Returns the roll-out from a place, with the robot's front ahead or its back, and its end; `None`
-/// if it comes nearer to an obstacle than the margin. Adds to `points` the obstacle points of each
-/// checked place.
+/// if it comes nearer to an obstacle than the margin. It is at least [`ROLL_M`] long and goes on
+/// until `is_far`. Adds to `points` the obstacle points of each checked place.
 #[inline(never)]
 pub(super) fn roll_out<H: Fn(Place) -> Option<f32>>(
     query: &SearchQuery<'_, H>,
-    from: Place,
-    backwards: bool,
+    (from, backwards): (Place, bool),
     margin_m: f32,
     points: &mut u32,
+    is_far: impl Fn(Place) -> bool,
 ) -> Option<(RollOut, Place)> {
     let straight = if backwards { BACKWARD } else { FORWARD };
     let (mut motions, mut place, mut rolled_m) = (RollOut::new(), from, 0.0);
-    while rolled_m < ROLL_M && !motions.is_full() {
+    while (rolled_m < ROLL_M || !is_far(place)) && !motions.is_full() {
         let Some(error) = query.misalignment(place) else {
             break;
         };
@@ -92,11 +92,11 @@ fn next<H: Fn(Place) -> Option<f32>>(
     let mut tried = core::iter::once(wanted).chain(others.into_iter().filter(|&it| it != wanted));
     tried.find_map(|number| {
         let motion = MOTIONS.get(usize::from(number))?;
-        let next = place.after(motion.length_m, motion.turn_rad);
-        *points += query.checker.points();
-        query
-            .checker
-            .is_clear(next, margin_m)
-            .then_some((number, next))
+        let (length_m, turn_rad) = (motion.length_m, motion.turn_rad);
+        let checker = query.checker;
+        *points += checker.points() * checker.places_on(length_m, turn_rad, margin_m);
+        checker
+            .is_arc_clear(place, length_m, turn_rad, margin_m)
+            .then(|| (number, place.after(length_m, turn_rad)))
     })
 }

@@ -6,10 +6,15 @@ use crate::drive::collision::CollisionChecker;
 use crate::drive::hull::Place;
 use crate::drive::lane::Lane;
 use crate::drive::roll_out::{RollOut, roll_out};
+use crate::geometry::Point;
 use crate::math;
 
 /// Greatest angle to the field's heading at the end, radians.
 const ALIGNED_RAD: f32 = 0.2;
+/// Least distance from the start of a place where the robot turns to the heading by a larger angle,
+/// metres: nearer by there is hardly more room.
+const ELSEWHERE_M: f32 = 0.3;
+const START: Point = Point { x_m: 0.0, y_m: 0.0 };
 
 /// Least factor by which q grows from the start to the end of a recovery. In a passage as wide as
 /// the robot, q doubles in 0.1 m.
@@ -77,9 +82,17 @@ impl<'a, H: Fn(Place) -> Option<f32>> SearchQuery<'a, H> {
             error
         };
         if error.abs() >= ALIGNED_RAD {
-            return None;
+            let may_turn = !backwards && place.point().distance2(START) > ELSEWHERE_M * ELSEWHERE_M;
+            if !may_turn {
+                return None;
+            }
+            *points += self.checker.points();
+            if !self.checker.has_room_to_turn(place, margin_m) {
+                return None;
+            }
         }
-        let (motions, end) = roll_out(self, place, backwards, margin_m, points)?;
+        let is_far = |place| self.is_progress(place);
+        let (motions, end) = roll_out(self, (place, backwards), margin_m, points, is_far)?;
         self.is_progress(end).then_some(motions)
     }
 }

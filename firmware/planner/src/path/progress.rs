@@ -117,7 +117,7 @@ impl ProgressChecker {
         }
     }
 
-    /// Notes that the passage ahead of the robot was blocked.
+    /// Notes that a passage was blocked where the robot stands.
     pub(crate) const fn note_wedged(&mut self) {
         self.stood_passages = self.stood_passages.saturating_add(1);
     }
@@ -173,6 +173,7 @@ impl ProgressChecker {
         self.closed = false;
         if self.closed_rounds >= CLOSED_ROUNDS {
             self.closed_rounds = 0;
+            self.note_wedged();
             return Verdict::BlockUnreachable;
         }
         let reached = steps <= REACHED_STEPS;
@@ -180,12 +181,11 @@ impl ProgressChecker {
         // The goal may have changed meanwhile.
         if stood_ms > STANDING_MS {
             self.stood_ms = time_ms;
-            self.stood_passages += u8::from(!reached);
-            return if reached {
-                Verdict::Drop(ResidualReason::Unobservable)
-            } else {
-                Verdict::BlockAhead
-            };
+            if reached {
+                return Verdict::Drop(ResidualReason::Unobservable);
+            }
+            self.note_wedged();
+            return Verdict::BlockAhead;
         }
         let moves = stood_ms <= NO_PROGRESS_MS / 2;
         if reached && idle_ms.min(stood_ms) > LOOK_MS {
