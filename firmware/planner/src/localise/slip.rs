@@ -17,10 +17,10 @@
 //! odometry errs across a corridor, and then nothing holds the pose along it: the mean error of six
 //! runs in `ouroboros-a` with `papers` is 7.5 m instead of 0.5 m.
 //!
-//! A beam tells two predictions apart if its ends differ across their surface. So a wall along which
-//! the robot drives, and that is seen for the first time, speaks for none. Without an obstacle
-//! within a cell r is 1, also in unknown space: a beam that seems to end behind a wall contradicts
-//! it.
+//! A beam tells two predictions apart if its ends differ across their surface. So a wall along
+//! which the robot drives, and that is seen for the first time, speaks for none. Without an
+//! obstacle within a cell r is 1, also in unknown space: a beam that seems to end behind a wall
+//! contradicts it.
 //!
 //! Units: map cells, radians.
 
