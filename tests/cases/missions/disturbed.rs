@@ -255,16 +255,16 @@ fn after_faults_of_wheels_and_lasers_the_device_tracks_again() {
     let scenes = scenes(&office, &OTHERS, 0..2);
     let played = play(&scenes);
     golden::compare("disturbed.txt", &table(&played));
-    // Wheels that spin or stand deceive some robots (`known_red`). Their rows are in the table.
-    let deceives = |scene: &Scene<'_>| {
-        ["spin", "push"]
-            .iter()
-            .any(|it| scene.disturbances.starts_with(it))
-    };
-    let (deceived, others): (Vec<_>, Vec<_>) =
-        played.into_iter().partition(|(scene, _)| deceives(scene));
-    assert_eq!((deceived.len(), others.len()), (4, 4));
+    // A robot that is pushed while its wheels stand may touch something (`known_red`). It is not
+    // deceived either.
+    let is_pushed = |scene: &Scene<'_>| scene.disturbances.starts_with("push");
+    let (pushed, others): (Vec<_>, Vec<_>) =
+        played.into_iter().partition(|(scene, _)| is_pushed(scene));
+    assert_eq!((pushed.len(), others.len()), (2, 6));
     assert_faultless(&others, Outcome::faults);
+    for (scene, outcome) in &pushed {
+        assert_eq!(outcome.deceived_s(scene), 0.0, "seed {}", scene.seed);
+    }
 }
 
 /// A bare corridor of 60 × 2.4 m.
@@ -336,7 +336,7 @@ mod known_red {
     use super::*;
 
     #[test]
-    #[ignore = "of ten robots three are deceived by wheels that spin, six by wheels that stand"]
+    #[ignore = "of ten robots that are pushed one touches a wall, and one is 0.45 m wrong after it"]
     fn after_other_faults_with_ten_seeds_the_device_tracks_again() {
         let office = worlds::builtin("office");
         assert_faultless(&play(&scenes(&office, &OTHERS, 0..10)), Outcome::faults);

@@ -19,7 +19,7 @@ const SEEDS: core::ops::Range<u64> = 100..110;
 type Variant = (&'static str, Setting, &'static [(&'static str, f32)]);
 
 const CORRECTED: Setting = Setting::corrected(Noisy);
-const VARIANTS: [Variant; 9] = [
+const VARIANTS: [Variant; 10] = [
     ("181 beams", CORRECTED, &[]),
     ("91 beams", CORRECTED, &[("localise.beam_stride", 2.0)]),
     ("61 beams", CORRECTED, &[("localise.beam_stride", 3.0)]),
@@ -39,6 +39,11 @@ const VARIANTS: [Variant; 9] = [
         "wheels do not slip",
         CORRECTED,
         &[("localise.slip_gap", 1e9)],
+    ),
+    (
+        "no predictions for slips",
+        CORRECTED,
+        &[("localise.slip_price", 1e9)],
     ),
     ("odometry alone", Setting::uncorrected(Noisy), &[]),
 ];

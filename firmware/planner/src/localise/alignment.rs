@@ -86,14 +86,14 @@ pub(super) struct Agreement {
 }
 
 /// A pose in cells and radians, as a motion of points in metres.
-struct Frame {
+pub(super) struct Frame {
     place: (f32, f32),
     sin: f32,
     cos: f32,
 }
 
 impl Frame {
-    fn of([x, y, yaw]: [f32; 3]) -> Self {
+    pub(super) fn of([x, y, yaw]: [f32; 3]) -> Self {
         let (sin, cos) = math::sin_cos(yaw);
         Self {
             place: (x, y),
@@ -102,16 +102,23 @@ impl Frame {
         }
     }
 
-    fn turn(&self, (x, y): (f32, f32)) -> (f32, f32) {
+    pub(super) fn turn(&self, (x, y): (f32, f32)) -> (f32, f32) {
         (self.cos * x - self.sin * y, self.sin * x + self.cos * y)
     }
 
     /// Returns the arm from the robot to the point's end, and the end.
-    fn reach(&self, point: &ScanPoint) -> ((f32, f32), (f32, f32)) {
+    pub(super) fn reach(&self, point: &ScanPoint) -> ((f32, f32), (f32, f32)) {
         let (x, y) = self.turn((point.end.x_m, point.end.y_m));
         let arm = (x / CELL_M, y / CELL_M);
         (arm, (self.place.0 + arm.0, self.place.1 + arm.1))
     }
+}
+
+/// Returns the weight of a beam with the residual r.
+#[inline(always)]
+pub(super) fn weight(r: f32, tuning: &LocaliseTuning) -> f32 {
+    let scale = 1.0 / (tuning.robust_cells * tuning.robust_cells);
+    tuning.beam_information / (1.0 + r * r * scale)
 }
 
 /// Returns the constraints of a scan at a pose.
@@ -122,7 +129,6 @@ pub(super) fn constraints<const TILES: usize, const SLOTS: usize>(
     tuning: &LocaliseTuning,
 ) -> Constraints {
     let frame = Frame::of(pose);
-    let scale = 1.0 / (tuning.robust_cells * tuning.robust_cells);
     let mut sum = Constraints::default();
     for point in points {
         let (arm, end) = frame.reach(point);
@@ -138,7 +144,7 @@ pub(super) fn constraints<const TILES: usize, const SLOTS: usize>(
             }
         };
         let r = 1.0 - found.value;
-        let weight = tuning.beam_information / (1.0 + r * r * scale);
+        let weight = weight(r, tuning);
         let row = [gx, gy, gy * arm.0 - gx * arm.1];
         sum.h.add_outer(weight, row);
         for (b, j) in sum.b.iter_mut().zip(row) {

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! input ─► predict (odometry) ─► align (scan with the map's tiles) ─► fuse ─► map pose
+//!                                 └─► if wheels slipped: align from where they did not lead
 //! ```
 //!
 //! | file | holds |
@@ -10,6 +11,7 @@
 //! | `scan_points` | the beams' ends, and the surfaces that they lie on |
 //! | `occupancy` | the map as a field with a gradient |
 //! | `alignment` | Gauss–Newton, and directions that the scan does not observe |
+//! | `slip` | predictions for wheels that slip |
 //! | `search` | the wider search of a robot that is lost |
 //! | `symmetric` | 3 × 3 matrices, and eigenvalues of 2 × 2 |
 //!
@@ -29,12 +31,13 @@ mod occupancy;
 mod odometry;
 mod scan_points;
 mod search;
+mod slip;
 mod symmetric;
 #[cfg(test)]
 mod tests;
 
 use crate::config::{Config, LocaliseTuning};
-use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
+use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Point, Pose, RobotFrame};
 use crate::input::Input;
 use crate::map::{Map, Tiles};
 use crate::math;
@@ -42,6 +45,7 @@ use crate::robot::LaserMount;
 use alignment::{Aligned, Unobserved, align};
 use scan_points::ScanPoints;
 use search::Search;
+use slip::likelier;
 use symmetric::Symmetric;
 
 /// How well the robot knows where it is.
@@ -93,11 +97,23 @@ pub struct Location {
     pub quality: Quality,
 }
 
+/// The pose at the start.
+const ORIGIN: Pose = Pose {
+    x_m: 0.0,
+    y_m: 0.0,
+    z_m: 0.0,
+    roll_rad: 0.0,
+    pitch_rad: 0.0,
+    yaw_rad: 0.0,
+};
+
 /// The localiser's memory.
 #[derive(Debug)]
 pub struct Localiser {
-    /// The last odometry pose; `None` before the first step.
-    odom: Option<OdomPose>,
+    /// The last odometry pose.
+    odom: OdomPose,
+    /// True from the first step on. An `Option` of the pose would take a word more.
+    has_odom: bool,
     map_from_odom: MapFromOdom,
     /// Covariance of the pose in the map, metres and radians.
     covariance: Symmetric,
@@ -108,8 +124,49 @@ pub struct Localiser {
     contradicted: u8,
     /// Steps for which only a scan that refutes the place is doubted.
     trusted_steps: u8,
+    /// What the next step goes on from.
+    footing: Footing,
+}
+
+/// What a step goes on from.
+#[derive(Debug)]
+enum Footing {
+    /// The last step.
+    Moved(Motion),
     /// The search of a robot that is lost.
-    search: Search,
+    Lost(Search),
+}
+
+/// The motion of a step, in the robot's frame before it.
+#[derive(Clone, Copy, Debug)]
+struct Motion {
+    shift: Point,
+    turn_rad: f32,
+}
+
+impl Motion {
+    const NONE: Self = Self {
+        shift: Point { x_m: 0.0, y_m: 0.0 },
+        turn_rad: 0.0,
+    };
+
+    fn between(before: &Pose, after: &Pose) -> Self {
+        Self {
+            shift: before.to_robot(after.point()),
+            turn_rad: math::wrap(after.yaw_rad - before.yaw_rad),
+        }
+    }
+
+    /// Returns where the motion leads from a pose.
+    fn from(&self, before: &Pose) -> Pose {
+        let Point { x_m, y_m } = before.to_map(self.shift);
+        Pose {
+            x_m,
+            y_m,
+            yaw_rad: math::wrap(before.yaw_rad + self.turn_rad),
+            ..*before
+        }
+    }
 }
 
 impl Default for Localiser {
@@ -123,21 +180,22 @@ impl Localiser {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            odom: None,
+            odom: OdomPose(ORIGIN),
+            has_odom: false,
             map_from_odom: MapFromOdom::IDENTITY,
             covariance: Symmetric::ZERO,
             quality: Quality::Tracking,
             rise_m: 0.0,
             contradicted: 0,
             trusted_steps: 0,
-            search: Search::new(),
+            footing: Footing::Moved(Motion::NONE),
         }
     }
 
     /// Returns the last odometry pose.
     #[must_use]
     pub fn odom(&self) -> OdomPose {
-        self.odom.unwrap_or_default()
+        self.odom
     }
 
     /// Returns a pose of the odometry in the map, with the last correction.
@@ -168,7 +226,7 @@ impl Localiser {
     /// Returns true if the robot is lost and the search found no place.
     #[must_use]
     pub fn has_given_up(&self) -> bool {
-        self.is_lost() && self.search.is_over()
+        matches!(&self.footing, Footing::Lost(search) if search.is_over())
     }
 
     /// Returns the location after the last step.
@@ -191,28 +249,35 @@ impl Localiser {
     ) -> MapPose {
         let tiles = map.tiles();
         let odom = OdomPose(input.pose);
-        let last = self.odom.replace(odom);
+        let last = core::mem::replace(&mut self.odom, odom);
+        let last = if self.has_odom { last } else { odom };
+        self.has_odom = true;
         if !config.localise {
             return MapPose(input.pose);
         }
         let tuning = &config.tuning.localise;
+        let was_lost = self.is_lost();
+        let before = self.to_map(&last);
         let predicted = self.to_map(&odom);
         self.covariance = odometry::spread(
             &self.covariance,
-            (&last.unwrap_or(odom), &odom),
+            (&last, &odom),
             predicted.0.yaw_rad,
             tuning,
         );
         let lasers = config.lasers.iter().zip(input.scans);
         let level = lasers.filter(|(laser, _)| laser.is_level());
         let mut pose = match level.into_iter().next() {
-            Some(level) => self.correct(config, tiles, level, &predicted),
+            Some(level) => self.correct(config, tiles, level, (&before, &predicted)),
             None => {
                 self.quality = Quality::Degenerate(None);
                 predicted
             }
         };
         self.map_from_odom = MapFromOdom::between(&odom, &pose);
+        if let (Footing::Moved(motion), false) = (&mut self.footing, was_lost) {
+            *motion = Motion::between(&before.0, &pose.0);
+        }
         if config.ground.is_some() {
             self.settle(map, &mut pose.0, config.tuning.map.stand_radius_m);
         }
@@ -240,7 +305,7 @@ impl Localiser {
         config: &Config,
         tiles: &Tiles<TILES, SLOTS>,
         (laser, ranges_mm): (&LaserMount, &[u16]),
-        predicted: &MapPose,
+        (before, predicted): (&MapPose, &MapPose),
     ) -> MapPose {
         let is_uneven = config.ground.is_some();
         let tuning = &if is_uneven {
@@ -256,11 +321,25 @@ impl Localiser {
                 || point.normal.is_some()
                 || !tiles.has_lone_arrival(frame.to_map(point.end).cell())
         });
-        let prior = in_cells(&predicted.0);
         let Some(information) = to_cells(&self.covariance).inverse() else {
             return *predicted;
         };
-        let found = align(tiles, &points, (prior, &information), prior, tuning);
+        let prior = in_cells(&predicted.0);
+        let mut found = align(tiles, &points, (prior, &information), prior, tuning);
+        let mut predicted = *predicted;
+        // On uneven ground a slip is not followed: ground is often taken for walls there.
+        if let Footing::Moved(motion) = &self.footing
+            && !is_uneven
+        {
+            let slipped = [before.0, motion.from(&before.0)];
+            let others = slipped.map(|pose| in_cells(&pose));
+            let place = likelier(tiles, &points, found.pose, others, tuning);
+            if let Some((pose, prior)) = place.and_then(|at| slipped.get(at).zip(others.get(at))) {
+                predicted = MapPose(*pose);
+                found = align(tiles, &points, (*prior, &information), *prior, tuning);
+            }
+        }
+        let predicted = &predicted;
         self.trusted_steps = self.trusted_steps.saturating_sub(1);
         // A beam may end on ground that is free, so nothing contradicts the map there.
         let is_doubtful = if is_uneven {
@@ -281,7 +360,7 @@ impl Localiser {
         self.contradicted = self.contradicted.saturating_add(1);
         if self.contradicted >= tuning.lost_steps {
             self.quality = Quality::Lost;
-            self.search = Search::new();
+            self.footing = Footing::Lost(Search::new());
         }
         *predicted
     }
@@ -289,6 +368,9 @@ impl Localiser {
     /// Takes an alignment for the pose.
     fn accept(&mut self, found: &Aligned, predicted: &MapPose) -> MapPose {
         self.contradicted = 0;
+        if self.is_lost() {
+            self.footing = Footing::Moved(Motion::NONE);
+        }
         self.quality = match found.unobserved {
             Unobserved::Nothing => Quality::Tracking,
             Unobserved::Direction([x, y]) => Quality::Degenerate(Some(math::atan2(y, x))),
@@ -318,8 +400,12 @@ impl Localiser {
         tuning: &LocaliseTuning,
     ) -> MapPose {
         let odom = self.odom();
-        let was_near = self.search.is_near();
-        let candidate = self.search.advance(tiles, points, (&odom, predicted));
+        let Footing::Lost(search) = &mut self.footing else {
+            return *predicted;
+        };
+        let was_near = search.is_near();
+        let candidate = search.advance(tiles, points, (&odom, predicted));
+        let is_nowhere_near = was_near && !search.is_near();
         if let Some(candidate) = candidate {
             let start = in_cells(&candidate.apply(&odom).0);
             let wide = Symmetric::diagonal(WIDE_CELLS, WIDE_CELLS, WIDE_RAD).inverse();
@@ -334,7 +420,6 @@ impl Localiser {
                 return self.accept(&found, predicted);
             }
         }
-        let is_nowhere_near = was_near && !self.search.is_near();
         if is_nowhere_near && !here.agreement.is_refuted(tuning) {
             self.trusted_steps = tuning.trusted_steps;
             return self.accept(here, predicted);

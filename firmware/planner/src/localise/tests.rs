@@ -2,6 +2,8 @@
 //!
 //! The truth, the rays and the odometry are f64. The scan is exact to a millimetre.
 
+mod slips;
+
 use std::boxed::Box;
 use std::vec::Vec;
 

@@ -1,0 +1,91 @@
+//! Wheels that slip: the scan decides where a step took the robot.
+//!
+//! Gauss–Newton reaches a wall within a cell of a beam's end, and a step at full speed is longer.
+//! So a robot whose wheels spin on the spot, or that moves while they stand, needs a start that
+//! odometry does not give. Two more predictions take the last pose p and the last step δ:
+//!
+//! ```text
+//! odometry p₀ = p ⊕ (odom⁻¹ ⊕ odom′), aligned      it stood p₁ = p      it went on p₂ = p ⊕ δ
+//! gain = Σ w(r₀) r₀² − w(rₖ) rₖ²         over the beams that tell the two apart
+//! ```
+//!
+//! w and r are those of the alignment. A prediction is taken if its gain is the greatest and over
+//! `slip_price`, which is twice the logarithm of how seldom wheels slip. Without a slip standing
+//! gains about −100. If the robot does stand, it gains 6 to 20 in a corridor, more in a room.
+//!
+//! Odometry is aligned before it is compared. Without that the other two fit better wherever
+//! odometry errs across a corridor, and then nothing holds the pose along it: the mean error of six
+//! runs in `ouroboros-a` with `papers` is 7.5 m instead of 0.5 m.
+//!
+//! A beam tells two predictions apart if its ends differ across their surface. So a wall along
+//! which the robot drives, and that is seen for the first time, speaks for none. Without an
+//! obstacle within a cell r is 1, also in unknown space: a beam that seems to end behind a wall
+//! contradicts it.
+//!
+//! Units: map cells, radians.
+
+use crate::config::LocaliseTuning;
+use crate::localise::alignment::{Frame, weight};
+use crate::localise::occupancy::occupancy;
+use crate::localise::scan_points::ScanPoint;
+use crate::map::Tiles;
+
+/// Ends that differ less across their surface are the same, cells: the alignment reaches one from
+/// the other.
+const SAME_CELLS: f32 = 0.5;
+
+/// Returns the place of the prediction that the scan makes likelier than all others and than
+/// odometry's; `None` if odometry's is the likeliest.
+#[inline(never)]
+pub(super) fn likelier<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    points: &[ScanPoint],
+    odometry: [f32; 3],
+    others: [[f32; 3]; 2],
+    tuning: &LocaliseTuning,
+) -> Option<usize> {
+    let here = Frame::of(odometry);
+    let mut best = (tuning.slip_price, None);
+    for (place, other) in others.into_iter().enumerate() {
+        let there = Frame::of(other);
+        let gain: f32 = points
+            .iter()
+            .map(|point| gain(tiles, point, [&here, &there], tuning))
+            .sum();
+        if gain > best.0 {
+            best = (gain, Some(place));
+        }
+    }
+    best.1
+}
+
+/// Returns how much better a beam fits at the second pose; 0 if it does not tell.
+fn gain<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    point: &ScanPoint,
+    frames: [&Frame; 2],
+    tuning: &LocaliseTuning,
+) -> f32 {
+    let [from, to] = frames.map(|frame| frame.reach(point).1);
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let apart2 = match point.normal {
+        None => dx * dx + dy * dy,
+        Some(normal) => {
+            let (x, y) = frames[0].turn(normal);
+            (x * dx + y * dy) * (x * dx + y * dy)
+        }
+    };
+    if apart2 < SAME_CELLS * SAME_CELLS {
+        return 0.0;
+    }
+    let cost = |r: f32| weight(r, tuning) * r * r;
+    cost(residual(tiles, from)) - cost(residual(tiles, to))
+}
+
+/// Returns the residual of a beam that ends here.
+fn residual<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    end: (f32, f32),
+) -> f32 {
+    occupancy(tiles, end).map_or(1.0, |found| 1.0 - found.value)
+}
