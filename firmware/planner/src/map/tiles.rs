@@ -158,6 +158,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Returns the directory's entry of a tile.
+    #[inline(never)]
     pub(crate) fn entry(&self, tile_x: i32, tile_y: i32) -> Entry {
         let word = self.directory.get((tile_x, tile_y));
         word.map_or(Entry::Untouched, |&word| Entry::of(word))
@@ -232,6 +233,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Returns the class of a cell.
+    #[inline(never)]
     #[must_use]
     pub fn class(&self, cell: Cell) -> Class {
         let Some(planes) = self.planes(self.entry(cell.x >> 5, cell.y >> 5)) else {

@@ -34,10 +34,11 @@ struct Robot {
 impl Robot {
     fn new(id: u8) -> Self {
         let mut team = Team::new();
-        team.reset(Some(TeamPlace {
+        let place = TeamPlace {
             member: Member { id, boot: 0 },
             ..TeamPlace::default()
-        }));
+        };
+        team.reset(Some(place), false);
         let mut map = Box::<SmallMap>::default();
         map.reset();
         Self { team, map }
