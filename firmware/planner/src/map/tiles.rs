@@ -140,6 +140,13 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.keys().iter().map(|&key| self.directory.tile(key))
     }
 
+    /// Returns the planes of a tile, as a team's tile has them.
+    #[cfg(test)]
+    pub(crate) fn planes_of(&self, tile_x: i32, tile_y: i32) -> Option<[[u32; 32]; 2]> {
+        let planes = self.planes(self.entry(tile_x, tile_y))?;
+        Some(planes.map(|plane| *plane))
+    }
+
     /// Returns true if a cell was ever stored in this tile.
     pub(crate) fn is_touched(&self, tile_x: i32, tile_y: i32) -> bool {
         self.entry(tile_x, tile_y) != Entry::Untouched

@@ -190,3 +190,91 @@ fn groups(tile: i32, (slant, shift): (f32, f32), goes_up: bool) -> Vec<(i32, u32
     }
     groups
 }
+
+#[cfg(test)]
+mod tests {
+    use std::boxed::Box;
+    use std::vec::Vec;
+
+    use super::*;
+    use crate::grid::Class;
+
+    type Plan = Map<64, 128>;
+
+    fn is_room(x: i32, y: i32) -> bool {
+        (-40..50).contains(&x) && (-20..60).contains(&y)
+    }
+
+    fn is_wall(x: i32, y: i32) -> bool {
+        is_room(x, y) && (x == -40 || x == 49 || y == -20 || y == 59 || (x == 7 && y > 3))
+    }
+
+    /// A room of 9 × 8 m with a wall in it.
+    fn room() -> Box<Plan> {
+        let mut map = Box::new(Plan::new());
+        map.reset();
+        for (x, y) in (-64..64).flat_map(|x| (-64..64).map(move |y| (x, y))) {
+            if is_room(x, y) {
+                let wall = is_wall(x, y);
+                let class = if wall { Class::Obstacle } else { Class::Free };
+                map.tiles.set(Cell { x, y }, class).expect("room");
+            }
+        }
+        map
+    }
+
+    fn cells(map: &Plan, class: Class) -> Vec<Cell> {
+        let all = (-160..160).flat_map(|x| (-160..160).map(move |y| Cell { x, y }));
+        all.filter(|cell| map.class(*cell) == class).collect()
+    }
+
+    #[test]
+    fn every_cell_goes_to_one_place_near_where_the_motion_takes_it() {
+        for (x_m, y_m, degrees) in [
+            (0.0, 0.0, 0.0_f32),
+            (0.43, -0.26, 0.0),
+            (-3.31, 5.08, 9.0),
+            (0.7, 0.2, -14.0),
+            (0.1, 0.1, 40.0),
+        ] {
+            let motion = MapFromOdom {
+                x_m,
+                y_m,
+                yaw_rad: degrees.to_radians(),
+            };
+            let mut map = room();
+            let before = [Class::Free, Class::Obstacle].map(|class| cells(&map, class));
+            map.turn(&motion, Cell::default());
+            assert!(!map.pool_full());
+            for (class, before) in [Class::Free, Class::Obstacle].into_iter().zip(before) {
+                let after = cells(&map, class);
+                assert_eq!(after.len(), before.len(), "{motion:?}");
+                let back = motion.inverse();
+                for cell in after {
+                    let from = back.point(cell.centre());
+                    let nearest = before.iter().map(|it| it.centre().distance_m(from));
+                    let nearest_m = nearest.fold(f32::INFINITY, f32::min);
+                    assert!(nearest_m < 1.2 * CELL_M, "{motion:?} {cell:?} {nearest_m}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_map_without_room_says_so() {
+        let mut map = Box::new(Map::<2, 24>::new());
+        map.reset();
+        for x in 0..64 {
+            map.tiles
+                .set(Cell { x, y: 3 }, Class::Obstacle)
+                .expect("room");
+        }
+        let motion = MapFromOdom {
+            x_m: 1.0,
+            y_m: 0.0,
+            yaw_rad: 0.0,
+        };
+        map.turn(&motion, Cell::default());
+        assert!(map.pool_full());
+    }
+}

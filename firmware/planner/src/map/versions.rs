@@ -152,7 +152,7 @@ impl<const TILES: usize> Versions<TILES> {
 mod tests {
     use std::vec::Vec;
 
-    use super::Versions;
+    use super::{MEASURED, Versions};
 
     /// Returns the sweeps after which a page is due that changes before these sweeps.
     fn due(changes: &[usize]) -> Vec<usize> {
@@ -184,18 +184,19 @@ mod tests {
     #[test]
     fn only_a_class_that_went_down_raises_the_epoch_and_only_once() {
         let mut versions = Versions::<1>::new();
+        versions.begin(0);
         versions.news_mut(0).unwrap().note(0, 2);
         versions.settle(0);
         versions.said(0);
-        assert_eq!(versions.epoch(0), 0);
+        assert_eq!(versions.epoch(0), MEASURED);
         versions.news_mut(0).unwrap().note(2, 1);
         versions.news_mut(0).unwrap().note(2, 1);
         versions.sweep();
         versions.settle(0);
         versions.said(0);
-        assert_eq!(versions.epoch(0), 1);
+        assert_eq!(versions.epoch(0), MEASURED + 1);
         versions.settle(0);
         versions.said(0);
-        assert_eq!(versions.epoch(0), 1);
+        assert_eq!(versions.epoch(0), MEASURED + 1);
     }
 }

@@ -278,3 +278,81 @@ fn shift(from: Point, to: Point) -> Point {
         y_m: to.y_m - from.y_m,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame() -> OwnFrame {
+        OwnFrame::at(&TeamPlace {
+            sd_m: 0.3,
+            sd_rad: 0.1,
+            ..TeamPlace::default()
+        })
+    }
+
+    fn at(x_m: f32, y_m: f32) -> Pose {
+        Pose {
+            x_m,
+            y_m,
+            ..Pose::default()
+        }
+    }
+
+    #[test]
+    fn a_known_start_says_and_hears_as_it_is() {
+        let frame = OwnFrame::at(&TeamPlace::default());
+        let beacon = Beacon::default().at(&at(3.0, 4.0));
+        assert_eq!(frame.said(beacon.clone(), Point::default()), beacon);
+        assert_eq!(frame.heard(&beacon, Point::default()), beacon);
+    }
+
+    #[test]
+    fn a_place_far_from_the_start_is_known_less() {
+        let mut frame = frame();
+        frame.follow(&at(0.0, 0.0), &at(20.0, 10.0));
+        let start = Point {
+            x_m: 20.0,
+            y_m: 10.0,
+        };
+        let far = Point { x_m: 24.0, ..start };
+        assert!((frame.sd_m(start, start) - 0.3).abs() < 1e-6);
+        assert!((frame.sd_m(start, far) - 0.5).abs() < 1e-3);
+        // The robot drives there; the place of the start is known as before.
+        frame.follow(&at(20.0, 10.0), &at(24.0, 10.0));
+        assert!((frame.sd_m(far, far) - 0.5).abs() < 1e-3);
+        assert!((frame.sd_m(far, start) - 0.3).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_correction_moves_what_is_said_and_heard() {
+        let mut frame = frame();
+        let robot = at(5.0, 2.0);
+        frame.follow(&robot, &robot);
+        let corrected = Pose {
+            yaw_rad: 0.1,
+            ..at(5.2, 2.1)
+        };
+        frame.correct(&robot, &corrected, Symmetric::diagonal(1e-4, 1e-4, 1e-5));
+        // The robot is where it was in the team's coordinates, if it is at the corrected pose here.
+        let said = frame.said(Beacon::default().at(&corrected), corrected.point());
+        assert_eq!((said.position_cm, said.sd_cm), ((500, 200), 20));
+        assert!(said.yaw_rad.abs() < 1e-5);
+        let heard = frame.heard(&said, corrected.point());
+        assert!(heard.point().distance_m(corrected.point()) < 0.01);
+        assert!((heard.yaw_rad - 0.1).abs() < 1e-5);
+    }
+
+    #[test]
+    fn only_a_certain_motion_that_samples_confirm_is_taken() {
+        let mut frame = frame();
+        frame.agreed = AGREED_SAMPLES;
+        assert!(frame.take_certain().is_none(), "not certain");
+        frame.covariance = Symmetric::diagonal(1e-4, 1e-4, 1e-5);
+        frame.agreed = AGREED_SAMPLES - 1;
+        assert!(frame.take_certain().is_none(), "not confirmed");
+        frame.agreed = AGREED_SAMPLES;
+        assert!(frame.take_certain().is_some() && !frame.is_own());
+        assert!(frame.take_certain().is_none(), "only once");
+    }
+}

@@ -253,3 +253,68 @@ impl Team {
         (ends.len() >= LEAST_BEAMS).then_some((sighting, ends))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A hull of 0.5 × 0.5 m.
+    fn sighting(at: Pose) -> Sighting {
+        Sighting {
+            laser: Point::default(),
+            sides: Sides {
+                half_length_m: 0.25,
+                half_width_m: 0.25,
+            },
+            at: OdomPose(at),
+        }
+    }
+
+    /// Ends of beams on the near and the left face of a hull that is at a place.
+    fn ends(at: &Pose) -> Ends {
+        let near = (0..12).map(|k| (-0.25, -0.25 + k as f32 * 0.045));
+        let left = (0..6).map(|k| (-0.25 + k as f32 * 0.09, 0.25));
+        let place = |(x_m, y_m)| at.to_map(Point { x_m, y_m });
+        near.chain(left).map(place).collect()
+    }
+
+    const PRIOR: Symmetric = Symmetric {
+        xx: 0.09,
+        yy: 0.09,
+        tt: 0.0076,
+        ..Symmetric::ZERO
+    };
+
+    fn at(x_m: f32, y_m: f32, yaw_rad: f32) -> Pose {
+        Pose {
+            x_m,
+            y_m,
+            yaw_rad,
+            ..Pose::default()
+        }
+    }
+
+    #[test]
+    fn the_hull_is_found_a_quarter_metre_off() {
+        let told = at(2.0, -1.0, 0.3);
+        let truly = at(2.2, -0.85, 0.3);
+        let robot = Pose::default();
+        let found = sighting(told).fit(&ends(&truly), &robot, &PRIOR);
+        let (pose, covariance) = found.expect("in sight");
+        let MapPose(hull) = MapFromOdom::of(&pose).apply(&OdomPose(told));
+        assert!(hull.point().distance_m(truly.point()) < 0.03, "{hull:?}");
+        assert!(covariance.xx < 0.3 * PRIOR.xx && covariance.tt < PRIOR.tt);
+    }
+
+    #[test]
+    fn a_wall_is_no_hull() {
+        let wall: Ends = (0..24)
+            .map(|k| Point {
+                x_m: 1.9,
+                y_m: -1.5 + k as f32 * 0.08,
+            })
+            .collect();
+        let found = sighting(at(2.0, -1.0, 0.3)).fit(&wall, &Pose::default(), &PRIOR);
+        assert!(found.is_none(), "{found:?}");
+    }
+}
