@@ -327,12 +327,14 @@ mod tests {
         let is_pillar = |px: f32, py: f32| (x - px).abs() < 0.2 && (y - py).abs() < 0.3;
         if !(-0.1..6.1).contains(&x) || !(-0.1..5.1).contains(&y) {
             Class::Unknown
-        } else if !(0.0..6.0).contains(&x) || !(0.0..5.0).contains(&y) {
-            Class::Obstacle
-        } else if is_pillar(1.5, 3.6) || is_pillar(4.4, 1.2) {
-            Class::Obstacle
-        } else {
+        } else if (0.0..6.0).contains(&x)
+            && (0.0..5.0).contains(&y)
+            && !is_pillar(1.5, 3.6)
+            && !is_pillar(4.4, 1.2)
+        {
             Class::Free
+        } else {
+            Class::Obstacle
         }
     }
 
@@ -359,7 +361,7 @@ mod tests {
             let [low, high] = other.planes_of(column, row).expect("touched");
             let is_floor = |cell: Cell| own.class(back.point(cell.centre()).cell()) == Class::Free;
             add_tile((column, row), &[low, high], is_floor, |word| {
-                words.push(word)
+                words.push(word);
             });
         }
         words.truncate(MOST_CELLS);
