@@ -143,6 +143,8 @@ fn the_largest_messages_fit_and_fill_their_frames() {
             },
             origin: (farthest, farthest),
             yaw: farthest,
+            sd_mm: u16::MAX,
+            sd_mrad: u16::MAX,
         }),
         localise: true,
         survey: true,

@@ -9,8 +9,8 @@ use core::ops::Range;
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::report::TeamReport;
-use host_sim::trial::mission::Mission;
-use host_sim::trial::team::{Appointment, TeamMission, TeamRecord, Timetable, explore};
+use host_sim::trial::mission::{Mission, OdometryProfile};
+use host_sim::trial::team::{Appointment, StartError, TeamMission, TeamRecord, Timetable, explore};
 use host_sim::world::World;
 
 use crate::digests::Digest;
@@ -36,6 +36,10 @@ pub struct TeamRun<'a> {
     pub leave: &'a [&'a str],
     /// Who joins again.
     pub join: &'a [&'a str],
+    /// Errors of the odometry; the device corrects what drifts.
+    pub odometry: OdometryProfile,
+    /// Errors of the starts that the robots are told, as on the command line; empty for none.
+    pub start_error: &'a str,
     /// Seed of the noise.
     pub seed: u64,
 }
@@ -52,6 +56,8 @@ impl<'a> TeamRun<'a> {
             radio: "loss=0",
             leave: &[],
             join: &[],
+            odometry: OdometryProfile::Truth,
+            start_error: "",
             seed: 0,
         }
     }
@@ -84,9 +90,16 @@ impl<'a> TeamRun<'a> {
         let mission = Mission {
             strategy: self.strategy.into(),
             seed: self.seed,
+            odometry: self.odometry,
+            localise: self.odometry != OdometryProfile::Truth,
             ..Mission::default()
         };
+        let start_error = match self.start_error {
+            "" => StartError::default(),
+            error => error.parse().expect("two numbers"),
+        };
         let team = TeamMission {
+            start_error,
             apart: self.apart,
             radio: self.radio.parse().expect("a radio"),
             timetable: Timetable {
@@ -112,6 +125,12 @@ impl<'a> TeamRun<'a> {
         ];
         words.extend(self.leave.iter().map(|it| format!("leave={it}")));
         words.extend(self.join.iter().map(|it| format!("join={it}")));
+        if self.odometry != OdometryProfile::Truth {
+            words.push(self.odometry.name().into());
+        }
+        if !self.start_error.is_empty() {
+            words.push(format!("start={}", self.start_error.replace(',', "/")));
+        }
         if self.strategy != "frontier" {
             words.push(self.strategy.into());
         }
@@ -265,6 +284,60 @@ pub fn dropouts(runs: &[TeamRun<'_>], ended: &[(TeamReport, TeamRecord)]) -> Tab
                 mean(&of(|it| it.radio.traffic.sent_bytes as f64 / 1e3))
             ),
             sum(&of(|it| it.radio.traffic.lost as f64)),
+        ]);
+    }
+    table
+}
+
+/// Makes a table with one line for each run of robots whose odometry drifts.
+///
+/// *Met* is when the map of each robot came to lie in the team's coordinates. *Apart* is the error
+/// of the motion between two maps after that, in the median and at most, over all pairs and steps.
+#[must_use]
+pub fn alignment(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
+    let mut table = Table::new(
+        3,
+        &[
+            "world",
+            "team",
+            "ended",
+            "seed",
+            "known %",
+            "T99 s",
+            "end s",
+            "met s",
+            "apart m",
+            "at most",
+            "apart deg",
+            "at most",
+            "hits",
+            "contacts",
+            "equal maps",
+        ],
+    );
+    for (run, report) in runs.iter().zip(reports) {
+        let whole = &report.whole;
+        let apart = report.team.agreement;
+        let met: Vec<String> = report.robots.iter().map(|it| number(it.met_s, 0)).collect();
+        table.row(vec![
+            whole.world.clone(),
+            run.settings(),
+            format!("{}({})", whole.outcome.status, whole.outcome.reason),
+            whole.seed.to_string(),
+            format!("{:.2}", whole.coverage.fraction * 100.0),
+            number(whole.coverage.t99_s, 1),
+            format!("{:.1}", whole.sim_time_s),
+            met.join("/"),
+            number(apart.map(|it| it.median_m), 2),
+            number(apart.map(|it| it.max_m), 2),
+            number(apart.map(|it| it.median_deg), 2),
+            number(apart.map(|it| it.max_deg), 2),
+            whole.safety.collisions.to_string(),
+            whole.safety.robot_contacts.unwrap_or(0).to_string(),
+            report
+                .team
+                .maps_equal
+                .map_or("-".into(), |it| it.to_string()),
         ]);
     }
     table

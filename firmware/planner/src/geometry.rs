@@ -85,6 +85,7 @@ pub struct Cell {
 
 impl Point {
     /// Returns the map cell that holds this point.
+    #[inline(never)]
     #[must_use]
     pub fn cell(self) -> Cell {
         Cell {
@@ -148,6 +149,7 @@ impl MapFromOdom {
     }
 
     /// Returns the motion that takes one pose to the other.
+    #[inline(never)]
     #[must_use]
     pub fn between(odom: &OdomPose, map: &MapPose) -> Self {
         let yaw_rad = math::wrap(map.0.yaw_rad - odom.0.yaw_rad);
@@ -163,7 +165,49 @@ impl MapFromOdom {
         }
     }
 
+    /// Returns the motion back.
+    #[must_use]
+    pub(crate) fn inverse(&self) -> Self {
+        let turn = Self {
+            yaw_rad: -self.yaw_rad,
+            ..Self::IDENTITY
+        };
+        let Point { x_m, y_m } = turn.point(Point {
+            x_m: self.x_m,
+            y_m: self.y_m,
+        });
+        Self {
+            x_m: -x_m,
+            y_m: -y_m,
+            ..turn
+        }
+    }
+
+    /// Returns the motion that makes `first` and then this one.
+    #[must_use]
+    pub(crate) fn after(&self, first: &Self) -> Self {
+        let MapPose(origin) = self.apply(&OdomPose(Pose {
+            x_m: first.x_m,
+            y_m: first.y_m,
+            yaw_rad: first.yaw_rad,
+            ..Pose::default()
+        }));
+        Self::of(&origin)
+    }
+
+    /// Returns where the motion takes a point.
+    #[must_use]
+    pub(crate) fn point(&self, Point { x_m, y_m }: Point) -> Point {
+        let at = Pose {
+            x_m,
+            y_m,
+            ..Pose::default()
+        };
+        self.apply(&OdomPose(at)).0.point()
+    }
+
     /// Returns the pose in the map's frame. Height, roll and pitch stay.
+    #[inline(never)]
     #[must_use]
     pub fn apply(&self, odom: &OdomPose) -> MapPose {
         let (sin, cos) = math::sin_cos(self.yaw_rad);
@@ -187,6 +231,7 @@ pub struct RobotFrame {
 
 impl RobotFrame {
     /// Returns the frame of a robot at `pose`.
+    #[inline(never)]
     #[must_use]
     pub fn of(pose: &Pose) -> Self {
         let (sin, cos) = math::sin_cos(pose.yaw_rad);
@@ -287,6 +332,21 @@ mod tests {
         assert!((found.yaw_rad + 2.5).abs() < 1e-5 && found.z_m == 0.5);
         let same = MapFromOdom::default().apply(&odom).0;
         assert_eq!(same, odom.0);
+    }
+
+    #[test]
+    fn motions_are_chained_and_undone() {
+        let motion = |x_m, y_m, yaw_rad| MapFromOdom { x_m, y_m, yaw_rad };
+        let (first, second) = (motion(3.0, -1.0, 0.5), motion(-7.0, 2.0, -2.9));
+        let place = Point {
+            x_m: 12.0,
+            y_m: -20.0,
+        };
+        let chained = second.after(&first).point(place);
+        let expected = second.point(first.point(place));
+        assert!(chained.distance_m(expected) < 1e-4, "{chained:?}");
+        let back = first.inverse().point(first.point(place));
+        assert!(back.distance_m(place) < 1e-4, "{back:?}");
     }
 
     #[test]

@@ -42,6 +42,7 @@ pub fn powf(x: f32, y: f32) -> f32 {
 }
 
 /// Returns the equal angle in [−π, π], for |angle| up to a few hundred turns.
+#[inline(never)]
 #[must_use]
 pub fn wrap(angle: f32) -> f32 {
     let turns = floor(angle / (2.0 * PI) + 0.5);
@@ -50,7 +51,9 @@ pub fn wrap(angle: f32) -> f32 {
 
 /// Returns sine and cosine of an angle. Both errors are below 1e-7 for |angle| ≤ 8π.
 ///
-/// It reduces the angle to ±π/4 and evaluates polynomials of degree 7 and 8.
+/// It reduces the angle to ±π/4 and evaluates polynomials of degree 7 and 8. Not inlined: it is
+/// called from many places, and a copy in each of them takes flash.
+#[inline(never)]
 #[must_use]
 pub fn sin_cos(angle: f32) -> (f32, f32) {
     let quarter = floor(angle * (2.0 / PI) + 0.5);

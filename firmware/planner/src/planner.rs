@@ -123,7 +123,13 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     let MapPose(corrected) = state.localiser.to_map(&OdomPose(pose));
     let motion = (&corrected, input.velocity);
     state.team.begin_step(input.time_ms, motion, &mut state.map);
-    let output = explore(config, state, workspace, input, timer);
+    let output = match state.team.take_motion(&mut state.map) {
+        Some(motion) => {
+            state.move_into_team(config, &motion);
+            Output::standing(state.status)
+        }
+        None => explore(config, state, workspace, input, timer),
+    };
     state.drive.tell(output.velocity);
     Output {
         forgot_arrivals: core::mem::take(&mut state.forgot_arrivals),
@@ -144,6 +150,9 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     }
     let MapPose(pose) = state.localiser.locate(config, &state.map, &input);
     let input = Input { pose, ..input };
+    if state.team.has_own_frame() {
+        state.team.sight(config, state.map.tiles(), &input);
+    }
     let peers = state.team.peers();
     if peers.may_be_seen(input.time_ms, &input.pose, &config.lasers) {
         sight::sense_without_peers(config, state, &input);

@@ -13,7 +13,7 @@ use host_sim::report::tum::Stamped;
 use host_sim::report::{TeamReport, folder};
 use host_sim::trial::mission::on_device;
 use host_sim::trial::team::{
-    Appointment, TeamError, TeamMission, TeamRecord, Timetable, explore, starts,
+    Appointment, StartError, TeamError, TeamMission, TeamRecord, Timetable, explore, starts,
 };
 use host_sim::world::World;
 
@@ -96,6 +96,10 @@ pub(super) struct TeamArgs {
     /// Source of the pose that the planners are told
     #[arg(long, value_enum, default_value_t = OdometryArg::Truth)]
     odometry: OdometryArg,
+    /// Standard deviations of the starts that all robots but the first are told, metres and degrees,
+    /// as in 0.3,5 [default: the starts are known]
+    #[arg(long, value_name = "M,DEG")]
+    start_error: Option<StartError>,
     /// Simulated seconds after which the run ends
     #[arg(
         long,
@@ -138,6 +142,7 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
         links: links.iter().map(ToString::to_string).collect(),
         apart: args.apart,
         places: None,
+        start_error: args.start_error.unwrap_or_default(),
         radio: radio(args)?,
         timetable: Timetable {
             leave: args.leave.clone(),

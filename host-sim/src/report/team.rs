@@ -38,6 +38,25 @@ pub struct Team {
     /// True if the maps of all robots that are in the team at the end are equal, cell for cell;
     /// `null` if they do not talk.
     pub maps_equal: Option<bool>,
+    /// Standard deviations of the starts that all robots but the first were told: metres, degrees;
+    /// `null` if they were right.
+    pub start_error: Option<[f64; 2]>,
+    /// How well the robots' maps agree once their robots have met; `null` without a correction of
+    /// odometry, and if none met another.
+    pub agreement: Option<Agreement>,
+}
+
+/// The error of the motion between the maps of two robots, over all pairs and steps after they met.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Agreement {
+    /// Median of the distance, metres, at the place of the robot with the greater number.
+    pub median_m: f64,
+    /// Greatest distance.
+    pub max_m: f64,
+    /// Median of the angle, degrees.
+    pub median_deg: f64,
+    /// Greatest angle.
+    pub max_deg: f64,
 }
 
 /// The radio of a team.
@@ -68,6 +87,9 @@ pub struct Robot {
     /// Share of the explorable ground on its own map at the end, what it heard included; `null` if
     /// the map could not be read.
     pub map_fraction: Option<f64>,
+    /// Seconds after which its map lay in the team's coordinates; `null` if it never did, and
+    /// without talking.
+    pub met_s: Option<f64>,
     /// Its own report: what it measured, drove and touched itself.
     #[serde(flatten)]
     pub report: Report,
@@ -134,6 +156,13 @@ impl TeamReport {
             ),
             rest.to_owned(),
         ];
+        if let Some(agreement) = &self.team.agreement {
+            lines.push(format!(
+                "  maps      {:.2} m and {:.1}° from each other in the median, {:.2} m and {:.1}° at \
+                 most",
+                agreement.median_m, agreement.median_deg, agreement.max_m, agreement.max_deg,
+            ));
+        }
         for robot in &self.robots {
             let left = match robot.report.outcome.status.as_str() {
                 "finished" => robot.report.outcome.reason.clone(),

@@ -36,6 +36,8 @@ pub enum Source {
     Missing = 11,
     /// Places, goals and speeds of people.
     People = 12,
+    /// Errors of the starts that a team's robots are told.
+    Start = 13,
 }
 
 /// One stream.

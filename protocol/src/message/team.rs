@@ -53,6 +53,10 @@ pub struct Team {
     pub origin: (I16F16, I16F16),
     /// Its yaw, radians.
     pub yaw: I16F16,
+    /// Standard deviation of the robot's start along each axis, millimetres; 0 if it is known.
+    pub sd_mm: u16,
+    /// Standard deviation of its yaw at the start, milliradians; 0 if it is known.
+    pub sd_mrad: u16,
 }
 
 /// What a robot of a team does.

@@ -127,6 +127,8 @@ fn request_control_start() {
                 member: Member { id: 2, boot: 128 },
                 origin: (long(1.0), long(-0.5)),
                 yaw: long(0.0),
+                sd_mm: 300,
+                sd_mrad: 87,
             }),
             localise: true,
             survey: false,
@@ -160,8 +162,9 @@ fn request_control_start() {
             1, 2, 0x80, 0x01, // a team's robot 2, boot 128
             0x80, 0x80, 0x08, 0xff, 0xff, 0x03,
             0, // odometry from (1 m, −0.5 m), not turned
-            1, // localise
-            0, // survey
+            0xac, 0x02, 87, // within 300 mm and 87 mrad
+            1,  // localise
+            0,  // survey
         ],
     );
 }

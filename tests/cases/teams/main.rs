@@ -1,6 +1,7 @@
 //! Whole explorations by teams: the radio, leaving and joining, and how much faster a team is.
 
 mod claims;
+mod drift;
 mod dropout;
 mod full;
 mod meetings;

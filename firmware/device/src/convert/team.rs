@@ -20,6 +20,8 @@ pub(super) fn place(team: &wire::Team) -> TeamPlace {
             yaw_rad: float(team.yaw),
             ..Pose::default()
         },
+        sd_m: f32::from(team.sd_mm) * 1e-3,
+        sd_rad: f32::from(team.sd_mrad) * 1e-3,
     }
 }
 

@@ -240,6 +240,8 @@ fn in_team() -> (Pilot, Bench) {
         member: Member { id: 1, boot: 4 },
         origin: (I16F16::lit("2"), I16F16::lit("-1")),
         yaw: I16F16::lit("1.570796"),
+        sd_mm: 0,
+        sd_mrad: 0,
     };
     let start = Start {
         team: Some(team),

@@ -24,6 +24,9 @@ pub struct Member {
 ///     .team(TeamPlace {
 ///         member: Member { id: 2, boot: 0 },
 ///         map_from_odom: Pose { x_m: 2.0, ..Pose::default() },
+///         // It was put there by hand.
+///         sd_m: 0.3,
+///         sd_rad: 0.09,
 ///     })
 ///     .build()?;
 /// # Ok::<(), fieldline_planner::ConfigError>(())
@@ -34,4 +37,10 @@ pub struct TeamPlace {
     pub member: Member,
     /// The pose of the odometry's origin in the team's coordinates; only x, y and yaw count.
     pub map_from_odom: Pose,
+    /// Standard deviation of the robot's start along each axis, metres; 0 if the start is known.
+    /// With both deviations above 0 the robot keeps its own map until it knows how the map lies in
+    /// the team's coordinates. For flat ground; on uneven ground the start counts as known.
+    pub sd_m: f32,
+    /// Standard deviation of its yaw at the start, radians; 0 if it is known.
+    pub sd_rad: f32,
 }

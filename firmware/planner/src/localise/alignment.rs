@@ -83,6 +83,8 @@ pub(super) struct Agreement {
     beams: u16,
     /// Those of them that ended within a cell of an obstacle.
     close: u16,
+    /// Beams that ended within a cell of an obstacle, on a surface or not.
+    near: u16,
 }
 
 /// A pose in cells and radians, as a motion of points in metres.
@@ -172,6 +174,7 @@ impl Agreement {
             let square = tiles.obstacles_from::<5>(cell.offset(-2, -2));
             let agrees = u16::from(square != 0);
             let contradicts = u16::from(square == 0 && tiles.class(cell) == Class::Free);
+            sum.near += u16::from(square & INNER != 0);
             sum.all.agreeing += agrees;
             sum.all.contradicting += contradicts;
             if point.normal.is_some() {
@@ -199,6 +202,12 @@ impl Agreement {
     pub(super) fn is_refuted(&self, tuning: &LocaliseTuning) -> bool {
         let least = tuning.least_counted;
         self.surfaces.contradicts(0.5, least) || self.all.contradicts(0.75, least)
+    }
+
+    /// Returns the number of beams that ended within a cell of an obstacle, and of those that ended
+    /// on ground that the map knows.
+    pub(super) const fn counts(&self) -> (u16, u16) {
+        (self.near, self.all.agreeing + self.all.contradicting)
     }
 
     /// Returns true if the scan agrees with the map here and much better than elsewhere.

@@ -13,6 +13,7 @@
 //! | `alignment` | Gauss–Newton, and directions that the scan does not observe |
 //! | `slip` | predictions for wheels that slip |
 //! | `search` | the wider search of a robot that is lost |
+//! | `overlap` | how a tile of another map lies in this one |
 //! | `symmetric` | 3 × 3 matrices, and eigenvalues of 2 × 2 |
 //!
 //! The state is the motion [`MapFromOdom`] and its covariance. Without localisation the motion is
@@ -29,6 +30,7 @@
 mod alignment;
 mod occupancy;
 mod odometry;
+mod overlap;
 mod scan_points;
 mod search;
 mod slip;
@@ -43,10 +45,12 @@ use crate::map::{Map, Tiles};
 use crate::math;
 use crate::robot::LaserMount;
 use alignment::{Aligned, Unobserved, align};
+pub(crate) use odometry::carry;
+pub(crate) use overlap::{MOST_CELLS, Overlap, add_tile, is_of_tile, overlap, sd_m};
 use scan_points::ScanPoints;
 use search::Search;
 use slip::likelier;
-use symmetric::Symmetric;
+pub(crate) use symmetric::Symmetric;
 
 /// How well the robot knows where it is.
 ///
@@ -240,6 +244,12 @@ impl Localiser {
         }
     }
 
+    /// Moves the pose with the map. `covariance` is that of the motion, about the robot.
+    pub(crate) fn move_map(&mut self, motion: &MapFromOdom, covariance: &Symmetric) {
+        self.map_from_odom = motion.after(&self.map_from_odom);
+        self.covariance = self.covariance + *covariance;
+    }
+
     /// Takes odometry and scans of a step. Returns the pose in the map.
     pub fn locate<const TILES: usize, const SLOTS: usize>(
         &mut self,
@@ -253,7 +263,7 @@ impl Localiser {
         let last = if self.has_odom { last } else { odom };
         self.has_odom = true;
         if !config.localise {
-            return MapPose(input.pose);
+            return self.to_map(&odom);
         }
         let tuning = &config.tuning.localise;
         let was_lost = self.is_lost();

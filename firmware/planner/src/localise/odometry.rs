@@ -49,7 +49,7 @@ pub(super) fn spread(
 }
 
 /// Returns `F P Fᵀ` of a shift in the map: an error of the yaw turns the shift.
-fn carry(p: &Symmetric, shift: Point) -> Symmetric {
+pub(crate) fn carry(p: &Symmetric, shift: Point) -> Symmetric {
     let (a, b) = (-shift.y_m, shift.x_m);
     Symmetric {
         xx: p.xx + 2.0 * a * p.xt + a * a * p.tt,

@@ -153,6 +153,47 @@ impl Search {
     }
 }
 
+/// The best of all shifts of a pose.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Peak {
+    /// Beams that end on obstacles there.
+    pub(super) hits: u32,
+    /// The same for the best shift that is more than [`APART`] cells away.
+    pub(super) second: u32,
+    /// The shift, cells.
+    pub(super) shift: (i32, i32),
+}
+
+/// Shifts farther apart are two places, cells.
+pub(super) const APART: i32 = 3;
+
+/// Returns the best of all shifts of a pose.
+pub(super) fn peak<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    points: &[ScanPoint],
+    pose: &Pose,
+) -> Peak {
+    let counts = count(tiles, points, pose);
+    let mut peak = Peak::default();
+    for (dy, planes) in (-SIDE / 2..).zip(&counts) {
+        let (hits, mask) = most(planes);
+        if hits > peak.hits {
+            (peak.hits, peak.shift) = (hits, (nearest(mask), dy));
+        }
+    }
+    let (x, y) = peak.shift;
+    let beside = (-APART..=APART).map(|dx| x + dx + SIDE / 2);
+    let beside = beside.filter(|bit| (0..SIDE).contains(bit));
+    let beside = beside.fold(0_u32, |mask, bit| mask | 1 << bit);
+    for (dy, planes) in (-SIDE / 2..).zip(&counts) {
+        let is_near = (dy - y).abs() <= APART;
+        let kept = if is_near { !beside } else { u32::MAX };
+        let (hits, _) = most(&planes.map(|plane| plane & kept));
+        peak.second = peak.second.max(hits);
+    }
+    peak
+}
+
 /// Counts the beams that end on obstacles, for all shifts of a pose.
 fn count<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,

@@ -16,13 +16,14 @@
 //! next one, plus 1. Two spare halves of the same page become a spare page.
 //!
 //! Invariant: every page given out is in the directory once, or spare once, or it is two halves of
-//! which this is true.
+//! which this is true, or the team's sample (`exchange`).
 //!
 //! Units: pages of 256 bytes, halves of 128 bytes.
 
 use crate::geometry::Cell;
 use crate::grid::{inside, inside_mut};
 use crate::map::tiles::{NoRoom, Plane, TILE_ROWS, TILE_SIDE, Tiles};
+use crate::map::versions::MEASURED;
 
 /// Flag of the entry of a tile that is all free; the low byte is kept for the side table.
 const ALL_FREE_FLAG: u16 = 0x8000;
@@ -185,7 +186,19 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    fn return_page(&mut self, page: usize) {
+    /// Returns the words of a page that was taken for another use than a tile.
+    pub(super) fn words_mut(&mut self, page: usize) -> &mut [u32] {
+        let page = inside_mut(&mut self.pool, page);
+        page.map_or(&mut [], |cells| cells.as_flattened_mut())
+    }
+
+    /// Returns the words of a page that was taken for another use than a tile.
+    pub(super) fn words(&self, page: usize) -> &[u32] {
+        inside(&self.pool, page).map_or(&[], |cells| cells.as_flattened())
+    }
+
+    /// Gives a page back.
+    pub(super) fn return_page(&mut self, page: usize) {
         self.set_next(2 * page, self.free.page);
         self.free.page = page as u16 + 1;
         self.free.pages += 1;
@@ -235,6 +248,15 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
+    /// Expands all tiles.
+    ///
+    /// # Errors
+    /// [`NoRoom`] if the pool is full.
+    pub(super) fn expand_all(&mut self) -> Result<(), NoRoom> {
+        let mut places = 0..self.directory.keys().len();
+        places.try_for_each(|place| self.expand_tile(place, &mut ()))
+    }
+
     /// Returns the column and the row of the tile at a place of the directory.
     fn tile_at(&self, place: usize) -> Option<(i32, i32)> {
         let &key = inside(self.directory.keys(), place)?;
@@ -249,7 +271,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             return;
         };
         // A compact tile has no place for an epoch.
-        if high != ZEROS || self.versions.epoch(page) > 0 {
+        if high != ZEROS || self.versions.epoch(page) != MEASURED {
             return;
         }
         let kept = side_table.release_page(page);

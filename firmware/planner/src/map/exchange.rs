@@ -13,6 +13,7 @@ use crate::map::compaction::{Entry, ZEROS};
 use crate::map::join::{hash, join_row, row_of};
 use crate::map::tile::{Cells, Plane};
 use crate::map::tiles::{NoRoom, TILE_SIDE, Tiles};
+use crate::map::versions::MEASURED;
 
 /// A tile with its version.
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +47,11 @@ impl TileView<'_> {
         hash(self.planes, salt)
     }
 
+    /// Returns the number of times that the tile's epoch was raised; less than 0 after a move.
+    pub(crate) const fn raises(&self) -> u16 {
+        self.epoch.wrapping_sub(MEASURED)
+    }
+
     /// Returns true if nothing in the tile is known.
     fn is_unknown(&self) -> bool {
         self.planes == [&ZEROS; 2]
@@ -63,7 +69,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         let entry = self.entry_at(place);
         let epoch = match entry {
             Entry::Page(page) => self.versions.epoch(page),
-            _ => 0,
+            _ => MEASURED,
         };
         let view = TileView {
             tile: self.directory.tile(*inside(self.directory.keys(), place)?),
@@ -79,6 +85,27 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
 }
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
+    /// Takes a page for the team's sample of another map. Give it back before the map is moved.
+    pub(crate) fn take_sample(&mut self) -> Option<usize> {
+        let has_page = self.tiles.has_page();
+        has_page.then(|| self.tiles.take_page().ok()).flatten()
+    }
+
+    /// Gives the page of the sample back.
+    pub(crate) fn return_sample(&mut self, page: usize) {
+        self.tiles.return_page(page);
+    }
+
+    /// Returns the words of the sample's page.
+    pub(crate) fn sample(&self, page: usize) -> &[u32] {
+        self.tiles.words(page)
+    }
+
+    /// Returns the words of the sample's page.
+    pub(crate) fn sample_mut(&mut self, page: usize) -> &mut [u32] {
+        self.tiles.words_mut(page)
+    }
+
     /// Counts a second for the tiles that changed.
     pub(crate) fn sweep_news(&mut self) {
         self.tiles.versions.sweep();

@@ -6,6 +6,7 @@
 //! | `compaction` | smaller storage for tiles with little content |
 //! | `versions`, [`exchange`], `join` | for a team: tiles with versions, and their joins |
 //! | `rows` | rows of 32 and 64 cells, for all planning |
+//! | `turn` | the move of a whole map into a team's coordinates |
 //! | `arrivals` | on flat ground, obstacles that came and may be gone |
 //! | `evidence` | counts for and against an obstacle around the robot, on flat ground |
 //! | `integrate`, `traversal` | beams into classes and counts |
@@ -29,6 +30,7 @@ pub(crate) mod rows;
 mod tile;
 pub mod tiles;
 mod traversal;
+mod turn;
 #[cfg(test)]
 mod uneven_tests;
 mod versions;

@@ -140,6 +140,13 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.keys().iter().map(|&key| self.directory.tile(key))
     }
 
+    /// Returns the planes of a tile, as a team's tile has them.
+    #[cfg(test)]
+    pub(crate) fn planes_of(&self, tile_x: i32, tile_y: i32) -> Option<[[u32; 32]; 2]> {
+        let planes = self.planes(self.entry(tile_x, tile_y))?;
+        Some(planes.map(|plane| *plane))
+    }
+
     /// Returns true if a cell was ever stored in this tile.
     pub(crate) fn is_touched(&self, tile_x: i32, tile_y: i32) -> bool {
         self.entry(tile_x, tile_y) != Entry::Untouched
@@ -158,6 +165,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Returns the directory's entry of a tile.
+    #[inline(never)]
     pub(crate) fn entry(&self, tile_x: i32, tile_y: i32) -> Entry {
         let word = self.directory.get((tile_x, tile_y));
         word.map_or(Entry::Untouched, |&word| Entry::of(word))
@@ -232,6 +240,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Returns the class of a cell.
+    #[inline(never)]
     #[must_use]
     pub fn class(&self, cell: Cell) -> Class {
         let Some(planes) = self.planes(self.entry(cell.x >> 5, cell.y >> 5)) else {

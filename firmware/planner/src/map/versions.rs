@@ -7,11 +7,14 @@
 //!
 //! A map without a team keeps the marks too, and nobody reads them.
 //!
-//! Invariant: a compact tile has epoch 0 and is not due.
+//! Invariant: a compact tile has epoch [`MEASURED`] and is not due.
 //! Units: sweeps, one a second.
 
 use crate::grid::{inside, inside_mut};
 
+/// Epoch of a tile that the robot measured. Epoch 0 is that of a tile that was moved with the map
+/// into the team's coordinates: what others measured there counts more.
+pub(crate) const MEASURED: u16 = 1;
 /// A cell changed since the last sweep.
 const CHANGED: u8 = 1;
 /// A cell's class went down since the tile was said.
@@ -88,10 +91,16 @@ impl<const TILES: usize> Versions<TILES> {
 
     /// Begins a tile in a page.
     pub(super) fn begin(&mut self, page: usize) {
-        self.set_epoch(page, 0);
+        self.set_epoch(page, MEASURED);
         if let Some(news) = self.news_mut(page) {
             *news = News(0);
         }
+    }
+
+    /// Begins all tiles anew: the map was moved. Their cells are news.
+    pub(super) fn begin_moved(&mut self) {
+        self.epochs.fill(0);
+        self.news.fill(News(CHANGED));
     }
 
     /// Returns the news of a page.
@@ -102,7 +111,7 @@ impl<const TILES: usize> Versions<TILES> {
 
     /// Returns the epoch of a page.
     pub(super) fn epoch(&self, page: usize) -> u16 {
-        inside(&self.epochs, page).map_or(0, |&epoch| epoch)
+        inside(&self.epochs, page).map_or(MEASURED, |&epoch| epoch)
     }
 
     pub(super) fn set_epoch(&mut self, page: usize, epoch: u16) {
@@ -143,7 +152,7 @@ impl<const TILES: usize> Versions<TILES> {
 mod tests {
     use std::vec::Vec;
 
-    use super::Versions;
+    use super::{MEASURED, Versions};
 
     /// Returns the sweeps after which a page is due that changes before these sweeps.
     fn due(changes: &[usize]) -> Vec<usize> {
@@ -175,18 +184,19 @@ mod tests {
     #[test]
     fn only_a_class_that_went_down_raises_the_epoch_and_only_once() {
         let mut versions = Versions::<1>::new();
+        versions.begin(0);
         versions.news_mut(0).unwrap().note(0, 2);
         versions.settle(0);
         versions.said(0);
-        assert_eq!(versions.epoch(0), 0);
+        assert_eq!(versions.epoch(0), MEASURED);
         versions.news_mut(0).unwrap().note(2, 1);
         versions.news_mut(0).unwrap().note(2, 1);
         versions.sweep();
         versions.settle(0);
         versions.said(0);
-        assert_eq!(versions.epoch(0), 1);
+        assert_eq!(versions.epoch(0), MEASURED + 1);
         versions.settle(0);
         versions.said(0);
-        assert_eq!(versions.epoch(0), 1);
+        assert_eq!(versions.epoch(0), MEASURED + 1);
     }
 }

@@ -105,7 +105,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.strategy.reset(config);
         self.viewpoints = viewpoint::Search::new();
         self.drive = Drive::new();
-        self.team.reset(config.team);
+        self.team.reset(config.team, config.ground.is_some());
         (self.slope_direction, self.blocked_direction) = (None, None);
         self.status = Status::Exploring;
         self.started = false;

@@ -3,10 +3,15 @@
 //! Units: metres; coarse cells of 20 cm.
 
 use crate::config::Config;
+use crate::drive::Drive;
 use crate::geometry::{CELL_M, Cell, MapPose, OdomPose};
 use crate::input::Input;
+use crate::math;
+use crate::path::viewpoint;
 use crate::planner::state::State;
 use crate::status::Status;
+use crate::strategy::Strategist;
+use crate::team::frame::Motion;
 use crate::team::packet::{Activity, Packet, half_cm};
 use crate::team::peers::Peer;
 use crate::team::right_of_way::Stance;
@@ -26,6 +31,23 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.team.peers().iter()
     }
 
+    /// Moves all that lies in the map's coordinates into the team's. What was planned is planned
+    /// anew: the robot stands in this step.
+    #[inline(never)]
+    pub(super) fn move_into_team(&mut self, config: &Config, motion: &Motion) {
+        let by = &motion.team_from_own;
+        self.localiser.move_map(by, &motion.covariance);
+        let MapPose(pose) = self.localiser.to_map(&self.localiser.odom());
+        self.map.turn(by, pose.point().cell());
+        self.skeleton
+            .reset(Strategist::<SLOTS>::space(config.strategy));
+        self.strategy.reset(config);
+        self.viewpoints = viewpoint::Search::new();
+        self.drive = Drive::new();
+        self.start = by.point(self.start.centre()).cell();
+        self.has_new_skeleton = false;
+    }
+
     /// Enters an input without a step: the robot stands by order, or its exploration has ended.
     /// Only its team learns of it.
     pub fn stand(&mut self, input: &Input<'_>) {
@@ -40,8 +62,9 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let has_evidence = !self.ground.is_uneven();
         // Another robot sees the hull, and marks the cells behind its beams' ends.
         let stand_m = config.robot.half_diagonal_m + CELL_M;
+        let tuning = &config.tuning.localise;
         self.team
-            .hear(packet, &mut self.map, (stand_m, has_evidence));
+            .hear(packet, &mut self.map, (stand_m, has_evidence, tuning));
     }
 
     /// Returns the next packet for the team; `None` until the next step, and for a robot alone. Ask
@@ -56,7 +79,10 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             Status::Fault(_) => Activity::Faulted,
         };
         let (stance, refuge) = (self.team.way.stance(), self.team.way.refuge());
-        self.team.say(&mut self.map, |mut beacon| {
+        let [xx, _, yy, ..] = self.localiser.location().covariance;
+        let sd_m = math::sqrt(xx.max(yy));
+        self.team.say(&mut self.map, |beacon| {
+            let mut beacon = beacon.within(sd_m);
             beacon.half_cm = (half_cm(robot.half_length_m), half_cm(robot.half_width_m));
             beacon.activity = activity;
             if !beacon.activity.moves() {

@@ -89,7 +89,7 @@ impl Exchange {
             let of = |(_, view): (usize, TileView<'_>)| {
                 let (x, y) = view.tile;
                 let place = (x as u32 & 0xff) << 8 | y as u32 & 0xff;
-                view.hash(place << 16 | u32::from(view.epoch))
+                view.hash(place << 16 | u32::from(view.raises()))
             };
             let sum = map.views_from(0).map(of).fold(0, u32::wrapping_add);
             self.mark = (edits, sum);
@@ -99,22 +99,14 @@ impl Exchange {
 
     /// Takes the versions of another robot's tiles: notes which of them to ask for. The tiles of an
     /// earlier digest that were not asked for yet come again.
-    pub(crate) fn hear_digest<const TILES: usize, const SLOTS: usize>(
+    pub(crate) fn hear_digest(
         &mut self,
         of: u8,
         digest: &Digest,
-        map: &Map<TILES, SLOTS>,
+        is_wanted: impl Fn(&TileVersion) -> bool,
     ) {
-        let differs = |version: &&TileVersion| {
-            let (x, y) = version.tile;
-            let own = map.view((x.into(), y.into()));
-            let same = |view: TileView<'_>| {
-                view.epoch == version.epoch && short_hash(&view, digest.salt) == version.hash
-            };
-            !own.is_some_and(same)
-        };
         if self.wanted.tiles.is_empty() {
-            let tiles = digest.tiles.iter().filter(differs);
+            let tiles = digest.tiles.iter().filter(|version| is_wanted(version));
             let tiles = tiles.take(WANTED_TILES).map(|version| version.tile);
             self.wanted = Wanted {
                 of,
@@ -143,6 +135,7 @@ impl Exchange {
         }
         let body = self
             .say_wanted()
+            .map(Body::Wanted)
             .or_else(|| self.say_digest(map, differs))
             .or_else(|| self.say_asked(map))
             .or_else(|| self.say_due(map))?;
@@ -150,11 +143,12 @@ impl Exchange {
         Some(body)
     }
 
-    fn say_wanted(&mut self) -> Option<Body> {
+    /// Returns the next request for tiles.
+    pub(crate) fn say_wanted(&mut self) -> Option<Wanted> {
         if self.wanted.tiles.is_empty() {
             return None;
         }
-        Some(Body::Wanted(core::mem::take(&mut self.wanted)))
+        Some(core::mem::take(&mut self.wanted))
     }
 
     fn say_digest<const TILES: usize, const SLOTS: usize>(
@@ -214,6 +208,19 @@ impl Exchange {
         self.due_place = place + 1;
         say_tile(map, place)
     }
+}
+
+/// Returns true if a map's own tile differs from a version of a digest.
+pub(crate) fn differs<const TILES: usize, const SLOTS: usize>(
+    map: &Map<TILES, SLOTS>,
+    version: &TileVersion,
+    salt: u8,
+) -> bool {
+    let (x, y) = version.tile;
+    let own = map.view((x.into(), y.into()));
+    let same =
+        |view: TileView<'_>| view.epoch == version.epoch && short_hash(&view, salt) == version.hash;
+    !own.is_some_and(same)
 }
 
 /// Returns the hash of a tile in a digest.

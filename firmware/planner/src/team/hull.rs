@@ -27,6 +27,9 @@ const MOST_GROWING_S: f32 = 2.0;
 /// Greatest motion of a peer that its last beacon could not tell, metres: it may accelerate for two
 /// periods.
 const LATENCY_M: f32 = 0.025;
+/// A peer whose place is less well known is no obstacle for the drive, centimetres: it would stand
+/// in the way where it is not. The lasers see it where it is.
+const MOST_SD_CM: u8 = 15;
 /// Peers within this distance are obstacles for the drive, metres.
 const NEAR_M: f32 = 4.0;
 /// Greatest distance between two points of an outline, metres: less than half of a robot's side.
@@ -204,9 +207,14 @@ impl Peers {
         })
     }
 
+    /// Returns the peers whose place is known.
+    fn placed(&self) -> impl Iterator<Item = &Peer> {
+        self.iter().filter(|peer| peer.beacon.sd_cm <= MOST_SD_CM)
+    }
+
     /// Returns the places that the peers near the robot may take by turning, each with its number.
     pub(crate) fn turning(&self, now_ms: u32, robot: Point) -> impl Iterator<Item = (u8, Hull)> {
-        self.iter()
+        self.placed()
             .map(move |peer| (peer.member.id, Hull::turning(peer, now_ms)))
             .filter(move |(_, hull)| hull.centre.distance2(robot) <= NEAR_M * NEAR_M)
     }
@@ -218,7 +226,7 @@ impl Peers {
         robot: Point,
         config: &Config,
     ) -> impl Iterator<Item = (&Peer, Hull)> {
-        self.iter()
+        self.placed()
             .map(move |peer| (peer, Hull::swept(peer, now_ms, config)))
             .filter(move |(_, hull)| hull.centre.distance2(robot) <= NEAR_M * NEAR_M)
     }

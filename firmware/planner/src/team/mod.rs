@@ -7,23 +7,29 @@
 //! | [`hull`] | the places that the peers take, and the beams that they stop |
 //! | [`right_of_way`] | who makes way for whom |
 //! | `exchange` | the exchange of map tiles |
+//! | [`frame`] | how the map of a robot with an uncertain start lies in the team's coordinates |
+//! | `sighting` | what a member in sight says about that |
 //!
-//! All members use the same coordinates: [`Team::to_map`] converts a robot's odometry to them at
-//! the planner's entry. So the tiles of all members lie in one grid.
+//! [`Team::to_map`] converts a robot's odometry to the team's coordinates at the planner's entry.
+//! All tiles in the air lie in them, in one grid. A robot whose start is uncertain keeps its own
+//! map, and takes none of these tiles, until it knows how the two lie.
 //!
 //! Units: metres, milliseconds.
 
 mod exchange;
+pub(crate) mod frame;
 pub(crate) mod hull;
 pub mod packet;
 pub mod peers;
 pub(crate) mod right_of_way;
+mod sighting;
 
-use crate::config::{Member, TeamPlace};
-use crate::geometry::{MapFromOdom, OdomPose, Point, Pose, Twist};
+use crate::config::{LocaliseTuning, Member, TeamPlace};
+use crate::geometry::{MapFromOdom, MapPose, OdomPose, Point, Pose, Twist};
 use crate::map::Map;
 use crate::map::exchange::Stand;
-use exchange::Exchange;
+use exchange::{Exchange, differs};
+use frame::{Motion, OwnFrame};
 use packet::{Beacon, Body, Packet};
 use peers::{Peer, Peers};
 use right_of_way::RightOfWay;
@@ -35,6 +41,8 @@ pub(crate) struct Team {
     member: Option<Member>,
     /// From the odometry's coordinates to the team's.
     map_from_odom: MapFromOdom,
+    /// From the map's coordinates to the team's.
+    frame: OwnFrame,
     /// Number of the next packet.
     sequence: u16,
     /// A beacon is due: a step was made since the last one.
@@ -62,6 +70,7 @@ impl Team {
         Self {
             member: None,
             map_from_odom: MapFromOdom::IDENTITY,
+            frame: OwnFrame::new(),
             sequence: 0,
             owes_beacon: false,
             now_ms: 0,
@@ -76,13 +85,38 @@ impl Team {
         }
     }
 
-    /// Forgets everything and begins a session.
-    pub(crate) fn reset(&mut self, place: Option<TeamPlace>) {
+    /// Forgets everything and begins a session. On uneven ground every start counts as known.
+    pub(crate) fn reset(&mut self, place: Option<TeamPlace>, is_uneven: bool) {
         *self = Self::new();
         if let Some(place) = place {
             self.member = Some(place.member);
             self.map_from_odom = MapFromOdom::of(&place.map_from_odom);
+            if !is_uneven {
+                self.frame = OwnFrame::at(&place);
+            }
         }
+    }
+
+    /// Returns true if the robot's map does not lie in the team's coordinates.
+    pub(crate) const fn has_own_frame(&self) -> bool {
+        self.frame.is_own()
+    }
+
+    /// Returns the motion by which the robot's map comes to lie in the team's coordinates, once it
+    /// is certain. Everything that the team knows of places is moved or forgotten.
+    pub(crate) fn take_motion<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        map: &mut Map<TILES, SLOTS>,
+    ) -> Option<Motion> {
+        let (motion, page) = self.frame.take_certain()?;
+        if let Some(page) = page {
+            map.return_sample(page);
+        }
+        let MapPose(pose) = motion.team_from_own.apply(&OdomPose(self.pose));
+        self.pose = pose;
+        self.peers = Peers::new();
+        self.way = RightOfWay::new();
+        Some(motion)
     }
 
     /// Returns true if the robot is in a team.
@@ -110,6 +144,7 @@ impl Team {
         (pose, velocity): (&Pose, Twist),
         map: &mut Map<TILES, SLOTS>,
     ) {
+        self.frame.follow(&self.pose, pose);
         (self.now_ms, self.pose, self.velocity) = (now_ms, *pose, velocity);
         if self.is_member() {
             self.owes_beacon = true;
@@ -152,17 +187,38 @@ impl Team {
         &mut self,
         packet: &Packet,
         map: &mut Map<TILES, SLOTS>,
-        (stand_m, has_evidence): (f32, bool),
+        (stand_m, has_evidence, tuning): (f32, bool, &LocaliseTuning),
     ) {
         let Some(me) = self.member.filter(|me| me.id != packet.from.id) else {
             return;
         };
+        if !self.frame.is_placed() {
+            return;
+        }
         match &packet.body {
-            Body::Beacon(beacon) => {
-                self.peers
-                    .hear(packet.from, packet.sequence, beacon, self.now_ms);
+            Body::Beacon(said) => {
+                let beacon = self.frame.heard(said, self.pose.point());
+                let (from, sequence) = (packet.from, packet.sequence);
+                self.peers.hear(from, sequence, &beacon, self.now_ms);
+                self.peers.note_sd(from, said.sd_cm);
             }
-            Body::Digest(digest) => self.exchange.hear_digest(packet.from.id, digest, map),
+            Body::Digest(digest) => {
+                let (frame, robot) = (&self.frame, self.pose.point());
+                self.exchange
+                    .hear_digest(packet.from.id, digest, |version| {
+                        if frame.is_own() {
+                            // A tile that overlaps the map is matched again and again.
+                            let middle = frame.middle(version.tile, robot);
+                            let tile = middle.map(|at| (at.cell().x >> 5, at.cell().y >> 5));
+                            tile.is_some_and(|tile| map.view(tile).is_some())
+                        } else {
+                            differs(map, version, digest.salt)
+                        }
+                    });
+            }
+            Body::Tile(said) if self.frame.is_own() => {
+                self.frame.hear_tile(said, &self.pose, map, tuning);
+            }
             Body::Wanted(wanted) if wanted.of == me.id => self.exchange.hear_wanted(&wanted.tiles),
             Body::Wanted(_) => {}
             Body::Tile(said) => {
@@ -186,22 +242,25 @@ impl Team {
     ) -> Option<Packet> {
         let from = self.member?;
         let body = if core::mem::replace(&mut self.owes_beacon, false) {
-            Body::Beacon(beacon(Beacon {
+            let said = beacon(Beacon {
                 map: self.exchange.mark(map),
                 velocity: self.velocity,
                 ..Beacon::default().at(&self.pose)
-            }))
+            });
+            Body::Beacon(self.frame.said(said, self.pose.point()))
+        } else if self.frame.is_own() {
+            Body::Wanted(self.exchange.say_wanted()?)
         } else {
             let mark = self.exchange.mark(map);
             let mut in_reach = self
                 .peers
                 .iter()
                 .filter(|peer| peer.has_claims(self.now_ms));
-            let differs = |peer: &Peer| peer.beacon.map != mark;
+            let has_other_map = |peer: &Peer| peer.beacon.map != mark;
             // Without a peer in reach nobody would hear.
             let differs = in_reach
                 .next()
-                .map(|peer| differs(peer) || in_reach.any(differs))?;
+                .map(|peer| has_other_map(peer) || in_reach.any(has_other_map))?;
             self.exchange.say(map, differs)?
         };
         let sequence = self.sequence;

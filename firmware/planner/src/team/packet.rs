@@ -8,7 +8,7 @@
 use heapless::Vec;
 
 use crate::config::Member;
-use crate::geometry::{Cell, Point, Pose, Twist};
+use crate::geometry::{Cell, MapFromOdom, MapPose, OdomPose, Point, Pose, Twist};
 use crate::math;
 
 /// Greatest number of places on the road ahead that a beacon tells.
@@ -108,6 +108,31 @@ impl Beacon {
     pub(crate) fn bound_for(self, goal: Option<Cell>) -> Self {
         Self {
             goal: goal.map(|cell| (short(cell.x), short(cell.y))),
+            ..self
+        }
+    }
+
+    /// Returns the beacon in other coordinates. `sd_m` is what the motion adds to the standard
+    /// deviation of the place.
+    #[must_use]
+    pub(crate) fn moved(&self, by: &MapFromOdom, sd_m: f32) -> Self {
+        let road: Vec<Point, ROAD_POINTS> = self.road().map(|place| by.point(place)).collect();
+        let goal = self.goal_cell().map(|cell| by.point(cell.centre()).cell());
+        let MapPose(pose) = by.apply(&OdomPose(self.pose()));
+        self.clone()
+            .at(&pose)
+            .within(sd_m)
+            .bound_for(goal)
+            .along(road.into_iter())
+    }
+
+    /// Adds to the standard deviation of the place, metres.
+    #[must_use]
+    pub(crate) fn within(self, sd_m: f32) -> Self {
+        let (said, more) = (f32::from(self.sd_cm), 100.0 * sd_m);
+        let sd_cm = rounded(math::sqrt(said * said + more * more));
+        Self {
+            sd_cm: sd_cm.clamp(0, u8::MAX.into()) as u8,
             ..self
         }
     }

@@ -31,9 +31,11 @@ pub struct Peer {
     pub member: Member,
     /// Number of its last packet.
     sequence: u16,
+    /// Standard deviation of its place in the team's coordinates, centimetres.
+    pub(crate) said_sd_cm: u8,
     /// When its last beacon was heard.
     pub heard_ms: u32,
-    /// The beacon.
+    /// The beacon, in the coordinates of this robot's map.
     pub beacon: Beacon,
 }
 
@@ -58,6 +60,7 @@ impl Peer {
     }
 
     /// Returns the pose that the peer has now if it drove on as it said.
+    #[inline(never)]
     #[must_use]
     pub fn pose(&self, now_ms: u32) -> Pose {
         let age_s = (self.silence_ms(now_ms) as f32 * 1e-3).min(MOST_PREDICTED_S);
@@ -102,6 +105,7 @@ impl Peers {
         let peer = Peer {
             member: from,
             sequence,
+            said_sd_cm: beacon.sd_cm,
             heard_ms: now_ms,
             beacon: beacon.clone(),
         };
@@ -125,6 +129,14 @@ impl Peers {
         }
         // There is room now.
         let _ = self.peers.push(peer);
+    }
+
+    /// Notes the standard deviation that a peer said of its place. That of its beacon in this
+    /// robot's map is greater.
+    pub(crate) fn note_sd(&mut self, from: Member, said_sd_cm: u8) {
+        if let Some(peer) = self.peers.iter_mut().find(|peer| peer.member == from) {
+            peer.said_sd_cm = said_sd_cm;
+        }
     }
 
     /// Forgets the peers that were silent for too long.

@@ -7,7 +7,7 @@ use std::vec::Vec;
 use super::Team;
 use super::exchange::STEP_PACKETS;
 use super::packet::{Body, Packet};
-use crate::config::{Member, TeamPlace};
+use crate::config::{LocaliseTuning, Member, TeamPlace};
 use crate::geometry::{Cell, Pose, Twist};
 use crate::map::{Class, Map};
 
@@ -26,6 +26,8 @@ impl Random {
     }
 }
 
+const TUNING: &LocaliseTuning = &LocaliseTuning::DEFAULT;
+
 struct Robot {
     team: Team,
     map: Box<SmallMap>,
@@ -34,10 +36,11 @@ struct Robot {
 impl Robot {
     fn new(id: u8) -> Self {
         let mut team = Team::new();
-        team.reset(Some(TeamPlace {
+        let place = TeamPlace {
             member: Member { id, boot: 0 },
             ..TeamPlace::default()
-        }));
+        };
+        team.reset(Some(place), false);
         let mut map = Box::<SmallMap>::default();
         map.reset();
         Self { team, map }
@@ -96,7 +99,9 @@ impl Air {
         while self.waiting.len() > self.delayed {
             let at = random.below(self.waiting.len() as u32) as usize;
             let (to, packet) = self.waiting.swap_remove(at);
-            team[to].team.hear(&packet, &mut team[to].map, (0.0, true));
+            team[to]
+                .team
+                .hear(&packet, &mut team[to].map, (0.0, true, TUNING));
         }
     }
 }
@@ -228,7 +233,9 @@ fn alone_nothing_but_beacons_is_said_and_nothing_is_lost() {
     }
     let mut other = Robot::new(1);
     let said = other.step(0);
-    alone.team.hear(&said[0], &mut alone.map, (0.0, true));
+    alone
+        .team
+        .hear(&said[0], &mut alone.map, (0.0, true, TUNING));
     let said = alone.step(100 * STEP_MS);
     assert!(
         said.iter()
@@ -282,7 +289,7 @@ fn a_robot_that_was_taken_for_an_obstacle_clears_its_place_for_all() {
             for packet in team[from].step(step * STEP_MS) {
                 let to = &mut team[1 - from];
                 let stand_m = if from == 1 { 0.45 } else { 0.0 };
-                to.team.hear(&packet, &mut to.map, (stand_m, true));
+                to.team.hear(&packet, &mut to.map, (stand_m, true, TUNING));
             }
         }
         team[usize::from(random.below(2) == 0)].mark();

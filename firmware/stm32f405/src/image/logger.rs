@@ -8,7 +8,7 @@ use core::cell::UnsafeCell;
 use critical_section::RestoreState;
 use fieldline_device::ring::Ring;
 
-static LOG: Ring<512> = Ring::new();
+static LOG: Ring<448> = Ring::new();
 
 #[defmt::global_logger]
 struct Logger;

@@ -73,6 +73,8 @@ pub(super) struct Member<'a> {
     pub(super) account: Account,
     pub(super) record: Record,
     pub(super) talk: Talk,
+    /// When its map came to lie in the team's coordinates: it said tiles then. Milliseconds.
+    pub(super) met_ms: Option<u32>,
 }
 
 impl<'a> Member<'a> {
@@ -92,6 +94,7 @@ impl<'a> Member<'a> {
             account,
             record: Record::default(),
             talk: Talk::default(),
+            met_ms: None,
         };
         member.start();
         member
@@ -237,6 +240,10 @@ impl<'a> Member<'a> {
                 .send(time_ms, self.number, bytes, common.stations);
             self.talk.said += 1;
             self.talk.said_bytes += bytes.len() as u64;
+            let body = decode_packet(bytes).map(|packet| packet.body);
+            if matches!(body, Some(wire::Body::Digest(_) | wire::Body::Tile(_))) {
+                self.met_ms.get_or_insert(time_ms);
+            }
         }
         Ok(())
     }

@@ -9,7 +9,9 @@
 //! for [`SETTLE_MS`] more, and until nobody said more than beacons for [`QUIET_MS`], at most
 //! [`MOST_SETTLE_MS`]. So what was lost is repaired. That time counts nowhere.
 
+mod agreement;
 mod member;
+mod misplaced;
 mod starts;
 mod summary;
 mod timetable;
@@ -28,6 +30,7 @@ use crate::report::{GridMap, TeamReport};
 use crate::sim::{Fleet, FleetError, SimConfig, Simulator};
 use crate::world::{Start, World, WorldError};
 use member::{Common, Member, Presence};
+pub use misplaced::StartError;
 use starts::Places;
 pub use timetable::{Appointment, AppointmentError, Timetable, TimetableError};
 
@@ -54,6 +57,8 @@ pub struct TeamMission {
     pub apart: bool,
     /// Starts of all robots to use instead of those.
     pub places: Option<Vec<Start>>,
+    /// Errors of the starts that all robots but the first are told.
+    pub start_error: StartError,
     /// The radio between them. If it is off, the planners know of no team.
     pub radio: RadioSpec,
     /// Who leaves and who joins again.
@@ -70,6 +75,7 @@ impl TeamMission {
             robots,
             apart: false,
             places: None,
+            start_error: StartError::default(),
             radio: RadioSpec::default(),
             timetable: Timetable::default(),
         }
@@ -270,7 +276,11 @@ fn begin<'a>(
         link.hello().map_err(|error| of_robot(error.into()))?;
         let simulator: &Simulator<'_> = &fleet.robots()[robot];
         let mut setup = mission::setup(&missions[robot], simulator);
-        setup.start.team = team.radio.on.then(|| Member::of_wire(robot));
+        setup.start.team = team.radio.on.then(|| {
+            let (seed, start) = (missions[robot].seed, simulator.start());
+            let known = Member::of_wire(robot);
+            team.start_error.tell(known, seed, &start)
+        });
         let account = match members.first() {
             Some(first) => first.account.beside(&setup, simulator),
             None => Account::new(&setup, simulator),

@@ -6,6 +6,7 @@ use super::super::Record;
 use super::super::mission::Mission;
 use super::super::summary::{self, whole_cells_m2};
 use super::TeamMission;
+use super::agreement::agreement;
 use super::member::{Member, Presence};
 use crate::link::LinkStats;
 use crate::link::digest::Digest;
@@ -48,6 +49,8 @@ impl Whole<'_, '_, '_> {
                 measured_twice: self.measured_twice(),
                 min_robot_gap_m: Some(self.fleet.min_gap_m()).filter(|gap_m| *gap_m < FARTHEST_M),
                 maps_equal: self.team.radio.on.then(|| self.maps_equal()),
+                start_error: self.start_error(),
+                agreement: agreement(self.members),
             },
             radio: team::Radio {
                 spec: self.team.radio.text.clone(),
@@ -75,6 +78,7 @@ impl Whole<'_, '_, '_> {
             said_bytes: member.talk.said_bytes,
             heard: member.talk.heard,
             map_fraction: self.map_fraction(&member.record),
+            met_s: member.met_ms.map(|time_ms| f64::from(time_ms) / 1000.0),
             report,
         }
     }
@@ -233,6 +237,11 @@ impl Whole<'_, '_, '_> {
             return true;
         };
         maps.all(|map| map.known_cells().eq(first.known_cells()))
+    }
+
+    fn start_error(&self) -> Option<[f64; 2]> {
+        let error = self.team.start_error;
+        (error.sd_m > 0.0).then(|| [error.sd_m, error.sd_rad.to_degrees()])
     }
 
     fn timetable(&self) -> Vec<String> {

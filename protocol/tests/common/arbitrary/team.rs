@@ -12,10 +12,13 @@ fn member() -> impl Strategy<Value = Member> {
 }
 
 pub(super) fn team() -> impl Strategy<Value = Team> {
-    (member(), long(), long(), long()).prop_map(|(member, x, y, yaw)| Team {
+    let sd = (any::<u16>(), any::<u16>());
+    (member(), long(), long(), long(), sd).prop_map(|(member, x, y, yaw, sd)| Team {
         member,
         origin: (x, y),
         yaw,
+        sd_mm: sd.0,
+        sd_mrad: sd.1,
     })
 }
 

@@ -77,9 +77,16 @@ impl LocaliseTuning {
     /// taken for a wall misleads more often.
     pub(crate) fn on_uneven_ground(&self) -> Self {
         Self {
-            beam_information: self.uneven_share * self.beam_information,
-            least_information: self.uneven_share * self.least_information,
             slip_gap: f32::INFINITY,
+            ..self.weighted(self.uneven_share)
+        }
+    }
+
+    /// Returns the constants if a beam counts only this share of its information.
+    pub(crate) fn weighted(&self, share: f32) -> Self {
+        Self {
+            beam_information: share * self.beam_information,
+            least_information: share * self.least_information,
             ..*self
         }
     }
