@@ -11,9 +11,6 @@
 //! have the class [`Class::Negative`], which has no other meaning there; for everything else they
 //! are obstacles.
 //!
-//! A thing on the border of two tiles may be forgotten in part only, because unknown cells are
-//! beside the rest then. The robot looks at the forgotten part, and sees the rest with it.
-//!
 //! Units: map cells.
 
 use crate::geometry::Cell;
@@ -47,8 +44,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         lone >= LEAST_LONE
     }
 
-    /// Takes all lone arrivals for unknown: they may be gone, or they may be small things that noise
-    /// once freed. For flat ground.
+    /// Takes all lone arrivals for gone. For flat ground.
     pub fn forget_arrivals(&mut self) {
         // The tiles stay the same: only their cells change.
         for place in 0.. {
@@ -59,7 +55,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             for (y, lone) in (first_y..).zip(self.lone_arrivals((tile_x, tile_y))) {
                 for k in ones(lone) {
                     let cell = Cell { x: x + k as i32, y };
-                    self.store(cell, Class::Unknown);
+                    self.store(cell, Class::Free);
                     self.evidence.forget(cell);
                 }
             }
@@ -157,7 +153,7 @@ mod tests {
         let mut map = Box::new(Plan::new());
         map.reset();
         for (y, row) in (28..).zip(picture) {
-            for (x, mark) in (26..).zip(row.chars()) {
+            for (x, mark) in (28..).zip(row.chars()) {
                 let class = match mark {
                     '.' => Class::Free,
                     '#' => Class::Obstacle,
@@ -171,7 +167,7 @@ mod tests {
     }
 
     fn row_of(map: &Plan, y: i32) -> Vec<Class> {
-        (26..42).map(|x| map.class(Cell { x, y })).collect()
+        (28..44).map(|x| map.class(Cell { x, y })).collect()
     }
 
     /// A person, cells beside a wall, and cells before what nobody saw.
@@ -197,8 +193,8 @@ mod tests {
                 .count()
         };
         assert_eq!([30, 31, 34].map(|y| came(&map, y)), [1, 1, 2]);
-        assert_eq!(map.class(Cell { x: 29, y: 30 }), Class::Unknown);
-        assert_eq!(map.class(Cell { x: 38, y: 30 }), Class::Obstacle);
+        assert_eq!(map.class(Cell { x: 31, y: 30 }), Class::Free);
+        assert_eq!(map.class(Cell { x: 40, y: 30 }), Class::Obstacle);
         assert!(!map.has_arrivals());
     }
 
@@ -211,9 +207,9 @@ mod tests {
             bytes[index / 4] >> (2 * (index % 4)) & 3
         };
         let at = |x, y| shown(Cell { x, y });
-        assert_eq!([at(29, 30), at(30, 31)], [0, 0]);
-        assert_eq!([at(37, 30), at(38, 31), at(39, 34)], [2, 2, 2]);
-        assert_eq!([at(26, 28), at(28, 30)], [1, 1]);
+        assert_eq!([at(31, 30), at(32, 31)], [0, 0]);
+        assert_eq!([at(39, 30), at(40, 31), at(41, 34)], [2, 2, 2]);
+        assert_eq!([at(28, 28), at(30, 30)], [1, 1]);
     }
 
     #[test]

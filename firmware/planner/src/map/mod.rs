@@ -42,7 +42,7 @@ pub use tiles::Tiles;
 use evidence::Evidence;
 
 use crate::config::Config;
-use crate::geometry::{CELL_M, Cell};
+use crate::geometry::Cell;
 use crate::ground::AttitudeFilter;
 use crate::input::Input;
 
@@ -115,15 +115,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             return;
         }
         self.evidence.follow(robot.cell());
-        // It begins where it can turn.
-        let begins = self.last_cell.is_none();
-        let turns_m = config.robot.half_diagonal_m + CELL_M;
-        let free_m = if begins {
-            turns_m
-        } else {
-            tuning.stand_radius_m
-        };
-        self.free_footprint(robot, free_m);
+        self.free_footprint(robot, tuning.stand_radius_m);
         self.record_visit(robot.cell());
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             self.integrate(tuning, &input.pose, laser, ranges_mm);

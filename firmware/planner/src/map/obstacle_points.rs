@@ -152,9 +152,25 @@ impl ObstaclePoints {
     }
 }
 
-/// Returns the centres of the cells around the robot that it must not touch: obstacles, negative
-/// obstacles and unknown cells that border on free cells. [`ObstaclePoints`] may never have met
-/// what is there, or may have dropped it.
+/// Returns the centres of the obstacle cells within the reach behind: [`ObstaclePoints`] may never
+/// have met them, or may have dropped them.
+pub(crate) fn obstacle_cells<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    robot: Point,
+    tuning: &MapTuning,
+) -> impl Iterator<Item = Point> {
+    let obstacles = |x, y| tiles.row(x, y).obstacle();
+    cells_around(robot, tuning, obstacles).map(|cell| {
+        let corner = cell.corner();
+        Point {
+            x_m: corner.x_m + 0.5 * CELL_M,
+            y_m: corner.y_m + 0.5 * CELL_M,
+        }
+    })
+}
+
+/// Returns the centres of the cells around the robot that it must not touch on uneven ground:
+/// obstacles, negative obstacles and unknown cells that border on free cells.
 pub(crate) fn border_cells<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     robot: Point,

@@ -141,7 +141,8 @@ impl<const TILES: usize> GroundModel<TILES> {
         self.obstruct_measured(odom, checker);
         match self {
             Self::Flat(_) => {
-                let cells = obstacle_points::border_cells(tiles, pose.point(), &config.tuning.map);
+                let cells =
+                    obstacle_points::obstacle_cells(tiles, pose.point(), &config.tuning.map);
                 checker.remember(pose, cells);
             }
             Self::Uneven(_) => {
