@@ -8,9 +8,8 @@
 //! On ground too steep to cross, a place is clear only if the side slope there is within its limit
 //! ([`Incline`]): that bounds the heading.
 //!
-//! An obstacle behind the robot that was only seen from afar is no obstacle point. There the map's
-//! cells count: obstacles, and unknown cells beside free ones, because the robot cannot see what it
-//! would touch.
+//! An obstacle behind the robot that was only seen from afar is no obstacle point; there the map's
+//! obstacle cells count.
 //!
 //! Units: metres, seconds, radians; robot frame, x forward.
 
@@ -32,8 +31,7 @@ use crate::robot::RobotShape;
 /// | --- | --- | --- | --- |
 /// | 0.03, 0.012, 0.008 | each 5 to 10 cm | 4 | 94.0 |
 /// | 0.03, 0.012, 0.008 | each two margins | 1 | 95.9 |
-/// | the same, and off unknown cells | each two margins | 3 | 94.4 |
-/// | 0.03, 0.02, 0.016, and off unknown cells | each two margins | 1 | 96.8 |
+/// | 0.03, 0.02, 0.016 | each two margins | 0 | 95.4 |
 pub(super) const LEAST_MARGIN_M: f32 = 0.016;
 /// Capacity for map cells beside the obstacle points.
 const MOST_CELLS: usize = 64;
@@ -173,8 +171,8 @@ impl CollisionChecker {
         }
     }
 
-    /// Adds the cells of the map (their centres) that are out of view and have no obstacle point,
-    /// each inflated by half a cell.
+    /// Adds the obstacle cells of the map (their centres) that are out of view and have no obstacle
+    /// point, each inflated by half a cell.
     pub(crate) fn remember(&mut self, pose: &Pose, cells: impl Iterator<Item = Point>) {
         let frame = RobotFrame::of(pose);
         let seen = self.threats.len();
