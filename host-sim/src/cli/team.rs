@@ -96,8 +96,8 @@ pub(super) struct TeamArgs {
     /// Source of the pose that the planners are told
     #[arg(long, value_enum, default_value_t = OdometryArg::Truth)]
     odometry: OdometryArg,
-    /// Standard deviations of the starts that all robots but the first are told, metres and degrees,
-    /// as in 0.3,5 [default: the starts are known]
+    /// Standard deviations of the starts that all robots but the first are told, metres and
+    /// degrees, as in 0.3,5 [default: the starts are known]
     #[arg(long, value_name = "M,DEG")]
     start_error: Option<StartError>,
     /// Simulated seconds after which the run ends

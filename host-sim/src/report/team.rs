@@ -158,8 +158,8 @@ impl TeamReport {
         ];
         if let Some(agreement) = &self.team.agreement {
             lines.push(format!(
-                "  maps      {:.2} m and {:.1}° from each other in the median, {:.2} m and {:.1}° at \
-                 most",
+                "  maps      {:.2} m and {:.1}° from each other in the median, {:.2} m and {:.1}° \
+                 at most",
                 agreement.median_m, agreement.median_deg, agreement.max_m, agreement.max_deg,
             ));
         }

@@ -1,9 +1,10 @@
-//! The move of the whole map: into the team's coordinates, once a robot knows how its map lies there.
+//! The move of the whole map into the team's coordinates, once a robot knows how its map lies
+//! there.
 //!
 //! A turn is three shears \[Paeth86\], and a shear shifts whole rows or columns by whole cells:
 //!
 //! ```text
-//! x ← x + s (y + ½) + c₁,   y ← y + sin θ (x + ½) + c₂,   x ← x + s (y + ½) + c₃,   s = −tan(θ / 2)
+//! x ← x + s (y + ½) + c₁,  y ← y + sin θ (x + ½) + c₂,  x ← x + s (y + ½) + c₃,  s = −tan(θ / 2)
 //! ```
 //!
 //! So every cell goes to one place, and no two go to the same one: no wall becomes thicker, and no
@@ -23,8 +24,8 @@ use crate::map::tiles::{NO_TRAIL, NoRoom, TILE_SIDE, Tiles};
 use crate::math;
 
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
-    /// Moves the map; `robot` is the robot's cell afterwards. Without room for a cell the pool counts
-    /// as full. For flat ground.
+    /// Moves the map; `robot` is the robot's cell afterwards. Without room for a cell the pool
+    /// counts as full. For flat ground.
     #[inline(never)]
     pub(crate) fn turn(&mut self, motion: &MapFromOdom, robot: Cell) {
         self.pool_full |= self.tiles.turn(motion).is_err();

@@ -155,8 +155,8 @@ impl OwnFrame {
         (self.sd_m(robot, place) <= REACH_M).then_some(place)
     }
 
-    /// Takes a tile of the team into the sample. A full sample, or one whose first tile comes again,
-    /// is a measurement of the motion.
+    /// Takes a tile of the team into the sample. A full sample, or one whose first tile comes
+    /// again, is a measurement of the motion.
     pub(crate) fn hear_tile<const TILES: usize, const SLOTS: usize>(
         &mut self,
         said: &TeamTile,
