@@ -16,14 +16,8 @@ use crate::drive::motion::MOTIONS;
 use crate::grid::at;
 use crate::math;
 
-/// Capacity of a search, poses. More poses take longer than a robot may stand. In the runs of
-/// [`LEAST_MARGIN_M`](crate::drive::collision::LEAST_MARGIN_M):
-///
-/// | capacity | ends for want of motion | touches | known % |
-/// | --- | --- | --- | --- |
-/// | 1,770 | 10 | 0 | 95.4 |
-/// | 1,100 | 3 | 2 | 96.6 |
-pub(super) const MOST_NODES: usize = 1100;
+/// Capacity of a search, poses.
+pub(super) const MOST_NODES: usize = 1770;
 const NODE_WORDS: usize = 3;
 
 /// Words that the nodes and the heap need.
