@@ -16,7 +16,9 @@ use crate::drive::motion::MOTIONS;
 use crate::grid::at;
 use crate::math;
 
-/// Capacity of a search, poses.
+/// Capacity of a search, poses. With 1,100 fewer of 36 runs through three tight buildings ended
+/// for want of motion (3 instead of 10), two touched (0), 96.6 % were known in the mean (95.4), but
+/// the built-in world `slope` was not explored.
 pub(super) const MOST_NODES: usize = 1770;
 const NODE_WORDS: usize = 3;
 
