@@ -1,5 +1,7 @@
 //! Robots of other sizes explore the office: the hull is a parameter, not a constant.
 
+use fieldline_protocol::message::Order;
+use fixed::types::I4F12;
 use host_sim::link::direct::Direct;
 use host_sim::robot::Footprint;
 use host_sim::trial::mission::{Mission, explore};
@@ -25,6 +27,8 @@ fn assert_explores([length_m, width_m]: [f64; 2], radius_m: f64) {
             height_m: 0.4,
         },
         radius_m,
+        // Everything that can be seen, also what is not worth a trip.
+        order: Some(Order::Gain { worth: I4F12::ZERO }),
         ..Mission::default()
     };
     let world = World::builtin("office").expect("built in");

@@ -122,6 +122,8 @@ impl<M: Memory> Planner<M> {
     ///         .team(TeamPlace {
     ///             member: Member { id: x_m as u8, boot: 0 },
     ///             map_from_odom: Pose { x_m, ..Pose::default() },
+    ///             sd_m: 0.0,
+    ///             sd_rad: 0.0,
     ///         })
     ///         .build()
     ///         .unwrap();
