@@ -25,7 +25,7 @@ use crate::robot::RobotShape;
 
 /// Least clearance of the robot, metres: while it drives a recovery, and of a point after repeated
 /// losses. In 36 runs of three strategies through three tight buildings (`aria_columbia`,
-/// `ipa_lab_intel_furnitures`, `willow_full`, four seeds):
+/// `ipa_lab_intel_furnitures`, `willow_full`, four seeds), with searches of 1,770 poses:
 ///
 /// | clearances of searches, and of the drive, m | places checked | touches | known % |
 /// | --- | --- | --- | --- |

@@ -46,8 +46,7 @@ const LEAST_HITS: f32 = 0.5;
 /// Most of them that may do so elsewhere, as a share.
 const MOST_SECOND: f32 = 0.75;
 /// Share of the cells on known ground that must lie within a cell of an obstacle in the end, and of
-/// all cells that must have floor before them.
-/// Something may have moved between the two maps.
+/// all cells that must have floor before them. Something may have moved between the two maps.
 const LEAST_NEAR: f32 = 0.85;
 
 /// The low and the high plane of a tile's cells.
