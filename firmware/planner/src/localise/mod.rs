@@ -28,6 +28,8 @@
 //! Units: metres, radians; cells inside the alignment.
 
 mod alignment;
+mod location;
+mod motion;
 mod occupancy;
 mod odometry;
 mod overlap;
@@ -39,67 +41,20 @@ mod symmetric;
 mod tests;
 
 use crate::config::{Config, LocaliseTuning};
-use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Point, Pose, RobotFrame};
+use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
 use crate::input::Input;
 use crate::map::{Map, Tiles};
 use crate::math;
 use crate::robot::LaserMount;
 use alignment::{Aligned, Unobserved, align};
+pub use location::{Location, Quality};
+use motion::Motion;
 pub(crate) use odometry::carry;
 pub(crate) use overlap::{MOST_CELLS, Overlap, add_tile, is_of_tile, overlap, sd_m};
 use scan_points::ScanPoints;
 use search::Search;
 use slip::likelier;
 pub(crate) use symmetric::Symmetric;
-
-/// How well the robot knows where it is.
-///
-/// ```
-/// use fieldline_planner::Quality;
-///
-/// /// Returns the speed that a careful user allows.
-/// fn speed_mps(quality: Quality) -> f32 {
-///     match quality {
-///         Quality::Tracking => 0.7,
-///         Quality::Degenerate(_) => 0.4,
-///         Quality::Lost => 0.0,
-///     }
-/// }
-/// assert_eq!(speed_mps(Quality::Degenerate(None)), 0.4);
-/// ```
-// With a tag of its own, the first value is all zeros. So is then the memory of a session that
-// begins, and the image does not have to store it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(u8)]
-pub enum Quality {
-    /// The scan holds the pose in every direction.
-    #[default]
-    Tracking,
-    /// The scan does not observe this direction of the map, radians, or none at all: odometry holds
-    /// the pose there.
-    Degenerate(Option<f32>),
-    /// The scan contradicts the map. Nothing is entered into the map.
-    Lost,
-}
-
-/// A pose in the map, and how well it is known.
-///
-/// ```
-/// use fieldline_planner::{Location, MapPose, Quality, State};
-///
-/// let state = Box::new(State::<4, 64>::new());
-/// let Location { pose, quality, .. } = state.location();
-/// assert_eq!((pose, quality), (MapPose::default(), Quality::Tracking));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Location {
-    /// The pose.
-    pub pose: MapPose,
-    /// Variances and covariances of x, y and yaw: xx, xy, yy, xt, yt, tt; m², m rad, rad².
-    pub covariance: [f32; 6],
-    /// The quality.
-    pub quality: Quality,
-}
 
 /// The pose at the start.
 const ORIGIN: Pose = Pose {
@@ -139,38 +94,6 @@ enum Footing {
     Moved(Motion),
     /// The search of a robot that is lost.
     Lost(Search),
-}
-
-/// The motion of a step, in the robot's frame before it.
-#[derive(Clone, Copy, Debug)]
-struct Motion {
-    shift: Point,
-    turn_rad: f32,
-}
-
-impl Motion {
-    const NONE: Self = Self {
-        shift: Point { x_m: 0.0, y_m: 0.0 },
-        turn_rad: 0.0,
-    };
-
-    fn between(before: &Pose, after: &Pose) -> Self {
-        Self {
-            shift: before.to_robot(after.point()),
-            turn_rad: math::wrap(after.yaw_rad - before.yaw_rad),
-        }
-    }
-
-    /// Returns where the motion leads from a pose.
-    fn from(&self, before: &Pose) -> Pose {
-        let Point { x_m, y_m } = before.to_map(self.shift);
-        Pose {
-            x_m,
-            y_m,
-            yaw_rad: math::wrap(before.yaw_rad + self.turn_rad),
-            ..*before
-        }
-    }
 }
 
 impl Default for Localiser {
