@@ -235,14 +235,20 @@ impl CollisionChecker {
     /// Returns true if the robot at this place keeps `margin_m` from every point and the side slope
     /// is within its limit.
     #[must_use]
+    #[inline(never)]
     pub(crate) fn is_clear(&self, place: Place, margin_m: f32) -> bool {
         let (sin, cos) = math::sin_cos(place.yaw_rad);
         let stands = |incline: &Incline| incline.admits(place, (sin, cos));
         if !self.incline.as_ref().is_none_or(stands) {
             return false;
         }
+        // No point farther away than a corner of the hull grown by the margin is too near.
+        let reach_m = self.hull.corner_m() + core::f32::consts::SQRT_2 * margin_m;
         self.threats.iter().all(|threat| {
             let (dx, dy) = (threat.at.x_m - place.x_m, threat.at.y_m - place.y_m);
+            if dx * dx + dy * dy > reach_m * reach_m {
+                return true;
+            }
             let now = self.hull.overhang(dx * cos + dy * sin, dy * cos - dx * sin);
             let least = (threat.clearance_m - SLACK_M).max(LEAST_MARGIN_M.min(threat.clearance_m));
             now >= margin_m.min(least - ROUNDING_M)

@@ -83,7 +83,14 @@ pub(super) fn velocity<H: Fn(Place) -> Option<f32>>(
     let may_go_on = |&twist: &Twist| {
         !rolls || twist.linear_mps > CREEP_MPS || {
             let [_, least_m] = SEARCH_MARGINS_M;
-            roll_out(query, (Place::default(), false), least_m, &mut 0, |_| true).is_some()
+            roll_out(
+                query,
+                (Place::default(), false),
+                least_m,
+                &mut 0,
+                (&|_| true, &|_| false),
+            )
+            .is_ok()
         }
     };
     let wish = ahead(config, error).find(admits);

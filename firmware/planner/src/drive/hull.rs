@@ -83,6 +83,12 @@ impl Hull {
         }
     }
 
+    /// Returns the distance of the farthest corner from the robot's centre, metres.
+    pub(super) fn corner_m(&self) -> f32 {
+        let (along, across) = (self.front.max(self.back), self.left.max(self.right));
+        math::sqrt(along * along + across * across)
+    }
+
     /// Returns the distance of a point by the larger overhang; negative inside.
     pub(super) fn overhang(&self, x_m: f32, y_m: f32) -> f32 {
         let along = x_m.abs() - if x_m < 0.0 { self.back } else { self.front };

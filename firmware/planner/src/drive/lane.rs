@@ -210,7 +210,7 @@ mod tests {
         }
         let mean = periods.iter().sum::<u32>() as f32 / periods.len() as f32;
         assert!(
-            periods.len() > 50 && mean < 100.0,
+            periods.len() > 50 && mean < 85.0,
             "{mean} of {}",
             periods.len()
         );

@@ -16,6 +16,7 @@
 
 mod collision;
 pub(crate) mod contact;
+mod dead_ends;
 mod direct;
 mod hull;
 mod incline;
@@ -36,7 +37,6 @@ pub use search_query::SearchQuery;
 
 use crate::config::Config;
 use crate::geometry::{OdomPose, Twist};
-use crate::math;
 use collision::LEAST_MARGIN_M;
 use contact::{Contact, ContactSense};
 use direct::CREEP_MARGIN_M;
@@ -326,9 +326,9 @@ impl Default for Drive {
     }
 }
 
-/// Returns true if there is room for half a turn on the spot, and so for every turn of a rectangle.
+/// Returns true if the robot has room for every turn on the spot where it stands.
 fn can_turn_about(checker: &CollisionChecker) -> bool {
-    checker.is_arc_clear(Place::default(), 0.0, math::PI, CREEP_MARGIN_M)
+    checker.has_room_to_turn(Place::default(), CREEP_MARGIN_M)
 }
 
 fn is_moving(now: Twist) -> bool {

@@ -7,31 +7,30 @@
 //! ([`crate::drive::roll_out`]): with room to turn to the field's heading *there*, or, at a higher
 //! cost, with its back along it. The end must be farther along the field than the start; otherwise
 //! the robot oscillates before a tight corner. Of the poses in the same cell of 3 cm × 3 cm × 7.5°
-//! only the first counts. The search runs in instalments while the robot stands, so every step is
-//! short.
+//! only the first counts. Roll-outs end where an earlier one went through before it touched
+//! ([`crate::drive::dead_ends`]). The search runs in instalments while the robot stands, so every
+//! step is short.
 //!
 //! Invariant: every pose of a recovery keeps the margin.
 //!
 //! Units: metres, radians; robot frame at the start.
 
+use crate::drive::dead_ends::{self, DIRECTIONS, DeadEnds, cell_of};
 use crate::drive::hull::Place;
-use crate::drive::motion::{LENGTH_M, MOTIONS, MotionSet, Recovery, TURN_RAD};
-use crate::drive::open_list::{Node, OpenList};
+use crate::drive::motion::{MOTIONS, MotionSet, Recovery, TURN_RAD};
+use crate::drive::open_list::{self, Node, OpenList};
 use crate::drive::roll_out::RollOut;
 use crate::drive::search_query::SearchQuery;
-use crate::math;
 
 /// Cost of an end against the field, in motions.
 const REVERSE_COST: f32 = 12.0;
-/// Cells to each side of the start within which poses count, cells of [`LENGTH_M`].
+/// Cells to each side of the start within which poses count.
 const REACH: i32 = 22;
 const SIDE: usize = 2 * REACH as usize + 1;
-/// Headings that are distinguished: a full turn in steps of [`TURN_RAD`].
-const DIRECTIONS: usize = 48;
-const VISITED_WORDS: usize = (SIDE * SIDE * DIRECTIONS).div_ceil(32);
+const VISITED_WORDS: usize = (SIDE * SIDE * DIRECTIONS as usize).div_ceil(32);
 
 /// Words of scratch memory that a search needs.
-pub const SCRATCH_WORDS: usize = VISITED_WORDS + super::open_list::WORDS;
+pub const SCRATCH_WORDS: usize = VISITED_WORDS + dead_ends::WORDS + open_list::WORDS;
 
 /// The result of an instalment of a search.
 #[derive(Clone, Debug)]
@@ -72,8 +71,9 @@ impl Search {
             margin_m,
             first,
         };
-        if let Some((visited, nodes)) = scratch.split_at_mut_checked(VISITED_WORDS) {
+        if let Some((visited, failed, nodes)) = split(scratch) {
             visited.fill(0);
+            DeadEnds(failed).clear();
             visit(visited, Place::default());
             search.open.push(nodes, Node::start());
         }
@@ -87,9 +87,10 @@ impl Search {
         budget: SearchBudget,
         scratch: &mut [u32],
     ) -> SearchOutcome {
-        let Some((visited, nodes)) = scratch.split_at_mut_checked(VISITED_WORDS) else {
+        let Some((visited, failed, nodes)) = split(scratch) else {
             return SearchOutcome::Nothing;
         };
+        let (mut dead_ends, margin_m) = (DeadEnds(failed), self.margin_m);
         let mut points = 0;
         for _ in 0..budget.poses {
             if points >= budget.points {
@@ -99,15 +100,18 @@ impl Search {
                 return SearchOutcome::Nothing;
             };
             if node.is_end {
-                let on = query.leads_on(node.place, true, self.margin_m, &mut points);
-                return SearchOutcome::Found(self.trace(nodes, index, &on.unwrap_or_default()));
+                // It led on before; since then its places may have become dead ends of others.
+                dead_ends.clear();
+                let on = query.leads_on(node.place, true, margin_m, &mut points, &mut dead_ends);
+                let on = on.unwrap_or_default();
+                return SearchOutcome::Found(self.trace(nodes, index, &on));
             }
             let may_begin = |on: &RollOut| index != 0 || self.may_begin(on);
-            let on = query.leads_on(node.place, false, self.margin_m, &mut points);
+            let on = query.leads_on(node.place, false, margin_m, &mut points, &mut dead_ends);
             if let Some(on) = on.filter(may_begin) {
                 return SearchOutcome::Found(self.trace(nodes, index, &on));
             }
-            let on = query.leads_on(node.place, true, self.margin_m, &mut points);
+            let on = query.leads_on(node.place, true, margin_m, &mut points, &mut dead_ends);
             if on.is_some_and(|on| may_begin(&on)) {
                 let cost = node.cost + REVERSE_COST;
                 self.open.push(
@@ -200,16 +204,21 @@ impl Search {
     }
 }
 
+/// Returns the memory of the visited cells, of the dead ends and of the open list.
+fn split(scratch: &mut [u32]) -> Option<(&mut [u32], &mut [u32], &mut [u32])> {
+    let (visited, rest) = scratch.split_at_mut_checked(VISITED_WORDS)?;
+    let (failed, nodes) = rest.split_at_mut_checked(dead_ends::WORDS)?;
+    Some((visited, failed, nodes))
+}
+
 /// Marks the cell of a pose. Returns false if it was marked already or is out of reach.
 fn visit(visited: &mut [u32], place: Place) -> bool {
-    let cell = |at: f32| math::floor(at / LENGTH_M + 0.5);
-    let (x, y) = (cell(place.x_m), cell(place.y_m));
+    let [x, y, direction] = cell_of(place);
     if x.abs() > REACH || y.abs() > REACH {
         return false;
     }
-    let direction = math::floor(place.yaw_rad / TURN_RAD + 0.5).rem_euclid(DIRECTIONS as i32);
     let cell = (y + REACH) as usize * SIDE + (x + REACH) as usize;
-    let index = cell * DIRECTIONS + direction as usize;
+    let index = cell * DIRECTIONS as usize + direction as usize;
     let Some(word) = visited.get_mut(index / 32) else {
         return false;
     };

@@ -29,17 +29,22 @@ const GOAL_RAD: f32 = 2.0;
 /// The numbers of a roll-out's motions, the first one first.
 pub(super) type RollOut = Vec<u8, MOST_MOTIONS>;
 
-/// Returns the roll-out from a place, with the robot's front ahead or its back, and its end; `None`
-/// if it comes nearer to an obstacle than the margin. It is at least [`ROLL_M`] long and goes on
-/// until `is_far`. Adds to `points` the obstacle points of each checked place.
+/// Returns the roll-out from a place, with the robot's front ahead or its back, and its end. It is
+/// at least [`ROLL_M`] long and goes on until `is_far`. Adds to `points` the obstacle points of
+/// each checked place.
+///
+/// # Errors
+///
+/// The motions as far as they are clear, if the way on comes nearer to an obstacle than the margin,
+/// or to a place that is a dead end.
 #[inline(never)]
 pub(super) fn roll_out<H: Fn(Place) -> Option<f32>>(
     query: &SearchQuery<'_, H>,
     (from, backwards): (Place, bool),
     margin_m: f32,
     points: &mut u32,
-    is_far: impl Fn(Place) -> bool,
-) -> Option<(RollOut, Place)> {
+    (is_far, is_dead_end): (&dyn Fn(Place) -> bool, &dyn Fn(Place) -> bool),
+) -> Result<(RollOut, Place), RollOut> {
     let straight = if backwards { BACKWARD } else { FORWARD };
     let (mut motions, mut place, mut rolled_m) = (RollOut::new(), from, 0.0);
     while (rolled_m < ROLL_M || !is_far(place)) && !motions.is_full() {
@@ -54,7 +59,10 @@ pub(super) fn roll_out<H: Fn(Place) -> Option<f32>>(
         if error.abs() > GOAL_RAD && rolled_m > 0.0 {
             break;
         }
-        let (number, next) = next(query, place, error, straight, margin_m, points)?;
+        let step = next(query, place, error, straight, margin_m, points);
+        let Some((number, next)) = step.filter(|&(_, next)| !is_dead_end(next)) else {
+            return Err(motions);
+        };
         if number >= FORWARD {
             rolled_m += LENGTH_M;
         }
@@ -63,7 +71,11 @@ pub(super) fn roll_out<H: Fn(Place) -> Option<f32>>(
         let _ = motions.push(number);
     }
     const { assert!(ROLL_M / LENGTH_M < MOST_MOTIONS as f32) };
-    (rolled_m > 0.0).then_some((motions, place))
+    if rolled_m > 0.0 {
+        Ok((motions, place))
+    } else {
+        Err(motions)
+    }
 }
 
 /// Returns the next motion and its end: the one that the field wants, or else the straight one or

@@ -3,6 +3,7 @@
 //! Units: metres, radians; robot frame at the start.
 
 use crate::drive::collision::CollisionChecker;
+use crate::drive::dead_ends::DeadEnds;
 use crate::drive::hull::Place;
 use crate::drive::lane::Lane;
 use crate::drive::roll_out::{RollOut, roll_out};
@@ -61,20 +62,26 @@ impl<'a, H: Fn(Place) -> Option<f32>> SearchQuery<'a, H> {
     }
 
     /// Returns true if a place is farther along the field than the robot.
-    fn is_progress(&self, place: Place) -> bool {
+    pub(super) fn is_progress(&self, place: Place) -> bool {
         self.potential_at
             .is_none_or(|q| q(place) > PROGRESS * q(Place::default()))
     }
 
     /// Returns the way on along the field, if the robot's front or back points along it and there
-    /// is room for the way. Adds to `points` the number of obstacle points for each checked place.
+    /// is room for the way; otherwise notes the places of the way as dead ends. Adds to `points` the
+    /// number of obstacle points for each checked place.
+    #[inline(never)]
     pub(super) fn leads_on(
         &self,
         place: Place,
         backwards: bool,
         margin_m: f32,
         points: &mut u32,
+        dead_ends: &mut DeadEnds<'_>,
     ) -> Option<RollOut> {
+        if dead_ends.has(place, backwards) {
+            return None;
+        }
         let error = self.misalignment(place)?;
         let error = if backwards {
             math::wrap(error + math::PI)
@@ -92,7 +99,14 @@ impl<'a, H: Fn(Place) -> Option<f32>> SearchQuery<'a, H> {
             }
         }
         let is_far = |place| self.is_progress(place);
-        let (motions, end) = roll_out(self, (place, backwards), margin_m, points, is_far)?;
-        self.is_progress(end).then_some(motions)
+        let is_dead_end = |place| dead_ends.has(place, backwards);
+        let ends = (&is_far as _, &is_dead_end as _);
+        match roll_out(self, (place, backwards), margin_m, points, ends) {
+            Ok((motions, end)) if self.is_progress(end) => Some(motions),
+            Ok((motions, _)) | Err(motions) => {
+                dead_ends.note(place, &motions, backwards);
+                None
+            }
+        }
     }
 }

@@ -2,9 +2,11 @@
 
 use crate::drive::CollisionChecker;
 use crate::drive::direct::ALIGNED_RAD;
+use crate::drive::motion::LENGTH_M;
 use crate::drive::recovery::*;
 use crate::drive::roll_out::ROLL_M;
 use crate::geometry::{Point, Pose};
+use crate::math;
 use crate::robot::RobotShape;
 
 /// Points of walls given as segments, 2 cm apart.
