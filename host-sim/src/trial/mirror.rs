@@ -70,7 +70,9 @@ impl Mirror {
 
     /// Takes what came for gone, as the device did in this step.
     pub fn forget_arrivals(&mut self) {
-        self.map.forget_arrivals();
+        if let Some(config) = &self.config {
+            self.map.forget_arrivals(config, self.pose.point().cell());
+        }
     }
 
     /// Returns true if a cell has been measured.

@@ -3,6 +3,7 @@
 //!
 //! Units: map cells.
 
+use crate::config::Config;
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::Cell;
 use crate::map::Tiles;
@@ -18,6 +19,7 @@ const BOX_CELLS: u32 = 100;
 
 /// Ends the exploration: lists the residual frontiers and sets the status, or begins the patrol.
 pub(super) fn finish<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
     footprint: &Footprint,
@@ -31,7 +33,7 @@ pub(super) fn finish<const TILES: usize, const SLOTS: usize>(
     }
     let missing = list_ways_out(state, workspace, footprint, robot);
     state.strategy.frontier.list_unreachable(&state.skeleton);
-    if missing.is_none() && looks_again(state, time_ms) {
+    if missing.is_none() && looks_again(config, state, (robot, time_ms)) {
         return;
     }
     let status = conclude(state, &mut workspace.local_grid, footprint, robot, missing);
@@ -43,8 +45,9 @@ pub(super) fn finish<const TILES: usize, const SLOTS: usize>(
 /// Begins a second look if one may help and something came: takes it for gone. Returns true if it
 /// does. On uneven ground nothing is known to have come.
 fn looks_again<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
     state: &mut State<TILES, SLOTS>,
-    time_ms: u32,
+    (robot, time_ms): (Cell, u32),
 ) -> bool {
     if state.ground.is_uneven() || !state.map.has_arrivals() {
         return false;
@@ -53,7 +56,7 @@ fn looks_again<const TILES: usize, const SLOTS: usize>(
     let frontier = &mut state.strategy.frontier;
     let begins = frontier.may_look_again(known_cells, time_ms);
     if begins {
-        state.map.forget_arrivals();
+        state.map.forget_arrivals(config, robot);
         frontier.look_again();
         state.forgot_arrivals = true;
     }

@@ -62,12 +62,15 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
             state.viewpoints.begin(frame, tiling, scratch);
         }
         RoundOutcome::Nothing => finish(
+            config,
             state,
             workspace,
             footprint,
             (input.pose.point().cell(), input.time_ms),
         ),
         RoundOutcome::Stuck => state.status = Status::Fault(Fault::Stuck),
+        // The next goals are judged on the same skeleton.
+        RoundOutcome::Unsure if state.strategy.frontier.judges_on() => return false,
         RoundOutcome::Path | RoundOutcome::Unsure => {}
     }
     true
@@ -132,6 +135,6 @@ pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
             // The skeleton is still the one that the last round planned on.
             state.has_new_skeleton = true;
         }
-        Found::Nothing => finish(state, workspace, &narrow, (robot, input.time_ms)),
+        Found::Nothing => finish(config, state, workspace, &narrow, (robot, input.time_ms)),
     }
 }
