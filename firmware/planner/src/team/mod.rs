@@ -32,7 +32,7 @@ use exchange::{Exchange, differs};
 use frame::{Motion, OwnFrame};
 use packet::{Beacon, Body, Packet};
 use peers::{Peer, Peers};
-use right_of_way::RightOfWay;
+use right_of_way::{RightOfWay, distance2};
 
 /// The state of a team's member; of a robot alone it is empty.
 #[derive(Debug)]
@@ -167,6 +167,24 @@ impl Team {
     pub(crate) fn rivals(&self, now_ms: u32) -> impl Iterator<Item = &Peer> {
         let peers = self.peers.iter();
         peers.filter(move |peer| self.way.may_move(peer, now_ms))
+    }
+
+    /// Returns true if a peer that stands for good is in the way from a robot through `places`: the
+    /// circles around the two hulls would meet. This robot's circle is taken to be as large as the
+    /// peer's. A robot that is nearer already may leave.
+    pub(crate) fn bars(
+        &self,
+        robot: Point,
+        mut places: impl Iterator<Item = Point> + Clone,
+    ) -> bool {
+        let first = places.next().unwrap_or(robot);
+        let stand = |peer: &&Peer| !peer.beacon.activity.moves();
+        self.peers.iter().filter(stand).any(|peer| {
+            let (at, apart_m) = (peer.beacon.point(), 2.0 * peer.radius_m());
+            let limit2 = (apart_m * apart_m).min(at.distance2(robot));
+            distance2(&[robot, first], at) < limit2
+                || places.clone().any(|place| place.distance2(at) < limit2)
+        })
     }
 
     /// Returns true if this robot makes way for a peer and goes on to do so.
