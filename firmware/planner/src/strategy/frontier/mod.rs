@@ -26,6 +26,7 @@ use crate::path::viewpoint::Viewpoint;
 use crate::path::{Path, PlanningContext, PlanningScratch, RoundOutcome};
 use crate::roadmap::skeleton::Skeleton;
 use crate::status::{ResidualFrontier, ResidualReason};
+use crate::team::Team;
 
 /// A robot that follows its own potential has reached a goal that is at most this many steps away.
 const REACHED_STEPS: u32 = 4;
@@ -50,7 +51,7 @@ pub(crate) struct Frontier {
     second_chance: bool,
     /// Further second chances so far, on uneven ground.
     retries: u8,
-    /// The robot got stuck at both chances. It only looks from viewpoints from now on.
+    /// The robot got stuck at both chances. It only looks from viewpoints until it has moved.
     only_looks: bool,
     /// The robot did not move during the second chance.
     immobile: bool,
@@ -114,6 +115,11 @@ impl Frontier {
     /// Returns the time since the robot last moved, milliseconds.
     pub(crate) const fn standing_ms(&self, time_ms: u32) -> u32 {
         self.progress.standing_ms(time_ms)
+    }
+
+    /// Returns true if the last round judged some goals in vain, and more are left.
+    pub(crate) const fn judges_on(&self) -> bool {
+        self.judged > 0
     }
 
     /// Notes that the robot waits for another one, which is not its failure.
@@ -210,6 +216,10 @@ impl Frontier {
         context: &PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
     ) -> Option<Path> {
+        // A robot that got away from where it was stuck drives to frontiers again. In 12 runs of
+        // `frontier` through three tight buildings 97.9 % are then known in the mean instead of
+        // 93.2, and 96.0 % at least instead of 42.9.
+        self.only_looks &= !self.progress.moved();
         if self.only_looks {
             return None;
         }
@@ -248,9 +258,10 @@ impl Frontier {
             .note_motion(context.pose.point(), context.time_ms);
         if let Some(path) = path {
             self.choose(path, context);
-        } else if let Some((viewpoint, path)) = self.path_to_viewpoint(context, &mut scratch) {
-            let along_centre = path.steps();
-            self.path = path.leading_to(viewpoint.stand);
+        } else if let Some((viewpoint, along_centre, path)) =
+            self.path_to_viewpoint(context, &mut scratch)
+        {
+            self.path = path;
             return self.go_and_look(viewpoint, along_centre, context, scratch.local_grid);
         } else if context.waits_for_peers || self.judged > 0 {
             self.path.clear();
@@ -393,22 +404,30 @@ impl Frontier {
         }
     }
 
-    /// Returns the path to the viewpoint, as long as there is something to see from it.
+    /// Returns the viewpoint, the steps towards it along centre cells, and the path there, as long
+    /// as there is something to see from it and nobody who stands for good is in the way.
+    ///
+    /// Without the last condition a robot stood for 77 s in an opening (meetings at a door, seed
+    /// 86): searches for a way past one that had finished behind it followed each other.
     fn path_to_viewpoint<const TILES: usize, const SLOTS: usize>(
         &mut self,
         context: &PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
-    ) -> Option<(Viewpoint, Path)> {
+    ) -> Option<(Viewpoint, u32, Path)> {
         let viewpoint = self.viewpoint.take()?;
         if context.tiles.class(viewpoint.beyond) != Class::Unknown {
             return None;
         }
-        let path = path_to(viewpoint.stand, context, scratch);
+        let along_centre = path_to(viewpoint.stand, context, scratch);
+        let path = along_centre
+            .map(|path| (path.steps(), path.leading_to(viewpoint.stand)))
+            .filter(|(_, path)| !is_barred(path, context));
         if path.is_none() {
             self.give_up(viewpoint.gap, ResidualReason::Unreachable);
         }
         self.viewpoint = path.is_some().then_some(viewpoint);
-        Some((viewpoint, path?))
+        let (along_centre, path) = path?;
+        Some((viewpoint, along_centre, path))
     }
 
     /// Notes that the local grid has no way along the path, although the coarser skeleton has one.
@@ -472,6 +491,16 @@ impl Frontier {
     pub(crate) fn list_map_exit(&mut self, cell: Cell) {
         self.residual.list_map_exit(cell);
     }
+}
+
+/// Returns true if a robot of the team that stands for good is in the way along a path.
+fn is_barred<const TILES: usize, const SLOTS: usize>(
+    path: &Path,
+    context: &PlanningContext<'_, TILES, SLOTS>,
+) -> bool {
+    let places = path.cells().iter().map(|cell| cell.offset(1, 1).corner());
+    let bars = |team: &Team| team.bars(context.pose.point(), places);
+    context.team.is_some_and(bars)
 }
 
 impl Default for Frontier {
