@@ -62,14 +62,14 @@ impl<'a, H: Fn(Place) -> Option<f32>> SearchQuery<'a, H> {
     }
 
     /// Returns true if a place is farther along the field than the robot.
-    pub(super) fn is_progress(&self, place: Place) -> bool {
+    fn is_progress(&self, place: Place) -> bool {
         self.potential_at
             .is_none_or(|q| q(place) > PROGRESS * q(Place::default()))
     }
 
     /// Returns the way on along the field, if the robot's front or back points along it and there
-    /// is room for the way; otherwise notes the places of the way as dead ends. Adds to `points` the
-    /// number of obstacle points for each checked place.
+    /// is room for the way; otherwise notes the places of the way as dead ends. Adds to `points`
+    /// the number of obstacle points for each checked place.
     #[inline(never)]
     pub(super) fn leads_on(
         &self,
