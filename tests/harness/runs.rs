@@ -199,10 +199,7 @@ pub fn faults(report: &Report, least_coverage: f64) -> Vec<String> {
             faults.push(format!("{count} {what}"));
         }
     }
-    // On uneven ground the copy does not know when the device decides about cells that it never
-    // sees. A pose that is matched to the map may differ then, and what is entered after it.
-    let may_differ = report.ground == "uneven" && report.localization.corrected;
-    if report.debug.map_matches_mirror != Some(true) && !may_differ {
+    if report.debug.map_matches_mirror != Some(true) {
         faults.push("the device's map differs from the host's copy".into());
     }
     faults

@@ -8,8 +8,7 @@ use fieldline_tests::meetings::{ALL, Meeting, Narrow, summary, table};
 use fieldline_tests::runs::in_parallel;
 
 /// Lets robots meet with every seed. Nobody touches anything, nobody is blocked for good, and in
-/// three of five runs the robots really meet: in the dead end, the one that starts outside may have
-/// seen everything before the first one comes out.
+/// seven of ten runs the robots really meet.
 fn meet(file: &str, seeds: Range<u64>) {
     let kinds = ALL.into_iter();
     let all: Vec<(Narrow, u64)> = kinds
@@ -30,7 +29,7 @@ fn meet(file: &str, seeds: Range<u64>) {
     for same in meetings.chunk_by(|a, b| a.narrow == b.narrow) {
         let met = same.iter().filter(|meeting| meeting.has_met()).count();
         assert!(
-            5 * met >= 3 * same.len(),
+            10 * met >= 7 * same.len(),
             "{}: {met}",
             same[0].narrow.name()
         );

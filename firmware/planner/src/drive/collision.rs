@@ -242,11 +242,10 @@ impl CollisionChecker {
         if !self.incline.as_ref().is_none_or(stands) {
             return false;
         }
-        // No point farther away than a corner of the hull grown by the margin is too near.
-        let reach_m = self.hull.corner_m() + core::f32::consts::SQRT_2 * margin_m;
+        let reach2 = self.hull.reach2(margin_m);
         self.threats.iter().all(|threat| {
             let (dx, dy) = (threat.at.x_m - place.x_m, threat.at.y_m - place.y_m);
-            if dx * dx + dy * dy > reach_m * reach_m {
+            if dx * dx + dy * dy > reach2 {
                 return true;
             }
             let now = self.hull.overhang(dx * cos + dy * sin, dy * cos - dx * sin);

@@ -83,10 +83,12 @@ impl Hull {
         }
     }
 
-    /// Returns the distance of the farthest corner from the robot's centre, metres.
-    pub(super) fn corner_m(&self) -> f32 {
-        let (along, across) = (self.front.max(self.back), self.left.max(self.right));
-        math::sqrt(along * along + across * across)
+    /// Returns the squared distance from the robot's centre beyond which no point is nearer to the
+    /// hull than a margin: that of the farthest corner of the hull grown by it, square metres.
+    pub(super) fn reach2(&self, margin_m: f32) -> f32 {
+        let along = self.front.max(self.back) + margin_m;
+        let across = self.left.max(self.right) + margin_m;
+        along * along + across * across
     }
 
     /// Returns the distance of a point by the larger overhang; negative inside.

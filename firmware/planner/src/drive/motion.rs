@@ -4,6 +4,7 @@
 
 use heapless::Vec;
 
+use crate::drive::hull::Place;
 use crate::geometry::Twist;
 use crate::math;
 
@@ -15,6 +16,8 @@ const PERIODS: u8 = 2;
 pub(super) const LENGTH_M: f32 = 0.03;
 /// Turn of a motion on the spot, radians: 7.5°.
 pub(super) const TURN_RAD: f32 = math::PI / 24.0;
+/// Headings that are distinguished: a full turn in steps of [`TURN_RAD`].
+pub(super) const DIRECTIONS: i32 = 48;
 /// Turn of a curved motion, radians.
 const CURVE_RAD: f32 = 0.1;
 
@@ -62,6 +65,17 @@ pub(super) const TURN_LEFT: u8 = 0;
 pub(super) const FORWARD: u8 = 2;
 /// Number of the straight motion backwards; the curves come next.
 pub(super) const BACKWARD: u8 = 5;
+
+/// Returns the cell of a pose: its column, its row and its direction.
+#[inline(never)]
+pub(super) fn cell_of(place: Place) -> [i32; 3] {
+    let nearest = |at: f32| math::floor(at + 0.5);
+    [
+        nearest(place.x_m / LENGTH_M),
+        nearest(place.y_m / LENGTH_M),
+        nearest(place.yaw_rad / TURN_RAD).rem_euclid(DIRECTIONS),
+    ]
+}
 
 /// A set of motions: bit k is motion k.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -15,9 +15,9 @@
 //!
 //! Units: metres, radians; robot frame at the start.
 
-use crate::drive::dead_ends::{self, DIRECTIONS, DeadEnds, cell_of};
+use crate::drive::dead_ends::{self, DeadEnds};
 use crate::drive::hull::Place;
-use crate::drive::motion::{MOTIONS, MotionSet, Recovery, TURN_RAD};
+use crate::drive::motion::{DIRECTIONS, MOTIONS, MotionSet, Recovery, TURN_RAD, cell_of};
 use crate::drive::open_list::{self, Node, OpenList};
 use crate::drive::roll_out::RollOut;
 use crate::drive::search_query::SearchQuery;

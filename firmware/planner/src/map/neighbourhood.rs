@@ -4,8 +4,9 @@
 //! bit side · dy + dx = 1 if the cell (dx, dy) from the corner is an obstacle, 0 ≤ dx, dy < side
 //! ```
 //!
-//! An obstacle that came ([`Class::Negative`](crate::grid::Class) on flat ground) stands too. Only
-//! the localisation reads this, on flat ground.
+//! What came ([`Class::Negative`](crate::grid::Class) on flat ground) stands too. On uneven ground
+//! that class is a hole, or ground that stayed unmeasured: no level beam ends there, so it does not
+//! count.
 //!
 //! Units: map cells.
 
@@ -19,10 +20,15 @@ const LOW: usize = 0;
 const HIGH: usize = 1;
 
 impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
-    /// Returns the obstacles in the square of `SIDE` cells, at most 5, from `corner` on.
+    /// Returns the obstacles that stand in the square of `SIDE` cells, at most 5, from `corner` on.
     #[inline]
     pub(crate) fn obstacles_from<const SIDE: i32>(&self, corner: Cell) -> u32 {
-        self.square::<SIDE, HIGH>(corner)
+        let obstacles = self.square::<SIDE, HIGH>(corner);
+        if obstacles != 0 && self.is_lent() {
+            obstacles & !self.square::<SIDE, LOW>(corner)
+        } else {
+            obstacles
+        }
     }
 
     /// Returns true if what stands within two cells of a cell came, and has neither a wall nor

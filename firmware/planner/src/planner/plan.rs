@@ -69,7 +69,8 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
             (input.pose.point().cell(), input.time_ms),
         ),
         RoundOutcome::Stuck => state.status = Status::Fault(Fault::Stuck),
-        // The next goals are judged on the same skeleton.
+        // The next goals are judged on the same skeleton: the next one is a second away, and the
+        // robot stands.
         RoundOutcome::Unsure if state.strategy.frontier.judges_on() => return false,
         RoundOutcome::Path | RoundOutcome::Unsure => {}
     }

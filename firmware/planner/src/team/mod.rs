@@ -169,9 +169,9 @@ impl Team {
         peers.filter(move |peer| self.way.may_move(peer, now_ms))
     }
 
-    /// Returns true if a peer that stands for good is in the way from a robot through `places`: the
-    /// circles around the two hulls would meet. This robot's circle is taken to be as large as the
-    /// peer's. A robot that is nearer already may leave.
+    /// Returns true if a peer that stands for good is in the way of a robot that drives through
+    /// `places`: the circles around the two hulls would meet. This robot's circle is taken to be as
+    /// large as the peer's. A robot that is nearer already may leave.
     pub(crate) fn bars(
         &self,
         robot: Point,

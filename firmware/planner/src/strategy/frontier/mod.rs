@@ -10,28 +10,23 @@
 //!
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
 
+mod looking;
+
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Point};
-use crate::map::Class;
-use crate::math;
 use crate::path::blocked_passages::{BlockedPassages, ahead, first_unreachable};
-use crate::path::context::STEP_M;
 use crate::path::frontier_path::path_to_next;
 use crate::path::goal_cost::{PresentGoal, level};
 use crate::path::progress::{ProgressChecker, Verdict};
 use crate::path::residual_frontiers::ResidualFrontiers;
-use crate::path::search::path_to;
 use crate::path::second_look::SecondLook;
 use crate::path::viewpoint::Viewpoint;
 use crate::path::{Path, PlanningContext, PlanningScratch, RoundOutcome};
 use crate::roadmap::skeleton::Skeleton;
 use crate::status::{ResidualFrontier, ResidualReason};
-use crate::team::Team;
 
 /// A robot that follows its own potential has reached a goal that is at most this many steps away.
 const REACHED_STEPS: u32 = 4;
-/// Maximum number of viewpoints in a run.
-const MOST_VIEWPOINTS: u8 = 100;
 /// Rounds in a row that must find nothing before the exploration ends: noise may close a way for a
 /// moment.
 const EMPTY_ROUNDS: u8 = 5;
@@ -49,9 +44,11 @@ pub(crate) struct Frontier {
     /// Goals that the last rounds judged in vain; more are left.
     judged: usize,
     second_chance: bool,
-    /// Further second chances so far, on uneven ground.
+    /// Further second chances so far.
     retries: u8,
-    /// The robot got stuck at both chances. It only looks from viewpoints until it has moved.
+    /// The robot got stuck at both chances. It only looks from viewpoints from now on. Robots that
+    /// go on with frontiers once they have moved know no more: 95.6 % in 36 runs of three
+    /// strategies through three tight buildings. 18 of these runs end explored then, not 27.
     only_looks: bool,
     /// The robot did not move during the second chance.
     immobile: bool,
@@ -216,10 +213,6 @@ impl Frontier {
         context: &PlanningContext<'_, TILES, SLOTS>,
         scratch: &mut PlanningScratch<'_>,
     ) -> Option<Path> {
-        // A robot that got away from where it was stuck drives to frontiers again. In 12 runs of
-        // `frontier` through three tight buildings 97.9 % are then known in the mean instead of
-        // 93.2, and 96.0 % at least instead of 42.9.
-        self.only_looks &= !self.progress.moved();
         if self.only_looks {
             return None;
         }
@@ -258,11 +251,8 @@ impl Frontier {
             .note_motion(context.pose.point(), context.time_ms);
         if let Some(path) = path {
             self.choose(path, context);
-        } else if let Some((viewpoint, along_centre, path)) =
-            self.path_to_viewpoint(context, &mut scratch)
-        {
-            self.path = path;
-            return self.go_and_look(viewpoint, along_centre, context, scratch.local_grid);
+        } else if let Some(outcome) = self.look(context, &mut scratch) {
+            return outcome;
         } else if context.waits_for_peers || self.judged > 0 {
             self.path.clear();
             return RoundOutcome::Unsure;
@@ -355,79 +345,9 @@ impl Frontier {
         self.second_chance
     }
 
-    /// Returns true if another viewpoint may be searched for.
-    pub(crate) fn may_look(&self) -> bool {
-        self.viewpoints < MOST_VIEWPOINTS && !self.residual.is_full()
-    }
-
     /// Returns the goals that were given up, for a search to add to, and the blocked passages.
     pub(crate) const fn given_up_mut(&mut self) -> (&mut ResidualFrontiers, &BlockedPassages) {
         (&mut self.residual, &self.blocked)
-    }
-
-    /// Goes to a viewpoint next.
-    pub(crate) fn look_from(&mut self, viewpoint: Viewpoint) {
-        self.viewpoint = Some(viewpoint);
-        self.viewpoints = self.viewpoints.saturating_add(1);
-    }
-
-    /// Goes on towards a viewpoint, which is `along_centre` steps away along centre cells, then
-    /// straight on.
-    fn go_and_look<const TILES: usize, const SLOTS: usize>(
-        &mut self,
-        viewpoint: Viewpoint,
-        along_centre: u32,
-        context: &PlanningContext<'_, TILES, SLOTS>,
-        grid: &mut LocalGrid,
-    ) -> RoundOutcome {
-        let robot = context.pose.point();
-        let straight_m = math::sqrt(viewpoint.stand.corner().distance2(robot));
-        let steps = along_centre.max((straight_m / STEP_M) as u32);
-        let verdict = self.progress.judge(viewpoint.stand, steps, context.time_ms);
-        let reason = match verdict {
-            Verdict::GoOn => return RoundOutcome::Path,
-            Verdict::Drop(reason) => Some(reason),
-            Verdict::BlockAhead => Some(ResidualReason::Unreachable),
-            // The stand can be reached, maybe by another way.
-            Verdict::BlockUnreachable => None,
-        };
-        if let Some(reason) = reason {
-            self.give_up(viewpoint.gap, reason);
-            self.viewpoint = None;
-        } else {
-            self.block_passage(verdict, context, grid);
-        }
-        match (self.progress.is_stuck(), self.only_looks) {
-            (false, _) => RoundOutcome::Unsure,
-            (true, true) if !self.progress.moved() => RoundOutcome::Stuck,
-            (true, _) => self.only_look(),
-        }
-    }
-
-    /// Returns the viewpoint, the steps towards it along centre cells, and the path there, as long
-    /// as there is something to see from it and nobody who stands for good is in the way.
-    ///
-    /// Without the last condition a robot stood for 77 s in an opening (meetings at a door, seed
-    /// 86): searches for a way past one that had finished behind it followed each other.
-    fn path_to_viewpoint<const TILES: usize, const SLOTS: usize>(
-        &mut self,
-        context: &PlanningContext<'_, TILES, SLOTS>,
-        scratch: &mut PlanningScratch<'_>,
-    ) -> Option<(Viewpoint, u32, Path)> {
-        let viewpoint = self.viewpoint.take()?;
-        if context.tiles.class(viewpoint.beyond) != Class::Unknown {
-            return None;
-        }
-        let along_centre = path_to(viewpoint.stand, context, scratch);
-        let path = along_centre
-            .map(|path| (path.steps(), path.leading_to(viewpoint.stand)))
-            .filter(|(_, path)| !is_barred(path, context));
-        if path.is_none() {
-            self.give_up(viewpoint.gap, ResidualReason::Unreachable);
-        }
-        self.viewpoint = path.is_some().then_some(viewpoint);
-        let (along_centre, path) = path?;
-        Some((viewpoint, along_centre, path))
     }
 
     /// Notes that the local grid has no way along the path, although the coarser skeleton has one.
@@ -491,16 +411,6 @@ impl Frontier {
     pub(crate) fn list_map_exit(&mut self, cell: Cell) {
         self.residual.list_map_exit(cell);
     }
-}
-
-/// Returns true if a robot of the team that stands for good is in the way along a path.
-fn is_barred<const TILES: usize, const SLOTS: usize>(
-    path: &Path,
-    context: &PlanningContext<'_, TILES, SLOTS>,
-) -> bool {
-    let places = path.cells().iter().map(|cell| cell.offset(1, 1).corner());
-    let bars = |team: &Team| team.bars(context.pose.point(), places);
-    context.team.is_some_and(bars)
 }
 
 impl Default for Frontier {
