@@ -112,6 +112,30 @@ mod tests {
         assert!((place.x_m - 1.0).abs() < 1e-3 && (place.y_m - 1.0).abs() < 1e-3);
     }
 
+    /// Points on circles about the robot: beyond the reach none is nearer than the margin, and just
+    /// within it some are.
+    #[test]
+    fn no_point_beyond_the_reach_is_nearer_than_the_margin() {
+        let pose = Pose {
+            pitch_rad: 0.2,
+            roll_rad: -0.1,
+            ..Pose::default()
+        };
+        let hull = Hull::leaning(&RobotShape::PIONEER_3AT, &pose);
+        for margin_m in [0.0, 0.02, 0.06] {
+            let nearest = |part: f32| {
+                let reach_m = part * math::sqrt(hull.reach2(margin_m));
+                let overhang = |k: i32| {
+                    let (sin, cos) = math::sin_cos(0.001 * k as f32);
+                    hull.overhang(reach_m * cos, reach_m * sin)
+                };
+                (0..6283).map(overhang).fold(f32::MAX, f32::min)
+            };
+            assert!(nearest(1.001) >= margin_m, "{margin_m}");
+            assert!(nearest(0.99) < margin_m, "{margin_m}");
+        }
+    }
+
     #[test]
     fn a_tilted_hull_reaches_out_downhill() {
         let robot = RobotShape::PIONEER_3AT;

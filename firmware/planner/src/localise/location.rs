@@ -1,7 +1,7 @@
 //! What a robot says of its place: pose, covariance, and a quality with a type.
 //!
 //! ```text
-//! covariance = E[(p - p^) (p - p^)^T],  p = (x, y, yaw)
+//! covariance = E[(p − p̂)(p − p̂)ᵀ],  p = (x, y, yaw)
 //! ```
 //!
 //! Invariant: the covariance is that of the pose beside it, in the map's frame. Units: metres,

@@ -1,7 +1,7 @@
 //! The motion of a step, in the robot's frame before it.
 //!
 //! ```text
-//! shift = R(yaw)^T (after - before),  turn = wrap(yaw' - yaw)
+//! shift = R(yaw)ᵀ (after − before),  turn = wrap(yaw after − yaw before)
 //! ```
 //!
 //! Invariant: `Motion::between(a, b).from(a)` is `b` in the plane, up to rounding. Height and tilt

@@ -129,6 +129,21 @@ mod tests {
     }
 
     #[test]
+    fn a_hole_on_uneven_ground_is_no_obstacle_that_stands() {
+        let here = Cell { x: 31, y: 33 };
+        let square = |lent: usize| {
+            let mut tiles = Box::new(Tiles::<16, 64>::new());
+            tiles.reset();
+            tiles.lend(lent);
+            tiles.set(here, Class::Obstacle).expect("room");
+            tiles.set(here.offset(1, 0), Class::Negative).expect("room");
+            tiles.obstacles_from::<2>(here)
+        };
+        assert_eq!(square(0), 0b11, "what came stands");
+        assert_eq!(square(1), 0b01);
+    }
+
+    #[test]
     fn the_square_and_the_block_are_those_of_single_cells() {
         let mut tiles = Box::new(Tiles::<16, 64>::new());
         tiles.reset();

@@ -6,9 +6,9 @@ use std::vec::Vec;
 
 use super::Team;
 use super::exchange::STEP_PACKETS;
-use super::packet::{Body, Packet};
+use super::packet::{Activity, Beacon, Body, Packet};
 use crate::config::{LocaliseTuning, Member, TeamPlace};
-use crate::geometry::{Cell, Pose, Twist};
+use crate::geometry::{Cell, Point, Pose, Twist};
 use crate::map::{Class, Map};
 
 const STEP_MS: u32 = 200;
@@ -299,4 +299,29 @@ fn a_robot_that_was_taken_for_an_obstacle_clears_its_place_for_all() {
         assert_eq!(robot.map.class(wall), Class::Obstacle);
     }
     assert_eq!(team[0].mark(), team[1].mark());
+}
+
+/// Returns true if a peer of the Pioneer's size, 2 m ahead and doing this, is in the way from the
+/// origin to 4 m ahead, on a road that passes it at this distance.
+fn bars(activity: Activity, beside_m: f32) -> bool {
+    let mut team = Team::new();
+    let beacon = Beacon {
+        activity,
+        position_cm: (200, 0),
+        half_cm: (25, 25),
+        ..Beacon::default()
+    };
+    team.peers.hear(Member { id: 2, boot: 0 }, 0, &beacon, 0);
+    let at = |k: i32| Point {
+        x_m: 0.2 * k as f32,
+        y_m: beside_m,
+    };
+    team.bars(Point::default(), (0..20).map(at))
+}
+
+#[test]
+fn a_finished_robot_is_in_the_way_where_two_hulls_have_no_room() {
+    assert!(bars(Activity::Finished, 0.0) && bars(Activity::Finished, 0.6));
+    assert!(!bars(Activity::Finished, 0.8), "there is room beside it");
+    assert!(!bars(Activity::Exploring, 0.0), "it drives on");
 }
