@@ -87,7 +87,7 @@ pub enum Order {
     /// First the frontier of the greatest gain for its cost.
     Gain {
         /// Least gain of a trip, square metres for each metre of way: 0 to 7. What is not worth the
-        /// trip is left; 0 leaves nothing. Default: 0.3.
+        /// trip is left; 0 leaves nothing. Default: 0.25.
         worth: I4F12,
     },
     /// First the nearest frontier.

@@ -21,16 +21,14 @@
 //! | as deep as the robot is wide | 0.3 | 0.91 | 0.89 | 0.94 | 0.97 | 99.48 |
 //! | as deep as the robot is wide | 0.25 | 0.91 | 0.89 | 0.94 | 1.01 | 99.56 |
 //!
-//! A place is *open* if the robot may drive from it in a straight line to an unexplored cell at the
-//! end of its reach, half of the way through unexplored cells. How much is unexplored beyond cannot
-//! be told.
-//!
 //! A round reads the squares of up to 25 places, so their cells lie in words of 32: a core of 32
 //! bits takes several instructions to shift a longer word. A square and its gain take 53,000
 //! instructions on the chip, and took 90,000 in words of 64, with a square of the cells too near to
 //! obstacles that was made for each place.
 //!
 //! Units: map cells, square metres.
+
+mod opening;
 
 use crate::geometry::{CELL_M, Cell};
 use crate::grid::at;
@@ -102,18 +100,6 @@ impl View {
         self.along_m2((0..RAYS).map(ray).filter(is_ahead))
     }
 
-    /// Returns true if the place is open.
-    pub(crate) fn is_open(&self) -> bool {
-        let is_unknown = |cell: &Cell| self.is_unknown(*cell);
-        (0..RAYS).map(ray).any(|ray| {
-            let way = || (1..=self.reach).map(|k| along(MIDDLE, ray, k));
-            // The dearest comes last.
-            is_unknown(&along(MIDDLE, ray, self.reach))
-                && 2 * way().filter(is_unknown).count() >= self.reach as usize
-                && !way().any(|cell| self.is_near(cell))
-        })
-    }
-
     /// Returns the unexplored area along these rays, square metres.
     fn along_m2(&self, rays: impl Iterator<Item = (i32, i32)>) -> f32 {
         let cells: i32 = rays.map(|ray| self.along(ray)).sum();
@@ -146,12 +132,6 @@ impl View {
         let nearest = first + 2 * self.clearance + 1;
         let is_cut = nearest < beyond && self.is_near(along(MIDDLE, ray, first));
         before + sum(first, if is_cut { nearest } else { beyond })
-    }
-
-    /// Returns true if a cell is unexplored.
-    fn is_unknown(&self, cell: Cell) -> bool {
-        let [unknown, _] = at(self.rows.as_flattened(), place(cell.x, cell.y));
-        unknown >> (cell.x & 31) & 1 == 1
     }
 
     /// Returns true if the robot's centre is too near to an obstacle in a cell: one is within the

@@ -65,6 +65,21 @@ impl Footprint {
         let row = usize::try_from(dy.abs()).ok()?;
         self.half_widths.get(row)?.map(i32::from)
     }
+
+    /// Returns the cells of a row whose disc holds one of some cells. `rows` returns those of the
+    /// two rows so many rows away. The disc's rows get narrower from its middle outwards: the cells
+    /// found so far are widened by the difference, and by the rest at the end.
+    #[inline(always)]
+    pub(crate) fn near(&self, rows: impl Fn(usize) -> u64) -> u64 {
+        let (mut found, mut half) = (0, 0);
+        for (dy, &width) in (0..=self.reach as usize).zip(&self.half_widths) {
+            let width = width.unwrap_or(0);
+            found = widen(found, half.max(width) - width);
+            half = width;
+            found |= rows(dy);
+        }
+        widen(found, half)
+    }
 }
 
 impl Ring {
@@ -78,19 +93,13 @@ impl Ring {
         *wrapped_mut(&mut self.0, row as usize) = line;
     }
 
-    /// Returns the cells of a row whose disc holds an obstacle. The disc's rows get narrower from
-    /// its middle outwards: the cells found so far are widened by the difference, and by the rest
-    /// at the end.
+    /// Returns the cells of a row whose disc holds an obstacle.
     #[inline(always)]
     fn blocked(&self, row: i32, footprint: &Footprint) -> u64 {
-        let (mut found, mut half) = (0, 0);
-        for (dy, &width) in (0..=footprint.reach).zip(&footprint.half_widths) {
-            let width = width.unwrap_or(0);
-            found = widen(found, half.max(width) - width);
-            half = width;
-            found |= self.get(row - dy).around | self.get(row + dy).around;
-        }
-        widen(found, half)
+        footprint.near(|dy| {
+            let dy = dy as i32;
+            self.get(row - dy).around | self.get(row + dy).around
+        })
     }
 }
 
