@@ -17,19 +17,26 @@ use crate::grid::{Site, at, inside_mut};
 ///
 /// A seed may lie outside `open`. N is at most 64.
 pub(crate) fn reach<const N: usize>(open: &[u64; N], seeds: &[u64; N]) -> [u64; N] {
+    let mut reached = *seeds;
+    spread(open, &mut reached);
+    reached
+}
+
+/// Adds all cells of `open` that a path of open cells joins to one of those reached: [`reach`] in
+/// place.
+pub(crate) fn spread<const N: usize>(open: &[u64; N], reached: &mut [u64; N]) {
     const { assert!(N > 0 && N <= 64, "a row needs a bit of `awake`") };
     let all = u64::MAX >> (64 - N);
-    let mut reached = *seeds;
     // Rows that may still grow. A row that grew wakes its two neighbours.
     let mut awake = all;
     while awake != 0 {
         let y = awake.trailing_zeros() as usize;
         awake &= awake - 1;
-        let (here, open) = (at(&reached, y), at(open, y));
-        let beside = at(&reached, y.wrapping_sub(1)) | at(&reached, y + 1);
+        let (here, open) = (at(reached, y), at(open, y));
+        let beside = at(reached, y.wrapping_sub(1)) | at(reached, y + 1);
         let seeds = here | (beside & open);
         let grown = seeds | fill(open, open & (seeds | seeds << 1 | seeds >> 1));
-        if let Some(row) = inside_mut(&mut reached, y)
+        if let Some(row) = inside_mut(reached, y)
             && *row != grown
         {
             *row = grown;
@@ -37,7 +44,6 @@ pub(crate) fn reach<const N: usize>(open: &[u64; N], seeds: &[u64; N]) -> [u64; 
             awake &= all;
         }
     }
-    reached
 }
 
 /// Returns every run of `mask` that holds one of `seeds` (a subset of `mask`), whole.

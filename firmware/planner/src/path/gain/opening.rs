@@ -30,14 +30,20 @@ type Cells = [u64; SIDE];
 impl View {
     /// Returns true if the place is open for a robot of this footprint.
     pub(crate) fn is_open(&self, footprint: &Footprint) -> bool {
-        let passable = cells(|y| self.passable(y, footprint));
-        let near = cells(|y| at(&passable, y) & inside(y, self.reach / 2));
-        let reached = flood::reach(&near, &cells(|y| inside(y, 0)));
+        // Two squares are all that the stack has room for.
+        let near = |y| self.passable(y, footprint) & inside(y, self.reach / 2);
+        let mut open: Cells = array::from_fn(near);
+        let mut reached: Cells = array::from_fn(|y| inside(y, 0));
+        flood::spread(&open, &mut reached);
 
-        let beyond = cells(|y| at(&passable, y) & self.row(y)[0] & inside(y, self.reach));
-        let entered = cells(|y| at(&reached, y) & at(&beyond, y));
-        let reached = flood::reach(&beyond, &entered);
-        (0..SIDE).any(|y| at(&reached, y) & !inside(y, self.reach - 1) != 0)
+        let beyond = |y| self.passable(y, footprint) & self.row(y)[0] & inside(y, self.reach);
+        for (y, (open, reached)) in open.iter_mut().zip(&mut reached).enumerate() {
+            *open = beyond(y);
+            *reached &= *open;
+        }
+        flood::spread(&open, &mut reached);
+        let is_at_edge = |(y, row): (usize, &u64)| row & !inside(y, self.reach - 1) != 0;
+        reached.iter().enumerate().any(is_at_edge)
     }
 
     /// Returns the cells of a row in which the footprint holds no closed cell.
@@ -53,10 +59,6 @@ impl View {
         let join = |low: u32, high: u32| u64::from(high) << 32 | u64::from(low);
         [join(unknown, unknown_high), join(closed, closed_high)]
     }
-}
-
-fn cells(row: impl Fn(usize) -> u64) -> Cells {
-    array::from_fn(row)
 }
 
 /// Returns the columns of a row that lie within so many cells of the middle.
