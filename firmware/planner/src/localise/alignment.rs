@@ -27,6 +27,7 @@ use crate::geometry::{CELL_M, Cell};
 use crate::localise::occupancy::occupancy;
 use crate::localise::scan_points::ScanPoint;
 use crate::localise::symmetric::{Eigen, Symmetric};
+use crate::map::neighbourhood::Neighbourhood;
 use crate::map::{Class, Tiles};
 use crate::math;
 
@@ -131,10 +132,11 @@ pub(super) fn constraints<const TILES: usize, const SLOTS: usize>(
     tuning: &LocaliseTuning,
 ) -> Constraints {
     let frame = Frame::of(pose);
+    let mut near = Neighbourhood::of(tiles);
     let mut sum = Constraints::default();
     for point in points {
         let (arm, end) = frame.reach(point);
-        let Some(found) = occupancy(tiles, end) else {
+        let Some(found) = occupancy(&mut near, end) else {
             continue;
         };
         let (gx, gy) = match point.normal {
@@ -164,6 +166,7 @@ impl Agreement {
         pose: [f32; 3],
     ) -> Self {
         let frame = Frame::of(pose);
+        let mut near = Neighbourhood::of(tiles);
         let mut sum = Self::default();
         for point in points {
             let (_, (x, y)) = frame.reach(point);
@@ -171,7 +174,7 @@ impl Agreement {
                 x: math::floor(x),
                 y: math::floor(y),
             };
-            let square = tiles.obstacles_from::<5>(cell.offset(-2, -2));
+            let square = near.obstacles_from::<5>(cell.offset(-2, -2));
             let agrees = u16::from(square != 0);
             let contradicts = u16::from(square == 0 && tiles.class(cell) == Class::Free);
             sum.near += u16::from(square & INNER != 0);

@@ -43,6 +43,7 @@ mod tests;
 use crate::config::{Config, LocaliseTuning};
 use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
 use crate::input::Input;
+use crate::map::neighbourhood::Neighbourhood;
 use crate::map::{Map, Tiles};
 use crate::math;
 use crate::robot::LaserMount;
@@ -249,10 +250,11 @@ impl Localiser {
         let mut points = scan_points::scan_points(config, &predicted.0, laser, ranges_mm);
         let frame = RobotFrame::of(&predicted.0);
         // Walls of a fold came too, but they are surfaces, which people have not.
+        let mut near = Neighbourhood::of(tiles);
         points.retain(|point| {
             is_uneven
                 || point.normal.is_some()
-                || !tiles.has_lone_arrival(frame.to_map(point.end).cell())
+                || !near.has_lone_arrival(frame.to_map(point.end).cell())
         });
         let Some(information) = to_cells(&self.covariance).inverse() else {
             return *predicted;

@@ -13,7 +13,7 @@
 //! Units: map cells.
 
 use crate::geometry::Cell;
-use crate::map::Tiles;
+use crate::map::neighbourhood::Neighbourhood;
 use crate::math;
 
 /// The field at a place.
@@ -27,14 +27,14 @@ pub(super) struct Occupancy {
 
 /// Returns the field at a place; `None` without an obstacle or a landmark within a cell.
 pub(super) fn occupancy<const TILES: usize, const SLOTS: usize>(
-    tiles: &Tiles<TILES, SLOTS>,
+    near: &mut Neighbourhood<'_, TILES, SLOTS>,
     (x, y): (f32, f32),
 ) -> Option<Occupancy> {
     let corner = Cell {
         x: math::floor(x - 0.5),
         y: math::floor(y - 0.5),
     };
-    let square = tiles.obstacles_from::<2>(corner) | tiles.landmarks_from(corner);
+    let square = near.references_from(corner);
     if square == 0 {
         return None;
     }
@@ -59,6 +59,7 @@ mod tests {
     use crate::geometry::Cell;
     use crate::grid::Class;
     use crate::map::Tiles;
+    use crate::map::neighbourhood::Neighbourhood;
 
     fn tiles(obstacles: impl Fn(i32, i32) -> bool) -> Box<Tiles<16, 64>> {
         let mut tiles = Box::new(Tiles::<16, 64>::new());
@@ -79,25 +80,26 @@ mod tests {
         let tiles = tiles(|x, _| x == 7);
         for k in 0..20_u8 {
             let off = f32::from(k) / 10.0 - 0.95;
-            let found = occupancy(&tiles, (7.5 + off, -3.2)).expect("near");
+            let found = occupancy(&mut Neighbourhood::of(&tiles), (7.5 + off, -3.2)).expect("near");
             assert!((1.0 - found.value - off.abs()).abs() < 1e-5);
             assert!((found.gradient.0 + off.signum()).abs() < 1e-5);
             assert!(found.gradient.1.abs() < 1e-5);
         }
-        assert_eq!(occupancy(&tiles, (8.6, 0.0)), None);
+        assert_eq!(occupancy(&mut Neighbourhood::of(&tiles), (8.6, 0.0)), None);
     }
 
     /// The field is continuous, and its gradient is its slope: any cells, across borders of tiles.
     #[test]
     fn the_gradient_is_the_slope() {
         let tiles = tiles(|x, y| (x * 7 + y * 13 + x * y) % 5 == 0);
-        let value = |x, y| occupancy(&tiles, (x, y)).map_or(0.0, |it| it.value);
+        let value =
+            |x, y| occupancy(&mut Neighbourhood::of(&tiles), (x, y)).map_or(0.0, |it| it.value);
         for k in 0..3000_u16 {
             let (x, y) = (
                 f32::from(k % 61) * 0.617 - 33.3,
                 f32::from(k / 61) * 0.713 - 34.1,
             );
-            let Some(found) = occupancy(&tiles, (x, y)) else {
+            let Some(found) = occupancy(&mut Neighbourhood::of(&tiles), (x, y)) else {
                 continue;
             };
             let near = |dx: f32, dy: f32| (value(x + dx, y + dy) - value(x - dx, y - dy)) / 0.02;

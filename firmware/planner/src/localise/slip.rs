@@ -29,6 +29,7 @@ use crate::localise::alignment::{Frame, weight};
 use crate::localise::occupancy::occupancy;
 use crate::localise::scan_points::ScanPoint;
 use crate::map::Tiles;
+use crate::map::neighbourhood::Neighbourhood;
 
 /// Ends that differ less across their surface are the same, cells: the alignment reaches one from
 /// the other.
@@ -45,13 +46,26 @@ pub(super) fn likelier<const TILES: usize, const SLOTS: usize>(
     tuning: &LocaliseTuning,
 ) -> Option<usize> {
     let here = Frame::of(odometry);
+    let frames = others.map(Frame::of);
+    let mut near = Neighbourhood::of(tiles);
+    let mut cost = |end| {
+        let r = occupancy(&mut near, end).map_or(1.0, |found| 1.0 - found.value);
+        weight(r, tuning) * r * r
+    };
+    let mut gains = [0.0; 2];
+    for point in points {
+        let (_, from) = here.reach(point);
+        let normal = point.normal.map(|normal| here.turn(normal));
+        let mut cost_here = None;
+        for (gain, there) in gains.iter_mut().zip(&frames) {
+            let (_, to) = there.reach(point);
+            if apart2(normal, from, to) >= SAME_CELLS * SAME_CELLS {
+                *gain += *cost_here.get_or_insert_with(|| cost(from)) - cost(to);
+            }
+        }
+    }
     let mut best = (tuning.slip_price, None);
-    for (place, other) in others.into_iter().enumerate() {
-        let there = Frame::of(other);
-        let gain: f32 = points
-            .iter()
-            .map(|point| gain(tiles, point, [&here, &there], tuning))
-            .sum();
+    for (place, gain) in gains.into_iter().enumerate() {
         if gain > best.0 {
             best = (gain, Some(place));
         }
@@ -59,33 +73,11 @@ pub(super) fn likelier<const TILES: usize, const SLOTS: usize>(
     best.1
 }
 
-/// Returns how much better a beam fits at the second pose; 0 if it does not tell.
-fn gain<const TILES: usize, const SLOTS: usize>(
-    tiles: &Tiles<TILES, SLOTS>,
-    point: &ScanPoint,
-    frames: [&Frame; 2],
-    tuning: &LocaliseTuning,
-) -> f32 {
-    let [from, to] = frames.map(|frame| frame.reach(point).1);
+/// Returns the squared distance of two ends of a beam across its surface.
+fn apart2(normal: Option<(f32, f32)>, from: (f32, f32), to: (f32, f32)) -> f32 {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-    let apart2 = match point.normal {
+    match normal {
         None => dx * dx + dy * dy,
-        Some(normal) => {
-            let (x, y) = frames[0].turn(normal);
-            (x * dx + y * dy) * (x * dx + y * dy)
-        }
-    };
-    if apart2 < SAME_CELLS * SAME_CELLS {
-        return 0.0;
+        Some((x, y)) => (x * dx + y * dy) * (x * dx + y * dy),
     }
-    let cost = |r: f32| weight(r, tuning) * r * r;
-    cost(residual(tiles, from)) - cost(residual(tiles, to))
-}
-
-/// Returns the residual of a beam that ends here.
-fn residual<const TILES: usize, const SLOTS: usize>(
-    tiles: &Tiles<TILES, SLOTS>,
-    end: (f32, f32),
-) -> f32 {
-    occupancy(tiles, end).map_or(1.0, |found| 1.0 - found.value)
 }

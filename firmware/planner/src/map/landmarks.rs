@@ -25,6 +25,7 @@ use crate::ground::elevation::WINDOW_SIDE;
 use crate::ground::ray::{Attitude, Mount};
 use crate::input::{Input, has_company};
 use crate::map::integrate::level_beams;
+use crate::map::neighbourhood::Neighbourhood;
 use crate::map::{Class, Map, Tiles};
 
 /// Cells along the window's side.
@@ -50,13 +51,13 @@ const fn around(elevation: Cell) -> Cell {
 }
 
 impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
+    /// Returns true if there may be landmarks: the ground is uneven.
+    pub(super) fn has_landmarks(&self) -> bool {
+        !self.landmark_bytes().is_empty()
+    }
+
     /// Returns the landmarks in the square of 2 × 2 cells from `corner` on. None on flat ground.
-    #[inline]
-    pub(crate) fn landmarks_from(&self, corner: Cell) -> u32 {
-        let bits = self.landmark_bytes();
-        if bits.is_empty() {
-            return 0;
-        }
+    pub(super) fn landmarks_from(&self, corner: Cell) -> u32 {
         let mut square = 0;
         for (k, (dx, dy)) in [(0, 0), (1, 0), (0, 1), (1, 1)].into_iter().enumerate() {
             let cell = corner.offset(dx, dy);
@@ -127,7 +128,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Returns true if the map knows nothing of a cell, and nothing stands beside it.
     fn is_new_landmark(&self, cell: Cell) -> bool {
         let beside = cell.offset(-1, -1);
-        let is_alone = self.tiles.obstacles_from::<3>(beside) == 0;
+        let is_alone = Neighbourhood::of(&self.tiles).obstacles_from::<3>(beside) == 0;
         let mut around = (0..9).map(|k| beside.offset(k % 3, k / 3));
         is_alone
             && self.tiles.class(cell) == Class::Unknown

@@ -11,21 +11,59 @@
 //! Units: map cells.
 
 use crate::geometry::Cell;
-use crate::grid::masked;
+use crate::grid::{masked, masked_mut};
+use crate::map::tile::Plane;
 use crate::map::tiles::{TILE_SIDE, Tiles};
 
 /// The plane of the low bits of the classes.
 const LOW: usize = 0;
 /// The plane of the high bits.
 const HIGH: usize = 1;
+/// The last column or row of a tile.
+const LAST: i32 = TILE_SIDE - 1;
 
-impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
+/// A tile's planes; none if it is untouched.
+type Planes<'a> = Option<[&'a Plane; 2]>;
+
+/// Reads squares of a map. It remembers the tiles of the last ones: the beams of a scan end in few
+/// tiles, and finding a tile costs more than reading it.
+#[derive(Clone, Debug)]
+pub(crate) struct Neighbourhood<'a, const TILES: usize, const SLOTS: usize> {
+    tiles: &'a Tiles<TILES, SLOTS>,
+    /// The last tile of each parity of column and row. The four tiles around a corner have
+    /// different ones.
+    last: [((i32, i32), Planes<'a>); 4],
+    has_landmarks: bool,
+}
+
+impl<'a, const TILES: usize, const SLOTS: usize> Neighbourhood<'a, TILES, SLOTS> {
+    pub(crate) fn of(tiles: &'a Tiles<TILES, SLOTS>) -> Self {
+        Self {
+            tiles,
+            // No cell lies in this tile.
+            last: [((i32::MAX, i32::MAX), None); 4],
+            has_landmarks: tiles.has_landmarks(),
+        }
+    }
+
     /// Returns the obstacles that stand in the square of `SIDE` cells, at most 5, from `corner` on.
     #[inline]
-    pub(crate) fn obstacles_from<const SIDE: i32>(&self, corner: Cell) -> u32 {
+    pub(crate) fn obstacles_from<const SIDE: i32>(&mut self, corner: Cell) -> u32 {
         let obstacles = self.square::<SIDE, HIGH>(corner);
-        if obstacles != 0 && self.is_lent() {
+        if obstacles != 0 && self.tiles.is_lent() {
             obstacles & !self.square::<SIDE, LOW>(corner)
+        } else {
+            obstacles
+        }
+    }
+
+    /// Returns the obstacles that stand and the landmarks in the square of 2 × 2 cells from
+    /// `corner` on.
+    #[inline]
+    pub(crate) fn references_from(&mut self, corner: Cell) -> u32 {
+        let obstacles = self.obstacles_from::<2>(corner);
+        if self.has_landmarks {
+            obstacles | self.tiles.landmarks_from(corner)
         } else {
             obstacles
         }
@@ -34,7 +72,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Returns true if what stands within two cells of a cell came, and has neither a wall nor
     /// unknown cells beside it there: a person, not a wall whose cells noise had freed. For flat
     /// ground.
-    pub(crate) fn has_lone_arrival(&self, cell: Cell) -> bool {
+    pub(crate) fn has_lone_arrival(&mut self, cell: Cell) -> bool {
         const WHOLE: u32 = (1 << 25) - 1;
         let corner = cell.offset(-2, -2);
         // The low bit of free cells and of what came is set, that of walls and unknown cells not.
@@ -43,41 +81,60 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
 
     /// Returns a bit of each cell in the square of `SIDE` cells, at most 5, from `corner` on.
     #[inline]
-    fn square<const SIDE: i32, const PLANE: usize>(&self, corner: Cell) -> u32 {
+    fn square<const SIDE: i32, const PLANE: usize>(&mut self, corner: Cell) -> u32 {
         const { assert!(0 < SIDE && SIDE <= 5, "the square fits a word") };
-        let Cell { x, y } = corner;
-        let shift = x & (TILE_SIDE - 1);
-        let mut square = 0;
-        let mut row = 0;
-        while row < SIDE {
-            let tile_y = (y + row) >> 5;
-            // Rows of the square in this row of tiles.
-            let last = SIDE.min(((tile_y + 1) << 5) - y);
-            let left = self.plane::<PLANE>(x >> 5, tile_y);
-            let spills = shift > TILE_SIDE - SIDE;
-            let right = spills.then(|| self.plane::<PLANE>((x >> 5) + 1, tile_y));
-            while row < last {
-                let line = ((y + row) & 31) as usize;
-                let mut bits = left(line) >> shift;
-                if let Some(right) = &right {
-                    bits |= right(line) << (TILE_SIDE - shift);
-                }
-                square |= (bits & ((1 << SIDE) - 1)) << (SIDE * row);
-                row += 1;
-            }
+        let (x, y) = (corner.x & LAST, corner.y & LAST);
+        if x > TILE_SIDE - SIDE || y > TILE_SIDE - SIDE {
+            return self.square_across::<SIDE, PLANE>(corner);
         }
-        square
+        let planes = self.planes((corner.x >> 5, corner.y >> 5));
+        (0..SIDE).fold(0, |square, row| {
+            let bits = line::<PLANE>(planes, y + row) >> x;
+            square | (bits & ((1 << SIDE) - 1)) << (SIDE * row)
+        })
     }
 
+    /// [`Self::square`] across the border of tiles.
+    #[inline(never)]
+    fn square_across<const SIDE: i32, const PLANE: usize>(&mut self, corner: Cell) -> u32 {
+        let (left, right) = (corner.x >> 5, (corner.x + SIDE - 1) >> 5);
+        (0..SIDE).fold(0, |square, row| {
+            let y = corner.y + row;
+            // If both are the same tile, the square ends before the second one begins.
+            let low = line::<PLANE>(self.planes((left, y >> 5)), y & LAST);
+            let high = line::<PLANE>(self.planes((right, y >> 5)), y & LAST);
+            let bits = (u64::from(high) << TILE_SIDE | u64::from(low)) >> (corner.x & LAST);
+            square | (bits as u32 & ((1 << SIDE) - 1)) << (SIDE * row)
+        })
+    }
+
+    /// Returns the planes of a tile.
+    #[inline]
+    fn planes(&mut self, tile: (i32, i32)) -> Planes<'a> {
+        let parity = (tile.0 & 1 | (tile.1 & 1) << 1) as usize;
+        let last = masked_mut(&mut self.last, parity);
+        if last.0 != tile {
+            *last = (tile, self.tiles.planes(self.tiles.entry(tile.0, tile.1)));
+        }
+        last.1
+    }
+}
+
+/// Returns a row of a plane.
+#[inline(always)]
+fn line<const PLANE: usize>(planes: Planes<'_>, row: i32) -> u32 {
+    planes.map_or(0, |[low, high]| {
+        *masked(if PLANE == LOW { low } else { high }, row as usize)
+    })
+}
+
+impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Calls `each` with the rows of the 32 × 32 cells from this corner on, least y first: 1 for an
     /// obstacle that stands.
     pub(crate) fn standing_block(&self, corner: Cell, mut each: impl FnMut(u32)) {
         let (x, shift) = (corner.x >> 5, corner.x & 31);
         for tile_y in [corner.y >> 5, (corner.y >> 5) + 1] {
-            let (left, right) = (
-                self.plane::<HIGH>(x, tile_y),
-                self.plane::<HIGH>(x + 1, tile_y),
-            );
+            let (left, right) = (self.high_plane(x, tile_y), self.high_plane(x + 1, tile_y));
             let least = (tile_y << 5).max(corner.y);
             let end = ((tile_y + 1) << 5).min(corner.y + TILE_SIDE);
             for y in least..end {
@@ -88,14 +145,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// Returns the rows of a plane of a tile. In the high one an obstacle that stands is 1.
+    /// Returns the rows of the high plane of a tile, in which an obstacle that stands is 1.
     #[inline(always)]
-    fn plane<const PLANE: usize>(&self, tile_x: i32, tile_y: i32) -> impl Fn(usize) -> u32 {
+    fn high_plane(&self, tile_x: i32, tile_y: i32) -> impl Fn(usize) -> u32 {
         let planes = self.planes(self.entry(tile_x, tile_y));
-        move |line| match planes {
-            Some([low, high]) => *masked(if PLANE == LOW { low } else { high }, line),
-            None => 0,
-        }
+        move |row| line::<HIGH>(planes, row as i32)
     }
 }
 
@@ -104,6 +158,7 @@ mod tests {
     use std::boxed::Box;
     use std::vec::Vec;
 
+    use super::Neighbourhood;
     use crate::geometry::Cell;
     use crate::grid::Class;
     use crate::map::Tiles;
@@ -116,15 +171,24 @@ mod tests {
             tiles.set(Cell { x, y }, Class::Free).expect("room");
         }
         let here = Cell { x: 31, y: 33 };
-        assert!(!tiles.has_lone_arrival(here), "nothing stands there");
+        assert!(
+            !Neighbourhood::of(&tiles).has_lone_arrival(here),
+            "nothing stands there"
+        );
         tiles
             .set(here.offset(1, -2), Class::Negative)
             .expect("room");
-        assert!(tiles.has_lone_arrival(here));
-        assert!(!tiles.has_lone_arrival(here.offset(-2, 0)), "too far off");
+        assert!(Neighbourhood::of(&tiles).has_lone_arrival(here));
+        assert!(
+            !Neighbourhood::of(&tiles).has_lone_arrival(here.offset(-2, 0)),
+            "too far off"
+        );
         for beside in [Class::Obstacle, Class::Unknown] {
             tiles.set(here.offset(-2, 2), beside).expect("room");
-            assert!(!tiles.has_lone_arrival(here), "{beside:?}");
+            assert!(
+                !Neighbourhood::of(&tiles).has_lone_arrival(here),
+                "{beside:?}"
+            );
         }
     }
 
@@ -137,7 +201,7 @@ mod tests {
             tiles.lend(lent);
             tiles.set(here, Class::Obstacle).expect("room");
             tiles.set(here.offset(1, 0), Class::Negative).expect("room");
-            tiles.obstacles_from::<2>(here)
+            Neighbourhood::of(&tiles).obstacles_from::<2>(here)
         };
         assert_eq!(square(0), 0b11, "what came stands");
         assert_eq!(square(1), 0b01);
@@ -158,14 +222,15 @@ mod tests {
             let bit = |k| stands(corner.offset(k % side, k / side)) << k;
             (0..side * side).map(bit).sum()
         };
+        let mut near = Neighbourhood::of(&tiles);
         for corner in (-45..45).flat_map(|x| (-45..45).map(move |y| Cell { x, y })) {
             assert_eq!(
-                tiles.obstacles_from::<5>(corner),
+                near.obstacles_from::<5>(corner),
                 single(corner, 5),
                 "{corner:?}"
             );
             assert_eq!(
-                tiles.obstacles_from::<2>(corner),
+                near.obstacles_from::<2>(corner),
                 single(corner, 2),
                 "{corner:?}"
             );

@@ -24,6 +24,7 @@ use crate::input::Input;
 use crate::localise::Symmetric;
 use crate::map::Tiles;
 use crate::map::integrate::level_beams;
+use crate::map::neighbourhood::Neighbourhood;
 use crate::math;
 use crate::robot::MAX_BEAMS;
 use crate::team::Team;
@@ -224,12 +225,13 @@ impl Team {
         if others.any(|it| it.pose(input.time_ms).point().distance_m(hull.point()) <= apart_m) {
             return None;
         }
+        let mut near = Neighbourhood::of(tiles);
         let is_near = |end: &Point| {
             let Point { x_m, y_m } = frame.to_robot(*end);
             let cell = end.cell().offset(-2, -2);
             x_m.abs() <= sides.half_length_m + gate_m
                 && y_m.abs() <= sides.half_width_m + gate_m
-                && tiles.obstacles_from::<5>(cell) == 0
+                && near.obstacles_from::<5>(cell) == 0
         };
         let beams = level_beams(&Pose::default(), laser, ranges_mm, &config.tuning.map);
         let ends = beams

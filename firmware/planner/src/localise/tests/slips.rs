@@ -5,6 +5,7 @@ use crate::localise::alignment::Frame;
 use crate::localise::occupancy::occupancy;
 use crate::localise::scan_points::{ScanPoint, ScanPoints, scan_points};
 use crate::localise::{in_cells, slip::likelier};
+use crate::map::neighbourhood::Neighbourhood;
 use crate::robot::LaserMount;
 
 /// Distance and turn of a step.
@@ -91,7 +92,10 @@ impl Scene {
         let tuning = &self.config.tuning.localise;
         let tiles = self.map.tiles();
         let frames = [odometry, others[0], others[1]].map(|it| Frame::of(in_cells(&pose(it))));
-        let residual = |end| occupancy(tiles, end).map_or(1.0, |it| f64::from(1.0 - it.value));
+        let residual = |end| {
+            occupancy(&mut Neighbourhood::of(tiles), end)
+                .map_or(1.0, |it| f64::from(1.0 - it.value))
+        };
         let cost = |r: f64| {
             let (c, information) = (tuning.robust_cells, tuning.beam_information);
             f64::from(information) * r * r / (1.0 + r * r / f64::from(c * c))
