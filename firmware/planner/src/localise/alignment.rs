@@ -27,7 +27,7 @@ use crate::geometry::{CELL_M, Cell};
 use crate::localise::occupancy::occupancy;
 use crate::localise::scan_points::ScanPoint;
 use crate::localise::symmetric::{Eigen, Symmetric};
-use crate::map::neighbourhood::Neighbourhood;
+use crate::map::neighbourhood::{INNER, Neighbourhood};
 use crate::map::{Class, Tiles};
 use crate::math;
 
@@ -219,9 +219,6 @@ impl Agreement {
         !self.is_contradicted(false, tuning) && more >= tuning.better_share * f32::from(self.beams)
     }
 }
-
-/// The inner 3 × 3 cells of a square of 5 × 5.
-const INNER: u32 = 0b01110 << 5 | 0b01110 << 10 | 0b01110 << 15;
 
 impl Constraints {
     /// Removes the directions with too little information.

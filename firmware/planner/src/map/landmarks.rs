@@ -25,7 +25,7 @@ use crate::ground::elevation::WINDOW_SIDE;
 use crate::ground::ray::{Attitude, Mount};
 use crate::input::{Input, has_company};
 use crate::map::integrate::level_beams;
-use crate::map::neighbourhood::Neighbourhood;
+use crate::map::neighbourhood::{INNER, Neighbourhood};
 use crate::map::{Class, Map, Tiles};
 
 /// Cells along the window's side.
@@ -128,7 +128,8 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Returns true if the map knows nothing of a cell, and nothing stands beside it.
     fn is_new_landmark(&self, cell: Cell) -> bool {
         let beside = cell.offset(-1, -1);
-        let is_alone = Neighbourhood::of(&self.tiles).obstacles_from::<3>(beside) == 0;
+        let square = Neighbourhood::of(&self.tiles).obstacles_from::<5>(cell.offset(-2, -2));
+        let is_alone = square & INNER == 0;
         let mut around = (0..9).map(|k| beside.offset(k % 3, k / 3));
         is_alone
             && self.tiles.class(cell) == Class::Unknown

@@ -15,6 +15,8 @@ use crate::grid::{masked, masked_mut};
 use crate::map::tile::Plane;
 use crate::map::tiles::{TILE_SIDE, Tiles};
 
+/// The inner 3 × 3 cells of a square of 5 × 5.
+pub(crate) const INNER: u32 = 0b01110 << 5 | 0b01110 << 10 | 0b01110 << 15;
 /// The plane of the low bits of the classes.
 const LOW: usize = 0;
 /// The plane of the high bits.
@@ -85,26 +87,26 @@ impl<'a, const TILES: usize, const SLOTS: usize> Neighbourhood<'a, TILES, SLOTS>
         const { assert!(0 < SIDE && SIDE <= 5, "the square fits a word") };
         let (x, y) = (corner.x & LAST, corner.y & LAST);
         if x > TILE_SIDE - SIDE || y > TILE_SIDE - SIDE {
-            return self.square_across::<SIDE, PLANE>(corner);
+            return self.square_across(corner, SIDE, PLANE);
         }
         let planes = self.planes((corner.x >> 5, corner.y >> 5));
         (0..SIDE).fold(0, |square, row| {
-            let bits = line::<PLANE>(planes, y + row) >> x;
+            let bits = line(planes, PLANE, y + row) >> x;
             square | (bits & ((1 << SIDE) - 1)) << (SIDE * row)
         })
     }
 
     /// [`Self::square`] across the border of tiles.
     #[inline(never)]
-    fn square_across<const SIDE: i32, const PLANE: usize>(&mut self, corner: Cell) -> u32 {
-        let (left, right) = (corner.x >> 5, (corner.x + SIDE - 1) >> 5);
-        (0..SIDE).fold(0, |square, row| {
+    fn square_across(&mut self, corner: Cell, side: i32, plane: usize) -> u32 {
+        let (left, right) = (corner.x >> 5, (corner.x + side - 1) >> 5);
+        (0..side).fold(0, |square, row| {
             let y = corner.y + row;
             // If both are the same tile, the square ends before the second one begins.
-            let low = line::<PLANE>(self.planes((left, y >> 5)), y & LAST);
-            let high = line::<PLANE>(self.planes((right, y >> 5)), y & LAST);
+            let low = line(self.planes((left, y >> 5)), plane, y & LAST);
+            let high = line(self.planes((right, y >> 5)), plane, y & LAST);
             let bits = (u64::from(high) << TILE_SIDE | u64::from(low)) >> (corner.x & LAST);
-            square | (bits as u32 & ((1 << SIDE) - 1)) << (SIDE * row)
+            square | (bits as u32 & ((1 << side) - 1)) << (side * row)
         })
     }
 
@@ -122,9 +124,9 @@ impl<'a, const TILES: usize, const SLOTS: usize> Neighbourhood<'a, TILES, SLOTS>
 
 /// Returns a row of a plane.
 #[inline(always)]
-fn line<const PLANE: usize>(planes: Planes<'_>, row: i32) -> u32 {
+fn line(planes: Planes<'_>, plane: usize, row: i32) -> u32 {
     planes.map_or(0, |[low, high]| {
-        *masked(if PLANE == LOW { low } else { high }, row as usize)
+        *masked(if plane == LOW { low } else { high }, row as usize)
     })
 }
 
@@ -149,7 +151,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     #[inline(always)]
     fn high_plane(&self, tile_x: i32, tile_y: i32) -> impl Fn(usize) -> u32 {
         let planes = self.planes(self.entry(tile_x, tile_y));
-        move |row| line::<HIGH>(planes, row as i32)
+        move |row| line(planes, HIGH, row as i32)
     }
 }
 
