@@ -34,7 +34,7 @@ pub(super) fn occupancy<const TILES: usize, const SLOTS: usize>(
         x: math::floor(x - 0.5),
         y: math::floor(y - 0.5),
     };
-    let square = near.references_from(corner);
+    let square = near.obstacles_and_landmarks_from(corner);
     if square == 0 {
         return None;
     }
@@ -78,14 +78,15 @@ mod tests {
     #[test]
     fn beside_a_wall_the_residual_is_the_distance_to_its_middle() {
         let tiles = tiles(|x, _| x == 7);
+        let mut near = Neighbourhood::of(&tiles);
         for k in 0..20_u8 {
             let off = f32::from(k) / 10.0 - 0.95;
-            let found = occupancy(&mut Neighbourhood::of(&tiles), (7.5 + off, -3.2)).expect("near");
+            let found = occupancy(&mut near, (7.5 + off, -3.2)).expect("near");
             assert!((1.0 - found.value - off.abs()).abs() < 1e-5);
             assert!((found.gradient.0 + off.signum()).abs() < 1e-5);
             assert!(found.gradient.1.abs() < 1e-5);
         }
-        assert_eq!(occupancy(&mut Neighbourhood::of(&tiles), (8.6, 0.0)), None);
+        assert_eq!(occupancy(&mut near, (8.6, 0.0)), None);
     }
 
     /// The field is continuous, and its gradient is its slope: any cells, across borders of tiles.

@@ -62,7 +62,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> Neighbourhood<'a, TILES, SLOTS>
     /// Returns the obstacles that stand and the landmarks in the square of 2 × 2 cells from
     /// `corner` on.
     #[inline]
-    pub(crate) fn references_from(&mut self, corner: Cell) -> u32 {
+    pub(crate) fn obstacles_and_landmarks_from(&mut self, corner: Cell) -> u32 {
         let obstacles = self.obstacles_from::<2>(corner);
         if self.has_landmarks {
             obstacles | self.tiles.landmarks_from(corner)
@@ -136,22 +136,15 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     pub(crate) fn standing_block(&self, corner: Cell, mut each: impl FnMut(u32)) {
         let (x, shift) = (corner.x >> 5, corner.x & 31);
         for tile_y in [corner.y >> 5, (corner.y >> 5) + 1] {
-            let (left, right) = (self.high_plane(x, tile_y), self.high_plane(x + 1, tile_y));
+            let [left, right] = [x, x + 1].map(|x| self.planes(self.entry(x, tile_y)));
             let least = (tile_y << 5).max(corner.y);
             let end = ((tile_y + 1) << 5).min(corner.y + TILE_SIDE);
             for y in least..end {
-                let line = (y & 31) as usize;
-                let both = u64::from(left(line)) | u64::from(right(line)) << TILE_SIDE;
+                let [low, high] = [left, right].map(|it| u64::from(line(it, HIGH, y & LAST)));
+                let both = low | high << TILE_SIDE;
                 each((both >> shift) as u32);
             }
         }
-    }
-
-    /// Returns the rows of the high plane of a tile, in which an obstacle that stands is 1.
-    #[inline(always)]
-    fn high_plane(&self, tile_x: i32, tile_y: i32) -> impl Fn(usize) -> u32 {
-        let planes = self.planes(self.entry(tile_x, tile_y));
-        move |row| line(planes, HIGH, row as i32)
     }
 }
 
@@ -173,24 +166,16 @@ mod tests {
             tiles.set(Cell { x, y }, Class::Free).expect("room");
         }
         let here = Cell { x: 31, y: 33 };
-        assert!(
-            !Neighbourhood::of(&tiles).has_lone_arrival(here),
-            "nothing stands there"
-        );
+        let is_lone = |tiles: &Tiles<16, 64>, at| Neighbourhood::of(tiles).has_lone_arrival(at);
+        assert!(!is_lone(&tiles, here), "nothing stands there");
         tiles
             .set(here.offset(1, -2), Class::Negative)
             .expect("room");
-        assert!(Neighbourhood::of(&tiles).has_lone_arrival(here));
-        assert!(
-            !Neighbourhood::of(&tiles).has_lone_arrival(here.offset(-2, 0)),
-            "too far off"
-        );
+        assert!(is_lone(&tiles, here));
+        assert!(!is_lone(&tiles, here.offset(-2, 0)), "too far off");
         for beside in [Class::Obstacle, Class::Unknown] {
             tiles.set(here.offset(-2, 2), beside).expect("room");
-            assert!(
-                !Neighbourhood::of(&tiles).has_lone_arrival(here),
-                "{beside:?}"
-            );
+            assert!(!is_lone(&tiles, here), "{beside:?}");
         }
     }
 

@@ -9,12 +9,12 @@ use crate::grid::bits::tests::{Rng, get};
 use crate::map::{Class, Tiles};
 use crate::path::rays::{RAYS, RAYS_A_SIDE, along, ray};
 
-const ORIGIN: Cell = Cell { x: 0, y: 0 };
+pub(super) const ORIGIN: Cell = Cell { x: 0, y: 0 };
 
-type Map = Box<Tiles<64, 64>>;
+pub(super) type Map = Box<Tiles<64, 64>>;
 
 /// A map of 20 × 20 m with these classes; `None` is unexplored.
-fn map(class: impl Fn(i32, i32) -> Option<Class>) -> Map {
+pub(super) fn map(class: impl Fn(i32, i32) -> Option<Class>) -> Map {
     let mut tiles = Map::default();
     tiles.reset();
     for (x, y) in (-100..100).flat_map(|x| (-100..100).map(move |y| (x, y))) {
