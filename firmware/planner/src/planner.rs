@@ -46,7 +46,7 @@ use ground_model::GroundModel;
 use make_way::{Way, make_way};
 use plan::{replan, search_viewpoints};
 use prefer::{note_flatness, prefer};
-use steer::{look_about, retreat, steer};
+use steer::{begin_retreat, look_about, retreat, steer};
 
 /// A range below this is inside the robot's own hull, metres.
 const BLOCKED_M: f32 = 0.12;
@@ -193,6 +193,9 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if state.status != Status::Exploring {
         return Output::standing(state.status);
     }
+    if state.strategy.frontier.take_blocked() {
+        begin_retreat(config, state, &input);
+    }
     if state.drive.is_retreating() {
         let velocity = retreat(config, state, &input);
         timer.mark(Stage::Drive);
@@ -221,6 +224,9 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     } else if charge_rails(config, state, workspace, &footprint, &input).is_none() {
         let Some(goal) = local_goal(config, state, &footprint, &input, &mut workspace.local_grid)
         else {
+            if !state.strategy.frontier.path().is_empty() {
+                state.strategy.frontier.note_closed();
+            }
             timer.mark(Stage::Window);
             return Output {
                 velocity: look_about(config, state, &input),

@@ -6,7 +6,8 @@
 //! stop, from its measured velocity and within its acceleration limits. The drive takes the first
 //! admissible candidate, in order of distance from the wish. If there is none, the robot turns on
 //! the spot or drives straight back. If it cannot, a recovery leads out. If none is found either,
-//! the robot is *wedged*: it retreats along its own track to a place where it can turn. Where it
+//! the robot is *wedged*. A passage that is blocked, for this or another reason, is left backwards
+//! along the robot's own track, to a place where it can turn. Where it
 //! cannot drive faster than it creeps, a *lane* takes the place of the field's heading.
 //!
 //! Invariant: after every commanded velocity a stop is possible that touches nothing known, so the
@@ -62,6 +63,8 @@ const FIRST_BUDGET: SearchBudget = SearchBudget {
     poses: SEARCH_BUDGET.poses / 3,
     points: SEARCH_BUDGET.points / 3,
 };
+/// Speeds of a retreat, as parts of the one that the track asks for.
+const RETREAT_SPEEDS: [f32; 3] = [1.0, 0.5, 0.25];
 /// Steps between a search that found nothing and the next one, where the ground bounds the
 /// headings: about the steps of two skeletons.
 const REST_STEPS: u8 = 20;
@@ -140,8 +143,19 @@ impl Drive {
         core::mem::replace(&mut self.wedged, false)
     }
 
+    /// Begins a retreat if the robot cannot turn where it is, or if it `must` go away.
+    pub(crate) fn begin_retreat(&mut self, checker: &CollisionChecker, must: bool) {
+        if !self.retreats && (must || !can_turn_about(checker)) {
+            self.retreats = true;
+            self.track.begin_retreat();
+            self.recovery.clear();
+            self.search = None;
+        }
+    }
+
     /// Returns the velocity back along the track; zero at its end. `checker` has the obstacle
-    /// points that the robot has measured, and no cells of the map: there is room on the track.
+    /// points that the robot has measured, and no cells of the map: there is room on the track. A
+    /// slower robot stops within a shorter way, so it may go on where a faster one may not.
     pub(crate) fn retreat(
         &mut self,
         config: &Config,
@@ -149,15 +163,23 @@ impl Drive {
         checker: &CollisionChecker,
         now: Twist,
     ) -> Twist {
-        let twist = self.track.back(pose, config.period_s);
-        let twist = twist.filter(|twist| checker.admits(*twist, now, config, LEAST_MARGIN_M));
-        self.retreats = twist.is_some();
+        let wish = self.track.back(pose, config.period_s);
+        let slower = |part: f32| {
+            wish.map(|wish| Twist {
+                linear_mps: part * wish.linear_mps,
+                angular_radps: part * wish.angular_radps,
+            })
+        };
+        let mut twists = RETREAT_SPEEDS.into_iter().filter_map(slower);
+        let twist = twists.find(|&twist| checker.admits(twist, now, config, LEAST_MARGIN_M));
+        self.retreats = wish.is_some() && (twist.is_some() || is_moving(now));
         twist.unwrap_or_default()
     }
 
-    /// Ends the retreat where the robot can turn. `checker` has all obstacles.
+    /// Ends the retreat where the robot has gone far enough and can turn. `checker` has all
+    /// obstacles.
     pub(crate) fn end_retreat(&mut self, checker: &CollisionChecker) {
-        self.retreats &= !can_turn_about(checker);
+        self.retreats &= !(self.track.has_left() && can_turn_about(checker));
     }
 
     /// Compares the measured velocity with what was told. A contact ends recovery, search and
@@ -313,7 +335,6 @@ impl Drive {
                 if next.is_none() && !may_wait {
                     self.wedged = self.squeeze_steps > 0 || !query.squeezes;
                     self.squeeze_steps = if self.wedged { 0 } else { SQUEEZE_STEPS };
-                    self.retreats = self.wedged && !can_turn_about(query.checker);
                 }
             }
         }

@@ -25,6 +25,8 @@ const STEP_M: f32 = 0.05;
 const STEP_RAD: f32 = 0.14;
 /// Units of the differences: a millimetre, and 0.57°.
 const UNITS: [f32; 3] = [1e-3, 1e-3, 1e-2];
+/// Way along the track by which a retreat leaves its place, metres: that of a robot that moved.
+const LEAVE_M: f32 = 0.3;
 /// A pose this near is reached, metres along the track and radians.
 const REACHED_M: f32 = 0.015;
 const REACHED_RAD: f32 = 0.04;
@@ -41,6 +43,8 @@ pub(crate) struct Track {
     /// Number of differences, and the place of the next one.
     len: u8,
     next: u8,
+    /// Number of differences at which a retreat has left its place.
+    left: u8,
     /// The last pose; no robot was seen before the first.
     last: [f32; 3],
     has_last: bool,
@@ -64,6 +68,7 @@ impl Track {
             differences: [[0; 3]; MOST],
             len: 0,
             next: 0,
+            left: 0,
             last: [0.0; 3],
             has_last: false,
         }
@@ -107,6 +112,26 @@ impl Track {
                 self.last[2] = math::wrap(self.last[2] + turn);
             }
         }
+    }
+
+    /// Notes where a retreat begins.
+    pub(crate) fn begin_retreat(&mut self) {
+        let mut far_m = 0.0;
+        let mut back = 0;
+        while back < self.len && far_m < LEAVE_M {
+            back += 1;
+            let place = (usize::from(self.next) + MOST - usize::from(back)) % MOST;
+            let units = self.differences.get(place).copied().unwrap_or_default();
+            let [dx, dy, _] = metres(units);
+            far_m += math::sqrt(dx * dx + dy * dy);
+        }
+        self.left = self.len - back;
+    }
+
+    /// Returns true if the retreat has left the place where it began: it has followed the track for
+    /// [`LEAVE_M`], or to its beginning.
+    pub(crate) const fn has_left(&self) -> bool {
+        self.len <= self.left
     }
 
     /// Returns the velocity back along the track for a robot at `pose`, and drops the poses that it

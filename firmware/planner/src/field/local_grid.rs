@@ -17,6 +17,7 @@ use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::bits::halve;
 use crate::grid::{at, flood};
 use crate::map::Tiles;
+use crate::math;
 use crate::roadmap::configuration_space::{Footprint, Strip, for_each_strip};
 
 pub(crate) use crate::field::window::Rows;
@@ -172,6 +173,28 @@ impl LocalGrid {
     pub(crate) fn block(&mut self, least: Cell) {
         for part in least.quarters() {
             if let Some((x, y)) = self.place(part)
+                && let Some(row) = self.passable.get_mut(y)
+            {
+                *row &= !(1 << x);
+            }
+        }
+    }
+
+    /// Makes the cells nearer to `middle` than `radius_m` impassable, except those at least as far
+    /// from it as the robot is.
+    pub(crate) fn close_disc(&mut self, middle: Cell, radius_m: f32, robot: Cell) {
+        let most2 = (radius_m * radius_m).min(middle.distance2(robot));
+        let reach = math::floor(radius_m / CELL_M) + 1;
+        let places = |at: i32, origin: i32| {
+            let place = |at: i32| (at - origin).div_euclid(self.scale.max(1));
+            place(at - reach).max(0)..=place(at + reach).min(SIDE as i32 - 1)
+        };
+        let (xs, ys) = (
+            places(middle.x, self.origin.x),
+            places(middle.y, self.origin.y),
+        );
+        for (x, y) in ys.flat_map(|y| xs.clone().map(move |x| (x as usize, y as usize))) {
+            if self.cell(x, y).distance2(middle) < most2
                 && let Some(row) = self.passable.get_mut(y)
             {
                 *row &= !(1 << x);

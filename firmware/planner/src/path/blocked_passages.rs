@@ -1,8 +1,10 @@
 //! Blocked passages: places where the robot could not drive on although the skeleton leads through.
 //!
-//! The skeleton is cut around each of them, so that paths lead another way. A passage is blocked at
-//! the first path cell that the local grid has no way to, or, ahead of a robot that stands, at the
-//! first path cell [`AHEAD_M`] away from it.
+//! A blocked passage is closed in the skeleton, in the local grid and where viewpoints are searched
+//! for, so that no path leads around the cut and none is found that another part holds for closed.
+//! It is never closed where the robot stands, or farther from its middle than that. A passage is
+//! blocked at the first path cell that the local grid has no way to, or, ahead of a robot that
+//! stands, [`AHEAD_M`] from its centre in the direction of the path.
 //!
 //! A full list loses its oldest passage: what was blocked long ago may be tried again, and no goal
 //! is lost for want of room.
@@ -33,10 +35,13 @@ const CUT_RADIUS_M: f32 = 0.4;
 const AHEAD_M: f32 = 0.5;
 
 /// The list of blocked passages, the oldest first, by x and y of their cells.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct BlockedPassages {
     cells: Vec<[i16; 2], MOST_PASSAGES>,
 }
+
+/// No passage is blocked.
+pub(crate) static NONE: BlockedPassages = BlockedPassages::new();
 
 impl BlockedPassages {
     /// Makes an empty list.
@@ -75,11 +80,17 @@ impl BlockedPassages {
         }
     }
 
-    /// Closes the cells around each blocked passage, except for those that the robot stands in.
+    /// Closes the passages to a search for viewpoints.
     pub(crate) fn close(&self, robot: Cell, reachability: &mut Reachability<'_>) {
-        let is_apart = |cell: &Cell| cell.distance2(robot) > CUT_RADIUS_M * CUT_RADIUS_M;
-        for cell in self.cells().filter(is_apart) {
-            reachability.close(cell, CUT_RADIUS_M);
+        for cell in self.cells() {
+            reachability.close(cell, CUT_RADIUS_M, robot);
+        }
+    }
+
+    /// Closes the passages in a local grid that was just read.
+    pub(crate) fn close_in(&self, grid: &mut LocalGrid, robot: Cell) {
+        for cell in self.cells() {
+            grid.close_disc(cell, CUT_RADIUS_M, robot);
         }
     }
 
@@ -99,15 +110,22 @@ pub(crate) fn first_unreachable<const TILES: usize, const SLOTS: usize>(
 ) -> Option<Cell> {
     let robot = context.pose.point();
     grid.update(context.tiles, context.footprint, robot.cell(), 1);
+    context.blocked.close_in(grid, robot.cell());
     grid.free_robot(robot.cell());
     OpenStretch::of(grid, robot.cell(), path.ahead_of(robot)).next
 }
 
-/// Returns the first cell of the path that is [`AHEAD_M`] away from the robot.
+/// Returns the cell [`AHEAD_M`] away from the robot, towards the first cell of the path that is as
+/// far; `None` if the path is shorter.
 pub(crate) fn ahead(path: &Path, robot: Point) -> Option<Cell> {
-    let robot = robot.cell();
-    let mut cells = path.cells().iter().copied();
-    cells.find(|cell| cell.distance2(robot) >= AHEAD_M * AHEAD_M)
+    let mut places = path.cells().iter().map(|cell| cell.centre());
+    let to = places.find(|place| place.distance2(robot) >= AHEAD_M * AHEAD_M)?;
+    let part = AHEAD_M / to.distance_m(robot);
+    let at = Point {
+        x_m: robot.x_m + part * (to.x_m - robot.x_m),
+        y_m: robot.y_m + part * (to.y_m - robot.y_m),
+    };
+    Some(at.cell())
 }
 
 #[cfg(test)]

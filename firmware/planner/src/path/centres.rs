@@ -5,6 +5,7 @@
 use crate::geometry::Cell;
 use crate::grid::Site;
 use crate::map::{Class, Tiles};
+use crate::path::blocked_passages::BlockedPassages;
 use crate::path::nearest::Centres;
 use crate::roadmap::configuration_space::{Footprint, is_passable};
 use crate::roadmap::skeleton::Skeleton;
@@ -15,10 +16,12 @@ impl<'a, const TILES: usize, const SLOTS: usize> Centres<'a, TILES, SLOTS> {
         skeleton: &'a Skeleton<SLOTS>,
         tiles: &'a Tiles<TILES, SLOTS>,
         footprint: &'a Footprint,
+        blocked: &'a BlockedPassages,
     ) -> Option<Self> {
         Some(Self {
             tiles,
             footprint,
+            blocked,
             frame: skeleton.frame(),
             cells: skeleton.skeleton()?,
         })

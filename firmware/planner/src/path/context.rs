@@ -11,6 +11,7 @@ use crate::geometry::{CELL_M, Cell, Pose};
 use crate::grid::Site;
 use crate::map::Tiles;
 use crate::path::Path;
+use crate::path::blocked_passages::BlockedPassages;
 use crate::path::height_levels::LevelCost;
 use crate::path::nearest::Centres;
 use crate::roadmap::configuration_space::Footprint;
@@ -33,6 +34,8 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) tiles: &'a Tiles<TILES, SLOTS>,
     /// The footprint that paths are planned for.
     pub(crate) footprint: &'a Footprint,
+    /// The passages that were blocked before this round.
+    pub(crate) blocked: &'a BlockedPassages,
     /// The robot's pose.
     pub(crate) pose: Pose,
     /// The host's clock, milliseconds.
@@ -56,7 +59,7 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
 impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {
     /// Returns the centre cells; `None` before the first skeleton.
     pub(crate) fn centres(&self) -> Option<Centres<'_, TILES, SLOTS>> {
-        Centres::of(self.skeleton, self.tiles, self.footprint)
+        Centres::of(self.skeleton, self.tiles, self.footprint, self.blocked)
     }
 
     /// Returns the length of the frontier that is left, metres.

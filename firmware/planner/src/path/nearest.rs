@@ -15,6 +15,7 @@ use crate::grid::bits::{ones, ones64};
 use crate::grid::{PAGE_WORDS, Plane, Site, at, flood};
 use crate::map::Tiles;
 use crate::map::tiles::TILE_SIDE;
+use crate::path::blocked_passages::BlockedPassages;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::Frame;
 
@@ -32,6 +33,8 @@ pub(crate) struct Centres<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) tiles: &'a Tiles<TILES, SLOTS>,
     /// The robot's footprint.
     pub(crate) footprint: &'a Footprint,
+    /// The passages that are closed.
+    pub(crate) blocked: &'a BlockedPassages,
     /// The place of the skeleton's plane.
     pub(crate) frame: Frame,
     /// The centre cells.
@@ -48,8 +51,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         accepts: impl Fn(Site) -> bool,
     ) -> Option<(Site, u32)> {
         SCALES.iter().find_map(|&scale| {
-            grid.update(self.tiles, self.footprint, from, scale);
-            grid.free_robot(from);
+            self.read(grid, from, scale);
             let targets = self.targets(grid, &accepts);
             let mut seeds: Rows = [0; SIDE];
             LocalGrid::put(&mut seeds, grid.place(from)?);
@@ -71,8 +73,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         mut visit: impl FnMut(Site, u32),
     ) -> bool {
         scales.iter().any(|&scale| {
-            grid.update(self.tiles, self.footprint, from, scale);
-            grid.free_robot(from);
+            self.read(grid, from, scale);
             let mut targets = self.targets(grid, &accepts);
             let mut reached: Rows = [0; SIDE];
             if let Some(place) = grid.place(from) {
@@ -124,6 +125,13 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
             y: (from.y + dy * k / steps) & !1,
         });
         Some((site, line))
+    }
+
+    /// Reads the grid around a robot at `from`.
+    fn read(&self, grid: &mut LocalGrid, from: Cell, scale: i32) {
+        grid.update(self.tiles, self.footprint, from, scale);
+        self.blocked.close_in(grid, from);
+        grid.free_robot(from);
     }
 
     /// Returns the passable cells of the grid that hold a centre cell.

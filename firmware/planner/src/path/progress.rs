@@ -29,7 +29,7 @@ const STANDING_MS: u32 = 14_000;
 /// A robot that moved less than this stands, metres.
 const MOVED_M: f32 = 0.3;
 /// Passages blocked in a row without a move after which the robot is stuck.
-const STUCK_PASSAGES: u8 = 4;
+const STUCK_PASSAGES: u8 = 3;
 /// Rounds in a row with a closed path after which the passage is blocked.
 const CLOSED_ROUNDS: u8 = 4;
 
@@ -117,9 +117,17 @@ impl ProgressChecker {
         }
     }
 
-    /// Notes that a passage was blocked where the robot stands.
-    pub(crate) const fn note_wedged(&mut self) {
+    /// Notes that a passage was blocked where the robot stands. The clocks begin anew: the way that
+    /// is left has not failed yet.
+    pub(crate) const fn note_blocked(&mut self, time_ms: u32) {
         self.stood_passages = self.stood_passages.saturating_add(1);
+        self.stood_ms = time_ms;
+        (self.closed, self.closed_rounds) = (false, 0);
+    }
+
+    /// Returns the number of passages that were blocked where the robot stands.
+    pub(crate) const fn passages_here(&self) -> u8 {
+        self.stood_passages
     }
 
     /// Returns the time since the robot last moved, milliseconds.
@@ -172,19 +180,18 @@ impl ProgressChecker {
         };
         self.closed = false;
         if self.closed_rounds >= CLOSED_ROUNDS {
-            self.closed_rounds = 0;
-            self.note_wedged();
+            self.note_blocked(time_ms);
             return Verdict::BlockUnreachable;
         }
         let reached = steps <= REACHED_STEPS;
         let stood_ms = time_ms.wrapping_sub(self.stood_ms);
         // The goal may have changed meanwhile.
         if stood_ms > STANDING_MS {
-            self.stood_ms = time_ms;
             if reached {
+                self.stood_ms = time_ms;
                 return Verdict::Drop(ResidualReason::Unobservable);
             }
-            self.note_wedged();
+            self.note_blocked(time_ms);
             return Verdict::BlockAhead;
         }
         let moves = stood_ms <= NO_PROGRESS_MS / 2;

@@ -8,6 +8,7 @@ use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows, SCALES};
 use crate::geometry::Cell;
 use crate::input::Input;
+use crate::path::blocked_passages::NONE;
 use crate::path::nearest::Centres;
 use crate::path::open_stretch::OpenStretch;
 use crate::planner::state::State;
@@ -39,6 +40,11 @@ pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
     let ahead = path.ahead_of(robot);
     SCALES.iter().find_map(|&scale| {
         grid.update(tiles, footprint, robot.cell(), scale);
+        state
+            .strategy
+            .frontier
+            .blocked()
+            .close_in(grid, robot.cell());
         let shield = state.strategy.shield();
         if let Some(shield) = shield {
             shield.cells().for_each(|cell| grid.block(cell));
@@ -85,6 +91,11 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     let robot = input.pose.point().cell();
     let local_grid = &mut workspace.local_grid;
     local_grid.update(state.map.tiles(), footprint, robot, 1);
+    state
+        .strategy
+        .frontier
+        .blocked()
+        .close_in(local_grid, robot);
     local_grid.free_robot(robot);
     let tiles = state.map.tiles();
     state
@@ -92,7 +103,8 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
         .block_rims(config, tiles, footprint, input.pose.point(), local_grid);
     state.block_peers(footprint, input, local_grid, None);
     slide(workspace);
-    let centres = Centres::of(&state.skeleton, tiles, footprint)?;
+    // Rails search for no way.
+    let centres = Centres::of(&state.skeleton, tiles, footprint, &NONE)?;
     let window = (&mut workspace.window, &workspace.local_grid);
     state
         .strategy

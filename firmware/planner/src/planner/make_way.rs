@@ -172,6 +172,11 @@ fn fill_grid<const TILES: usize, const SLOTS: usize>(
 ) {
     let tiles = state.map.tiles();
     grid.update(tiles, footprint, robot.cell(), 1);
+    state
+        .strategy
+        .frontier
+        .blocked()
+        .close_in(grid, robot.cell());
     grid.free_robot(robot.cell());
     state
         .ground

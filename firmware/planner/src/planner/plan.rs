@@ -35,10 +35,12 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         queue,
         local_grid: &mut workspace.local_grid,
     };
+    let blocked = state.strategy.frontier.blocked().clone();
     let context = PlanningContext {
         skeleton: &mut state.skeleton,
         tiles: state.map.tiles(),
         footprint,
+        blocked: &blocked,
         pose: input.pose,
         time_ms: input.time_ms,
         limits: &config.loops,

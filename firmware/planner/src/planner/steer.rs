@@ -100,7 +100,10 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         Twist::default()
     };
     if state.drive.take_wedged() {
-        state.strategy.frontier.note_wedged(input.pose.point());
+        state
+            .strategy
+            .frontier
+            .note_wedged(input.pose.point(), input.time_ms);
     }
     let velocity = if is_stalled(state, velocity, input.time_ms) {
         state.drive.look_around(config, &checker, input.velocity)
@@ -127,6 +130,22 @@ pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
     obstruct(&mut checker, state, config, input);
     let wish = state.drive.look_around(config, &checker, input.velocity);
     within_limits(config, wish)
+}
+
+/// Begins a retreat from where a passage was blocked, if the robot cannot turn there or blocked
+/// another one there before.
+#[inline(never)]
+pub(super) fn begin_retreat<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    input: &Input<'_>,
+) {
+    let mut checker = CollisionChecker::empty(&config.robot);
+    obstruct(&mut checker, state, config, input);
+    let frontier = &state.strategy.frontier;
+    state
+        .drive
+        .begin_retreat(&checker, frontier.failed_before_here());
 }
 
 /// Returns the velocity back along the robot's own track, up to a place where it can turn.

@@ -107,15 +107,17 @@ impl<'a> Reachability<'a> {
         write(self.open, place, &rows);
     }
 
-    /// Closes the loaded cells within `radius_m` of a cell.
-    pub(crate) fn close(&mut self, cell: Cell, radius_m: f32) {
+    /// Closes the loaded cells nearer to a cell than `radius_m`, except those at least as far from
+    /// it as the robot is.
+    pub(crate) fn close(&mut self, cell: Cell, radius_m: f32, robot: Cell) {
+        let most2 = (radius_m * radius_m).min(cell.distance2(robot));
         let reach = math::floor(radius_m / (2.0 * CELL_M)) + 1;
         for (dx, dy) in (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy))) {
             let near = cell.offset(2 * dx, 2 * dy);
             let site = self
                 .frame
                 .site(near)
-                .filter(|_| near.distance2(cell) <= radius_m * radius_m);
+                .filter(|_| near.distance2(cell) < most2);
             let index = site.and_then(|site| Some((self.tiling.index(site)?, site.bit())));
             if let Some((index, bit)) = index
                 && let Some(word) = self.open.get_mut(index)

@@ -49,9 +49,14 @@ impl Frontier {
         }
         let along_centre = path_to(viewpoint.stand, context, scratch);
         let path = along_centre.map(|path| (path.steps(), path.leading_to(viewpoint.stand)));
+        if path.is_none() {
+            // The robot's place is cut off.
+            self.progress.note_blocked(context.time_ms);
+            self.blocked_here = true;
+        }
         let Some((steps, path)) = path.filter(|(_, path)| !is_barred(path, context)) else {
             self.give_up(viewpoint.gap, ResidualReason::Unreachable);
-            return None;
+            return self.stuck();
         };
         (self.viewpoint, self.path) = (Some(viewpoint), path);
         Some(self.go_and_look(viewpoint, steps, context, scratch.local_grid))
@@ -71,7 +76,8 @@ impl Frontier {
         let steps = along_centre.max((straight_m / STEP_M) as u32);
         let verdict = self.progress.judge(viewpoint.stand, steps, context.time_ms);
         let reason = match verdict {
-            Verdict::GoOn => return RoundOutcome::Path,
+            Verdict::GoOn if !self.progress.is_stuck() => return RoundOutcome::Path,
+            Verdict::GoOn => None,
             Verdict::Drop(reason) => Some(reason),
             Verdict::BlockAhead => Some(ResidualReason::Unreachable),
             // The stand can be reached, maybe by another way.
@@ -83,11 +89,17 @@ impl Frontier {
         } else {
             self.block_passage(verdict, context, grid);
         }
-        match (self.progress.is_stuck(), self.only_looks) {
-            (false, _) => RoundOutcome::Unsure,
-            (true, true) if !self.progress.moved() => RoundOutcome::Stuck,
-            (true, _) => self.only_look(),
-        }
+        self.stuck().unwrap_or(RoundOutcome::Unsure)
+    }
+
+    /// Returns what follows if the robot is stuck.
+    fn stuck(&mut self) -> Option<RoundOutcome> {
+        self.progress
+            .is_stuck()
+            .then(|| match (self.only_looks, self.progress.moved()) {
+                (true, false) => RoundOutcome::Stuck,
+                _ => self.only_look(),
+            })
     }
 }
 

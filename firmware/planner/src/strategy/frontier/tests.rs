@@ -11,6 +11,7 @@ use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::ground::elevation::tests::OwnedWindow;
 use crate::map::{Class, Tiles};
+use crate::path::blocked_passages::NONE;
 use crate::path::goal_cost::GoalCost;
 use crate::path::height_levels::{HeightLevels, LevelCost};
 use crate::path::residual_frontiers::ResidualFrontiers;
@@ -116,6 +117,7 @@ impl Scene {
             skeleton: &mut self.skeleton,
             tiles: &self.tiles,
             footprint: &self.footprint,
+            blocked: &NONE,
             pose: Pose {
                 x_m: 0.05,
                 y_m: 0.05,

@@ -139,10 +139,12 @@ impl Exploration {
         let before = self.skeleton.skeleton().unwrap().words().to_vec();
         for calls in 1.. {
             assert!(calls <= 4, "a round that does not end");
+            let blocked = self.frontier.blocked().clone();
             let round = PlanningContext {
                 skeleton: &mut self.skeleton,
                 tiles: &self.tiles,
                 footprint: &footprint,
+                blocked: &blocked,
                 pose: self.pose,
                 time_ms,
                 limits: &self.limits,

@@ -18,6 +18,7 @@ use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::map::{Class, Tiles};
+use crate::path::blocked_passages::NONE;
 use crate::path::nearest::Centres;
 use crate::path::{PlanningContext, PlanningScratch};
 use crate::roadmap::Residues;
@@ -162,6 +163,7 @@ impl Scene {
             skeleton: &mut self.skeleton,
             tiles: &self.tiles,
             footprint: &self.footprint,
+            blocked: &NONE,
             pose: self.pose,
             time_ms: 0,
             limits: &self.limits,
@@ -175,7 +177,7 @@ impl Scene {
     }
 
     pub(super) fn centres(&self) -> Centres<'_, TILES, SLOTS> {
-        Centres::of(&self.skeleton, &self.tiles, &self.footprint).unwrap()
+        Centres::of(&self.skeleton, &self.tiles, &self.footprint, &NONE).unwrap()
     }
 
     /// Looks for the loop road to the tractor point and for the shield across it.

@@ -8,6 +8,7 @@ use crate::field::local_grid::{LocalGrid, position};
 use crate::field::{SCRATCH_FLOATS, SIDE, SolverConfig, Window, descent, solve};
 use crate::geometry::{Cell, Pose};
 use crate::map::{Class, Tiles};
+use crate::path::blocked_passages::NONE;
 use crate::path::nearest::Centres;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
@@ -105,7 +106,7 @@ impl Scene {
         let mut grid = LocalGrid::new();
         let footprint = Footprint::new(0.1);
         grid.update(&self.tiles, &footprint, self.robot, 1);
-        let centres = Centres::of(&self.skeleton, &self.tiles, &footprint).unwrap();
+        let centres = Centres::of(&self.skeleton, &self.tiles, &footprint, &NONE).unwrap();
         let (mut window, least) = (Window::new(), self.robot);
         // The middle of the robot's coarse cell.
         let robot = least.offset(1, 1).corner();
@@ -191,7 +192,7 @@ fn session(period_ms: u32, impatience_s: Option<u16>) -> Tdbvp<64> {
 fn without_impatience_only_a_robot_that_lingers_leaves_the_rails() {
     let scene = Scene::new(FORK);
     let footprint = Footprint::new(0.1);
-    let centres = Centres::of(&scene.skeleton, &scene.tiles, &footprint).unwrap();
+    let centres = Centres::of(&scene.skeleton, &scene.tiles, &footprint, &NONE).unwrap();
     let robot = scene.robot.offset(1, 1).corner();
     let pose = Pose {
         x_m: robot.x_m,
