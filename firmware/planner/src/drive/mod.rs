@@ -357,37 +357,4 @@ fn is_moving(now: Twist) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::direct::CREEP_MPS;
-    use super::*;
-    use crate::geometry::{Point, Pose};
-    use crate::robot::RobotShape;
-
-    /// Returns the speed of a robot that has a recovery backwards and free ground ahead, with
-    /// another robot 2 m beside it.
-    fn speed_mps(peer_may_move: bool) -> f32 {
-        let config = Config::pioneer_3at(heapless::Vec::new());
-        let mut checker = CollisionChecker::empty(&RobotShape::PIONEER_3AT);
-        let beside = Point { x_m: 0.0, y_m: 2.0 };
-        checker.keep_off_hull(&Pose::default(), core::iter::once(beside), peer_may_move);
-        let mut query = SearchQuery::new(&checker, |_: Place| Some(0.0), None);
-        let mut drive = Drive::new();
-        for _ in 0..8 {
-            drive
-                .recovery
-                .motions
-                .push(motion::BACKWARD)
-                .expect("there is room");
-        }
-        let mut scratch = std::vec![0; SCRATCH_WORDS];
-        drive
-            .follow(&config, &mut query, Twist::default(), &mut scratch)
-            .linear_mps
-    }
-
-    #[test]
-    fn a_recovery_ends_when_a_robot_that_drives_on_has_left_the_way_open() {
-        assert!(speed_mps(true) > CREEP_MPS);
-        assert!(speed_mps(false) < 0.0, "walls do not leave");
-    }
-}
+mod tests;

@@ -277,6 +277,35 @@ mod tests {
     }
 
     #[test]
+    fn a_retreat_leaves_its_place_by_the_way_of_a_robot_that_moved() {
+        let forward = Twist {
+            linear_mps: 0.3,
+            angular_radps: 0.0,
+        };
+        let turn = Twist {
+            linear_mps: 0.0,
+            angular_radps: 0.6,
+        };
+        // The turn on the spot is no way.
+        let poses = driven((0..300).map(|k| if k < 200 { forward } else { turn }));
+        let mut track = Track::new();
+        poses.iter().for_each(|pose| track.record(pose));
+        let begin = *poses.last().unwrap();
+        track.begin_retreat();
+        let mut pose = begin;
+        while !track.has_left() {
+            let twist = track.back(&pose, PERIOD_S).expect("the track is longer");
+            pose = moved(&pose, twist);
+        }
+        let far_m = distance_m(&begin, &pose);
+        assert!((far_m - LEAVE_M).abs() < 0.06, "{far_m} m");
+        let mut short = Track::new();
+        short.record(&begin);
+        short.begin_retreat();
+        assert!(short.has_left(), "there is no way back");
+    }
+
+    #[test]
     fn rounding_errors_do_not_add_up() {
         let poses = winding();
         let mut track = Track::new();

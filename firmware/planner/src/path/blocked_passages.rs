@@ -6,6 +6,14 @@
 //! blocked at the first path cell that the local grid has no way to, or, ahead of a robot that
 //! stands, [`AHEAD_M`] from its centre in the direction of the path.
 //!
+//! 25 generated worlds in which runs ended stuck or knew too little:
+//!
+//! | blocked passages are closed | runs that end explored | known, % |
+//! | --- | --- | --- |
+//! | in the skeleton | 12 | 95.1 |
+//! | everywhere | 19 | 98.2 |
+//! | everywhere, and the robot retreats wherever it blocks one | 24 | 97.9 |
+//!
 //! A full list loses its oldest passage: what was blocked long ago may be tried again, and no goal
 //! is lost for want of room.
 //!
@@ -130,8 +138,9 @@ pub(crate) fn ahead(path: &Path, robot: Point) -> Option<Cell> {
 
 #[cfg(test)]
 mod tests {
-    use super::{BlockedPassages, MOST_PASSAGES};
-    use crate::geometry::Cell;
+    use super::{AHEAD_M, BlockedPassages, MOST_PASSAGES, ahead};
+    use crate::geometry::{CELL_M, Cell, Point};
+    use crate::path::Path;
 
     #[test]
     fn a_full_list_loses_its_oldest_passage() {
@@ -143,5 +152,24 @@ mod tests {
         assert_eq!(blocked.cells.first(), Some(&[2, -2]));
         blocked.open_last();
         assert_eq!(blocked.cells.last(), Some(&[24, -24]));
+    }
+
+    /// Returns the distance of the passage ahead of a robot at the origin, on a path to the east
+    /// from x = `first` cells, metres.
+    fn ahead_m(first: i32, last: i32) -> Option<f32> {
+        let cells = (first..=last).rev().map(|x| Cell { x, y: 0 });
+        let steps = (last - first + 1) as usize;
+        let path = Path::back(cells, steps, steps as u32);
+        let robot = Point::default();
+        ahead(&path, robot).map(|cell| cell.centre().distance_m(robot))
+    }
+
+    #[test]
+    fn the_passage_ahead_is_beside_the_robot_wherever_the_path_begins() {
+        for first in [0, 4, 20] {
+            let far_m = ahead_m(first, 40).expect("the path is long enough");
+            assert!((far_m - AHEAD_M).abs() <= CELL_M, "{far_m} m");
+        }
+        assert_eq!(ahead_m(0, 3), None, "it ends before");
     }
 }

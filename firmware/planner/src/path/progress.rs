@@ -310,6 +310,26 @@ mod tests {
         assert!(when_ms < 3 * NO_PROGRESS_MS, "{when_ms} ms");
     }
 
+    /// The way that is left is not blamed for the time that the blocked one took.
+    #[test]
+    fn after_a_passage_the_way_back_has_all_its_time() {
+        let mut progress = ProgressChecker::new();
+        progress.judge(FAR, 40, STANDING_MS);
+        (0..CLOSED_ROUNDS - 1).for_each(|_| {
+            progress.note_closed();
+            progress.judge(FAR, 40, STANDING_MS);
+        });
+        progress.note_closed();
+        progress.note_blocked(STANDING_MS);
+        assert_eq!(progress.passages_here(), 1);
+        for time_ms in [STANDING_MS + 500, 2 * STANDING_MS] {
+            progress.note_closed();
+            assert_eq!(progress.judge(FAR, 90, time_ms), Verdict::GoOn);
+        }
+        let late_ms = 2 * STANDING_MS + 1;
+        assert_eq!(progress.judge(FAR, 90, late_ms), Verdict::BlockAhead);
+    }
+
     #[test]
     fn a_goal_behind_a_blocked_passage_is_begun_anew() {
         let mut progress = ProgressChecker::new();

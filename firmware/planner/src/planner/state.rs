@@ -127,7 +127,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 
     /// Returns the footprint that paths are planned for: narrower at the second chance.
     pub(super) fn footprint(&self, config: &Config) -> Footprint {
-        Footprint::new(if self.strategy.frontier.is_second_chance() {
+        Footprint::new(if self.strategy.frontier.has_second_chance() {
             config.tight_radius_m()
         } else {
             config.robot_radius_m

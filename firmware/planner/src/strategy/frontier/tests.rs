@@ -7,11 +7,11 @@ use std::vec;
 
 use crate::config::{LoopLimits, Order, Tuning, UnevenGround};
 use crate::field::local_grid::LocalGrid;
-use crate::geometry::{Cell, Pose};
+use crate::geometry::{Cell, Point, Pose};
 use crate::grid::Site;
 use crate::ground::elevation::tests::OwnedWindow;
 use crate::map::{Class, Tiles};
-use crate::path::blocked_passages::NONE;
+use crate::path::blocked_passages::BlockedPassages;
 use crate::path::goal_cost::GoalCost;
 use crate::path::height_levels::{HeightLevels, LevelCost};
 use crate::path::residual_frontiers::ResidualFrontiers;
@@ -89,6 +89,7 @@ struct Scene {
     heights: Box<HeightLevels<24>>,
     skeleton: Box<Skeleton<64>>,
     footprint: Footprint,
+    blocked: BlockedPassages,
     limits: LoopLimits,
     order: Order,
     yaw_rad: f32,
@@ -105,6 +106,7 @@ impl Scene {
             heights,
             skeleton,
             footprint,
+            blocked: BlockedPassages::new(),
             limits: LoopLimits::default(),
             order: Order::Nearest,
             yaw_rad: 0.0,
@@ -117,7 +119,7 @@ impl Scene {
             skeleton: &mut self.skeleton,
             tiles: &self.tiles,
             footprint: &self.footprint,
-            blocked: &NONE,
+            blocked: &self.blocked,
             pose: Pose {
                 x_m: 0.05,
                 y_m: 0.05,
@@ -170,6 +172,33 @@ fn by_gain(worth: f32, yaw_rad: f32) -> Scene {
 fn next(scene: &mut Scene, frontier: &mut Frontier, reference_m: Option<f32>) -> i32 {
     scene.replan(frontier, reference_m, 64 * 8);
     frontier.path().goal().x
+}
+
+#[test]
+fn a_robot_that_only_looks_goes_on_once_it_has_moved() {
+    let mut scene = by_gain(0.0, 0.0);
+    let mut frontier = Frontier::new();
+    frontier.only_look();
+    scene.replan(&mut frontier, None, 64 * 8);
+    assert!(frontier.path().is_empty(), "it stands");
+    let aside = Point { x_m: 2.0, y_m: 0.0 };
+    frontier.progress.note_motion(aside, 1_000);
+    assert!(is_at(next(&mut scene, &mut frontier, None), ENDS[1]));
+}
+
+/// The passage is 0.6 m to the east of the robot.
+#[test]
+fn no_path_begins_behind_a_blocked_passage() {
+    let [west, east] = ENDS;
+    let mut scene = by_gain(0.0, 0.0);
+    let mut frontier = Frontier::new();
+    assert!(is_at(next(&mut scene, &mut frontier, None), east));
+    (0..2).for_each(|k| frontier.blocked.block(Cell { x: 6, y: 4 * k - 2 }));
+    frontier.path.clear();
+    scene.blocked = frontier.blocked.clone();
+    frontier.cut(&mut scene.skeleton);
+    let goal = next(&mut scene, &mut frontier, None);
+    assert!(is_at(goal, west), "{goal}");
 }
 
 fn is_at(goal: i32, end: i32) -> bool {

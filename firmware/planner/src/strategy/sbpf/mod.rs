@@ -147,7 +147,7 @@ impl Sbpf {
         let is_impatient = self.waited_ms() >= 1_000 * u32::from(impatience_s);
         let is_late = self.heading_rad.is_none() || is_impatient || self.errand.is_some();
         let (outcome, is_free) = frontier.replan_freely(round, scratch, is_late);
-        self.on_path = !is_free || frontier.is_second_chance();
+        self.on_path = !is_free || frontier.has_second_chance();
         let most_cells = round.tuning.sbpf.errand_cells;
         let goal = Some(frontier.path()).filter(|path| self.on_path && !path.is_empty());
         let goal = goal.map(|path| path.goal());

@@ -238,7 +238,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         let is_late = self.is_late(round.time_ms);
         let (outcome, is_free) = frontier.replan_freely(&round, scratch, is_late);
         // What remains for the second chance is where the robot only just fits through.
-        self.on_path = !is_free || frontier.is_second_chance();
+        self.on_path = !is_free || frontier.has_second_chance();
         outcome
     }
 
