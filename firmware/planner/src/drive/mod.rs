@@ -7,8 +7,8 @@
 //! admissible candidate, in order of distance from the wish. If there is none, the robot turns on
 //! the spot or drives straight back. If it cannot, a recovery leads out. If none is found either,
 //! the robot is *wedged*. A passage that is blocked, for this or another reason, is left backwards
-//! along the robot's own track, to a place where it can turn. Where it
-//! cannot drive faster than it creeps, a *lane* takes the place of the field's heading.
+//! along the robot's own track, to a place where it can turn. Where it cannot drive faster than it
+//! creeps, a *lane* takes the place of the field's heading.
 //!
 //! Invariant: after every commanded velocity a stop is possible that touches nothing known, so the
 //! zero command is always safe.
