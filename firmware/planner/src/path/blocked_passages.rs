@@ -23,8 +23,10 @@ use heapless::Vec;
 
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Point};
+use crate::map::Tiles;
 use crate::path::open_stretch::OpenStretch;
 use crate::path::{Path, PlanningContext};
+use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::Reachability;
 use crate::roadmap::skeleton::Skeleton;
 
@@ -95,8 +97,17 @@ impl BlockedPassages {
         }
     }
 
-    /// Closes the passages in a local grid that was just read.
-    pub(crate) fn close_in(&self, grid: &mut LocalGrid, robot: Cell) {
+    /// Reads the local grid around a robot, with the passages closed. It is called from five
+    /// places, so it is not inlined.
+    #[inline(never)]
+    pub(crate) fn read<const TILES: usize, const SLOTS: usize>(
+        &self,
+        grid: &mut LocalGrid,
+        (tiles, footprint): (&Tiles<TILES, SLOTS>, &Footprint),
+        robot: Cell,
+        scale: i32,
+    ) {
+        grid.update(tiles, footprint, robot, scale);
         for cell in self.cells() {
             grid.close_disc(cell, CUT_RADIUS_M, robot);
         }
@@ -117,8 +128,8 @@ pub(crate) fn first_unreachable<const TILES: usize, const SLOTS: usize>(
     grid: &mut LocalGrid,
 ) -> Option<Cell> {
     let robot = context.pose.point();
-    grid.update(context.tiles, context.footprint, robot.cell(), 1);
-    context.blocked.close_in(grid, robot.cell());
+    let map = (context.tiles, context.footprint);
+    context.blocked.read(grid, map, robot.cell(), 1);
     grid.free_robot(robot.cell());
     OpenStretch::of(grid, robot.cell(), path.ahead_of(robot)).next
 }

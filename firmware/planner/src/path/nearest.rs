@@ -129,8 +129,8 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
 
     /// Reads the grid around a robot at `from`.
     fn read(&self, grid: &mut LocalGrid, from: Cell, scale: i32) {
-        grid.update(self.tiles, self.footprint, from, scale);
-        self.blocked.close_in(grid, from);
+        let map = (self.tiles, self.footprint);
+        self.blocked.read(grid, map, from, scale);
         grid.free_robot(from);
     }
 

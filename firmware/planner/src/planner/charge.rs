@@ -39,12 +39,8 @@ pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
     let tiles = state.map.tiles();
     let ahead = path.ahead_of(robot);
     SCALES.iter().find_map(|&scale| {
-        grid.update(tiles, footprint, robot.cell(), scale);
-        state
-            .strategy
-            .frontier
-            .blocked()
-            .close_in(grid, robot.cell());
+        let blocked = state.strategy.frontier.blocked();
+        blocked.read(grid, (tiles, footprint), robot.cell(), scale);
         let shield = state.strategy.shield();
         if let Some(shield) = shield {
             shield.cells().for_each(|cell| grid.block(cell));
@@ -90,14 +86,9 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     state.strategy.tdbvp()?;
     let robot = input.pose.point().cell();
     let local_grid = &mut workspace.local_grid;
-    local_grid.update(state.map.tiles(), footprint, robot, 1);
-    state
-        .strategy
-        .frontier
-        .blocked()
-        .close_in(local_grid, robot);
+    let (blocked, tiles) = (state.strategy.frontier.blocked(), state.map.tiles());
+    blocked.read(local_grid, (tiles, footprint), robot, 1);
     local_grid.free_robot(robot);
-    let tiles = state.map.tiles();
     state
         .ground
         .block_rims(config, tiles, footprint, input.pose.point(), local_grid);

@@ -171,12 +171,8 @@ fn fill_grid<const TILES: usize, const SLOTS: usize>(
     robot: Point,
 ) {
     let tiles = state.map.tiles();
-    grid.update(tiles, footprint, robot.cell(), 1);
-    state
-        .strategy
-        .frontier
-        .blocked()
-        .close_in(grid, robot.cell());
+    let blocked = state.strategy.frontier.blocked();
+    blocked.read(grid, (tiles, footprint), robot.cell(), 1);
     grid.free_robot(robot.cell());
     state
         .ground
