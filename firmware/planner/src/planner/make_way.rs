@@ -14,6 +14,7 @@ use crate::config::Config;
 use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows};
 use crate::geometry::{CELL_M, Cell, Point};
+use crate::grid::bits::ones64;
 use crate::input::Input;
 use crate::math;
 use crate::planner::state::State;
@@ -69,26 +70,14 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// Takes the places of peers that stand out of the published skeleton. Returns true if one of
     /// them may drive away: then what lies behind it is not given up.
     pub(super) fn cut_peers(&mut self, footprint: &Footprint, now_ms: u32) -> bool {
-        let frame = self.skeleton.frame();
-        let Some(mut plane) = self.skeleton.skeleton_mut() else {
-            return false;
-        };
         let mut waits = false;
         for peer in self.team.peers().iter() {
             if self.team.way.may_move(peer, now_ms) {
                 continue;
             }
             waits |= peer.beacon.activity.moves();
-            let around = peer.beacon.point();
             let radius_m = peer.radius_m() + footprint.reach() as f32 * CELL_M;
-            let reach = math::floor(radius_m / (2.0 * CELL_M)) + 1;
-            let cells = (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| (x, y)));
-            for cell in cells.map(|(x, y)| around.cell().offset(2 * x, 2 * y)) {
-                let is_near = cell.centre().distance2(around) <= radius_m * radius_m;
-                if let Some(site) = frame.site(cell).filter(|_| is_near) {
-                    plane.clear(site);
-                }
-            }
+            self.skeleton.cut(peer.beacon.point().cell(), radius_m);
         }
         waits
     }
@@ -323,9 +312,16 @@ fn clear_disc(grid: &LocalGrid, rows: &mut Rows, centre: Point, radius_m: f32) {
 
 /// Returns the place of the cell of `rows` nearest to the robot.
 fn nearest(grid: &LocalGrid, rows: &Rows, robot: Point) -> Option<Point> {
-    let cells = rows.iter().enumerate().flat_map(|(y, row)| {
-        let set = (0..SIDE).filter(move |x| row >> x & 1 == 1);
-        set.map(move |x| grid.cell(x, y).centre())
-    });
-    cells.min_by(|a, b| a.distance2(robot).total_cmp(&b.distance2(robot)))
+    let mut nearest = None;
+    let mut least2 = f32::MAX;
+    for (y, row) in rows.iter().enumerate() {
+        for x in ones64(*row) {
+            let place = grid.cell(x as usize, y).centre();
+            let far2 = place.distance2(robot);
+            if far2 < least2 {
+                (nearest, least2) = (Some(place), far2);
+            }
+        }
+    }
+    nearest
 }

@@ -2,9 +2,9 @@
 //!
 //! - A beam that ends within a peer's hull carries no information: a peer is never entered into the
 //!   map, and leaves no obstacle points. The hull is grown by what is not known of its place.
-//! - For the drive a peer is points on its outline. A peer that may move takes the place that it
-//!   needs to turn, and the place up to where it can stop. If both robots keep out of that place of
-//!   the other, both can stop.
+//! - For the drive a peer is points on its outline. A peer that may move takes the circle that it
+//!   needs to turn, and the places of that circle up to where it can stop. If both robots keep out
+//!   of that place of the other, both can stop.
 //!
 //! ```text
 //! grown by   2 sd + (0.1 + 0.3 · age in s, at most 2 s) m
@@ -37,7 +37,8 @@ const POINT_EVERY_M: f32 = 0.15;
 /// Greatest number of points on a side of an outline.
 const MOST_SIDE_POINTS: u32 = 12;
 
-/// The place that a peer takes: a rectangle in its own frame.
+/// The place that a peer takes: a rectangle in its own frame, or all places of a circle that moves
+/// along it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hull {
     frame: RobotFrame,
@@ -46,6 +47,8 @@ pub(crate) struct Hull {
     front_m: f32,
     back_m: f32,
     half_width_m: f32,
+    /// Its ends are half circles.
+    is_round: bool,
 }
 
 impl Hull {
@@ -60,11 +63,12 @@ impl Hull {
             front_m: half(length),
             back_m: half(length),
             half_width_m: half(width),
+            is_round: false,
         }
     }
 
-    /// Returns the place that a peer may take by turning on the spot: a square around its hull's
-    /// circle. A peer that stands for good does not turn.
+    /// Returns the place that a peer may take by turning on the spot: its hull's circle. A peer
+    /// that stands for good does not turn.
     fn turning(peer: &Peer, now_ms: u32) -> Self {
         let sd_m = f32::from(peer.beacon.sd_cm) * 0.01;
         let hull = Self::of(peer, now_ms, sd_m);
@@ -76,6 +80,7 @@ impl Hull {
             front_m: radius_m,
             back_m: radius_m,
             half_width_m: radius_m,
+            is_round: true,
             ..hull
         }
     }
@@ -119,15 +124,29 @@ impl Hull {
         math::sqrt(along_m * along_m + self.half_width_m * self.half_width_m)
     }
 
+    /// Returns the place of a point of the rectangle, so far along it and across it. What lies
+    /// beyond a round end is moved to its edge.
+    #[inline(never)]
+    fn place(&self, along_m: f32, across_m: f32) -> Point {
+        let (x_m, y_m) = (along_m - self.back_m, across_m - self.half_width_m);
+        let radius_m = self.half_width_m;
+        let middle_m = x_m.min(self.front_m - radius_m).max(radius_m - self.back_m);
+        let beyond_m = math::sqrt((x_m - middle_m) * (x_m - middle_m) + y_m * y_m);
+        let part = if self.is_round {
+            radius_m / beyond_m.max(radius_m)
+        } else {
+            1.0
+        };
+        self.frame.to_map(Point {
+            x_m: middle_m + part * (x_m - middle_m),
+            y_m: part * y_m,
+        })
+    }
+
     /// Returns points on the outline, corners included.
     pub(crate) fn outline(self) -> impl Iterator<Item = Point> {
         let (length_m, width_m) = (self.front_m + self.back_m, 2.0 * self.half_width_m);
-        let at = move |along_m: f32, across_m: f32| {
-            self.frame.to_map(Point {
-                x_m: along_m - self.back_m,
-                y_m: across_m - self.half_width_m,
-            })
-        };
+        let at = move |along_m, across_m| self.place(along_m, across_m);
         let sides = side(length_m).flat_map(move |k| [at(k, 0.0), at(k, width_m)]);
         let ends = side(width_m).flat_map(move |k| [at(0.0, k), at(length_m, k)]);
         sides.chain(ends)
@@ -135,14 +154,7 @@ impl Hull {
 
     /// Returns points all over the hull, a map cell or less apart.
     pub(crate) fn area(self) -> impl Iterator<Item = Point> {
-        let across = move |k: f32| {
-            side(2.0 * self.half_width_m).map(move |m| {
-                self.frame.to_map(Point {
-                    x_m: k - self.back_m,
-                    y_m: m - self.half_width_m,
-                })
-            })
-        };
+        let across = move |k: f32| side(2.0 * self.half_width_m).map(move |m| self.place(k, m));
         side(self.front_m + self.back_m).flat_map(across)
     }
 }
@@ -320,6 +332,20 @@ mod tests {
         // It looks west: 0.6 · 0.2 + 0.36 / 0.6.
         assert!(close(outline(0.6), (2.0 - half - 0.72, 2.0 + half)));
         assert!(close(outline(-0.6), (2.0 - half, 2.0 + half + 0.72)));
+    }
+
+    /// A square around the circle would reach over a robot beside it, and the two robots would wait
+    /// for each other to turn.
+    #[test]
+    fn a_peer_that_turns_takes_its_circle() {
+        let peers = peers(2.0, 0.0, 0.0);
+        let (_, hull) = peers.turning(0, Point::default()).next().expect("near");
+        let far_m = |point: Point| point.distance_m(hull.centre);
+        for point in hull.outline() {
+            assert!((far_m(point) - 0.360_7).abs() < 1e-3, "{}", far_m(point));
+        }
+        assert!(hull.area().all(|point| far_m(point) < 0.361));
+        assert!(hull.area().any(|point| far_m(point) < 0.15), "its middle");
     }
 
     #[test]
