@@ -25,7 +25,6 @@
 //! Units: metres, seconds, radians; robot frame, x forward.
 
 use crate::config::Config;
-use crate::drive::SEARCH_MARGINS_M;
 use crate::drive::collision::CollisionChecker;
 use crate::drive::hull::Place;
 use crate::drive::lane::Lane;
@@ -82,11 +81,10 @@ pub(super) fn velocity<H: Fn(Place) -> Option<f32>>(
     // A gap that the robot cannot follow the field through would wedge it.
     let may_go_on = |&twist: &Twist| {
         !rolls || twist.linear_mps > CREEP_MPS || {
-            let [_, least_m] = SEARCH_MARGINS_M;
             roll_out(
                 query,
                 (Place::default(), false),
-                least_m,
+                query.least_margin_m(),
                 &mut 0,
                 (&|_| true, &|_| false),
             )
@@ -116,14 +114,13 @@ pub(super) fn lane(
     config: &Config,
     field: f32,
     now: Twist,
-    checker: &CollisionChecker,
+    (checker, least_m): (&CollisionChecker, f32),
 ) -> Option<Lane> {
     let is_free = !checker.has_company() && !checker.bounds_headings();
     let turns_first = field.abs() > TURN_FIRST_RAD;
     if !is_free || turns_first || is_open(config, field, now, checker) {
         return None;
     }
-    let [_, least_m] = SEARCH_MARGINS_M;
     Lane::find(checker, field, least_m)
 }
 

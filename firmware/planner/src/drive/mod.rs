@@ -49,6 +49,23 @@ use track::Track;
 /// Clearances of a recovery, metres: that of the first search, and of the next one. The next one is
 /// hardly more than what the robot keeps while it drives the recovery.
 const SEARCH_MARGINS_M: [f32; 2] = [0.03, 0.02];
+/// The only clearance while something else is left to explore, metres. A gap with less may let the
+/// robot in and not out again. `frontier`: 12 runs through three tight buildings with noisy and
+/// with true odometry (`aria_columbia`, `willow_full`, `ipa_lab_intel_furnitures`, four seeds), 64
+/// runs in built-in and generated worlds with the time to the end against `greedy-frontier`, and
+/// 25 generated worlds in which runs ended stuck or knew too little:
+///
+/// | clearance, m | known: noisy, true % | known %, end | stuck, touches of 25 |
+/// | --- | --- | --- | --- |
+/// | 0.02 | 86.2, 97.7 | 98.98, 1.09 | 2, 1 |
+/// | 0.03 | 96.3, 97.7 | 99.31, 1.09 | 1, 1 |
+/// | 0.04 | 97.3, 97.9 | 99.58, 1.11 | 0, 0 |
+/// | 0.05 | 98.0, 97.9 | 99.60, 1.09 | 0, 0 |
+///
+/// It is for the order by gain. With the nearest goal first, the robot turns into the next tight
+/// gap as soon as it may: in the three buildings with true odometry `ouroboros` then knows 87.6 %
+/// instead of 97.4, and `tdbvp` 97.7 instead of 98.3.
+const CAREFUL_MARGINS_M: [f32; 1] = [0.05];
 
 /// Turn rate of a robot that looks around, radians per second.
 const LOOK_AROUND_RADPS: f32 = 0.6;
@@ -248,7 +265,8 @@ impl Drive {
                 return Twist::default();
             }
             let first = MotionSet::of(config.period_s, |twist| admits(&twist));
-            self.search = Some(Search::start(SEARCH_MARGINS_M[0], first, scratch));
+            let margin_m = query.margins_m().first().copied().unwrap_or_default();
+            self.search = Some(Search::start(margin_m, first, scratch));
             budget = FIRST_BUDGET;
         }
         self.continue_search(query, budget, scratch);
@@ -271,7 +289,8 @@ impl Drive {
     ) -> Option<Twist> {
         let rolls = self.squeeze_steps == 0 && !query.checker.has_company();
         self.squeeze_steps = self.squeeze_steps.saturating_sub(1);
-        self.lane = direct::lane(config, field, now, query.checker);
+        let margin = (query.checker, query.least_margin_m());
+        self.lane = direct::lane(config, field, now, margin);
         query.lane = self.lane;
         let in_lane = query.lane.and_then(|_| {
             let error = query.misalignment(Place::default())?;
@@ -327,8 +346,9 @@ impl Drive {
             }
             SearchOutcome::Nothing => {
                 let (margin_m, first) = (search.margin_m, search.first);
-                let next = SEARCH_MARGINS_M.into_iter().find(|&next| next < margin_m);
-                self.search = next.map(|next| Search::start(next, first, scratch));
+                let mut margins_m = query.margins_m().iter();
+                let next = margins_m.find(|&&next| next < margin_m);
+                self.search = next.map(|&next| Search::start(next, first, scratch));
                 // On a slope that bounds the headings, the robot takes another heading instead.
                 // What another robot closes will be open again.
                 let may_wait = query.checker.bounds_headings() || query.checker.has_company();

@@ -7,6 +7,7 @@ use crate::drive::dead_ends::DeadEnds;
 use crate::drive::hull::Place;
 use crate::drive::lane::Lane;
 use crate::drive::roll_out::{RollOut, roll_out};
+use crate::drive::{CAREFUL_MARGINS_M, SEARCH_MARGINS_M};
 use crate::geometry::Point;
 use crate::math;
 
@@ -34,6 +35,8 @@ pub struct SearchQuery<'a, H> {
     /// The robot creeps on for a while where no search finds a way. Otherwise it leaves the
     /// passage at once.
     pub squeezes: bool,
+    /// The robot goes through no gap that leaves it little clearance.
+    pub is_careful: bool,
     /// The lane that the robot follows instead of the field.
     pub(super) lane: Option<Lane>,
 }
@@ -50,8 +53,23 @@ impl<'a, H: Fn(Place) -> Option<f32>> SearchQuery<'a, H> {
             heading_at,
             potential_at,
             squeezes: true,
+            is_careful: false,
             lane: None,
         }
+    }
+
+    /// Returns the clearances of the searches, metres, the first one first.
+    pub(super) const fn margins_m(&self) -> &'static [f32] {
+        if self.is_careful {
+            &CAREFUL_MARGINS_M
+        } else {
+            &SEARCH_MARGINS_M
+        }
+    }
+
+    /// Returns the least clearance of the way ahead of a robot that creeps, metres.
+    pub(super) fn least_margin_m(&self) -> f32 {
+        self.margins_m().last().copied().unwrap_or_default()
     }
 
     /// Returns the turn of a robot at a place to the heading of the lane or the field, radians.
