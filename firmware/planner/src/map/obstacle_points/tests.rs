@@ -1,0 +1,122 @@
+//! Points that come, stay and go.
+
+use super::*;
+use crate::drive::CollisionChecker;
+use crate::input::{INVALID_MM, NO_RETURN_MM};
+use crate::robot::RobotShape;
+
+const ROBOT: RobotShape = RobotShape::PIONEER_3AT;
+const CONFIG: Config = Config::pioneer_3at(Vec::new());
+
+const LASER: LaserMount = LaserMount::level(0.0, 0.4);
+
+#[test]
+fn a_lone_false_return_is_not_kept() {
+    let mut obstacles = ObstaclePoints::new();
+    let mut scan = [NO_RETURN_MM; 181];
+    scan[90] = 500;
+    obstacles.update(&CONFIG, &Pose::default(), &LASER, &scan);
+    assert!(obstacles.points().is_empty());
+}
+
+/// Returns a scan that meets one thing, 4 beams wide, at a bearing (degrees) and a range.
+fn thing(bearing: i32, range_mm: u16) -> [u16; 181] {
+    let mut scan = [NO_RETURN_MM; 181];
+    for k in -2..2 {
+        scan[(bearing + 90 + k) as usize] = range_mm;
+    }
+    scan
+}
+
+#[test]
+fn a_point_is_remembered_behind_the_robot_and_forgotten_when_seen_through() {
+    let mut obstacles = ObstaclePoints::new();
+    let here = Pose::default();
+    obstacles.update(&CONFIG, &here, &LASER, &thing(0, 800));
+    assert!(!obstacles.points().is_empty());
+    let turned = Pose {
+        yaw_rad: math::PI,
+        ..here
+    };
+    obstacles.update(&CONFIG, &turned, &LASER, &[NO_RETURN_MM; 181]);
+    assert!(!obstacles.points().is_empty(), "out of view");
+    obstacles.update(&CONFIG, &here, &LASER, &[NO_RETURN_MM; 181]);
+    assert!(obstacles.points().is_empty(), "seen through");
+}
+
+/// Beams pass over what the hull met.
+#[test]
+fn a_felt_point_stays_until_it_is_out_of_reach() {
+    let mut obstacles = ObstaclePoints::new();
+    let here = Pose::default();
+    obstacles.add_felt(here.point(), Point { x_m: 0.3, y_m: 0.1 });
+    obstacles.update(&CONFIG, &here, &LASER, &[NO_RETURN_MM; 181]);
+    assert_eq!(obstacles.points().len(), 1, "seen through, and felt");
+    let away = Pose { x_m: -1.0, ..here };
+    obstacles.update(&CONFIG, &away, &LASER, &[NO_RETURN_MM; 181]);
+    assert!(obstacles.points().is_empty());
+}
+
+#[test]
+fn a_hidden_point_stays_and_a_far_one_goes() {
+    let mut obstacles = ObstaclePoints::new();
+    let here = Pose::default();
+    obstacles.update(&CONFIG, &here, &LASER, &thing(0, 1000));
+    let count = obstacles.points().len();
+    obstacles.update(&CONFIG, &here, &LASER, &thing(0, 500));
+    assert!(
+        obstacles.points().len() > count,
+        "hidden behind the nearer thing"
+    );
+    let away = Pose { x_m: -2.0, ..here };
+    obstacles.update(&CONFIG, &away, &LASER, &[INVALID_MM; 181]);
+    assert!(obstacles.points().is_empty());
+}
+
+#[test]
+fn a_wall_is_thinned_and_the_store_never_overflows() {
+    let mut obstacles = ObstaclePoints::new();
+    for k in 0..400 {
+        let pose = Pose {
+            yaw_rad: k as f32 * 0.7,
+            ..Pose::default()
+        };
+        obstacles.update(&CONFIG, &pose, &LASER, &[400 + (k % 7) as u16 * 100; 181]);
+        assert!(obstacles.points().len() <= MAX_POINTS);
+    }
+}
+
+/// Returns the clearance between the robot and a row of cells of a class across its path.
+fn room_before(class: Class) -> f32 {
+    let mut tiles = Tiles::<16, 64>::new();
+    tiles.reset();
+    for (x, y) in (-10..=6).flat_map(|x| (-10..10).map(move |y| (x, y))) {
+        let class = if x == 6 { class } else { Class::Free };
+        tiles.set(Cell { x, y }, class).expect("room");
+    }
+    let pose = Pose {
+        x_m: 0.05,
+        y_m: 0.05,
+        ..Pose::default()
+    };
+    let mut checker = CollisionChecker::empty(&ROBOT);
+    checker.keep_off(
+        &pose,
+        inflated_border_cells(&tiles, pose.point(), &Tuning::DEFAULT),
+    );
+    checker.clearance_m()
+}
+
+/// A hit is marked behind the beam's end, so an obstacle begins before its cell.
+#[test]
+fn the_robot_keeps_three_centimetres_more_off_what_stands_than_off_what_is_gone() {
+    let [stands_m, gone_m, unknown_m] =
+        [Class::Obstacle, Class::Negative, Class::Unknown].map(room_before);
+    // To the near side of the cell right ahead.
+    assert!(
+        (gone_m - (0.55 - ROBOT.half_length_m)).abs() < 1e-4,
+        "{gone_m}"
+    );
+    assert_eq!(unknown_m, gone_m);
+    assert!((gone_m - stands_m - 0.03).abs() < 1e-4, "{stands_m}");
+}
