@@ -385,6 +385,9 @@ fn bad_teams_are_refused_in_one_line() {
     );
     team(&["--strategy", "bvp"], &["bvp", "--radio off"]);
     team(&["--start", "99"], &["starts", "--start"]);
+    for error in ["0.3", "0,5", "9,5", "0.3,90", "far"] {
+        team(&["--start-error", error], &["--start-error", "0.3,5"]);
+    }
     let boxed = ["team", "boxed-in", "--robots", "8"];
     refused(&folder, &boxed, &["of 8 robots", "--apart"]);
     refused(

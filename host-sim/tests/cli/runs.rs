@@ -377,3 +377,29 @@ fn a_team_leaves_a_folder_of_its_own_and_one_of_each_robot() {
     assert_eq!(files(&run), of_team);
     assert_eq!(files(&run.join("robot-1")), FILES);
 }
+
+/// The second robot is told a wrong start, and finds out how its map lies in the team's.
+#[test]
+fn a_team_with_rough_starts_reports_what_its_maps_agree_on() {
+    let folder = folder();
+    let arguments = [
+        "team",
+        "hall",
+        "--link",
+        "direct",
+        "--odometry",
+        "noisy",
+        "--start-error",
+        "0.3,5",
+        "--time-limit",
+        "40",
+        "--json",
+    ];
+    let (_, stdout, stderr) = outcome(&folder, &arguments);
+    let report = &reports(&stdout).pop().expect(&stderr);
+    let team = &report["team"];
+    assert_eq!(team["start_error"], serde_json::json!([0.3, 5.0]));
+    assert!(report["robots"][1]["met_s"].as_f64().unwrap() > 0.0);
+    assert!(team["agreement"]["median_m"].as_f64().unwrap() < 0.1);
+    assert!(team["agreement"]["median_deg"].as_f64().unwrap() < 1.0);
+}
