@@ -10,6 +10,14 @@
 //! Only the last pose p is kept, and the differences before it. A difference is taken from the
 //! rounded pose, so rounding errors do not add up.
 //!
+//! A straight way is one difference. `frontier`, 12 runs through three tight buildings with noisy
+//! and with true odometry, and 25 generated worlds in which runs ended stuck or knew too little:
+//!
+//! | a straight way is | known: noisy, true, generated % |
+//! | --- | --- |
+//! | a difference each 5 cm | 98.0, 97.9, 97.8 |
+//! | one difference | 98.0, 97.9, 98.3 |
+//!
 //! Invariant: the older poses are those that were recorded, within 2 mm and 0.3°, but those on a
 //! straight way.
 //! Units: metres, radians; odometry frame.
