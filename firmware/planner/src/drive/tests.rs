@@ -1,4 +1,4 @@
-//! The drive beside other robots, and a retreat before a wall.
+//! The drive beside other robots and before a tight gap, and a retreat before a wall.
 
 use super::direct::CREEP_MPS;
 use super::*;
@@ -78,4 +78,40 @@ fn a_retreat_goes_slower_where_it_could_not_stop_and_ends_where_it_cannot_go() {
 fn a_recovery_ends_when_a_robot_that_drives_on_has_left_the_way_open() {
     assert!(speed_mps(true) > CREEP_MPS);
     assert!(speed_mps(false) < 0.0, "walls do not leave");
+}
+
+/// Returns the speed of a robot that creeps towards a gap so wide, which the field leads through.
+fn speed_before_gap(width_m: f32, is_careful: bool) -> f32 {
+    let config = Config::pioneer_3at(heapless::Vec::new());
+    let places = (0..40).flat_map(|k| {
+        [-0.5, 0.5].map(|part| Point {
+            x_m: 0.3 + 0.025 * k as f32,
+            y_m: part * width_m,
+        })
+    });
+    let points: std::vec::Vec<Point> = places.collect();
+    let checker = CollisionChecker::new(&RobotShape::PIONEER_3AT, &Pose::default(), &points);
+    let mut query = SearchQuery::new(&checker, |place: Place| Some(-place.yaw_rad), None);
+    query.is_careful = is_careful;
+    let now = Twist {
+        linear_mps: 0.14,
+        angular_radps: 0.0,
+    };
+    let mut scratch = std::vec![0; SCRATCH_WORDS];
+    Drive::new()
+        .follow(&config, &mut query, now, &mut scratch)
+        .linear_mps
+}
+
+#[test]
+fn a_careful_robot_goes_through_no_gap_that_leaves_it_little_clearance() {
+    let width_m = 2.0 * RobotShape::PIONEER_3AT.half_width_m;
+    for (room_m, careful, other) in [
+        (0.08, false, true),
+        (0.12, true, true),
+        (0.02, false, false),
+    ] {
+        let goes = |is_careful| speed_before_gap(width_m + room_m, is_careful) > 0.0;
+        assert_eq!((goes(true), goes(false)), (careful, other), "{room_m} m");
+    }
 }
