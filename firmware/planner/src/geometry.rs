@@ -106,6 +106,24 @@ impl Point {
     pub fn distance_m(self, other: Self) -> f32 {
         math::sqrt(self.distance2(other))
     }
+
+    /// Returns the squared distance to a straight line between two points, square metres.
+    #[must_use]
+    pub(crate) fn to_line2(self, from: Self, to: Self) -> f32 {
+        let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
+        let length2 = dx * dx + dy * dy;
+        let along = (self.x_m - from.x_m) * dx + (self.y_m - from.y_m) * dy;
+        let part = if length2 > 0.0 {
+            (along / length2).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        let foot = Self {
+            x_m: from.x_m + part * dx,
+            y_m: from.y_m + part * dy,
+        };
+        foot.distance2(self)
+    }
 }
 
 impl Pose {

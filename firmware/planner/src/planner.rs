@@ -160,7 +160,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         sense(config, state, &input);
     }
     note_surroundings(config, state, &input);
-    state.drive.note_pose(&state.localiser.odom());
+    state.drive.note_pose(&MapPose(input.pose));
     if state.localiser.has_given_up() {
         state.status = Status::Fault(Fault::PoseLost);
     }
@@ -172,7 +172,8 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if !plans || state.status != Status::Exploring {
         return Output::standing(state.status);
     }
-    if state.drive.is_searching() || state.viewpoints.is_running() {
+    let drive = &state.drive;
+    if drive.is_searching() || drive.is_retreating() || state.viewpoints.is_running() {
         state.strategy.frontier.hold(config.period_ms());
     }
     // A search for a recovery owns the scratch: the robot stands and plans nothing until it is
@@ -193,7 +194,8 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if state.status != Status::Exploring {
         return Output::standing(state.status);
     }
-    if state.strategy.frontier.take_blocked() {
+    let frontier = &mut state.strategy.frontier;
+    if frontier.take_blocked() || frontier.goes_back() {
         begin_retreat(config, state, &input);
     }
     if state.drive.is_retreating() {

@@ -120,7 +120,7 @@ mod tests {
     use super::*;
     use crate::config::Config;
     use crate::drive::{Drive, SCRATCH_WORDS, SearchQuery};
-    use crate::geometry::{OdomPose, Pose, RobotFrame, Twist};
+    use crate::geometry::{MapPose, Pose, RobotFrame, Twist};
     use crate::robot::RobotShape;
 
     const PERIOD_S: f32 = 0.2;
@@ -167,10 +167,10 @@ mod tests {
             // In a passage as wide as the robot, q doubles in about 0.1 m.
             let potential_at = |place: Place| math::powf(2.0, 8.0 * at(place).x_m);
             let mut query = SearchQuery::new(&checker, heading_at, Some(&potential_at));
-            drive.note_pose(&OdomPose(pose));
+            drive.note_pose(&MapPose(pose));
             let told = if drive.is_retreating() {
-                let told = drive.retreat(&config, &OdomPose(pose), &checker, now);
-                drive.end_retreat(&checker);
+                let told = drive.retreat(&config, &MapPose(pose), &checker, now);
+                drive.end_retreat(&checker, true);
                 told
             } else {
                 drive.follow(&config, &mut query, now, &mut scratch)

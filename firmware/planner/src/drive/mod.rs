@@ -7,8 +7,9 @@
 //! admissible candidate, in order of distance from the wish. If there is none, the robot turns on
 //! the spot or drives straight back. If it cannot, a recovery leads out. If none is found either,
 //! the robot is *wedged*. A passage that is blocked, for this or another reason, is left backwards
-//! along the robot's own track, to a place where it can turn. Where it cannot drive faster than it
-//! creeps, a *lane* takes the place of the field's heading.
+//! along the robot's own track, to a place where it can turn, or, if no path is left, to where one
+//! leads on. Where it cannot drive faster than it creeps, a *lane* takes the place of the field's
+//! heading.
 //!
 //! Invariant: after every commanded velocity a stop is possible that touches nothing known, so the
 //! zero command is always safe.
@@ -37,7 +38,7 @@ pub use recovery::SCRATCH_WORDS;
 pub use search_query::SearchQuery;
 
 use crate::config::Config;
-use crate::geometry::{OdomPose, Twist};
+use crate::geometry::{MapPose, Point, Twist};
 use collision::LEAST_MARGIN_M;
 use contact::{Contact, ContactSense};
 use direct::CREEP_MARGIN_M;
@@ -80,8 +81,9 @@ const FIRST_BUDGET: SearchBudget = SearchBudget {
     poses: SEARCH_BUDGET.poses / 3,
     points: SEARCH_BUDGET.points / 3,
 };
-/// Speeds of a retreat, as parts of the one that the track asks for.
-const RETREAT_SPEEDS: [f32; 3] = [1.0, 0.5, 0.25];
+/// Speeds of a retreat, as parts of the one that the track asks for, and its clearances, metres.
+/// There is room on the track, but noise brings the points of its walls nearer as time goes by.
+const RETREATS: [(f32, f32); 3] = [(1.0, LEAST_MARGIN_M), (0.5, LEAST_MARGIN_M), (0.25, 0.0)];
 /// Steps between a search that found nothing and the next one, where the ground bounds the
 /// headings: about the steps of two skeletons.
 const REST_STEPS: u8 = 20;
@@ -144,7 +146,7 @@ impl Drive {
     }
 
     /// Notes where the robot is.
-    pub(crate) fn note_pose(&mut self, OdomPose(pose): &OdomPose) {
+    pub(crate) fn note_pose(&mut self, MapPose(pose): &MapPose) {
         if !self.retreats {
             self.track.record(pose);
         }
@@ -160,9 +162,17 @@ impl Drive {
         core::mem::replace(&mut self.wedged, false)
     }
 
+    /// Returns true if the robot's track leads past a point of the map, by no more than this, metres.
+    pub(crate) fn came_past(&self, point: Point, within_m: f32) -> bool {
+        self.track.passes(point, within_m)
+    }
+
     /// Begins a retreat if the robot cannot turn where it is, or if it `must` go away.
     pub(crate) fn begin_retreat(&mut self, checker: &CollisionChecker, must: bool) {
-        if !self.retreats && (must || !can_turn_about(checker)) {
+        if self.track.is_empty() || self.retreats {
+            return;
+        }
+        if must || !can_turn_about(checker) {
             self.retreats = true;
             self.track.begin_retreat();
             self.recovery.clear();
@@ -176,27 +186,34 @@ impl Drive {
     pub(crate) fn retreat(
         &mut self,
         config: &Config,
-        OdomPose(pose): &OdomPose,
+        MapPose(pose): &MapPose,
         checker: &CollisionChecker,
         now: Twist,
     ) -> Twist {
         let wish = self.track.back(pose, config.period_s);
-        let slower = |part: f32| {
-            wish.map(|wish| Twist {
-                linear_mps: part * wish.linear_mps,
-                angular_radps: part * wish.angular_radps,
-            })
-        };
-        let mut twists = RETREAT_SPEEDS.into_iter().filter_map(slower);
-        let twist = twists.find(|&twist| checker.admits(twist, now, config, LEAST_MARGIN_M));
+        let twist = wish.and_then(|wish| {
+            let slower = |(part, margin_m)| {
+                let twist = Twist {
+                    linear_mps: part * wish.linear_mps,
+                    angular_radps: part * wish.angular_radps,
+                };
+                checker
+                    .admits(twist, now, config, margin_m)
+                    .then_some(twist)
+            };
+            RETREATS.into_iter().find_map(slower)
+        });
         self.retreats = wish.is_some() && (twist.is_some() || is_moving(now));
+        if !self.retreats {
+            self.track.clear();
+        }
         twist.unwrap_or_default()
     }
 
-    /// Ends the retreat where the robot has gone far enough and can turn. `checker` has all
-    /// obstacles.
-    pub(crate) fn end_retreat(&mut self, checker: &CollisionChecker) {
-        self.retreats &= !(self.track.has_left() && can_turn_about(checker));
+    /// Ends the retreat of a robot whose plan `leads_on`, where it has gone far enough and can turn.
+    /// `checker` has all obstacles.
+    pub(crate) fn end_retreat(&mut self, checker: &CollisionChecker, leads_on: bool) {
+        self.retreats &= !(leads_on && self.track.has_left() && can_turn_about(checker));
     }
 
     /// Compares the measured velocity with what was told. A contact ends recovery, search and

@@ -33,7 +33,7 @@ fn retreats(behind_m: f32, now: Twist) -> (Twist, Drive) {
     let config = Config::pioneer_3at(heapless::Vec::new());
     let mut drive = Drive::new();
     let at = |x_m: f32| {
-        OdomPose(Pose {
+        MapPose(Pose {
             x_m,
             ..Pose::default()
         })
@@ -62,14 +62,17 @@ fn a_retreat_goes_slower_where_it_could_not_stop_and_ends_where_it_cannot_go() {
     assert!(slow.linear_mps < 0.0, "{slow:?}");
     assert!(slow.linear_mps > free.linear_mps, "{slow:?}");
     assert!(drive.is_retreating());
-    let (none, drive) = retreats(LEAST_MARGIN_M, rest);
+    let (slowest, drive) = retreats(LEAST_MARGIN_M, rest);
+    assert!(slowest.linear_mps < 0.0 && drive.is_retreating());
+    assert!(slowest.linear_mps > 0.3 * free.linear_mps, "{slowest:?}");
+    let (none, drive) = retreats(0.0, rest);
     assert_eq!(none, rest);
     assert!(!drive.is_retreating());
     let back = Twist {
         linear_mps: -0.15,
         ..rest
     };
-    let (none, drive) = retreats(LEAST_MARGIN_M, back);
+    let (none, drive) = retreats(0.0, back);
     assert_eq!(none, rest, "it brakes first");
     assert!(drive.is_retreating());
 }

@@ -8,7 +8,9 @@
 //! ```
 //!
 //! Only the last pose p is kept, and the differences before it. A difference is taken from the
-//! rounded pose, so rounding errors do not add up.
+//! rounded pose, so rounding errors do not add up. Where the robot comes back to its track, the
+//! loop in between is forgotten. So the track leads out of every place that the robot drove into,
+//! also after it drove to and fro in there.
 //!
 //! A straight way is one difference. `frontier`, 12 runs through three tight buildings with noisy
 //! and with true odometry, and 25 generated worlds in which runs ended stuck or knew too little:
@@ -18,12 +20,22 @@
 //! | a difference each 5 cm | 98.0, 97.9, 97.8 |
 //! | one difference | 98.0, 97.9, 98.3 |
 //!
+//! A robot without a path that blocked what it came through goes back along its track, up to where
+//! a path leads on. 36 runs of three strategies through three tight buildings, with true odometry:
+//!
+//! | the robot | known, mean and least % | not over after an hour |
+//! | --- | --- | --- |
+//! | retreats to where it can turn | 98.0, 88.9 | 3 |
+//! | goes back through what it came through | 97.7, 61.9 | 7 |
+//! | and its track forgets loops | 96.8, 42.1 | 4 |
+//! | and it retreats with no clearance at last, and tries all again if stuck | 98.7, 96.2 | 8 |
+//!
 //! Invariant: the older poses are those that were recorded, within 2 mm and 0.3°, but those on a
 //! straight way.
-//! Units: metres, radians; odometry frame.
+//! Units: metres, radians; map frame.
 
 use crate::drive::hull::Place;
-use crate::geometry::{Pose, RobotFrame, Twist};
+use crate::geometry::{Point, Pose, RobotFrame, Twist};
 use crate::math;
 
 /// Differences that are kept: at least 2.8 m of way, and 28 m of straight way.
@@ -34,6 +46,10 @@ const STEP_M: f32 = 0.05;
 const STEP_RAD: f32 = 0.14;
 /// Units of the differences: 4 mm ahead, 1 mm aside, and 0.57°.
 const UNITS: [f32; 3] = [4e-3, 1e-3, 1e-2];
+/// A robot this near to its track is back on it, metres and radians: half of what is recorded, so
+/// that a robot that drives on never is.
+const BACK_M: f32 = 0.5 * STEP_M;
+const BACK_RAD: f32 = 0.5 * STEP_RAD;
 /// A way is straight, and one difference, if it leads aside and turns by no more than this, metres
 /// and radians.
 const STRAIGHT_M: f32 = 0.005;
@@ -92,15 +108,23 @@ impl Track {
         (self.len, self.has_last) = (0, false);
     }
 
+    /// Returns true if there is no way back.
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
     /// Records a pose, if the robot moved since the last one. A jump of half a metre, or of an
     /// eighth aside, begins a new track.
     pub(crate) fn record(&mut self, pose: &Pose) {
         let now = [pose.x_m, pose.y_m, pose.yaw_rad];
-        let moved = difference(self.last, now);
-        let [dx, dy, turn] = moved;
-        if self.has_last && dx * dx + dy * dy < STEP_M * STEP_M && turn.abs() < STEP_RAD {
+        if !self.has_moved(now) {
             return;
         }
+        self.forget_loop(now);
+        if !self.has_moved(now) {
+            return;
+        }
+        let moved = difference(self.last, now);
         let joined = self.straight_to(now);
         if joined.is_some() {
             self.drop_last();
@@ -125,6 +149,28 @@ impl Track {
         }
     }
 
+    /// Returns true if a pose is no longer the last one.
+    fn has_moved(&self, now: [f32; 3]) -> bool {
+        let [dx, dy, turn] = difference(self.last, now);
+        !self.has_last || dx * dx + dy * dy >= STEP_M * STEP_M || turn.abs() >= STEP_RAD
+    }
+
+    /// Drops the poses since the robot was first at `now`, if it was there before.
+    fn forget_loop(&mut self, now: [f32; 3]) {
+        let (mut pose, mut drop) = (self.last, 0);
+        for back in 1..=self.len {
+            let units = self.difference(back);
+            pose = before(pose, units);
+            let [length, ..] = metres(units);
+            let [along, aside, turn] = difference(pose, now);
+            let beyond = along - along.clamp(length.min(0.0), length.max(0.0));
+            if beyond * beyond + aside * aside < BACK_M * BACK_M && turn.abs() < BACK_RAD {
+                drop = back;
+            }
+        }
+        (0..drop).for_each(|_| self.drop_last());
+    }
+
     /// Returns the difference from the pose before the last one, if the way from there is straight.
     fn straight_to(&self, now: [f32; 3]) -> Option<[i8; 3]> {
         let way = difference(self.before_last()?, now);
@@ -133,15 +179,30 @@ impl Track {
         rounded(way).filter(|_| is_straight)
     }
 
+    /// Returns true if the track leads past a point of the map, by no more than this, metres.
+    pub(crate) fn passes(&self, point: Point, within_m: f32) -> bool {
+        let at = |[x_m, y_m, _]: [f32; 3]| Point { x_m, y_m };
+        let mut pose = self.last;
+        (1..=self.len).any(|back| {
+            let to = pose;
+            pose = before(to, self.difference(back));
+            point.to_line2(at(pose), at(to)) <= within_m * within_m
+        })
+    }
+
+    /// Returns the difference from the pose that lies `back` before the last one, in its units.
+    fn difference(&self, back: u8) -> [i8; 3] {
+        let place = (usize::from(self.next) + MOST - usize::from(back)) % MOST;
+        self.differences.get(place).copied().unwrap_or_default()
+    }
+
     /// Notes where a retreat begins.
     pub(crate) fn begin_retreat(&mut self) {
         let mut far_m = 0.0;
         let mut back = 0;
         while back < self.len && far_m < LEAVE_M {
             back += 1;
-            let place = (usize::from(self.next) + MOST - usize::from(back)) % MOST;
-            let units = self.differences.get(place).copied().unwrap_or_default();
-            let [dx, dy, _] = metres(units);
+            let [dx, dy, _] = metres(self.difference(back));
             far_m += math::sqrt(dx * dx + dy * dy);
         }
         // The pose at the end of the way is reached when it is dropped.
@@ -185,7 +246,7 @@ impl Track {
     /// Returns the last pose, seen from a robot.
     fn place(&self, robot: &Pose) -> Option<Place> {
         let [x_m, y_m, yaw_rad] = self.last;
-        let at = RobotFrame::of(robot).to_robot(crate::geometry::Point { x_m, y_m });
+        let at = RobotFrame::of(robot).to_robot(Point { x_m, y_m });
         self.has_last.then(|| Place {
             x_m: at.x_m,
             y_m: at.y_m,
@@ -195,13 +256,7 @@ impl Track {
 
     /// Returns the pose before the last one.
     fn before_last(&self) -> Option<[f32; 3]> {
-        let place = (usize::from(self.next) + MOST - 1) % MOST;
-        let units = self.differences.get(place).filter(|_| self.len > 0)?;
-        let [dx, dy, turn] = metres(*units);
-        let [x, y, yaw] = self.last;
-        let yaw = math::wrap(yaw - turn);
-        let (sin, cos) = math::sin_cos(yaw);
-        Some([x - dx * cos + dy * sin, y - dx * sin - dy * cos, yaw])
+        (self.len > 0).then(|| before(self.last, self.difference(1)))
     }
 
     /// Drops the last pose.
@@ -214,6 +269,14 @@ impl Track {
         self.len -= 1;
         self.next = self.next.checked_sub(1).unwrap_or(MOST as u8 - 1);
     }
+}
+
+/// Returns the pose from which a difference, in its units, leads to this one.
+fn before([x, y, yaw]: [f32; 3], units: [i8; 3]) -> [f32; 3] {
+    let [dx, dy, turn] = metres(units);
+    let yaw = math::wrap(yaw - turn);
+    let (sin, cos) = math::sin_cos(yaw);
+    [x - dx * cos + dy * sin, y - dx * sin - dy * cos, yaw]
 }
 
 /// Returns a difference in its units; `None` if it does not fit.
@@ -234,169 +297,4 @@ fn metres(units: [i8; 3]) -> [f32; 3] {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::vec::Vec;
-
-    use super::*;
-
-    /// Short, so that the recorded poses are dense enough to compare others with.
-    const PERIOD_S: f32 = 0.02;
-
-    /// Drives these velocities from the origin, one a period. Returns the poses, the last one last.
-    fn driven(twists: impl Iterator<Item = Twist>) -> Vec<Pose> {
-        let mut poses = std::vec![Pose::default()];
-        for twist in twists {
-            poses.push(moved(poses.last().unwrap(), twist));
-        }
-        poses
-    }
-
-    fn moved(pose: &Pose, twist: Twist) -> Pose {
-        let (length, turn) = (twist.linear_mps * PERIOD_S, twist.angular_radps * PERIOD_S);
-        let (sin, cos) = math::sin_cos(pose.yaw_rad + 0.5 * turn);
-        Pose {
-            x_m: pose.x_m + length * cos,
-            y_m: pose.y_m + length * sin,
-            yaw_rad: math::wrap(pose.yaw_rad + turn),
-            ..*pose
-        }
-    }
-
-    /// Curves, a turn on the spot, a piece backwards: fewer poses than a track keeps.
-    fn winding() -> Vec<Pose> {
-        driven((0..800).map(|k| match k {
-            0..250 => Twist {
-                linear_mps: 0.3,
-                angular_radps: 0.6 * math::sin_cos(0.02 * k as f32).0,
-            },
-            250..370 => Twist {
-                linear_mps: 0.0,
-                angular_radps: -0.6,
-            },
-            370..500 => Twist {
-                linear_mps: -0.15,
-                angular_radps: 0.2,
-            },
-            _ => Twist {
-                linear_mps: 0.1,
-                angular_radps: -0.3,
-            },
-        }))
-    }
-
-    fn distance_m(a: &Pose, b: &Pose) -> f32 {
-        a.point().distance_m(b.point())
-    }
-
-    #[test]
-    fn a_robot_that_goes_back_stays_on_its_track_and_arrives_where_it_began() {
-        let poses = winding();
-        let mut track = Track::new();
-        poses.iter().for_each(|pose| track.record(pose));
-        let mut pose = *poses.last().unwrap();
-        let mut steps = 0;
-        while let Some(twist) = track.back(&pose, PERIOD_S) {
-            let most = 1.0 + 1e-6;
-            assert!(twist.linear_mps.abs() <= BACK_MPS * most, "{twist:?}");
-            assert!(twist.angular_radps.abs() <= BACK_RADPS * most, "{twist:?}");
-            pose = moved(&pose, twist);
-            steps += 1;
-            assert!(steps < 10_000);
-            let near = |it: &&Pose| {
-                distance_m(it, &pose) < 0.03 && math::wrap(it.yaw_rad - pose.yaw_rad).abs() < 0.1
-            };
-            assert!(poses.iter().any(|it| near(&it)), "{pose:?}");
-        }
-        assert!(distance_m(&pose, &poses[0]) < 0.02, "{pose:?}");
-    }
-
-    #[test]
-    fn a_retreat_leaves_its_place_by_the_way_of_a_robot_that_moved() {
-        let forward = Twist {
-            linear_mps: 0.3,
-            angular_radps: 0.0,
-        };
-        let turn = Twist {
-            linear_mps: 0.0,
-            angular_radps: 0.6,
-        };
-        // The turn on the spot is no way.
-        let poses = driven((0..300).map(|k| if k < 200 { forward } else { turn }));
-        let mut track = Track::new();
-        poses.iter().for_each(|pose| track.record(pose));
-        let begin = *poses.last().unwrap();
-        track.begin_retreat();
-        let mut pose = begin;
-        while !track.has_left() {
-            let twist = track.back(&pose, PERIOD_S).expect("the track is longer");
-            pose = moved(&pose, twist);
-        }
-        let far_m = distance_m(&begin, &pose);
-        // A straight piece is left as a whole.
-        assert!((LEAVE_M..LEAVE_M + 0.52).contains(&far_m), "{far_m} m");
-        let mut short = Track::new();
-        short.record(&begin);
-        short.begin_retreat();
-        assert!(short.has_left(), "there is no way back");
-    }
-
-    #[test]
-    fn rounding_errors_do_not_add_up() {
-        let poses = winding();
-        let mut track = Track::new();
-        let mut recorded = Vec::new();
-        for pose in &poses {
-            let (before, next) = (track.last, track.next);
-            track.record(pose);
-            if track.last != before {
-                if track.next == next {
-                    // It is straight on from the pose before, in place of which it is kept.
-                    recorded.pop();
-                }
-                recorded.push(*pose);
-            }
-        }
-        for pose in recorded.iter().rev() {
-            let place = track.place(pose).unwrap();
-            assert!(
-                place.x_m.abs() < 2.1e-3 && place.y_m.abs() < 1e-3,
-                "{place:?}"
-            );
-            assert!(place.yaw_rad.abs() < 6e-3, "{place:?}");
-            track.drop_last();
-        }
-    }
-
-    fn at(x_m: f32, yaw_rad: f32) -> Pose {
-        Pose {
-            x_m,
-            yaw_rad,
-            ..Pose::default()
-        }
-    }
-
-    #[test]
-    fn a_jump_begins_a_new_track_and_a_long_one_loses_its_beginning() {
-        let mut track = Track::new();
-        for k in 0..300 {
-            track.record(&at(0.051 * k as f32, 0.1 * (k % 2) as f32));
-        }
-        assert_eq!(usize::from(track.len), MOST);
-        let last = at(40.0, 0.0);
-        track.record(&last);
-        assert_eq!((track.len, track.last[0]), (0, 40.0));
-        assert!(track.back(&last, PERIOD_S).is_none());
-    }
-
-    /// A lane as narrow as the robot may be much longer than a track of poses 5 cm apart.
-    #[test]
-    fn the_whole_of_a_long_straight_way_is_kept() {
-        let mut track = Track::new();
-        (0..300).for_each(|k| track.record(&at(0.051 * k as f32, 0.004 * (k % 3) as f32)));
-        assert!(usize::from(track.len) < MOST);
-        while track.len > 0 {
-            track.drop_last();
-        }
-        assert!(track.last[0].abs() < 0.01, "{}", track.last[0]);
-    }
-}
+mod tests;

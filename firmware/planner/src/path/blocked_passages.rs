@@ -83,6 +83,11 @@ impl BlockedPassages {
         self.cells.clear();
     }
 
+    /// Returns true if something holds for the middle of a passage and its radius, metres.
+    pub(crate) fn any(&self, holds: impl Fn(Point, f32) -> bool) -> bool {
+        self.cells().any(|cell| holds(cell.centre(), CUT_RADIUS_M))
+    }
+
     /// Cuts the published skeleton around each blocked passage.
     pub(crate) fn cut<const SLOTS: usize>(&self, skeleton: &mut Skeleton<SLOTS>) {
         for cell in self.cells() {

@@ -54,6 +54,8 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) team: Option<&'a Team>,
     /// True if a peer stands in the way that may drive on: without a path the robot waits.
     pub(crate) waits_for_peers: bool,
+    /// True if the robot can go back along its track through a blocked passage.
+    pub(crate) came_through_blocked: bool,
 }
 
 impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {

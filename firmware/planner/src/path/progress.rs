@@ -30,8 +30,9 @@ const STANDING_MS: u32 = 14_000;
 const MOVED_M: f32 = 0.3;
 /// Passages blocked in a row without a move after which the robot is stuck.
 const STUCK_PASSAGES: u8 = 3;
-/// Rounds in a row with a closed path after which the passage is blocked.
-const CLOSED_ROUNDS: u8 = 4;
+/// Time with a closed path after which the passage is blocked, milliseconds: noise may close a way
+/// for a moment.
+const CLOSED_MS: u32 = 4_000;
 
 /// Maximum number of goals that are remembered.
 const MOST_GOALS: usize = 8;
@@ -84,9 +85,9 @@ pub(crate) struct ProgressChecker {
     moved_ms: u32,
     /// The robot moved since the present try began.
     moved: bool,
-    /// The path was closed since the last round, and the number of such rounds before.
+    /// The path was closed since the last round, and the time of such rounds so far.
     closed: bool,
-    closed_rounds: u8,
+    closed_ms: u32,
 }
 
 impl ProgressChecker {
@@ -100,7 +101,7 @@ impl ProgressChecker {
             moved_ms: 0,
             moved: false,
             closed: false,
-            closed_rounds: 0,
+            closed_ms: 0,
         }
     }
 
@@ -122,7 +123,7 @@ impl ProgressChecker {
     pub(crate) const fn note_blocked(&mut self, time_ms: u32) {
         self.stood_passages = self.stood_passages.saturating_add(1);
         self.stood_ms = time_ms;
-        (self.closed, self.closed_rounds) = (false, 0);
+        (self.closed, self.closed_ms) = (false, 0);
     }
 
     /// Returns the number of passages that were blocked where the robot stands.
@@ -172,14 +173,16 @@ impl ProgressChecker {
 
     /// Judges the progress towards the present goal, which is `steps` away.
     pub(crate) fn judge(&mut self, goal: Cell, steps: u32, time_ms: u32) -> Verdict {
-        let idle_ms = self.note_goal(goal, steps, time_ms);
-        self.closed_rounds = if self.closed {
-            self.closed_rounds + 1
+        let round_ms = time_ms.wrapping_sub(self.judged_ms).min(MOST_ROUND_MS);
+        self.judged_ms = time_ms;
+        let idle_ms = self.note_goal(goal, steps, round_ms);
+        self.closed_ms = if self.closed {
+            self.closed_ms + round_ms
         } else {
             0
         };
         self.closed = false;
-        if self.closed_rounds >= CLOSED_ROUNDS {
+        if self.closed_ms >= CLOSED_MS {
             self.note_blocked(time_ms);
             return Verdict::BlockUnreachable;
         }
@@ -206,9 +209,7 @@ impl ProgressChecker {
 
     /// Notes the steps to the present goal. Returns the time for which it came no nearer,
     /// milliseconds.
-    fn note_goal(&mut self, goal: Cell, steps: u32, time_ms: u32) -> u32 {
-        let round_ms = time_ms.wrapping_sub(self.judged_ms).min(MOST_ROUND_MS);
-        self.judged_ms = time_ms;
+    fn note_goal(&mut self, goal: Cell, steps: u32, round_ms: u32) -> u32 {
         let mut attempts = self.attempts.iter_mut();
         if let Some(attempt) = attempts.find(|attempt| attempt.leads_to(goal)) {
             attempt.idle_ms += round_ms;
@@ -314,11 +315,10 @@ mod tests {
     #[test]
     fn after_a_passage_the_way_back_has_all_its_time() {
         let mut progress = ProgressChecker::new();
-        progress.judge(FAR, 40, STANDING_MS);
-        (0..CLOSED_ROUNDS - 1).for_each(|_| {
+        for time_ms in [STANDING_MS - 1_900, STANDING_MS - 10] {
             progress.note_closed();
-            progress.judge(FAR, 40, STANDING_MS);
-        });
+            assert_eq!(progress.judge(FAR, 40, time_ms), Verdict::GoOn);
+        }
         progress.note_closed();
         progress.note_blocked(STANDING_MS);
         assert_eq!(progress.passages_here(), 1);
@@ -328,6 +328,19 @@ mod tests {
         }
         let late_ms = 2 * STANDING_MS + 1;
         assert_eq!(progress.judge(FAR, 90, late_ms), Verdict::BlockAhead);
+    }
+
+    #[test]
+    fn a_closed_path_is_blocked_in_time_however_long_a_round_takes() {
+        for round_ms in [400, 1_000, MOST_ROUND_MS] {
+            let mut progress = ProgressChecker::new();
+            let rounds = CLOSED_MS.div_ceil(round_ms);
+            for k in 1..=rounds {
+                progress.note_closed();
+                let verdict = progress.judge(FAR, 40, k * round_ms);
+                assert_eq!(verdict == Verdict::BlockUnreachable, k == rounds, "{k}");
+            }
+        }
     }
 
     #[test]

@@ -36,6 +36,8 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         local_grid: &mut workspace.local_grid,
     };
     let blocked = state.strategy.frontier.blocked().clone();
+    let came_past = |place, within_m| state.drive.came_past(place, within_m);
+    let came_through_blocked = blocked.any(came_past);
     let context = PlanningContext {
         skeleton: &mut state.skeleton,
         tiles: state.map.tiles(),
@@ -50,6 +52,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         levels: state.ground.level_cost(config, &state.preferences),
         team: state.team.is_member().then_some(&state.team),
         waits_for_peers,
+        came_through_blocked,
     };
     let Some(outcome) = state.strategy.advance(context, scratch) else {
         return false;

@@ -7,7 +7,7 @@ use crate::drive::side_slope::Hysteresis;
 use crate::drive::{CollisionChecker, Incline, Place, SearchQuery};
 use crate::field::local_grid;
 use crate::field::{Window, descent};
-use crate::geometry::{Cell, Point, Pose, Twist};
+use crate::geometry::{Cell, MapPose, Point, Pose, Twist};
 use crate::input::Input;
 use crate::math;
 use crate::planner::Output;
@@ -144,9 +144,8 @@ pub(super) fn begin_retreat<const TILES: usize, const SLOTS: usize>(
     let mut checker = CollisionChecker::empty(&config.robot);
     obstruct(&mut checker, state, config, input);
     let frontier = &state.strategy.frontier;
-    state
-        .drive
-        .begin_retreat(&checker, frontier.failed_before_here());
+    let must = frontier.failed_before_here() || frontier.goes_back();
+    state.drive.begin_retreat(&checker, must);
 }
 
 /// Returns the velocity back along the robot's own track, up to a place where it can turn.
@@ -156,13 +155,15 @@ pub(super) fn retreat<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     input: &Input<'_>,
 ) -> Twist {
-    let odom = state.localiser.odom();
     let mut checker = CollisionChecker::empty(&config.robot);
+    let odom = state.localiser.odom();
     state.ground.obstruct_measured(&odom, &mut checker);
     keep_off_peers(&mut checker, state, config, input);
-    let velocity = state.drive.retreat(config, &odom, &checker, input.velocity);
+    let pose = MapPose(input.pose);
+    let velocity = state.drive.retreat(config, &pose, &checker, input.velocity);
     obstruct(&mut checker, state, config, input);
-    state.drive.end_retreat(&checker);
+    let leads_on = !state.strategy.frontier.goes_back();
+    state.drive.end_retreat(&checker, leads_on);
     within_limits(config, velocity)
 }
 

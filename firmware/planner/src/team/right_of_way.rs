@@ -66,25 +66,9 @@ pub(crate) fn distance2(road: &[Point], point: Point) -> f32 {
         .first()
         .map_or(f32::INFINITY, |first| first.distance2(point));
     road.windows(2).fold(first, |least, ends| match ends {
-        [from, to] => least.min(to_segment2(*from, *to, point)),
+        [from, to] => least.min(point.to_line2(*from, *to)),
         _ => least,
     })
-}
-
-fn to_segment2(from: Point, to: Point, point: Point) -> f32 {
-    let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
-    let length2 = dx * dx + dy * dy;
-    let along = (point.x_m - from.x_m) * dx + (point.y_m - from.y_m) * dy;
-    let part = if length2 > 0.0 {
-        (along / length2).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
-    let foot = Point {
-        x_m: from.x_m + part * dx,
-        y_m: from.y_m + part * dy,
-    };
-    foot.distance2(point)
 }
 
 /// A peer that counts as an obstacle for a while.

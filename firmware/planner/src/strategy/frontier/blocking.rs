@@ -23,6 +23,11 @@ impl Frontier {
         self.progress.passages_here() > 1
     }
 
+    /// Returns true if no path leads anywhere, and the robot goes back through a blocked passage.
+    pub(crate) const fn goes_back(&self) -> bool {
+        self.goes_back
+    }
+
     /// Returns the blocked passages.
     pub(crate) const fn blocked(&self) -> &BlockedPassages {
         &self.blocked

@@ -3,7 +3,8 @@
 //!
 //! Goals are chosen by [`crate::path::goal_cost`]. The progress checker gives up a goal that is
 //! reached and stays unexplored, or that comes no nearer, and blocks a passage that cannot be
-//! driven; so no run hangs on a cell that cannot be seen. When no goal is left, everything gets a
+//! driven; so no run hangs on a cell that cannot be seen. A robot that blocked what it came through
+//! goes back along its track if no other path is left. When no goal is left, everything gets a
 //! *second chance* with a narrower footprint: at 10 cm a cell, a gap that the robot just fits
 //! through may look closed. After that the robot looks from [`Viewpoint`]s at what it cannot drive
 //! to. At the end a second look ([`SecondLook`]) tries what came in the way in the meantime.
@@ -59,6 +60,8 @@ pub(crate) struct Frontier {
     stalled: bool,
     /// A passage was blocked from where the robot stands.
     blocked_here: bool,
+    /// No path leads anywhere, and the robot goes back through a blocked passage.
+    goes_back: bool,
     /// See [`PresentGoal::reference_m`].
     reference_m: f32,
     second_look: SecondLook,
@@ -82,6 +85,7 @@ impl Frontier {
             viewpoints: 0,
             stalled: false,
             blocked_here: false,
+            goes_back: false,
             reference_m: 0.0,
             second_look: SecondLook::new(),
         }
@@ -158,6 +162,7 @@ impl Frontier {
             Some(path) if !is_late && is_far(&path) => {
                 self.progress
                     .note_motion(context.pose.point(), context.time_ms);
+                self.goes_back = false;
                 self.choose(path, context);
                 (RoundOutcome::Path, true)
             }
@@ -241,11 +246,13 @@ impl Frontier {
     ) -> RoundOutcome {
         self.progress
             .note_motion(context.pose.point(), context.time_ms);
+        self.goes_back = false;
         if let Some(path) = path {
             self.choose(path, context);
         } else if let Some(outcome) = self.look(context, &mut scratch) {
             return outcome;
-        } else if context.waits_for_peers || self.judged > 0 {
+        } else if context.waits_for_peers || self.judged > 0 || context.came_through_blocked {
+            self.goes_back = !context.waits_for_peers && self.judged == 0;
             self.path.clear();
             return RoundOutcome::Unsure;
         } else {
@@ -270,7 +277,7 @@ impl Frontier {
     ) -> RoundOutcome {
         self.progress
             .note_motion(context.pose.point(), context.time_ms);
-        self.empty_rounds = 0;
+        (self.empty_rounds, self.goes_back) = (0, false);
         self.path = path;
         let (goal, steps) = (self.path.goal(), self.path.steps());
         let verdict = self.progress.judge(goal, steps, context.time_ms);
@@ -281,11 +288,21 @@ impl Frontier {
     /// Goes on along the path, or begins the next try if the robot is stuck or `has_enough` goals
     /// were given up.
     fn go_on_or_retry(&mut self, has_enough: bool) -> RoundOutcome {
-        match (self.progress.is_stuck() || has_enough, self.second_chance) {
-            (false, _) => RoundOutcome::Path,
-            (true, false) => self.begin_second_chance(),
-            (true, true) => self.only_look(),
+        if self.progress.is_stuck() || has_enough {
+            self.try_again().unwrap_or_else(|| self.only_look())
+        } else {
+            RoundOutcome::Path
         }
+    }
+
+    /// Begins the second chance, or one of the further ones; `None` if there is none left.
+    fn try_again(&mut self) -> Option<RoundOutcome> {
+        let is_first = !self.second_chance;
+        if !is_first && (self.blocked.is_empty() || self.retries >= MOST_RETRIES) {
+            return None;
+        }
+        self.retries += u8::from(!is_first);
+        Some(self.begin_second_chance())
     }
 
     /// Drives to no frontier any more: what is left lies behind gaps in which the robot stalls.
@@ -329,12 +346,8 @@ impl Frontier {
     /// | `aria_columbia` | 68.0 | 68.2 |
     fn do_without(&mut self) -> RoundOutcome {
         self.path.clear();
-        if !self.second_chance {
-            return self.begin_second_chance();
-        }
-        if !self.blocked.is_empty() && self.retries < MOST_RETRIES {
-            self.retries += 1;
-            return self.begin_second_chance();
+        if let Some(outcome) = self.try_again() {
+            return outcome;
         }
         self.empty_rounds = self.empty_rounds.saturating_add(1);
         if self.only_looks || self.empty_rounds >= EMPTY_ROUNDS {

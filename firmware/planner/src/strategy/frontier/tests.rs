@@ -94,6 +94,7 @@ struct Scene {
     limits: LoopLimits,
     order: Order,
     yaw_rad: f32,
+    came_through_blocked: bool,
 }
 
 impl Scene {
@@ -111,6 +112,7 @@ impl Scene {
             limits: LoopLimits::default(),
             order: Order::Nearest,
             yaw_rad: 0.0,
+            came_through_blocked: false,
         }
     }
 
@@ -139,6 +141,7 @@ impl Scene {
             }),
             team: None,
             waits_for_peers: false,
+            came_through_blocked: self.came_through_blocked,
         }
     }
 
@@ -200,6 +203,24 @@ fn no_path_begins_behind_a_blocked_passage() {
     frontier.cut(&mut scene.skeleton);
     let goal = next(&mut scene, &mut frontier, None);
     assert!(is_at(goal, west), "{goal}");
+}
+
+/// Both ends of the corridor are cut off.
+#[test]
+fn without_a_path_the_robot_goes_back_through_what_it_came_through_before_it_tries_all_again() {
+    let mut scene = by_gain(0.0, 0.0);
+    let mut frontier = Frontier::new();
+    for (x, y) in [6, -6].into_iter().flat_map(|x| [-2, 2].map(|y| (x, y))) {
+        frontier.blocked.block(Cell { x, y });
+    }
+    scene.blocked = frontier.blocked.clone();
+    frontier.cut(&mut scene.skeleton);
+    scene.came_through_blocked = true;
+    scene.replan(&mut frontier, None, 64 * 8);
+    assert!(frontier.goes_back() && !frontier.has_second_chance());
+    scene.came_through_blocked = false;
+    scene.replan(&mut frontier, None, 64 * 8);
+    assert!(!frontier.goes_back() && frontier.has_second_chance());
 }
 
 fn is_at(goal: i32, end: i32) -> bool {

@@ -154,6 +154,7 @@ impl Exploration {
                 levels: None,
                 team: None,
                 waits_for_peers: false,
+                came_through_blocked: false,
             };
             let outcome = self
                 .strategy

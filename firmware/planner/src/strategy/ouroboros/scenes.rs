@@ -173,6 +173,7 @@ impl Scene {
             levels: None,
             team: None,
             waits_for_peers: false,
+            came_through_blocked: false,
         }
     }
 
