@@ -4,7 +4,7 @@
 //! nearest to it where it fits, has [`WALL_M`] to every wall, and can turn on the spot beside the
 //! others. All face the same way. *Apart*: the next robot takes the start of the world that is
 //! farthest from all robots so far; if the world has too few starts, the farthest place of a
-//! lattice. Only places that the first robot can reach count. Metres.
+//! lattice where it can turn on the spot. Only places that the first robot can reach count. Metres.
 
 use crate::metrics::CellSet;
 use crate::robot::Pose;
@@ -21,6 +21,9 @@ const NEAR_STEP_M: f64 = 0.1;
 const NEAR_M: f64 = 6.0;
 /// Step of the lattice of places apart, metres.
 const FAR_STEP_M: f64 = 0.5;
+/// Headings that are tried where a robot must be able to turn: a hull's corner moves less than 0.1
+/// m from one to the next.
+const HEADINGS: u32 = 24;
 
 /// Places for robots in a world.
 pub(super) struct Places<'w> {
@@ -100,8 +103,19 @@ impl<'w> Places<'w> {
         let cells = steps(up_m).flat_map(|j| steps(across_m).map(move |i| [i, j]));
         cells
             .map(place)
-            .filter(|start| self.reaches(start))
+            .filter(|start| self.reaches(start) && self.can_turn(*start))
             .collect()
+    }
+
+    /// True if the robot touches nothing when it turns on the spot, for it does not see what is
+    /// behind it.
+    fn can_turn(&self, start: Start) -> bool {
+        let turn_rad = core::f64::consts::TAU / f64::from(HEADINGS);
+        (0..HEADINGS).all(|k| {
+            let yaw_rad = start.yaw_rad + f64::from(k) * turn_rad;
+            let turned = Start { yaw_rad, ..start };
+            self.world.clearance_m(&self.config.footprint, turned) > 0.0
+        })
     }
 
     fn reaches(&self, start: &Start) -> bool {
@@ -176,6 +190,23 @@ mod tests {
         assert_eq!((far.len(), far[0]), (4, world.starts()[0]));
         assert!(least_m(&far) > 4.0 * least_m(&near), "{}", least_m(&far));
         assert_eq!(places(&world, 0).apart(8).len(), 8);
+    }
+
+    #[test]
+    fn far_places_have_room_for_a_turn() {
+        let world = World::builtin("cluttered").expect("built in");
+        let places = places(&world, 0);
+        let lattice = places.lattice();
+        assert!(lattice.len() > 50, "{}", lattice.len());
+        for place in lattice {
+            let turned = (0..360).map(|degrees| Start {
+                yaw_rad: f64::from(degrees).to_radians(),
+                ..place
+            });
+            let clearances = turned.map(|it| world.clearance_m(&places.config.footprint, it));
+            let least = clearances.fold(f64::INFINITY, f64::min);
+            assert!(least > 0.0, "{place:?}");
+        }
     }
 
     #[test]
