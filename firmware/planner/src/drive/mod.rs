@@ -162,7 +162,8 @@ impl Drive {
         core::mem::replace(&mut self.wedged, false)
     }
 
-    /// Returns true if the robot's track leads past a point of the map, by no more than this, metres.
+    /// Returns true if the robot's track leads past a point of the map, by no more than so many
+    /// metres.
     pub(crate) fn came_past(&self, point: Point, within_m: f32) -> bool {
         self.track.passes(point, within_m)
     }
@@ -210,7 +211,7 @@ impl Drive {
         twist.unwrap_or_default()
     }
 
-    /// Ends the retreat of a robot whose plan `leads_on`, where it has gone far enough and can turn.
+    /// Ends the retreat of a robot whose plan `leads_on`, once it has gone far enough and can turn.
     /// `checker` has all obstacles.
     pub(crate) fn end_retreat(&mut self, checker: &CollisionChecker, leads_on: bool) {
         self.retreats &= !(leads_on && self.track.has_left() && can_turn_about(checker));
