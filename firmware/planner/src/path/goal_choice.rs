@@ -58,7 +58,7 @@ pub(crate) fn utility(value: f32, trip_m: f32) -> f32 {
 }
 
 /// Returns the greatest value that a goal can have: of the whole square within reach.
-fn most_value(tuning: &OrderTuning) -> f32 {
+pub(crate) fn most_value(tuning: &OrderTuning) -> f32 {
     let side_m = 2.0 * tuning.gain_m;
     value(tuning, tuning.keep * side_m * side_m)
 }

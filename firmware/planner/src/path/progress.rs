@@ -32,7 +32,7 @@ const MOVED_M: f32 = 0.3;
 const STUCK_PASSAGES: u8 = 3;
 /// Time with a closed path after which the passage is blocked, milliseconds: noise may close a way
 /// for a moment.
-const CLOSED_MS: u32 = 4_000;
+const CLOSED_MS: u16 = 4_000;
 
 /// Maximum number of goals that are remembered.
 const MOST_GOALS: usize = 8;
@@ -87,7 +87,7 @@ pub(crate) struct ProgressChecker {
     moved: bool,
     /// The path was closed since the last round, and the time of such rounds so far.
     closed: bool,
-    closed_ms: u32,
+    closed_ms: u16,
 }
 
 impl ProgressChecker {
@@ -177,7 +177,8 @@ impl ProgressChecker {
         self.judged_ms = time_ms;
         let idle_ms = self.note_goal(goal, steps, round_ms);
         self.closed_ms = if self.closed {
-            self.closed_ms + round_ms
+            // At most `MOST_ROUND_MS`.
+            self.closed_ms.saturating_add(round_ms as u16)
         } else {
             0
         };
@@ -334,7 +335,7 @@ mod tests {
     fn a_closed_path_is_blocked_in_time_however_long_a_round_takes() {
         for round_ms in [400, 1_000, MOST_ROUND_MS] {
             let mut progress = ProgressChecker::new();
-            let rounds = CLOSED_MS.div_ceil(round_ms);
+            let rounds = u32::from(CLOSED_MS).div_ceil(round_ms);
             for k in 1..=rounds {
                 progress.note_closed();
                 let verdict = progress.judge(FAR, 40, k * round_ms);

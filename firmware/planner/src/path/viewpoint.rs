@@ -27,7 +27,7 @@ use crate::grid::Tiling;
 use crate::map::{Class, Tiles};
 use crate::path::blocked_passages::BlockedPassages;
 use crate::path::gain::View;
-use crate::path::goal_choice::{is_worth, utility, value};
+use crate::path::goal_choice::{is_worth, most_value, utility, value};
 use crate::path::rays::{RAYS, along, ray};
 use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::roadmap::configuration_space::Footprint;
@@ -254,7 +254,7 @@ impl Search {
         let apart = count.div_ceil(TRIES) as usize;
         let gaps = cells(&edges, corner).step_by(apart);
         for gap in gaps {
-            if residual.is_given_up(gap) {
+            if residual.is_given_up(gap) || !self.may_win(inputs, gap) {
                 continue;
             }
             if let Some(viewpoint) = look_back(inputs.tiles, reachability, gap, &mut walked) {
@@ -263,6 +263,21 @@ impl Search {
             }
         }
         walked
+    }
+
+    /// Returns true if a viewpoint of a gap may be better than the best so far: its trip is no
+    /// shorter than the straight way to the gap.
+    fn may_win<const TILES: usize, const SLOTS: usize>(
+        &self,
+        inputs: &Inputs<'_, TILES, SLOTS>,
+        gap: Cell,
+    ) -> bool {
+        let least_m = inputs.robot.distance_m(gap);
+        let most = match inputs.order {
+            Order::Gain { .. } => utility(most_value(inputs.tuning), least_m),
+            Order::Nearest => -least_m,
+        };
+        !self.found || most > self.score
     }
 
     /// Takes a viewpoint if it is the best so far; leaves its gap if that is not worth the trip.

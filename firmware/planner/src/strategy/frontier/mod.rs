@@ -12,7 +12,10 @@
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
 
 mod blocking;
+mod chances;
 mod looking;
+
+use core::num::NonZeroU32;
 
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::Cell;
@@ -29,11 +32,6 @@ use crate::status::{ResidualFrontier, ResidualReason};
 
 /// A robot that follows its own potential has reached a goal that is at most this many steps away.
 const REACHED_STEPS: u32 = 4;
-/// Rounds in a row that must find nothing before the exploration ends: noise may close a way for a
-/// moment.
-const EMPTY_ROUNDS: u8 = 5;
-/// Maximum number of further second chances.
-const MOST_RETRIES: u8 = 2;
 
 /// The state of the strategy.
 #[derive(Debug)]
@@ -42,7 +40,8 @@ pub(crate) struct Frontier {
     residual: ResidualFrontiers,
     blocked: BlockedPassages,
     progress: ProgressChecker,
-    empty_rounds: u8,
+    /// Since when rounds find nothing, milliseconds.
+    empty_since_ms: Option<NonZeroU32>,
     /// Goals that the last rounds judged in vain; more are left.
     judged: usize,
     second_chance: bool,
@@ -75,7 +74,7 @@ impl Frontier {
             residual: ResidualFrontiers::new(),
             blocked: BlockedPassages::new(),
             progress: ProgressChecker::new(),
-            empty_rounds: 0,
+            empty_since_ms: None,
             judged: 0,
             second_chance: false,
             retries: 0,
@@ -189,7 +188,7 @@ impl Frontier {
     /// Tries the frontiers again that no path led to.
     pub(crate) fn look_again(&mut self) {
         self.residual.retry_unreachable();
-        self.empty_rounds = 0;
+        self.empty_since_ms = None;
         self.path.clear();
     }
 
@@ -225,7 +224,7 @@ impl Frontier {
         path: Path,
         context: &PlanningContext<'_, TILES, SLOTS>,
     ) {
-        (self.viewpoint, self.empty_rounds) = (None, 0);
+        (self.viewpoint, self.empty_since_ms) = (None, None);
         self.second_look.note_path();
         let goal = path.goal();
         if let Some(levels) = &context.levels
@@ -256,7 +255,7 @@ impl Frontier {
             self.path.clear();
             return RoundOutcome::Unsure;
         } else {
-            return self.do_without();
+            return self.do_without(context.time_ms);
         }
         let (goal, steps) = (self.path.goal(), self.path.steps());
         let verdict = self.progress.judge(goal, steps, context.time_ms);
@@ -277,51 +276,12 @@ impl Frontier {
     ) -> RoundOutcome {
         self.progress
             .note_motion(context.pose.point(), context.time_ms);
-        (self.empty_rounds, self.goes_back) = (0, false);
+        (self.empty_since_ms, self.goes_back) = (None, false);
         self.path = path;
         let (goal, steps) = (self.path.goal(), self.path.steps());
         let verdict = self.progress.judge(goal, steps, context.time_ms);
         self.block_passage(verdict, context, grid);
         self.go_on_or_retry(false)
-    }
-
-    /// Goes on along the path, or begins the next try if the robot is stuck or `has_enough` goals
-    /// were given up.
-    fn go_on_or_retry(&mut self, has_enough: bool) -> RoundOutcome {
-        if self.progress.is_stuck() || has_enough {
-            self.try_again().unwrap_or_else(|| self.only_look())
-        } else {
-            RoundOutcome::Path
-        }
-    }
-
-    /// Begins the second chance, or one of the further ones; `None` if there is none left.
-    fn try_again(&mut self) -> Option<RoundOutcome> {
-        let is_first = !self.second_chance;
-        if !is_first && (self.blocked.is_empty() || self.retries >= MOST_RETRIES) {
-            return None;
-        }
-        self.retries += u8::from(!is_first);
-        Some(self.begin_second_chance())
-    }
-
-    /// Drives to no frontier any more: what is left lies behind gaps in which the robot stalls.
-    fn only_look(&mut self) -> RoundOutcome {
-        self.only_looks = true;
-        self.immobile = !self.progress.moved();
-        self.progress.begin_next_try();
-        self.path.clear();
-        RoundOutcome::Nothing
-    }
-
-    /// Returns true if the robot could not move at any of its chances.
-    pub(crate) const fn is_stuck(&self) -> bool {
-        self.immobile
-    }
-
-    /// Returns true if the goals that were given up are tried again.
-    pub(crate) const fn has_second_chance(&self) -> bool {
-        self.second_chance
     }
 
     /// Returns the goals that were given up, for a search to add to, and the blocked passages.
@@ -332,38 +292,6 @@ impl Frontier {
     /// Notes that the local grid has no way along the path, although the coarser skeleton has one.
     pub(crate) fn note_closed(&mut self) {
         self.progress.note_closed();
-    }
-
-    /// Decides what to try when no frontier is within reach.
-    ///
-    /// One blocked passage may close the only way: a narrow one that the robot came through, or
-    /// ground that was measured from one side only. So the passages are opened again up to
-    /// [`MOST_RETRIES`] times. Mean shares known at the end, five seeds, in per cent:
-    ///
-    /// | | on uneven ground only | always |
-    /// | --- | --- | --- |
-    /// | `willow_full` | 92.8 | 95.6 |
-    /// | `aria_columbia` | 68.0 | 68.2 |
-    fn do_without(&mut self) -> RoundOutcome {
-        self.path.clear();
-        if let Some(outcome) = self.try_again() {
-            return outcome;
-        }
-        self.empty_rounds = self.empty_rounds.saturating_add(1);
-        if self.only_looks || self.empty_rounds >= EMPTY_ROUNDS {
-            RoundOutcome::Nothing
-        } else {
-            RoundOutcome::Unsure
-        }
-    }
-
-    fn begin_second_chance(&mut self) -> RoundOutcome {
-        self.second_chance = true;
-        self.progress.begin_next_try();
-        self.blocked.open_all();
-        self.residual.retry_without_progress();
-        self.path.clear();
-        RoundOutcome::Unsure
     }
 
     fn forget_path(&mut self) {

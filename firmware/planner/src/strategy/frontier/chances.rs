@@ -1,0 +1,91 @@
+//! Chances: what a robot tries that is stuck, or that no path leads on for.
+//!
+//! At the *second chance* all blocked passages are open again, for a narrower footprint. After it
+//! and its repetitions the robot only looks from viewpoints.
+//!
+//! Units: milliseconds.
+
+use core::num::NonZeroU32;
+
+use crate::path::RoundOutcome;
+use crate::strategy::frontier::Frontier;
+
+/// Time for which rounds must find nothing before the exploration ends, milliseconds: noise may
+/// close a way for a moment.
+const EMPTY_MS: u32 = 4_000;
+/// Maximum number of further second chances.
+const MOST_RETRIES: u8 = 2;
+
+impl Frontier {
+    /// Goes on along the path, or begins the next try if the robot is stuck or `has_enough` goals
+    /// were given up.
+    pub(super) fn go_on_or_retry(&mut self, has_enough: bool) -> RoundOutcome {
+        if self.progress.is_stuck() || has_enough {
+            self.try_again().unwrap_or_else(|| self.only_look())
+        } else {
+            RoundOutcome::Path
+        }
+    }
+
+    /// Begins the second chance, or one of the further ones; `None` if there is none left.
+    fn try_again(&mut self) -> Option<RoundOutcome> {
+        let is_first = !self.second_chance;
+        if !is_first && (self.blocked.is_empty() || self.retries >= MOST_RETRIES) {
+            return None;
+        }
+        self.retries += u8::from(!is_first);
+        Some(self.begin_second_chance())
+    }
+
+    /// Drives to no frontier any more: what is left lies behind gaps in which the robot stalls.
+    pub(super) fn only_look(&mut self) -> RoundOutcome {
+        self.only_looks = true;
+        self.immobile = !self.progress.moved();
+        self.progress.begin_next_try();
+        self.path.clear();
+        RoundOutcome::Nothing
+    }
+
+    /// Returns true if the robot could not move at any of its chances.
+    pub(crate) const fn is_stuck(&self) -> bool {
+        self.immobile
+    }
+
+    /// Returns true if the goals that were given up are tried again.
+    pub(crate) const fn has_second_chance(&self) -> bool {
+        self.second_chance
+    }
+
+    /// Decides what to try when no frontier is within reach.
+    ///
+    /// One blocked passage may close the only way: a narrow one that the robot came through, or
+    /// ground that was measured from one side only. So the passages are opened again up to
+    /// [`MOST_RETRIES`] times. Mean shares known at the end, five seeds, in per cent:
+    ///
+    /// | | on uneven ground only | always |
+    /// | --- | --- | --- |
+    /// | `willow_full` | 92.8 | 95.6 |
+    /// | `aria_columbia` | 68.0 | 68.2 |
+    pub(super) fn do_without(&mut self, time_ms: u32) -> RoundOutcome {
+        self.path.clear();
+        if let Some(outcome) = self.try_again() {
+            return outcome;
+        }
+        let since_ms = self.empty_since_ms.map_or(time_ms, NonZeroU32::get);
+        self.empty_since_ms = NonZeroU32::new(since_ms);
+        if self.only_looks || time_ms.wrapping_sub(since_ms) >= EMPTY_MS {
+            RoundOutcome::Nothing
+        } else {
+            RoundOutcome::Unsure
+        }
+    }
+
+    fn begin_second_chance(&mut self) -> RoundOutcome {
+        self.second_chance = true;
+        self.progress.begin_next_try();
+        self.blocked.open_all();
+        self.residual.retry_without_progress();
+        self.path.clear();
+        RoundOutcome::Unsure
+    }
+}
