@@ -316,17 +316,19 @@ mod tests {
     #[test]
     fn after_a_passage_the_way_back_has_all_its_time() {
         let mut progress = ProgressChecker::new();
-        for time_ms in [STANDING_MS - 1_900, STANDING_MS - 10] {
+        for time_ms in [STANDING_MS - 300, STANDING_MS] {
             progress.note_closed();
             assert_eq!(progress.judge(FAR, 40, time_ms), Verdict::GoOn);
         }
         progress.note_closed();
         progress.note_blocked(STANDING_MS);
         assert_eq!(progress.passages_here(), 1);
-        for time_ms in [STANDING_MS + 500, 2 * STANDING_MS] {
+        let blocked_again_ms = STANDING_MS + u32::from(CLOSED_MS);
+        for time_ms in [blocked_again_ms - 500, blocked_again_ms - 1] {
             progress.note_closed();
             assert_eq!(progress.judge(FAR, 90, time_ms), Verdict::GoOn);
         }
+        assert_eq!(progress.judge(FAR, 90, 2 * STANDING_MS), Verdict::GoOn);
         let late_ms = 2 * STANDING_MS + 1;
         assert_eq!(progress.judge(FAR, 90, late_ms), Verdict::BlockAhead);
     }

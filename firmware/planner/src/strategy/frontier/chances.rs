@@ -12,7 +12,7 @@ use crate::strategy::frontier::Frontier;
 
 /// Time for which rounds must find nothing before the exploration ends, milliseconds: noise may
 /// close a way for a moment.
-const EMPTY_MS: u32 = 4_000;
+const EMPTY_MS: u32 = 2_400;
 /// Maximum number of further second chances.
 const MOST_RETRIES: u8 = 2;
 
