@@ -74,6 +74,15 @@ impl Footprint {
         nearest_m
     }
 
+    /// Returns true if the footprint overlaps no solid cell while it turns on the spot all the way
+    /// round, on level ground: its corners sweep a circle.
+    #[must_use]
+    pub fn can_turn(&self, world: &World, pose: &Pose) -> bool {
+        let radius_m = self.circumradius_m();
+        let middle = [pose.x_m, pose.y_m];
+        solid_cells(world, pose, radius_m).all(|square| point_to_box(middle, square) >= radius_m)
+    }
+
     /// A lower bound of [`Self::clearance_m`] for the cost of one look-up.
     #[must_use]
     pub fn clearance_bound_m(&self, world: &World, pose: &Pose) -> f64 {

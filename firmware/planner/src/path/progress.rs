@@ -36,8 +36,8 @@ const CLOSED_MS: u16 = 4_000;
 
 /// Maximum number of goals that are remembered.
 const MOST_GOALS: usize = 8;
-/// Goals nearer to each other than this count as one, map cells: 1 m.
-const SAME_GOAL_CELLS: i32 = 10;
+/// Goals nearer to each other than this count as one, metres.
+const SAME_GOAL_M: f32 = 1.0;
 /// Maximum time that one round adds to a goal's, milliseconds.
 const MOST_ROUND_MS: u32 = 2_000;
 
@@ -52,8 +52,7 @@ struct Attempt {
 
 impl Attempt {
     fn leads_to(&self, goal: Cell) -> bool {
-        let (dx, dy) = (self.goal.x - goal.x, self.goal.y - goal.y);
-        dx * dx + dy * dy < SAME_GOAL_CELLS * SAME_GOAL_CELLS
+        self.goal.distance2(goal) < SAME_GOAL_M * SAME_GOAL_M
     }
 }
 
@@ -310,6 +309,18 @@ mod tests {
         });
         assert_eq!(last, Verdict::Drop(ResidualReason::NoProgress));
         assert!(when_ms < 3 * NO_PROGRESS_MS, "{when_ms} ms");
+    }
+
+    /// A pose, and so a goal, may be anywhere that a message can say.
+    #[test]
+    fn goals_are_apart_however_far_they_are() {
+        let far = |x: i32| Cell { x, y: -x };
+        let mut progress = ProgressChecker::new();
+        progress.judge(far(327_679), 40, 500);
+        progress.forget(far(-327_680));
+        assert_eq!(progress.attempts.len(), 1);
+        progress.forget(far(327_675));
+        assert!(progress.attempts.is_empty());
     }
 
     /// The way that is left is not blamed for the time that the blocked one took.

@@ -21,10 +21,6 @@ const NEAR_STEP_M: f64 = 0.1;
 const NEAR_M: f64 = 6.0;
 /// Step of the lattice of places apart, metres.
 const FAR_STEP_M: f64 = 0.5;
-/// Headings that are tried where a robot must be able to turn: a hull's corner moves less than 0.1
-/// m from one to the next.
-const HEADINGS: u32 = 24;
-
 /// Places for robots in a world.
 pub(super) struct Places<'w> {
     world: &'w World,
@@ -101,21 +97,12 @@ impl<'w> Places<'w> {
             ..self.first
         };
         let cells = steps(up_m).flat_map(|j| steps(across_m).map(move |i| [i, j]));
-        cells
-            .map(place)
-            .filter(|start| self.reaches(start) && self.can_turn(*start))
-            .collect()
-    }
-
-    /// True if the robot touches nothing when it turns on the spot, for it does not see what is
-    /// behind it.
-    fn can_turn(&self, start: Start) -> bool {
-        let turn_rad = core::f64::consts::TAU / f64::from(HEADINGS);
-        (0..HEADINGS).all(|k| {
-            let yaw_rad = start.yaw_rad + f64::from(k) * turn_rad;
-            let turned = Start { yaw_rad, ..start };
-            self.world.clearance_m(&self.config.footprint, turned) > 0.0
-        })
+        // A robot does not see what is behind it, so it must be able to turn.
+        let fits = |start: &Start| {
+            let footprint = &self.config.footprint;
+            self.reaches(start) && footprint.can_turn(self.world, &start.pose())
+        };
+        cells.map(place).filter(fits).collect()
     }
 
     fn reaches(&self, start: &Start) -> bool {
