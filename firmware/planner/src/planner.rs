@@ -337,9 +337,8 @@ fn note_surroundings<const TILES: usize, const SLOTS: usize>(
     if let GroundModel::Flat(points) = &mut state.ground
         && let Some(contact) = state.drive.feel(config, input.velocity)
     {
-        for point in contact.points(&config.robot) {
-            points.add_felt(odom.0.point(), odom.0.to_map(point));
-        }
+        let felt = contact.points(&config.robot);
+        points.feel(odom.0.point(), felt.map(|point| odom.0.to_map(point)));
     }
 }
 

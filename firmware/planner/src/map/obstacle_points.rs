@@ -18,6 +18,14 @@
 //!   backs out there.
 //!
 //! A *felt* point is where the hull met something that the laser does not see. No beam removes it.
+//! The next contact does, because one thing holds the robot at a time: a robot that is held ahead
+//! and then behind is not in a trap but, say, pushed, or on wheels that slip. Ten robots that are
+//! pushed for 3 s (`disturbed::full`):
+//!
+//! | felt points of an earlier contact | robots that end *stuck* |
+//! | --- | --- |
+//! | stay | 8 |
+//! | go | 0 |
 //!
 //! Invariants: at most `MAX_POINTS` points, of which the farthest gives way; as many counts as
 //! points.
@@ -103,8 +111,7 @@ impl ObstaclePoints {
             if stays {
                 index += 1;
             } else {
-                self.points.swap_remove(index);
-                self.returns.swap_remove(index);
+                self.remove(index);
             }
         }
     }
@@ -127,9 +134,23 @@ impl ObstaclePoints {
         }
     }
 
-    /// Enters a point where the hull of a robot at `centre` met something.
-    pub(crate) fn add_felt(&mut self, centre: Point, point: Point) {
-        self.insert(centre, point, 0);
+    /// Enters the points where the hull of a robot at `centre` met something, in place of those of
+    /// the contact before.
+    pub(crate) fn feel(&mut self, centre: Point, felt: impl Iterator<Item = Point>) {
+        let mut index = 0;
+        while let Some(&returns) = self.returns.get(index) {
+            if returns == 0 {
+                self.remove(index);
+            } else {
+                index += 1;
+            }
+        }
+        felt.for_each(|point| self.insert(centre, point, 0));
+    }
+
+    fn remove(&mut self, index: usize) {
+        self.points.swap_remove(index);
+        self.returns.swap_remove(index);
     }
 
     /// Inserts a point; in a full store it replaces the farthest one, if that is farther.
@@ -143,8 +164,7 @@ impl ObstaclePoints {
             if far < point.distance2(centre) {
                 return;
             }
-            self.points.swap_remove(farthest);
-            self.returns.swap_remove(farthest);
+            self.remove(farthest);
         }
         // There is room now.
         let _ = self.points.push(point);

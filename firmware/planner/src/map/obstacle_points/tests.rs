@@ -49,9 +49,14 @@ fn a_point_is_remembered_behind_the_robot_and_forgotten_when_seen_through() {
 fn a_felt_point_stays_until_it_is_out_of_reach() {
     let mut obstacles = ObstaclePoints::new();
     let here = Pose::default();
-    obstacles.add_felt(here.point(), Point { x_m: 0.3, y_m: 0.1 });
+    let felt = |x_m| [Point { x_m, y_m: 0.1 }].into_iter();
+    obstacles.feel(here.point(), felt(-0.3));
+    obstacles.feel(here.point(), felt(0.3));
     obstacles.update(&CONFIG, &here, &LASER, &[NO_RETURN_MM; 181]);
-    assert_eq!(obstacles.points().len(), 1, "seen through, and felt");
+    assert!(
+        obstacles.points().iter().copied().eq(felt(0.3)),
+        "seen through, and felt last"
+    );
     let away = Pose { x_m: -1.0, ..here };
     obstacles.update(&CONFIG, &away, &LASER, &[NO_RETURN_MM; 181]);
     assert!(obstacles.points().is_empty());

@@ -225,7 +225,6 @@ impl Frontier {
         context: &PlanningContext<'_, TILES, SLOTS>,
     ) {
         (self.viewpoint, self.empty_since_ms) = (None, None);
-        self.second_look.note_path();
         let goal = path.goal();
         if let Some(levels) = &context.levels
             && levels.of(context.tiles, goal) <= level(context, self.present_goal(), goal)
