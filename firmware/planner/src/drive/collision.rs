@@ -70,6 +70,8 @@ pub struct CollisionChecker {
     hull: Hull,
     /// Slopes of the ground, where they bound the headings.
     incline: Option<Incline>,
+    /// Another robot is near.
+    has_robots: bool,
     /// Another robot is near that may drive on.
     has_company: bool,
 }
@@ -112,8 +114,15 @@ impl CollisionChecker {
             robot: *robot,
             hull: Hull::level(robot),
             incline: None,
+            has_robots: false,
             has_company: false,
         }
+    }
+
+    /// Returns true if another robot is near.
+    #[must_use]
+    pub(crate) const fn has_robots(&self) -> bool {
+        self.has_robots
     }
 
     /// Returns true if another robot is near that may drive on.
@@ -160,6 +169,7 @@ impl CollisionChecker {
         points: impl Iterator<Item = Point>,
         may_move: bool,
     ) {
+        self.has_robots = true;
         self.has_company |= may_move;
         let frame = RobotFrame::of(pose);
         for at in points.map(|point| frame.to_robot(point)) {

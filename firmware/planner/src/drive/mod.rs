@@ -82,7 +82,8 @@ const FIRST_BUDGET: SearchBudget = SearchBudget {
     points: SEARCH_BUDGET.points / 3,
 };
 /// Speeds of a retreat, as parts of the one that the track asks for, and its clearances, metres.
-/// There is room on the track, but noise brings the points of its walls nearer as time goes by.
+/// There is room on the track, but noise brings the points of its walls nearer as time goes by. So
+/// the last one needs none, unless another robot may be in the way.
 const RETREATS: [(f32, f32); 3] = [(1.0, LEAST_MARGIN_M), (0.5, LEAST_MARGIN_M), (0.25, 0.0)];
 /// Steps between a search that found nothing and the next one, where the ground bounds the
 /// headings: about the steps of two skeletons.
@@ -192,8 +193,14 @@ impl Drive {
         now: Twist,
     ) -> Twist {
         let wish = self.track.back(pose, config.period_s);
+        let least_m = if checker.has_robots() {
+            LEAST_MARGIN_M
+        } else {
+            0.0
+        };
         let twist = wish.and_then(|wish| {
-            let slower = |(part, margin_m)| {
+            let slower = |(part, margin_m): (f32, f32)| {
+                let margin_m = margin_m.max(least_m);
                 let twist = Twist {
                     linear_mps: part * wish.linear_mps,
                     angular_radps: part * wish.angular_radps,

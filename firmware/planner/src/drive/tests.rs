@@ -30,6 +30,15 @@ fn speed_mps(peer_may_move: bool) -> f32 {
 /// Returns the first velocity of a retreat from a place 0.5 m along a straight track, with a
 /// wall so far behind the hull, and the drive after it.
 fn retreats(behind_m: f32, now: Twist) -> (Twist, Drive) {
+    retreats_from(CollisionChecker::see, behind_m, now)
+}
+
+/// As [`retreats`], from a thing that a checker is told of.
+fn retreats_from(
+    tell: impl FnOnce(&mut CollisionChecker, &Pose, &[Point]),
+    behind_m: f32,
+    now: Twist,
+) -> (Twist, Drive) {
     let config = Config::pioneer_3at(heapless::Vec::new());
     let mut drive = Drive::new();
     let at = |x_m: f32| {
@@ -45,7 +54,8 @@ fn retreats(behind_m: f32, now: Twist) -> (Twist, Drive) {
         x_m: pose.0.x_m - wall_m,
         y_m: 0.0,
     };
-    let checker = CollisionChecker::new(&RobotShape::PIONEER_3AT, &pose.0, &[wall]);
+    let mut checker = CollisionChecker::empty(&RobotShape::PIONEER_3AT);
+    tell(&mut checker, &pose.0, &[wall]);
     drive.begin_retreat(&checker, true);
     assert!(drive.is_retreating());
     let twist = drive.retreat(&config, &pose, &checker, now);
@@ -75,6 +85,17 @@ fn a_retreat_goes_slower_where_it_could_not_stop_and_ends_where_it_cannot_go() {
     let (none, drive) = retreats(0.0, back);
     assert_eq!(none, rest, "it brakes first");
     assert!(drive.is_retreating());
+}
+
+/// Noise does not bring it nearer, as it does a wall.
+#[test]
+fn a_retreat_keeps_off_a_robot_behind() {
+    let tell = |checker: &mut CollisionChecker, pose: &Pose, points: &[Point]| {
+        checker.keep_off_hull(pose, points.iter().copied(), false);
+    };
+    let (twist, drive) = retreats_from(tell, LEAST_MARGIN_M, Twist::default());
+    assert_eq!(twist, Twist::default());
+    assert!(!drive.is_retreating());
 }
 
 #[test]
