@@ -5,7 +5,7 @@
 //! Units: map cells, milliseconds.
 
 use crate::field::local_grid::LocalGrid;
-use crate::geometry::Point;
+use crate::geometry::{Cell, Point};
 use crate::path::PlanningContext;
 use crate::path::blocked_passages::{BlockedPassages, ahead, first_unreachable};
 use crate::path::progress::Verdict;
@@ -58,19 +58,48 @@ impl Frontier {
                 ahead(&self.path, context.pose.point())
             }
         };
-        let goal = self.path.goal();
+        self.block_from(passage);
+    }
+
+    /// Blocks a passage on the path from where the robot stands; the goal, if the path is shorter.
+    /// Otherwise the robot would come back to such a goal without end.
+    fn block_from(&mut self, passage: Option<Cell>) {
         self.blocked_here = true;
-        self.blocked.block(passage.unwrap_or(goal));
+        if !self.path.is_empty() {
+            self.blocked.block(passage.unwrap_or(self.path.goal()));
+        }
         self.forget_path();
     }
 
     /// Notes that the drive found no way on. The passage ahead is blocked.
     pub(crate) fn note_wedged(&mut self, robot: Point, time_ms: u32) {
         self.progress.note_blocked(time_ms);
-        (self.stalled, self.blocked_here) = (true, true);
-        if let Some(passage) = ahead(&self.path, robot) {
-            self.blocked.block(passage);
+        self.stalled = true;
+        self.block_from(ahead(&self.path, robot));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::path::Path;
+
+    /// Returns true if a robot at the origin that is wedged, with a goal so many cells ahead,
+    /// blocks something.
+    fn blocks(goal: Option<i32>) -> bool {
+        let mut frontier = Frontier::new();
+        if let Some(x) = goal {
+            let cells = (0..=x).rev().map(|x| Cell { x, y: 0 });
+            frontier.path = Path::back(cells, x as usize + 1, x as u32 + 1);
         }
-        self.forget_path();
+        frontier.note_wedged(Point::default(), 1_000);
+        assert!(frontier.path.is_empty() && frontier.take_blocked());
+        !frontier.blocked.is_empty()
+    }
+
+    #[test]
+    fn a_wedged_robot_blocks_the_way_ahead_or_a_goal_that_is_nearer() {
+        assert!(blocks(Some(40)) && blocks(Some(2)));
+        assert!(!blocks(None));
     }
 }
