@@ -79,6 +79,14 @@ pub(crate) struct Track {
     has_last: bool,
 }
 
+/// The way from a pose to the next one.
+struct Piece {
+    from: [f32; 3],
+    to: [f32; 3],
+    /// The difference of both, in its units.
+    units: [i8; 3],
+}
+
 /// Returns the difference `to` − `from`, in the frame of `from`.
 fn difference([x, y, yaw]: [f32; 3], to: [f32; 3]) -> [f32; 3] {
     let (sin, cos) = math::sin_cos(yaw);
@@ -157,17 +165,15 @@ impl Track {
 
     /// Drops the poses since the robot was first at `now`, if it was there before.
     fn forget_loop(&mut self, now: [f32; 3]) {
-        let (mut pose, mut drop) = (self.last, 0);
-        for back in 1..=self.len {
-            let units = self.difference(back);
-            pose = before(pose, units);
-            let [length, ..] = metres(units);
-            let [along, aside, turn] = difference(pose, now);
+        let was_at = |Piece { from, units, .. }: &Piece| {
+            let [length, ..] = metres(*units);
+            let [along, aside, turn] = difference(*from, now);
             let beyond = along - along.clamp(length.min(0.0), length.max(0.0));
-            if beyond * beyond + aside * aside < BACK_M * BACK_M && turn.abs() < BACK_RAD {
-                drop = back;
-            }
-        }
+            beyond * beyond + aside * aside < BACK_M * BACK_M && turn.abs() < BACK_RAD
+        };
+        let backs = (1..).zip(self.pieces());
+        let first = backs.filter(|(_, piece)| was_at(piece)).last();
+        let drop = first.map_or(0, |(back, _)| back);
         (0..drop).for_each(|_| self.drop_last());
     }
 
@@ -182,11 +188,21 @@ impl Track {
     /// Returns true if the track leads past a point of the map, by no more than this, metres.
     pub(crate) fn passes(&self, point: Point, within_m: f32) -> bool {
         let at = |[x_m, y_m, _]: [f32; 3]| Point { x_m, y_m };
+        self.pieces()
+            .any(|piece| point.to_line2(at(piece.from), at(piece.to)) <= within_m * within_m)
+    }
+
+    /// Returns the pieces of the track, the last one first.
+    fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
         let mut pose = self.last;
-        (1..=self.len).any(|back| {
-            let to = pose;
-            pose = before(to, self.difference(back));
-            point.to_line2(at(pose), at(to)) <= within_m * within_m
+        (1..=self.len).map(move |back| {
+            let (to, units) = (pose, self.difference(back));
+            pose = before(to, units);
+            Piece {
+                from: pose,
+                to,
+                units,
+            }
         })
     }
 
@@ -199,12 +215,13 @@ impl Track {
     /// Notes where a retreat begins.
     pub(crate) fn begin_retreat(&mut self) {
         let mut far_m = 0.0;
-        let mut back = 0;
-        while back < self.len && far_m < LEAVE_M {
-            back += 1;
-            let [dx, dy, _] = metres(self.difference(back));
+        let back = self.pieces().take_while(|piece| {
+            let [dx, dy, _] = metres(piece.units);
+            let is_near = far_m < LEAVE_M;
             far_m += math::sqrt(dx * dx + dy * dy);
-        }
+            is_near
+        });
+        let back = back.count() as u8;
         // The pose at the end of the way is reached when it is dropped.
         self.left = (self.len - back).saturating_sub(1);
     }

@@ -249,8 +249,11 @@ impl Frontier {
             self.choose(path, context);
         } else if let Some(outcome) = self.look(context, &mut scratch) {
             return outcome;
-        } else if context.waits_for_peers || self.judged > 0 || context.came_through_blocked {
-            self.goes_back = !context.waits_for_peers && self.judged == 0;
+        } else if context.waits_for_peers || self.judged > 0 {
+            self.path.clear();
+            return RoundOutcome::Unsure;
+        } else if context.came_through_blocked {
+            self.goes_back = true;
             self.path.clear();
             return RoundOutcome::Unsure;
         } else {
