@@ -14,8 +14,13 @@ const SEEDS: Range<u64> = 0..5;
 const FEW_SEEDS: Range<u64> = 0..2;
 /// A radio that loses nothing, and none.
 const RADIOS: [&str; 2] = ["loss=0", "off"];
-/// Worlds drawn by others: furnished rooms, an office floor.
-const DATA: [&str; 2] = ["ipa_lab_intel_furnitures", "patrol_cumberland"];
+/// Worlds drawn by others: furnished rooms, a warehouse, an office floor, a small lab.
+const DATA: [&str; 4] = [
+    "ipa_lab_intel_furnitures",
+    "nav2_warehouse",
+    "patrol_cumberland",
+    "stage_autolab",
+];
 
 /// Compares the table of these runs. No two robots that talk may touch.
 fn measure(file: &str, runs: &[TeamRun<'_>], seeds: &Range<u64>) {
@@ -60,7 +65,7 @@ mod data {
     use super::*;
 
     #[test]
-    #[ignore = "needs worlds drawn by others (FIELDLINE_DATA) and takes minutes"]
+    #[ignore = "needs worlds drawn by others (FIELDLINE_DATA) and takes ten minutes"]
     fn teams_in_worlds_drawn_by_others() {
         let mut worlds = worlds::drawn_by_others();
         worlds.retain(|world: &World| DATA.contains(&world.name()));

@@ -1,11 +1,11 @@
 //! Claims of the other robots on goals.
 //!
-//! A peer *claims* what it would see from the goal that it drives to: the goals within `gain_m` of
-//! its own to which a peer has fewer steps than this robot. Only the gain of a claimed goal counts
-//! less, so it is taken when nothing better is left.
+//! A peer that drives to a goal *claims* every goal to which it has fewer steps than this robot:
+//! its part of a Voronoi partition over the lengths of paths. Only the gain of a claimed goal
+//! counts less, so it is taken when nothing better is left.
 //!
 //! ```text
-//! gain of a goal = claimed · G if a peer is nearer, and drives to a goal within gain_m of it
+//! gain of a goal = claimed · G if a peer is nearer
 //!                  G           else
 //! ```
 //!
@@ -13,14 +13,21 @@
 //! that drive to one goal the nearer one keeps it, and both know which. A peer that is silent,
 //! stands by order, is stuck or has finished claims nothing.
 //!
+//! How much faster than one robot a team has seen 99 %; means over seven worlds, starts side by side
+//! and apart, five seeds (`office`, `hall`, `cave`, `ipa_lab_intel_furnitures`, `nav2_warehouse`,
+//! `patrol_cumberland`, `stage_autolab`):
+//!
+//! | a peer claims, of the goals it is nearer to | 2 robots | 3 | 4 |
+//! | --- | --- | --- | --- |
+//! | those within 3 m of its own | 1.81 | 2.55 | 3.11 |
+//! | all | 1.83 | 2.67 | 3.31 |
+//!
 //! Units: coarse steps of 20 cm; sites of the skeleton's plane.
 
 use heapless::Vec;
 
-use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
 use crate::path::PlanningContext;
-use crate::path::residual_frontiers::is_near;
 use crate::path::search::PathSearch;
 use crate::team::peers::MOST_PEERS;
 
@@ -36,8 +43,6 @@ const GROUP_CELLS: u16 = 5;
 pub(crate) struct Claims {
     /// Groups of frontier cells, with the steps of the nearest peer to the group's first.
     groups: Vec<(Site, u16), MOST_GROUPS>,
-    /// The goals that the peers drive to.
-    goals: Vec<Cell, MOST_PEERS>,
 }
 
 impl Claims {
@@ -52,19 +57,14 @@ impl Claims {
         let Some(team) = context.team.filter(|_| context.tuning.order.claimed < 1.0) else {
             return claims;
         };
-        let mut entries: Vec<(Site, u32), MOST_PEERS> = Vec::new();
-        for peer in team.rivals(context.time_ms) {
-            let place = peer.pose(context.time_ms).point().cell();
-            let Some(entry) = search.entry_near(place) else {
-                continue;
-            };
-            // Both lists have room for all peers.
-            let _ = entries.push(entry);
-            if let Some(goal) = peer.beacon.goal_cell() {
-                let _ = claims.goals.push(goal);
-            }
-        }
-        if claims.goals.is_empty() {
+        let now_ms = context.time_ms;
+        let rivals = team.rivals(now_ms);
+        let entries: Vec<(Site, u32), MOST_PEERS> = rivals
+            .filter(|peer| peer.beacon.goal_cell().is_some())
+            .filter_map(|peer| search.entry_near(peer.pose(now_ms).point().cell()))
+            .take(MOST_PEERS)
+            .collect();
+        if entries.is_empty() {
             return claims;
         }
         search.spread_entering(&entries, frontier, |site, steps| {
@@ -79,13 +79,11 @@ impl Claims {
     }
 
     /// Returns true if a goal that is `steps` away from this robot is claimed by a peer.
-    pub(crate) fn hold(&self, site: Site, cell: Cell, steps: u16, gain_m: f32) -> bool {
-        let is_beside = |goal: &Cell| is_near(*goal, cell, gain_m);
-        let group = || {
-            let mut groups = self.groups.iter();
-            groups.find(|(first, _)| is_in_group(*first, site))
-        };
-        self.goals.iter().any(is_beside) && group().is_some_and(|(_, theirs)| *theirs < steps)
+    pub(crate) fn hold(&self, site: Site, steps: u16) -> bool {
+        let mut groups = self.groups.iter();
+        groups
+            .find(|(first, _)| is_in_group(*first, site))
+            .is_some_and(|(_, theirs)| *theirs < steps)
     }
 }
 
@@ -101,37 +99,16 @@ mod tests {
         Site { x, y: 10 }
     }
 
-    fn cell(x: i32) -> Cell {
-        Cell { x, y: 20 }
-    }
-
-    /// A peer with 8 steps to the frontier at site 10, and 30 to that at site 40.
-    fn claims(goal: Option<Cell>) -> Claims {
-        Claims {
+    #[test]
+    fn a_peer_holds_the_goals_that_it_is_nearer_to() {
+        // The peer has 8 steps to the frontier at site 10, and 30 to that at site 40.
+        let claims = Claims {
             groups: [(site(10), 8), (site(40), 30)].into_iter().collect(),
-            goals: goal.into_iter().collect(),
-        }
-    }
-
-    #[test]
-    fn a_peer_holds_what_it_sees_from_its_goal_if_it_is_nearer() {
-        let claims = claims(Some(cell(20)));
-        assert!(claims.hold(site(10), cell(20), 9, 3.0));
-        assert!(claims.hold(site(14), cell(28), 9, 3.0), "of the same group");
-        assert!(!claims.hold(site(10), cell(20), 8, 3.0), "as near");
-        assert!(!claims.hold(site(10), cell(20), 3, 3.0), "nearer");
-        assert!(
-            !claims.hold(site(40), cell(80), 99, 3.0),
-            "far from its goal"
-        );
-        assert!(
-            !claims.hold(site(20), cell(40), 99, 3.0),
-            "not reached by it"
-        );
-    }
-
-    #[test]
-    fn a_peer_without_a_goal_holds_nothing() {
-        assert!(!claims(None).hold(site(10), cell(20), 9, 3.0));
+        };
+        assert!(claims.hold(site(10), 9));
+        assert!(claims.hold(site(14), 9), "of the same group");
+        assert!(!claims.hold(site(10), 8), "as near");
+        assert!(!claims.hold(site(40), 20), "nearer");
+        assert!(!claims.hold(site(20), 99), "not reached by the peer");
     }
 }

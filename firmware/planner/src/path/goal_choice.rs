@@ -238,9 +238,7 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
         let is_present = self.present.is_some_and(|present| present.is_beside(cell));
         let kept = if is_present { tuning.keep } else { 1.0 };
         let gain_m2 = kept * view.gain_m2();
-        let is_claimed = self
-            .claims
-            .hold(candidate.site, cell, candidate.steps, tuning.gain_m);
+        let is_claimed = self.claims.hold(candidate.site, candidate.steps);
         let claimed = if is_claimed { tuning.claimed } else { 1.0 };
         let value = value(tuning, claimed * gain_m2);
         if utility(value, path_m) <= least {
