@@ -336,7 +336,7 @@ mod known_red {
     use super::*;
 
     #[test]
-    #[ignore = "of ten robots that are pushed eight end stuck, and one is 0.45 m wrong after it"]
+    #[ignore = "of ten robots that are pushed one is 0.45 m wrong after it"]
     fn after_other_faults_with_ten_seeds_the_device_tracks_again() {
         let office = worlds::builtin("office");
         assert_faultless(&play(&scenes(&office, &OTHERS, 0..10)), Outcome::faults);
