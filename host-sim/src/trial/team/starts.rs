@@ -21,6 +21,7 @@ const NEAR_STEP_M: f64 = 0.1;
 const NEAR_M: f64 = 6.0;
 /// Step of the lattice of places apart, metres.
 const FAR_STEP_M: f64 = 0.5;
+
 /// Places for robots in a world.
 pub(super) struct Places<'w> {
     world: &'w World,
