@@ -27,10 +27,12 @@ impl Frontier {
         }
     }
 
-    /// Begins the second chance, or one of the further ones; `None` if there is none left.
+    /// Begins the second chance, or one of the further ones; `None` if there is none left. A robot
+    /// that did not move since the last one began would meet the same closed ways.
     fn try_again(&mut self) -> Option<RoundOutcome> {
         let is_first = !self.second_chance;
-        if !is_first && (self.blocked.is_empty() || self.retries >= MOST_RETRIES) {
+        let has_more = self.retries < MOST_RETRIES;
+        if !is_first && (self.blocked.is_empty() || !has_more || !self.progress.moved()) {
             return None;
         }
         self.retries += u8::from(!is_first);
