@@ -354,8 +354,13 @@ fn tell_strategy<const TILES: usize, const SLOTS: usize>(
         let place = peer.pose(input.time_ms).point();
         state.strategy.note_peer(place);
     }
-    let (robot, tiles) = (input.pose.point(), state.map.tiles());
-    if let Some(end) = state.strategy.note_map(tiles, robot, input.time_ms, config) {
+    let rivals = state.team.rivals(input.time_ms);
+    let rivals = rivals.map(|peer| peer.pose(input.time_ms).point());
+    let (places, tiles) = ((input.pose.point(), rivals), state.map.tiles());
+    if let Some(end) = state
+        .strategy
+        .note_map(tiles, places, input.time_ms, config)
+    {
         state.status = end;
     }
 }

@@ -135,17 +135,17 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
         }
     }
 
-    /// Takes over what the map knows; called in every step. Returns the status if the strategy
-    /// ends the exploration.
+    /// Takes over what the map knows; called in every step. `places` are those of the robot and of
+    /// the others that may drive. Returns the status if the strategy ends the exploration.
     pub(crate) fn note_map<const TILES: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        robot: Point,
+        places: (Point, impl Iterator<Item = Point>),
         time_ms: u32,
         config: &Config,
     ) -> Option<Status> {
         match &mut self.own {
-            Own::Sbpf(sbpf) => sbpf.note_map(tiles, robot, time_ms, config),
+            Own::Sbpf(sbpf) => sbpf.note_map(tiles, places, time_ms, config),
             _ => None,
         }
     }

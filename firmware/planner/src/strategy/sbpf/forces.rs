@@ -2,12 +2,22 @@
 //!
 //! ```text
 //! F_rep(q) = Σ (1/ρ − 1/ρ₀) R(α) (q − q_i)/ρ³   over obstacles with ρ ≤ ρ₀      (eqs. 2, 3, 11)
-//! F_att(q) = Σ (q_i − q) ρ²                     over the cells that attract     (eqs. 5, 6)
+//! F_att(q) = Σ w (q_i − q) ρ²                   over the cells that attract     (eqs. 5, 6)
 //! F = F_att/|F_att| + K F_rep;                  ρ = |q − q_i|
+//! w = claimed if a peer that drives is nearer to the cell, 1 else
 //! ```
 //!
 //! The drive follows the direction of F. Cells that a peer visited repel as obstacles do, but with
 //! a weight of their own, and α = 0.
+//!
+//! Departs from \[Kenealy15, eq. 5\] in a team: without *w* the farthest cells attract all robots
+//! alike, and two that start side by side stay so. How much faster than one robot a team has seen
+//! 99 %, `esbpf`; means over `office`, `hall` and `cave`, starts side by side and apart, two seeds:
+//!
+//! | claimed | 2 robots | 3 | 4 |
+//! | --- | --- | --- | --- |
+//! | 1 | 1.69 | 2.26 | 3.60 |
+//! | 0.2, as for goals | 1.87 | 3.67 | 4.30 |
 //!
 //! Departs from \[Kenealy15, eqs. 2 and 5\]: the attraction has magnitude 1. The paper weighs
 //! `F_rep` with `1/(2 c k_rep)` and `F_att` with `k_att/c`, where c is the coverage. In the
@@ -17,11 +27,14 @@
 //!
 //! Units: metres.
 
+use heapless::Vec;
+
 use crate::config::SbpfTuning;
 use crate::grid::bits::ones64;
 use crate::math;
 use crate::strategy::sbpf::edges::attractive;
 use crate::strategy::sbpf::levels::{Levels, Place};
+use crate::team::peers::MOST_PEERS;
 
 /// A vector in the map's frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -51,14 +64,24 @@ impl Vector {
     }
 }
 
+/// The claims of the other robots on the cells that attract.
+#[derive(Debug)]
+pub(super) struct Claims {
+    /// Where those are that may drive.
+    pub(super) rivals: Vec<Place, MOST_PEERS>,
+    /// Weight of a cell to which one of them is nearer.
+    pub(super) weight: f32,
+}
+
 /// Returns the heading of the force at a place, radians; `None` if nothing attracts.
 pub(super) fn heading_rad(
     levels: &Levels,
     at: Place,
+    claims: &Claims,
     enhanced: bool,
     tuning: &SbpfTuning,
 ) -> Option<f32> {
-    let attraction = attraction(levels, at, enhanced)?;
+    let attraction = attraction(levels, at, claims, enhanced)?;
     let twist_rad = if enhanced { tuning.twist_rad } else { 0.0 };
     let mut force = repulsion(levels, at, twist_rad, tuning);
     let length = math::sqrt(attraction.square());
@@ -67,13 +90,22 @@ pub(super) fn heading_rad(
 }
 
 /// Returns `F_att`; `None` if nothing attracts.
-pub(super) fn attraction(levels: &Levels, at: Place, has_gates: bool) -> Option<Vector> {
+pub(super) fn attraction(
+    levels: &Levels,
+    at: Place,
+    claims: &Claims,
+    has_gates: bool,
+) -> Option<Vector> {
     let mut force = None;
     for y in levels.rows() {
         for x in ones64(attractive(levels, y, has_gates)) {
             let away = from_cell(levels, at, x, y);
             let force = force.get_or_insert_with(Vector::default);
-            force.add(away, -away.square());
+            let distance2 = away.square();
+            let is_nearer = |&rival: &Place| from_cell(levels, rival, x, y).square() < distance2;
+            let is_claimed = claims.rivals.iter().any(is_nearer);
+            let weight = if is_claimed { claims.weight } else { 1.0 };
+            force.add(away, -weight * distance2);
         }
     }
     force

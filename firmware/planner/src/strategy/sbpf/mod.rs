@@ -32,6 +32,8 @@ use crate::map::Tiles;
 use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::status::{Fault, Finish, Status};
 use crate::strategy::Frontier;
+use crate::team::peers::MOST_PEERS;
+use forces::Claims;
 use levels::Levels;
 
 /// Thousandths of the whole area.
@@ -82,14 +84,14 @@ impl Sbpf {
         self.levels.visit(peer);
     }
 
-    /// Takes over what the map knows, and computes the forces; called in every step. Returns the
-    /// status if the exploration ends. It is not inlined, so that other strategies do not pay for
+    /// Takes over what the map knows, and computes the forces; called in every step. `rivals` are
+    /// the robots that may drive. Returns the status if the exploration ends. It is not inlined, so that other strategies do not pay for
     /// its stack.
     #[inline(never)]
     pub(super) fn note_map<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
-        robot: Point,
+        (robot, rivals): (Point, impl Iterator<Item = Point>),
         time_ms: u32,
         config: &Config,
     ) -> Option<Status> {
@@ -101,7 +103,14 @@ impl Sbpf {
             (self.covered, self.covered_ms) = (covered, time_ms);
         }
         let place = self.levels.place(robot);
-        self.heading_rad = forces::heading_rad(&self.levels, place, self.enhanced, tuning);
+        let claims = Claims {
+            rivals: rivals
+                .map(|rival| self.levels.place(rival))
+                .take(MOST_PEERS)
+                .collect(),
+            weight: config.tuning.order.claimed,
+        };
+        self.heading_rad = forces::heading_rad(&self.levels, place, &claims, self.enhanced, tuning);
         // With a path to what is left, a target of everything is everything that the map shows.
         if self.is_target_reached() && !(self.has_paths() && self.field.until_permille == ALL) {
             Some(Status::Finished(Finish::Covered))

@@ -10,7 +10,8 @@ use crate::map::{Class, Tiles};
 use crate::robot::{LaserMount, RobotShape};
 use crate::status::{Fault, Finish, Status};
 use crate::strategy::sbpf::edges::attractive;
-use crate::strategy::sbpf::levels::{Levels, SIDE};
+use crate::strategy::sbpf::forces::Claims;
+use crate::strategy::sbpf::levels::{Levels, Place, SIDE};
 use crate::strategy::sbpf::{Sbpf, forces};
 
 type Map = Tiles<64, 64>;
@@ -195,15 +196,37 @@ fn a_door_attracts_only_as_a_gate() {
     assert!(bit(attractive(&levels, 1, true), 3));
 }
 
-/// The naive twin: every cell, in f64.
-fn naive(drawing: &Drawing, at: (f64, f64), cell_m: f64, twist: f64) -> ([f64; 2], [f64; 2]) {
+/// No other robot.
+const NOBODY: Claims = Claims {
+    rivals: heapless::Vec::new(),
+    weight: 1.0,
+};
+
+/// The naive twin: every cell, in f64. Places are in cells.
+fn naive(
+    drawing: &Drawing,
+    at: (f64, f64),
+    claims: &Claims,
+    (cell_m, twist): (f64, f64),
+) -> ([f64; 2], [f64; 2]) {
     let (mut attraction, mut repulsion) = ([0.0; 2], [0.0; 2]);
     for (x, y) in drawing.cells() {
-        let away = [at.0 - f64::from(x) - 0.5, at.1 - f64::from(y) - 0.5].map(|d| d * cell_m);
+        let from = |at: (f64, f64)| [at.0 - f64::from(x) - 0.5, at.1 - f64::from(y) - 0.5];
+        let away = from(at).map(|d| d * cell_m);
         let rho = away[0].hypot(away[1]);
         if drawing.attracts(x, y, true) {
+            let rivals = claims.rivals.iter().map(|it| (it.x.into(), it.y.into()));
+            let nearest = rivals.map(|rival| from(rival).map(|d| d * cell_m));
+            let nearest = nearest
+                .map(|[dx, dy]| dx.hypot(dy))
+                .fold(f64::MAX, f64::min);
+            let weight = if nearest < rho {
+                f64::from(claims.weight)
+            } else {
+                1.0
+            };
             for (sum, d) in attraction.iter_mut().zip(away) {
-                *sum -= d * rho * rho;
+                *sum -= weight * d * rho * rho;
             }
         }
         let range = f64::from(TUNING.range_m);
@@ -230,8 +253,18 @@ fn forces_are_the_naive_sums() {
             y_m: at.1 as f32 * levels.cell_m(),
         });
         let twist = f64::from(TUNING.twist_rad);
-        let (attraction, repulsion) = naive(&drawing, at, 0.2, twist);
-        let found = forces::attraction(&levels, place, true).expect("something attracts");
+        // One more robot every seven rounds, at the same place as this one and elsewhere.
+        let claims = Claims {
+            rivals: (0..round / 7)
+                .map(|k| Place {
+                    x: place.x + 7.3 * k as f32,
+                    y: 31.0 - 9.1 * k as f32,
+                })
+                .collect(),
+            weight: 0.2,
+        };
+        let (attraction, repulsion) = naive(&drawing, at, &claims, (0.2, twist));
+        let found = forces::attraction(&levels, place, &claims, true).expect("something attracts");
         let near =
             |found: f32, true_: f64, size: f64| (f64::from(found) - true_).abs() < 1e-3 * size;
         let size = attraction[0].hypot(attraction[1]);
@@ -243,7 +276,8 @@ fn forces_are_the_naive_sums() {
             attraction[k] / attraction[0].hypot(attraction[1])
                 + f64::from(TUNING.repulsion) * repulsion[k]
         };
-        let heading = forces::heading_rad(&levels, place, true, &TUNING).expect("as above");
+        let heading =
+            forces::heading_rad(&levels, place, &claims, true, &TUNING).expect("as above");
         let error = f64::from(heading) - sum(1).atan2(sum(0));
         assert!(
             error.sin().abs() < 1e-2 && error.cos() > 0.0,
@@ -266,7 +300,8 @@ fn the_conveyor_belt_leads_along_a_wall() {
     .into();
     let levels = Drawing::of(&lines).levels(5, Cell::default());
     let at = levels.place(Point { x_m: 5.0, y_m: 1.6 });
-    let heading = |enhanced| forces::heading_rad(&levels, at, enhanced, &TUNING).expect("edges");
+    let heading =
+        |enhanced| forces::heading_rad(&levels, at, &NOBODY, enhanced, &TUNING).expect("edges");
     let north = crate::math::PI / 2.0;
     let sideways = |heading: f32| (heading.cos()).abs();
     assert!(sideways(heading(false)) < 0.01, "{}", heading(false));
@@ -314,7 +349,7 @@ fn survey(sbpf: &mut Sbpf, lines: &[&str], time_ms: u32, config: &Config) -> Opt
     let robot = Point { x_m: 1.0, y_m: 0.8 };
     sbpf.note_map(
         &Drawing::of(lines).map(5, Cell::default()),
-        robot,
+        (robot, core::iter::empty()),
         time_ms,
         config,
     )
