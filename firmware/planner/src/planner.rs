@@ -330,6 +330,7 @@ fn note_surroundings<const TILES: usize, const SLOTS: usize>(
     state.ground.observe(
         config,
         (input, &odom),
+        state.team.peers(),
         &mut state.map,
         &mut state.preferences,
     );

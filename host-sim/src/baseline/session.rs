@@ -177,7 +177,7 @@ impl<S: Strategy> Session<S> {
         for (laser, ranges_mm) in config.lasers().iter().zip(input.scans) {
             if laser.is_level() {
                 self.obstacle_points
-                    .update(config, &input.pose, laser, ranges_mm);
+                    .update(config, &input.pose, (laser, ranges_mm), |_| false);
             }
         }
     }

@@ -14,6 +14,7 @@
 //! - if the robot stands on it;
 //! - if it leaves the view with one return only, because a false return could not be disproved
 //!   later;
+//! - if it is out of view where another robot is, because that one drives on while nobody looks;
 //! - if it is out of reach. The reach behind the robot is shorter, because the robot only turns and
 //!   backs out there.
 //!
@@ -75,10 +76,17 @@ impl ObstaclePoints {
         &self.points
     }
 
-    /// Enters a scan of the level laser, taken at `pose`.
-    pub fn update(&mut self, config: &Config, pose: &Pose, laser: &LaserMount, ranges_mm: &[u16]) {
+    /// Enters a scan of the level laser, taken at `pose`. `is_robot` tells at which points another
+    /// robot may be.
+    pub fn update(
+        &mut self,
+        config: &Config,
+        pose: &Pose,
+        (laser, ranges_mm): (&LaserMount, &[u16]),
+        is_robot: impl Fn(Point) -> bool,
+    ) {
         let tuning = &config.tuning.map;
-        self.remove_stale(config, pose, laser, ranges_mm);
+        self.remove_stale(config, pose, (laser, ranges_mm), is_robot);
         for beam in level_beams(pose, laser, ranges_mm, tuning).filter(|beam| beam.hit) {
             let end = beam.end();
             if within_reach(tuning, pose, end) && has_company(ranges_mm, beam.number) {
@@ -92,8 +100,8 @@ impl ObstaclePoints {
         &mut self,
         config: &Config,
         pose: &Pose,
-        laser: &LaserMount,
-        ranges_mm: &[u16],
+        (laser, ranges_mm): (&LaserMount, &[u16]),
+        is_robot: impl Fn(Point) -> bool,
     ) {
         let tuning = &config.tuning.map;
         let from = sensor_point(pose, laser);
@@ -106,7 +114,7 @@ impl ObstaclePoints {
                     || match visibility((pose, from), laser, ranges_mm, point, tuning.through_m) {
                         Visibility::Hit => true,
                         Visibility::Through => false,
-                        Visibility::Unseen => returns > 1,
+                        Visibility::Unseen => returns > 1 && !is_robot(point),
                     });
             if stays {
                 index += 1;

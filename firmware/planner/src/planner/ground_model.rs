@@ -14,17 +14,21 @@
 //!
 //! Units: metres, milliseconds.
 
+use heapless::Vec;
+
 use crate::config::Config;
 use crate::drive::CollisionChecker;
 use crate::drive::side_slope::SlopeDirection;
 use crate::field::local_grid::LocalGrid;
 use crate::field::preference::Preferences;
-use crate::geometry::{Cell, OdomPose, Point, Pose};
+use crate::geometry::{Cell, OdomPose, Point, Pose, RobotFrame};
 use crate::input::Input;
 use crate::map::obstacle_points::ObstaclePoints;
 use crate::map::{Map, Tiles, obstacle_points};
 use crate::path::height_levels::{HeightLevels, LevelCost};
 use crate::roadmap::configuration_space::Footprint;
+use crate::team::hull::Hull;
+use crate::team::peers::{MOST_PEERS, Peers};
 
 use crate::planner::level_scans;
 
@@ -72,13 +76,20 @@ impl<const TILES: usize> GroundModel<TILES> {
         &mut self,
         config: &Config,
         (input, odom): (&Input<'_>, &OdomPose),
+        peers: &Peers,
         map: &mut Map<TILES, SLOTS>,
         preferences: &mut Preferences,
     ) {
         match self {
             Self::Flat(points) => {
-                for (laser, ranges_mm) in level_scans(config, input) {
-                    points.update(config, &odom.0, laser, ranges_mm);
+                let hulls: Vec<Hull, MOST_PEERS> = peers.hidden(input.time_ms).collect();
+                let frame = RobotFrame::of(&odom.0);
+                let is_robot = |point: Point| {
+                    let at = input.pose.to_map(frame.to_robot(point));
+                    hulls.iter().any(|hull| hull.holds(at))
+                };
+                for scan in level_scans(config, input) {
+                    points.update(config, &odom.0, scan, &is_robot);
                 }
             }
             Self::Uneven(levels) => {

@@ -1,7 +1,8 @@
 //! The hulls of the peers: which beams they stop, and which places they take.
 //!
 //! - A beam that ends within a peer's hull carries no information: a peer is never entered into the
-//!   map, and leaves no obstacle points. The hull is grown by what is not known of its place.
+//!   map. Its obstacle points stay only as long as they are in view. The hull is grown by what is
+//!   not known of its place.
 //! - For the drive a peer is points on its outline. A peer that may move takes the circle that it
 //!   needs to turn, and the places of that circle up to where it can stop. If both robots keep out
 //!   of that place of the other, both can stop.
@@ -18,7 +19,7 @@ use crate::geometry::{Point, Pose, RobotFrame};
 use crate::input::INVALID_MM;
 use crate::math;
 use crate::robot::LaserMount;
-use crate::team::peers::{Peer, Peers};
+use crate::team::peers::{MOST_PEERS, Peer, Peers};
 
 /// Growth of a hull for beams: the noise of a range and of a pose, and its rate.
 const GROWTH_M: f32 = 0.1;
@@ -116,7 +117,7 @@ impl Hull {
     }
 
     /// Returns true if a point lies inside.
-    fn holds(&self, point: Point) -> bool {
+    pub(crate) fn holds(&self, point: Point) -> bool {
         let Point { x_m, y_m } = self.frame.to_robot(point);
         x_m <= self.front_m && x_m >= -self.back_m && y_m.abs() <= self.half_width_m
     }
@@ -178,7 +179,7 @@ impl Peers {
             y_m: laser.y_m,
         };
         let (_, cos_pitch) = math::sin_cos(laser.pitch_rad);
-        for hull in self.iter().map(|peer| Hull::hidden(peer, now_ms)) {
+        for hull in self.hidden(now_ms) {
             let centre = frame.to_robot(hull.centre);
             let (dx, dy) = (centre.x_m - from.x_m, centre.y_m - from.y_m);
             let distance_m = math::sqrt(dx * dx + dy * dy);
@@ -212,14 +213,18 @@ impl Peers {
         }
     }
 
+    /// Returns the hulls in which a beam is not used.
+    pub(crate) fn hidden(&self, now_ms: u32) -> impl Iterator<Item = Hull> {
+        let peers = self.iter().take(MOST_PEERS);
+        peers.map(move |peer| Hull::hidden(peer, now_ms))
+    }
+
     /// Returns true if a peer may be in the view of a laser.
     pub(crate) fn may_be_seen(&self, now_ms: u32, pose: &Pose, lasers: &[LaserMount]) -> bool {
         let range_mm = lasers.iter().map(|laser| laser.range_limit_mm).max();
         let range_m = f32::from(range_mm.unwrap_or(0)) * 1e-3;
-        self.iter().any(|peer| {
-            let hull = Hull::hidden(peer, now_ms);
-            hull.centre.distance_m(pose.point()) <= range_m + hull.radius_m()
-        })
+        self.hidden(now_ms)
+            .any(|hull| hull.centre.distance_m(pose.point()) <= range_m + hull.radius_m())
     }
 
     /// Returns the peers whose place is known.

@@ -9,13 +9,14 @@ const ROBOT: RobotShape = RobotShape::PIONEER_3AT;
 const CONFIG: Config = Config::pioneer_3at(Vec::new());
 
 const LASER: LaserMount = LaserMount::level(0.0, 0.4);
+const NOBODY: fn(Point) -> bool = |_| false;
 
 #[test]
 fn a_lone_false_return_is_not_kept() {
     let mut obstacles = ObstaclePoints::new();
     let mut scan = [NO_RETURN_MM; 181];
     scan[90] = 500;
-    obstacles.update(&CONFIG, &Pose::default(), &LASER, &scan);
+    obstacles.update(&CONFIG, &Pose::default(), (&LASER, &scan), NOBODY);
     assert!(obstacles.points().is_empty());
 }
 
@@ -32,16 +33,34 @@ fn thing(bearing: i32, range_mm: u16) -> [u16; 181] {
 fn a_point_is_remembered_behind_the_robot_and_forgotten_when_seen_through() {
     let mut obstacles = ObstaclePoints::new();
     let here = Pose::default();
-    obstacles.update(&CONFIG, &here, &LASER, &thing(0, 800));
+    obstacles.update(&CONFIG, &here, (&LASER, &thing(0, 800)), NOBODY);
     assert!(!obstacles.points().is_empty());
     let turned = Pose {
         yaw_rad: math::PI,
         ..here
     };
-    obstacles.update(&CONFIG, &turned, &LASER, &[NO_RETURN_MM; 181]);
+    obstacles.update(&CONFIG, &turned, (&LASER, &[NO_RETURN_MM; 181]), NOBODY);
     assert!(!obstacles.points().is_empty(), "out of view");
-    obstacles.update(&CONFIG, &here, &LASER, &[NO_RETURN_MM; 181]);
+    obstacles.update(&CONFIG, &here, (&LASER, &[NO_RETURN_MM; 181]), NOBODY);
     assert!(obstacles.points().is_empty(), "seen through");
+}
+
+/// It drives on while nobody looks. In view, its points are as good as all others.
+#[test]
+fn a_point_where_another_robot_is_goes_once_it_is_out_of_view() {
+    let mut obstacles = ObstaclePoints::new();
+    let here = Pose::default();
+    let is_robot = |point: Point| point.x_m > 0.5;
+    for _ in 0..3 {
+        obstacles.update(&CONFIG, &here, (&LASER, &thing(0, 800)), is_robot);
+        assert!(!obstacles.points().is_empty(), "in view");
+    }
+    let turned = Pose {
+        yaw_rad: math::PI,
+        ..here
+    };
+    obstacles.update(&CONFIG, &turned, (&LASER, &[NO_RETURN_MM; 181]), is_robot);
+    assert!(obstacles.points().is_empty());
 }
 
 /// Beams pass over what the hull met.
@@ -52,13 +71,13 @@ fn a_felt_point_stays_until_it_is_out_of_reach() {
     let felt = |x_m| [Point { x_m, y_m: 0.1 }].into_iter();
     obstacles.feel(here.point(), felt(-0.3));
     obstacles.feel(here.point(), felt(0.3));
-    obstacles.update(&CONFIG, &here, &LASER, &[NO_RETURN_MM; 181]);
+    obstacles.update(&CONFIG, &here, (&LASER, &[NO_RETURN_MM; 181]), NOBODY);
     assert!(
         obstacles.points().iter().copied().eq(felt(0.3)),
         "seen through, and felt last"
     );
     let away = Pose { x_m: -1.0, ..here };
-    obstacles.update(&CONFIG, &away, &LASER, &[NO_RETURN_MM; 181]);
+    obstacles.update(&CONFIG, &away, (&LASER, &[NO_RETURN_MM; 181]), NOBODY);
     assert!(obstacles.points().is_empty());
 }
 
@@ -66,15 +85,15 @@ fn a_felt_point_stays_until_it_is_out_of_reach() {
 fn a_hidden_point_stays_and_a_far_one_goes() {
     let mut obstacles = ObstaclePoints::new();
     let here = Pose::default();
-    obstacles.update(&CONFIG, &here, &LASER, &thing(0, 1000));
+    obstacles.update(&CONFIG, &here, (&LASER, &thing(0, 1000)), NOBODY);
     let count = obstacles.points().len();
-    obstacles.update(&CONFIG, &here, &LASER, &thing(0, 500));
+    obstacles.update(&CONFIG, &here, (&LASER, &thing(0, 500)), NOBODY);
     assert!(
         obstacles.points().len() > count,
         "hidden behind the nearer thing"
     );
     let away = Pose { x_m: -2.0, ..here };
-    obstacles.update(&CONFIG, &away, &LASER, &[INVALID_MM; 181]);
+    obstacles.update(&CONFIG, &away, (&LASER, &[INVALID_MM; 181]), NOBODY);
     assert!(obstacles.points().is_empty());
 }
 
@@ -86,7 +105,12 @@ fn a_wall_is_thinned_and_the_store_never_overflows() {
             yaw_rad: k as f32 * 0.7,
             ..Pose::default()
         };
-        obstacles.update(&CONFIG, &pose, &LASER, &[400 + (k % 7) as u16 * 100; 181]);
+        obstacles.update(
+            &CONFIG,
+            &pose,
+            (&LASER, &[400 + (k % 7) as u16 * 100; 181]),
+            NOBODY,
+        );
         assert!(obstacles.points().len() <= MAX_POINTS);
     }
 }
