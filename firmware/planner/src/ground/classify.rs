@@ -60,13 +60,11 @@ impl GapLimits {
 /// Greatest rises from a cell near by to a cell that is free, in steps of a height.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RiseLimits<'a> {
-    /// An edge, on level ground.
-    pub(super) edge: i32,
-    /// The steepest slope from the next cell.
+    /// An edge from the next cell.
     pub(super) one: i32,
-    /// The steepest slope from two cells away along an axis.
+    /// An edge from two cells away along an axis.
     pub(super) two: i32,
-    /// The steepest slope from two cells away along both axes.
+    /// An edge from two cells away along both axes.
     pub(super) two_corner: i32,
     /// A slope over four cells.
     pub(super) four: i32,
@@ -86,11 +84,11 @@ impl<'a> RiseLimits<'a> {
     pub(crate) fn new(ground: &UnevenGround, tuning: &'a GroundTuning) -> Self {
         let steps = |metres: f32| i32::from(I7F9::saturating_from_num(metres).to_bits());
         let rise = |cells: f32| ground.climb * cells * CELL_M;
+        let edge = ground.step_m + tuning.mean_noise_m;
         Self {
-            edge: steps(ground.step_m + tuning.mean_noise_m),
-            one: steps(rise(1.0)),
-            two: steps(rise(2.0)),
-            two_corner: steps(rise(2.83)),
+            one: steps(tuning.one_cell_climb_share * rise(1.0) + edge),
+            two: steps(tuning.two_cells_climb_share * rise(2.0) + edge),
+            two_corner: steps(tuning.two_cells_climb_share * rise(2.83) + edge),
             four: steps(rise(4.0) + tuning.mean_noise_m),
             half: steps(tuning.half_share * rise(4.0)),
             bridge: steps(tuning.bridge_share * rise(4.0)),

@@ -85,8 +85,8 @@ impl Sbpf {
     }
 
     /// Takes over what the map knows, and computes the forces; called in every step. `rivals` are
-    /// the robots that may drive. Returns the status if the exploration ends. It is not inlined, so that other strategies do not pay for
-    /// its stack.
+    /// the robots that may drive. Returns the status if the exploration ends. It is not inlined, so
+    /// that other strategies do not pay for its stack.
     #[inline(never)]
     pub(super) fn note_map<const TILES: usize, const SLOTS: usize>(
         &mut self,
