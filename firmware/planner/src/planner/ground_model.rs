@@ -89,7 +89,7 @@ impl<const TILES: usize> GroundModel<TILES> {
                     hulls.iter().any(|hull| hull.holds(at))
                 };
                 for scan in level_scans(config, input) {
-                    points.update(config, &odom.0, scan, &is_robot);
+                    points.update(config, &odom.0, scan, is_robot);
                 }
             }
             Self::Uneven(levels) => {
