@@ -253,7 +253,7 @@ fn forces_are_the_naive_sums() {
             y_m: at.1 as f32 * levels.cell_m(),
         });
         let twist = f64::from(TUNING.twist_rad);
-        // One more robot every seven rounds, at the same place as this one and elsewhere.
+        // One more robot every seven rounds.
         let claims = Claims {
             rivals: (0..round / 7)
                 .map(|k| Place {
