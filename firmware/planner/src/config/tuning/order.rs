@@ -11,8 +11,8 @@ tuning! {
         /// Way that counts as much as turning about: stopping from 0.7 m/s and going on costs 2.3
         /// s, which is 1.6 m, and half a turn another 2.2 m.
         turn_m: f32 = 3.8, 0.0..=20.0, "m";
-        /// Factor of the gain of a goal that another robot of the team has claimed; 1 for no
-        /// claims.
+        /// Factor of the gain of a goal that another robot of the team has claimed, and weight of
+        /// a cell of `sbpf` and `esbpf` that another robot is nearer to; 1 for no claims.
         claimed: f32 = 0.2, 0.0..=1.0, "1";
         /// Factor of the present goal's gain: another one is taken only if it is better by as much.
         keep: f32 = 1.3, 1.0..=10.0, "1";

@@ -91,3 +91,27 @@ impl Frontier {
         RoundOutcome::Unsure
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Cell, Point};
+
+    /// Every chance opens the passages, so each one is blocked again.
+    #[test]
+    fn a_further_chance_needs_a_move_since_the_last_one() {
+        let mut frontier = Frontier::new();
+        let mut tries = |x_m: f32| {
+            frontier.blocked.block(Cell { x: 10, y: 0 });
+            frontier
+                .progress
+                .note_motion(Point { x_m, y_m: 0.0 }, 1_000);
+            frontier.try_again().is_some()
+        };
+        assert!(tries(0.0), "the second chance needs no move");
+        assert!(!tries(0.0) && !tries(0.1));
+        assert!(tries(1.0) && !tries(1.0));
+        assert!(tries(2.0));
+        assert!(!tries(3.0), "all are spent");
+    }
+}
