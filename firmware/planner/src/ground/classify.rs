@@ -62,10 +62,8 @@ impl GapLimits {
 pub(crate) struct RiseLimits<'a> {
     /// An edge from the next cell.
     pub(super) one: i32,
-    /// An edge from two cells away along an axis.
+    /// An edge from two cells away.
     pub(super) two: i32,
-    /// An edge from two cells away along both axes.
-    pub(super) two_corner: i32,
     /// A slope over four cells.
     pub(super) four: i32,
     /// Least rise over each half of those four cells.
@@ -84,11 +82,12 @@ impl<'a> RiseLimits<'a> {
     pub(crate) fn new(ground: &UnevenGround, tuning: &'a GroundTuning) -> Self {
         let steps = |metres: f32| i32::from(I7F9::saturating_from_num(metres).to_bits());
         let rise = |cells: f32| ground.climb * cells * CELL_M;
-        let edge = ground.step_m + tuning.mean_noise_m;
+        let edge = |cells: f32| {
+            steps(tuning.edge_climb_share * rise(cells) + ground.step_m + tuning.mean_noise_m)
+        };
         Self {
-            one: steps(tuning.one_cell_climb_share * rise(1.0) + edge),
-            two: steps(tuning.two_cells_climb_share * rise(2.0) + edge),
-            two_corner: steps(tuning.two_cells_climb_share * rise(2.83) + edge),
+            one: edge(1.0),
+            two: edge(2.0),
             four: steps(rise(4.0) + tuning.mean_noise_m),
             half: steps(tuning.half_share * rise(4.0)),
             bridge: steps(tuning.bridge_share * rise(4.0)),

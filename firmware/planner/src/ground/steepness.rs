@@ -1,10 +1,9 @@
 //! Steepness: decides if a measured cell lies too high over the cells near it.
 //!
 //! ```text
-//! edge   h − h(1) > climb / 4 + step + noise        for a cell next to it
-//!        h − h(2) > climb + step + noise            two cells away along an axis
-//!        h − h(2, 2) > 1.4 climb + step + noise     two cells away along both axes
-//!        h − h(4) > 4 climb + noise                 along an axis, if each half rises by > half
+//! edge   h − h(1) > climb / 4 + step + noise    along an axis
+//!        h − h(2) > climb / 2 + step + noise    along an axis
+//!        h − h(4) > 4 climb + noise             along an axis, if each half rises by > half
 //! slope  |a + b| > 4 climb + noise,  |a| > half,  |b| > half
 //!        a = (h(2, 0) − h, h(0, 2) − h),  b = (h − h(−2, 0), h − h(0, −2))
 //! ```
@@ -16,6 +15,15 @@
 //! then the gradient's magnitude, whatever its direction. An edge lies in one half only, so it is
 //! no slope. No error of a cell enters both axes, so a diagonal is as accurate as an axis. The last
 //! rule for edges finds the upper end of an edge that the beams smeared over several cells.
+//!
+//! A cell that holds an edge has a height between its two sides, so the whole edge shows over two
+//! cells only. An allowance of `climb` there let the robot creep against edges of 12 cm. The case
+//! `drift::full::drift` of the test `terrain`, nine worlds, three seeds:
+//!
+//! | over two cells | true odometry: seen %, touches | noisy: seen %, error m, falls |
+//! | --- | --- | --- |
+//! | `climb`, and 1.4 `climb` along both axes | 99.58, 2 | 99.65, 0.71, 1 |
+//! | `climb / 2` | 99.61, 0 | 99.57, 0.44, 2 |
 //!
 //! Departs from \[Maffei20, III-B\]: the paper compares a cell only with the mean of the kernel.
 //!
@@ -29,8 +37,6 @@ use crate::ground::elevation::Heights;
 const ONE: [(i32, i32); 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
 /// Offsets of the cells two away along an axis.
 const TWO: [(i32, i32); 4] = [(2, 0), (0, 2), (-2, 0), (0, -2)];
-/// Offsets of the cells two away along both axes.
-const CORNERS: [(i32, i32); 4] = [(2, 2), (-2, 2), (-2, -2), (2, -2)];
 
 /// The way in which a cell lies too high.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,9 +68,6 @@ pub(super) fn steepness(
         .into_iter()
         .any(|offset| is_edge(fall(offset), limits.one))
         || two.into_iter().any(|fall| is_edge(fall, limits.two))
-        || CORNERS
-            .into_iter()
-            .any(|offset| is_edge(fall(offset), limits.two_corner))
         || two
             .into_iter()
             .zip(TWO)
@@ -218,6 +221,23 @@ mod tests {
         // The corner of a terrace falls along both axes.
         let corner = |at: Point, _| f32::from(u8::from(at.x_m > 0.0 && at.y_m > 0.0)) * 0.07;
         assert_eq!(obstacles(&classes(corner)), 0);
+    }
+
+    #[test]
+    fn an_edge_within_a_cell_is_an_obstacle_and_a_low_one_on_a_slope_is_not() {
+        let within = |height_m: f32, grade: f32| {
+            obstacles(&classes(|at, _| {
+                let edge_m = match at.cell().x {
+                    ..0 => 0.0,
+                    0 => 0.5 * height_m,
+                    _ => height_m,
+                };
+                edge_m + grade * at.x_m
+            }))
+        };
+        assert_eq!(within(0.12, 0.0), 40, "the first cell of its upper side");
+        assert_eq!(within(0.07, 0.0), 0);
+        assert_eq!(within(0.05, 0.2), 0, "a slope goes on above it");
     }
 
     #[test]

@@ -90,10 +90,8 @@ tuning! {
         /// Error of the difference of two mean heights: two standard deviations, for means of four
         /// heights with a standard deviation of 0.01 m each.
         mean_noise_m: f32 = 0.015, 0.0..=0.05, "m";
-        /// Share of the climb that an edge to the next cell may add to the step.
-        one_cell_climb_share: f32 = 0.25, 0.0..=1.0, "1";
-        /// Share of the climb that an edge to a cell two cells away may add to the step.
-        two_cells_climb_share: f32 = 0.5, 0.0..=1.0, "1";
+        /// Share of the climb that an edge may add to the step.
+        edge_climb_share: f32 = 0.25, 0.0..=1.0, "1";
         /// Share of the greatest rise over four cells that each half must have, for a slope or an
         /// edge.
         half_share: f32 = 0.3, 0.1..=0.7, "1";
