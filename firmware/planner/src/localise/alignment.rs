@@ -11,6 +11,19 @@
 //! ours: the cells of a wall that few beams have met are points, and would hold the scan along the
 //! wall as well.
 //!
+//! A scan enters the map with the error of its pose, and the next one is matched with it. So the
+//! errors of beams do not average out, and a beam's information is less than the width of its cell
+//! says. With less still, the map drifts less in simulated buildings and more in recorded ones.
+//! Mean and greatest error of the runs, metres. Simulated: noisy odometry in eight worlds.
+//! Recorded: `freiburg-079` with added noise once and four times, ten seeds each. Recovered: the
+//! robots of `disturbed::full`.
+//!
+//! | `beam_information` | simulated | recorded, once | four times | recovered |
+//! | --- | --- | --- | --- | --- |
+//! | 6 | 0.184, 0.91 | 0.044, 0.045 | 0.044, 0.048 | 49 of 50 |
+//! | 5 | 0.151, 1.00 | 0.045, 0.048 | 0.045, 0.049 | 47 of 50 |
+//! | 3 | 0.119, 0.35 | 0.045, 0.046 | 0.060, 0.130 | - |
+//!
 //! The last term is odometry: it is all that holds a direction that no beam observes. Its weight v
 //! falls where the beams agree on a pose far from it, because wheels slip. An unobserved direction
 //! is taken out of H and b, because the little that is there is the map's own grain:
