@@ -82,7 +82,7 @@ impl<const TILES: usize> GroundModel<TILES> {
     ) {
         match self {
             Self::Flat(points) => {
-                let hulls: Vec<Hull, MOST_PEERS> = peers.hidden(input.time_ms).collect();
+                let hulls: Vec<Hull, MOST_PEERS> = peers.seen(input.time_ms).collect();
                 let frame = RobotFrame::of(&odom.0);
                 let is_robot = |point: Point| {
                     let at = input.pose.to_map(frame.to_robot(point));

@@ -1,8 +1,9 @@
 //! The hulls of the peers: which beams they stop, and which places they take.
 //!
 //! - A beam that ends within a peer's hull carries no information: a peer is never entered into the
-//!   map. Its obstacle points stay only as long as they are in view. The hull is grown by what is
-//!   not known of its place.
+//!   map. The hull is grown by what is not known of its place. In a large place a wall may end as
+//!   many beams as the peer, so things that are larger than the peer count as the map's.
+//! - The obstacle points of a peer whose place is known stay only as long as they are in view.
 //! - For the drive a peer is points on its outline. A peer that may move takes the circle that it
 //!   needs to turn, and the places of that circle up to where it can stop. If both robots keep out
 //!   of that place of the other, both can stop.
@@ -14,17 +15,21 @@
 //!
 //! Units: metres, seconds, radians.
 
+use heapless::Vec;
+
 use crate::config::Config;
 use crate::geometry::{Point, Pose, RobotFrame};
 use crate::input::INVALID_MM;
 use crate::math;
-use crate::robot::LaserMount;
-use crate::team::peers::{MOST_PEERS, Peer, Peers};
+use crate::robot::{LaserMount, MAX_BEAMS};
+use crate::team::peers::{Peer, Peers};
 
 /// Growth of a hull for beams: the noise of a range and of a pose, and its rate.
 const GROWTH_M: f32 = 0.1;
 const GROWTH_MPS: f32 = 0.3;
 const MOST_GROWING_S: f32 = 2.0;
+/// Ends of neighbouring beams that are farther apart lie on two things, metres.
+pub(super) const GAP_M: f32 = 0.25;
 /// Greatest motion of a peer that its last beacon could not tell, metres: it may accelerate for two
 /// periods.
 const LATENCY_M: f32 = 0.025;
@@ -89,12 +94,14 @@ impl Hull {
         }
     }
 
-    /// Returns the hull in which a beam is not used.
-    fn hidden(peer: &Peer, now_ms: u32) -> Self {
+    /// Returns the hull in which a beam is not used, and the size of a thing there that may be the
+    /// peer, metres.
+    fn hidden(peer: &Peer, now_ms: u32) -> (Self, f32) {
         let age_s = peer.silence_ms(now_ms) as f32 * 1e-3;
         let sd_m = f32::from(peer.beacon.sd_cm) * 0.01;
-        let grown_m = 2.0 * sd_m + GROWTH_M + GROWTH_MPS * age_s.min(MOST_GROWING_S);
-        Self::of(peer, now_ms, grown_m)
+        let grown_m = GROWTH_M + GROWTH_MPS * age_s.min(MOST_GROWING_S);
+        let size_m = 2.0 * Self::of(peer, now_ms, grown_m).radius_m();
+        (Self::of(peer, now_ms, 2.0 * sd_m + grown_m), size_m)
     }
 
     /// Returns the place that a peer takes until it can stand.
@@ -171,7 +178,9 @@ fn side(length_m: f32) -> impl Iterator<Item = f32> {
 }
 
 impl Peers {
-    /// Makes the beams of a scan that end within a peer invalid.
+    /// Makes the beams of a scan that end on a peer invalid. Not inlined: the ends lie on the stack
+    /// only here.
+    #[inline(never)]
     pub(crate) fn hide(&self, now_ms: u32, pose: &Pose, laser: &LaserMount, ranges_mm: &mut [u16]) {
         let frame = RobotFrame::of(pose);
         let from = Point {
@@ -179,7 +188,7 @@ impl Peers {
             y_m: laser.y_m,
         };
         let (_, cos_pitch) = math::sin_cos(laser.pitch_rad);
-        for hull in self.hidden(now_ms) {
+        for (hull, size_m) in self.iter().map(|peer| Hull::hidden(peer, now_ms)) {
             let centre = frame.to_robot(hull.centre);
             let (dx, dy) = (centre.x_m - from.x_m, centre.y_m - from.y_m);
             let distance_m = math::sqrt(dx * dx + dy * dy);
@@ -191,7 +200,7 @@ impl Peers {
             } else {
                 math::PI
             };
-            for (number, range_mm) in ranges_mm.iter_mut().enumerate() {
+            let end = |(number, range_mm): (usize, &u16)| {
                 let beam_rad = number as f32 * laser.bearing_step_rad;
                 let range_m = f32::from(*range_mm) * 1e-3;
                 let may_end = *range_mm != INVALID_MM
@@ -199,31 +208,42 @@ impl Peers {
                     && range_m <= distance_m + radius_m
                     && math::wrap(beam_rad - bearing_rad).abs() <= half_rad;
                 if !may_end {
-                    continue;
+                    return None;
                 }
                 let (sin, cos) = math::sin_cos(laser.first_bearing_rad + beam_rad);
                 let end = Point {
                     x_m: from.x_m + range_m * cos * cos_pitch,
                     y_m: from.y_m + range_m * sin,
                 };
-                if hull.holds(frame.to_map(end)) {
-                    *range_mm = INVALID_MM;
+                hull.holds(frame.to_map(end)).then_some((number, end))
+            };
+            let ends = ranges_mm.iter().enumerate().filter_map(end);
+            let ends: Vec<(usize, Point), { MAX_BEAMS as usize }> =
+                ends.take(MAX_BEAMS.into()).collect();
+            for thing in ends.chunk_by(|(_, a), (_, b)| a.distance_m(*b) <= GAP_M) {
+                let extent = thing.first().zip(thing.last());
+                let extent_m = extent.map_or(0.0, |((_, a), (_, b))| a.distance_m(*b));
+                for (number, _) in thing.iter().filter(|_| extent_m <= size_m) {
+                    if let Some(range_mm) = ranges_mm.get_mut(*number) {
+                        *range_mm = INVALID_MM;
+                    }
                 }
             }
         }
     }
 
-    /// Returns the hulls in which a beam is not used.
-    pub(crate) fn hidden(&self, now_ms: u32) -> impl Iterator<Item = Hull> {
-        let peers = self.iter().take(MOST_PEERS);
-        peers.map(move |peer| Hull::hidden(peer, now_ms))
+    /// Returns the hulls of the peers whose place is known, as a beam sees them.
+    pub(crate) fn seen(&self, now_ms: u32) -> impl Iterator<Item = Hull> {
+        self.placed().map(move |peer| Hull::hidden(peer, now_ms).0)
     }
 
     /// Returns true if a peer may be in the view of a laser.
     pub(crate) fn may_be_seen(&self, now_ms: u32, pose: &Pose, lasers: &[LaserMount]) -> bool {
         let range_mm = lasers.iter().map(|laser| laser.range_limit_mm).max();
         let range_m = f32::from(range_mm.unwrap_or(0)) * 1e-3;
-        self.hidden(now_ms)
+        let hulls = self.iter().map(|peer| Hull::hidden(peer, now_ms));
+        hulls
+            .map(|(hull, _)| hull)
             .any(|hull| hull.centre.distance_m(pose.point()) <= range_m + hull.radius_m())
     }
 
@@ -267,8 +287,14 @@ mod tests {
 
     /// A peer of 0.52 m × 0.50 m.
     fn peers(x_m: f32, y_m: f32, speed_mps: f32) -> Peers {
+        peers_known_to(0, x_m, y_m, speed_mps)
+    }
+
+    /// The same, with the standard deviation of its place.
+    fn peers_known_to(sd_cm: u8, x_m: f32, y_m: f32, speed_mps: f32) -> Peers {
         let beacon = Beacon {
             half_cm: (26, 25),
+            sd_cm,
             velocity: Twist {
                 linear_mps: speed_mps,
                 angular_radps: 0.0,
@@ -310,6 +336,20 @@ mod tests {
             hidden(&peers, 1_400, 2_000).len() > 20,
             "grown after a silence"
         );
+    }
+
+    /// With a start that is known to 0.3 m and 5°, a peer 15 m from it may be anywhere in the room.
+    #[test]
+    fn a_wall_where_a_peer_may_be_is_no_peer() {
+        let peers = peers_known_to(130, 2.0, 0.0, 0.0);
+        assert_eq!(hidden(&peers, 2_000, 0), NONE);
+        // A robot stands before the wall.
+        let mut ranges_mm = [2_000; 181];
+        ranges_mm[60..80].fill(1_500);
+        peers.hide(0, &Pose::default(), &LASER, &mut ranges_mm);
+        let is_hidden = |range_mm: &u16| *range_mm == INVALID_MM;
+        assert!(ranges_mm[60..80].iter().all(is_hidden));
+        assert_eq!(ranges_mm.into_iter().filter(is_hidden).count(), 20);
     }
 
     #[test]

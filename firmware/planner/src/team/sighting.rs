@@ -28,13 +28,12 @@ use crate::map::neighbourhood::Neighbourhood;
 use crate::math;
 use crate::robot::MAX_BEAMS;
 use crate::team::Team;
+use crate::team::hull::GAP_M;
 use crate::team::peers::Peer;
 
 /// Standard deviation of a beam's end on a hull: noise of the range, of the beacon's pose, and of
 /// the hull, which is said in centimetres.
 const SIGMA_M: f32 = 0.05;
-/// Ends of neighbouring beams that are farther apart lie on two things, metres.
-const GAP_M: f32 = 0.25;
 /// Beams whose errors count as independent.
 const INDEPENDENT: f32 = 4.0;
 /// Fewest beams of a sighting.
