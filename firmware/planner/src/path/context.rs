@@ -56,6 +56,8 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) waits_for_peers: bool,
     /// True if the robot can go back along its track through a blocked passage.
     pub(crate) came_through_blocked: bool,
+    /// True if every opening was tried before: it is worth no more than what it shows.
+    pub(crate) openings_were_tried: bool,
 }
 
 impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {

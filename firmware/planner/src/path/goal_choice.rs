@@ -9,7 +9,7 @@
 //! [`crate::path::height_levels`] and of the user's own order. The present goal's gain counts more,
 //! so the robot keeps it until another one is clearly better. What another robot claims counts less
 //! ([`crate::path::claims`]). A goal is *worth* its trip if G ≥ worth · max(t, 1 m), if the robot
-//! fits through an opening there ([`View::is_open`]), or together with others
+//! fits through an opening there that was not tried ([`View::is_open`]), or together with others
 //! ([`crate::path::shared_trip`]).
 //!
 //! Frontier cells near each other are one *candidate*: the nearest by path stands for them. One
@@ -253,7 +253,9 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
             return None;
         }
         let shares_trip = self.present.is_some_and(|present| present.shares_trip);
-        if is_worth(gain_m2, trip_m, self.worth) || view.is_open(self.context.footprint) {
+        let tried = self.context.openings_were_tried;
+        let promises = || !tried && view.is_open(self.context.footprint);
+        if is_worth(gain_m2, trip_m, self.worth) || promises() {
             return Some((utility, false));
         }
         // A trip that was worth it goes on as long as there is something to see at its goal.

@@ -53,6 +53,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         team: state.team.is_member().then_some(&state.team),
         waits_for_peers,
         came_through_blocked,
+        openings_were_tried: state.strategy.frontier.has_further_chance(),
     };
     let Some(outcome) = state.strategy.advance(context, scratch) else {
         return false;

@@ -3,7 +3,7 @@
 //! A place is *open* if the robot's footprint passes from it to unexplored cells, and on through
 //! unexplored cells to the edge of the square that the gain counts. The first part of the way, also
 //! over free cells, may reach half as far. How much is unexplored beyond the edge cannot be told,
-//! so an open place is worth any trip.
+//! so an open place is worth any trip until it was tried.
 //!
 //! A straight line does not do: none leads through a door as narrow as the robot, and `frontier`
 //! called itself *explored* with whole wings left behind such doors. Means of 58 runs in built-in

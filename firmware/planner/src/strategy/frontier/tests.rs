@@ -95,6 +95,7 @@ struct Scene {
     order: Order,
     yaw_rad: f32,
     came_through_blocked: bool,
+    openings_were_tried: bool,
 }
 
 impl Scene {
@@ -113,6 +114,7 @@ impl Scene {
             order: Order::Nearest,
             yaw_rad: 0.0,
             came_through_blocked: false,
+            openings_were_tried: false,
         }
     }
 
@@ -142,6 +144,7 @@ impl Scene {
             team: None,
             waits_for_peers: false,
             came_through_blocked: self.came_through_blocked,
+            openings_were_tried: self.openings_were_tried,
         }
     }
 
@@ -188,6 +191,22 @@ fn a_robot_that_only_looks_goes_on_once_it_has_moved() {
     let aside = Point { x_m: 2.0, y_m: 0.0 };
     frontier.progress.note_motion(aside, 1_000);
     assert!(is_at(next(&mut scene, &mut frontier, None), ENDS[1]));
+}
+
+/// What the ends of the corridor show is worth 0.25 m²/m, and not 100 m²/m.
+#[test]
+fn an_opening_is_worth_any_trip_until_it_was_tried() {
+    for (worth, were_tried, goes) in [
+        (100.0, false, true),
+        (100.0, true, false),
+        (0.25, true, true),
+    ] {
+        let mut scene = by_gain(worth, 0.0);
+        scene.openings_were_tried = were_tried;
+        let mut frontier = Frontier::new();
+        scene.replan(&mut frontier, None, 64 * 8);
+        assert_eq!(!frontier.path().is_empty(), goes, "{worth}, {were_tried}");
+    }
 }
 
 /// The passage is 0.6 m to the east of the robot.

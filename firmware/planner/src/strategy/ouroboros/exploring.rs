@@ -155,6 +155,7 @@ impl Exploration {
                 team: None,
                 waits_for_peers: false,
                 came_through_blocked: false,
+                openings_were_tried: false,
             };
             let outcome = self
                 .strategy

@@ -174,6 +174,7 @@ impl Scene {
             team: None,
             waits_for_peers: false,
             came_through_blocked: false,
+            openings_were_tried: false,
         }
     }
 
