@@ -19,7 +19,15 @@
 //!   reverses, the window holds only the strip that it stood on. A confirmed possible drop does
 //!   override it: a hole's far wall and the foot of a kerb are measured as ground from the other
 //!   side.
-//! - If the attitude is noisy, a possible drop is worth no more than a rim.
+//!
+//! A possible drop is confirmed under a noisy attitude too. The robot may come back with a pose that
+//! is 0.5 m off, and the map then calls the hole's rim free. Nine uneven worlds with corrected noisy
+//! odometry, three seeds each (`terrain -- --ignored drift::full::drift`):
+//!
+//! | a possible drop of a noisy attitude | falls | seen %: mean, least |
+//! | --- | --- | --- |
+//! | is inferred | 2 | 99.57, 97.78 |
+//! | is confirmed | 0 | 99.68, 99.17 |
 //!
 //! Departs from \[Maffei20, III-B\]: the paper marks all undetected ground on the ray to the robot.
 //!
@@ -47,12 +55,7 @@ pub(super) fn infer_drops(
     for cell in all.clone().map(near) {
         let heights = elevation.read();
         if heights.is_possible_drop(cell) && !spans_gap(&heights, &limits, cell, slack_m) {
-            // Errors of the attitude make possible drops of ground that was measured well before.
-            if slack_m > 0.0 {
-                elevation.infer_drop(cell);
-            } else {
-                elevation.confirm_drop(cell);
-            }
+            elevation.confirm_drop(cell);
         }
     }
     // Forwards and backwards, so that a rim continues in both directions.
@@ -239,8 +242,9 @@ mod tests {
     }
 
     #[test]
-    fn a_possible_drop_of_a_noisy_attitude_is_only_inferred() {
-        assert_eq!(inferred_behind(0.0), (true, false));
-        assert_eq!(inferred_behind(0.05), (true, true));
+    fn a_possible_drop_is_confirmed_whatever_the_noise_of_the_attitude() {
+        for slack_m in [0.0, 0.05] {
+            assert_eq!(inferred_behind(slack_m), (true, false), "{slack_m} m");
+        }
     }
 }
