@@ -20,9 +20,9 @@
 //!   override it: a hole's far wall and the foot of a kerb are measured as ground from the other
 //!   side.
 //!
-//! A possible drop is confirmed under a noisy attitude too. The robot may come back with a pose that
-//! is 0.5 m off, and the map then calls the hole's rim free. Nine uneven worlds with corrected noisy
-//! odometry, three seeds each (`terrain -- --ignored drift::full::drift`):
+//! A possible drop is confirmed under a noisy attitude too. The robot may come back with a pose
+//! that is 0.5 m off, and the map then calls the hole's rim free. Nine uneven worlds with corrected
+//! noisy odometry, three seeds each (`terrain -- --ignored drift::full::drift`):
 //!
 //! | a possible drop of a noisy attitude | falls | seen %: mean, least |
 //! | --- | --- | --- |
