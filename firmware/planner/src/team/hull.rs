@@ -1,35 +1,21 @@
-//! The hulls of the peers: which beams they stop, and which places they take.
+//! The hulls of the peers: which places they take. [`super::hidden_beams`] says which beams they
+//! stop.
 //!
-//! - A beam that ends within a peer's hull carries no information: a peer is never entered into the
-//!   map. The hull is grown by what is not known of its place. In a large place a wall may end as
-//!   many beams as the peer, so things that are larger than the peer count as the map's.
-//! - The obstacle points of a peer whose place is known stay only as long as they are in view.
 //! - For the drive a peer is points on its outline. A peer that may move takes the circle that it
 //!   needs to turn, and the places of that circle up to where it can stop. If both robots keep out
 //!   of that place of the other, both can stop.
 //!
 //! ```text
-//! grown by   2 sd + (0.1 + 0.3 · age in s, at most 2 s) m
 //! stops in   |v| · age + v² / 2a
 //! ```
 //!
 //! Units: metres, seconds, radians.
 
-use heapless::Vec;
-
 use crate::config::Config;
 use crate::geometry::{Point, Pose, RobotFrame};
-use crate::input::INVALID_MM;
 use crate::math;
-use crate::robot::{LaserMount, MAX_BEAMS};
 use crate::team::peers::{Peer, Peers};
 
-/// Growth of a hull for beams: the noise of a range and of a pose, and its rate.
-const GROWTH_M: f32 = 0.1;
-const GROWTH_MPS: f32 = 0.3;
-const MOST_GROWING_S: f32 = 2.0;
-/// Ends of neighbouring beams that are farther apart lie on two things, metres.
-pub(super) const GAP_M: f32 = 0.25;
 /// Greatest motion of a peer that its last beacon could not tell, metres: it may accelerate for two
 /// periods.
 const LATENCY_M: f32 = 0.025;
@@ -48,7 +34,7 @@ const MOST_SIDE_POINTS: u32 = 12;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hull {
     frame: RobotFrame,
-    centre: Point,
+    pub(super) centre: Point,
     /// Extents ahead of the centre, behind it, and to each side.
     front_m: f32,
     back_m: f32,
@@ -59,7 +45,7 @@ pub(crate) struct Hull {
 
 impl Hull {
     /// Returns a peer's hull, grown on all sides.
-    fn of(peer: &Peer, now_ms: u32, grown_m: f32) -> Self {
+    pub(super) fn of(peer: &Peer, now_ms: u32, grown_m: f32) -> Self {
         let pose = peer.pose(now_ms);
         let (length, width) = peer.beacon.half_cm;
         let half = |cm: u8| f32::from(cm) * 0.01 + grown_m;
@@ -94,16 +80,6 @@ impl Hull {
         }
     }
 
-    /// Returns the hull in which a beam is not used, and the size of a thing there that may be the
-    /// peer, metres.
-    fn hidden(peer: &Peer, now_ms: u32) -> (Self, f32) {
-        let age_s = peer.silence_ms(now_ms) as f32 * 1e-3;
-        let sd_m = f32::from(peer.beacon.sd_cm) * 0.01;
-        let grown_m = GROWTH_M + GROWTH_MPS * age_s.min(MOST_GROWING_S);
-        let size_m = 2.0 * Self::of(peer, now_ms, grown_m).radius_m();
-        (Self::of(peer, now_ms, 2.0 * sd_m + grown_m), size_m)
-    }
-
     /// Returns the place that a peer takes until it can stand.
     fn swept(peer: &Peer, now_ms: u32, config: &Config) -> Self {
         let mut hull = Self::turning(peer, now_ms);
@@ -130,7 +106,7 @@ impl Hull {
     }
 
     /// Returns the radius of a circle around the centre that holds the hull.
-    fn radius_m(&self) -> f32 {
+    pub(super) fn radius_m(&self) -> f32 {
         let along_m = self.front_m.max(self.back_m);
         math::sqrt(along_m * along_m + self.half_width_m * self.half_width_m)
     }
@@ -178,77 +154,8 @@ fn side(length_m: f32) -> impl Iterator<Item = f32> {
 }
 
 impl Peers {
-    /// Makes the beams of a scan that end on a peer invalid. Not inlined: the ends lie on the stack
-    /// only here.
-    #[inline(never)]
-    pub(crate) fn hide(&self, now_ms: u32, pose: &Pose, laser: &LaserMount, ranges_mm: &mut [u16]) {
-        let frame = RobotFrame::of(pose);
-        let from = Point {
-            x_m: laser.x_m,
-            y_m: laser.y_m,
-        };
-        let (_, cos_pitch) = math::sin_cos(laser.pitch_rad);
-        for (hull, size_m) in self.iter().map(|peer| Hull::hidden(peer, now_ms)) {
-            let centre = frame.to_robot(hull.centre);
-            let (dx, dy) = (centre.x_m - from.x_m, centre.y_m - from.y_m);
-            let distance_m = math::sqrt(dx * dx + dy * dy);
-            let radius_m = hull.radius_m();
-            let bearing_rad = math::wrap(math::atan2(dy, dx) - laser.first_bearing_rad);
-            // The arc sine of x is at most π/2 · x.
-            let half_rad = if distance_m > radius_m {
-                0.5 * math::PI * radius_m / distance_m
-            } else {
-                math::PI
-            };
-            let end = |(number, range_mm): (usize, &u16)| {
-                let beam_rad = number as f32 * laser.bearing_step_rad;
-                let range_m = f32::from(*range_mm) * 1e-3;
-                let may_end = *range_mm != INVALID_MM
-                    && *range_mm < laser.range_limit_mm
-                    && range_m <= distance_m + radius_m
-                    && math::wrap(beam_rad - bearing_rad).abs() <= half_rad;
-                if !may_end {
-                    return None;
-                }
-                let (sin, cos) = math::sin_cos(laser.first_bearing_rad + beam_rad);
-                let end = Point {
-                    x_m: from.x_m + range_m * cos * cos_pitch,
-                    y_m: from.y_m + range_m * sin,
-                };
-                hull.holds(frame.to_map(end)).then_some((number, end))
-            };
-            let ends = ranges_mm.iter().enumerate().filter_map(end);
-            let ends: Vec<(usize, Point), { MAX_BEAMS as usize }> =
-                ends.take(MAX_BEAMS.into()).collect();
-            for thing in ends.chunk_by(|(_, a), (_, b)| a.distance_m(*b) <= GAP_M) {
-                let extent = thing.first().zip(thing.last());
-                let extent_m = extent.map_or(0.0, |((_, a), (_, b))| a.distance_m(*b));
-                for (number, _) in thing.iter().filter(|_| extent_m <= size_m) {
-                    if let Some(range_mm) = ranges_mm.get_mut(*number) {
-                        *range_mm = INVALID_MM;
-                    }
-                }
-            }
-        }
-    }
-
-    /// Returns the hulls of the peers whose place is known, as a beam sees them.
-    pub(crate) fn seen(&self, now_ms: u32) -> impl Iterator<Item = Hull> {
-        self.placed().map(move |peer| Hull::hidden(peer, now_ms).0)
-    }
-
-    /// Returns true if a peer may be in the view of a laser.
-    pub(crate) fn may_be_seen(&self, now_ms: u32, pose: &Pose, lasers: &[LaserMount]) -> bool {
-        let range_mm = lasers.iter().map(|laser| laser.range_limit_mm).max();
-        let range_m = f32::from(range_mm.unwrap_or(0)) * 1e-3;
-        let hulls = self.iter().map(|peer| Hull::hidden(peer, now_ms));
-        hulls
-            .map(|(hull, _)| hull)
-            .any(|hull| hull.centre.distance_m(pose.point()) <= range_m + hull.radius_m())
-    }
-
     /// Returns the peers whose place is known.
-    fn placed(&self) -> impl Iterator<Item = &Peer> {
+    pub(super) fn placed(&self) -> impl Iterator<Item = &Peer> {
         self.iter().filter(|peer| peer.beacon.sd_cm <= MOST_SD_CM)
     }
 
@@ -273,25 +180,21 @@ impl Peers {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use std::vec::Vec;
 
     use super::*;
     use crate::config::Member;
     use crate::geometry::Twist;
-    use crate::input::NO_RETURN_MM;
     use crate::team::packet::Beacon;
 
-    const LASER: LaserMount = LaserMount::level(0.1, 0.4);
-    const NONE: [usize; 0] = [];
-
     /// A peer of 0.52 m × 0.50 m.
-    fn peers(x_m: f32, y_m: f32, speed_mps: f32) -> Peers {
+    pub(crate) fn peers(x_m: f32, y_m: f32, speed_mps: f32) -> Peers {
         peers_known_to(0, x_m, y_m, speed_mps)
     }
 
     /// The same, with the standard deviation of its place.
-    fn peers_known_to(sd_cm: u8, x_m: f32, y_m: f32, speed_mps: f32) -> Peers {
+    pub(crate) fn peers_known_to(sd_cm: u8, x_m: f32, y_m: f32, speed_mps: f32) -> Peers {
         let beacon = Beacon {
             half_cm: (26, 25),
             sd_cm,
@@ -310,53 +213,6 @@ mod tests {
         let mut peers = Peers::new();
         peers.hear(Member { id: 2, boot: 0 }, 0, &beacon, 0);
         peers
-    }
-
-    /// Returns the numbers of the beams of a wall at a range that are hidden.
-    fn hidden(peers: &Peers, range_mm: u16, now_ms: u32) -> Vec<usize> {
-        let mut ranges_mm = [range_mm; 181];
-        peers.hide(now_ms, &Pose::default(), &LASER, &mut ranges_mm);
-        let gone = ranges_mm
-            .iter()
-            .enumerate()
-            .filter(|(_, mm)| **mm == INVALID_MM);
-        gone.map(|(number, _)| number).collect()
-    }
-
-    #[test]
-    fn only_beams_that_end_in_the_peer_are_hidden() {
-        let peers = peers(2.0, 0.0, 0.0);
-        // Its front is 1.64 m from the laser; 0.1 m of growth.
-        assert_eq!(hidden(&peers, 1_500, 0), NONE);
-        let seen = hidden(&peers, 1_700, 0);
-        assert_eq!((seen.first(), seen.last()), (Some(&79), Some(&101)));
-        assert_eq!(hidden(&peers, 2_400, 0), NONE, "behind the peer");
-        assert_eq!(hidden(&peers, NO_RETURN_MM, 0), NONE);
-        assert!(
-            hidden(&peers, 1_400, 2_000).len() > 20,
-            "grown after a silence"
-        );
-    }
-
-    /// With a start that is known to 0.3 m and 5°, a peer 15 m from it may be anywhere in the room.
-    #[test]
-    fn a_wall_where_a_peer_may_be_is_no_peer() {
-        let peers = peers_known_to(130, 2.0, 0.0, 0.0);
-        assert_eq!(hidden(&peers, 2_000, 0), NONE);
-        // A robot stands before the wall.
-        let mut ranges_mm = [2_000; 181];
-        ranges_mm[60..80].fill(1_500);
-        peers.hide(0, &Pose::default(), &LASER, &mut ranges_mm);
-        let is_hidden = |range_mm: &u16| *range_mm == INVALID_MM;
-        assert!(ranges_mm[60..80].iter().all(is_hidden));
-        assert_eq!(ranges_mm.into_iter().filter(is_hidden).count(), 20);
-    }
-
-    #[test]
-    fn a_peer_beside_the_view_or_beyond_the_range_is_not_looked_for() {
-        let sees = |peers: &Peers| peers.may_be_seen(0, &Pose::default(), &[LASER]);
-        assert!(sees(&peers(0.0, 3.0, 0.0)));
-        assert!(!sees(&peers(0.0, 30.0, 0.0)));
     }
 
     #[test]

@@ -18,6 +18,7 @@
 
 mod exchange;
 pub(crate) mod frame;
+mod hidden_beams;
 pub(crate) mod hull;
 pub mod packet;
 pub mod peers;

@@ -28,7 +28,7 @@ use crate::map::neighbourhood::Neighbourhood;
 use crate::math;
 use crate::robot::MAX_BEAMS;
 use crate::team::Team;
-use crate::team::hull::GAP_M;
+use crate::team::hidden_beams::GAP_M;
 use crate::team::peers::Peer;
 
 /// Standard deviation of a beam's end on a hull: noise of the range, of the beacon's pose, and of
