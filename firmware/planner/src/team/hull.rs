@@ -12,7 +12,7 @@
 //! Units: metres, seconds, radians.
 
 use crate::config::Config;
-use crate::geometry::{Point, Pose, RobotFrame};
+use crate::geometry::{Point, RobotFrame};
 use crate::math;
 use crate::team::peers::{Peer, Peers};
 
@@ -185,7 +185,7 @@ pub(super) mod tests {
 
     use super::*;
     use crate::config::Member;
-    use crate::geometry::Twist;
+    use crate::geometry::{Pose, Twist};
     use crate::team::packet::Beacon;
 
     /// A peer of 0.52 m × 0.50 m.
