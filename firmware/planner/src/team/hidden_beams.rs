@@ -98,10 +98,14 @@ impl Place {
 
     /// Returns true if a thing with these ends may be the peer.
     fn may_hold(&self, thing: &[(usize, Point)]) -> bool {
-        let extent = thing.first().zip(thing.last());
-        let extent_m = extent.map_or(0.0, |((_, a), (_, b))| a.distance_m(*b));
-        extent_m <= self.size_m
+        extent_m(thing.iter().map(|(_, end)| *end)) <= self.size_m
     }
+}
+
+/// Returns the distance from the first to the last of a thing's ends, metres.
+pub(super) fn extent_m(mut ends: impl DoubleEndedIterator<Item = Point>) -> f32 {
+    let first_and_last = ends.next().zip(ends.next_back());
+    first_and_last.map_or(0.0, |(first, last)| first.distance_m(last))
 }
 
 impl Peers {
@@ -171,7 +175,7 @@ mod tests {
         );
     }
 
-    /// With a start that is known to 0.3 m and 5°, a peer 15 m from it may be anywhere in the room.
+    /// A peer 15 m from its start, which is known to 0.3 m and 5°, may be anywhere in a room.
     #[test]
     fn a_wall_where_a_peer_may_be_is_no_peer() {
         let peers = peers_known_to(130, 2.0, 0.0, 0.0);
@@ -183,6 +187,13 @@ mod tests {
         let is_hidden = |range_mm: &u16| *range_mm == INVALID_MM;
         assert!(ranges_mm[60..80].iter().all(is_hidden));
         assert_eq!(ranges_mm.into_iter().filter(is_hidden).count(), 20);
+    }
+
+    /// Obstacle points out of view stay where a peer is not known to be.
+    #[test]
+    fn only_a_peer_whose_place_is_known_is_seen() {
+        let count = |sd_cm| peers_known_to(sd_cm, 2.0, 0.0, 0.0).seen(0).count();
+        assert_eq!([0, 15, 16, 130].map(count), [1, 1, 0, 0]);
     }
 
     #[test]

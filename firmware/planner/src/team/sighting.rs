@@ -28,7 +28,7 @@ use crate::map::neighbourhood::Neighbourhood;
 use crate::math;
 use crate::robot::MAX_BEAMS;
 use crate::team::Team;
-use crate::team::hidden_beams::GAP_M;
+use crate::team::hidden_beams::{GAP_M, extent_m};
 use crate::team::peers::Peer;
 
 /// Standard deviation of a beam's end on a hull: noise of the range, of the beacon's pose, and of
@@ -183,9 +183,8 @@ impl Team {
             // A thing is as large as a hull, and a gap parts it from the next one.
             let is_one = |a: &Point, b: &Point| a.distance_m(*b) <= GAP_M;
             let is_hull = |thing: &&[Point]| {
-                let extent = thing.first().zip(thing.last());
-                let extent_m = extent.map_or(0.0, |(a, b)| a.distance_m(*b));
-                thing.len() >= LEAST_BEAMS && extent_m <= 2.0 * peer.radius_m() + SIGMA_M
+                let most_m = 2.0 * peer.radius_m() + SIGMA_M;
+                thing.len() >= LEAST_BEAMS && extent_m(thing.iter().copied()) <= most_m
             };
             let prior = self.frame.spread();
             let things = ends.chunk_by(is_one).filter(is_hull);
