@@ -85,10 +85,12 @@ impl DeadEnds<'_> {
 fn key(place: Place, backwards: bool) -> Option<u32> {
     let [x, y, direction] = cell_of(place);
     let is_near = |at: i32| (-REACH..REACH).contains(&at);
+    if !is_near(x) || !is_near(y) {
+        return None;
+    }
     let cell = ((y + REACH) * 2 * REACH + x + REACH) * DIRECTIONS + direction;
     let key = 2 * cell as u32 + u32::from(backwards);
-    let scrambled = key.wrapping_mul(FACTOR).wrapping_add(1) & ((1 << KEY_BITS) - 1);
-    (is_near(x) && is_near(y)).then_some(scrambled)
+    Some(key.wrapping_mul(FACTOR).wrapping_add(1) & ((1 << KEY_BITS) - 1))
 }
 
 /// Returns the word of a key's entry, and the bits below the entry.
@@ -167,11 +169,13 @@ mod tests {
         );
         dead_ends.note(from, &[BACKWARD; 2], true);
         assert!(dead_ends.has(from.after(-LENGTH_M, 0.0), true));
-        let beyond = from.after(2.0, 0.0);
-        dead_ends.note(beyond, &[], false);
-        assert!(
-            !dead_ends.has(beyond, false),
-            "beyond the reach nothing is noted"
-        );
+        for beyond_m in [2.0, -2.0] {
+            let beyond = from.after(beyond_m, 0.0);
+            dead_ends.note(beyond, &[], false);
+            assert!(
+                !dead_ends.has(beyond, false),
+                "beyond the reach nothing is noted"
+            );
+        }
     }
 }
