@@ -184,12 +184,12 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         timer.mark(Stage::Drive);
         return output;
     }
+    let footprint = state.footprint(config);
     if state.viewpoints.is_running() {
-        search_viewpoints(config, state, workspace, &input);
+        search_viewpoints(config, state, workspace, &footprint, &input);
         timer.mark(Stage::Plan);
         return Output::standing(state.status);
     }
-    let footprint = state.footprint(config);
     let planned = advance_plan(config, state, workspace, &footprint, &input, timer);
     if state.status != Status::Exploring {
         return Output::standing(state.status);

@@ -90,13 +90,19 @@ fn the_seed_decides_the_run() {
     assert_ne!(digest(7), digest(8));
 }
 
+/// Least share that a robot knows which looks through the gap of `unreachable-room`. A look that is
+/// not worth its trip is left, and shows up to 2.5 % of so small a world.
+const LEAST_SEEN_THROUGH_GAP: f64 = 0.97;
+
 /// The lasers see nothing of the one room. They see the other through a gap that is too narrow for
 /// the robot; the robot lists it as unreachable.
 #[test]
 fn a_room_that_cannot_be_reached_is_listed() {
     let worlds = worlds::builtins(&["unreachable-room"]);
     let reports = runs::sweep(&runs::each(&worlds, SEEDS, 0..0));
-    assert_explored(&reports);
+    assert_faultless(&reports, |report| {
+        runs::faults(report, LEAST_SEEN_THROUGH_GAP)
+    });
     for report in reports {
         let seed = report.seed;
         let left = &report.outcome.residual_frontiers;

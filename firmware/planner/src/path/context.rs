@@ -34,6 +34,8 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) tiles: &'a Tiles<TILES, SLOTS>,
     /// The footprint that paths are planned for.
     pub(crate) footprint: &'a Footprint,
+    /// The robot's disc, which surely fits through what it passes.
+    pub(crate) disc: &'a Footprint,
     /// The passages that were blocked before this round.
     pub(crate) blocked: &'a BlockedPassages,
     /// The robot's pose.
@@ -52,10 +54,13 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) levels: Option<LevelCost<'a, TILES>>,
     /// The team; `None` for a robot alone.
     pub(crate) team: Option<&'a Team>,
-    /// True if a peer stands in the way that may drive on: without a path the robot waits.
-    pub(crate) waits_for_peers: bool,
+    /// True if a peer stands in the way that may drive on, or the robot still goes back out of a
+    /// passage: without a path nothing is decided yet.
+    pub(crate) must_wait: bool,
     /// True if the robot can go back along its track through a blocked passage.
     pub(crate) came_through_blocked: bool,
+    /// Number of known cells of the map.
+    pub(crate) known_cells: u32,
     /// True if every opening was tried before: it is worth no more than what it shows.
     pub(crate) openings_were_tried: bool,
 }

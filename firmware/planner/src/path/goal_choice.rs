@@ -1,16 +1,17 @@
 //! The choice of the next frontier by gain over cost.
 //!
 //! ```text
-//! U = G^0.625 / (t + 1 m)      t = path + turn · (1 − cos θ) / 2 + 10 m · level
+//! U = G^0.8 / (t + 1 m)      t = path + turn · (1 − cos θ) / 2 + 10 m · level
 //! ```
 //!
 //! G is the unexplored area that may be seen from the goal ([`crate::path::gain`]). θ is the angle
 //! from the robot's heading to the first metre of the path. The level is that of
 //! [`crate::path::height_levels`] and of the user's own order. The present goal's gain counts more,
 //! so the robot keeps it until another one is clearly better. What another robot claims counts less
-//! ([`crate::path::claims`]). A goal is *worth* its trip if G ≥ worth · max(t, 1 m), if the robot
-//! fits through an opening there that was not tried ([`View::is_open`]), or together with others
-//! ([`crate::path::shared_trip`]).
+//! ([`crate::path::claims`]). A goal with an *opening* that was not tried counts as if it gained at
+//! least 4.5 m² ([`View::is_open`]): it will be visited anyway, and later that may cost a trip of
+//! its own. A goal is *worth* its trip if G ≥ worth · max(t, 1 m), if it has an opening, or
+//! together with others ([`crate::path::shared_trip`]).
 //!
 //! Frontier cells near each other are one *candidate*: the nearest by path stands for them. One
 //! wave from the robot finds them all, the nearest first, with their paths
@@ -20,6 +21,7 @@
 //!
 //! Units: metres, square metres; coarse steps of 20 cm.
 
+use core::cell::LazyCell;
 use core::ops::Range;
 
 use crate::config::OrderTuning;
@@ -240,10 +242,15 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
         let gain_m2 = kept * view.gain_m2();
         let is_claimed = self.claims.hold(candidate.site, candidate.steps);
         let claimed = if is_claimed { tuning.claimed } else { 1.0 };
-        let value = value(tuning, claimed * gain_m2);
-        if utility(value, path_m) <= least {
+        let counted = |gain_m2| value(tuning, claimed * gain_m2);
+        let promised = gain_m2.max(tuning.opening_m2);
+        if utility(counted(promised), path_m) <= least {
             return None;
         }
+        let tried = self.context.openings_were_tried;
+        let is_open = LazyCell::new(|| !tried && view.is_open(self.context.disc));
+        let counts_more = gain_m2 < promised && *is_open;
+        let value = counted(if counts_more { promised } else { gain_m2 });
         let ahead = self
             .search
             .first_cell_near(self.robot.cell, candidate.site, AHEAD_M);
@@ -253,9 +260,7 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
             return None;
         }
         let shares_trip = self.present.is_some_and(|present| present.shares_trip);
-        let tried = self.context.openings_were_tried;
-        let promises = || !tried && view.is_open(self.context.footprint);
-        if is_worth(gain_m2, trip_m, self.worth) || promises() {
+        if is_worth(gain_m2, trip_m, self.worth) || *is_open {
             return Some((utility, false));
         }
         // A trip that was worth it goes on as long as there is something to see at its goal.

@@ -91,7 +91,7 @@ pub(crate) struct Inputs<'a, const TILES: usize, const SLOTS: usize> {
     /// The tiles that are searched, and their place.
     pub(crate) tiling: Tiling<'a>,
     pub(crate) frame: Frame,
-    /// The robot's footprint, and the narrower one of its second chance.
+    /// The robot's disc, which has room to turn, and the footprint that paths are planned for.
     pub(crate) footprints: [&'a Footprint; 2],
     /// Where the robot stands.
     pub(crate) robot: Cell,
@@ -118,7 +118,7 @@ enum Phase {
 #[derive(Debug)]
 pub(crate) struct Search {
     phase: Phase,
-    /// The robot's own footprint reaches nothing: it stands in a narrow place.
+    /// The robot's disc reaches nothing: it stands in a narrow place.
     tight: bool,
     found: bool,
     score: f32,

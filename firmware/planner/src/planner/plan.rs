@@ -38,10 +38,12 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     let blocked = state.strategy.frontier.blocked().clone();
     let came_past = |place, within_m| state.drive.came_past(place, within_m);
     let came_through_blocked = blocked.any(came_past);
+    let disc = Footprint::new(config.robot_radius_m);
     let context = PlanningContext {
         skeleton: &mut state.skeleton,
         tiles: state.map.tiles(),
         footprint,
+        disc: &disc,
         blocked: &blocked,
         pose: input.pose,
         time_ms: input.time_ms,
@@ -51,8 +53,9 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         tuning: config.tuning,
         levels: state.ground.level_cost(config, &state.preferences),
         team: state.team.is_member().then_some(&state.team),
-        waits_for_peers,
+        must_wait: waits_for_peers || state.drive.is_retreating(),
         came_through_blocked,
+        known_cells: state.map.known_cells(),
         openings_were_tried: state.strategy.frontier.has_further_chance(),
     };
     let Some(outcome) = state.strategy.advance(context, scratch) else {
@@ -118,17 +121,18 @@ pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
+    footprint: &Footprint,
     input: &Input<'_>,
 ) {
     let robot = input.pose.point().cell();
-    let [wide, narrow] = [config.robot_radius_m, config.tight_radius_m()].map(Footprint::new);
+    let disc = Footprint::new(config.robot_radius_m);
     let (residual, blocked) = state.strategy.frontier.given_up_mut();
     let inputs = Inputs {
         tiles: state.map.tiles(),
         // The skeleton stays the same while the search runs.
         tiling: state.skeleton.tiling(),
         frame: state.skeleton.frame(),
-        footprints: [&wide, &narrow],
+        footprints: [&disc, footprint],
         robot,
         blocked,
         order: config.order(),
@@ -142,6 +146,6 @@ pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
             // The skeleton is still the one that the last round planned on.
             state.has_new_skeleton = true;
         }
-        Found::Nothing => finish(config, state, workspace, &narrow, (robot, input.time_ms)),
+        Found::Nothing => finish(config, state, workspace, footprint, (robot, input.time_ms)),
     }
 }

@@ -6,7 +6,7 @@
 
 use super::ground_model::GroundModel;
 use super::workspace::{RING, SCRATCH};
-use crate::config::Config;
+use crate::config::{Config, Order};
 use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{self, Drive};
 use crate::field::preference::Preferences;
@@ -125,10 +125,12 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.localiser.location()
     }
 
-    /// Returns the footprint that paths are planned for: narrower at the second chance.
+    /// Returns the footprint that paths are planned for ([`Config::passage_radius_m`]).
     pub(super) fn footprint(&self, config: &Config) -> Footprint {
-        Footprint::new(if self.strategy.frontier.has_second_chance() {
-            config.tight_radius_m()
+        let is_narrow =
+            config.order() != Order::Nearest || self.strategy.frontier.has_second_chance();
+        Footprint::new(if is_narrow {
+            config.passage_radius_m()
         } else {
             config.robot_radius_m
         })

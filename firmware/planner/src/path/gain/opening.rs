@@ -5,6 +5,17 @@
 //! over free cells, may reach half as far. How much is unexplored beyond the edge cannot be told,
 //! so an open place is worth any trip until it was tried.
 //!
+//! The footprint is the robot's disc. Paths lead through gaps that are narrower, but most of those
+//! are pieces of a wall that was not seen yet, and noise makes more of them. 16 runs in four tight
+//! buildings with noisy odometry, and 120 in generated worlds with the true one:
+//!
+//! | open to | noisy: known % | end, s | lost or *stuck* | touches | generated: known % | end, s |
+//! | --- | --- | --- | --- | --- | --- | --- |
+//! | what paths are planned for | 98.22 | 1,440 | 2 | 2 | 99.37 | 461 |
+//! | the robot's disc | 98.56 | 1,330 | 0 | 0 | 99.31 | 455 |
+//!
+//! The first noisy runs waited 1.8 s less at the end.
+//!
 //! A straight line does not do: none leads through a door as narrow as the robot, and `frontier`
 //! called itself *explored* with whole wings left behind such doors. Means of 58 runs in built-in
 //! and generated worlds, as ratios to `greedy-frontier`, and of the 11 generated worlds of 1,002 in

@@ -1,7 +1,8 @@
 //! Chances: what a robot tries that is stuck, or that no path leads on for.
 //!
-//! At the *second chance* all blocked passages are open again, for a narrower footprint. After it
-//! and its repetitions the robot only looks from viewpoints.
+//! At the *second chance* all blocked passages are open again, and so are the goals that came no
+//! nearer. The robot may enter a gap that is hardly wider than its hull. After the second chance
+//! and its repetitions it only looks from viewpoints.
 //!
 //! Units: milliseconds.
 

@@ -4,9 +4,8 @@
 //! Goals are chosen by [`crate::path::goal_cost`]. The progress checker gives up a goal that is
 //! reached and stays unexplored, or that comes no nearer, and blocks a passage that cannot be
 //! driven; so no run hangs on a cell that cannot be seen. A robot that blocked what it came through
-//! goes back along its track if no other path is left. When no goal is left, everything gets a
-//! *second chance* with a narrower footprint: at 10 cm a cell, a gap that the robot just fits
-//! through may look closed. After that the robot looks from [`Viewpoint`]s at what it cannot drive
+//! goes back along its track if no other path is left. When no goal is left, everything that failed
+//! gets a *second chance*. After that the robot looks from [`Viewpoint`]s at what it cannot drive
 //! to. At the end a second look ([`SecondLook`]) tries what came in the way in the meantime.
 //!
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
@@ -242,6 +241,7 @@ impl Frontier {
         context: &PlanningContext<'_, TILES, SLOTS>,
         mut scratch: PlanningScratch<'_>,
     ) -> RoundOutcome {
+        self.progress.note_known(context.known_cells);
         self.progress
             .note_motion(context.pose.point(), context.time_ms);
         self.goes_back = false;
@@ -249,7 +249,7 @@ impl Frontier {
             self.choose(path, context);
         } else if let Some(outcome) = self.look(context, &mut scratch) {
             return outcome;
-        } else if context.waits_for_peers || self.judged > 0 {
+        } else if context.must_wait || self.judged > 0 {
             self.path.clear();
             return RoundOutcome::Unsure;
         } else if context.came_through_blocked {

@@ -124,6 +124,7 @@ impl Scene {
             skeleton: &mut self.skeleton,
             tiles: &self.tiles,
             footprint: &self.footprint,
+            disc: &self.footprint,
             blocked: &self.blocked,
             pose: Pose {
                 x_m: 0.05,
@@ -142,8 +143,9 @@ impl Scene {
                 reference_m,
             }),
             team: None,
-            waits_for_peers: false,
+            must_wait: false,
             came_through_blocked: self.came_through_blocked,
+            known_cells: 0,
             openings_were_tried: self.openings_were_tried,
         }
     }

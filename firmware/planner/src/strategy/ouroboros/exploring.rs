@@ -144,6 +144,7 @@ impl Exploration {
                 skeleton: &mut self.skeleton,
                 tiles: &self.tiles,
                 footprint: &footprint,
+                disc: &footprint,
                 blocked: &blocked,
                 pose: self.pose,
                 time_ms,
@@ -153,8 +154,9 @@ impl Exploration {
                 tuning: &Tuning::DEFAULT,
                 levels: None,
                 team: None,
-                waits_for_peers: false,
+                must_wait: false,
                 came_through_blocked: false,
+                known_cells: 0,
                 openings_were_tried: false,
             };
             let outcome = self

@@ -163,6 +163,7 @@ impl Scene {
             skeleton: &mut self.skeleton,
             tiles: &self.tiles,
             footprint: &self.footprint,
+            disc: &self.footprint,
             blocked: &NONE,
             pose: self.pose,
             time_ms: 0,
@@ -172,8 +173,9 @@ impl Scene {
             tuning: &Tuning::DEFAULT,
             levels: None,
             team: None,
-            waits_for_peers: false,
+            must_wait: false,
             came_through_blocked: false,
+            known_cells: 0,
             openings_were_tried: false,
         }
     }
