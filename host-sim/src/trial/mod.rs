@@ -25,7 +25,9 @@ pub mod wording;
 
 use std::time::Instant;
 
-use fieldline_protocol::message::{Command, Control, Loops, Observation, Start, Status, Twist};
+use fieldline_protocol::message::{
+    Command, Control, Location, Loops, Observation, Quality, Start, Status, Twist,
+};
 
 use crate::link::{Link, LinkError};
 use crate::report::tum::Stamped;
@@ -196,9 +198,16 @@ fn ended(
         Status::Fault(why) => Some(Ending::Fault(why)),
         _ if flow == Flow::Interrupt => Some(Ending::Interrupted),
         _ if progress.time_ms >= setup.time_limit_ms => Some(Ending::TimeLimit),
-        status if freeze.step(&truth, status == Status::Exploring) => Some(Ending::Frozen),
+        status if freeze.step(&truth, explores(status, command)) => Some(Ending::Frozen),
         _ => None,
     }
+}
+
+/// Returns true if the planner says that it explores. A lost robot that searches for its place says
+/// so and may stand.
+fn explores(status: Status, command: &Command) -> bool {
+    let is_lost = |location: &Location| location.quality == Quality::Lost;
+    status == Status::Exploring && !command.location.as_ref().is_some_and(is_lost)
 }
 
 /// Stops the robot. After a broken link it gets no command and drives on until its watchdog stops

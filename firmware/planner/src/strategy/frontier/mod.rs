@@ -14,8 +14,6 @@ mod blocking;
 mod chances;
 mod looking;
 
-use core::num::NonZeroU32;
-
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::Cell;
 use crate::path::blocked_passages::BlockedPassages;
@@ -39,8 +37,6 @@ pub(crate) struct Frontier {
     residual: ResidualFrontiers,
     blocked: BlockedPassages,
     progress: ProgressChecker,
-    /// Since when rounds find nothing, milliseconds.
-    empty_since_ms: Option<NonZeroU32>,
     /// Goals that the last rounds judged in vain; more are left.
     judged: usize,
     second_chance: bool,
@@ -73,7 +69,6 @@ impl Frontier {
             residual: ResidualFrontiers::new(),
             blocked: BlockedPassages::new(),
             progress: ProgressChecker::new(),
-            empty_since_ms: None,
             judged: 0,
             second_chance: false,
             retries: 0,
@@ -187,7 +182,6 @@ impl Frontier {
     /// Tries the frontiers again that no path led to.
     pub(crate) fn look_again(&mut self) {
         self.residual.retry_unreachable();
-        self.empty_since_ms = None;
         self.path.clear();
     }
 
@@ -223,7 +217,7 @@ impl Frontier {
         path: Path,
         context: &PlanningContext<'_, TILES, SLOTS>,
     ) {
-        (self.viewpoint, self.empty_since_ms) = (None, None);
+        self.viewpoint = None;
         let goal = path.goal();
         if let Some(levels) = &context.levels
             && levels.of(context.tiles, goal) <= level(context, self.present_goal(), goal)
@@ -257,7 +251,7 @@ impl Frontier {
             self.path.clear();
             return RoundOutcome::Unsure;
         } else {
-            return self.do_without(context.time_ms);
+            return self.do_without();
         }
         let (goal, steps) = (self.path.goal(), self.path.steps());
         let verdict = self.progress.judge(goal, steps, context.time_ms);
@@ -278,7 +272,7 @@ impl Frontier {
     ) -> RoundOutcome {
         self.progress
             .note_motion(context.pose.point(), context.time_ms);
-        (self.empty_since_ms, self.goes_back) = (None, false);
+        self.goes_back = false;
         self.path = path;
         let (goal, steps) = (self.path.goal(), self.path.steps());
         let verdict = self.progress.judge(goal, steps, context.time_ms);
