@@ -21,7 +21,6 @@
 //!
 //! Units: metres, square metres; coarse steps of 20 cm.
 
-use core::cell::LazyCell;
 use core::ops::Range;
 
 use crate::config::OrderTuning;
@@ -248,8 +247,8 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
             return None;
         }
         let tried = self.context.openings_were_tried;
-        let is_open = LazyCell::new(|| !tried && view.is_open(self.context.disc));
-        let counts_more = gain_m2 < promised && *is_open;
+        let is_open = || !tried && view.is_open(self.context.disc);
+        let counts_more = gain_m2 < promised && is_open();
         let value = counted(if counts_more { promised } else { gain_m2 });
         let ahead = self
             .search
@@ -260,7 +259,8 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
             return None;
         }
         let shares_trip = self.present.is_some_and(|present| present.shares_trip);
-        if is_worth(gain_m2, trip_m, self.worth) || *is_open {
+        let promises = || counts_more || (gain_m2 >= promised && is_open());
+        if is_worth(gain_m2, trip_m, self.worth) || promises() {
             return Some((utility, false));
         }
         // A trip that was worth it goes on as long as there is something to see at its goal.

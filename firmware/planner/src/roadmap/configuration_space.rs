@@ -37,6 +37,7 @@ impl Footprint {
     /// Makes the disc of the cells whose centres are nearer than `radius_m`, at most
     /// [`MOST_RADIUS`] cells.
     #[must_use]
+    #[inline(never)]
     pub fn new(radius_m: f32) -> Self {
         let radius = (radius_m / CELL_M).clamp(0.5, MOST_RADIUS as f32);
         // A little less, so that 0.30 m is three cells and not a rounding error more.
