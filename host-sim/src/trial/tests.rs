@@ -1,8 +1,8 @@
 //! Runs with a scripted device and a point robot: every end, and the record after it.
 
 use fieldline_protocol::message::{
-    Command, Control, Fault, FieldRow, Finish, Identity, Observation, Packet, Path,
-    ResidualFrontier, ResidualReason, Start, Status, Tile, Twist,
+    Command, Control, Fault, FieldRow, Finish, Identity, Location, Observation, Packet, Path,
+    Quality, ResidualFrontier, ResidualReason, Start, Status, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -298,6 +298,22 @@ fn a_paused_robot_is_not_frozen_and_the_time_limit_ends_it() {
     let (record, ..) = ends(vec![command(Status::Paused, 0.0)]);
     assert_eq!(record.ending, Ending::TimeLimit);
     assert_eq!(record.steps.last().unwrap().truth.time_ms, 120_000);
+}
+
+#[test]
+fn a_lost_robot_may_stand_while_it_searches_for_its_place() {
+    let standing = |quality| {
+        let answer = command(Status::Exploring, 0.0).map(|command| Command {
+            location: Some(Location {
+                quality,
+                ..Location::default()
+            }),
+            ..command
+        });
+        ends(vec![answer]).0.ending
+    };
+    assert_eq!(standing(Quality::Lost), Ending::TimeLimit);
+    assert_eq!(standing(Quality::Tracking), Ending::Frozen);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Teams whose odometry drifts, and whose starts are known or only roughly known, beside the truth.
-//! `golden/teams-drift.txt` has two robots in one world, `golden/teams-drift-full.txt` all worlds and seeds.
+//! `golden/teams-drift.txt` has two robots in one world, `golden/teams-drift-full.txt` two and
+//! three in three.
 
 use core::ops::Range;
 

@@ -3,7 +3,7 @@
 //!
 //! Units: metres, map cells.
 
-use crate::config::Config;
+use crate::config::{Config, Order};
 use crate::geometry::{Point, Pose};
 use crate::input::Input;
 use crate::path::viewpoint::{Found, Inputs};
@@ -39,6 +39,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     let came_past = |place, within_m| state.drive.came_past(place, within_m);
     let came_through_blocked = blocked.any(came_past);
     let disc = Footprint::new(config.robot_radius_m);
+    let by_gain = config.order() != Order::Nearest;
     let context = PlanningContext {
         skeleton: &mut state.skeleton,
         tiles: state.map.tiles(),
@@ -53,7 +54,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         tuning: config.tuning,
         levels: state.ground.level_cost(config, &state.preferences),
         team: state.team.is_member().then_some(&state.team),
-        must_wait: waits_for_peers || state.drive.is_retreating(),
+        must_wait: waits_for_peers || (by_gain && state.drive.is_retreating()),
         came_through_blocked,
         known_cells: state.map.known_cells(),
         openings_were_tried: state.strategy.frontier.has_further_chance(),

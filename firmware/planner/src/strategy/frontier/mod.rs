@@ -14,6 +14,7 @@ mod blocking;
 mod chances;
 mod looking;
 
+use crate::config::Order;
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::Cell;
 use crate::path::blocked_passages::BlockedPassages;
@@ -235,7 +236,10 @@ impl Frontier {
         context: &PlanningContext<'_, TILES, SLOTS>,
         mut scratch: PlanningScratch<'_>,
     ) -> RoundOutcome {
-        self.progress.note_known(context.known_cells);
+        // With the nearest first that lost wings (`PlanningContext::must_wait`).
+        if context.order != Order::Nearest {
+            self.progress.note_known(context.known_cells);
+        }
         self.progress
             .note_motion(context.pose.point(), context.time_ms);
         self.goes_back = false;
