@@ -191,7 +191,8 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         return Output::standing(state.status);
     }
     let planned = advance_plan(config, state, workspace, &footprint, &input, timer);
-    if state.status != Status::Exploring {
+    // A search for viewpoints that begins owns the scratch: no field may be solved there.
+    if state.status != Status::Exploring || state.viewpoints.is_running() {
         return Output::standing(state.status);
     }
     let frontier = &mut state.strategy.frontier;
