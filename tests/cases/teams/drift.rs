@@ -1,6 +1,6 @@
 //! Teams whose odometry drifts, and whose starts are known or only roughly known, beside the truth.
-//! `golden/teams-drift.txt` has two robots in one world, `golden/teams-drift-full.txt` two and
-//! three in three.
+//! `golden/teams-drift.txt` has two robots in one world. `golden/teams-drift-full.txt` has two and
+//! three robots in three worlds.
 
 use core::ops::Range;
 
@@ -48,14 +48,8 @@ fn go(worlds: &[World], teams: &[usize], seeds: Range<u64>) -> (String, Vec<Team
     (alignment(&runs, &reports).to_string(), reports)
 }
 
-/// Returns the middle one of some values, of which there is one at least.
-fn middle(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
-}
-
 /// Two robots in the cave, which has no two places alike: they end with one map. Chance decides how
-/// well a single team agrees, and if two robots meet at all, so five teams of a kind count.
+/// well a single team agrees, and if two robots meet at all, so one of five teams may fail.
 #[test]
 fn robots_with_rough_starts_agree_on_one_map() {
     let (text, reports) = go(&worlds::builtins(&["cave"]), &[2], 0..5);
@@ -64,17 +58,32 @@ fn robots_with_rough_starts_agree_on_one_map() {
         let what = report.headline();
         assert!(report.whole.explored(), "{what}");
     }
-    let drifts = reports.iter().skip(1).step_by(3);
-    let by_hand = reports.iter().skip(2).step_by(3);
-    for (kind, least) in [(drifts.collect::<Vec<_>>(), 5), (by_hand.collect(), 4)] {
+    let drifts: Vec<_> = reports.iter().skip(1).step_by(3).collect();
+    let by_hand: Vec<_> = reports.iter().skip(2).step_by(3).collect();
+    for (kind, met) in [(drifts, 5), (by_hand, 4)] {
         let apart: Vec<_> = kind.iter().filter_map(|it| it.team.agreement).collect();
-        assert!(apart.len() >= least, "{apart:?}");
-        let medians_m = apart.iter().map(|it| it.median_m).collect();
-        let medians_deg = apart.iter().map(|it| it.median_deg).collect();
-        assert!(middle(medians_m) <= MOST_APART_M, "{apart:?}");
-        assert!(middle(medians_deg) <= MOST_APART_DEG, "{apart:?}");
+        let near = apart.iter().filter(|it| it.median_m <= MOST_APART_M);
+        assert!(apart.len() >= met && near.count() >= 4, "{apart:?}");
+        assert!(
+            apart.iter().all(|it| it.median_deg <= MOST_APART_DEG),
+            "{apart:?}"
+        );
         let equal = kind.iter().filter(|it| it.team.maps_equal == Some(true));
-        assert!(equal.count() >= least, "{apart:?}");
+        assert!(equal.count() >= met, "{apart:?}");
+    }
+}
+
+mod known_red {
+    use super::*;
+
+    #[test]
+    #[ignore = "of ten teams with drift one is 0.12 m apart, and one does not meet"]
+    fn every_team_agrees_on_one_map() {
+        let (_, reports) = go(&worlds::builtins(&["cave"]), &[2], 0..5);
+        for report in reports.chunks(3).flat_map(|of_seed| of_seed.iter().skip(1)) {
+            let apart = report.team.agreement.expect("the robots met");
+            assert!(apart.median_m <= MOST_APART_M, "{apart:?}");
+        }
     }
 }
 
@@ -88,7 +97,11 @@ mod full {
         let (text, reports) = go(&worlds, &[2, 3], 0..5);
         golden::compare("teams-drift-full.txt", &text);
         let apart = reports.iter().filter_map(|report| report.team.agreement);
-        let medians_m: Vec<f64> = apart.map(|it| it.median_m).collect();
-        assert!(middle(medians_m.clone()) <= MOST_APART_M, "{medians_m:?}");
+        let mut medians_m: Vec<f64> = apart.map(|it| it.median_m).collect();
+        medians_m.sort_by(f64::total_cmp);
+        assert!(
+            medians_m[medians_m.len() / 2] <= MOST_APART_M,
+            "{medians_m:?}"
+        );
     }
 }

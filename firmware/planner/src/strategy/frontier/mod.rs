@@ -236,7 +236,7 @@ impl Frontier {
         context: &PlanningContext<'_, TILES, SLOTS>,
         mut scratch: PlanningScratch<'_>,
     ) -> RoundOutcome {
-        // With the nearest first that lost wings (`PlanningContext::must_wait`).
+        // Nearest first, `ouroboros` lost wings by it: the table of `PlanningContext::must_wait`.
         if context.order != Order::Nearest {
             self.progress.note_known(context.known_cells);
         }
