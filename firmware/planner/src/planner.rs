@@ -191,8 +191,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         return Output::standing(state.status);
     }
     let planned = advance_plan(config, state, workspace, &footprint, &input, timer);
-    // A search for viewpoints that begins owns the scratch: no field may be solved there.
-    if state.status != Status::Exploring || state.viewpoints.is_running() {
+    if state.status != Status::Exploring {
         return Output::standing(state.status);
     }
     let frontier = &mut state.strategy.frontier;

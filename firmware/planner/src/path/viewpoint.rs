@@ -146,19 +146,16 @@ impl Search {
         self.phase != Phase::Idle
     }
 
-    /// Begins a search over these tiles. `scratch` needs
-    /// [`scratch_words`](crate::roadmap::reachability::scratch_words) words, which must keep their
-    /// values between the instalments.
-    pub(crate) fn begin(&mut self, frame: Frame, tiling: Tiling<'_>, scratch: &mut [u32]) {
-        *self = Self::new();
-        let is_empty = tiling.keys().is_empty();
-        if !is_empty && Reachability::new(frame, tiling, scratch).is_some() {
-            self.phase = Phase::Load(0);
-        }
+    /// Begins a search. Its first instalment may come later: until then others may use the scratch
+    /// memory.
+    pub(crate) fn begin(&mut self) {
+        (self.phase, self.tight, self.found) = (Phase::Load(0), false, false);
     }
 
     /// Runs an instalment. Gaps that were given up do not count; those that are not worth the trip
-    /// are listed.
+    /// are listed. `scratch` needs
+    /// [`scratch_words`](crate::roadmap::reachability::scratch_words) words, which must keep their
+    /// values from the first instalment to the last.
     pub(crate) fn advance<const TILES: usize, const SLOTS: usize>(
         &mut self,
         inputs: &Inputs<'_, TILES, SLOTS>,
@@ -170,6 +167,9 @@ impl Search {
             self.phase = Phase::Idle;
             return Found::Nothing;
         };
+        if self.phase == Phase::Load(0) {
+            reachability.clear();
+        }
         match self.phase {
             Phase::Idle => return Found::Nothing,
             Phase::Load(tile) => self.load(inputs, &mut reachability, tile),

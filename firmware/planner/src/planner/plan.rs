@@ -66,11 +66,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         resolve_unmeasured(config, state, &input.pose);
     }
     match outcome {
-        RoundOutcome::Nothing if may_search_viewpoints(state) => {
-            let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
-            let (frame, tiling) = (state.skeleton.frame(), state.skeleton.tiling());
-            state.viewpoints.begin(frame, tiling, scratch);
-        }
+        RoundOutcome::Nothing if may_search_viewpoints(state) => state.viewpoints.begin(),
         RoundOutcome::Nothing => finish(
             config,
             state,

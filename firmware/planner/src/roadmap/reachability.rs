@@ -52,11 +52,16 @@ pub(crate) struct Reachability<'a> {
 impl<'a> Reachability<'a> {
     /// Makes empty planes; `None` if the memory is too small, see [`scratch_words`].
     pub(crate) fn new(frame: Frame, tiling: Tiling<'a>, scratch: &'a mut [u32]) -> Option<Self> {
-        let reachability = Self::resume(frame, tiling, scratch)?;
-        reachability.open.fill(0);
-        reachability.reached.fill(0);
-        reachability.awake.fill(0);
+        let mut reachability = Self::resume(frame, tiling, scratch)?;
+        reachability.clear();
         Some(reachability)
+    }
+
+    /// Empties the planes.
+    pub(crate) fn clear(&mut self) {
+        self.open.fill(0);
+        self.reached.fill(0);
+        self.awake.fill(0);
     }
 
     /// Takes up the flood of these tiles that the memory holds.

@@ -56,6 +56,10 @@ fn drawn(picture: &[&str]) -> (Box<Map>, Cell) {
 /// Runs a search from beginning to end, in scratch memory that holds anything.
 fn search(tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Viewpoint> {
     let mut scratch = std::vec![0xdead_beef; scratch_words(SLOTS)];
+    search_in(&mut scratch, tiles, robot, gone)
+}
+
+fn search_in(scratch: &mut [u32], tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Viewpoint> {
     let (frame, tiling) = (Frame::of(tiles), Tiling::new(tiles.keys()));
     let blocked = BlockedPassages::new();
     let inputs = Inputs {
@@ -73,9 +77,9 @@ fn search(tiles: &Map, robot: Cell, gone: &[Cell]) -> Option<Viewpoint> {
         residual.give_up(cell, ResidualReason::Unobservable);
     }
     let mut search = Search::new();
-    search.begin(frame, tiling, &mut scratch);
+    search.begin();
     for _ in 0..100 {
-        match search.advance(&inputs, &mut residual, &mut scratch) {
+        match search.advance(&inputs, &mut residual, scratch) {
             Found::Pending => assert!(search.is_running()),
             Found::Viewpoint(viewpoint) => return Some(viewpoint),
             Found::Nothing => return None,
@@ -227,14 +231,8 @@ fn a_robot_in_a_narrow_place_looks_too() {
 
 #[test]
 fn without_a_map_or_memory_nothing_is_found() {
-    let mut search = Search::new();
-    search.begin(
-        Frame::default(),
-        Tiling::new(&[]),
-        &mut [0; scratch_words(SLOTS)],
-    );
-    assert!(!search.is_running());
-    let (tiles, _) = drawn(&GAP);
-    search.begin(Frame::of(&tiles), Tiling::new(tiles.keys()), &mut [0; 10]);
-    assert!(!search.is_running());
+    assert_eq!(search(&drawn(&[]).0, Cell::default(), &[]), None);
+    let (tiles, robot) = drawn(&GAP);
+    assert!(search(&tiles, robot, &[]).is_some());
+    assert_eq!(search_in(&mut [0; 10], &tiles, robot, &[]), None);
 }
