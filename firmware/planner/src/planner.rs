@@ -148,16 +148,16 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if state.status != Status::Exploring {
         return Output::standing(state.status);
     }
-    let MapPose(pose) = state.localiser.locate(config, &state.map, &input);
+    let MapPose(expected) = state.localiser.to_map(&OdomPose(input.pose));
+    let peers = state.team.peers();
+    let MapPose(pose) = if peers.may_be_seen(input.time_ms, &expected, &config.lasers) {
+        sight::sense_without_peers(config, state, (&input, &expected))
+    } else {
+        sense(config, state, &input)
+    };
     let input = Input { pose, ..input };
     if state.team.has_own_frame() {
         state.team.sight(config, state.map.tiles(), &input);
-    }
-    let peers = state.team.peers();
-    if peers.may_be_seen(input.time_ms, &input.pose, &config.lasers) {
-        sight::sense_without_peers(config, state, &input);
-    } else {
-        sense(config, state, &input);
     }
     note_surroundings(config, state, &input);
     state.drive.note_pose(&MapPose(input.pose));
@@ -294,14 +294,16 @@ const fn budget(config: &Config, planned: bool) -> SolverConfig {
     }
 }
 
-/// Enters scans and odometry into the map. It is large and called from two places, so it is not
-/// inlined.
+/// Locates the robot and enters scans and odometry into the map. It is large and called from two
+/// places, so it is not inlined.
 #[inline(never)]
 fn sense<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     input: &Input<'_>,
-) {
+) -> MapPose {
+    let MapPose(pose) = state.localiser.locate(config, &state.map, input);
+    let input = &Input { pose, ..*input };
     if !state.started {
         state.started = true;
         state.start = input.pose.point().cell();
@@ -316,6 +318,7 @@ fn sense<const TILES: usize, const SLOTS: usize>(
     state
         .strategy
         .note(&input.pose, input.time_ms, level, config.tuning);
+    MapPose(pose)
 }
 
 /// Enters scans and odometry into the ground model. What protects the hull takes every beam, also
