@@ -1,17 +1,18 @@
 //! Meetings of robots where there is no room to pass: worlds, starts and goals.
 //!
-//! Each robot wants to explore the side on which another one is, so they meet. A user's order of
+//! Each robot wants to explore the side on which another one is, or to leave by the same door, so
+//! they meet. A user's order of
 //! goals says so: what lies on the robot's own side of x = 0 counts as 80 m farther away.
 //!
 //! ```text
 //!  corridor   ▭ ═════ ▭    1.2 m wide, 8 m long, one robot in the room at each end
 //!  door       ▭ | ▭        0.9 m wide, one robot on each side
 //!  dead end   ▭ ═════╝     1.2 m wide; the first robot wants out, the other two want in
+//!  abreast    ▭ | ▭        0.9 m wide, two robots beside each other want out by one door
 //! ```
 //!
 //! Robots have *met* if their centres were less than 2 m apart. They are *blocked* for good if not
-//! all
-//! have explored everything within [`LIMIT_S`]. Units: metres, seconds, radians.
+//! all have explored everything within [`LIMIT_S`]. Units: metres, seconds, radians.
 
 use core::f64::consts::PI;
 
@@ -51,10 +52,17 @@ pub enum Narrow {
     Door,
     /// A corridor with a corner and no other end.
     DeadEnd,
+    /// A door with two robots on one side, beside each other.
+    Abreast,
 }
 
 /// All of them.
-pub const ALL: [Narrow; 3] = [Narrow::Corridor, Narrow::Door, Narrow::DeadEnd];
+pub const ALL: [Narrow; 4] = [
+    Narrow::Corridor,
+    Narrow::Door,
+    Narrow::DeadEnd,
+    Narrow::Abreast,
+];
 
 /// A rectangle: least x, least y, greatest x, greatest y.
 type Rectangle = [f64; 4];
@@ -67,6 +75,7 @@ impl Narrow {
             Self::Corridor => "corridor",
             Self::Door => "door",
             Self::DeadEnd => "dead end",
+            Self::Abreast => "abreast",
         }
     }
 
@@ -81,7 +90,7 @@ impl Narrow {
                 [-8.0, 2.2, -5.0, 4.5],
                 [-4.0, -0.6, 0.0, 0.6],
             ],
-            Self::Door => vec![
+            Self::Door | Self::Abreast => vec![
                 [-5.0, -2.0, -0.1, 2.0],
                 [-4.5, 2.0, -3.5, 2.2],
                 [-5.0, 2.2, -2.0, 4.5],
@@ -119,6 +128,7 @@ impl Narrow {
         let far_m = match self {
             Self::Corridor => within(4.6, 5.8),
             Self::Door | Self::DeadEnd => within(1.2, 2.2),
+            Self::Abreast => within(0.7, 1.0),
         };
         let mut start = |x_m: f64, y_m: f64, yaw_rad: f64, turned: bool| {
             let side = if turned { -1.0 } else { 1.0 };
@@ -142,6 +152,17 @@ impl Narrow {
                 (start(-far_m, 0.05, 0.3, false), true),
                 (start(-far_m - 3.6, 0.2, 0.5, false), true),
             ],
+            Self::Abreast => [-1.0, 1.0]
+                .map(|side| {
+                    let start = start(-far_m, 0.06, 0.3, false);
+                    let beside = Start {
+                        y_m: start.y_m + 0.48 * side,
+                        yaw_rad: start.yaw_rad - 0.7 * side,
+                        ..start
+                    };
+                    (beside, true)
+                })
+                .to_vec(),
         };
         // Every place has every number.
         let robots = starts.len();

@@ -1,5 +1,6 @@
-//! Robots meet in a corridor, at a door, and in a dead end, where there is no room to pass.
-//! `golden/meetings.txt` has ten meetings of each kind, `golden/meetings-full.txt` a hundred.
+//! Robots meet where there is no room to pass: in a corridor, in a dead end, and at a door, from
+//! two sides or from one. `golden/meetings.txt` has ten meetings of each kind,
+//! `golden/meetings-full.txt` a hundred.
 
 use core::ops::Range;
 
@@ -43,7 +44,7 @@ fn ten_meetings_of_each_kind_end_without_touch_or_block() {
 
 mod full {
     #[test]
-    #[ignore = "takes minutes: 300 runs of two and three robots; tests/run --full runs it"]
+    #[ignore = "takes minutes: 400 runs of two and three robots; tests/run --full runs it"]
     fn a_hundred_meetings_of_each_kind_end_without_touch_or_block() {
         super::meet("meetings-full.txt", 0..100);
     }

@@ -375,10 +375,9 @@ impl Drive {
                 let next = margins_m.find(|&&next| next < margin_m);
                 self.search = next.map(|&next| Search::start(next, first, scratch));
                 // On a slope that bounds the headings, the robot takes another heading instead.
-                // What another robot closes will be open again.
-                let may_wait = query.checker.bounds_headings() || query.checker.has_company();
-                if next.is_none() && !may_wait {
-                    self.wedged = self.squeeze_steps > 0 || !query.squeezes;
+                if next.is_none() && !query.checker.bounds_headings() {
+                    let squeezes = query.squeezes && !query.checker.has_company();
+                    self.wedged = self.squeeze_steps > 0 || !squeezes;
                     self.squeeze_steps = if self.wedged { 0 } else { SQUEEZE_STEPS };
                 }
             }

@@ -111,7 +111,8 @@ pub(super) fn make_way<const TILES: usize, const SLOTS: usize>(
             return Way::Hold;
         }
     }
-    if !is_blocked(config, state, workspace, footprint, input) {
+    let is_shut = state.team.way.is_shut();
+    if !is_shut && !is_blocked(config, state, workspace, footprint, input) {
         state.team.way.go_on();
         return Way::Free;
     }

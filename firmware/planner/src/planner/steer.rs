@@ -101,10 +101,13 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         Twist::default()
     };
     if state.drive.take_wedged() {
-        state
-            .strategy
-            .frontier
-            .note_wedged(input.pose.point(), input.time_ms);
+        // What another robot closes will be open again.
+        if checker.has_company() {
+            state.team.way.shut();
+        } else {
+            let frontier = &mut state.strategy.frontier;
+            frontier.note_wedged(input.pose.point(), input.time_ms);
+        }
     }
     let velocity = if is_stalled(state, velocity, input.time_ms) {
         state.drive.look_around(config, &checker, input.velocity)

@@ -14,6 +14,11 @@
 //! waits for a peer that does not move for [`PATIENCE_MS`]: for a while it is an obstacle, as a
 //! peer that is faulted, finished, gone or silent.
 //!
+//! The cells of the map may leave a way past a peer that the hull does not fit through. If the
+//! drive finds none, the way is *shut* until the peer moves, and the robot takes a stance as if
+//! cells barred it. Without this rule two robots that want out by one door from the same side stood
+//! for ever in 3 of 100 meetings (`teams -- --ignored meetings::full`, *abreast*).
+//!
 //! Units: milliseconds, metres.
 
 use heapless::Vec;
@@ -88,6 +93,8 @@ pub(crate) struct RightOfWay {
     other_at: Point,
     other_ms: u32,
     ignored: Vec<Ignored, MOST_PEERS>,
+    /// The drive found no way past the peers, and none has moved since.
+    is_shut: bool,
     /// Where a yielding robot goes.
     refuge: Option<Point>,
 }
@@ -101,6 +108,7 @@ impl RightOfWay {
             other_at: Point { x_m: 0.0, y_m: 0.0 },
             other_ms: 0,
             ignored: Vec::new(),
+            is_shut: false,
             refuge: None,
         }
     }
@@ -128,14 +136,27 @@ impl RightOfWay {
     /// Ends the stance.
     pub(crate) const fn go_on(&mut self) {
         self.stance = Stance::Free;
+        self.is_shut = false;
         self.refuge = None;
+    }
+
+    /// Notes that the drive found no way past the peers.
+    pub(crate) const fn shut(&mut self) {
+        self.is_shut = true;
+    }
+
+    /// Returns true if the drive found no way past the peers, and none has moved since.
+    pub(crate) const fn is_shut(&self) -> bool {
+        self.is_shut
     }
 
     /// Takes a stance about a peer.
     pub(crate) fn take(&mut self, stance: Stance, peer: &Peer, now_ms: u32) {
         let at = peer.beacon.point();
         let moved = at.distance2(self.other_at) > MOVED_M * MOVED_M;
-        if self.stance == Stance::Free || self.other != peer.member.id || moved {
+        let is_new = self.stance == Stance::Free || self.other != peer.member.id;
+        self.is_shut &= is_new || !moved;
+        if is_new || moved {
             (self.other_at, self.other_ms) = (at, now_ms);
         }
         (self.stance, self.other) = (stance, peer.member.id);
@@ -308,6 +329,23 @@ mod tests {
         assert!(way.loses_patience(20_900));
         assert!(way.ignores(2, 40_000) && !way.ignores(2, 41_000));
         assert_eq!(way.stance(), Stance::Free);
+    }
+
+    #[test]
+    fn a_way_is_shut_until_the_peer_moves_or_the_robot_goes_on() {
+        let mut way = RightOfWay::new();
+        let take = |way: &mut RightOfWay, x_m| {
+            let peers = peers(2, Activity::Exploring, x_m);
+            way.take(Stance::Holding, peers.iter().next().expect("a peer"), 0);
+            way.is_shut()
+        };
+        way.shut();
+        assert!(take(&mut way, 1.0), "it is a new stance");
+        assert!(take(&mut way, 1.1));
+        assert!(!take(&mut way, 1.3));
+        way.shut();
+        way.go_on();
+        assert!(!way.is_shut());
     }
 
     #[test]
