@@ -37,7 +37,7 @@ impl Frontier {
     pub(super) fn only_look(&mut self) -> RoundOutcome {
         self.only_looks = true;
         self.immobile = !self.progress.moved();
-        self.progress.begin_next_try();
+        self.progress.begin_looking();
         self.path.clear();
         RoundOutcome::Nothing
     }
