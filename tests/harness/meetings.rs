@@ -1,8 +1,8 @@
 //! Meetings of robots where there is no room to pass: worlds, starts and goals.
 //!
 //! Each robot wants to explore the side on which another one is, or to leave by the same door, so
-//! they meet. A user's order of
-//! goals says so: what lies on the robot's own side of x = 0 counts as 80 m farther away.
+//! they meet. A user's order of goals says so: what lies on the robot's own side of x = 0 counts as
+//! 80 m farther away.
 //!
 //! ```text
 //!  corridor   ▭ ═════ ▭    1.2 m wide, 8 m long, one robot in the room at each end

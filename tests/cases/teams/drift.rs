@@ -18,6 +18,7 @@ const BY_HAND: &str = "0.3,5";
 const MOST_APART_M: f64 = 0.1;
 const MOST_APART_DEG: f64 = 1.0;
 
+/// Returns true if the maps of two robots agree in the median of a run.
 fn is_one_map(apart: &Agreement) -> bool {
     apart.median_m <= MOST_APART_M && apart.median_deg <= MOST_APART_DEG
 }
@@ -53,9 +54,8 @@ fn go(worlds: &[World], teams: &[usize], seeds: Range<u64>) -> (String, Vec<Team
     (alignment(&runs, &reports).to_string(), reports)
 }
 
-/// Two robots in the cave, which has no two places alike: they end with one map. Each bends its map
-/// a little where it is first, so chance decides how well a single team agrees, and one of five may
-/// fail.
+/// Two robots in the cave, which has no two places alike: they end with one map. Chance decides how
+/// well a single team agrees, so one of five may fail. `known_red` asks it of every team.
 #[test]
 fn robots_with_rough_starts_agree_on_one_map() {
     let (text, reports) = go(&worlds::builtins(&["cave"]), &[2], 0..5);

@@ -93,7 +93,7 @@ pub(crate) struct RightOfWay {
     other_at: Point,
     other_ms: u32,
     ignored: Vec<Ignored, MOST_PEERS>,
-    /// The drive found no way past the peers, and none has moved since.
+    /// The drive found no way past the peers, and the other one has not moved since.
     is_shut: bool,
     /// Where a yielding robot goes.
     refuge: Option<Point>,
@@ -145,7 +145,8 @@ impl RightOfWay {
         self.is_shut = true;
     }
 
-    /// Returns true if the drive found no way past the peers, and none has moved since.
+    /// Returns true if the drive found no way past the peers, and the one that the stance is about
+    /// has not moved since.
     pub(crate) const fn is_shut(&self) -> bool {
         self.is_shut
     }
