@@ -42,7 +42,6 @@ use crate::roadmap::configuration_space::Footprint;
 use crate::robot::LaserMount;
 use crate::status::{Fault, Status};
 use charge::{charge, charge_rails, local_goal};
-use ground_model::GroundModel;
 use make_way::{Way, make_way};
 use plan::{replan, search_viewpoints};
 use prefer::{note_flatness, prefer};
@@ -188,7 +187,14 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if state.viewpoints.is_running() {
         search_viewpoints(config, state, workspace, &footprint, &input);
         timer.mark(Stage::Plan);
-        return Output::standing(state.status);
+        return Output {
+            velocity: if state.status == Status::Exploring {
+                look_about(config, state, &input)
+            } else {
+                Twist::default()
+            },
+            ..Output::standing(state.status)
+        };
     }
     let planned = advance_plan(config, state, workspace, &footprint, &input, timer);
     if state.status != Status::Exploring {
@@ -338,11 +344,10 @@ fn note_surroundings<const TILES: usize, const SLOTS: usize>(
         &mut state.preferences,
     );
     // Wheels that slip on a slope are no contact.
-    if let GroundModel::Flat(points) = &mut state.ground
+    if !state.ground.is_uneven()
         && let Some(contact) = state.drive.feel(config, input.velocity)
     {
-        let felt = contact.points(&config.robot);
-        points.feel(odom.0.point(), felt.map(|point| odom.0.to_map(point)));
+        state.ground.feel(&odom, &config.robot, contact);
     }
 }
 

@@ -81,7 +81,7 @@ mod full {
 
     #[test]
     #[ignore = "takes a minute: 90 runs; tests/run --full runs it"]
-    fn known_red_people_in_three_worlds() {
+    fn people_in_three_worlds() {
         let worlds = worlds::builtins(&["office", "hall", "cave"]);
         let reports = explore(&worlds, &[0, PEOPLE], &(0..15));
         golden::compare("people-full.txt", &table(&reports));

@@ -116,6 +116,11 @@ impl ContactSense {
 }
 
 impl Contact {
+    /// Returns true for a turn on the spot.
+    pub(crate) const fn is_turn(self) -> bool {
+        matches!(self, Self::TurnLeft | Self::TurnRight)
+    }
+
     /// Returns where the hull may have touched, in the robot's frame: all along the edge ahead or
     /// behind, or along the half of each edge with which a turn leads.
     pub(crate) fn points(self, robot: &RobotShape) -> impl Iterator<Item = Point> {

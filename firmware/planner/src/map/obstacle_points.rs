@@ -28,6 +28,16 @@
 //! | stay | 8 |
 //! | go | 0 |
 //!
+//! What a turning robot feels lies on all four sides, and only one of them is true. Such points are
+//! a *trap*: a wedged robot removes them. Ten teams without a radio (`dropout::full`), ten robots
+//! that are pushed (`disturbed::full`):
+//!
+//! | a wedged robot removes | teams of 10 with a *stuck* robot | pushed robots of 10 deceived |
+//! | --- | --- | --- |
+//! | nothing | 1 | 1 |
+//! | what it felt | 0 | 3 |
+//! | what it felt when it turned | 0 | 1 |
+//!
 //! Invariants: at most `MAX_POINTS` points, of which the farthest gives way; as many counts as
 //! points.
 //! Units: metres, odometry frame.
@@ -52,6 +62,8 @@ pub struct ObstaclePoints {
     points: Vec<Point, MAX_POINTS>,
     /// Number of returns of each point, up to `max_returns`; 0 for a felt point.
     returns: Vec<u8, MAX_POINTS>,
+    /// The felt points lie around the robot, and may hold it where nothing is.
+    is_trap: bool,
 }
 
 impl ObstaclePoints {
@@ -61,6 +73,7 @@ impl ObstaclePoints {
         Self {
             points: Vec::new(),
             returns: Vec::new(),
+            is_trap: false,
         }
     }
 
@@ -143,8 +156,21 @@ impl ObstaclePoints {
     }
 
     /// Enters the points where the hull of a robot at `centre` met something, in place of those of
-    /// the contact before.
-    pub(crate) fn feel(&mut self, centre: Point, felt: impl Iterator<Item = Point>) {
+    /// the contact before. They are a trap if they lie around it.
+    pub(crate) fn feel(&mut self, centre: Point, felt: impl Iterator<Item = Point>, is_trap: bool) {
+        self.remove_felt();
+        self.is_trap = is_trap;
+        felt.for_each(|point| self.insert(centre, point, 0));
+    }
+
+    /// Removes the points of a trap. Returns true if there were any.
+    pub(crate) fn open_trap(&mut self) -> bool {
+        core::mem::replace(&mut self.is_trap, false) && self.remove_felt()
+    }
+
+    /// Removes the felt points. Returns true if there were any.
+    fn remove_felt(&mut self) -> bool {
+        let before = self.points.len();
         let mut index = 0;
         while let Some(&returns) = self.returns.get(index) {
             if returns == 0 {
@@ -153,7 +179,7 @@ impl ObstaclePoints {
                 index += 1;
             }
         }
-        felt.for_each(|point| self.insert(centre, point, 0));
+        self.points.len() < before
     }
 
     fn remove(&mut self, index: usize) {

@@ -18,6 +18,7 @@ use heapless::Vec;
 
 use crate::config::Config;
 use crate::drive::CollisionChecker;
+use crate::drive::contact::Contact;
 use crate::drive::side_slope::SlopeDirection;
 use crate::field::local_grid::LocalGrid;
 use crate::field::preference::Preferences;
@@ -27,6 +28,7 @@ use crate::map::obstacle_points::ObstaclePoints;
 use crate::map::{Map, Tiles, obstacle_points};
 use crate::path::height_levels::{HeightLevels, LevelCost};
 use crate::roadmap::configuration_space::Footprint;
+use crate::robot::RobotShape;
 use crate::team::hull::Hull;
 use crate::team::peers::{MOST_PEERS, Peers};
 
@@ -97,6 +99,22 @@ impl<const TILES: usize> GroundModel<TILES> {
                 levels.note(&map.heights(), map.tiles());
                 map.compact(levels);
             }
+        }
+    }
+
+    /// Notes where the hull of a robot at `odom` met something.
+    pub(super) fn feel(&mut self, odom: &OdomPose, robot: &RobotShape, contact: Contact) {
+        if let Self::Flat(points) = self {
+            let felt = contact.points(robot).map(|point| odom.0.to_map(point));
+            points.feel(odom.0.point(), felt, contact.is_turn());
+        }
+    }
+
+    /// Opens the trap of what a turning robot felt on all sides. Returns true if there was one.
+    pub(super) fn open_trap(&mut self) -> bool {
+        match self {
+            Self::Flat(points) => points.open_trap(),
+            Self::Uneven(_) => false,
         }
     }
 

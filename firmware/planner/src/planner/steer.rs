@@ -100,7 +100,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         state.strategy.frontier.note_closed();
         Twist::default()
     };
-    if state.drive.take_wedged() {
+    if state.drive.take_wedged() && !state.ground.open_trap() {
         // What another robot closes will be open again.
         if checker.has_company() {
             state.team.way.shut();
@@ -109,7 +109,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
             frontier.note_wedged(input.pose.point(), input.time_ms);
         }
     }
-    let velocity = if is_stalled(state, velocity, input.time_ms) {
+    let velocity = if should_look(state, velocity, input.time_ms) {
         state.drive.look_around(config, &checker, input.velocity)
     } else {
         velocity
@@ -121,13 +121,13 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     }
 }
 
-/// Returns the velocity without a local goal: zero, or a turn to look around once stalled.
+/// Returns the velocity without a local goal: zero, or a turn to look around.
 pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     input: &Input<'_>,
 ) -> Twist {
-    if !is_stalled(state, Twist::default(), input.time_ms) {
+    if !should_look(state, Twist::default(), input.time_ms) {
         return Twist::default();
     }
     let mut checker = CollisionChecker::empty(&config.robot);
@@ -198,19 +198,18 @@ fn keep_off_peers<const TILES: usize, const SLOTS: usize>(
     }
 }
 
-/// Returns true if the robot is stalled on uneven ground and should look around: a turn may measure
-/// ground that it has not seen. It looks around in every second period, and searches for a recovery
+/// Returns true if the robot should look around: it waits that what is in the way goes, and a turn
+/// may show that it has gone; or it is stalled on uneven ground, and a turn may measure ground that
+/// it has not seen. Stalled, it looks around in every second period, and searches for a recovery
 /// between.
-fn is_stalled<const TILES: usize, const SLOTS: usize>(
+fn should_look<const TILES: usize, const SLOTS: usize>(
     state: &State<TILES, SLOTS>,
     velocity: Twist,
     time_ms: u32,
 ) -> bool {
     let periods = standing_periods(state, time_ms);
-    state.ground.is_uneven()
-        && velocity == Twist::default()
-        && periods >= STALLED_PERIODS
-        && periods % 2 == 1
+    let is_stalled = state.ground.is_uneven() && periods >= STALLED_PERIODS && periods % 2 == 1;
+    velocity == Twist::default() && (state.strategy.frontier.is_waiting() || is_stalled)
 }
 
 /// Returns the whole periods for which the robot has stood at its place.

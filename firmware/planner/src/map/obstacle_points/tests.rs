@@ -69,8 +69,8 @@ fn a_felt_point_stays_until_it_is_out_of_reach() {
     let mut obstacles = ObstaclePoints::new();
     let here = Pose::default();
     let felt = |x_m| [Point { x_m, y_m: 0.1 }].into_iter();
-    obstacles.feel(here.point(), felt(-0.3));
-    obstacles.feel(here.point(), felt(0.3));
+    obstacles.feel(here.point(), felt(-0.3), false);
+    obstacles.feel(here.point(), felt(0.3), false);
     obstacles.update(&CONFIG, &here, (&LASER, &[NO_RETURN_MM; 181]), NOBODY);
     assert!(
         obstacles.points().iter().copied().eq(felt(0.3)),
@@ -79,6 +79,22 @@ fn a_felt_point_stays_until_it_is_out_of_reach() {
     let away = Pose { x_m: -1.0, ..here };
     obstacles.update(&CONFIG, &away, (&LASER, &[NO_RETURN_MM; 181]), NOBODY);
     assert!(obstacles.points().is_empty());
+}
+
+#[test]
+fn only_a_trap_opens_and_only_once() {
+    let mut obstacles = ObstaclePoints::new();
+    let here = Pose::default();
+    let felt = || [Point { x_m: 0.3, y_m: 0.1 }].into_iter();
+    obstacles.update(&CONFIG, &here, (&LASER, &thing(0, 800)), NOBODY);
+    let seen = obstacles.points().len();
+    obstacles.feel(here.point(), felt(), false);
+    assert!(!obstacles.open_trap(), "it lies on one side");
+    assert_eq!(obstacles.points().len(), seen + 1);
+    obstacles.feel(here.point(), felt(), true);
+    assert!(obstacles.open_trap());
+    assert_eq!(obstacles.points().len(), seen, "what was seen stays");
+    assert!(!obstacles.open_trap());
 }
 
 #[test]

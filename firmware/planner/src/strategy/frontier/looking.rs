@@ -29,7 +29,7 @@ impl Frontier {
 
     /// Goes to a viewpoint next.
     pub(crate) fn look_from(&mut self, viewpoint: Viewpoint) {
-        self.viewpoint = Some(viewpoint);
+        (self.viewpoint, self.waits) = (Some(viewpoint), false);
         self.viewpoints = self.viewpoints.saturating_add(1);
     }
 

@@ -195,6 +195,17 @@ fn a_robot_that_only_looks_goes_on_once_it_has_moved() {
     assert!(is_at(next(&mut scene, &mut frontier, None), ENDS[1]));
 }
 
+#[test]
+fn a_robot_waits_from_a_second_look_until_there_is_a_path() {
+    let mut scene = by_gain(0.0, 0.0);
+    let mut frontier = Frontier::new();
+    assert!(!frontier.is_waiting());
+    frontier.look_again();
+    assert!(frontier.is_waiting());
+    scene.replan(&mut frontier, None, 64 * 8);
+    assert!(!frontier.path().is_empty() && !frontier.is_waiting());
+}
+
 /// What the ends of the corridor show is worth 0.25 m²/m, and not 100 m²/m.
 #[test]
 fn an_opening_is_worth_any_trip_until_it_was_tried() {
