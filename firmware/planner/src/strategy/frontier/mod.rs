@@ -173,7 +173,7 @@ impl Frontier {
     /// Continues after the end of the exploration, without a second chance.
     pub(super) fn go_on(&mut self) {
         (self.second_chance, self.retries) = (false, 0);
-        self.only_looks = false;
+        (self.only_looks, self.waits) = (false, false);
         self.progress.begin_next_try();
         self.path.clear();
     }

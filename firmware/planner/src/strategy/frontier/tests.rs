@@ -204,6 +204,9 @@ fn a_robot_waits_from_a_second_look_until_there_is_a_path() {
     assert!(frontier.is_waiting());
     scene.replan(&mut frontier, None, 64 * 8);
     assert!(!frontier.path().is_empty() && !frontier.is_waiting());
+    frontier.look_again();
+    frontier.go_on();
+    assert!(!frontier.is_waiting(), "a patrol does not wait");
 }
 
 /// What the ends of the corridor show is worth 0.25 m²/m, and not 100 m²/m.
