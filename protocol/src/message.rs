@@ -31,7 +31,7 @@ mod residual;
 mod session;
 mod team;
 
-pub use command::{Command, Cost, Counters, Fault, Finish, Loops, Stages, Status};
+pub use command::{Command, Cost, Counters, Fault, Finish, InputFaults, Loops, Stages, Status};
 pub use identity::{BUILD_BYTES, CRASH_FILE_BYTES, Cause, Crash, Identity};
 pub use location::{Location, Quality};
 pub use observation::{

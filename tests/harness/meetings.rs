@@ -251,7 +251,7 @@ impl Link for Ordered {
         let config = self.config()?;
         let input = convert::input(observation, config.lasers()).expect("an observation");
         if self.status != Status::Exploring {
-            self.state.stand(&input);
+            self.state.stand(&config, &input);
             return Ok(Command {
                 status: self.status,
                 ..Command::default()

@@ -7,9 +7,9 @@
 //! the same bits on every machine.
 
 use fieldline_planner::{
-    self as planner, Area, Cell, Config, Input, LaserMount, LoopCounts, LoopLimits, Order,
-    Parameter, Pose, PreferenceMode, ResidualReason, RobotShape, SpaceField, State, Strategy,
-    Tuning, Twist, UnevenGround,
+    self as planner, Area, Cell, Config, Input, InputFaults, LaserMount, LoopCounts, LoopLimits,
+    Order, Parameter, Pose, PreferenceMode, ResidualReason, RobotShape, SpaceField, State,
+    Strategy, Tuning, Twist, UnevenGround,
 };
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
@@ -257,6 +257,15 @@ pub(crate) const fn wire_loops(loops: LoopCounts) -> wire::Loops {
         closing: loops.closing,
         closed: loops.closed,
         given_up: loops.given_up,
+    }
+}
+
+/// Converts the numbers of observations that were not as they should be for the wire.
+pub(crate) const fn wire_input_faults(faults: InputFaults) -> wire::InputFaults {
+    wire::InputFaults {
+        refused: faults.refused,
+        jumps: faults.jumps,
+        clock: faults.clock,
     }
 }
 

@@ -166,9 +166,9 @@ impl Pilot {
 
     /// Makes one step. `laps` receives the end of each stage.
     ///
-    /// An observation whose scans do not match the session's lasers makes no step. Its answer has
-    /// zero velocity and [`Fault::BadObservation`]. The session continues with the next correct
-    /// observation.
+    /// An observation whose scans do not match the session's lasers, or with a number that no robot
+    /// reports, makes no step. Its answer has zero velocity and [`Fault::BadObservation`]. The
+    /// session continues with the next correct observation.
     ///
     /// # Errors
     /// [`Refusal::NotStarted`] without a session.
@@ -184,11 +184,18 @@ impl Pilot {
             return Ok(stopped(Status::Fault(Fault::BadObservation)));
         };
         if self.status() != Status::Exploring {
-            memory.state.stand(&input);
+            memory.state.stand(config, &input);
             return Ok(stopped(self.status()));
         }
         let (state, workspace) = (&mut *memory.state, &mut *memory.workspace);
         let output = step(config, state, workspace, input, laps);
+        if output.refused.is_some() {
+            warning!("an observation has a number that no robot reports");
+            return Ok(Command {
+                input_faults: convert::wire_input_faults(memory.state.input_faults()),
+                ..stopped(Status::Fault(Fault::BadObservation))
+            });
+        }
         self.planned = convert::wire_status(output.status);
         if self.planned != Status::Exploring {
             info!("exploration ended");
@@ -196,6 +203,7 @@ impl Pilot {
         let location = config.localises().then(|| memory.state.location());
         Ok(Command {
             loops: convert::wire_loops(memory.state.loops()),
+            input_faults: convert::wire_input_faults(memory.state.input_faults()),
             location: location.as_ref().map(convert::wire_location),
             ..command(&output, self.planned)
         })

@@ -2,6 +2,8 @@
 //!
 //! Units: milliseconds, metres, radians; ranges in millimetres.
 
+use core::fmt;
+
 use crate::geometry::{Pose, Twist};
 
 /// Range code in place of millimetres: nothing came back, so the beam was free up to the range
@@ -13,6 +15,9 @@ pub const INVALID_MM: u16 = 0;
 const SAME_THING_MM: u16 = 250;
 
 /// The input of a step.
+///
+/// A step checks it. What cannot be used is refused ([`InputError`]), and what is doubtful is
+/// counted ([`InputFaults`]).
 ///
 /// ```
 /// use fieldline_planner::{INVALID_MM, Input, MAX_BEAMS, NO_RETURN_MM, Pose, Twist};
@@ -31,15 +36,77 @@ const SAME_THING_MM: u16 = 250;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Input<'a> {
-    /// The host's clock, milliseconds.
+    /// The host's clock, milliseconds. It may begin anywhere, and it may wrap.
     pub time_ms: u32,
     /// Odometry.
     pub pose: Pose,
     /// Measured velocity.
     pub velocity: Twist,
-    /// Ranges of each laser of [`Config::lasers`](crate::Config::lasers), millimetres;
-    /// [`NO_RETURN_MM`] and [`INVALID_MM`] are codes.
+    /// Ranges of each laser of [`Config::lasers`](crate::Config::lasers), millimetres, one per beam;
+    /// none if the laser has no scan now. [`NO_RETURN_MM`] and [`INVALID_MM`] are codes.
     pub scans: [&'a [u16]; 2],
+}
+
+/// Why a report of the host was not used.
+///
+/// ```
+/// use fieldline_planner::InputError;
+///
+/// assert_eq!(InputError::NotFinite.to_string(), "a number is not finite");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InputError {
+    /// A number of pose or velocity is NaN or infinite.
+    NotFinite,
+    /// A coordinate is beyond 32,768 m, the yaw beyond 32,768 rad, or the robot leans by more than
+    /// 60°.
+    OutOfRange,
+    /// A scan has not one range per beam of its laser, or there is no such laser.
+    Scans,
+}
+
+impl fmt::Display for InputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => "a number is not finite",
+            Self::OutOfRange => "a pose is out of range",
+            Self::Scans => "a scan has not one range per beam",
+        })
+    }
+}
+
+impl core::error::Error for InputError {}
+
+/// Numbers of reports since the start of the session that were not as they should be.
+///
+/// ```
+/// # use fieldline_planner::{Config, F405, LaserMount, Planner, RobotShape};
+/// use fieldline_planner::{Input, InputError, InputFaults, Pose, Twist};
+///
+/// # let config = Config::builder(RobotShape::PIONEER_3AT)
+/// #     .laser(LaserMount::level(0.10, 0.40))
+/// #     .build()?;
+/// let mut planner = Box::new(Planner::<F405>::new(&config));
+/// let output = planner.step(&Input {
+///     time_ms: 0,
+///     pose: Pose { x_m: f32::NAN, ..Pose::default() },
+///     velocity: Twist::default(),
+///     scans: [&[2_000; 181], &[]],
+/// });
+/// assert_eq!(output.velocity, Twist::default());
+/// assert_eq!(output.refused, Some(InputError::NotFinite));
+/// assert_eq!(planner.input_faults(), InputFaults { refused: 1, ..InputFaults::default() });
+/// # Ok::<(), fieldline_planner::ConfigError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct InputFaults {
+    /// Number of reports that were refused ([`InputError`]): no step was made of them.
+    pub refused: u32,
+    /// Number of poses that no robot reaches in the time: the odometry was taken to have begun anew where the
+    /// robot stood.
+    pub jumps: u32,
+    /// Number of times that were no later than the one before, or later by more than a minute.
+    pub clock: u32,
 }
 
 /// Returns the range of beam `i`, millimetres; `None` if it is invalid or a dropout. A dropout is a

@@ -32,6 +32,7 @@ extern crate std;
 
 // The rooms, from low to high. Feature `internals` opens them to this project's simulator and
 // tests; it promises nothing to others.
+mod clock;
 #[cfg(not(feature = "internals"))]
 mod config;
 #[cfg(not(feature = "internals"))]
@@ -114,7 +115,7 @@ pub use config::{
 };
 pub use field::SIDE as FIELD_SIDE;
 pub use geometry::{CELL_M, Cell, MapPose, Point, Pose, Twist};
-pub use input::{INVALID_MM, Input, NO_RETURN_MM};
+pub use input::{INVALID_MM, Input, InputError, InputFaults, NO_RETURN_MM};
 pub use localise::{Location, Quality};
 pub use planner::{
     Capacity, CellKind, F405, FieldRow, LoopCounts, Memory, Output, Planner, State, Workspace, step,

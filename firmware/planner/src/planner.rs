@@ -15,6 +15,7 @@
 //! globals, no logging. The same bits in give the same bits out, on host and target.
 
 mod charge;
+mod door;
 mod ending;
 mod ground_model;
 mod make_way;
@@ -36,7 +37,7 @@ pub use workspace::{CellKind, FieldRow, Workspace};
 use crate::config::Config;
 use crate::field::{SolverConfig, Stop, solve};
 use crate::geometry::{MapPose, OdomPose, Twist};
-use crate::input::Input;
+use crate::input::{Input, InputError};
 use crate::profiling::{Stage, StageTimer};
 use crate::roadmap::configuration_space::Footprint;
 use crate::robot::LaserMount;
@@ -70,6 +71,9 @@ pub struct Output {
     /// True if this step took obstacles that had come for gone, for a second look at what they
     /// hide.
     pub forgot_arrivals: bool,
+    /// Why the input was not used; `None` if it was. The robot then stands, and the exploration
+    /// goes on with the next input.
+    pub refused: Option<InputError>,
 }
 
 impl Output {
@@ -117,6 +121,15 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     input: Input<'_>,
     timer: &mut impl StageTimer,
 ) -> Output {
+    let input = match state.door.admit(config, &input) {
+        Ok(input) => input,
+        Err(error) => {
+            return Output {
+                refused: Some(error),
+                ..Output::standing(state.status)
+            };
+        }
+    };
     let pose = state.team.to_map(&input.pose);
     let input = Input { pose, ..input };
     let MapPose(corrected) = state.localiser.to_map(&OdomPose(pose));
@@ -129,10 +142,27 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         }
         None => explore(config, state, workspace, input, timer),
     };
-    state.drive.tell(output.velocity);
+    let velocity = commanded(config, state.status, output.velocity);
+    state.drive.tell(velocity);
     Output {
+        velocity,
+        status: state.status,
         forgot_arrivals: core::mem::take(&mut state.forgot_arrivals),
         ..output
+    }
+}
+
+/// Returns what the robot is told of a wish: within the session's speeds, which recovery motions do
+/// not know, and zero unless the status is one that drives.
+fn commanded(config: &Config, status: Status, wish: Twist) -> Twist {
+    let is_number = wish.linear_mps.is_finite() && wish.angular_radps.is_finite();
+    if status != Status::Exploring || !is_number {
+        return Twist::default();
+    }
+    let (linear, angular) = (config.max_linear_mps, config.max_angular_radps);
+    Twist {
+        linear_mps: wish.linear_mps.min(linear).max(-linear),
+        angular_radps: wish.angular_radps.min(angular).max(-angular),
     }
 }
 

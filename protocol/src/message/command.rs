@@ -50,8 +50,8 @@ pub enum Fault {
     MapFull,
     /// A way leads to further space, and it leaves the map's range.
     OutOfBox,
-    /// The scans of the observation do not match the session's lasers. The planner made no step.
-    /// This fault ends with the next correct observation.
+    /// The scans of the observation do not match the session's lasers, or its pose is one that no
+    /// robot reports: it leans by more than 60°. The planner made no step. This fault ends with the next correct observation.
     BadObservation,
     /// The robot did not move for too long although it had a command.
     Stuck,
@@ -121,6 +121,18 @@ pub struct Loops {
     pub given_up: u16,
 }
 
+/// Observations since the start of the session that were not as they should be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct InputFaults {
+    /// Number of observations with a number that no robot reports. The planner made no step.
+    pub refused: u32,
+    /// Number of poses that no robot reaches in the time. The odometry was taken to have begun anew
+    /// where the robot stood.
+    pub jumps: u32,
+    /// Number of times that were no later than the one before, or later by more than a minute.
+    pub clock: u32,
+}
+
 /// The answer to an observation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Command {
@@ -135,6 +147,8 @@ pub struct Command {
     pub loops: Loops,
     /// True if the planner took obstacles that had come for gone, for a second look.
     pub forgot_arrivals: bool,
+    /// Counts of observations that were not as they should be.
+    pub input_faults: InputFaults,
     /// The pose in the map; `None` if the session takes odometry for the pose.
     pub location: Option<Location>,
     /// Counters of the link.

@@ -3,9 +3,9 @@
 use fieldline_protocol::SCHEMA;
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::message::{
-    Cause, Command, Cost, Counters, Crash, Fault, FieldRow, Finish, Identity, Location, Loops,
-    Parameter, Path, Quality, Refusal, Reply, ResidualFrontier, ResidualReason, Stages, Status,
-    TILE_BYTES, TILE_SKELETON_BYTES, Tile, Twist,
+    Cause, Command, Cost, Counters, Crash, Fault, FieldRow, Finish, Identity, InputFaults,
+    Location, Loops, Parameter, Path, Quality, Refusal, Reply, ResidualFrontier, ResidualReason,
+    Stages, Status, TILE_BYTES, TILE_SKELETON_BYTES, Tile, Twist,
 };
 
 use super::common::replies;
@@ -106,6 +106,11 @@ fn reply_command() {
                 given_up: 2,
             },
             forgot_arrivals: true,
+            input_faults: InputFaults {
+                refused: 5,
+                jumps: 6,
+                clock: 130,
+            },
             location: Some(Location {
                 x: long(1.0),
                 y: long(-0.5),
@@ -145,7 +150,8 @@ fn reply_command() {
             0xff, 0xff, 0x03, // heading −0.5 rad = −32768/65536
             1, 0xac, 0x02, 2, // loops
             1, // what came is forgotten
-            1, // a location
+            5, 6, 0x82, 0x01, // faults of the input
+            1,    // a location
             0x80, 0x80, 0x08, 0xff, 0xff, 0x03, 0x80, 0x80, 0x02, // x, y, yaw
             0x80, 0x80, 0x08, 0, 0x80, 0x80, 0x10, 0, 0xff, 0xff, 0x03, 0x80, 0x80, 0x02, 1, 1,
             0x80, 0x20, // degenerate, at 0.5 rad

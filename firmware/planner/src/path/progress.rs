@@ -19,6 +19,7 @@
 
 use heapless::Vec;
 
+use crate::clock::since;
 use crate::geometry::{Cell, Point};
 use crate::status::ResidualReason;
 
@@ -163,7 +164,7 @@ impl ProgressChecker {
 
     /// Returns the time since the robot last moved, milliseconds.
     pub(crate) const fn standing_ms(&self, time_ms: u32) -> u32 {
-        time_ms.saturating_sub(self.moved_ms)
+        since(time_ms, self.moved_ms)
     }
 
     /// Notes that the robot waits for another one. The wait does not count.
@@ -175,8 +176,8 @@ impl ProgressChecker {
     /// Notes that in this period the robot was not asked to move, because it searches. The period
     /// does not count.
     pub(crate) const fn hold(&mut self, period_ms: u32) {
-        self.judged_ms += period_ms;
-        self.stood_ms += period_ms;
+        self.judged_ms = self.judged_ms.wrapping_add(period_ms);
+        self.stood_ms = self.stood_ms.wrapping_add(period_ms);
     }
 
     /// Forgets the progress towards a goal.
@@ -215,7 +216,7 @@ impl ProgressChecker {
 
     /// Judges the progress towards the present goal, which is `steps` away.
     pub(crate) fn judge(&mut self, goal: Cell, steps: u32, time_ms: u32) -> Verdict {
-        let round_ms = time_ms.wrapping_sub(self.judged_ms).min(MOST_ROUND_MS);
+        let round_ms = since(time_ms, self.judged_ms).min(MOST_ROUND_MS);
         self.judged_ms = time_ms;
         let idle_ms = self.note_goal(goal, steps, round_ms);
         self.closed_ms = if self.closed {
@@ -230,7 +231,7 @@ impl ProgressChecker {
             return Verdict::BlockUnreachable;
         }
         let reached = steps <= REACHED_STEPS;
-        let stood_ms = time_ms.wrapping_sub(self.stood_ms);
+        let stood_ms = since(time_ms, self.stood_ms);
         // The goal may have changed meanwhile.
         if stood_ms > STANDING_MS {
             if reached {
@@ -255,7 +256,7 @@ impl ProgressChecker {
     fn note_goal(&mut self, goal: Cell, steps: u32, round_ms: u32) -> u32 {
         let mut attempts = self.attempts.iter_mut();
         if let Some(attempt) = attempts.find(|attempt| attempt.leads_to(goal)) {
-            attempt.idle_ms += round_ms;
+            attempt.idle_ms = attempt.idle_ms.saturating_add(round_ms);
             if steps < attempt.fewest {
                 (attempt.fewest, attempt.idle_ms) = (steps, 0);
             }

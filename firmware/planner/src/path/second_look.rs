@@ -25,6 +25,8 @@
 //!
 //! Units: map cells, milliseconds.
 
+use crate::clock::since;
+
 /// What second looks must have shown, so that the wait begins anew: 1 m².
 const LEAST_MORE_CELLS: u32 = 100;
 /// Time for which the robot waits that what is in the way goes, milliseconds.
@@ -53,7 +55,7 @@ impl SecondLook {
         if known_cells >= self.known_cells.saturating_add(LEAST_MORE_CELLS) {
             (self.known_cells, self.since_ms) = (known_cells, time_ms);
         }
-        time_ms.wrapping_sub(self.since_ms) < PATIENCE_MS
+        since(time_ms, self.since_ms) < PATIENCE_MS
     }
 }
 

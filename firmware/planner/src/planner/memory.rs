@@ -5,7 +5,7 @@
 
 use crate::config::Config;
 use crate::geometry::Cell;
-use crate::input::Input;
+use crate::input::{Input, InputFaults};
 use crate::localise::Location;
 use crate::planner::{Output, State, Workspace, step};
 use crate::profiling::StageTimer;
@@ -170,6 +170,11 @@ impl<M: Memory> Planner<M> {
         sealed::Planning::status(&self.state)
     }
 
+    /// Returns the numbers of inputs that were not as they should be.
+    pub fn input_faults(&self) -> InputFaults {
+        sealed::Planning::input_faults(&self.state)
+    }
+
     /// Returns the robot's pose in the map after the last step.
     pub fn location(&self) -> Location {
         sealed::Planning::location(&self.state)
@@ -204,8 +209,8 @@ mod sealed {
     use core::fmt::Debug;
 
     use super::{
-        Capacity, Cell, Config, Input, Location, Output, Packet, Peers, ResidualFrontier,
-        StageTimer, State, Status, Workspace, step,
+        Capacity, Cell, Config, Input, InputFaults, Location, Output, Packet, Peers,
+        ResidualFrontier, StageTimer, State, Status, Workspace, step,
     };
 
     /// A capacity.
@@ -233,6 +238,7 @@ mod sealed {
         fn say(&mut self, config: &Config) -> Option<Packet>;
         fn peers(&self) -> &Peers;
         fn status(&self) -> Status;
+        fn input_faults(&self) -> InputFaults;
         fn location(&self) -> Location;
         fn path(&self) -> &[Cell];
         fn frontiers(&self) -> &[ResidualFrontier];
@@ -272,6 +278,10 @@ mod sealed {
 
         fn status(&self) -> Status {
             Self::status(self)
+        }
+
+        fn input_faults(&self) -> InputFaults {
+            Self::input_faults(self)
         }
 
         fn location(&self) -> Location {

@@ -4,6 +4,7 @@
 //!
 //! Units: map cells.
 
+use super::door::Door;
 use super::ground_model::GroundModel;
 use super::workspace::{RING, SCRATCH};
 use crate::config::{Config, Order};
@@ -11,6 +12,7 @@ use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{self, Drive};
 use crate::field::preference::Preferences;
 use crate::geometry::Cell;
+use crate::input::InputFaults;
 use crate::localise::{Localiser, Location};
 use crate::map::Map;
 use crate::path::viewpoint;
@@ -27,6 +29,8 @@ use crate::team::Team;
 /// have. Tiles with little content need no place in the pool.
 #[derive(Debug)]
 pub struct State<const TILES: usize, const SLOTS: usize> {
+    /// What the host reported, checked.
+    pub(super) door: Door,
     pub(super) localiser: Localiser,
     pub(super) map: Map<TILES, SLOTS>,
     /// All that differs between flat and uneven ground.
@@ -75,6 +79,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     pub const fn new() -> Self {
         let () = Self::CHECK;
         Self {
+            door: Door::new(),
             localiser: Localiser::new(),
             map: Map::new(),
             ground: GroundModel::new(),
@@ -96,6 +101,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 
     /// Forgets everything and begins a session with `config`.
     pub fn reset(&mut self, config: &Config) {
+        self.door = Door::new();
         self.localiser = Localiser::new();
         self.map.begin(config);
         self.preferences = Preferences::new();
@@ -123,6 +129,13 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     #[must_use]
     pub fn location(&self) -> Location {
         self.localiser.location()
+    }
+
+    /// Returns the numbers of reports since the start of the session that were not as they should
+    /// be.
+    #[must_use]
+    pub const fn input_faults(&self) -> InputFaults {
+        self.door.faults()
     }
 
     /// Returns the footprint that paths are planned for ([`Config::passage_radius_m`]).

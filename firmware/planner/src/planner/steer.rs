@@ -115,7 +115,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         velocity
     };
     Output {
-        velocity: within_limits(config, velocity),
+        velocity,
         heading_rad: math::wrap(input.pose.yaw_rad + here.unwrap_or(0.0)),
         ..Output::default()
     }
@@ -132,8 +132,7 @@ pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
     }
     let mut checker = CollisionChecker::empty(&config.robot);
     obstruct(&mut checker, state, config, input);
-    let wish = state.drive.look_around(config, &checker, input.velocity);
-    within_limits(config, wish)
+    state.drive.look_around(config, &checker, input.velocity)
 }
 
 /// Begins a retreat from where a passage was blocked, if the robot cannot turn there or blocked
@@ -167,7 +166,7 @@ pub(super) fn retreat<const TILES: usize, const SLOTS: usize>(
     obstruct(&mut checker, state, config, input);
     let leads_on = !state.strategy.frontier.goes_back();
     state.drive.end_retreat(&checker, leads_on);
-    within_limits(config, velocity)
+    velocity
 }
 
 /// Adds what the drive must not touch: the obstacles near by, and the other robots.
@@ -218,15 +217,6 @@ fn standing_periods<const TILES: usize, const SLOTS: usize>(
     time_ms: u32,
 ) -> u32 {
     state.strategy.frontier.standing_ms(time_ms) / LOOK_PERIOD_MS
-}
-
-/// Clamps a wish to the session's speeds; recovery motions do not know them.
-fn within_limits(config: &Config, wish: Twist) -> Twist {
-    let (linear, angular) = (config.max_linear_mps, config.max_angular_radps);
-    Twist {
-        linear_mps: wish.linear_mps.min(linear).max(-linear),
-        angular_radps: wish.angular_radps.min(angular).max(-angular),
-    }
 }
 
 fn is_at_goal(window: &Window, (origin, scale): (Cell, i32), robot: Point) -> bool {

@@ -50,7 +50,10 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 
     /// Enters an input without a step: the robot stands by order, or its exploration has ended.
     /// Only its team learns of it.
-    pub fn stand(&mut self, input: &Input<'_>) {
+    pub fn stand(&mut self, config: &Config, input: &Input<'_>) {
+        let Ok(input) = &self.door.admit(config, input) else {
+            return;
+        };
         let odom = OdomPose(self.team.to_map(&input.pose));
         let MapPose(pose) = self.localiser.to_map(&odom);
         let motion = (&pose, input.velocity);
@@ -59,6 +62,10 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 
     /// Takes a packet that another robot of the team said.
     pub fn hear(&mut self, config: &Config, packet: &Packet) {
+        if !packet.is_finite() {
+            self.door.note_refused();
+            return;
+        }
         let has_evidence = !self.ground.is_uneven();
         // Another robot sees the hull, and marks the cells behind its beams' ends.
         let stand_m = config.robot.half_diagonal_m + CELL_M;

@@ -14,6 +14,7 @@
 
 use heapless::Vec;
 
+use crate::clock::since;
 use crate::map::Map;
 use crate::map::exchange::TileView;
 use crate::team::packet::{Body, Digest, TeamTile, TileVersion, WANTED_TILES, Wanted};
@@ -72,7 +73,7 @@ impl Exchange {
         map: &mut Map<TILES, SLOTS>,
     ) {
         self.left = STEP_PACKETS;
-        if now_ms.wrapping_sub(self.digest_ms) >= DIGEST_MS {
+        if since(now_ms, self.digest_ms) >= DIGEST_MS {
             self.digest_ms = now_ms;
             self.owes_digest = true;
             map.sweep_news();

@@ -284,6 +284,20 @@ pub struct Packet {
     pub body: Body,
 }
 
+impl Packet {
+    /// Returns true if all its numbers are finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        let Body::Beacon(Beacon {
+            yaw_rad, velocity, ..
+        }) = &self.body
+        else {
+            return true;
+        };
+        let numbers = [*yaw_rad, velocity.linear_mps, velocity.angular_radps];
+        numbers.iter().all(|number| number.is_finite())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::vec::Vec;

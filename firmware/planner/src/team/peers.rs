@@ -10,6 +10,7 @@
 
 use heapless::Vec;
 
+use crate::clock::since;
 use crate::config::Member;
 use crate::geometry::{Point, Pose};
 use crate::math;
@@ -50,7 +51,7 @@ impl Peer {
     /// Returns the time since the last beacon, milliseconds.
     #[must_use]
     pub const fn silence_ms(&self, now_ms: u32) -> u32 {
-        now_ms.wrapping_sub(self.heard_ms)
+        since(now_ms, self.heard_ms)
     }
 
     /// Returns true if the peer's claims hold: its goal and its road.

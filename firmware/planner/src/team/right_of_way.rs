@@ -23,6 +23,7 @@
 
 use heapless::Vec;
 
+use crate::clock::since;
 use crate::geometry::Point;
 use crate::team::packet::{Activity, ROAD_POINTS};
 use crate::team::peers::{MOST_PEERS, Peer, Peers};
@@ -178,9 +179,10 @@ impl RightOfWay {
 
     /// Gives up waiting if the other did not move for too long. Returns true then.
     pub(crate) fn loses_patience(&mut self, now_ms: u32) -> bool {
-        self.ignored.retain(|ignored| ignored.until_ms > now_ms);
+        self.ignored
+            .retain(|ignored| since(ignored.until_ms, now_ms) > 0);
         let waits = self.stance != Stance::Free;
-        if !waits || now_ms.wrapping_sub(self.other_ms) < PATIENCE_MS {
+        if !waits || since(now_ms, self.other_ms) < PATIENCE_MS {
             return false;
         }
         let ignored = Ignored {
@@ -203,7 +205,7 @@ impl RightOfWay {
     /// Returns true if nobody waits for a peer any more, although it says that it moves.
     pub(crate) fn ignores(&self, id: u8, now_ms: u32) -> bool {
         let mut ignored = self.ignored.iter();
-        ignored.any(|ignored| ignored.id == id && ignored.until_ms > now_ms)
+        ignored.any(|ignored| ignored.id == id && since(ignored.until_ms, now_ms) > 0)
     }
 
     /// Returns the peer of the present stance, if it may move.

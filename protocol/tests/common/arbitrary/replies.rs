@@ -1,9 +1,9 @@
 //! What a device answers.
 
 use fieldline_protocol::message::{
-    Cause, Command, Cost, Counters, Crash, Fault, FieldRow, Finish, Identity, Location, Loops,
-    Parameter, Path, Quality, Refusal, Reply, ResidualFrontier, ResidualReason, Stages, Status,
-    Tile,
+    Cause, Command, Cost, Counters, Crash, Fault, FieldRow, Finish, Identity, InputFaults,
+    Location, Loops, Parameter, Path, Quality, Refusal, Reply, ResidualFrontier, ResidualReason,
+    Stages, Status, Tile,
 };
 use proptest::prelude::*;
 
@@ -124,11 +124,25 @@ fn location() -> impl Strategy<Value = Location> {
     })
 }
 
+fn input_faults() -> impl Strategy<Value = InputFaults> {
+    any::<(u32, u32, u32)>().prop_map(|(refused, jumps, clock)| InputFaults {
+        refused,
+        jumps,
+        clock,
+    })
+}
+
 fn command() -> impl Strategy<Value = Command> {
     (
         twist(),
         status(),
-        (long(), loops(), any::<bool>(), prop::option::of(location())),
+        (
+            long(),
+            loops(),
+            any::<bool>(),
+            input_faults(),
+            prop::option::of(location()),
+        ),
         counters(),
         stages(),
         any::<(u32, u32, u16, bool)>(),
@@ -137,7 +151,7 @@ fn command() -> impl Strategy<Value = Command> {
             |(
                 velocity,
                 status,
-                (heading, loops, forgot_arrivals, location),
+                (heading, loops, forgot_arrivals, input_faults, location),
                 counters,
                 stages,
                 cost,
@@ -147,6 +161,7 @@ fn command() -> impl Strategy<Value = Command> {
                 heading,
                 loops,
                 forgot_arrivals,
+                input_faults,
                 location,
                 counters,
                 cost: Cost {

@@ -26,6 +26,7 @@ mod levels;
 #[cfg(test)]
 mod tests;
 
+use crate::clock::since;
 use crate::config::{Config, SpaceField};
 use crate::geometry::{Cell, Point};
 use crate::map::Tiles;
@@ -136,7 +137,7 @@ impl Sbpf {
 
     /// Returns the time since a cell was last covered, milliseconds.
     const fn waited_ms(&self) -> u32 {
-        self.now_ms.wrapping_sub(self.covered_ms)
+        since(self.now_ms, self.covered_ms)
     }
 
     /// Plans a round on a new skeleton: the path to what is left, in case that the forces lead

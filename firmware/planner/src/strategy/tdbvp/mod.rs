@@ -33,6 +33,7 @@ mod scenes;
 
 pub(crate) use rails::{PLACE_CELLS, Rails};
 
+use crate::clock::since;
 use crate::config::TdbvpTuning;
 use crate::field::local_grid::LocalGrid;
 use crate::field::{Preference, SIDE, Window};
@@ -143,7 +144,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         self.pending.note(here.cell());
         if here.distance2(self.stay) > tuning.linger_m * tuning.linger_m {
             (self.stay, self.stay_ms) = (here, time_ms);
-        } else if time_ms.wrapping_sub(self.stay_ms) > tuning.linger_ms {
+        } else if since(time_ms, self.stay_ms) > tuning.linger_ms {
             self.stay_ms = time_ms;
             self.lingers = true;
         }
@@ -229,7 +230,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
         let visits = self.stamps(&round).filter(|&stamp| stamp > 0);
         self.rails.set_oldest(visits.min());
         if let Some(since_ms) = self.patrol_since_ms {
-            let patrolled_ms = round.time_ms.wrapping_sub(since_ms);
+            let patrolled_ms = since(round.time_ms, since_ms);
             if patrolled_ms >= self.patrol_ms {
                 return RoundOutcome::Nothing;
             }
@@ -257,7 +258,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     /// Returns true if the robot follows a path rather than the rails: it lingered, or has visited
     /// no new place for too long.
     fn is_late(&self, time_ms: u32) -> bool {
-        let waited_ms = time_ms.wrapping_sub(self.new_place_ms);
+        let waited_ms = since(time_ms, self.new_place_ms);
         self.has_lingered
             || self
                 .impatience_ms
