@@ -2,16 +2,16 @@
 
 use core::ops::Range;
 use core::time::Duration;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result};
+use anyhow::{Context as _, Error, Result};
 use clap::Args;
 
 use host_sim::session::campaign::Campaign;
-use host_sim::session::generate::{Generator, LONGEST, Replayed};
+use host_sim::session::generate::{self, Generator, LONGEST, Replayed};
 use host_sim::session::judge::{Limits, stages};
 use host_sim::session::play::{Played, play};
-use host_sim::session::script::Script;
+use host_sim::session::script::{FORMAT, Head, Script};
 use host_sim::session::target::TargetSpec;
 
 use super::{note, say};
@@ -24,6 +24,9 @@ pub(super) struct SessionsArgs {
     /// Seeds from A up to and without B
     #[arg(long, value_name = "A..B", default_value = "0..100", value_parser = seeds)]
     seeds: Range<u64>,
+    /// Play the session of an input of the fuzz target `hosts` instead
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["generator", "seeds", "seconds"])]
+    bytes: Option<PathBuf>,
     /// Seconds after which no session begins
     #[arg(long, value_name = "S")]
     seconds: Option<u64>,
@@ -55,6 +58,9 @@ struct LimitArgs {
     /// Deepest stack, bytes
     #[arg(long, value_name = "N", default_value_t = Limits::default().stack_bytes)]
     most_stack: u32,
+    /// Longest time that an answer may take, milliseconds; it depends on the machine [default: any]
+    #[arg(long, value_name = "MS")]
+    most_ms: Option<u64>,
 }
 
 impl LimitArgs {
@@ -62,6 +68,7 @@ impl LimitArgs {
         Limits {
             instructions: self.most_instructions,
             stack_bytes: self.most_stack,
+            answer: self.most_ms.map(Duration::from_millis),
             ..Limits::default()
         }
     }
@@ -96,10 +103,37 @@ pub(super) fn run(args: &SessionsArgs) -> Result<bool> {
         findings: args.out.clone(),
         trials: args.trials,
     };
+    if let Some(file) = &args.bytes {
+        return play_bytes(&campaign, file);
+    }
     let totals = campaign.run(&note);
     let totals = totals.with_context(|| format!("--link {}", args.link))?;
     say(&totals.to_string())?;
     Ok(totals.findings.is_empty())
+}
+
+/// Plays the session of a fuzzer's input; returns true if nothing was found.
+fn play_bytes(campaign: &Campaign, file: &Path) -> Result<bool> {
+    let name = || file.display().to_string();
+    let bytes = std::fs::read(file).with_context(name)?;
+    let (generator, capacity, mut host) = generate::of_bytes(&bytes);
+    let mut target = campaign.target.open(capacity)?;
+    let played = play(&mut *host, &mut *target, campaign.limits);
+    say(&text(&played))?;
+    let Some(folder) = &campaign.findings else {
+        return Ok(played.findings.is_empty());
+    };
+    for finding in &played.findings {
+        let head = Head {
+            fieldline_session: FORMAT,
+            generator: format!("{}-bytes", generator.name()),
+            capacity,
+            ..Head::default()
+        };
+        let path = campaign.write(folder, head, (&finding.kind, &played));
+        say(&path.map_err(Error::msg)?.display().to_string())?;
+    }
+    Ok(played.findings.is_empty())
 }
 
 /// Replays a session; returns true if nothing was found.

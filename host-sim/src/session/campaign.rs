@@ -1,11 +1,13 @@
 //! Many sessions from a range of seeds, on several threads; each new finding becomes a file.
 
 use core::ops::Range;
+use core::sync::atomic::{AtomicU64, Ordering};
+use core::time::Duration;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
+
 use std::sync::{Mutex, PoisonError};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::choices::{Choices as _, Seeded};
 use super::generate::{Generator, LONGEST};
@@ -111,44 +113,50 @@ impl Campaign {
     }
 
     /// Shrinks a finding and writes its file; returns the path.
-    fn write(
+    ///
+    /// # Errors
+    /// Why it cannot be shrunken or written.
+    pub fn write(
         &self,
         folder: &Path,
-        (generator, seed): (Generator, u64),
+        head: Head,
         (kind, played): (&Kind, &Played),
     ) -> Result<PathBuf, String> {
         let trial = Trial {
             target: self.target.clone(),
-            capacity: capacity(seed),
+            capacity: head.capacity,
             limits: self.limits,
         };
         let shrunken = shrink(&trial, kind, &played.asks, self.trials);
         let asks = shrunken.map_err(|error| error.to_string())?;
+        let path = folder.join(file_name(kind, &head));
         let script = Script {
             head: Head {
-                fieldline_session: FORMAT,
-                generator: generator.name().into(),
-                seed,
-                capacity: trial.capacity,
                 causes: kind.to_string(),
+                ..head
             },
             asks,
         };
-        let path = folder.join(file_name(kind, generator, seed));
         script.save(&path).map_err(|error| error.to_string())?;
         Ok(path)
     }
 }
 
 /// Returns a file name with the kind's words.
-fn file_name(kind: &Kind, generator: Generator, seed: u64) -> String {
+fn file_name(kind: &Kind, head: &Head) -> String {
     let text = kind.to_string();
     let words: Vec<&str> = text
         .split(|letter: char| !letter.is_ascii_alphanumeric())
         .filter(|word| !word.is_empty())
         .collect();
     let words: String = words.join("-").chars().take(60).collect();
-    format!("{}-{}-{seed}.jsonl", words.to_lowercase(), generator.name())
+    let (
+        words,
+        Head {
+            generator, seed, ..
+        },
+    ) = (words.to_lowercase(), head);
+    format!("{words}-{generator}-{seed}.jsonl")
 }
 
 impl Shared<'_> {
@@ -185,8 +193,14 @@ impl Shared<'_> {
             let Some(folder) = &self.campaign.findings else {
                 continue;
             };
-            let from = (generator, seed);
-            match self.campaign.write(folder, from, (&finding.kind, played)) {
+            let head = Head {
+                fieldline_session: FORMAT,
+                generator: generator.name().into(),
+                seed,
+                capacity: capacity(seed),
+                causes: String::new(),
+            };
+            match self.campaign.write(folder, head, (&finding.kind, played)) {
                 Ok(path) => (self.tell)(&format!("    {}", path.display())),
                 Err(error) => (self.tell)(&format!("    not written: {error}")),
             }

@@ -6,6 +6,7 @@
 
 use core::f32::consts::PI;
 use core::fmt;
+use core::time::Duration;
 
 use fieldline_planner::Location;
 use fieldline_protocol::message::{Command, Cost, FieldRow, Stages, Start, Status, Twist};
@@ -20,6 +21,9 @@ pub struct Limits {
     pub instructions: u32,
     /// Deepest stack, bytes.
     pub stack_bytes: u32,
+    /// Longest time that an answer may take; `None` for any. It depends on the machine, so it is for
+    /// a search for slow steps where the device counts no instructions.
+    pub answer: Option<Duration>,
     /// Greatest amount by which an angle may exceed half a turn, radians: rounding of the wire.
     pub angle_slack_rad: f32,
     /// Greatest amount by which a value of the field may leave 0 to 1.
@@ -31,6 +35,7 @@ impl Default for Limits {
         Self {
             instructions: 8_000_000,
             stack_bytes: 15_400,
+            answer: None,
             angle_slack_rad: 1e-3,
             field_slack: 1e-3,
         }
@@ -56,6 +61,8 @@ pub enum Kind {
     BadNumber(&'static str),
     /// A step took too many instructions, most of them in this stage.
     Slow(&'static str),
+    /// An answer took too long.
+    SlowAnswer,
     /// The stack was too deep.
     DeepStack,
 }
@@ -71,6 +78,7 @@ impl fmt::Display for Kind {
             Self::MovesInSurvey => f.write_str("moves in a survey"),
             Self::BadNumber(which) => write!(f, "bad number: {which}"),
             Self::Slow(stage) => write!(f, "slow step, mostly in stage {stage}"),
+            Self::SlowAnswer => f.write_str("slow answer"),
             Self::DeepStack => f.write_str("deep stack"),
         }
     }

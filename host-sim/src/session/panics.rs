@@ -1,7 +1,8 @@
 //! Catches panics of a device in this process, with their place.
 
 use core::cell::{Cell, RefCell};
-use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+use core::panic::AssertUnwindSafe;
+use std::panic::{self, PanicHookInfo};
 use std::sync::Once;
 
 thread_local! {

@@ -3,7 +3,8 @@
 //! Invariant: [`Played::asks`] are the requests in their order, the one that ended the conversation
 //! included; played again on a device that has just booted, they give the same answers.
 
-use std::time::{Duration, Instant};
+use core::time::Duration;
+use std::time::Instant;
 
 use fieldline_protocol::message::{Cost, Status};
 
@@ -109,7 +110,12 @@ pub fn converse(host: &mut dyn Host, target: &mut dyn Target, limits: Limits, pl
         let began = Instant::now();
         match ask.of(target.link()) {
             Ok(heard) => {
-                played.note(&heard, began.elapsed());
+                let took = began.elapsed();
+                played.note(&heard, took);
+                if limits.answer.is_some_and(|longest| took > longest) {
+                    let milliseconds = took.as_secs_f64() * 1e3;
+                    played.find(Kind::SlowAnswer, format!("{milliseconds:.1} ms"));
+                }
                 let location = target.location();
                 for (kind, detail) in judge.hear(&ask, &heard, location.as_ref()) {
                     played.find(kind, detail);

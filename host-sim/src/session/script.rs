@@ -169,7 +169,7 @@ mod tests {
     use super::{FORMAT, Head, Script};
     use crate::session::ask::Ask;
     use crate::session::choices::Seeded;
-    use crate::session::generate::{Generator, Host as _};
+    use crate::session::generate::Generator;
     use crate::session::target::Capacity;
 
     #[test]

@@ -174,28 +174,23 @@ impl<C: Choices> Absurd<C> {
 
 impl<C: Choices> Host for Absurd<C> {
     fn next(&mut self, last: Option<&Answer>) -> Option<Ask> {
-        let Some(asked) = self.asked.take() else {
-            if self.start.is_none() && self.left > 0 {
-                self.left -= 1;
-                return Some(self.ask_start());
-            }
-            return self.go_on();
-        };
-        // Without an answer, as in a test of the generator alone, the session counts as begun.
-        if !matches!(last, Some(Answer::Refused(_))) || self.start.is_none() {
+        let is_refused = matches!(last, Some(Answer::Refused(_)));
+        if let Some(asked) = self.asked.take().filter(|_| !is_refused) {
             self.team.own = asked.team.map_or(0, |team| team.member.id);
             self.start = Some(asked);
         }
-        self.go_on()
-    }
-}
-
-impl<C: Choices> Absurd<C> {
-    fn go_on(&mut self) -> Option<Ask> {
-        if self.left == 0 || self.choices.is_over() {
-            return None;
+        // A host whose session was refused asks for another one.
+        match self.start {
+            _ if self.left == 0 => None,
+            None => {
+                self.left -= 1;
+                Some(self.ask_start())
+            }
+            Some(_) if self.choices.is_over() => None,
+            Some(_) => {
+                self.left -= 1;
+                Some(self.ask())
+            }
         }
-        self.left -= 1;
-        Some(self.ask())
     }
 }

@@ -6,7 +6,8 @@
 //! | tame | of an ordinary Pioneer 3-AT | any that the wire can carry |
 //! | plausible | of an ordinary Pioneer 3-AT | of a simulated robot in a world, now and then spoilt |
 //!
-//! Half of the sessions are short. The lengths have a heavy tail, up to [`LONGEST`] requests.
+//! Half of the sessions are short. The lengths have a heavy tail, up to [`LONGEST`] requests. A
+//! plausible session has four times as many steps.
 
 mod absurd;
 mod packets;
@@ -20,9 +21,10 @@ use core::fmt;
 use core::str::FromStr;
 
 use super::ask::{Answer, Ask};
-use super::choices::Choices;
+use super::choices::{Bytes, Choices};
+use super::target::Capacity;
 
-/// Most requests of a session.
+/// Most requests of a session, or steps of a plausible one.
 pub const LONGEST: usize = 2_000;
 
 /// A host: it makes one request after the other.
@@ -99,15 +101,28 @@ impl Generator {
         }
     }
 
-    /// Returns a host that takes its choices from `choices` and makes at most `longest` requests.
+    /// Returns a host that takes its choices from `choices` and makes at most `longest` requests, or
+    /// `longest` steps if it simulates a robot.
     pub fn host<'a, C: Choices + 'a>(self, mut choices: C, longest: usize) -> Box<dyn Host + 'a> {
         let length = length(&mut choices).min(longest);
         match self {
             Self::Absurd => Box::new(absurd::Absurd::new(choices, length, false)),
             Self::Tame => Box::new(absurd::Absurd::new(choices, length, true)),
-            Self::Plausible => Box::new(plausible::Plausible::new(choices, 4 * length)),
+            Self::Plausible => {
+                let steps = (4 * length).min(longest);
+                Box::new(plausible::Plausible::new(choices, steps))
+            }
         }
     }
+}
+
+/// Returns the session of a fuzzer's input: generator, size of the device's map, and the host.
+#[must_use]
+pub fn of_bytes(bytes: &[u8]) -> (Generator, Capacity, Box<dyn Host + '_>) {
+    let mut choices = Bytes::new(bytes);
+    let generator = choices.pick(&Generator::ALL);
+    let capacity = choices.pick(&Capacity::ALL);
+    (generator, capacity, generator.host(choices, LONGEST))
 }
 
 /// Draws a length: n or more with probability 4 / n.
@@ -121,11 +136,10 @@ mod tests {
     use super::{Generator, LONGEST, length};
     use crate::session::ask::{Answer, Ask};
     use crate::session::choices::{Bytes, Choices as _, Seeded};
-    use fieldline_protocol::message::Command;
 
     fn asks(generator: Generator, seed: u64) -> Vec<Ask> {
         let mut host = generator.host(Seeded::new(seed), 60);
-        let answer = Answer::Command(Box::new(Command::default()));
+        let answer = Answer::Command(Box::default());
         core::iter::from_fn(|| host.next(Some(&answer))).collect()
     }
 
@@ -143,7 +157,7 @@ mod tests {
             for seed in 0..10 {
                 let asks = asks(generator, seed);
                 assert!(matches!(asks[0], Ask::Start(_)), "{generator:?} {seed}");
-                assert!(asks.len() <= 1 + 4 * 60 * 8, "{generator:?} {seed}");
+                assert!(asks.len() <= 1 + 60 * 32, "{generator:?} {seed}");
             }
             let no_bytes = || Bytes::new(&[]);
             let mut host = generator.host(no_bytes(), LONGEST);

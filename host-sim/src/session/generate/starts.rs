@@ -250,7 +250,7 @@ fn order(choices: &mut impl Choices) -> Order {
         0 => Order::Nearest,
         1 => Order::Gain { worth: I4F12::ZERO },
         _ => Order::Gain {
-            worth: narrow(choices).min(I4F12::lit("7")),
+            worth: narrow_within(choices, 0, 7 << 12),
         },
     }
 }
