@@ -11,6 +11,7 @@ pub mod radio;
 pub mod replay;
 pub mod report;
 pub mod robot;
+pub mod session;
 pub mod sim;
 pub mod solve;
 pub mod trial;

@@ -20,6 +20,7 @@
 //! | [`worlds`] | the built-in worlds by kind; worlds drawn by others |
 //! | [`places`] | pits and a building, found in a world's definition |
 //! | [`orders`] | orders of frontiers beside one another, as ratios to a baseline |
+//! | [`sessions`] | whole sessions of hostile hosts, and the corpus |
 //! | [`starts`] | starts drawn at random in a flat world |
 //! | [`ablation`] | every tuned constant at half and at double its default |
 //! | [`bitmap`] | seeded bit maps; thinning and search cell by cell, as oracles |
@@ -55,6 +56,7 @@ pub mod places;
 pub mod plot;
 pub mod random;
 pub mod runs;
+pub mod sessions;
 pub mod starts;
 pub mod table;
 pub mod teams;

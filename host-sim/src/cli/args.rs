@@ -14,6 +14,7 @@ use host_sim::trial::space::Area;
 
 use super::replay::ReplayArgs;
 use super::robot::RobotArgs;
+use super::sessions::{ReplaySessionArgs, SessionsArgs};
 use super::strategies;
 use super::team::TeamArgs;
 use super::values::{
@@ -39,6 +40,10 @@ pub(super) enum Command {
     Team(Box<TeamArgs>),
     /// Localise and map along a recorded log; write a folder with map, trajectory and picture
     Replay(Box<ReplayArgs>),
+    /// Attack devices with whole sessions, from absurd to plausible; print totals and findings
+    Sessions(SessionsArgs),
+    /// Replay a session from a file and judge every answer
+    ReplaySession(ReplaySessionArgs),
     /// List the built-in worlds and the kinds of generated ones
     Worlds {
         /// Print one JSON object a line

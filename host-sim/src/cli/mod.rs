@@ -1,7 +1,7 @@
 //! The command line.
 //!
-//! Exit status: 0 if everything is done and every run ended explored, 1 if a run ended otherwise, 2
-//! if the input is bad or the run cannot begin. An error is one line on standard error that names
+//! Exit status: 0 if everything is done and every run ended explored, 1 if a run ended otherwise or
+//! a session has a finding, 2 if the input is bad or the run cannot begin. An error is one line on standard error that names
 //! the argument and the remedy. Standard output has results only: text, or with `--json` one JSON
 //! object a line.
 
@@ -11,6 +11,7 @@ mod pictures;
 mod progress;
 mod replay;
 mod robot;
+mod sessions;
 mod solve;
 mod strategies;
 mod team;
@@ -63,6 +64,8 @@ fn run(cli: &Cli) -> Result<bool> {
         Some(Command::Explore(args)) => explore::run(args),
         Some(Command::Team(args)) => team::run(args),
         Some(Command::Replay(args)) => replay::run(args),
+        Some(Command::Sessions(args)) => sessions::run(args),
+        Some(Command::ReplaySession(args)) => sessions::replay(args),
         Some(Command::Worlds { json }) => worlds::run(*json).map(|()| true),
         Some(Command::Tuning { json }) => tuning::run(*json).map(|()| true),
         Some(Command::Solve(args)) => solve::run(args).map(|()| true),

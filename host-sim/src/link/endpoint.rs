@@ -115,6 +115,11 @@ impl<L: Line> Endpoint<L> {
         }
     }
 
+    /// The line.
+    pub const fn line(&self) -> &L {
+        &self.line
+    }
+
     /// Time on the line's clock.
     pub fn now(&self) -> Duration {
         self.line.now()

@@ -7,18 +7,19 @@ use core::time::Duration;
 
 use fieldline_device::meter::NoMeter;
 use fieldline_device::session::Boot;
-use fieldline_device::{Memory, SLOTS, Session, State, TILES};
-use fieldline_planner::{Tuning, Workspace};
+use fieldline_device::{Memory, SLOTS, Session, TILES};
+use fieldline_planner::{State, Tuning, Workspace};
 
 use super::LinkError;
 use super::endpoint::{Endpoint, RetryPolicy};
 use super::line::Line;
 
-/// A whole device at the far end of a line.
+/// A whole device at the far end of a line. Its map has the default image's size if nothing else is
+/// said.
 #[derive(Debug)]
-pub struct LocalDevice {
+pub struct LocalDevice<const POOL: usize = TILES, const MOST: usize = SLOTS> {
     session: Session,
-    state: Box<State>,
+    state: Box<State<POOL, MOST>>,
     workspace: Box<Workspace>,
     boots: u32,
     now: Duration,
@@ -35,8 +36,17 @@ impl LocalDevice {
     /// A device that has just booted for the first time.
     #[must_use]
     pub fn new() -> Self {
+        Self::sized()
+    }
+}
+
+impl<const POOL: usize, const MOST: usize> LocalDevice<POOL, MOST> {
+    /// A device that has just booted for the first time, whose map has `POOL` tiles in its pool
+    /// and at most `MOST` tiles.
+    #[must_use]
+    pub fn sized() -> Self {
         Self {
-            session: boot(1),
+            session: boot::<POOL, MOST>(1),
             state: Box::new(State::new()),
             workspace: Box::new(Workspace::new()),
             boots: 1,
@@ -49,6 +59,12 @@ impl LocalDevice {
     #[must_use]
     pub const fn session(&self) -> &Session {
         &self.session
+    }
+
+    /// The planner's memory.
+    #[must_use]
+    pub const fn state(&self) -> &State<POOL, MOST> {
+        &self.state
     }
 
     /// Presses or releases the emergency stop.
@@ -70,14 +86,14 @@ impl LocalDevice {
     }
 }
 
-fn boot(boots: u32) -> Session {
+fn boot<const POOL: usize, const MOST: usize>(boots: u32) -> Session {
     let boot = Boot { boots, crash: None };
     let mut session = Session::new();
-    session.boot(boot, TILES, SLOTS);
+    session.boot(boot, POOL, MOST);
     session
 }
 
-impl Line for LocalDevice {
+impl<const POOL: usize, const MOST: usize> Line for LocalDevice<POOL, MOST> {
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
         let mut memory = Memory {
             state: &mut self.state,
@@ -90,7 +106,7 @@ impl Line for LocalDevice {
         if self.session.wants_reset() {
             self.collect();
             self.boots += 1;
-            self.session = boot(self.boots);
+            self.session = boot::<POOL, MOST>(self.boots);
         }
         Ok(())
     }

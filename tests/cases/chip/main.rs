@@ -6,6 +6,7 @@
 mod flat;
 mod full;
 mod loops;
+mod sessions;
 mod size;
 mod space;
 mod team;

@@ -2,16 +2,10 @@
 
 use fieldline_tests::worlds;
 
-use crate::{hostile, whole};
+use crate::whole;
 
 #[test]
 #[ignore = "takes hours: 210 runs; tests/run --full runs it"]
 fn built_in_worlds_with_every_seed_and_strategy() {
     whole::check_all("missions-full", &worlds::builtins(&worlds::EXPLORABLE));
-}
-
-#[test]
-#[ignore = "takes long: 3000 sessions; tests/run --full runs it"]
-fn an_absurd_host_fifty_times_as_often() {
-    hostile::check(3000);
 }

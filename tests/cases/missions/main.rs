@@ -6,7 +6,6 @@ mod disturbed;
 mod endings;
 mod full;
 mod generated;
-mod hostile;
 mod links;
 mod localise;
 mod localise_parts;

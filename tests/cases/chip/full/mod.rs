@@ -4,7 +4,7 @@ use fieldline_tests::emulator::image;
 use fieldline_tests::runs::in_parallel;
 use fieldline_tests::{costs, worlds};
 
-use crate::{flat, uneven};
+use crate::{flat, sessions, uneven};
 
 mod iteration;
 
@@ -24,6 +24,13 @@ fn every_uneven_world_is_within_the_chips_budget() {
     let worlds = worlds::builtins(&worlds::UNEVEN);
     let reports = in_parallel(&worlds, |world| uneven::on_both(world, &image));
     costs::check("costs-terrain.txt", &reports);
+}
+
+/// Two thousand sessions of three generators.
+#[test]
+#[ignore = "takes an hour: 2000 sessions; tests/run --full runs it"]
+fn two_thousand_hostile_sessions() {
+    sessions::check("sessions-full.txt", &(4_000_000..4_000_667));
 }
 
 /// Worlds drawn by others.
