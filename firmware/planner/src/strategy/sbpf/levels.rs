@@ -17,10 +17,14 @@ use crate::config::Area;
 use crate::geometry::{CELL_M, Point};
 use crate::grid::masked;
 use crate::map::Tiles;
+use crate::map::rows::RowReader;
 use crate::math;
 
 /// Most cells of the area along a side: the bits of a row.
 pub(super) const SIDE: usize = 64;
+
+/// Most rows of 64 map cells that are read in a step, which bounds its time: an area of 50 × 50 m.
+const MOST_ROWS: i32 = 4_096;
 
 /// A bit of each cell: row by row, least x in the lowest bit.
 pub(super) type Plane = [u64; SIDE];
@@ -34,6 +38,8 @@ pub(crate) struct Levels {
     /// Cells along x and y.
     across: i32,
     up: i32,
+    /// The next row to take over: strip by strip, and row by row in a strip.
+    next: i32,
     covered: Plane,
     obstacle: Plane,
     visited: Plane,
@@ -56,6 +62,7 @@ impl Levels {
             scale,
             across: (across + scale - 1) / scale,
             up: (up + scale - 1) / scale,
+            next: 0,
             covered: [0; SIDE],
             obstacle: [0; SIDE],
             visited: [0; SIDE],
@@ -122,46 +129,70 @@ impl Levels {
         }
     }
 
-    /// Takes over what the map knows.
+    /// Takes over what the map knows of the area, or of as much of it as a step has time for: a
+    /// large area takes several steps.
     pub(super) fn update<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
     ) {
-        (self.covered, self.obstacle) = ([0; SIDE], [0; SIDE]);
         // Cells of the area in 64 map cells.
         let strip = SIDE as i32 / self.scale;
-        for x in (0..self.across).step_by(strip as usize) {
-            let width = strip.min(self.across - x);
-            let mut reader = tiles.reader(self.area.least.x + x * self.scale);
-            for y in 0..self.up {
-                let first = self.area.least.y + y * self.scale;
-                let rows = (first..first + self.scale).map(|row| reader.row(row));
-                let mut known = [0_u32; SIDE];
-                let mut obstacle = 0;
-                for row in rows {
-                    obstacle |= row.obstacle();
-                    let counts = known.iter_mut().zip(pieces(!row.unknown(), self.scale));
-                    counts
-                        .take(width as usize)
-                        .for_each(|(count, bits)| *count += bits.count_ones());
-                }
-                let enough = (self.scale * self.scale) as u32;
-                let stones = pieces(obstacle, self.scale);
-                for (k, (known, stone)) in known.iter().zip(stones).take(width as usize).enumerate()
-                {
-                    let bit = 1 << (x + k as i32);
-                    let is_obstacle = stone != 0;
-                    if is_obstacle && let Some(row) = row_mut(&mut self.obstacle, y) {
-                        *row |= bit;
-                    }
-                    if (is_obstacle || 2 * known >= enough)
-                        && let Some(row) = row_mut(&mut self.covered, y)
-                    {
-                        *row |= bit;
-                    }
+        let strips = (self.across + strip - 1) / strip;
+        let mut left = (MOST_ROWS / self.scale).min(strips * self.up);
+        while left > 0 {
+            let (x, from) = (self.next / self.up * strip, self.next % self.up);
+            let rows = from..self.up.min(from + left);
+            left -= rows.end - from;
+            self.next = (self.next + rows.end - from) % (strips * self.up);
+            self.update_strip(tiles, (x, strip.min(self.across - x)), rows);
+        }
+    }
+
+    /// Takes over what the map knows of `width` columns of the area from `x` on.
+    fn update_strip<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        tiles: &Tiles<TILES, SLOTS>,
+        (x, width): (i32, i32),
+        rows: core::ops::Range<i32>,
+    ) {
+        let mut reader = tiles.reader(self.area.least.x + x * self.scale);
+        let strip = (u64::MAX >> (SIDE as i32 - width)) << x;
+        for y in rows {
+            let (covered, obstacle) = self.row_of(&mut reader, y, width);
+            for (plane, bits) in [(&mut self.covered, covered), (&mut self.obstacle, obstacle)] {
+                if let Some(row) = row_mut(plane, y) {
+                    *row = *row & !strip | bits << x;
                 }
             }
         }
+    }
+
+    /// Returns the covered cells and the obstacles of a row, from the reader's column on.
+    fn row_of<const TILES: usize, const SLOTS: usize>(
+        &self,
+        reader: &mut RowReader<'_, TILES, SLOTS>,
+        y: i32,
+        width: i32,
+    ) -> (u64, u64) {
+        let first = self.area.least.y + y * self.scale;
+        let mut known = [0_u32; SIDE];
+        let mut stones = 0;
+        for row in (first..first + self.scale).map(|row| reader.row(row)) {
+            stones |= row.obstacle();
+            let counts = known.iter_mut().zip(pieces(!row.unknown(), self.scale));
+            counts
+                .take(width as usize)
+                .for_each(|(count, bits)| *count += bits.count_ones());
+        }
+        let enough = (self.scale * self.scale) as u32;
+        let (mut covered, mut obstacle) = (0, 0);
+        let cells = known.iter().zip(pieces(stones, self.scale));
+        for (k, (known, stone)) in cells.take(width as usize).enumerate() {
+            let is_obstacle = stone != 0;
+            obstacle |= u64::from(is_obstacle) << k;
+            covered |= u64::from(is_obstacle || 2 * known >= enough) << k;
+        }
+        (covered, obstacle)
     }
 }
 
