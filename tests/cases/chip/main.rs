@@ -8,5 +8,6 @@ mod full;
 mod loops;
 mod size;
 mod space;
+mod stack;
 mod team;
 mod uneven;
