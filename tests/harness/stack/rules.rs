@@ -22,7 +22,7 @@ pub struct Rules {
 /// two functions that would call one call nobody.
 pub const RULES: Rules = Rules {
     indirect: &[
-        ("fieldline_planner::path::goal_choice::best_candidate", &[]),
+        ("fieldline_planner::path::goal_choice::Choice<_,_>::utility_above", &[]),
         (
             "fieldline_planner::path::goal_cost::GoalCost<_,_>::class",
             &[],
@@ -54,5 +54,5 @@ pub const RULES: Rules = Rules {
     recursive: &[("fieldline_planner::field::pyramid::Pyramid::solve", 5)],
     interrupts: &["USART1", "SysTick"],
     faults: &["HardFault", "BusFault"],
-    restarts: &["HardFault"],
+    restarts: &["HardFault", "fieldline_restart"],
 };
