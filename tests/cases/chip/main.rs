@@ -6,6 +6,7 @@
 mod flat;
 mod full;
 mod loops;
+mod matrix;
 mod size;
 mod space;
 mod stack;

@@ -5,7 +5,7 @@
 use fieldline_tests::{costs, emulator, golden, stack};
 
 /// Most bytes that any input may take of the 16 KB.
-const MOST: u32 = 15 * 1024;
+pub(crate) const MOST: u32 = 15 * 1024;
 
 #[test]
 #[ignore = "needs the image; tests/run runs it"]

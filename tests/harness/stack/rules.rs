@@ -22,7 +22,10 @@ pub struct Rules {
 /// two functions that would call one call nobody.
 pub const RULES: Rules = Rules {
     indirect: &[
-        ("fieldline_planner::path::goal_choice::Choice<_,_>::utility_above", &[]),
+        (
+            "fieldline_planner::path::goal_choice::Choice<_,_>::utility_above",
+            &[],
+        ),
         (
             "fieldline_planner::path::goal_cost::GoalCost<_,_>::class",
             &[],
@@ -52,7 +55,7 @@ pub const RULES: Rules = Rules {
     never_called: &["core::ops::function::FnOnce::call_once{{vtable.shim}}"],
     // Sides of 64, 32, 16, 8 and 4 cells.
     recursive: &[("fieldline_planner::field::pyramid::Pyramid::solve", 5)],
-    interrupts: &["USART1", "SysTick"],
+    interrupts: &["USART1", "SysTick", "DefaultHandler"],
     faults: &["HardFault", "BusFault"],
     restarts: &["HardFault", "fieldline_restart"],
 };
