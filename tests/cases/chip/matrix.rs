@@ -25,10 +25,14 @@ use host_sim::world::World;
 
 use crate::stack::MOST as MOST_STACK;
 
-/// Simulated time of a run, milliseconds.
-const RUN_MS: u32 = 30_000;
+/// Simulated time of a run of one robot, milliseconds.
+const RUN_MS: u32 = 12_000;
+/// Simulated time of a run of a team, milliseconds: the robots begin to meet.
+const TEAM_MS: u32 = 16_000;
+/// Simulated time of a patrol of the smallest world with its exploration, milliseconds.
+const PATROL_MS: u32 = 30_000;
 /// Faults of wheels and lasers, as on the command line.
-const DISTURBANCES: &str = "slip@4,spin@8-10,push@12-14,dark@16-18,missing=0.3";
+const DISTURBANCES: &str = "slip@2,spin@3-4,push@5-6,dark@7-8,missing=0.3";
 /// Most instructions of a step, whatever the options.
 const MOST_INSTRUCTIONS: f64 = 8e6;
 
@@ -83,7 +87,7 @@ fn flat() -> Vec<Case> {
         })
     };
     let patrol = of("--strategy tdbvp --patrol-for 20", "partition", |it| {
-        (it.strategy, it.patrol_s) = ("tdbvp".into(), 20);
+        (it.strategy, it.patrol_s, it.time_limit_ms) = ("tdbvp".into(), 20, PATROL_MS);
     });
     let corrected = |options: &str, change: fn(&mut Mission)| {
         of(options, "office", |it| {
@@ -214,8 +218,8 @@ fn teams() -> Vec<TeamCase> {
         it.radio = radio.parse().expect("a radio");
     };
     let timetable = |it: &mut TeamMission| {
-        it.timetable.leave = vec!["0@8".parse().expect("an appointment")];
-        it.timetable.join = vec!["0@16".parse().expect("an appointment")];
+        it.timetable.leave = vec!["0@4".parse().expect("an appointment")];
+        it.timetable.join = vec!["0@8".parse().expect("an appointment")];
     };
     vec![
         case("team", "frontier", |_| ()),
@@ -231,7 +235,7 @@ fn teams() -> Vec<TeamCase> {
             it.mission.order = Some(Order::Nearest)
         }),
         case("team --radio lossy", "frontier", lossy),
-        case("team --leave 0@8 --join 0@16", "frontier", timetable),
+        case("team --leave 0@4 --join 0@8", "frontier", timetable),
         case("team --odometry noisy", "frontier", noisy),
         case(
             "team --odometry noisy --start-error 0.3,5",
@@ -270,7 +274,7 @@ fn alone(case: &Case, image: &Path) -> Taken {
 fn in_team(case: &TeamCase, image: &Path) -> Taken {
     let mission = Mission {
         strategy: case.strategy.into(),
-        time_limit_ms: RUN_MS,
+        time_limit_ms: TEAM_MS,
         ..Mission::default()
     };
     let mut team = TeamMission::of(mission, 2);
