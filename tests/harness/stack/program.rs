@@ -128,22 +128,26 @@ fn marks(elf: &ElfFile32<'_>) -> BTreeMap<u32, bool> {
 
 /// Returns the functions within `code`, without what they do.
 fn symbols(elf: &ElfFile32<'_>, code: core::ops::Range<u32>) -> Program {
-    let mut program = Program::new();
+    // An alias has no size: the name with one comes first, then the order of the alphabet.
+    let mut names: BTreeMap<u32, (bool, String)> = BTreeMap::new();
     for symbol in elf.symbols() {
         // The lowest bit says that the code is Thumb code.
         let address = symbol.address() as u32 & !1;
         let is_function = symbol.kind() == SymbolKind::Text && code.contains(&address);
         if let Some(name) = symbol.name().ok().filter(|_| is_function) {
-            let function = program.entry(address).or_default();
-            let name = format!("{:#}", demangle(name));
-            // Of two names the shorter one, then the first, whatever their order in the file.
-            let old = (function.name.len(), &function.name);
-            if function.name.is_empty() || (name.len(), &name) < old {
-                function.name = name;
-            }
+            let name = (symbol.size() == 0, format!("{:#}", demangle(name)));
+            let known = names.entry(address).or_insert_with(|| name.clone());
+            *known = name.min(known.clone());
         }
     }
-    program
+    let function = |(_, name)| Function {
+        name,
+        ..Function::default()
+    };
+    let functions = names.into_iter();
+    functions
+        .map(|(address, name)| (address, function(name)))
+        .collect()
 }
 
 /// Reads section `.stack_sizes`: an address and a number of seven bits a byte, for each function.

@@ -55,6 +55,7 @@ pub const RULES: Rules = Rules {
     never_called: &["core::ops::function::FnOnce::call_once{{vtable.shim}}"],
     // Sides of 64, 32, 16, 8 and 4 cells.
     recursive: &[("fieldline_planner::field::pyramid::Pyramid::solve", 5)],
+    // The last one is the handler of every exception that the image does not expect.
     interrupts: &["USART1", "SysTick", "DefaultHandler"],
     faults: &["HardFault", "BusFault"],
     restarts: &["HardFault", "fieldline_restart"],
