@@ -1,4 +1,4 @@
-//! The image for the chip: its size, and whole runs of it in the emulator.
+//! The image for the chip: its size, the bound of its stack, and runs of it in the emulator.
 //!
 //! Every case is ignored by default: it needs the Rust target of the chip, most cases need QEMU as
 //! well. `tests/run` installs both and runs them.

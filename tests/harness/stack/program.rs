@@ -5,6 +5,7 @@
 //! sum must say the same. Data between the code is left out, by the mapping symbols `$t` and `$d`.
 //! Units: bytes.
 
+use core::ops::Range;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -29,7 +30,7 @@ pub struct Function {
     pub jumps: BTreeSet<u32>,
     /// Number of its calls and jumps to an address in a register.
     pub indirect: u32,
-    /// True if the image's constants hold its address, so that it may be called by address.
+    /// True if a constant of the image is its address, so that it may be called by address.
     pub address_is_stored: bool,
     /// True if it moves the stack pointer to another place. What it jumps to starts there.
     pub sets_stack: bool,
@@ -52,30 +53,34 @@ pub fn read(path: &Path) -> Result<Program, String> {
         Some((section.address() as u32, section.data().ok()?))
     };
     let (start, code) = section(".text").ok_or_else(|| named("it has no code".into()))?;
+    let range = start..start + code.len() as u32;
     let data = marks(&elf);
-    let mut program = symbols(&elf, start..start + code.len() as u32);
-    let ends: Vec<u32> = program.keys().skip(1).copied().collect();
-    let all: BTreeSet<u32> = program.keys().copied().collect();
-    let mut ends = ends.into_iter();
-    for (&address, function) in &mut program {
-        let end = ends.next().unwrap_or(start + code.len() as u32);
-        walk(function, address..end, &all, |at| {
+    let mut program = symbols(&elf, range.clone());
+    let starts: Vec<u32> = program.keys().copied().collect();
+    let ends = starts.iter().skip(1).copied().chain([range.end]);
+    let mut stored = BTreeSet::new();
+    for (function, end) in program.iter_mut().zip(ends) {
+        let (&address, function) = function;
+        stored.extend(walk(function, address..end, &range, &starts, |at| {
+            let k = (at - start) as usize;
+            let word = code.get(k..k + 4).unwrap_or(&[0; 4]);
             let is_data = data.range(..=at).next_back().is_some_and(|(_, data)| *data);
-            let half = |at: u32| {
-                let k = (at - start) as usize;
-                let bytes = code.get(k..k + 2)?;
-                Some(u16::from_le_bytes([bytes[0], bytes[1]]))
-            };
-            (!is_data).then(|| (half(at).unwrap_or(0), half(at + 2).unwrap_or(0)))
-        });
+            let word = u32::from_le_bytes([word[0], word[1], word[2], word[3]]);
+            if is_data {
+                Word::Data(word)
+            } else {
+                Word::Code(word)
+            }
+        }));
     }
     for (_, constants) in [".rodata", ".data"].into_iter().filter_map(section) {
-        for word in constants.as_chunks::<4>().0 {
-            // The lowest bit of a pointer to a function says that it is Thumb code.
-            let word = u32::from_le_bytes(*word);
-            if let Some(function) = program.get_mut(&(word & !1)).filter(|_| word & 1 == 1) {
-                function.address_is_stored = true;
-            }
+        let words = constants.as_chunks::<4>().0.iter();
+        stored.extend(words.map(|word| u32::from_le_bytes(*word)));
+    }
+    // The lowest bit of a pointer to a function says that it is Thumb code.
+    for word in stored.iter().filter(|word| *word & 1 == 1) {
+        if let Some(function) = program.get_mut(&(word & !1)) {
+            function.address_is_stored = true;
         }
     }
     for (address, reserved) in section(".stack_sizes").map_or_else(Vec::new, |it| sizes(it.1)) {
@@ -86,34 +91,60 @@ pub fn read(path: &Path) -> Result<Program, String> {
     Ok(program)
 }
 
-/// Reads what the instructions of a function do. `at` returns two halfwords of code, or `None`
-/// where there is data.
+/// The four bytes at an address between the code's ends.
+enum Word {
+    /// A constant between the code.
+    Data(u32),
+    /// An instruction, or one and the beginning of the next.
+    Code(u32),
+}
+
+/// Reads what the instructions of a function do. Returns the constants that they hold: a function
+/// of which the address is one may be called by it. `starts` has where functions begin, in order.
 fn walk(
     function: &mut Function,
-    range: core::ops::Range<u32>,
-    all: &BTreeSet<u32>,
-    at: impl Fn(u32) -> Option<(u16, u16)>,
-) {
+    range: Range<u32>,
+    code: &Range<u32>,
+    starts: &[u32],
+    at: impl Fn(u32) -> Word,
+) -> Vec<u32> {
+    // An address inside of a function stands for the function.
+    let owner = |to: u32| match starts.partition_point(|start| *start <= to).checked_sub(1) {
+        Some(before) if code.contains(&to) => starts[before],
+        _ => to,
+    };
+    let mut constants = Vec::new();
+    let mut low = [0; 16];
     let mut address = range.start;
     while address < range.end {
-        let Some((first, second)) = at(address) else {
-            address += 2;
-            continue;
+        let (length, effect) = match at(address) {
+            Word::Code(word) => decode(address, word as u16, (word >> 16) as u16),
+            Word::Data(word) => {
+                constants.push(word);
+                (2, Effect::None)
+            }
         };
-        let (length, effect) = decode(address, first, second);
-        // An address inside of a function stands for the function.
-        let owner = |to: u32| all.range(..=to).next_back().copied();
         match effect {
             Effect::None => {}
             Effect::Grows(bytes) => function.frame += bytes,
             Effect::SetsStack => function.sets_stack = true,
-            Effect::Calls(to) => function.calls.extend(owner(to)),
+            Effect::Calls(to) => {
+                function.calls.insert(owner(to));
+            }
             Effect::Jumps(to) if range.contains(&to) => {}
-            Effect::Jumps(to) => function.jumps.extend(owner(to)),
+            Effect::Jumps(to) => {
+                function.jumps.insert(owner(to));
+            }
             Effect::CallsRegister | Effect::JumpsRegister => function.indirect += 1,
+            Effect::SetsLow(register, value) => low[usize::from(register & 15)] = value,
+            Effect::SetsHigh(register, value) => {
+                let low = low[usize::from(register & 15)];
+                constants.push(u32::from(value) << 16 | u32::from(low));
+            }
         }
         address += length;
     }
+    constants
 }
 
 /// Returns the addresses where data begins (`true`) and where code begins (`false`).
@@ -127,7 +158,7 @@ fn marks(elf: &ElfFile32<'_>) -> BTreeMap<u32, bool> {
 }
 
 /// Returns the functions within `code`, without what they do.
-fn symbols(elf: &ElfFile32<'_>, code: core::ops::Range<u32>) -> Program {
+fn symbols(elf: &ElfFile32<'_>, code: Range<u32>) -> Program {
     // An alias has no size: the name with one comes first, then the order of the alphabet.
     let mut names: BTreeMap<u32, (bool, String)> = BTreeMap::new();
     for symbol in elf.symbols() {

@@ -29,6 +29,10 @@ pub(crate) enum Effect {
     Jumps(u32),
     /// A jump to an address in a register or in memory.
     JumpsRegister,
+    /// A register gets these lower 16 bits, and zeros above them.
+    SetsLow(u16, u16),
+    /// A register gets these upper 16 bits.
+    SetsHigh(u16, u16),
 }
 
 /// Decodes the instruction at `address`, of the halfwords `first` and `second`. Returns its length
@@ -87,6 +91,14 @@ fn wide(address: u32, first: u16, second: u16) -> Effect {
         _ if first & 0xf800 == 0xf000 && second & 0x8000 == 0 && into == SP => {
             immediate(first, second)
         }
+        // MOVW, MOVT
+        _ if matches!(first & 0xfbf0, 0xf240 | 0xf2c0) && second & 0x8000 == 0 => {
+            let value = (first & 15) << 12 | halfword(first, second);
+            match first & 0x80 {
+                0 => Effect::SetsLow(into, value),
+                _ => Effect::SetsHigh(into, value),
+            }
+        }
         // Data processing with a shifted register.
         _ if first & 0xfe00 == 0xea00 && into == SP => Effect::SetsStack,
         // MSR to the main or the process stack pointer.
@@ -111,9 +123,7 @@ fn wide(address: u32, first: u16, second: u16) -> Effect {
 
 /// Decodes data processing with an immediate, of which the result goes to the stack pointer.
 fn immediate(first: u16, second: u16) -> Effect {
-    let immediate = u32::from(second & 0xff)
-        | u32::from(second >> 12 & 7) << 8
-        | u32::from(first >> 10 & 1) << 11;
+    let immediate = u32::from(halfword(first, second));
     match first & 0xfbef {
         // SUB SP, SP: a value of eight bits that may be rotated, or 12 bits.
         0xf1ad => Effect::Grows(expanded(immediate)),
@@ -122,6 +132,11 @@ fn immediate(first: u16, second: u16) -> Effect {
         0xf10d | 0xf20d => Effect::None,
         _ => Effect::SetsStack,
     }
+}
+
+/// Returns the immediate of 12 bits that lies in three parts of an instruction.
+const fn halfword(first: u16, second: u16) -> u16 {
+    second & 0xff | (second >> 12 & 7) << 8 | (first >> 10 & 1) << 11
 }
 
 /// Decodes branches with a link, without one, and with a condition.
@@ -180,35 +195,37 @@ mod tests {
     #[test]
     fn instructions_have_the_effects_of_the_manual() {
         let cases: &[(u16, u16, Effect)] = &[
-            (0xb5f0, 0, Effect::Grows(20)),          // push {r4-r7, lr}
-            (0xe92d, 0x0f00, Effect::Grows(16)),     // stmdb sp!, {r8-r11}
-            (0xf84d, 0xbd04, Effect::Grows(4)),      // str.w r11, [sp, #-4]!
-            (0xed2d, 0x8b10, Effect::Grows(64)),     // vpush {d8-d15}
-            (0xb087, 0, Effect::Grows(28)),          // sub sp, #28
-            (0xf5ad, 0x5da4, Effect::Grows(0x1480)), // sub.w sp, sp, #5248
-            (0xf6ad, 0x5d48, Effect::Grows(0xd48)),  // subw sp, sp, #3400
-            (0xf5ad, 0x7d57, Effect::Grows(0x35c)),  // sub.w sp, sp, #860
-            (0x468d, 0, Effect::SetsStack),          // mov sp, r1
-            (0x46bd, 0, Effect::SetsStack),          // mov sp, r7
-            (0xf1a7, 0x0d10, Effect::SetsStack),     // sub.w sp, r7, #16
-            (0xebad, 0x0d02, Effect::SetsStack),     // sub.w sp, sp, r2
-            (0xf381, 0x8808, Effect::SetsStack),     // msr msp, r1
-            (0xb005, 0, Effect::None),               // add sp, #20
-            (0x4770, 0, Effect::None),               // bx lr
-            (0xf85d, 0xfb04, Effect::None),          // ldr pc, [sp], #4
-            (0x4718, 0, Effect::JumpsRegister),      // bx r3
-            (0x47c8, 0, Effect::CallsRegister),      // blx r9
-            (0xf000, 0xf802, Effect::Calls(0x1008)), // bl +8
-            (0xf7ff, 0xfffe, Effect::Calls(0x1000)), // bl +0
-            (0xf7ff, 0xbffe, Effect::Jumps(0x1000)), // b.w +0
-            (0xf43f, 0xaffe, Effect::Jumps(0x1000)), // beq.w +0
-            (0xe7fe, 0, Effect::Jumps(0x1000)),      // b.n +0
-            (0xd0fe, 0, Effect::Jumps(0x1000)),      // beq.n +0
-            (0xb108, 0, Effect::Jumps(0x1006)),      // cbz r0, +6
-            (0xdf01, 0, Effect::None),               // svc 1
-            (0xbf30, 0, Effect::None),               // wfi
-            (0xf3bf, 0x8f4f, Effect::None),          // dsb
-            (0xf380, 0x0008, Effect::None),          // usat r0, #8, r0
+            (0xb5f0, 0, Effect::Grows(20)),                // push {r4-r7, lr}
+            (0xe92d, 0x0f00, Effect::Grows(16)),           // stmdb sp!, {r8-r11}
+            (0xf84d, 0xbd04, Effect::Grows(4)),            // str.w r11, [sp, #-4]!
+            (0xed2d, 0x8b10, Effect::Grows(64)),           // vpush {d8-d15}
+            (0xb087, 0, Effect::Grows(28)),                // sub sp, #28
+            (0xf5ad, 0x5da4, Effect::Grows(0x1480)),       // sub.w sp, sp, #5248
+            (0xf6ad, 0x5d48, Effect::Grows(0xd48)),        // subw sp, sp, #3400
+            (0xf5ad, 0x7d57, Effect::Grows(0x35c)),        // sub.w sp, sp, #860
+            (0x468d, 0, Effect::SetsStack),                // mov sp, r1
+            (0x46bd, 0, Effect::SetsStack),                // mov sp, r7
+            (0xf1a7, 0x0d10, Effect::SetsStack),           // sub.w sp, r7, #16
+            (0xebad, 0x0d02, Effect::SetsStack),           // sub.w sp, sp, r2
+            (0xf381, 0x8808, Effect::SetsStack),           // msr msp, r1
+            (0xb005, 0, Effect::None),                     // add sp, #20
+            (0x4770, 0, Effect::None),                     // bx lr
+            (0xf85d, 0xfb04, Effect::None),                // ldr pc, [sp], #4
+            (0x4718, 0, Effect::JumpsRegister),            // bx r3
+            (0x47c8, 0, Effect::CallsRegister),            // blx r9
+            (0xf000, 0xf802, Effect::Calls(0x1008)),       // bl +8
+            (0xf7ff, 0xfffe, Effect::Calls(0x1000)),       // bl +0
+            (0xf7ff, 0xbffe, Effect::Jumps(0x1000)),       // b.w +0
+            (0xf43f, 0xaffe, Effect::Jumps(0x1000)),       // beq.w +0
+            (0xe7fe, 0, Effect::Jumps(0x1000)),            // b.n +0
+            (0xd0fe, 0, Effect::Jumps(0x1000)),            // beq.n +0
+            (0xb108, 0, Effect::Jumps(0x1006)),            // cbz r0, +6
+            (0xf248, 0x3a45, Effect::SetsLow(10, 0x8345)), // movw r10, #0x8345
+            (0xf6c0, 0x0103, Effect::SetsHigh(1, 0x0803)), // movt r1, #0x0803
+            (0xdf01, 0, Effect::None),                     // svc 1
+            (0xbf30, 0, Effect::None),                     // wfi
+            (0xf3bf, 0x8f4f, Effect::None),                // dsb
+            (0xf380, 0x0008, Effect::None),                // usat r0, #8, r0
         ];
         for &(first, second, effect) in cases {
             let (length, found) = decode(0x1000, first, second);
