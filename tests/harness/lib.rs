@@ -30,6 +30,7 @@
 //! | [`costs`] | instructions of a step on the emulated chip |
 //! | [`emulator`] | the image for the chip, and QEMU |
 //! | [`elf`] | flash and memory that an image takes |
+//! | [`stack`] | bound of the stack that an image takes, from its machine code |
 //!
 //! Three environment variables have a meaning: `BLESS=1` rewrites golden files, `FIELDLINE_DATA`
 //! names the folder with worlds drawn by others, and `ABLATION_RUNS` limits the runs of a room.
@@ -57,6 +58,7 @@ pub mod plot;
 pub mod random;
 pub mod runs;
 pub mod sessions;
+pub mod stack;
 pub mod starts;
 pub mod table;
 pub mod teams;

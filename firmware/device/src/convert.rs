@@ -159,10 +159,12 @@ fn space_field(field: &wire::SpaceField) -> SpaceField {
     }
 }
 
-/// Converts the parameters of a session from the wire. The planner checks them.
+/// Converts the parameters of a session from the wire. The planner checks them. Not inlined: the
+/// builder's copies must not be on the stack while the state is cleared.
 ///
 /// # Errors
 /// [`wire::Parameter`]: the first parameter that is out of its range.
+#[inline(never)]
 pub fn config(start: &wire::Start, tuning: &'static Tuning) -> Result<Config, wire::Parameter> {
     let mut builder = Config::builder(hull(&start.hull))
         .tuning(tuning)

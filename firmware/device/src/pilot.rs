@@ -117,6 +117,7 @@ impl Pilot {
     ///
     /// # Errors
     /// [`Refusal`]. The state is then unchanged.
+    #[inline(never)]
     pub fn control<const TILES: usize, const SLOTS: usize>(
         &mut self,
         memory: &mut Memory<'_, TILES, SLOTS>,
@@ -214,6 +215,7 @@ impl Pilot {
     ///
     /// # Errors
     /// [`Refusal::NotStarted`] without a session, [`Refusal::NoTeam`] in a session without a team.
+    #[inline(never)]
     pub fn hear<const TILES: usize, const SLOTS: usize>(
         &mut self,
         memory: &mut Memory<'_, TILES, SLOTS>,
@@ -230,6 +232,7 @@ impl Pilot {
     ///
     /// # Errors
     /// As [`Pilot::hear`].
+    #[inline(never)]
     pub fn say<const TILES: usize, const SLOTS: usize>(
         &mut self,
         memory: &mut Memory<'_, TILES, SLOTS>,
@@ -263,6 +266,7 @@ impl Pilot {
 
     /// Returns one map tile; `None` if nothing in it was ever seen.
     #[must_use]
+    #[inline(never)]
     pub fn tile<const TILES: usize, const SLOTS: usize>(
         memory: &Memory<'_, TILES, SLOTS>,
         x: i16,
@@ -284,6 +288,7 @@ impl Pilot {
     /// Returns one row of the field in the last window; `None` before the first window and for a
     /// row beyond the last one.
     #[must_use]
+    #[inline(never)]
     pub fn field_row<const TILES: usize, const SLOTS: usize>(
         memory: &Memory<'_, TILES, SLOTS>,
         row: u8,
@@ -296,6 +301,7 @@ impl Pilot {
 
     /// Returns tractor point, shield, and the path without its first `from` cells.
     #[must_use]
+    #[inline(never)]
     pub fn path<const TILES: usize, const SLOTS: usize>(
         memory: &Memory<'_, TILES, SLOTS>,
         from: u8,
@@ -305,6 +311,7 @@ impl Pilot {
 
     /// Returns the first [`MAX_FRONTIERS`] residual frontiers.
     #[must_use]
+    #[inline(never)]
     pub fn frontiers<const TILES: usize, const SLOTS: usize>(
         memory: &Memory<'_, TILES, SLOTS>,
     ) -> Vec<ResidualFrontier, MAX_FRONTIERS> {

@@ -116,9 +116,10 @@ impl Session {
         };
         self.request_count = meter.count();
         let (sequence, is_greeting) = (frame.sequence, frame.kind == Kind::Greeting);
-        match frame.request() {
-            Ok(request) => self.handle(sequence, &request, memory, meter),
-            Err(BodyError::Foreign { version, schema }) if is_greeting => {
+        // By reference: a request is large, and a copy of it would lie under the planner's stack.
+        match &frame.request() {
+            Ok(request) => self.handle(sequence, request, memory, meter),
+            &Err(BodyError::Foreign { version, schema }) if is_greeting => {
                 self.reply_incompatible(sequence, version, schema);
             }
             // No answer: a chance collision of the checksum must cost the host a retry, not its

@@ -42,7 +42,7 @@ use crate::profiling::{Stage, StageTimer};
 use crate::roadmap::configuration_space::Footprint;
 use crate::robot::LaserMount;
 use crate::status::{Fault, Status};
-use charge::{charge, charge_rails, local_goal};
+use charge::{charge_path, charge_rails};
 use make_way::{Way, make_way};
 use plan::{replan, search_viewpoints};
 use prefer::{note_flatness, prefer};
@@ -250,18 +250,18 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if !matches!(way, Way::Free) {
         state.strategy.frontier.pause(input.time_ms);
     }
-    if let Way::Retreat(goal) = &way {
-        charge(workspace, goal);
-    } else if matches!(way, Way::Hold) {
+    if matches!(way, Way::Hold) {
         timer.mark(Stage::Window);
         return Output::default();
+    }
+    if matches!(way, Way::Retreat) {
+        // The window has the way.
     } else if let Some(heading_rad) = state.strategy.heading_rad() {
         let output = steer(config, state, workspace, &input, Some(heading_rad));
         timer.mark(Stage::Drive);
         return output;
     } else if charge_rails(config, state, workspace, &footprint, &input).is_none() {
-        let Some(goal) = local_goal(config, state, &footprint, &input, &mut workspace.local_grid)
-        else {
+        let Some(is_closed) = charge_path(config, state, workspace, &footprint, &input) else {
             if !state.strategy.frontier.path().is_empty() {
                 state.strategy.frontier.note_closed();
             }
@@ -271,10 +271,9 @@ fn explore<const TILES: usize, const SLOTS: usize>(
                 ..Output::default()
             };
         };
-        if goal.is_closed {
+        if is_closed {
             state.strategy.frontier.note_closed();
         }
-        charge(workspace, &goal.cells);
     }
     if let Some(ground) = &config.ground {
         prefer(ground, state, workspace, &input);

@@ -51,16 +51,32 @@ pub enum LinkError {
     Io(String),
 }
 
+/// What a reboot costs, in words.
+const LOSS: &str = "its map, its pose and the state of its strategy are lost, so an exploration \
+                    begins anew";
+
+impl LinkError {
+    /// Returns the names of what the device lost with this error: its memory, if it rebooted.
+    #[must_use]
+    pub const fn lost(&self) -> &'static [&'static str] {
+        match self {
+            Self::Reset | Self::Crashed(_) => &["map", "pose", "strategy"],
+            Self::Silent | Self::Incompatible(_) | Self::Refused(_) | Self::Io(_) => &[],
+        }
+    }
+}
+
 impl fmt::Display for LinkError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Silent => f.write_str(
                 "the device does not answer; check its power, the wiring and the baud rate",
             ),
-            Self::Reset => f.write_str(
-                "the device rebooted during the run; check its power supply and start again",
+            Self::Reset => write!(
+                f,
+                "the device rebooted during the run; {LOSS}; check its power supply and start again"
             ),
-            Self::Crashed(place) => write!(f, "the device's program crashed: {place}"),
+            Self::Crashed(place) => write!(f, "the device's program crashed: {place}; {LOSS}"),
             Self::Incompatible(why) => f.write_str(why),
             Self::Refused(why) => write!(f, "the device refused a request: {why}"),
             Self::Io(what) => f.write_str(what),

@@ -136,6 +136,9 @@ pub struct Outcome {
     pub status: String,
     /// Kind of finish or fault. Only `explored` and `covered` are successes.
     pub reason: String,
+    /// What the device lost when it rebooted: `map`, `pose`, `strategy`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lost: Vec<String>,
     /// Frontiers left at the end.
     pub residual_frontiers: Vec<ResidualFrontier>,
 }

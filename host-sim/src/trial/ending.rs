@@ -63,6 +63,15 @@ impl Ending {
         }
     }
 
+    /// Returns the names of what the device lost: `map`, `pose` and `strategy` after a reboot.
+    #[must_use]
+    pub const fn lost(&self) -> &'static [&'static str] {
+        match self {
+            Self::Link(why) => why.lost(),
+            _ => &[],
+        }
+    }
+
     /// Returns a sentence with the cause and the remedy; `None` if everything is explored.
     #[must_use]
     pub fn advice(&self) -> Option<String> {
@@ -78,7 +87,10 @@ impl Ending {
             }
             Self::Finished(Finish::Stopped) => "the device was told to stop".into(),
             Self::Fault(why) => fault_advice(*why).into(),
-            Self::Link(why) => why.to_string(),
+            Self::Link(why) if why.lost().is_empty() => why.to_string(),
+            Self::Link(why) => format!(
+                "{why}; the run's folder keeps the trajectory, the commands and the pictures"
+            ),
             Self::Lost(why) => {
                 let what = match why {
                     Loss::Fell => "a wheel lost the ground",
@@ -140,6 +152,22 @@ mod tests {
         assert_eq!(words(Ending::Lost(Loss::Tipped)), ("lost", "tipped"));
         assert_eq!(words(Ending::TimeLimit), ("time-limit", "simulated-time"));
         assert_eq!(words(Ending::Frozen), ("frozen", "no-motion"));
+    }
+
+    #[test]
+    fn a_crash_says_what_is_lost_and_what_is_kept() {
+        let crash = Ending::Link(LinkError::Crashed("stack overflow".into()));
+        assert_eq!(crash.lost(), ["map", "pose", "strategy"]);
+        let words = "the device's program crashed: stack overflow; its map, its pose and the state \
+                     of its strategy are lost, so an exploration begins anew; the run's folder \
+                     keeps the trajectory, the commands and the pictures";
+        assert_eq!(crash.advice().as_deref(), Some(words));
+        let reset = Ending::Link(LinkError::Reset);
+        assert_eq!(reset.lost(), crash.lost());
+        assert!(reset.advice().is_some_and(|it| it.contains("are lost")));
+        let silent = Ending::Link(LinkError::Silent);
+        assert!(silent.lost().is_empty());
+        assert!(silent.advice().is_some_and(|it| !it.contains("lost")));
     }
 
     #[test]

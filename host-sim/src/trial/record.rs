@@ -189,6 +189,7 @@ impl Record {
         report::Outcome {
             status: self.ending.status().into(),
             reason: self.ending.reason().into(),
+            lost: self.ending.lost().iter().map(|&it| it.into()).collect(),
             residual_frontiers: self.frontiers.iter().map(residual).collect(),
         }
     }

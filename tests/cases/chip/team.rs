@@ -9,6 +9,7 @@ use fieldline_tests::{costs, worlds};
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::report::{Report, TeamReport};
+use host_sim::trial::mission::OdometryProfile;
 
 /// Robots that are chips; the others are called.
 const CHIPS: usize = 2;
@@ -40,4 +41,18 @@ fn chips_in_a_team_explore_as_robots_by_call_do_within_their_budget() {
         .map(|it| it.report.clone())
         .collect();
     costs::check("costs-team.txt", &chips);
+}
+
+/// The chip overflowed its stack here once, when it matched the tiles of the other robot.
+#[test]
+#[ignore = "needs the image and QEMU; tests/run runs it"]
+fn a_chip_with_a_rough_start_explores_in_a_team() {
+    let (image, world) = (image(), worlds::builtin("hall"));
+    let run = TeamRun {
+        odometry: OdometryProfile::Noisy,
+        start_error: "0.3,5",
+        ..TeamRun::of(&world, 2)
+    };
+    let (report, _) = run.go_by(vec![Box::new(Direct::new()), Box::new(chip(&image))]);
+    assert!(report.whole.explored(), "{:?}", report.whole.outcome);
 }

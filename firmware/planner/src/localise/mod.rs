@@ -247,7 +247,8 @@ impl Localiser {
         } else {
             config.tuning.localise
         };
-        let mut points = scan_points::scan_points(config, &predicted.0, laser, ranges_mm);
+        let mut points = ScanPoints::new();
+        scan_points::scan_points(config, &predicted.0, (laser, ranges_mm), &mut points);
         let frame = RobotFrame::of(&predicted.0);
         // Walls of a fold came too, but they are surfaces, which people have not.
         let mut near = Neighbourhood::of(tiles);

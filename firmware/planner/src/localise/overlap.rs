@@ -189,7 +189,8 @@ pub(crate) fn overlap<const TILES: usize, const SLOTS: usize>(
         slip_gap: f32::INFINITY,
         ..tuning.weighted(CELL_SHARE)
     };
-    let points = points(sample, there);
+    let mut points = ScanPoints::new();
+    see(sample, there, &mut points);
     let Some(information) = to_cells(covariance).inverse() else {
         return Overlap::Silent;
     };
@@ -227,19 +228,20 @@ pub(crate) fn overlap<const TILES: usize, const SLOTS: usize>(
     }
 }
 
-/// Returns a sample as points in the frame of a robot.
-fn points(sample: &[u32], robot: &Pose) -> ScanPoints {
+/// Writes a sample as points in the frame of a robot. They are too many to return by value.
+fn see(sample: &[u32], robot: &Pose, points: &mut ScanPoints) {
     let (sin, cos) = math::sin_cos(robot.yaw_rad);
-    let point = |&word: &u32| {
+    for &word in sample.iter().take(MOST_CELLS) {
         let packed = Packed(word);
-        ScanPoint {
+        let point = ScanPoint {
             end: robot.to_robot(packed.cell().centre()),
             normal: packed
                 .normal()
                 .map(|(x, y)| (cos * x + sin * y, cos * y - sin * x)),
-        }
-    };
-    sample.iter().take(MOST_CELLS).map(point).collect()
+        };
+        // There is room: see MOST_CELLS.
+        let _ = points.push(point);
+    }
 }
 
 /// Returns the standard deviation of a place, if `covariance` is that of a motion about the robot.

@@ -43,21 +43,24 @@ pub(crate) struct ScanPoint {
     pub(crate) normal: Option<(f32, f32)>,
 }
 
-/// Returns the points of a scan.
+/// Adds the points of a scan. They are too many to return by value.
 pub(super) fn scan_points(
     config: &Config,
     pose: &Pose,
-    laser: &LaserMount,
-    ranges_mm: &[u16],
-) -> ScanPoints {
+    (laser, ranges_mm): (&LaserMount, &[u16]),
+    points: &mut ScanPoints,
+) {
     let tuning = &config.tuning.localise;
     let stride = usize::from(tuning.beam_stride);
     let beams = level_beams(&Pose::default(), laser, ranges_mm, &config.tuning.map);
     let counts = |number: usize| number.checked_rem(stride) == Some(0);
     let beams =
         beams.filter(|beam| beam.hit && counts(beam.number) && has_company(ranges_mm, beam.number));
-    let point = |end: Point| ScanPoint { end, normal: None };
-    let mut points: ScanPoints = if config.ground.is_some() {
+    // A scan has no more beams than there is room.
+    let mut add = |end: Point| {
+        let _ = points.push(ScanPoint { end, normal: None });
+    };
+    if config.ground.is_some() {
         let attitude = Attitude::of(&Pose {
             roll_rad: pose.roll_rad,
             pitch_rad: pose.pitch_rad,
@@ -67,22 +70,16 @@ pub(super) fn scan_points(
         let depth_m = config.tuning.ground.hit_depth_m;
         beams
             .filter_map(|beam| attitude.ray(&mount, beam.number, beam.length_m))
-            .map(|ray| point(ray.at(ray.length_m + depth_m)))
-            .take(MAX_POINTS)
-            .collect()
+            .for_each(|ray| add(ray.at(ray.length_m + depth_m)));
     } else {
-        beams
-            .map(|beam| point(beam.end()))
-            .take(MAX_POINTS)
-            .collect()
-    };
+        beams.for_each(|beam| add(beam.end()));
+    }
     for k in 0..points.len() {
-        let normal = normal(&points, k, tuning);
+        let normal = normal(points, k, tuning);
         if let Some(point) = points.get_mut(k) {
             point.normal = normal;
         }
     }
-    points
 }
 
 /// Returns the normal of the surface at a point.
@@ -117,7 +114,7 @@ fn square((x, y): (f32, f32)) -> f32 {
 mod tests {
     use std::vec::Vec;
 
-    use super::{ScanPoint, normal, scan_points};
+    use super::{ScanPoint, ScanPoints, normal, scan_points};
     use crate::config::{Config, LocaliseTuning, UnevenGround};
     use crate::geometry::{Point, Pose};
     use crate::ground::ray::{Attitude, Mount};
@@ -211,7 +208,8 @@ mod tests {
                     NO_RETURN_MM
                 }
             });
-            let points = scan_points(&config, &pose, &laser, &ranges_mm);
+            let mut points = ScanPoints::new();
+            scan_points(&config, &pose, (&laser, &ranges_mm), &mut points);
             assert!(points.len() > 100);
             for point in &points {
                 // Behind the wall by the depth, along a beam.

@@ -44,6 +44,7 @@ pub(crate) fn path_to_next<const TILES: usize, const SLOTS: usize>(
 
 /// Returns the path to the frontier cell of the least cost, which is on the same level as far as
 /// possible. `None` if no frontier is within reach.
+#[inline(never)]
 fn path_to_frontier<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
     given_up: &ResidualFrontiers,

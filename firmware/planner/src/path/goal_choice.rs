@@ -72,6 +72,7 @@ pub(crate) fn is_worth(gain_m2: f32, trip_m: f32, worth: f32) -> bool {
 /// Returns the path to the frontier of the greatest utility; `None` if none that this round judges
 /// is worth the trip: then it lists them. `judged` counts the candidates that the rounds before
 /// judged in vain; it is 0 again after the last of them.
+#[inline(never)]
 pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
     residual: &mut ResidualFrontiers,
@@ -205,6 +206,7 @@ struct Choice<'a, const TILES: usize, const SLOTS: usize> {
 impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
     /// Returns the candidate of the greatest utility that is worth its trip, or else the one with
     /// which a shared trip begins, and true.
+    #[inline(never)]
     fn best(&self, candidates: impl Iterator<Item = Candidate>) -> Option<(Candidate, bool)> {
         let mut best: Option<(f32, Candidate, bool)> = None;
         let mut judged = AllJudged::new();
@@ -221,7 +223,8 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
     /// Returns a candidate's utility if it is greater than `least` and worth the trip, and true if
     /// it is so as the present goal of a shared trip. What costs more to compute comes later: most
     /// candidates are too far off for any gain. One that is not worth the trip is added to
-    /// `judged`.
+    /// `judged`. It is not inlined, so that the search for claims does not pay for its view.
+    #[inline(never)]
     fn utility_above(
         &self,
         least: f32,

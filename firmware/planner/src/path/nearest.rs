@@ -52,13 +52,25 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
     ) -> Option<(Site, u32)> {
         SCALES.iter().find_map(|&scale| {
             self.read(grid, from, scale);
-            let targets = self.targets(grid, &accepts);
-            let mut seeds: Rows = [0; SIDE];
-            LocalGrid::put(&mut seeds, grid.place(from)?);
-            let met = flood::nearest(&grid.passable, &mut seeds, &targets)?;
-            let steps = u32::from(met.steps) * scale as u32 / 2;
-            Some((self.site_in(grid, met.site, &accepts)?, steps))
+            self.nearest_in(grid, from, &accepts)
         })
+    }
+
+    /// Returns the nearest centre cell in the grid, as [`Self::nearest`]. It is not inlined: its
+    /// rows must not be on the stack while the grid is read.
+    #[inline(never)]
+    fn nearest_in(
+        &self,
+        grid: &LocalGrid,
+        from: Cell,
+        accepts: &impl Fn(Site) -> bool,
+    ) -> Option<(Site, u32)> {
+        let targets = self.targets(grid, accepts);
+        let mut seeds: Rows = [0; SIDE];
+        LocalGrid::put(&mut seeds, grid.place(from)?);
+        let met = flood::nearest(&grid.passable, &mut seeds, &targets)?;
+        let steps = u32::from(met.steps) * grid.scale as u32 / 2;
+        Some((self.site_in(grid, met.site, accepts)?, steps))
     }
 
     /// Calls `visit` with the centre cells near a robot at `from` that `accepts` holds for and the
@@ -74,29 +86,43 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
     ) -> bool {
         scales.iter().any(|&scale| {
             self.read(grid, from, scale);
-            let mut targets = self.targets(grid, &accepts);
-            let mut reached: Rows = [0; SIDE];
-            if let Some(place) = grid.place(from) {
-                LocalGrid::put(&mut reached, place);
-            }
-            let (mut changed, mut steps, mut most) = (0..SIDE, 0, None);
-            while !changed.is_empty() && most.is_none_or(|most| steps <= most) {
-                for y in changed.clone() {
-                    let met = at(&reached, y) & at(&targets, y);
-                    if let Some(row) = targets.get_mut(y) {
-                        *row &= !met;
-                    }
-                    for site in self.sites_in_row(grid, y, met, &accepts) {
-                        most.get_or_insert(steps + 2 * ENTRY_STEPS / scale as u32);
-                        visit(site, steps * scale as u32 / 2);
-                    }
-                }
-                let wider = changed.start.saturating_sub(1)..(changed.end + 1).min(SIDE);
-                changed = flood::grow(&grid.passable, &mut reached, wider);
-                steps += 1;
-            }
-            most.is_some()
+            self.entries_in(grid, from, &accepts, &mut visit)
         })
+    }
+
+    /// Calls `visit` as [`Self::entries`], for one scale. It is not inlined, as
+    /// [`Self::nearest_in`].
+    #[inline(never)]
+    fn entries_in(
+        &self,
+        grid: &LocalGrid,
+        from: Cell,
+        accepts: &impl Fn(Site) -> bool,
+        visit: &mut impl FnMut(Site, u32),
+    ) -> bool {
+        let scale = grid.scale as u32;
+        let mut targets = self.targets(grid, accepts);
+        let mut reached: Rows = [0; SIDE];
+        if let Some(place) = grid.place(from) {
+            LocalGrid::put(&mut reached, place);
+        }
+        let (mut changed, mut steps, mut most) = (0..SIDE, 0, None);
+        while !changed.is_empty() && most.is_none_or(|most| steps <= most) {
+            for y in changed.clone() {
+                let met = at(&reached, y) & at(&targets, y);
+                if let Some(row) = targets.get_mut(y) {
+                    *row &= !met;
+                }
+                for site in self.sites_in_row(grid, y, met, accepts) {
+                    most.get_or_insert(steps + 2 * ENTRY_STEPS / scale);
+                    visit(site, steps * scale / 2);
+                }
+            }
+            let wider = changed.start.saturating_sub(1)..(changed.end + 1).min(SIDE);
+            changed = flood::grow(&grid.passable, &mut reached, wider);
+            steps += 1;
+        }
+        most.is_some()
     }
 
     /// Returns the centre cell nearest to `from` in a straight line that `accepts` holds for, with

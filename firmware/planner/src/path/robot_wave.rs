@@ -55,6 +55,7 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
 
     /// Spreads the wave over the nearest piece of the skeleton that it has not reached. Returns
     /// false if there is none near the robot.
+    #[inline(never)]
     fn enter_piece(
         &mut self,
         wave: &mut Wavefront,

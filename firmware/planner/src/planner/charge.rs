@@ -16,16 +16,32 @@ use crate::planner::workspace::Workspace;
 use crate::roadmap::configuration_space::Footprint;
 
 /// The local goal on the path.
-pub(super) struct LocalGoal {
+struct LocalGoal {
     /// Its cells in the local grid.
-    pub(super) cells: Rows,
+    cells: Rows,
     /// The local grid does not lead along the path as far as the goal could lie.
-    pub(super) is_closed: bool,
+    is_closed: bool,
+}
+
+/// Charges the window with the local goal on the path. Returns true if the local grid does not lead
+/// along the path as far as the goal could lie; `None` if there is no goal. It is not inlined, so
+/// that what follows does not pay for the goal's stack.
+#[inline(never)]
+pub(super) fn charge_path<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    footprint: &Footprint,
+    input: &Input<'_>,
+) -> Option<bool> {
+    let goal = local_goal(config, state, footprint, input, &mut workspace.local_grid)?;
+    charge(workspace, &goal.cells);
+    Some(goal.is_closed)
 }
 
 /// Fills the local grid at the smallest scale that holds a local goal. Returns the goal; `None` if
 /// there is no path, or no scale holds a goal.
-pub(super) fn local_goal<const TILES: usize, const SLOTS: usize>(
+fn local_goal<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &State<TILES, SLOTS>,
     footprint: &Footprint,

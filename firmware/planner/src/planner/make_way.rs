@@ -17,6 +17,7 @@ use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::bits::ones64;
 use crate::input::Input;
 use crate::math;
+use crate::planner::charge::charge;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 use crate::roadmap::configuration_space::Footprint;
@@ -35,18 +36,14 @@ const BEHIND_M: f32 = 1.0;
 const OWN_ROAD_M: f32 = 3.2;
 
 /// What the robot does in this step.
-#[derive(Debug)]
-#[allow(
-    clippy::large_enum_variant,
-    reason = "no heap to box into; one lives at a time"
-)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Way {
     /// It drives to its goal.
     Free,
     /// It stands.
     Hold,
-    /// It drives to these cells of the window.
-    Retreat(Rows),
+    /// It drives to cells that the window is charged with.
+    Retreat,
 }
 
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
@@ -84,6 +81,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 }
 
 /// Decides whether the robot drives on, stands, or makes way.
+#[inline(never)]
 pub(super) fn make_way<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
@@ -230,7 +228,8 @@ fn retreat<const TILES: usize, const SLOTS: usize>(
     let aim = if can_leave { &goal } else { &off_road };
     state.team.way.go_to(nearest(grid, aim, robot));
     if can_leave {
-        return Way::Retreat(goal);
+        charge(workspace, &goal);
+        return Way::Retreat;
     }
     state.team.way.corner();
     Way::Hold

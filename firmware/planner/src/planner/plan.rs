@@ -19,6 +19,7 @@ use crate::status::{Fault, Status};
 const FRONT_M: f32 = 0.8;
 
 /// Plans one round on a new skeleton. Returns false if the next step must continue the round.
+#[inline(never)]
 pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
@@ -114,6 +115,7 @@ fn resolve_unmeasured<const TILES: usize, const SLOTS: usize>(
 }
 
 /// Continues the search for viewpoints: goes to the one that it found, or finishes.
+#[inline(never)]
 pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,

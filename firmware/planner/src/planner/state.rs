@@ -101,22 +101,29 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 
     /// Forgets everything and begins a session with `config`.
     pub fn reset(&mut self, config: &Config) {
-        self.door = Door::new();
-        self.localiser = Localiser::new();
+        self.forget(config);
         self.map.begin(config);
-        self.preferences = Preferences::new();
-        self.ground = GroundModel::of(config);
         self.skeleton
             .reset(Strategist::<SLOTS>::space(config.strategy));
         self.strategy.reset(config);
-        self.viewpoints = viewpoint::Search::new();
-        self.drive = Drive::new();
         self.team.reset(config.team, config.ground.is_some());
         (self.slope_direction, self.blocked_direction) = (None, None);
         self.status = Status::Exploring;
         self.started = false;
         self.has_new_skeleton = false;
         self.forgot_arrivals = false;
+    }
+
+    /// Replaces the parts that are made anew. It is not inlined: their copies must not be on the
+    /// stack while the strategy begins.
+    #[inline(never)]
+    fn forget(&mut self, config: &Config) {
+        self.door = Door::new();
+        self.localiser = Localiser::new();
+        self.preferences = Preferences::new();
+        self.ground = GroundModel::of(config);
+        self.viewpoints = viewpoint::Search::new();
+        self.drive = Drive::new();
     }
 
     /// Returns the planner's status after the last step.

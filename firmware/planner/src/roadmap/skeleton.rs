@@ -203,6 +203,7 @@ impl<const SLOTS: usize> Skeleton<SLOTS> {
 
     /// Continues the round with about `budget` units of work. `scratch` needs [`PAGE_WORDS`] words
     /// for each tile and may hold anything. Returns true if it published a skeleton.
+    #[inline(never)]
     pub fn advance<const TILES: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,

@@ -87,6 +87,8 @@ impl Team {
     }
 
     /// Forgets everything and begins a session. On uneven ground every start counts as known.
+    /// It is not inlined: its copy must not be on the stack while the strategy begins.
+    #[inline(never)]
     pub(crate) fn reset(&mut self, place: Option<TeamPlace>, is_uneven: bool) {
         *self = Self::new();
         if let Some(place) = place {

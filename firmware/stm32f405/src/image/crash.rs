@@ -3,10 +3,11 @@
 //! A robot whose planner crashed gets no further command. Its host stops it at the report, or at
 //! the latest when the command is stale.
 //!
-//! The fault handlers are assembly because they cannot trust the stack: it may have overflowed.
-//! They pass the address of the exception's frame to `report_fault`, start a new stack from the
-//! top, and never return. The one exception is the load of `can_read`, whose fault means "no memory
-//! here".
+//! A crashed program does not return, so its report starts a new stack from the top: a crash takes
+//! a few bytes of the old one, wherever it happens. The fault handlers are assembly because they
+//! cannot trust the stack: it may have overflowed. They pass the address of the exception's frame
+//! to `report_fault`. The one fault that returns is that of the load of `can_read`: it means "no
+//! memory here".
 
 use core::arch::global_asm;
 use core::panic::PanicInfo;
@@ -28,6 +29,8 @@ unsafe extern "C" {
     static _stack_end: u32;
     /// Returns 1 if the word at `address` can be read, 0 if reading it is a bus fault.
     fn fieldline_can_read(address: usize) -> u32;
+    /// Goes on in `report_panic`, with these arguments, at the top of the stack.
+    fn fieldline_restart(line: u32, file: *const u8, length: usize) -> !;
 }
 
 global_asm!(
@@ -74,8 +77,16 @@ global_asm!(
     "  ldr r1, =_stack_start",
     "  mov sp, r1",
     "  b {report}",
+    ".global fieldline_restart",
+    ".type fieldline_restart,%function",
+    ".thumb_func",
+    "fieldline_restart:",
+    "  ldr r3, =_stack_start",
+    "  mov sp, r3",
+    "  b {panicked}",
     ".ltorg",
     report = sym report_fault,
+    panicked = sym report_panic,
 );
 
 /// Returns true if there is memory at `address`.
@@ -127,15 +138,27 @@ unsafe fn DefaultHandler(number: i16) {
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    let mut crash = Crash::default();
-    if let Some(location) = info.location() {
-        crash.at = location.line();
-        // The end of the path says more than its start.
-        let path = location.file();
-        let tail = path.len().saturating_sub(CRASH_FILE_BYTES);
-        for letter in path.chars().skip(tail) {
-            let _ = crash.file.push(letter);
-        }
+    cortex_m::interrupt::disable();
+    let place = info.location().map(|it| (it.line(), it.file()));
+    let (line, file) = place.unwrap_or_default();
+    // SAFETY: nothing of the old stack is used again: this never returns, interrupts are off, and
+    // the compiler keeps the text of a location in flash.
+    unsafe { fieldline_restart(line, file.as_ptr(), file.len()) }
+}
+
+/// Reports a panic at a place in the source, and reboots.
+extern "C" fn report_panic(line: u32, file: *const u8, length: usize) -> ! {
+    // SAFETY: `panic` passes the parts of a text in flash.
+    let bytes = unsafe { core::slice::from_raw_parts(file, length) };
+    let path = core::str::from_utf8(bytes).unwrap_or_default();
+    let mut crash = Crash {
+        at: line,
+        ..Crash::default()
+    };
+    // The end of the path says more than its start.
+    let tail = path.len().saturating_sub(CRASH_FILE_BYTES);
+    for letter in path.chars().skip(tail) {
+        let _ = crash.file.push(letter);
     }
     end(&crash)
 }

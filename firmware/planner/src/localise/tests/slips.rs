@@ -78,7 +78,14 @@ fn the_chosen_prediction_is_that_of_a_naive_twin() {
 impl Scene {
     fn points(&self) -> ScanPoints {
         let laser = LaserMount::level(0.0, 0.4);
-        scan_points(&self.config, &pose(self.truth), &laser, &self.scan())
+        let mut points = ScanPoints::new();
+        scan_points(
+            &self.config,
+            &pose(self.truth),
+            (&laser, &self.scan()),
+            &mut points,
+        );
+        points
     }
 
     fn chosen(&self, odometry: State, others: [State; 2]) -> Option<usize> {

@@ -38,6 +38,7 @@ impl Frontier {
     ///
     /// Without the last condition a robot stood for 77 s in an opening (meetings at a door, seed
     /// 86): searches for a way past one that had finished behind it followed each other.
+    #[inline(never)]
     pub(super) fn look<const TILES: usize, const SLOTS: usize>(
         &mut self,
         context: &PlanningContext<'_, TILES, SLOTS>,

@@ -22,6 +22,7 @@ const MOST_CUT: usize = 9;
 
 impl<const SLOTS: usize> Ouroboros<SLOTS> {
     /// Runs lines 3 to 18: tractor point, loop road and shield.
+    #[inline(never)]
     pub(super) fn look<const TILES: usize>(
         &mut self,
         round: &mut PlanningContext<'_, TILES, SLOTS>,
@@ -171,6 +172,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     }
 
     /// Follows the path to the tractor point round the shield [line 20].
+    #[inline(never)]
     pub(super) fn close<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,

@@ -194,6 +194,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     }
 
     /// Looks for an open loop on some branches, after line 25.
+    #[inline(never)]
     fn search<const TILES: usize>(
         &mut self,
         round: &mut PlanningContext<'_, TILES, SLOTS>,
@@ -211,6 +212,7 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     }
 
     /// Follows the path to an open loop, on which a tractor point is made as anywhere else.
+    #[inline(never)]
     fn drive_to_revisit<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,

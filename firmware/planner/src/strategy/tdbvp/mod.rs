@@ -267,6 +267,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
 
     /// Plans a round of the patrol: the path to the oldest rail, which the robot follows if the
     /// rail is overdue or the rails lead nowhere.
+    #[inline(never)]
     fn patrol<const TILES: usize>(
         &mut self,
         frontier: &mut Frontier,
