@@ -9,6 +9,8 @@
 //!   it crosses the wall's own cells first.
 //! - A lone no-return between two returns is a dropout and frees nothing.
 //! - A no-return stops at the first obstacle, so that it does not tunnel through a wall.
+//! - Where the beams of a step are longer together than [`MOST_BEAMS_M`], only a share of them frees
+//!   cells, in turn, so that a step's time has a bound.
 //! - Near the robot beams are denser than cells. So only every second or fourth beam frees cells
 //!   there, and only every fourth beam is evidence for a cell that is free already.
 //!
@@ -17,11 +19,10 @@
 #[cfg(test)]
 mod tests;
 
-use crate::config::MapTuning;
+use crate::config::{Config, MapTuning};
 use crate::geometry::{CELL_M, Cell, Point, Pose};
 use crate::grid::Class;
-use crate::input::informative_range_mm;
-use crate::input::{INVALID_MM, NO_RETURN_MM};
+use crate::input::{INVALID_MM, Input, NO_RETURN_MM, informative_range_mm};
 use crate::map::Map;
 use crate::map::arrivals::came;
 use crate::map::evidence::Evidence;
@@ -29,6 +30,43 @@ use crate::map::tiles::{NoRoom, TileMut};
 use crate::map::traversal::Traversal;
 use crate::math;
 use crate::robot::LaserMount;
+
+/// Most metres of beams that free cells in a step: 181 beams of 12 m, and what rounding adds.
+const MOST_BEAMS_M: u32 = 2_200;
+
+/// The share of the beams that frees cells in a step: every `every`-th one, from `phase` on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Share {
+    every: usize,
+    phase: usize,
+}
+
+impl Share {
+    /// All beams.
+    #[cfg(test)]
+    pub(crate) const ALL: Self = Self { every: 1, phase: 0 };
+
+    /// Returns the share of a step. The phases follow one another with the periods.
+    pub(crate) fn of(config: &Config, input: &Input<'_>) -> Self {
+        let lasers = config.lasers.iter().zip(input.scans);
+        let metres = |(laser, ranges_mm): (&LaserMount, &[u16])| {
+            let length_mm = |&range: &u16| u32::from(range.min(laser.range_limit_mm));
+            ranges_mm.iter().map(length_mm).sum::<u32>() / 1_000
+        };
+        let level = lasers.filter(|(laser, _)| laser.is_level());
+        let all_m: u32 = level.map(metres).sum();
+        let every = all_m.div_ceil(MOST_BEAMS_M).max(1);
+        let period = input.time_ms / config.period_ms().max(1);
+        Self {
+            every: every as usize,
+            phase: (period % every) as usize,
+        }
+    }
+
+    const fn has(self, number: usize) -> bool {
+        number % self.every == self.phase
+    }
+}
 
 /// A beam in the plane.
 #[derive(Clone, Copy, Debug)]
@@ -131,11 +169,12 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         &mut self,
         tuning: &MapTuning,
         pose: &Pose,
-        laser: &LaserMount,
-        ranges_mm: &[u16],
+        (laser, ranges_mm): (&LaserMount, &[u16]),
+        share: Share,
     ) {
         if laser.is_level() {
-            for beam in level_beams(pose, laser, ranges_mm, tuning) {
+            let beams = level_beams(pose, laser, ranges_mm, tuning);
+            for beam in beams.filter(|beam| share.has(beam.number)) {
                 self.free_along(tuning, &beam);
             }
             for beam in level_beams(pose, laser, ranges_mm, tuning) {

@@ -40,6 +40,7 @@ pub use compaction::SideTable;
 pub use tiles::Tiles;
 
 use evidence::Evidence;
+use integrate::Share;
 
 use crate::config::Config;
 use crate::geometry::Cell;
@@ -117,8 +118,9 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         self.evidence.follow(robot.cell());
         self.free_footprint(robot, tuning.stand_radius_m);
         self.record_visit(robot.cell());
+        let share = Share::of(config, input);
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
-            self.integrate(tuning, &input.pose, laser, ranges_mm);
+            self.integrate(tuning, &input.pose, (laser, ranges_mm), share);
         }
     }
 

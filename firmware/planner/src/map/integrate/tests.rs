@@ -3,7 +3,6 @@
 //! Ranges are millimetres, lengths metres.
 
 use super::*;
-use crate::input::NO_RETURN_MM;
 
 const TUNING: MapTuning = MapTuning::DEFAULT;
 
@@ -80,7 +79,7 @@ fn go_by_tiles_and_by_cells<const SIZE: usize>() {
             ..Pose::default()
         };
         let ranges = scan(&mut seed);
-        fast.integrate(&TUNING, &pose, &LASER, &ranges);
+        fast.integrate(&TUNING, &pose, (&LASER, &ranges), Share::ALL);
         for beam in level_beams(&pose, &LASER, &ranges, &TUNING) {
             free_slowly(&mut slow, &beam);
         }
@@ -98,4 +97,43 @@ fn go_by_tiles_and_by_cells<const SIZE: usize>() {
         let of = |map: &Map<SIZE, SIZE>| map.tiles.packed(tile.0, tile.1);
         assert_eq!(of(&fast), of(&slow), "tile {tile:?}");
     }
+}
+
+fn share_of(lasers: &[LaserMount], ranges_mm: u16, time_ms: u32) -> Share {
+    let lasers = lasers.iter().cloned().collect();
+    let ranges_mm = [ranges_mm; 181];
+    let input = Input {
+        time_ms,
+        pose: Pose::default(),
+        velocity: crate::geometry::Twist::default(),
+        scans: [&ranges_mm, &ranges_mm],
+    };
+    Share::of(&Config::pioneer_3at(lasers), &input)
+}
+
+#[test]
+fn one_laser_of_twelve_metres_always_enters_all_beams() {
+    for time_ms in [0, 200, 1_000] {
+        assert_eq!(share_of(&[LASER], NO_RETURN_MM, time_ms), Share::ALL);
+    }
+}
+
+#[test]
+fn long_beams_take_turns_and_none_is_left_out() {
+    let long = LaserMount {
+        range_limit_mm: 16_000,
+        ..LASER
+    };
+    let lasers = [long.clone(), long];
+    let every = share_of(&lasers, NO_RETURN_MM, 0).every;
+    assert_eq!(every, 3, "362 beams of 16 m");
+    let mut entered = [0; 181];
+    for step in 0..3 {
+        let share = share_of(&lasers, NO_RETURN_MM, 200 * step);
+        for (number, entered) in entered.iter_mut().enumerate() {
+            *entered += u8::from(share.has(number));
+        }
+    }
+    assert_eq!(entered, [1; 181]);
+    assert_eq!(share_of(&lasers, 2_000, 0), Share::ALL, "a small room");
 }
