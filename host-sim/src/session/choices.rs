@@ -39,8 +39,8 @@ pub trait Choices {
 /// Odd number near 2⁶⁴ divided by the golden ratio.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// A seeded stream: splitmix of 64 bits (G. Steele, D. Lea and C. Flood, "Fast splittable pseudorandom
-/// number generators", OOPSLA 2014).
+/// A seeded stream: the mix of 64 bits of G. Steele, D. Lea and C. Flood, "Fast splittable
+/// pseudorandom number generators", OOPSLA 2014.
 #[derive(Clone, Debug)]
 pub struct Seeded(u64);
 

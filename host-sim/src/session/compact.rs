@@ -1,8 +1,8 @@
 //! Compact JSON of messages: fields that have their default are left out, and long lists of numbers
 //! are runs of text.
 //!
-//! A field that is missing takes the default that the type has today. So a file outlives a new field
-//! of a message. A field that no message has is an error.
+//! A field that is missing takes the default that the type has today. So a file outlives a new
+//! field of a message. A field that no message has is an error.
 
 use fieldline_protocol::message::{
     Beacon, Digest, Hull, Laser, LoopLimits, Member, Observation, Pose, SpaceField, Start, Team,

@@ -21,8 +21,8 @@ pub struct Limits {
     pub instructions: u32,
     /// Deepest stack, bytes.
     pub stack_bytes: u32,
-    /// Longest time that an answer may take; `None` for any. It depends on the machine, so it is for
-    /// a search for slow steps where the device counts no instructions.
+    /// Longest time that an answer may take; `None` for any. It depends on the machine, so it is
+    /// for a search for slow steps where the device counts no instructions.
     pub answer: Option<Duration>,
     /// Greatest amount by which an angle may exceed half a turn, radians: rounding of the wire.
     pub angle_slack_rad: f32,

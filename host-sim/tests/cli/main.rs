@@ -4,6 +4,7 @@ mod commands;
 mod refusals;
 mod replay;
 mod runs;
+mod sessions;
 
 use assert_cmd::Command;
 use serde_json::Value;

@@ -8,7 +8,7 @@ use crate::{folder, outcome};
 
 /// The program refuses: status 2, no standard output, and one error line with all these words.
 #[track_caller]
-fn refused(folder: &TempDir, arguments: &[&str], words: &[&str]) {
+pub(crate) fn refused(folder: &TempDir, arguments: &[&str], words: &[&str]) {
     let (status, stdout, stderr) = outcome(folder, arguments);
     assert_eq!(
         (status, stdout.as_str()),

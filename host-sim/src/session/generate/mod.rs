@@ -2,7 +2,7 @@
 //!
 //! | generator | session | observations and packets |
 //! | --- | --- | --- |
-//! | absurd | any that the device permits, and some that it refuses | any that the wire can carry |
+//! | absurd | any that the device permits, some that it refuses | any that the wire can carry |
 //! | tame | of an ordinary Pioneer 3-AT | any that the wire can carry |
 //! | plausible | of an ordinary Pioneer 3-AT | of a simulated robot in a world, now and then spoilt |
 //!
@@ -101,8 +101,8 @@ impl Generator {
         }
     }
 
-    /// Returns a host that takes its choices from `choices` and makes at most `longest` requests, or
-    /// `longest` steps if it simulates a robot.
+    /// Returns a host that takes its choices from `choices` and makes at most `longest` requests,
+    /// or `longest` steps if it simulates a robot.
     pub fn host<'a, C: Choices + 'a>(self, mut choices: C, longest: usize) -> Box<dyn Host + 'a> {
         let length = length(&mut choices).min(longest);
         match self {

@@ -1,4 +1,5 @@
-//! Faults of what a robot reports: teleports, dead beams, mirrored scans, clocks that stick or jump.
+//! Faults of what a robot reports: teleports, dead beams, mirrored scans, clocks that stick or
+//! jump.
 //!
 //! A fault lasts until another one changes the same thing, or until all is well again.
 
