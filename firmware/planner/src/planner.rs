@@ -44,7 +44,7 @@ use crate::robot::LaserMount;
 use crate::status::{Fault, Status};
 use charge::{charge_path, charge_rails};
 use make_way::{Way, make_way};
-use plan::{replan, search_viewpoints};
+use plan::{end_now, replan, search_viewpoints};
 use prefer::{note_flatness, prefer};
 use steer::{begin_retreat, look_about, retreat, steer};
 
@@ -304,6 +304,11 @@ fn advance_plan<const TILES: usize, const SLOTS: usize>(
     input: &Input<'_>,
     timer: &mut impl StageTimer,
 ) -> bool {
+    if state.ends {
+        end_now(config, state, workspace, footprint, input);
+        timer.mark(Stage::Plan);
+        return true;
+    }
     let planned = state.has_new_skeleton;
     if planned {
         state.has_new_skeleton = !replan(config, state, workspace, footprint, input);

@@ -68,13 +68,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     }
     match outcome {
         RoundOutcome::Nothing if may_search_viewpoints(state) => state.viewpoints.begin(),
-        RoundOutcome::Nothing => finish(
-            config,
-            state,
-            workspace,
-            footprint,
-            (input.pose.point().cell(), input.time_ms),
-        ),
+        RoundOutcome::Nothing => end(config, state, workspace, footprint, input),
         RoundOutcome::Stuck => state.status = Status::Fault(Fault::Stuck),
         // The next goals are judged on the same skeleton: the next one is a second away, and the
         // robot stands.
@@ -145,6 +139,34 @@ pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
             // The skeleton is still the one that the last round planned on.
             state.has_new_skeleton = true;
         }
-        Found::Nothing => finish(config, state, workspace, footprint, (robot, input.time_ms)),
+        Found::Nothing => end(config, state, workspace, footprint, input),
     }
+}
+
+/// Ends the exploration. If the map lacks room, the next step ends it: to search the map's exits
+/// takes as long as to plan.
+fn end<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    footprint: &Footprint,
+    input: &Input<'_>,
+) {
+    state.ends = state.map.out_of_box() || state.map.pool_full();
+    if !state.ends {
+        end_now(config, state, workspace, footprint, input);
+    }
+}
+
+/// Ends the exploration in this step.
+pub(super) fn end_now<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    footprint: &Footprint,
+    input: &Input<'_>,
+) {
+    state.ends = false;
+    let (robot, time_ms) = (input.pose.point().cell(), input.time_ms);
+    finish(config, state, workspace, footprint, (robot, time_ms));
 }

@@ -52,6 +52,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     pub(super) started: bool,
     /// A skeleton is complete and no path was planned on it yet.
     pub(super) has_new_skeleton: bool,
+    /// No frontier is left, and the next step ends the exploration.
+    pub(super) ends: bool,
     /// This step took what came for gone.
     pub(super) forgot_arrivals: bool,
     /// The robot's first cell.
@@ -94,6 +96,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             status: Status::Exploring,
             started: false,
             has_new_skeleton: false,
+            ends: false,
             forgot_arrivals: false,
             start: Cell { x: 0, y: 0 },
         }
@@ -101,29 +104,23 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 
     /// Forgets everything and begins a session with `config`.
     pub fn reset(&mut self, config: &Config) {
-        self.forget(config);
+        self.door = Door::new();
+        put(&mut self.localiser, Localiser::new);
         self.map.begin(config);
+        put(&mut self.preferences, Preferences::new);
+        put(&mut self.ground, || GroundModel::of(config));
         self.skeleton
             .reset(Strategist::<SLOTS>::space(config.strategy));
         self.strategy.reset(config);
+        put(&mut self.viewpoints, viewpoint::Search::new);
+        put(&mut self.drive, Drive::new);
         self.team.reset(config.team, config.ground.is_some());
         (self.slope_direction, self.blocked_direction) = (None, None);
         self.status = Status::Exploring;
         self.started = false;
         self.has_new_skeleton = false;
+        self.ends = false;
         self.forgot_arrivals = false;
-    }
-
-    /// Replaces the parts that are made anew. It is not inlined: their copies must not be on the
-    /// stack while the strategy begins.
-    #[inline(never)]
-    fn forget(&mut self, config: &Config) {
-        self.door = Door::new();
-        self.localiser = Localiser::new();
-        self.preferences = Preferences::new();
-        self.ground = GroundModel::of(config);
-        self.viewpoints = viewpoint::Search::new();
-        self.drive = Drive::new();
     }
 
     /// Returns the planner's status after the last step.
@@ -155,6 +152,12 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             config.robot_radius_m
         })
     }
+}
+
+/// Puts a new value into its place. It is not inlined: the value's copies on the stack end with it.
+#[inline(never)]
+fn put<T>(place: &mut T, make: impl FnOnce() -> T) {
+    *place = make();
 }
 
 impl<const TILES: usize, const SLOTS: usize> Default for State<TILES, SLOTS> {

@@ -46,6 +46,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.drive = Drive::new();
         self.start = by.point(self.start.centre()).cell();
         self.has_new_skeleton = false;
+        self.ends = false;
     }
 
     /// Enters an input without a step: the robot stands by order, or its exploration has ended.
