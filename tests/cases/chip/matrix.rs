@@ -83,7 +83,7 @@ fn of(options: &str, world: &'static str, change: impl FnOnce(&mut Mission)) -> 
 fn flat() -> Vec<Case> {
     let strategy = |options: &str, world, name: &str| {
         of(&format!("--strategy {name}{options}"), world, |it| {
-            it.strategy = name.into()
+            it.strategy = name.into();
         })
     };
     let patrol = of("--strategy tdbvp --patrol-for 20", "partition", |it| {
@@ -103,7 +103,7 @@ fn flat() -> Vec<Case> {
         strategy("", "c-room", "esbpf"),
         patrol,
         of("--order nearest", "office", |it| {
-            it.order = Some(Order::Nearest)
+            it.order = Some(Order::Nearest);
         }),
         of("--worth 0", "office", |it| {
             let worth = I4F12::ZERO;
@@ -119,10 +119,10 @@ fn flat() -> Vec<Case> {
         }),
         corrected("--odometry noisy", |_| ()),
         corrected("--odometry papers", |it| {
-            it.odometry = OdometryProfile::Papers
+            it.odometry = OdometryProfile::Papers;
         }),
         corrected("--odometry mobilesim", |it| {
-            it.odometry = OdometryProfile::MobileSim
+            it.odometry = OdometryProfile::MobileSim;
         }),
         corrected("--odometry noisy --localise off", |it| it.localise = false),
         corrected("--odometry noisy --people 10", |it| it.people = 10),
@@ -228,11 +228,11 @@ fn teams() -> Vec<TeamCase> {
         case("team --strategy sbpf", "sbpf", |_| ()),
         case("team --strategy esbpf", "esbpf", |_| ()),
         case("team --robots 8", "frontier", |it| {
-            *it = TeamMission::of(it.mission.clone(), 8)
+            *it = TeamMission::of(it.mission.clone(), 8);
         }),
         case("team --apart", "frontier", |it| it.apart = true),
         case("team --order nearest", "frontier", |it| {
-            it.mission.order = Some(Order::Nearest)
+            it.mission.order = Some(Order::Nearest);
         }),
         case("team --radio lossy", "frontier", lossy),
         case("team --leave 0@4 --join 0@8", "frontier", timetable),

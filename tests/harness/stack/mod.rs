@@ -2,7 +2,7 @@
 //!
 //! The bound holds for every input, because it counts every path through the program and none of
 //! the values. It is the deepest chain of calls from the reset on, the deepest interrupt on top of
-//! it, and a fault on top of that. [`rules`] states what the code cannot show: who is called by
+//! it, and a fault on top of that. [`RULES`] states what the code cannot show: who is called by
 //! address, and how deep a function calls itself. A call that no rule covers is an error, not a
 //! guess. Units: bytes.
 
