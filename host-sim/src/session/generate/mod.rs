@@ -10,6 +10,7 @@
 //! plausible session has four times as many steps.
 
 mod absurd;
+mod companion;
 mod packets;
 mod plausible;
 mod quantities;
