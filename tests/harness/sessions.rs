@@ -6,11 +6,10 @@
 use std::path::{Path, PathBuf};
 
 use host_sim::session::campaign::Campaign;
-use host_sim::session::generate::Generator;
+use host_sim::session::generate::{Generator, Replayed};
 use host_sim::session::judge::{Limits, stages};
-use host_sim::session::play::Played;
+use host_sim::session::play::{Played, Trial};
 use host_sim::session::script::Script;
-use host_sim::session::shrink::Trial;
 use host_sim::session::target::TargetSpec;
 use host_sim::session::totals::Totals;
 
@@ -118,8 +117,9 @@ pub fn replay(script: &Script, target: &TargetSpec) -> Played {
         target: target.clone(),
         capacity: script.head.capacity,
         limits: Limits::default(),
+        twin: false,
     };
-    let played = trial.play(&script.asks);
+    let played = trial.play(&mut Replayed::new(&script.asks));
     played.unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -2,8 +2,8 @@
 //!
 //! Exit status: 0 if everything is done and every run ended explored, 1 if a run ended otherwise or
 //! a session has a finding, 2 if the input is bad or the run cannot begin. An error is one line on
-//! standard error that names the argument and the remedy. Standard output has results only: text, or
-//! with `--json` one JSON object a line.
+//! standard error that names the argument and the remedy. Standard output has results only: text,
+//! or with `--json` one JSON object a line.
 
 mod args;
 mod explore;

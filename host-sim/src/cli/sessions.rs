@@ -34,6 +34,9 @@ pub(super) struct SessionsArgs {
     /// serial:DEVICE[@BAUD]
     #[arg(long, default_value = "device")]
     link: TargetSpec,
+    /// Compare every command with a device in this process, of the default size; for links
+    #[arg(long)]
+    twin: bool,
     /// Number of sessions at a time
     #[arg(long, value_name = "N", default_value_t = 1)]
     threads: usize,
@@ -97,6 +100,7 @@ pub(super) fn run(args: &SessionsArgs) -> Result<bool> {
         seeds: args.seeds.clone(),
         target: args.link.clone(),
         limits: args.limits.limits(),
+        twin: args.twin,
         longest: args.longest,
         time: args.seconds.map(Duration::from_secs),
         threads: args.threads,
@@ -117,8 +121,7 @@ fn play_bytes(campaign: &Campaign, file: &Path) -> Result<bool> {
     let name = || file.display().to_string();
     let bytes = std::fs::read(file).with_context(name)?;
     let (generator, capacity, mut host) = generate::of_bytes(&bytes);
-    let mut target = campaign.target.open(capacity)?;
-    let played = play(&mut *host, &mut *target, campaign.limits);
+    let played = campaign.trial(capacity).play(&mut *host)?;
     say(&text(&played))?;
     let Some(folder) = &campaign.findings else {
         return Ok(played.findings.is_empty());

@@ -12,9 +12,9 @@ use std::time::Instant;
 use super::choices::{Choices as _, Seeded};
 use super::generate::{Generator, LONGEST};
 use super::judge::{Kind, Limits};
-use super::play::{Played, play};
+use super::play::{Played, Trial};
 use super::script::{FORMAT, Head, Script};
-use super::shrink::{Trial, shrink};
+use super::shrink::shrink;
 use super::target::{Capacity, TargetSpec};
 use super::totals::Totals;
 use crate::link::LinkError;
@@ -30,6 +30,8 @@ pub struct Campaign {
     pub target: TargetSpec,
     /// Limits of the judge.
     pub limits: Limits,
+    /// True if a device in this process must give the same commands.
+    pub twin: bool,
     /// Most requests of a session.
     pub longest: usize,
     /// Time after which no session begins.
@@ -49,6 +51,7 @@ impl Default for Campaign {
             seeds: 0..100,
             target: TargetSpec::Device,
             limits: Limits::default(),
+            twin: false,
             longest: LONGEST,
             time: None,
             threads: 1,
@@ -107,9 +110,19 @@ impl Campaign {
     /// # Errors
     /// [`LinkError`] if no device can be opened.
     pub fn session(&self, generator: Generator, seed: u64) -> Result<Played, LinkError> {
-        let mut target = self.target.open(capacity(seed))?;
         let mut host = generator.host(Seeded::new(seed), self.longest);
-        Ok(play(&mut *host, &mut *target, self.limits))
+        self.trial(capacity(seed)).play(&mut *host)
+    }
+
+    /// How the sessions of a device of this size are played.
+    #[must_use]
+    pub fn trial(&self, capacity: Capacity) -> Trial {
+        Trial {
+            target: self.target.clone(),
+            capacity,
+            limits: self.limits,
+            twin: self.twin,
+        }
     }
 
     /// Shrinks a finding and writes its file; returns the path.
@@ -122,11 +135,7 @@ impl Campaign {
         head: Head,
         (kind, played): (&Kind, &Played),
     ) -> Result<PathBuf, String> {
-        let trial = Trial {
-            target: self.target.clone(),
-            capacity: head.capacity,
-            limits: self.limits,
-        };
+        let trial = self.trial(head.capacity);
         let shrunken = shrink(&trial, kind, &played.asks, self.trials);
         let asks = shrunken.map_err(|error| error.to_string())?;
         let path = folder.join(file_name(kind, &head));

@@ -9,7 +9,9 @@ use core::fmt;
 use core::time::Duration;
 
 use fieldline_planner::Location;
-use fieldline_protocol::message::{Command, Cost, FieldRow, Stages, Start, Status, Twist};
+use fieldline_protocol::message::{
+    Body, Command, Cost, FieldRow, Packet, Stages, Start, Status, Twist,
+};
 use fixed::types::I16F16;
 
 use super::ask::{Answer, Ask};
@@ -65,6 +67,8 @@ pub enum Kind {
     SlowAnswer,
     /// The stack was too deep.
     DeepStack,
+    /// The commands differ from those of a device in this process.
+    Differs,
 }
 
 impl fmt::Display for Kind {
@@ -80,6 +84,7 @@ impl fmt::Display for Kind {
             Self::Slow(stage) => write!(f, "slow step, mostly in stage {stage}"),
             Self::SlowAnswer => f.write_str("slow answer"),
             Self::DeepStack => f.write_str("deep stack"),
+            Self::Differs => f.write_str("commands differ from this process's"),
         }
     }
 }
@@ -153,6 +158,7 @@ impl Judge {
             (Ask::Reset, Answer::Status(_)) => self.session = None,
             (_, Answer::Command(command)) => self.command(command, &mut verdicts),
             (_, Answer::FieldRow(row)) => self.field(row, &mut verdicts),
+            (_, Answer::Said(packet)) => self.said(packet, &mut verdicts),
             _ => {}
         }
         if let Some(location) = location {
@@ -184,7 +190,7 @@ impl Judge {
     /// A number that is not finite arrives as 0 or as the end of its range.
     fn numbers(&self, command: &Command, verdicts: &mut Vec<Verdict>) {
         let is_end = |number: I16F16| number == I16F16::MAX || number == I16F16::MIN;
-        let turns = |angle: I16F16| angle.to_num::<f32>().abs() > PI + self.limits.angle_slack_rad;
+        let turns = |angle: I16F16| self.turns(angle.to_num());
         if command.status == Status::Exploring && turns(command.heading) {
             verdicts.push((Kind::BadNumber("heading"), command.heading.to_string()));
         }
@@ -194,6 +200,19 @@ impl Judge {
         }
         if turns(at.yaw) {
             verdicts.push((Kind::BadNumber("yaw"), at.yaw.to_string()));
+        }
+    }
+
+    /// Returns true if an angle is more than half a turn.
+    fn turns(&self, angle_rad: f32) -> bool {
+        angle_rad.abs() > PI + self.limits.angle_slack_rad
+    }
+
+    fn said(&self, packet: &Packet, verdicts: &mut Vec<Verdict>) {
+        if let Body::Beacon(beacon) = &packet.body
+            && self.turns(beacon.yaw.to_num())
+        {
+            verdicts.push((Kind::BadNumber("beacon's yaw"), beacon.yaw.to_string()));
         }
     }
 

@@ -1,4 +1,4 @@
-//! A conversation of a host and a device, judged.
+//! A conversation of a host and a device, judged, and perhaps compared with a second device.
 //!
 //! Invariant: [`Played::asks`] are the requests in their order, the one that ended the conversation
 //! included; played again on a device that has just booted, they give the same answers.
@@ -9,11 +9,12 @@ use std::time::Instant;
 use fieldline_protocol::message::{Cost, Status};
 
 use super::ask::{Answer, Ask};
-use super::generate::Host;
+use super::generate::{Host, Replayed};
 use super::judge::{Finding, Judge, Kind, Limits};
 use super::panics::caught;
-use super::target::Target;
+use super::target::{Capacity, Target, TargetSpec};
 use crate::link::LinkError;
+use crate::link::digest::Digest;
 
 /// What a session did.
 #[derive(Clone, Debug, Default)]
@@ -38,6 +39,8 @@ pub struct Played {
     pub slowest: (Duration, usize),
     /// The last status.
     pub status: Option<Status>,
+    /// Digest of the commands: equal digests mean equal commands, bit for bit.
+    pub digest: Digest,
 }
 
 impl Played {
@@ -50,6 +53,12 @@ impl Played {
                 detail,
             });
         }
+    }
+
+    /// Returns true if the device answered up to the end.
+    fn is_whole(&self) -> bool {
+        let ends = |kind: &Kind| matches!(kind, Kind::Panic(_) | Kind::Crash(_) | Kind::Link(_));
+        !self.findings.iter().any(|finding| ends(&finding.kind))
     }
 
     /// Returns true if a finding of this kind was made.
@@ -68,6 +77,7 @@ impl Played {
             Answer::Status(status) => self.status = Some(*status),
             Answer::Command(command) => {
                 self.steps += 1;
+                self.digest.add(command);
                 self.status = Some(command.status);
                 self.note_cost(&command.cost, request);
             }
@@ -89,6 +99,41 @@ impl Played {
         if cost.instructions > most {
             self.dearest = Some((*cost, request));
         }
+    }
+}
+
+/// How sessions are played.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// The devices.
+    pub target: TargetSpec,
+    /// Size of their maps.
+    pub capacity: Capacity,
+    /// Limits of the judge.
+    pub limits: Limits,
+    /// True if a device in this process, of the default size, must give the same commands.
+    pub twin: bool,
+}
+
+impl Trial {
+    /// Plays a session on a device that has just booted.
+    ///
+    /// # Errors
+    /// If no device can be opened.
+    pub fn play(&self, host: &mut dyn Host) -> Result<Played, LinkError> {
+        let mut target = self.target.open(self.capacity)?;
+        let mut played = play(host, &mut *target, self.limits);
+        if self.twin && played.is_whole() {
+            let mut twin = TargetSpec::Device.open(Capacity::default())?;
+            let again = play(&mut Replayed::new(&played.asks), &mut *twin, self.limits);
+            if again.digest != played.digest {
+                played.find(
+                    Kind::Differs,
+                    format!("{} and {}", played.digest, again.digest),
+                );
+            }
+        }
+        Ok(played)
     }
 }
 

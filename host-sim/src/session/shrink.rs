@@ -10,33 +10,9 @@ use fieldline_protocol::message::{
 
 use super::ask::Ask;
 use super::generate::Replayed;
-use super::judge::{Kind, Limits};
-use super::play::play;
-use super::target::{Capacity, TargetSpec};
+use super::judge::Kind;
+use super::play::Trial;
 use crate::link::LinkError;
-
-/// How a session is tried.
-#[derive(Clone, Debug)]
-pub struct Trial {
-    /// The devices.
-    pub target: TargetSpec,
-    /// Size of their maps.
-    pub capacity: Capacity,
-    /// Limits of the judge.
-    pub limits: Limits,
-}
-
-impl Trial {
-    /// Plays requests on a device that has just booted.
-    ///
-    /// # Errors
-    /// If no device can be opened.
-    pub fn play(&self, asks: &[Ask]) -> Result<super::play::Played, LinkError> {
-        let mut target = self.target.open(self.capacity)?;
-        let mut host = Replayed::new(asks);
-        Ok(play(&mut host, &mut *target, self.limits))
-    }
-}
 
 /// A shrinking in progress.
 struct Shrinker<'a> {
@@ -78,7 +54,7 @@ impl Shrinker<'_> {
             return Ok(false);
         }
         self.left -= 1;
-        let causes = self.trial.play(&asks)?.has(self.kind);
+        let causes = self.trial.play(&mut Replayed::new(&asks))?.has(self.kind);
         if causes {
             self.asks = asks;
         }
@@ -87,7 +63,7 @@ impl Shrinker<'_> {
 
     /// Leaves out what comes after the finding.
     fn cut(&mut self) -> Result<(), LinkError> {
-        let played = self.trial.play(&self.asks)?;
+        let played = self.trial.play(&mut Replayed::new(&self.asks))?;
         let found = played.findings.iter().find(|it| it.kind == *self.kind);
         if let Some(finding) = found {
             self.asks.truncate(finding.request + 1);

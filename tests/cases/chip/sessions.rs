@@ -1,4 +1,5 @@
-//! Whole sessions of hostile hosts on the emulated chip: no crash, a bounded step, a bounded stack.
+//! Whole sessions of hostile hosts on the emulated chip: no crash, a bounded step, a bounded stack,
+//! and the commands of a device in this process.
 //!
 //! `golden/sessions.txt` has the dearest step and the deepest stack of these sessions.
 
@@ -24,6 +25,7 @@ fn sessions(seeds: &Range<u64>) -> Vec<(Generator, Totals)> {
             generators: vec![generator],
             seeds: seeds.clone(),
             target: CHIP,
+            twin: true,
             ..Campaign::default()
         };
         (generator, run(&campaign))

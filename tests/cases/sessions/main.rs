@@ -5,6 +5,7 @@
 //! is absurd or spoilt. Without `--release`, overflow checks and debug assertions are on. `chip`
 //! bounds instructions and stack of such sessions.
 
+mod clock;
 mod corpus;
 mod fast;
 mod full;

@@ -2,14 +2,15 @@
 //!
 //! | generator | session | observations and packets |
 //! | --- | --- | --- |
-//! | absurd | any that the device permits, some that it refuses | any that the wire can carry |
+//! | absurd | permitted ones, and some refused | any that the wire can carry |
 //! | tame | of an ordinary Pioneer 3-AT | any that the wire can carry |
-//! | plausible | of an ordinary Pioneer 3-AT | of a simulated robot in a world, now and then spoilt |
+//! | plausible | of an ordinary Pioneer 3-AT | of a simulated robot in a world, sometimes spoilt |
 //!
 //! Half of the sessions are short. The lengths have a heavy tail, up to [`LONGEST`] requests. A
 //! plausible session has four times as many steps.
 
 mod absurd;
+mod companion;
 mod packets;
 mod plausible;
 mod quantities;

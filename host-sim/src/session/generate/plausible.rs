@@ -1,4 +1,5 @@
-//! A simulated robot in a world, whose reports are spoilt now and then, among strange peers.
+//! A simulated robot in a world, whose reports are spoilt now and then, among real and strange
+//! peers.
 
 use std::collections::VecDeque;
 use std::sync::OnceLock;
@@ -7,6 +8,7 @@ use fieldline_protocol::message::{
     Body, Command, FIELD_SIDE, Fault, Observation, Packet, Start, Status,
 };
 
+use super::companion::Companion;
 use super::packets::Team;
 use super::quantities::{centimetres, origin_ms};
 use super::spoil::{Fate, Faults};
@@ -72,6 +74,8 @@ pub(super) struct Plausible<C> {
     origin_ms: u32,
     faults: Faults,
     team: Team,
+    /// A real robot of the team.
+    companion: Option<Companion>,
     /// What this robot said, for peers that repeat it.
     echoes: VecDeque<Packet>,
     /// The rest of the requests of this step.
@@ -88,8 +92,16 @@ impl<C: Choices> Plausible<C> {
         if is_uneven {
             start.uneven_ground = Some(TABLE_I);
         }
+        let companion = if choices.once_in(2) {
+            robot
+                .as_ref()
+                .and_then(|it| Companion::beside(&mut choices, it.world(), &it.start(), &mut start))
+        } else {
+            None
+        };
         Self {
             robot,
+            companion,
             left: length,
             steps: 0,
             has_begun: false,
@@ -153,6 +165,10 @@ impl<C: Choices> Plausible<C> {
 
     /// Peers say something, at random or what this robot said.
     fn hear(&mut self) {
+        let said = self.companion.as_mut().map(Companion::step);
+        for packet in said.unwrap_or_default() {
+            self.queue.push_back(Ask::Hear(Box::new(packet)));
+        }
         for _ in 0..self.choices.below(self.crowd + 1) {
             let choices = &mut self.choices;
             let echo = if choices.once_in(3) {
@@ -245,6 +261,9 @@ impl<C: Choices> Host for Plausible<C> {
             Some(Answer::Command(command)) => self.obey(command),
             Some(Answer::Said(packet)) => {
                 self.queue.push_front(Ask::Say);
+                if let Some(companion) = &mut self.companion {
+                    companion.hear(packet);
+                }
                 self.echoes.truncate(MOST_ECHOES - 1);
                 self.echoes.push_front((**packet).clone());
             }
