@@ -7,7 +7,9 @@
 //!
 //! in coarse steps of 20 cm, with the level of [`crate::path::height_levels`]. Frontier cells with
 //! the same delay form a *cost class*. Computing a cell's class is expensive and each search asks
-//! for it once per class, so it is cached once per planning round, in 5 bits.
+//! for it once per class, so it is cached once per planning round, in 5 bits. Cells for which the
+//! cache has no room count as a large frontier on the robot's level, so that a frontier of any
+//! length takes a bounded time.
 //!
 //! Units: coarse steps of 20 cm; sites of the skeleton's plane.
 
@@ -46,6 +48,8 @@ const RANKS: u32 = RANK_STEPS.len() as u32;
 /// Bits of a cost class, and classes in a word.
 const BITS: usize = 5;
 const PER_WORD: usize = u32::BITS as usize / BITS;
+/// The class of a large frontier on the robot's level.
+const LARGE: u32 = 1;
 /// The class of a frontier cell that was given up.
 const GIVEN_UP: u32 = (1 << BITS) - 1;
 const _CHECKS: () = assert!(
@@ -101,8 +105,7 @@ pub(crate) struct GoalCost<'a, const TILES: usize, const SLOTS: usize> {
     frontier: Plane<'a>,
     given_up: &'a ResidualFrontiers,
     present: Option<PresentGoal>,
-    /// The classes of the frontier's cells, in its order. Those that do not fit are computed each
-    /// time.
+    /// The classes of the frontier's cells, in its order.
     classes: &'a [u32],
     /// The classes that occur, a bit each.
     occurring: u32,
@@ -127,12 +130,16 @@ impl<'a, const TILES: usize, const SLOTS: usize> GoalCost<'a, TILES, SLOTS> {
         };
         memory.fill(0);
         for (k, site) in cost.frontier.sites().enumerate() {
-            let class = cost.class(site);
+            let class = match memory.get_mut(k / PER_WORD) {
+                Some(word) => {
+                    let class = cost.class(site);
+                    *word |= class << (k % PER_WORD * BITS);
+                    class
+                }
+                None => cost.class_without_room(site),
+            };
             if class != GIVEN_UP {
                 cost.occurring |= 1 << class;
-            }
-            if let Some(word) = memory.get_mut(k / PER_WORD) {
-                *word |= class << (k % PER_WORD * BITS);
             }
         }
         cost.classes = memory;
@@ -154,10 +161,21 @@ impl<'a, const TILES: usize, const SLOTS: usize> GoalCost<'a, TILES, SLOTS> {
     pub(crate) fn sites(&self, class: u32) -> impl Iterator<Item = Site> {
         let class_of = move |(k, site): (usize, Site)| match self.classes.get(k / PER_WORD) {
             Some(&word) => word >> (k % PER_WORD * BITS) & GIVEN_UP,
-            None => self.class(site),
+            None if class != LARGE => GIVEN_UP,
+            None => self.class_without_room(site),
         };
         let all = self.frontier.sites().enumerate();
         all.filter_map(move |of| (class_of(of) == class).then_some(of.1))
+    }
+
+    /// Returns the class of a cell that the cache has no room for.
+    fn class_without_room(&self, site: Site) -> u32 {
+        let cell = self.context.skeleton.frame().cell(site);
+        if self.given_up.is_given_up(cell) {
+            GIVEN_UP
+        } else {
+            LARGE
+        }
     }
 
     fn class(&self, site: Site) -> u32 {

@@ -5,7 +5,7 @@
 
 use heapless::Vec;
 
-use crate::geometry::Cell;
+use crate::geometry::{CELL_M, Cell};
 use crate::roadmap::skeleton::Skeleton;
 use crate::status::{ResidualFrontier, ResidualReason};
 
@@ -159,7 +159,10 @@ fn is_not_worth_it(residual: &ResidualFrontier) -> bool {
     residual.reason == ResidualReason::NotWorthIt
 }
 
-/// Returns true if two cells are less than a radius apart, metres.
+/// Returns true if two cells are less than a radius apart, metres. A radius is a number of whole
+/// cells. It counts in integers, because it is asked for each cell of a frontier.
 pub(crate) fn is_near(a: Cell, b: Cell, radius_m: f32) -> bool {
-    a.distance2(b) < radius_m * radius_m
+    let reach = (radius_m / CELL_M + 0.5) as u32;
+    let (dx, dy) = (a.x.abs_diff(b.x), a.y.abs_diff(b.y));
+    dx < reach && dy < reach && dx * dx + dy * dy < reach * reach
 }

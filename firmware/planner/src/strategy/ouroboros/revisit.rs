@@ -22,6 +22,10 @@ use crate::roadmap::branches::{Branch, Kind, kind, surroundings, ways};
 use crate::strategy::ouroboros::closed_regions::{Closed, ClosedRegions};
 use crate::strategy::ouroboros::loop_budget::LoopBudget;
 
+/// Centre cells after which a call looks for no further branch, which bounds its time: each call
+/// looks from the first cell on.
+const MOST_LOOKED: usize = 3_000;
+
 /// A drive to an open loop.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Revisit {
@@ -49,8 +53,9 @@ pub(super) fn find<const TILES: usize, const SLOTS: usize>(
     regions: &mut ClosedRegions<SLOTS>,
     scratch: &mut PlanningScratch<'_>,
 ) -> Found {
+    let mut looked = 0;
     for _ in 0..round.tuning.ouroboros.most_branches {
-        let Some(site) = first_open(round, regions) else {
+        let Some(site) = first_open(round, regions, &mut looked) else {
             return Found::None;
         };
         let goal = middle_of_stretch(round, regions, site);
@@ -61,7 +66,7 @@ pub(super) fn find<const TILES: usize, const SLOTS: usize>(
             }
             _ => settle(round, regions, round.skeleton.frame().cell(site)),
         }
-        if goal.is_some() {
+        if goal.is_some() || looked > MOST_LOOKED {
             break;
         }
     }
@@ -89,14 +94,15 @@ pub(super) fn settle<const TILES: usize, const SLOTS: usize>(
     regions.close_pending(Closed::GivenUp);
 }
 
-/// Returns the first open cell of a branch.
+/// Returns the first open cell of a branch. Adds to `looked` how many cells it looked at.
 fn first_open<const TILES: usize, const SLOTS: usize>(
     round: &PlanningContext<'_, TILES, SLOTS>,
     regions: &ClosedRegions<SLOTS>,
+    looked: &mut usize,
 ) -> Option<Site> {
     let centres = round.centres()?;
     let is_passage = |site| kind(centres.cells, site) == Some(Kind::Passage);
-    let mut sites = centres.cells.sites();
+    let mut sites = centres.cells.sites().inspect(|_| *looked += 1);
     sites.find(|&site| is_open(&centres, regions, site) && is_passage(site))
 }
 
