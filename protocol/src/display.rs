@@ -43,6 +43,9 @@ impl fmt::Display for Parameter {
             Self::LoopLimits => "the limits of loops must be at least 0",
             Self::Area => "the area must have sides of 0.1 to 128 m within 3200 m of the origin",
             Self::Coverage => "the target coverage must be 1 to 1000 thousandths",
+            Self::Team => {
+                "the odometry's origin must lie within 400 m and a hundred turns of the team's"
+            }
         })
     }
 }

@@ -226,6 +226,7 @@ const fn wire_parameter(parameter: Parameter) -> wire::Parameter {
         Parameter::Coverage => wire::Parameter::Coverage,
         Parameter::LoopLimits => wire::Parameter::LoopLimits,
         Parameter::Worth => wire::Parameter::Worth,
+        Parameter::TeamPlace => wire::Parameter::Team,
         // The solver's parameters do not come from the wire.
         Parameter::UnevenGround | Parameter::Solver => wire::Parameter::UnevenGround,
     }

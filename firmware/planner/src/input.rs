@@ -58,7 +58,7 @@ pub struct Input<'a> {
 pub enum InputError {
     /// A number of pose or velocity is NaN or infinite.
     NotFinite,
-    /// A coordinate is beyond 32,768 m, the yaw beyond 32,768 rad, or the robot leans by more than
+    /// A coordinate is beyond 10,000 m, the yaw beyond 32,768 rad, or the robot leans by more than
     /// 60°.
     OutOfRange,
     /// A scan has not one range per beam of its laser, or there is no such laser.

@@ -50,6 +50,8 @@ pub enum Parameter {
     Area,
     /// [`SpaceField::until_permille`]: 1 to 1000.
     Coverage,
+    /// [`Start::team`]: the origin within 400 m and a hundred turns.
+    Team,
 }
 
 /// Why the device refused a request.

@@ -280,6 +280,7 @@ fn reply_refused() {
         (Refusal::BadParameter(Parameter::Worth), &[7, 3, 16]),
         (Refusal::BadParameter(Parameter::Area), &[7, 3, 17]),
         (Refusal::BadParameter(Parameter::Coverage), &[7, 3, 18]),
+        (Refusal::BadParameter(Parameter::Team), &[7, 3, 19]),
         (Refusal::NoTeam, &[7, 4]),
     ] {
         reply_is(Reply::Refused(refusal), body);

@@ -8,7 +8,7 @@ use fieldline_planner::{
 };
 use fieldline_protocol::message as wire;
 use fieldline_protocol::message::{
-    Control, Hull, Laser, LoopLimits, Observation, Order, Parameter, Refusal, Scan, Start,
+    Control, Hull, Laser, LoopLimits, Observation, Order, Parameter, Refusal, Scan, Start, Team,
     UnevenGround,
 };
 use fixed::types::{I4F12, I16F16};
@@ -93,6 +93,16 @@ fn every_limit_is_checked() {
                 ..start()
             },
             Parameter::Worth,
+        ),
+        (
+            Start {
+                team: Some(Team {
+                    origin: (I16F16::from_num(401), I16F16::ZERO),
+                    ..Team::default()
+                }),
+                ..start()
+            },
+            Parameter::Team,
         ),
         (
             Start {

@@ -8,13 +8,17 @@ use crate::config::{
     Area, Config, ConfigError, GoalLevel, LoopLimits, Order, Parameter, SolverConfig, SpaceField,
     Strategy, TeamPlace, Tuning, UnevenGround,
 };
-use crate::geometry::CELL_M;
+use crate::geometry::{CELL_M, Pose};
 use crate::input::NO_RETURN_MM;
 use crate::math::PI;
 use crate::robot::{LaserMount, MAX_BEAMS, RobotShape};
 
 /// The least value of a quantity that must be positive. It is below the wire's resolution of 2⁻¹².
 const POSITIVE: f32 = 1e-4;
+/// Greatest coordinate and greatest yaw of a place in the team, metres and radians: tiles on the
+/// wire reach as far, and a hundred turns are surely no angle.
+const TEAM_M: f32 = 400.0;
+const TEAM_RAD: f32 = 628.0;
 /// The greatest value of a quantity that has no limit of its own.
 const ANY: f32 = 1e6;
 /// Planning radii, metres: half a map cell, and the most that the configuration space can grow
@@ -200,6 +204,9 @@ impl ConfigBuilder {
         check(Parameter::Radius, config.robot_radius_m, RADII_M)?;
         check(Parameter::Period, config.period_s, Config::PERIODS_S)?;
         check_loops(&config.loops)?;
+        if let Some(team) = &config.team {
+            check_place(team)?;
+        }
         if let Order::Gain { worth } = config.order() {
             check(Parameter::Worth, worth, (0.0, MOST_WORTH))?;
         }
@@ -285,6 +292,22 @@ fn check_laser(laser: &LaserMount, is_first: bool) -> Result<(), ConfigError> {
     check(Parameter::Mount, laser.x_m, (-MOUNT_M, MOUNT_M))?;
     check(Parameter::Mount, laser.y_m, (-MOUNT_M, MOUNT_M))?;
     check(Parameter::LaserHeight, laser.z_m, (POSITIVE, MOUNT_M))
+}
+
+fn check_place(place: &TeamPlace) -> Result<(), ConfigError> {
+    let Pose {
+        x_m, y_m, yaw_rad, ..
+    } = place.map_from_odom;
+    for (value, range) in [
+        (x_m, (-TEAM_M, TEAM_M)),
+        (y_m, (-TEAM_M, TEAM_M)),
+        (yaw_rad, (-TEAM_RAD, TEAM_RAD)),
+        (place.sd_m, (0.0, TEAM_M)),
+        (place.sd_rad, (0.0, TEAM_RAD)),
+    ] {
+        check(Parameter::TeamPlace, value, range)?;
+    }
+    Ok(())
 }
 
 fn check_loops(loops: &LoopLimits) -> Result<(), ConfigError> {

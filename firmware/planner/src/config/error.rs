@@ -57,6 +57,8 @@ pub enum Parameter {
     Worth,
     /// A parameter of [`SolverConfig`](crate::SolverConfig).
     Solver,
+    /// A parameter of [`TeamPlace`](crate::TeamPlace), metres and radians.
+    TeamPlace,
 }
 
 impl fmt::Display for Parameter {
@@ -87,6 +89,7 @@ impl fmt::Display for Parameter {
             Self::Coverage => "target coverage (1/1000)",
             Self::LoopLimits => "limit of loops",
             Self::Worth => "worth",
+            Self::TeamPlace => "place in the team (m, rad)",
             Self::Solver => "parameter of the solver",
         })
     }

@@ -24,8 +24,11 @@ use crate::geometry::{MapFromOdom, MapPose, OdomPose, Pose, Twist};
 use crate::input::{Input, InputError, InputFaults};
 use crate::math;
 
-/// Greatest coordinate and yaw of the odometry, metres and radians: those of the wire.
-const MOST: f32 = 32_768.0;
+/// Greatest coordinate of the odometry, metres. Farther off, f32 does not resolve a millimetre, and
+/// the wire has no room for the sum of odometry and correction.
+const MOST_M: f32 = 10_000.0;
+/// Greatest yaw, radians: that of the wire.
+const MOST_YAW_RAD: f32 = 32_768.0;
 /// Greatest roll and pitch, radians: 60°. A robot that leans more has fallen.
 const MOST_LEAN_RAD: f32 = math::PI / 3.0;
 /// Most time that one step goes on, milliseconds: beyond it nothing that waits for a time waits
@@ -160,12 +163,12 @@ fn check(config: &Config, input: &Input<'_>) -> Result<(), InputError> {
         angular_radps,
     } = input.velocity;
     let numbers = [
-        (x_m, MOST),
-        (y_m, MOST),
-        (z_m, MOST),
+        (x_m, MOST_M),
+        (y_m, MOST_M),
+        (z_m, MOST_M),
         (roll_rad, MOST_LEAN_RAD),
         (pitch_rad, MOST_LEAN_RAD),
-        (yaw_rad, MOST),
+        (yaw_rad, MOST_YAW_RAD),
         (linear_mps, f32::MAX),
         (angular_radps, f32::MAX),
     ];
