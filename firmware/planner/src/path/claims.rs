@@ -26,6 +26,8 @@
 
 use heapless::Vec;
 
+use crate::field::local_grid::SCALES;
+use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
 use crate::path::PlanningContext;
 use crate::path::search::PathSearch;
@@ -34,6 +36,9 @@ use crate::team::peers::MOST_PEERS;
 /// Maximum number of groups of frontier cells whose steps are kept. The peers are farther from the
 /// others.
 const MOST_GROUPS: usize = 64;
+/// Most map cells of the grids that are read around the peers in a round, in windows of the
+/// smallest scale: a peer that stands far from every centre cell takes 21. It bounds the time.
+const MOST_READ: i32 = 32;
 /// A frontier cell at most this far from a group's first along either axis belongs to it, coarse
 /// cells.
 const GROUP_CELLS: u16 = 5;
@@ -59,9 +64,13 @@ impl Claims {
         };
         let now_ms = context.time_ms;
         let rivals = team.rivals(now_ms);
+        let mut left = MOST_READ;
         let entries: Vec<(Site, u32), MOST_PEERS> = rivals
             .filter(|peer| peer.beacon.goal_cell().is_some())
-            .filter_map(|peer| search.entry_near(peer.pose(now_ms).point().cell()))
+            .filter_map(|peer| {
+                let place = peer.pose(now_ms).point().cell();
+                entry_of(search, place, &mut left)
+            })
             .take(MOST_PEERS)
             .collect();
         if entries.is_empty() {
@@ -85,6 +94,19 @@ impl Claims {
             .find(|(first, _)| is_in_group(*first, site))
             .is_some_and(|(_, theirs)| *theirs < steps)
     }
+}
+
+/// Returns the centre cell nearest to a peer, and the coarse steps there; `None` if the grids that
+/// are left to read hold none.
+fn entry_of<const TILES: usize, const SLOTS: usize>(
+    search: &mut PathSearch<'_, TILES, SLOTS>,
+    place: Cell,
+    left: &mut i32,
+) -> Option<(Site, u32)> {
+    SCALES.iter().find_map(|&scale| {
+        *left = left.checked_sub(scale * scale).filter(|&left| left >= 0)?;
+        search.entry_at_scale(place, scale)
+    })
 }
 
 fn is_in_group(first: Site, site: Site) -> bool {

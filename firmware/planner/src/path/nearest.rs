@@ -50,10 +50,19 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         grid: &mut LocalGrid,
         accepts: impl Fn(Site) -> bool,
     ) -> Option<(Site, u32)> {
-        SCALES.iter().find_map(|&scale| {
-            self.read(grid, from, scale);
-            self.nearest_in(grid, from, &accepts)
-        })
+        let mut scales = SCALES.iter();
+        scales.find_map(|&scale| self.nearest_at_scale(from, (grid, scale), &accepts))
+    }
+
+    /// Returns the nearest centre cell, as [`Self::nearest`], in the grid of one scale.
+    pub(crate) fn nearest_at_scale(
+        &self,
+        from: Cell,
+        (grid, scale): (&mut LocalGrid, i32),
+        accepts: &impl Fn(Site) -> bool,
+    ) -> Option<(Site, u32)> {
+        self.read(grid, from, scale);
+        self.nearest_in(grid, from, accepts)
     }
 
     /// Returns the nearest centre cell in the grid, as [`Self::nearest`]. It is not inlined: its

@@ -55,9 +55,11 @@ impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
         self.centres.nearest(from, self.local_grid, is_reached)
     }
 
-    /// Returns the centre cell nearest to a place, and the coarse steps there.
-    pub(crate) fn entry_near(&mut self, from: Cell) -> Option<(Site, u32)> {
-        self.centres.nearest(from, self.local_grid, |_| true)
+    /// Returns the centre cell nearest to a place in the grid of a scale, and the coarse steps
+    /// there.
+    pub(crate) fn entry_at_scale(&mut self, from: Cell, scale: i32) -> Option<(Site, u32)> {
+        self.centres
+            .nearest_at_scale(from, (self.local_grid, scale), &|_| true)
     }
 
     /// Returns the path from a place to where the wave began; `None` if no centre cell that the

@@ -23,8 +23,8 @@ use crate::math;
 /// Most cells of the area along a side: the bits of a row.
 pub(super) const SIDE: usize = 64;
 
-/// Most rows of 64 map cells that are read in a step, which bounds its time: an area of 50 × 50 m.
-const MOST_ROWS: i32 = 4_096;
+/// Most rows of 64 map cells that are read in a step, which bounds its time: an area of 32 × 32 m.
+const MOST_ROWS: i32 = 1_600;
 
 /// A bit of each cell: row by row, least x in the lowest bit.
 pub(super) type Plane = [u64; SIDE];
