@@ -169,6 +169,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> GoalCost<'a, TILES, SLOTS> {
     }
 
     /// Returns the class of a cell that the cache has no room for.
+    #[inline(never)]
     fn class_without_room(&self, site: Site) -> u32 {
         let cell = self.context.skeleton.frame().cell(site);
         if self.given_up.is_given_up(cell) {
@@ -178,6 +179,8 @@ impl<'a, const TILES: usize, const SLOTS: usize> GoalCost<'a, TILES, SLOTS> {
         }
     }
 
+    /// Returns the class of a cell.
+    #[inline(never)]
     fn class(&self, site: Site) -> u32 {
         let cell = self.context.skeleton.frame().cell(site);
         if self.given_up.is_given_up(cell) {

@@ -76,7 +76,12 @@ impl Door {
         self.faults.refused = self.faults.refused.saturating_add(1);
     }
 
-    /// Lets a report in: with the session's clock, and the session's odometry.
+    /// Lets a report in: with the session's clock, and the session's odometry. It is called from
+    /// two places, so it is not inlined.
+    ///
+    /// # Errors
+    /// [`InputError`]: what cannot be used.
+    #[inline(never)]
     pub(super) fn admit<'a>(
         &mut self,
         config: &Config,
@@ -133,6 +138,7 @@ impl Door {
     }
 
     /// Returns a pose of the host's odometry in the session's.
+    #[inline(never)]
     fn corrected(&self, pose: &Pose) -> Pose {
         let Some((motion, rise_m)) = &self.correction else {
             return Pose {
@@ -172,11 +178,13 @@ fn check(config: &Config, input: &Input<'_>) -> Result<(), InputError> {
         (linear_mps, f32::MAX),
         (angular_radps, f32::MAX),
     ];
-    if !numbers.iter().all(|(number, _)| number.is_finite()) {
-        return Err(InputError::NotFinite);
-    }
-    if numbers.iter().any(|(number, most)| number.abs() > *most) {
-        return Err(InputError::OutOfRange);
+    for (number, most) in numbers {
+        if !number.is_finite() {
+            return Err(InputError::NotFinite);
+        }
+        if number.abs() > most {
+            return Err(InputError::OutOfRange);
+        }
     }
     let beams = |number: usize| {
         config
