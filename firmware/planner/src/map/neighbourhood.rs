@@ -1,4 +1,4 @@
-//! The obstacles in a square of up to 5 × 5 cells.
+//! The obstacles in a square of up to 5 × 5 cells, and the class of a cell near the last one.
 //!
 //! ```text
 //! bit side · dy + dx = 1 if the cell (dx, dy) from the corner is an obstacle, 0 ≤ dx, dy < side
@@ -11,7 +11,7 @@
 //! Units: map cells.
 
 use crate::geometry::Cell;
-use crate::grid::{masked, masked_mut};
+use crate::grid::{Class, masked, masked_mut};
 use crate::map::tile::Plane;
 use crate::map::tiles::{TILE_SIDE, Tiles};
 
@@ -46,6 +46,20 @@ impl<'a, const TILES: usize, const SLOTS: usize> Neighbourhood<'a, TILES, SLOTS>
             last: [((i32::MAX, i32::MAX), None); 4],
             has_landmarks: tiles.has_landmarks(),
         }
+    }
+
+    /// Returns the class of a cell, as [`Tiles::class`].
+    pub(crate) fn class(&mut self, cell: Cell) -> Class {
+        let planes = self.planes((cell.x >> 5, cell.y >> 5));
+        let [low, high] = [LOW, HIGH].map(|plane| line(planes, plane, cell.y & LAST));
+        let bit = cell.x & LAST;
+        Class::from_bits(low >> bit & 1, high >> bit & 1)
+    }
+
+    /// Returns true if at most one of a coarse cell's four map cells was never measured.
+    pub(crate) fn is_explored(&mut self, least: Cell) -> bool {
+        let unknown = |part: &Cell| self.class(*part) == Class::Unknown;
+        least.quarters().filter(unknown).count() < 2
     }
 
     /// Returns the obstacles that stand in the square of `SIDE` cells, at most 5, from `corner` on.
@@ -221,6 +235,7 @@ mod tests {
                 single(corner, 2),
                 "{corner:?}"
             );
+            assert_eq!(near.class(corner), tiles.class(corner), "{corner:?}");
         }
         for corner in [(-41, -3), (-32, 0), (7, 31), (40, 2)].map(|(x, y)| Cell { x, y }) {
             let mut rows = Vec::new();

@@ -4,7 +4,8 @@
 
 use crate::geometry::Cell;
 use crate::grid::Site;
-use crate::map::{Class, Tiles};
+use crate::map::Tiles;
+use crate::map::neighbourhood::Neighbourhood;
 use crate::path::blocked_passages::BlockedPassages;
 use crate::path::nearest::Centres;
 use crate::roadmap::configuration_space::{Footprint, is_passable};
@@ -37,8 +38,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> Centres<'a, TILES, SLOTS> {
     /// Returns true if at most one of a coarse cell's four map cells was never measured: again the
     /// skeleton's rule.
     pub(crate) fn is_explored(&self, cell: Cell) -> bool {
-        let unknown = |part: &Cell| self.tiles.class(*part) == Class::Unknown;
-        cell.quarters().filter(unknown).count() < 2
+        Neighbourhood::of(self.tiles).is_explored(cell)
     }
 
     /// Returns true if a coarse cell is a centre cell.

@@ -24,6 +24,7 @@
 use crate::config::{Order, OrderTuning};
 use crate::geometry::Cell;
 use crate::grid::Tiling;
+use crate::map::neighbourhood::Neighbourhood;
 use crate::map::{Class, Tiles};
 use crate::path::blocked_passages::BlockedPassages;
 use crate::path::gain::View;
@@ -50,11 +51,14 @@ const LEAST_EDGE: u32 = 3;
 const TRIES: u32 = 4;
 /// Limits of an instalment: tiles loaded, tiles flooded, cells on rays. With 60,000 cells the
 /// longest step of `cluttered` took 8.5 million instructions. The last block may add
-/// `TRIES · RAYS · (MOST_ON + MOST_BACK)` = 23,000 cells.
+/// [`MOST_OVER`] cells and a gap's: `RAYS · (MOST_ON + MOST_BACK)` = 6,000.
 const TILES_PER_STEP: u16 = 120;
 /// A flood of a tile takes some 3,000 instructions.
 const FLOODS_PER_STEP: u32 = 300;
 const CELLS_PER_STEP: i32 = 20_000;
+/// Cells on rays by which a block may exceed an instalment. Beyond them the next one goes on at the
+/// block's next gap.
+const MOST_OVER: i32 = 6_000;
 /// Cost of finding a block's gaps, in cells on rays: measured on the chip.
 const EDGES_CELLS: i32 = 60;
 /// Cost of a gap's gain, in cells on rays.
@@ -110,8 +114,8 @@ enum Phase {
     /// Loads the tile at place n next.
     Load(u16),
     Flood,
-    /// Searches block number n next.
-    Scan(u16),
+    /// Searches block number n next, from the gap with the second number on.
+    Scan(u16, u8),
 }
 
 /// A search in progress. Its scratch memory holds what the robot can reach.
@@ -175,10 +179,12 @@ impl Search {
             Phase::Load(tile) => self.load(inputs, &mut reachability, tile),
             Phase::Flood => {
                 if reachability.spread(FLOODS_PER_STEP) {
-                    self.phase = Phase::Scan(0);
+                    self.phase = Phase::Scan(0, 0);
                 }
             }
-            Phase::Scan(block) => self.scan(inputs, &reachability, residual, block),
+            Phase::Scan(block, gap) => {
+                self.scan(inputs, &reachability, residual, (block, gap));
+            }
         }
         match (self.phase, self.found) {
             (Phase::Idle, true) => Found::Viewpoint(self.best),
@@ -217,7 +223,7 @@ impl Search {
         inputs: &Inputs<'_, TILES, SLOTS>,
         reachability: &Reachability<'_>,
         residual: &mut ResidualFrontiers,
-        first: u16,
+        (first, mut gap): (u16, u8),
     ) {
         let mut left = CELLS_PER_STEP;
         let mut number = first;
@@ -231,38 +237,52 @@ impl Search {
                 i32::from(number % ALONG) * BLOCK,
                 i32::from(number / ALONG % ALONG) * BLOCK,
             );
-            left -= EDGES_CELLS + self.scan_block(inputs, reachability, residual, corner);
-            number += 1;
+            left -= EDGES_CELLS;
+            let edges = edges(inputs.tiles, corner);
+            gap = self.scan_block(
+                inputs,
+                reachability,
+                residual,
+                (&edges, corner),
+                (gap, &mut left),
+            );
+            number += u16::from(gap == 0);
         }
-        self.phase = Phase::Scan(number);
+        self.phase = Phase::Scan(number, gap);
     }
 
-    /// Searches the block at its least cell for gaps. Returns the number of cells on rays.
+    /// Looks back from a block's gaps, from the one with number `first` on, and takes the cells on
+    /// rays from `left`. Returns the number of the gap to go on with; 0 if there is none.
     fn scan_block<const TILES: usize, const SLOTS: usize>(
         &mut self,
         inputs: &Inputs<'_, TILES, SLOTS>,
         reachability: &Reachability<'_>,
         residual: &mut ResidualFrontiers,
-        corner: Cell,
-    ) -> i32 {
-        let edges = edges(inputs.tiles, corner);
+        (edges, corner): (&[u32], Cell),
+        (first, left): (u8, &mut i32),
+    ) -> u8 {
         let count: u32 = edges.iter().map(|row| row.count_ones()).sum();
         if count < LEAST_EDGE {
             return 0;
         }
-        let mut walked = 0;
         let apart = count.div_ceil(TRIES) as usize;
-        let gaps = cells(&edges, corner).step_by(apart);
-        for gap in gaps {
+        let gaps = (0..).zip(cells(edges, corner).step_by(apart));
+        for (number, gap) in gaps.skip(first.into()) {
+            if *left < -MOST_OVER {
+                return number;
+            }
             if residual.is_given_up(gap) || !self.may_win(inputs, gap) {
                 continue;
             }
-            if let Some(viewpoint) = look_back(inputs.tiles, reachability, gap, &mut walked) {
-                walked += GAIN_CELLS;
+            let mut walked = 0;
+            let viewpoint = look_back(inputs.tiles, reachability, gap, &mut walked);
+            *left -= walked;
+            if let Some(viewpoint) = viewpoint {
+                *left -= GAIN_CELLS;
                 self.offer(inputs, residual, viewpoint);
             }
         }
-        walked
+        0
     }
 
     /// Returns true if a viewpoint of a gap may be better than the best so far: its trip is no
@@ -351,15 +371,17 @@ fn look_back<const TILES: usize, const SLOTS: usize>(
 ) -> Option<Viewpoint> {
     let mut best: Option<(i32, Viewpoint)> = None;
     let mut is_reached = reachability.is_reached();
+    // A ray's cells lie in few tiles.
+    let mut near = Neighbourhood::of(tiles);
     for ray in (0..RAYS).map(ray) {
-        let Some(beyond) = look_on(tiles, gap, ray, walked) else {
+        let Some(beyond) = look_on((tiles, &mut near), gap, ray, walked) else {
             continue;
         };
         let most = best.map_or(MOST_BACK, |(back, _)| back - 1);
         for back in 0..=most {
             *walked += 1;
             let stand = along(gap, ray, -back);
-            if tiles.class(stand) != Class::Free {
+            if near.class(stand) != Class::Free {
                 break;
             }
             if is_reached(stand) {
@@ -374,12 +396,12 @@ fn look_back<const TILES: usize, const SLOTS: usize>(
 /// Returns the middle one of the unexplored cells at a ray's end; `None` if there are too few, or
 /// the map has no room for it.
 fn look_on<const TILES: usize, const SLOTS: usize>(
-    tiles: &Tiles<TILES, SLOTS>,
+    (tiles, near): (&Tiles<TILES, SLOTS>, &mut Neighbourhood<'_, TILES, SLOTS>),
     gap: Cell,
     ray: (i32, i32),
     walked: &mut i32,
 ) -> Option<Cell> {
-    let is = |class, on| tiles.class(along(gap, ray, on)) == class;
+    let mut is = |class, on| near.class(along(gap, ray, on)) == class;
     let first = (1..MOST_ON).find(|&on| !is(Class::Free, on))?;
     *walked += first + 1;
     let dark = first..first + LEAST_BEYOND;

@@ -195,7 +195,7 @@ fn behind_the_door_no_robot_is_faster_than_it_can_be() {
     };
     let mut last = None;
     for k in 0..20_000 {
-        let wide = if k % 3 == 0 { 3e4 } else { 2.0 };
+        let wide = if k % 3 == 0 { 9e3 } else { 2.0 };
         let pose = at(wide * random(), wide * random(), wide * random());
         let velocity = Twist {
             linear_mps: 9.0 * random(),

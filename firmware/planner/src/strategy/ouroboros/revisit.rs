@@ -14,6 +14,7 @@
 use crate::config::LoopLimits;
 use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
+use crate::map::neighbourhood::Neighbourhood;
 use crate::path::context::STEP_M;
 use crate::path::nearest::Centres;
 use crate::path::{PlanningContext, PlanningScratch};
@@ -102,8 +103,9 @@ fn first_open<const TILES: usize, const SLOTS: usize>(
 ) -> Option<Site> {
     let centres = round.centres()?;
     let is_passage = |site| kind(centres.cells, site) == Some(Kind::Passage);
+    let mut near = Neighbourhood::of(centres.tiles);
     let mut sites = centres.cells.sites().inspect(|_| *looked += 1);
-    sites.find(|&site| is_open(&centres, regions, site) && is_passage(site))
+    sites.find(|&site| is_open((&centres, &mut near), regions, site) && is_passage(site))
 }
 
 /// Returns the middle of the longest stretch of open cells in a branch; `None` if all are too
@@ -118,8 +120,9 @@ fn middle_of_stretch<const TILES: usize, const SLOTS: usize>(
     let (end, before) = end_of_branch(centres.cells, site)?;
     // The stretch so far, cells; then length and last cell of the longest one.
     let (mut cells, mut longest) = (0, (0, 0));
+    let mut near = Neighbourhood::of(centres.tiles);
     for (k, site) in Branch::new(centres.cells, end, before).enumerate() {
-        let is_open = is_open(&centres, regions, site);
+        let is_open = is_open((&centres, &mut near), regions, site);
         cells = if is_open { cells + 1 } else { 0 };
         longest = longest.max((cells, k));
     }
@@ -132,12 +135,15 @@ fn middle_of_stretch<const TILES: usize, const SLOTS: usize>(
 
 /// Returns true if a centre cell is explored and in no closed region.
 fn is_open<const TILES: usize, const SLOTS: usize>(
-    centres: &Centres<'_, TILES, SLOTS>,
+    (centres, near): (
+        &Centres<'_, TILES, SLOTS>,
+        &mut Neighbourhood<'_, TILES, SLOTS>,
+    ),
     regions: &ClosedRegions<SLOTS>,
     site: Site,
 ) -> bool {
     let cell = centres.cell(site);
-    !regions.is_closed(cell) && centres.is_explored(cell)
+    !regions.is_closed(cell) && near.is_explored(cell)
 }
 
 /// Returns an end of the branch that a cell is in, and the cell before it.
