@@ -42,7 +42,7 @@ pub struct Input<'a> {
     pub pose: Pose,
     /// Measured velocity.
     pub velocity: Twist,
-    /// Ranges of each laser of [`Config::lasers`](crate::Config::lasers), millimetres, one per beam;
+    /// Ranges of each laser of [`Config::lasers`](crate::Config::lasers), millimetres, one a beam;
     /// none if the laser has no scan now. [`NO_RETURN_MM`] and [`INVALID_MM`] are codes.
     pub scans: [&'a [u16]; 2],
 }
@@ -102,8 +102,8 @@ impl core::error::Error for InputError {}
 pub struct InputFaults {
     /// Number of reports that were refused ([`InputError`]): no step was made of them.
     pub refused: u32,
-    /// Number of poses that no robot reaches in the time: the odometry was taken to have begun anew where the
-    /// robot stood.
+    /// Number of poses that no robot reaches in the time: the odometry was taken to have begun anew
+    /// where the robot stood.
     pub jumps: u32,
     /// Number of times that were no later than the one before, or later by more than a minute.
     pub clock: u32,

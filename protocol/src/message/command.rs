@@ -51,7 +51,8 @@ pub enum Fault {
     /// A way leads to further space, and it leaves the map's range.
     OutOfBox,
     /// The scans of the observation do not match the session's lasers, or its pose is one that no
-    /// robot reports: it lies beyond 10 km, or leans by more than 60°. The planner made no step. This fault ends with the next correct observation.
+    /// robot reports: it lies beyond 10 km, or leans by more than 60°. The planner made no step.
+    /// This fault ends with the next correct observation.
     BadObservation,
     /// The robot did not move for too long although it had a command.
     Stuck,

@@ -56,7 +56,8 @@ pub struct Scan {
 /// Measurements of the robot at one instant.
 ///
 /// The scans must match the session's lasers in number and length, the pose must lie within 10 km,
-/// and the robot may lean by at most 60°. If not, the device makes no step and answers with zero velocity and [`Fault::BadObservation`].
+/// and the robot may lean by at most 60°. If not, the device makes no step and answers with zero
+/// velocity and [`Fault::BadObservation`].
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Observation {
     /// The host's clock, milliseconds since the start of the session.

@@ -9,8 +9,8 @@
 //!   it crosses the wall's own cells first.
 //! - A lone no-return between two returns is a dropout and frees nothing.
 //! - A no-return stops at the first obstacle, so that it does not tunnel through a wall.
-//! - Where the beams of a step are longer together than [`MOST_BEAMS_M`], only a share of them frees
-//!   cells, in turn, so that a step's time has a bound.
+//! - Where the beams of a step are longer together than [`MOST_BEAMS_M`], only a share of them
+//!   frees cells, in turn, so that a step's time has a bound.
 //! - Near the robot beams are denser than cells. So only every second or fourth beam frees cells
 //!   there, and only every fourth beam is evidence for a cell that is free already.
 //!

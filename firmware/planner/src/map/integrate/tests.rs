@@ -124,7 +124,7 @@ fn long_beams_take_turns_and_none_is_left_out() {
         range_limit_mm: 16_000,
         ..LASER
     };
-    let lasers = [long.clone(), long];
+    let lasers = [long, long];
     let every = share_of(&lasers, NO_RETURN_MM, 0).every;
     assert_eq!(every, 3, "362 beams of 16 m");
     let mut entered = [0; 181];
