@@ -215,7 +215,7 @@ mod tests {
             (
                 &format!("{head}{{\"observation\":{{\"time_ms\":-1}}}}"),
                 2,
-                "-1",
+                "invalid",
             ),
         ] {
             let error = Script::read("a.jsonl", text).unwrap_err();
