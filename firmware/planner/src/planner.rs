@@ -255,7 +255,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         return Output::default();
     }
     if matches!(way, Way::Retreat) {
-        // The window has the way.
+        // The window is charged with the way already.
     } else if let Some(heading_rad) = state.strategy.heading_rad() {
         let output = steer(config, state, workspace, &input, Some(heading_rad));
         timer.mark(Stage::Drive);

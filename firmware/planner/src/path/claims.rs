@@ -36,8 +36,8 @@ use crate::team::peers::MOST_PEERS;
 /// Maximum number of groups of frontier cells whose steps are kept. The peers are farther from the
 /// others.
 const MOST_GROUPS: usize = 64;
-/// Most map cells of the grids that are read around the peers in a round, in windows of the
-/// smallest scale: a peer that stands far from every centre cell takes 21. It bounds the time.
+/// Most windows that are read around the peers in a round, counted in windows of the smallest
+/// scale. A peer that stands far from every centre cell takes 21. It bounds the time.
 const MOST_READ: i32 = 32;
 /// A frontier cell at most this far from a group's first along either axis belongs to it, coarse
 /// cells.

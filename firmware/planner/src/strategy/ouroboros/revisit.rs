@@ -23,8 +23,8 @@ use crate::roadmap::branches::{Branch, Kind, kind, surroundings, ways};
 use crate::strategy::ouroboros::closed_regions::{Closed, ClosedRegions};
 use crate::strategy::ouroboros::loop_budget::LoopBudget;
 
-/// Centre cells after which a call looks for no further branch, which bounds its time: each call
-/// looks from the first cell on.
+/// Number of centre cells after which a call looks for no further branch. It bounds the time: each
+/// branch is looked for from the first cell on.
 const MOST_LOOKED: usize = 3_000;
 
 /// A drive to an open loop.
