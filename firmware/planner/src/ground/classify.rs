@@ -22,12 +22,15 @@ use fixed::types::I7F9;
 
 use crate::config::{GroundTuning, UnevenGround};
 use crate::geometry::{CELL_M, Cell};
-use crate::grid::Row;
-use crate::ground::elevation::{GroundState, Heights, WINDOW_SIDE};
+use crate::grid::bits::ones64;
+use crate::grid::{Row, at};
+use crate::ground::elevation::{GroundState, Heights};
 use crate::ground::{low_confidence, steepness};
 
 /// Distances to the two ends of a bridge, cells: the ends are at most four cells apart.
 const BRIDGES: [(i32, i32); 6] = [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 1)];
+/// The greatest of these distances.
+const LONGEST: i32 = 3;
 
 /// Limits for ground that spans a gap. They depend on the attitude of the measurements beside it.
 struct GapLimits {
@@ -113,8 +116,9 @@ pub(crate) struct Classes {
 pub(crate) fn row(heights: &Heights<'_>, limits: &RiseLimits<'_>, y: i32, known: Row) -> Classes {
     let mut classes = Classes::default();
     let (origin, tuning) = (heights.origin(), limits.tuning);
-    for k in 0..WINDOW_SIDE {
-        let cell = Cell { x: origin.x + k, y };
+    let bridges = bridges(heights, y) & known.unknown();
+    for k in ones64(heights.rows(y).marked | bridges) {
+        let cell = origin.offset(k as i32, y - origin.y);
         let bit = 1_u64 << k;
         let near = |dx: i32, dy: i32| height_steps(heights, cell.offset(dx, dy));
         if heights.is_obstacle(cell, tuning) {
@@ -133,7 +137,7 @@ pub(crate) fn row(heights: &Heights<'_>, limits: &RiseLimits<'_>, y: i32, known:
                 classes.negative |= bit;
             }
         } else if known.unknown() & bit != 0
-            && (is_bridged(heights, limits, cell)
+            && (bridges & bit != 0 && is_bridged(heights, limits, cell)
                 || low_confidence::is_usable(heights, limits, cell))
         {
             classes.free |= bit;
@@ -280,6 +284,19 @@ impl Direction {
     const fn step_m(self) -> f32 {
         self.2 * CELL_M
     }
+}
+
+/// Returns the cells of row `y` that have measured cells on both sides, at most four cells apart:
+/// those that [`is_bridged`] can hold for.
+fn bridges(heights: &Heights<'_>, y: i32) -> u64 {
+    let rows: [u64; 2 * LONGEST as usize + 1] =
+        core::array::from_fn(|k| heights.rows(y + k as i32 - LONGEST).measured);
+    let measured = |dy: i32| at(&rows, (LONGEST + dy) as usize);
+    let here = measured(0);
+    BRIDGES.into_iter().fold(0, |cells, (ahead, behind)| {
+        let across = here >> ahead & here << behind;
+        cells | across | measured(ahead) & measured(-behind)
+    })
 }
 
 /// Returns true if measured cells on both sides along an axis, at most four cells apart, bridge a

@@ -60,6 +60,35 @@ pub struct Heights<'a> {
     pub(super) origin: Cell,
 }
 
+/// Words of four marks in a row of the window.
+const ROW_WORDS: u32 = WINDOW_SIDE as u32 / 4;
+/// The counts of four marks.
+const COUNTS: u32 = u32::from_le_bytes([COUNT; 4]);
+/// The highest bits of four bytes.
+const TOPS: u32 = u32::from_le_bytes([0x80; 4]);
+
+/// What a row of the window holds, one bit a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct MarkRows {
+    /// Cells with a mark of any kind.
+    pub(super) marked: u64,
+    /// Cells with a mean height.
+    pub(super) measured: u64,
+}
+
+/// Returns the highest bit of each byte that is not 0.
+#[inline(always)]
+const fn nonzero_bytes(word: u32) -> u32 {
+    (((word & !TOPS) + !TOPS) | word) & TOPS
+}
+
+/// Returns the highest bits of four bytes, side by side.
+#[inline(always)]
+const fn top_bits(tops: u32) -> u32 {
+    // The product moves each of the four bits to its place in the highest byte.
+    ((tops & TOPS) >> 7).wrapping_mul(0x0102_0408) >> 24
+}
+
 /// Returns true if the mark's height has low confidence.
 #[inline(always)]
 pub(super) const fn is_low_confidence(mark: u8) -> bool {
@@ -125,7 +154,7 @@ impl<'a> Heights<'a> {
 
     /// Returns the mark of a cell; 0 outside the window.
     #[inline(always)]
-    fn mark(&self, cell: Cell) -> u8 {
+    pub(super) fn mark(&self, cell: Cell) -> u8 {
         slot(self.origin, cell).map_or(0, |slot| self.mark_at(slot))
     }
 
@@ -134,6 +163,28 @@ impl<'a> Heights<'a> {
     fn stored(&self, cell: Cell) -> Option<(u8, [u8; 2])> {
         let slot = slot(self.origin, cell)?;
         Some((self.mark_at(slot), *self.heights.get(slot)?))
+    }
+
+    /// Returns the cells of row `y` that have a mark, and those that are measured; none outside the
+    /// window. Bit k is column `origin.x + k`.
+    pub(super) fn rows(&self, y: i32) -> MarkRows {
+        let least = Cell { y, ..self.origin };
+        let from =
+            slot(self.origin, least).map_or(WINDOW_CELLS, |_| Window::slot(Cell { x: 0, y }));
+        let marks = self.marks.get(from..).unwrap_or_default();
+        let (words, _) = marks.as_chunks::<4>();
+        let (mut marked, mut measured) = (0, 0);
+        for (&word, k) in words.iter().zip(0..ROW_WORDS) {
+            let word = u32::from_le_bytes(word);
+            let counts = nonzero_bytes(word & COUNTS) & !word;
+            marked |= u64::from(top_bits(nonzero_bytes(word))) << (4 * k);
+            measured |= u64::from(top_bits(counts)) << (4 * k);
+        }
+        let turn = (self.origin.x & (WINDOW_SIDE - 1)) as u32;
+        MarkRows {
+            marked: marked.rotate_right(turn),
+            measured: measured.rotate_right(turn),
+        }
     }
 
     /// Returns the mean height of a cell; `None` if it was never measured.

@@ -61,6 +61,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> Centres<'a, TILES, SLOTS> {
         half: i32,
         mut visit: impl FnMut(Site, Cell),
     ) {
+        let mut is_centre = self.cells.query();
         let even = |at: i32| at & !1;
         let ends = |at: i32| (even(at - half)..=at + half).step_by(2);
         for y in ends(middle.y) {
@@ -68,7 +69,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> Centres<'a, TILES, SLOTS> {
                 let Some(site) = self.frame.site(Cell { x, y }) else {
                     continue;
                 };
-                if self.cells.get(site) {
+                if is_centre(site) {
                     visit(site, self.cell(site));
                 }
             }

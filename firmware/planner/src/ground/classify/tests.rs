@@ -2,6 +2,7 @@
 
 use crate::config::{GroundTuning, UnevenGround};
 use crate::geometry::Cell;
+use crate::grid::bits::tests::Rng;
 use crate::ground::classify::RiseLimits;
 use crate::ground::elevation::tests::OwnedWindow;
 
@@ -100,4 +101,48 @@ fn ground_spans_a_gap_in_spite_of_errors_of_the_attitude() {
     assert!(!spans_gap(0.0, slope));
     assert!(spans_gap(0.085, slope));
     assert!(!spans_gap(0.085, steep), "a drop of half a metre");
+}
+
+/// The rows of bits agree with the cells, in a window of scattered marks of every kind.
+#[test]
+fn rows_of_bits_agree_with_their_cells() {
+    let mut rng = Rng(5);
+    let mut owned = OwnedWindow::new(Cell { x: 13, y: -41 });
+    let mut window = owned.write();
+    for _ in 0..1500 {
+        let bits = rng.next();
+        let cell = Cell {
+            x: (bits & 63) as i32 - 20,
+            y: (bits >> 8 & 63) as i32 - 70,
+        };
+        match bits >> 16 & 7 {
+            0 => window.measure_low_confidence(cell, 0.1),
+            1 => window.mark_obstacle(cell),
+            2 => window.mark_drop(cell),
+            3 => window.mark_possible_drop(cell),
+            _ => window.measure(cell, 0.0),
+        }
+    }
+    let heights = window.read();
+    let origin = heights.origin();
+    let is_measured = |cell: Cell| heights.fixed(cell).is_some();
+    let mut seen = [0; 3];
+    for y in origin.y - 2..origin.y + 66 {
+        let (rows, bridges) = (heights.rows(y), super::bridges(&heights, y));
+        for k in 0..64 {
+            let cell = Cell { x: origin.x + k, y };
+            let bits = [rows.marked, rows.measured, bridges].map(|row| row >> k & 1 == 1);
+            let ends = |a: i32, b: i32| {
+                is_measured(cell.offset(a, 0)) && is_measured(cell.offset(-b, 0))
+                    || is_measured(cell.offset(0, a)) && is_measured(cell.offset(0, -b))
+            };
+            let is_marked = heights.mark(cell) != 0;
+            let is_bridge = super::BRIDGES.into_iter().any(|(a, b)| ends(a, b));
+            assert_eq!(bits, [is_marked, is_measured(cell), is_bridge], "{cell:?}");
+            for (count, bit) in seen.iter_mut().zip(bits) {
+                *count += u32::from(bit);
+            }
+        }
+    }
+    assert!(seen.iter().all(|&count| count > 300), "{seen:?}");
 }

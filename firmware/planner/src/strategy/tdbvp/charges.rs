@@ -93,9 +93,10 @@ pub(super) fn unexplored<const TILES: usize, const SLOTS: usize>(
     let mut goal: Rows = [0; SIDE];
     let (x, y) = (grid.origin.x & !1, grid.origin.y & !1);
     let (left, below) = (grid.origin.x - x, grid.origin.y - y);
+    let mut reader = tiles.reader(x);
     for pair in 0..=SIDE as i32 / 2 {
         // A coarse cell is unexplored if two of its four cells are unknown.
-        let [lower, upper] = [0, 1].map(|k| tiles.row(x, y + 2 * pair + k).unknown());
+        let [lower, upper] = [0, 1].map(|k| reader.row(y + 2 * pair + k).unknown());
         let one_in_each = (lower | lower >> 1) & (upper | upper >> 1);
         let two = (lower & lower >> 1) | (upper & upper >> 1) | one_in_each;
         let two = two & 0x5555_5555_5555_5555;
