@@ -130,6 +130,10 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
             };
         }
     };
+    if !state.started {
+        // The last session's field is no start of this one's.
+        workspace.window_at = None;
+    }
     let pose = state.team.to_map(&input.pose);
     let input = Input { pose, ..input };
     let MapPose(corrected) = state.localiser.to_map(&OdomPose(pose));

@@ -9,4 +9,5 @@ mod clock;
 mod corpus;
 mod fast;
 mod full;
+mod history;
 mod short;
