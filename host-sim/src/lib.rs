@@ -13,6 +13,7 @@ pub mod report;
 pub mod robot;
 pub mod session;
 pub mod sim;
+pub mod slam;
 pub mod solve;
 pub mod trial;
 pub mod world;

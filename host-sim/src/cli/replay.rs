@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Error, Result, bail};
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use fieldline_protocol::message::Status;
+use fieldline_slam::Motion;
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::replay::relations::{self, Pose, Relation, RelationError};
 use host_sim::replay::report::{self, Files, RelationErrors, ReplayReport};
@@ -49,6 +50,13 @@ pub(super) struct ReplayArgs {
         allow_negative_numbers = true
     )]
     seed: u64,
+    /// Close loops by a pose graph beside the device: off or host
+    #[arg(long, value_name = "WHERE", default_value = "off")]
+    slam: SlamPlace,
+    /// Variances of the odometry's random walk that the graph expects, as a multiple of the usual
+    /// ones [default: that of --degrade, or 20]
+    #[arg(long, value_name = "K", value_parser = factor, allow_negative_numbers = true)]
+    slam_noise: Option<f64>,
     /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback]
     #[arg(long)]
     link: Option<LinkSpec>,
@@ -60,6 +68,20 @@ pub(super) struct ReplayArgs {
     /// Print only the figures, one JSON object
     #[arg(long)]
     json: bool,
+}
+
+/// Variances of the random walk of wheels that nothing is known of, as a multiple of the usual ones:
+/// those of the papers' odometry.
+const UNKNOWN_WHEELS: f64 = 20.0;
+
+/// Where loops are closed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum SlamPlace {
+    /// Nowhere.
+    #[default]
+    Off,
+    /// On the host that relays the scans.
+    Host,
 }
 
 /// Replays a log; returns true if the device went on up to the end.
@@ -85,7 +107,14 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     let mut planner = link.open(&options).with_context(context)?;
     let odometry = run::odometry(&scans, args.degrade, args.seed);
     let mut step = |_| !interrupt.pressed();
-    let replayed = run::run(&scans, &odometry, planner.as_mut(), &mut step);
+    let noise = args
+        .slam_noise
+        .or(args.degrade)
+        .unwrap_or(UNKNOWN_WHEELS)
+        .max(1.0);
+    let motion = Motion::WHEELS.times(noise as f32);
+    let slam = (args.slam == SlamPlace::Host).then_some(motion);
+    let replayed = run::run(&scans, &odometry, planner.as_mut(), slam, &mut step);
     let replayed = replayed.with_context(context)?;
     if replayed.poses.len() < scans.len() {
         bail!("interrupted after {} scans", replayed.poses.len());
@@ -104,6 +133,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
         }),
         occupied_cells_5cm: report::occupied_cells(&scans, &replayed.poses),
         quality: QualityShares::of(&replayed.qualities),
+        slam: replayed.slam.clone(),
     };
     let files = Files {
         report: &report,

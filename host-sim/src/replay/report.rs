@@ -19,6 +19,7 @@ use crate::picture::{Scene, run_png};
 use crate::report::folder::{self, WriteError};
 use crate::report::tum::{self, Stamped};
 use crate::report::{GridMap, QualityShares, json_line};
+use crate::slam::SlamReport;
 
 /// Side of the cells that are counted, metres.
 const CELL_M: f64 = 0.05;
@@ -42,6 +43,9 @@ pub struct ReplayReport {
     pub occupied_cells_5cm: usize,
     /// Shares of the steps.
     pub quality: QualityShares,
+    /// What became of the loops; without `--slam`, none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slam: Option<SlamReport>,
 }
 
 /// Errors against relations, absolute values.
@@ -121,6 +125,9 @@ impl ReplayReport {
             "  map        {} cells of 5 cm",
             self.occupied_cells_5cm
         );
+        if let Some(slam) = &self.slam {
+            let _ = write!(out, "\n  loops      {slam}");
+        }
         out
     }
 
@@ -226,6 +233,7 @@ mod tests {
             relations: RelationErrors::of(&errors),
             occupied_cells_5cm: 7,
             quality: QualityShares::of(&[Quality::Tracking, Quality::Lost]),
+            slam: None,
         };
         assert_eq!(
             report.to_json_line(),

@@ -12,24 +12,28 @@
 use std::collections::BTreeMap;
 
 use fieldline_protocol::message::{Control, Location, Quality, Status, Tile};
+use fieldline_slam::Motion;
 
 use super::carmen::LogScan;
 use super::drift;
 use super::relations::{Pose, compose, inverse};
 use super::wire::{LogLaser, start};
 use crate::link::{Link, LinkError};
+use crate::slam::{Canvas, PoseGraph, SlamReport};
 use crate::trial::snapshot;
 
 /// The record of a replay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Replayed {
-    /// Pose in the map at each scan.
+    /// Pose in the map at each scan; with a pose graph as it corrected them in the end.
     pub poses: Vec<Pose>,
+    /// What became of the loops; `None` without a pose graph.
+    pub slam: Option<SlamReport>,
     /// Quality of each step.
     pub qualities: Vec<Quality>,
     /// Status after the last step that the device made.
     pub status: Status,
-    /// The device's map, as sent.
+    /// The device's map, as sent; with a pose graph the map of its corrected poses.
     pub tiles: BTreeMap<(i16, i16), Tile>,
 }
 
@@ -47,7 +51,7 @@ pub fn odometry(scans: &[LogScan], degrade: Option<f64>, seed: u64) -> Vec<Pose>
     }
 }
 
-/// Replays scans with this odometry. `step` is called before each step with its number, and ends
+/// Replays scans with this odometry, with a pose graph beside the device if there is one. `step` is called before each step with its number, and ends
 /// the replay if it returns false.
 ///
 /// # Errors
@@ -56,22 +60,27 @@ pub fn run(
     scans: &[LogScan],
     odometry: &[Pose],
     link: &mut dyn Link,
+    slam: Option<Motion>,
     step: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Replayed, LinkError> {
     let laser = LogLaser::of(scans);
+    let mut graph = slam.map(|motion| PoseGraph::new(&laser.laser, motion));
     link.hello()?;
-    let mut status = link.control(&Control::Start(start(&laser)))?;
+    let start = start(&laser);
+    let mut status = link.control(&Control::Start(start.clone()))?;
     let began = scans.first().map_or(0.0, |scan| scan.time);
     let (mut poses, mut qualities) = (Vec::new(), Vec::new());
     let mut map_from_odom = [0.0; 3];
+    let mut seen = Vec::new();
     for (number, (scan, odom)) in scans.iter().zip(odometry).enumerate() {
         if !step(number) {
             break;
         }
         let mut located = None;
+        let time_ms = ((scan.time - began) * 1000.0).round() as u32;
+        let observation = laser.observation(scan, time_ms, *odom);
         if status == Status::Exploring {
-            let time_ms = ((scan.time - began) * 1000.0).round() as u32;
-            let command = link.observe(&laser.observation(scan, time_ms, *odom))?;
+            let command = link.observe(&observation)?;
             status = command.status;
             located = command.location;
         }
@@ -79,15 +88,29 @@ pub fn run(
             map_from_odom = compose(pose(location), inverse(*odom));
         }
         poses.push(compose(map_from_odom, *odom));
+        if let Some(graph) = &mut graph {
+            graph.observe(&observation, located.as_ref());
+            seen.push(observation);
+        }
         qualities.push(located.map_or(Quality::Lost, |location| location.quality));
     }
     let places: Vec<[f64; 2]> = poses.iter().map(|pose| [pose[0], pose[1]]).collect();
-    Ok(Replayed {
+    let mut replayed = Replayed {
         tiles: snapshot::tiles(link, &places)?,
         poses,
+        slam: None,
         qualities,
         status,
-    })
+    };
+    if let Some(mut graph) = graph {
+        graph.finish();
+        replayed.poses = graph.poses();
+        let scans = seen.iter().zip(replayed.poses.iter().copied());
+        let canvas = Canvas::of(&start, scans);
+        replayed.tiles = canvas.map_or_else(BTreeMap::new, |canvas| canvas.tiles());
+        replayed.slam = Some(graph.report());
+    }
+    Ok(replayed)
 }
 
 fn pose(location: &Location) -> Pose {

@@ -323,7 +323,7 @@ fn replay(image: &Path) -> Taken {
     );
     let odometry = run::odometry(&log, Some(2.0), 0);
     let by = |link: &mut dyn Link| {
-        run::run(&log, &odometry, link, &mut |_| true).expect("the replay goes on to its end")
+        run::run(&log, &odometry, link, None, &mut |_| true).expect("the replay goes on to its end")
     };
     let (mut instructions, mut stack_bytes) = (0, 0);
     let mut counted = Watched::new(chip(image), |_: &mut _, _: &_, command: &Command| {

@@ -113,7 +113,13 @@ mod data {
     fn row(job: &Job<'_>) -> Vec<String> {
         let log = job.log;
         let odometry = run::odometry(&log.scans, job.degrade, job.seed);
-        let replayed = run::run(&log.scans, &odometry, &mut Direct::default(), &mut |_| true);
+        let replayed = run::run(
+            &log.scans,
+            &odometry,
+            &mut Direct::default(),
+            None,
+            &mut |_| true,
+        );
         let replayed = replayed.expect("the planner answers");
         let poses = &replayed.poses;
         let by_odometry = errors(log, &odometry, |_| true);
