@@ -104,6 +104,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
         }),
         occupied_cells_5cm: report::occupied_cells(&scans, &replayed.poses),
         quality: QualityShares::of(&replayed.qualities),
+        input_faults: replayed.input_faults,
     };
     let files = Files {
         report: &report,

@@ -18,7 +18,7 @@ use super::wire::LogLaser;
 use crate::picture::{Scene, run_png};
 use crate::report::folder::{self, WriteError};
 use crate::report::tum::{self, Stamped};
-use crate::report::{GridMap, QualityShares, json_line};
+use crate::report::{GridMap, InputFaults, QualityShares, json_line};
 
 /// Side of the cells that are counted, metres.
 const CELL_M: f64 = 0.05;
@@ -42,6 +42,8 @@ pub struct ReplayReport {
     pub occupied_cells_5cm: usize,
     /// Shares of the steps.
     pub quality: QualityShares,
+    /// Observations that the device found wrong.
+    pub input_faults: InputFaults,
 }
 
 /// Errors against relations, absolute values.
@@ -121,6 +123,10 @@ impl ReplayReport {
             "  map        {} cells of 5 cm",
             self.occupied_cells_5cm
         );
+        if let Some(line) = self.input_faults.line() {
+            out += "\n";
+            out += &line;
+        }
         out
     }
 
@@ -226,6 +232,10 @@ mod tests {
             relations: RelationErrors::of(&errors),
             occupied_cells_5cm: 7,
             quality: QualityShares::of(&[Quality::Tracking, Quality::Lost]),
+            input_faults: InputFaults {
+                jumps: 1,
+                ..InputFaults::default()
+            },
         };
         assert_eq!(
             report.to_json_line(),
@@ -233,8 +243,12 @@ mod tests {
              \"relations\":{\"used\":2,\"translation_m\":{\"mean\":0.2,\"sd\":0.09999999999999999,\
              \"max\":0.3},\"rotation_deg\":{\"mean\":1.5,\"sd\":0.5,\"max\":2.0}},\
              \"occupied_cells_5cm\":7,\"quality\":{\"tracking\":0.5,\"degenerate\":0.0,\
-             \"lost\":0.5}}"
+             \"lost\":0.5},\"input_faults\":{\"refused\":0,\"jumps\":1,\"clock\":0}}"
         );
+        assert!(report.to_text().ends_with(
+            "\
+             \n  input     0 observations refused, 1 jumps of odometry, 0 times out of order"
+        ));
         assert_eq!(RelationErrors::of(&[]), None);
     }
 }

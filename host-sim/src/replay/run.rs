@@ -18,6 +18,7 @@ use super::drift;
 use super::relations::{Pose, compose, inverse};
 use super::wire::{LogLaser, start};
 use crate::link::{Link, LinkError};
+use crate::report::InputFaults;
 use crate::trial::snapshot;
 
 /// The record of a replay.
@@ -29,6 +30,8 @@ pub struct Replayed {
     pub qualities: Vec<Quality>,
     /// Status after the last step that the device made.
     pub status: Status,
+    /// Observations that the device found wrong.
+    pub input_faults: InputFaults,
     /// The device's map, as sent.
     pub tiles: BTreeMap<(i16, i16), Tile>,
 }
@@ -64,6 +67,7 @@ pub fn run(
     let began = scans.first().map_or(0.0, |scan| scan.time);
     let (mut poses, mut qualities) = (Vec::new(), Vec::new());
     let mut map_from_odom = [0.0; 3];
+    let mut input_faults = InputFaults::default();
     for (number, (scan, odom)) in scans.iter().zip(odometry).enumerate() {
         if !step(number) {
             break;
@@ -74,6 +78,7 @@ pub fn run(
             let command = link.observe(&laser.observation(scan, time_ms, *odom))?;
             status = command.status;
             located = command.location;
+            input_faults = input_faults.after(command.input_faults);
         }
         if let Some(location) = &located {
             map_from_odom = compose(pose(location), inverse(*odom));
@@ -87,6 +92,7 @@ pub fn run(
         poses,
         qualities,
         status,
+        input_faults,
     })
 }
 
