@@ -54,7 +54,7 @@ pub(crate) use odometry::carry;
 pub(crate) use overlap::{MOST_CELLS, Overlap, add_tile, is_of_tile, overlap, sd_m};
 use scan_points::ScanPoints;
 use search::Search;
-use slip::likelier;
+use slip::{likelier, predictions};
 pub(crate) use symmetric::Symmetric;
 
 /// The pose at the start.
@@ -266,8 +266,8 @@ impl Localiser {
         // On uneven ground a slip is not followed: ground is often taken for walls there.
         if let Footing::Moved(motion) = &self.footing
             && !is_uneven
+            && let Some(slipped) = predictions(config, (&before.0, &predicted.0), motion)
         {
-            let slipped = [before.0, motion.from(&before.0)];
             let others = slipped.map(|pose| in_cells(&pose));
             let place = likelier(tiles, &points, found.pose, others, tuning);
             if let Some((pose, prior)) = place.and_then(|at| slipped.get(at).zip(others.get(at))) {
