@@ -44,6 +44,10 @@ pub struct ReplayReport {
     pub quality: QualityShares,
     /// Observations that the device found wrong.
     pub input_faults: InputFaults,
+    /// Scans of the log whose time was before one that came before them.
+    pub late_scans: usize,
+    /// The first scan, from 1, of which the map had no room for everything; `None` if it had.
+    pub map_full_at: Option<usize>,
 }
 
 /// Errors against relations, absolute values.
@@ -123,6 +127,10 @@ impl ReplayReport {
             "  map        {} cells of 5 cm",
             self.occupied_cells_5cm
         );
+        if let Some(scan) = self.map_full_at {
+            // Writing into a string does not fail.
+            let _ = write!(out, "; map full at scan {scan} of {}", self.steps);
+        }
         if let Some(line) = self.input_faults.line() {
             out += "\n";
             out += &line;
@@ -236,6 +244,8 @@ mod tests {
                 jumps: 1,
                 ..InputFaults::default()
             },
+            late_scans: 1,
+            map_full_at: Some(2),
         };
         assert_eq!(
             report.to_json_line(),
@@ -243,7 +253,8 @@ mod tests {
              \"relations\":{\"used\":2,\"translation_m\":{\"mean\":0.2,\"sd\":0.09999999999999999,\
              \"max\":0.3},\"rotation_deg\":{\"mean\":1.5,\"sd\":0.5,\"max\":2.0}},\
              \"occupied_cells_5cm\":7,\"quality\":{\"tracking\":0.5,\"degenerate\":0.0,\
-             \"lost\":0.5},\"input_faults\":{\"refused\":0,\"jumps\":1,\"clock\":0}}"
+             \"lost\":0.5},\"input_faults\":{\"refused\":0,\"jumps\":1,\"clock\":0},\
+             \"late_scans\":1,\"map_full_at\":2}"
         );
         assert!(report.to_text().ends_with(
             "\
