@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Error, Result, bail};
 use clap::{Args, ValueEnum};
 
+use fieldline_planner::config::Tuning;
 use fieldline_protocol::message::Status;
 use fieldline_slam::Motion;
 use host_sim::link::spec::{LinkSpec, Options};
@@ -21,7 +22,7 @@ use super::{note, say};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct ReplayArgs {
-    /// CARMEN log with FLASER lines, plain or gzip
+    /// CARMEN log with FLASER or ROBOTLASER1 lines, plain or gzip
     #[arg(value_name = "LOG")]
     log: PathBuf,
     /// True motions between poses of the log, lines of `t1 t2 x y z roll pitch yaw`
@@ -87,7 +88,9 @@ enum SlamPlace {
 /// Replays a log; returns true if the device went on up to the end.
 pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     let text = carmen::read(&args.log).map_err(Error::msg)?;
-    let scans = carmen::scans(&args.log.display().to_string(), &text).map_err(Error::msg)?;
+    let log = carmen::log(&args.log.display().to_string(), &text).map_err(Error::msg)?;
+    note_late(args, &log);
+    let scans = log.scans;
     let times = || scans.iter().map(|scan| scan.time);
     let own: Vec<(f64, Pose)> = times()
         .zip(scans.iter().map(|scan| scan.odometry))
@@ -96,8 +99,9 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     let truth = truth.map(|file| known(args, file, &own)).transpose()?;
     let link = args.tune.link(args.link.as_ref()).cloned();
     let link = link.unwrap_or_default();
+    let tuning = args.tune.tuning(&link)?;
     let options = Options {
-        tuning: args.tune.tuning(&link)?,
+        tuning,
         ..Options::default()
     };
     let folder = args.out.clone().unwrap_or_else(|| usual_folder(args));
@@ -133,6 +137,11 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
         }),
         occupied_cells_5cm: report::occupied_cells(&scans, &replayed.poses),
         quality: QualityShares::of(&replayed.qualities),
+        input_faults: replayed.input_faults,
+        late_scans: log.late,
+        map_full_at: run::is_default_pool(replayed.tile_pool)
+            .then(|| run::map_full_at(&scans, &odometry, tuning.unwrap_or(&Tuning::DEFAULT)))
+            .flatten(),
         slam: replayed.slam.clone(),
     };
     let files = Files {
@@ -156,6 +165,18 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     }
     note(&format!("{log}: files in {}", folder.display()));
     Ok(replayed.status == Status::Exploring)
+}
+
+/// Says that scans were sorted, if so.
+fn note_late(args: &ReplayArgs, log: &carmen::Log) {
+    if log.late > 0 {
+        note(&format!(
+            "{}: the times of {} scans go back, by {:.2} s at most; sorted",
+            args.log.display(),
+            log.late,
+            log.late_s
+        ));
+    }
 }
 
 /// Reads the relations, with the log's times.

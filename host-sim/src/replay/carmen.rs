@@ -1,10 +1,16 @@
 //! CARMEN logs: laser scans with the odometry pose at the scan.
 //!
 //! `FLASER n r1 … rn x y θ ox oy oθ t host t'` is a scan, the laser's pose and the robot's, and
-//! `ODOM x y θ v ω a t host t'` the wheels' speed. Other lines are not read. A sweep is 180°: 180
-//! or 360 beams lie at −90° + i·180°/n; 181 or 361 beams include both ends.
+//! `ODOM x y θ v ω a t host t'` the wheels' speed. A sweep is 180°: 180 or 360 beams lie at
+//! −90° + i·180°/n; 181 or 361 beams include both ends.
 //!
-//! Invariant: all scans have the same number of beams, and times never decrease.
+//! `ROBOTLASER1` is the newer form of a scan. It tells its angles and its range:
+//! `type start field step most accuracy mode n r1 … rn m i1 … im x y θ ox oy oθ v ω …`, and at its
+//! end `t host t'`. Beam i lies at start + i·step. Other lines are not read.
+//!
+//! Some logs have scans whose times go back by fractions of a second. They are sorted.
+//!
+//! Invariant: all scans have the same beams, and times never decrease.
 //! Units: metres, radians, seconds.
 
 use core::f64::consts::{FRAC_PI_2, PI};
@@ -12,6 +18,32 @@ use std::io::Read as _;
 use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
+
+/// Most by which a time may be before one that was read, seconds. A log that goes back by more is
+/// two logs.
+const MOST_BACK_S: f64 = 1.0;
+
+/// The scans of a log, in the order of time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Log {
+    /// The scans.
+    pub scans: Vec<LogScan>,
+    /// Number of scans whose time was before one that was read.
+    pub late: usize,
+    /// By how much at most, seconds.
+    pub late_s: f64,
+}
+
+/// The beams of a laser.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beams {
+    /// Angle of the first beam in the robot's frame, radians.
+    pub first_rad: f64,
+    /// Angle from one beam to the next, radians.
+    pub step_rad: f64,
+    /// A reading that is not below this met nothing, metres.
+    pub most_m: f64,
+}
 
 /// One laser scan of a log. `line` counts from 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,11 +54,14 @@ pub struct LogScan {
     pub time: f64,
     /// Metres, from right to left.
     pub ranges: Vec<f64>,
+    /// The laser's beams.
+    pub beams: Beams,
     /// Pose of the laser at the scan: x, y in metres, heading in radians.
     pub laser: [f64; 3],
     /// Odometry at the scan: x, y in metres, heading in radians.
     pub odometry: [f64; 3],
-    /// Speed and turn rate of the last ODOM line, metres and radians per second.
+    /// Speed and turn rate, of the last ODOM line or of the scan's own, metres and radians per
+    /// second.
     pub speed: [f64; 2],
 }
 
@@ -57,10 +92,22 @@ pub fn read(path: &Path) -> Result<String, String> {
 
 impl LogScan {
     /// Angle of a beam in the robot's frame, in radians.
+    #[must_use]
     pub fn angle(&self, beam: usize) -> f64 {
-        let n = self.ranges.len();
-        let gaps = if n % 2 == 1 { n - 1 } else { n };
-        -FRAC_PI_2 + beam as f64 * PI / gaps.max(1) as f64
+        self.beams.first_rad + beam as f64 * self.beams.step_rad
+    }
+}
+
+impl Beams {
+    /// Returns this number of beams over 180°.
+    #[must_use]
+    pub fn half_turn(count: usize) -> Self {
+        let gaps = if count % 2 == 1 { count - 1 } else { count };
+        Self {
+            first_rad: -FRAC_PI_2,
+            step_rad: PI / gaps.max(1) as f64,
+            most_m: f64::INFINITY,
+        }
     }
 }
 
@@ -68,55 +115,87 @@ impl LogScan {
 ///
 /// # Errors
 /// The file, the line and the remedy.
-pub fn scans(file: &str, text: &str) -> Result<Vec<LogScan>, String> {
+pub fn log(file: &str, text: &str) -> Result<Log, String> {
     let mut found: Vec<LogScan> = Vec::new();
     let mut speed = [0.0; 2];
     for (index, content) in text.lines().enumerate() {
         let line = index + 1;
         let at = |what: String| format!("{file}:{line}: {what}");
         let words: Vec<&str> = content.split_whitespace().collect();
-        match words.first() {
-            Some(&"ODOM") => speed = wheels(&words).map_err(at)?,
-            Some(&"FLASER") => {
-                let scan = LogScan {
-                    line,
-                    speed,
-                    ..scan(&words).map_err(at)?
-                };
-                if let Some(last) = found.last() {
-                    follows(last, &scan).map_err(at)?;
-                }
-                found.push(scan);
+        let scan = match words.first() {
+            Some(&"ODOM") => {
+                speed = wheels(&words).map_err(at)?;
+                continue;
             }
-            _ => {}
+            Some(&"FLASER") => LogScan {
+                speed,
+                ..flaser(&words).map_err(at)?
+            },
+            Some(&"ROBOTLASER1") => robotlaser(&words).map_err(at)?,
+            _ => continue,
+        };
+        if let Some(first) = found.first() {
+            is_of_laser(first, &scan).map_err(at)?;
         }
+        found.push(LogScan { line, ..scan });
     }
     if found.is_empty() {
         let end = text.lines().count().max(1);
         return Err(format!(
-            "{file}:{end}: no FLASER line up to here; give a CARMEN log with laser scans"
+            "{file}:{end}: no FLASER or ROBOTLASER1 line up to here; give a CARMEN log with laser \
+             scans"
         ));
     }
-    Ok(found)
+    in_order(file, found)
 }
 
-/// Checks that a scan can follow another one.
-fn follows(last: &LogScan, scan: &LogScan) -> Result<(), String> {
-    if scan.ranges.len() != last.ranges.len() {
+/// Checks that a scan is one of the laser of another one.
+fn is_of_laser(first: &LogScan, scan: &LogScan) -> Result<(), String> {
+    if scan.ranges.len() != first.ranges.len() {
         return Err(format!(
-            "FLASER has {} beams, and line {} has {}; give a log of one laser",
+            "the scan has {} beams, and line {} has {}; give a log of one laser",
             scan.ranges.len(),
-            last.line,
-            last.ranges.len()
+            first.line,
+            first.ranges.len()
         ));
     }
-    if scan.time < last.time {
+    if scan.beams != first.beams {
         return Err(format!(
-            "time {} is before that of line {}; sort the log by time",
-            scan.time, last.line
+            "the scan has other angles or another range than line {}; give a log of one laser",
+            first.line
         ));
     }
     Ok(())
+}
+
+/// Sorts scans by time. Equal times keep their order.
+fn in_order(file: &str, mut scans: Vec<LogScan>) -> Result<Log, String> {
+    let (mut late, mut late_s) = (0, 0.0_f64);
+    let mut newest: Option<(f64, usize)> = None;
+    for scan in &scans {
+        let (time, line) = newest.unwrap_or((scan.time, scan.line));
+        if time - scan.time > MOST_BACK_S {
+            return Err(format!(
+                "{file}:{}: time {} is {:.2} s before that of line {line}; sort the log by time, \
+                 or cut it there",
+                scan.line,
+                scan.time,
+                time - scan.time
+            ));
+        }
+        if scan.time < time {
+            late += 1;
+            late_s = late_s.max(time - scan.time);
+        } else {
+            newest = Some((scan.time, scan.line));
+        }
+    }
+    scans.sort_by(|a, b| a.time.total_cmp(&b.time));
+    Ok(Log {
+        scans,
+        late,
+        late_s,
+    })
 }
 
 fn number(words: &[&str], at: usize) -> Result<f64, String> {
@@ -136,7 +215,18 @@ fn wheels(words: &[&str]) -> Result<[f64; 2], String> {
     Ok([number(words, 4)?, number(words, 5)?])
 }
 
-fn scan(words: &[&str]) -> Result<LogScan, String> {
+/// Reads x, y and heading from a word on.
+fn pose(words: &[&str], at: usize) -> Result<[f64; 3], String> {
+    let [x, y, yaw] = [at, at + 1, at + 2].map(|at| number(words, at));
+    Ok([x?, y?, yaw?])
+}
+
+/// Reads numbers from a word on.
+fn numbers(words: &[&str], from: usize, count: usize) -> Result<Vec<f64>, String> {
+    (from..from + count).map(|at| number(words, at)).collect()
+}
+
+fn flaser(words: &[&str]) -> Result<LogScan, String> {
     let count = words.get(1).and_then(|word| word.parse::<usize>().ok());
     let count = count.ok_or("FLASER has no number of beams; mend or delete the line")?;
     if count < 2 || words.len().checked_sub(11) != Some(count) {
@@ -145,89 +235,57 @@ fn scan(words: &[&str]) -> Result<LogScan, String> {
             words.len()
         ));
     }
-    let pose = |at: usize| {
-        let [x, y, yaw] = [at, at + 1, at + 2].map(|at| number(words, at));
-        Ok::<_, String>([x?, y?, yaw?])
-    };
     Ok(LogScan {
         line: 0,
         time: number(words, count + 8)?,
-        ranges: (2..2 + count)
-            .map(|at| number(words, at))
-            .collect::<Result<_, _>>()?,
-        laser: pose(count + 2)?,
-        odometry: pose(count + 5)?,
+        ranges: numbers(words, 2, count)?,
+        beams: Beams::half_turn(count),
+        laser: pose(words, count + 2)?,
+        odometry: pose(words, count + 5)?,
         speed: [0.0; 2],
     })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Words of a `ROBOTLASER1` line without beams: 9 before the ranges, the number of remissions, and
+/// 14 behind them.
+const ROBOTLASER_WORDS: usize = 24;
 
-    #[test]
-    fn a_scan_has_its_odometry_and_its_angles() {
-        let log = "# x\nFLASER 2 1 2 9 9 9 3 4 0.5 7.5 host 7.5\n";
-        let scan = &scans("a.log", log).unwrap()[0];
-        assert_eq!(
-            (scan.line, scan.time, scan.odometry),
-            (2, 7.5, [3.0, 4.0, 0.5])
-        );
-        assert_eq!((scan.angle(0), scan.angle(1)), (-FRAC_PI_2, 0.0));
+fn robotlaser(words: &[&str]) -> Result<LogScan, String> {
+    let counted = |at: usize| words.get(at).and_then(|word| word.parse::<usize>().ok());
+    let beams = counted(8).filter(|&beams| (2..words.len()).contains(&beams));
+    let beams = beams.ok_or("ROBOTLASER1 has no number of beams; mend or delete the line")?;
+    let remissions = counted(beams + 9).filter(|&count| count < words.len());
+    let remissions =
+        remissions.ok_or("ROBOTLASER1 has no number of remissions; mend or delete the line")?;
+    if words.len() != beams + remissions + ROBOTLASER_WORDS {
+        return Err(format!(
+            "ROBOTLASER1 says {beams} beams and {remissions} remissions and has {} words, not \
+             both + {ROBOTLASER_WORDS}; mend or delete the line",
+            words.len()
+        ));
     }
-
-    #[test]
-    fn bad_input_names_file_and_line() {
-        for (bad, what) in [
-            (
-                "FLASER 3 1 2 9 9 9 3 4 0.5 7.5 host 7.5",
-                "a.log:1: FLASER says 3",
-            ),
-            ("FLASER 18446744073709551615 1", "a.log:1: FLASER says"),
-            (
-                "FLASER 2 1 NaN 9 9 9 3 4 0.5 7.5 host 7.5",
-                "a.log:1: `NaN`",
-            ),
-            ("ODOM 1 2 NaN 0 0 0 1 host 1", "a.log:1: `NaN`"),
-            ("", "a.log:1: no FLASER"),
-        ] {
-            let error = scans("a.log", bad).unwrap_err();
-            assert!(error.starts_with(what), "{error}");
-        }
+    let (first_rad, step_rad, most_m) = (number(words, 2)?, number(words, 4)?, number(words, 5)?);
+    if step_rad <= 0.0 || most_m <= 0.0 {
+        return Err(format!(
+            "ROBOTLASER1 has the angle {step_rad} between beams and the range {most_m}; give \
+             numbers above 0"
+        ));
     }
-
-    #[test]
-    fn scans_of_two_lasers_and_times_that_go_back_are_refused() {
-        let line =
-            |beams: &str, time: f64| format!("FLASER {beams} 0 0 0 0 0 0 {time} host {time}\n");
-        let mixed = line("2 1 2", 1.0) + &line("3 1 2 3", 2.0);
-        assert!(
-            scans("a", &mixed)
-                .unwrap_err()
-                .starts_with("a:2: FLASER has 3")
-        );
-        let back = line("2 1 2", 1.0) + &line("2 1 2", 0.5);
-        assert!(scans("a", &back).unwrap_err().starts_with("a:2: time 0.5"));
-    }
-
-    #[test]
-    fn a_gzip_file_is_unpacked_and_a_broken_one_names_its_line() {
-        use std::io::Write as _;
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.gz");
-        let text: String = (0..2000_u64)
-            .map(|k| format!("{} line\n", k * k * 7919))
-            .collect();
-        let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-        packer.write_all(text.as_bytes()).unwrap();
-        let packed = packer.finish().unwrap();
-        std::fs::write(&path, &packed).unwrap();
-        assert_eq!(read(&path).unwrap(), text);
-        std::fs::write(&path, &packed[..packed.len() / 2]).unwrap();
-        let error = read(&path).unwrap_err();
-        assert!(
-            error.contains("a.gz:") && error.contains("copy it again"),
-            "{error}"
-        );
-    }
+    let behind = beams + remissions + 10;
+    Ok(LogScan {
+        line: 0,
+        time: number(words, behind + 11)?,
+        ranges: numbers(words, 9, beams)?,
+        beams: Beams {
+            first_rad,
+            step_rad,
+            most_m,
+        },
+        laser: pose(words, behind)?,
+        odometry: pose(words, behind + 3)?,
+        speed: [number(words, behind + 6)?, number(words, behind + 7)?],
+    })
 }
+
+#[cfg(test)]
+mod tests;

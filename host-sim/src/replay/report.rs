@@ -18,7 +18,7 @@ use super::wire::LogLaser;
 use crate::picture::{Scene, run_png};
 use crate::report::folder::{self, WriteError};
 use crate::report::tum::{self, Stamped};
-use crate::report::{GridMap, QualityShares, json_line};
+use crate::report::{GridMap, InputFaults, QualityShares, json_line};
 use crate::slam::SlamReport;
 
 /// Side of the cells that are counted, metres.
@@ -43,6 +43,12 @@ pub struct ReplayReport {
     pub occupied_cells_5cm: usize,
     /// Shares of the steps.
     pub quality: QualityShares,
+    /// Observations that the device found wrong.
+    pub input_faults: InputFaults,
+    /// Scans of the log whose time was before one that came before them.
+    pub late_scans: usize,
+    /// The first scan, from 1, of which the map had no room for everything; `None` if it had.
+    pub map_full_at: Option<usize>,
     /// What became of the loops; without `--slam`, none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slam: Option<SlamReport>,
@@ -125,8 +131,16 @@ impl ReplayReport {
             "  map        {} cells of 5 cm",
             self.occupied_cells_5cm
         );
+        if let Some(scan) = self.map_full_at {
+            // Writing into a string does not fail.
+            let _ = write!(out, "; map full at scan {scan} of {}", self.steps);
+        }
         if let Some(slam) = &self.slam {
             let _ = write!(out, "\n  loops      {slam}");
+        }
+        if let Some(line) = self.input_faults.line() {
+            out += "\n";
+            out += &line;
         }
         out
     }
@@ -233,6 +247,12 @@ mod tests {
             relations: RelationErrors::of(&errors),
             occupied_cells_5cm: 7,
             quality: QualityShares::of(&[Quality::Tracking, Quality::Lost]),
+            input_faults: InputFaults {
+                jumps: 1,
+                ..InputFaults::default()
+            },
+            late_scans: 1,
+            map_full_at: Some(2),
             slam: None,
         };
         assert_eq!(
@@ -241,8 +261,13 @@ mod tests {
              \"relations\":{\"used\":2,\"translation_m\":{\"mean\":0.2,\"sd\":0.09999999999999999,\
              \"max\":0.3},\"rotation_deg\":{\"mean\":1.5,\"sd\":0.5,\"max\":2.0}},\
              \"occupied_cells_5cm\":7,\"quality\":{\"tracking\":0.5,\"degenerate\":0.0,\
-             \"lost\":0.5}}"
+             \"lost\":0.5},\"input_faults\":{\"refused\":0,\"jumps\":1,\"clock\":0},\
+             \"late_scans\":1,\"map_full_at\":2}"
         );
+        assert!(report.to_text().ends_with(
+            "\
+             \n  input     0 observations refused, 1 jumps of odometry, 0 times out of order"
+        ));
         assert_eq!(RelationErrors::of(&[]), None);
     }
 }

@@ -4,13 +4,21 @@
 //! hello → Start(survey) → one observation a scan → tiles
 //! ```
 //!
-//! Nothing is driven. After the device gave up its pose, the poses are those of odometry with its
+//! Nothing is driven. A log may have equal times, or scans far apart. The session's clock then goes
+//! on as if its robot had driven each step, so the device takes no step for a jump of odometry.
+//!
+//! The map that the device makes is full when the pool has no page for what a beam met. The device
+//! goes on, and knows nothing of what it could not enter. The host's copy of the map tells when.
+//!
+//! After the device gave up its pose, the poses are those of odometry with its
 //! last correction, and these steps count as lost.
 //!
 //! Units: metres, radians, milliseconds.
 
 use std::collections::BTreeMap;
 
+use fieldline_device::TILES;
+use fieldline_planner::config::Tuning;
 use fieldline_protocol::message::{Control, Location, Quality, Status, Tile};
 use fieldline_slam::Motion;
 
@@ -19,7 +27,10 @@ use super::drift;
 use super::relations::{Pose, compose, inverse};
 use super::wire::{LogLaser, start};
 use crate::link::{Link, LinkError};
+use crate::report::InputFaults;
+use crate::robot::wrap;
 use crate::slam::{Canvas, PoseGraph, SlamReport};
+use crate::trial::mirror::Mirror;
 use crate::trial::snapshot;
 
 /// The record of a replay.
@@ -33,6 +44,10 @@ pub struct Replayed {
     pub qualities: Vec<Quality>,
     /// Status after the last step that the device made.
     pub status: Status,
+    /// Observations that the device found wrong.
+    pub input_faults: InputFaults,
+    /// Tiles in the pool of the device's map.
+    pub tile_pool: u16,
     /// The device's map, as sent; with a pose graph the map of its corrected poses.
     pub tiles: BTreeMap<(i16, i16), Tile>,
 }
@@ -51,7 +66,51 @@ pub fn odometry(scans: &[LogScan], degrade: Option<f64>, seed: u64) -> Vec<Pose>
     }
 }
 
-/// Replays scans with this odometry, with a pose graph beside the device if there is one. `step` is called before each step with its number, and ends
+/// Returns the session's time at each scan, milliseconds: the log's, but no step takes less than the
+/// session's robot needs for it.
+fn times_ms(scans: &[LogScan], odometry: &[Pose]) -> Vec<u32> {
+    let limits = start(&LogLaser::of(scans));
+    let (speed, turn_rate): (f64, f64) = (limits.max_linear.to_num(), limits.max_angular.to_num());
+    let began = scans.first().map_or(0.0, |scan| scan.time);
+    let mut last: Option<(f64, Pose)> = None;
+    let time = |(scan, odom): (&LogScan, &Pose)| {
+        let mut time = scan.time - began;
+        if let Some((before, from)) = last {
+            let [x, y, turn] = compose(inverse(from), *odom);
+            let needed = (x.hypot(y) / speed).max(wrap(turn).abs() / turn_rate);
+            time = time.max(before + needed.max(0.001));
+        }
+        last = Some((time, *odom));
+        (time * 1000.0).round() as u32
+    };
+    scans.iter().zip(odometry).map(time).collect()
+}
+
+/// Returns the number of the first scan, from 1, of which the map of a device of the default image
+/// could not take everything; `None` if it takes all.
+#[must_use]
+pub fn map_full_at(scans: &[LogScan], odometry: &[Pose], tuning: &'static Tuning) -> Option<usize> {
+    let laser = LogLaser::of(scans);
+    let mut mirror = Mirror::tuned(&start(&laser), tuning);
+    let times = times_ms(scans, odometry);
+    let steps = scans.iter().zip(odometry).zip(times);
+    let full = steps.map(|((scan, odom), time_ms)| {
+        mirror.observe(&laser.observation(scan, time_ms, *odom), Status::Exploring);
+        mirror.is_full()
+    });
+    full.into_iter()
+        .position(|full| full)
+        .map(|place| place + 1)
+}
+
+/// Returns true if this many tiles are those of the default image.
+#[must_use]
+pub fn is_default_pool(tile_pool: u16) -> bool {
+    usize::from(tile_pool) == TILES
+}
+
+/// Replays scans with this odometry, with a pose graph beside the device if `slam` has the noise of
+/// the wheels. `step` is called before each step with its number, and ends
 /// the replay if it returns false.
 ///
 /// # Errors
@@ -65,24 +124,25 @@ pub fn run(
 ) -> Result<Replayed, LinkError> {
     let laser = LogLaser::of(scans);
     let mut graph = slam.map(|motion| PoseGraph::new(&laser.laser, motion));
-    link.hello()?;
+    let tile_pool = link.hello()?.tile_pool;
     let start = start(&laser);
     let mut status = link.control(&Control::Start(start.clone()))?;
-    let began = scans.first().map_or(0.0, |scan| scan.time);
+    let times = times_ms(scans, odometry);
     let (mut poses, mut qualities) = (Vec::new(), Vec::new());
     let mut map_from_odom = [0.0; 3];
+    let mut input_faults = InputFaults::default();
     let mut seen = Vec::new();
-    for (number, (scan, odom)) in scans.iter().zip(odometry).enumerate() {
+    for (number, ((scan, odom), time_ms)) in scans.iter().zip(odometry).zip(times).enumerate() {
         if !step(number) {
             break;
         }
         let mut located = None;
-        let time_ms = ((scan.time - began) * 1000.0).round() as u32;
         let observation = laser.observation(scan, time_ms, *odom);
         if status == Status::Exploring {
             let command = link.observe(&observation)?;
             status = command.status;
             located = command.location;
+            input_faults = input_faults.after(command.input_faults);
         }
         if let Some(location) = &located {
             map_from_odom = compose(pose(location), inverse(*odom));
@@ -101,6 +161,8 @@ pub fn run(
         slam: None,
         qualities,
         status,
+        input_faults,
+        tile_pool,
     };
     if let Some(mut graph) = graph {
         graph.finish();
@@ -119,4 +181,59 @@ fn pose(location: &Location) -> Pose {
         location.y.to_num(),
         location.yaw.to_num(),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::carmen::Beams;
+    use super::*;
+    use crate::link::direct::Direct;
+
+    /// Returns a log of scans at the same time, a metre and a half apart along a corridor that is
+    /// as long as the path, and without end for a laser.
+    fn log(scans: u32) -> Vec<LogScan> {
+        let scan = |k: u32| {
+            let beams = Beams::half_turn(181);
+            let place = [1.5 * f64::from(k), 0.0, 0.0];
+            let range = |beam: u32| {
+                let angle = beams.first_rad + f64::from(beam) * beams.step_rad;
+                (1.2 / angle.sin().abs().max(1e-3)).min(80.0)
+            };
+            LogScan {
+                line: k as usize + 1,
+                time: 1.13e9,
+                ranges: (0..181).map(range).collect(),
+                beams,
+                laser: place,
+                odometry: place,
+                speed: [0.0; 2],
+            }
+        };
+        (0..scans).map(scan).collect()
+    }
+
+    #[test]
+    fn scans_far_apart_with_equal_times_are_no_jumps_of_odometry() {
+        let scans = log(20);
+        let own = odometry(&scans, None, 0);
+        let replayed = run(&scans, &own, &mut Direct::new(), None, &mut |_| true).unwrap();
+        assert_eq!(replayed.input_faults, InputFaults::default());
+        let [x, y, _] = replayed.poses[19];
+        assert!((x - 28.5).abs() < 1.0 && y.abs() < 0.1, "{x} {y}");
+        assert!(is_default_pool(replayed.tile_pool));
+        assert_eq!(map_full_at(&scans, &own, &Tuning::DEFAULT), None);
+    }
+
+    #[test]
+    fn a_map_that_has_no_room_says_at_which_scan() {
+        // Two tiles across, one for each 3.2 m.
+        let scans = log(300);
+        let own = odometry(&scans, None, 0);
+        let full = map_full_at(&scans, &own, &Tuning::DEFAULT).unwrap();
+        let tiles = 2.0 * (1.5 * full as f64 + 12.0) / 3.2;
+        assert!(
+            (tiles - TILES as f64).abs() < 12.0,
+            "scan {full}: {tiles} tiles"
+        );
+    }
 }

@@ -4,7 +4,8 @@
 //! angle. The session's laser states these angles, so no beam is turned to another one.
 //!
 //! A reading beyond the range limit saw nothing, and is free up to it. The limit is 12 m, or the
-//! log's greatest reading if that is less: some lasers report their limit for nothing.
+//! laser's range or the log's greatest reading if that is less: some lasers report their limit for
+//! nothing.
 //!
 //! Units: metres, radians; ranges in millimetres.
 
@@ -42,7 +43,11 @@ impl LogLaser {
     pub fn of(scans: &[LogScan]) -> Self {
         let readings = || scans.iter().flat_map(|scan| &scan.ranges);
         let greatest_m = readings().copied().fold(0.0, f64::max);
-        let limit_m = LIMIT_M.min((greatest_m * 1000.0).floor() / 1000.0).max(0.1);
+        let most_m = scans.first().map_or(LIMIT_M, |scan| scan.beams.most_m);
+        let limit_m = LIMIT_M
+            .min(most_m)
+            .min((greatest_m * 1000.0).floor() / 1000.0)
+            .max(0.1);
         let beams = scans.first().map_or(1, |scan| scan.ranges.len());
         let stride = beams.div_ceil(MAX_BEAMS);
         let angle = |beam| scans.first().map_or(0.0, |scan| scan.angle(beam));
@@ -150,12 +155,14 @@ pub fn start(laser: &LogLaser) -> Start {
 
 #[cfg(test)]
 mod tests {
+    use super::super::carmen::Beams;
     use super::*;
 
     fn scan(ranges: Vec<f64>) -> LogScan {
         LogScan {
             line: 1,
             time: 0.0,
+            beams: Beams::half_turn(ranges.len()),
             ranges,
             laser: [1.3, 2.0, 0.0],
             odometry: [1.0, 2.0, 0.0],

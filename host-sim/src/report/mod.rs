@@ -8,6 +8,7 @@
 pub mod commands;
 pub mod folder;
 pub mod grid_map;
+mod input_faults;
 mod localization;
 pub mod loop_closing;
 pub mod ros_map;
@@ -21,6 +22,7 @@ use serde::{Deserialize, Serialize};
 pub use crate::link::LinkStats;
 pub use crate::network::Counters;
 pub use grid_map::{GridMap, MapCell};
+pub use input_faults::InputFaults;
 pub use localization::{Localization, QualityShares};
 pub use loop_closing::{GivenUp, LoopClosing};
 pub use team::TeamReport;
@@ -109,6 +111,9 @@ pub struct Report {
     pub field: Field,
     /// Counters of the link, both ends.
     pub link_stats: LinkStats,
+    /// Observations that the device found wrong.
+    #[serde(default)]
+    pub input_faults: InputFaults,
     /// 128-bit FNV-1a of the command stream, 32 hexadecimal digits.
     pub digest: String,
     /// Cross-checks of the simulator.

@@ -84,6 +84,7 @@ impl Report {
                 "  position  wrong by {mean_m:.2} m on average, {max_m:.2} m at most"
             ));
         }
+        lines.extend(self.input_faults.line());
         if let Some(network) = &self.network {
             let dropped = network.malformed + network.unauthentic + network.foreign;
             lines.push(format!(
@@ -234,6 +235,16 @@ mod tests {
   given up  a loop after 2:05, at (3.0, -1.2)
 ";
         assert!(text.contains(lines), "{text}");
+    }
+
+    #[test]
+    fn observations_that_were_wrong_have_a_line() {
+        let mut report = sample();
+        assert!(!report.to_text().contains("  input "));
+        report.input_faults.refused = 2;
+        report.input_faults.jumps = 1;
+        let line = "  input     2 observations refused, 1 jumps of odometry, 0 times out of order";
+        assert!(report.to_text().lines().any(|it| it == line));
     }
 
     #[test]

@@ -31,7 +31,13 @@ impl Mirror {
     /// Makes the empty map of a session.
     #[must_use]
     pub fn new(start: &Start) -> Self {
-        let config = convert::config(start, &Tuning::DEFAULT).ok();
+        Self::tuned(start, &Tuning::DEFAULT)
+    }
+
+    /// Makes the empty map of a session with other constants.
+    #[must_use]
+    pub fn tuned(start: &Start, tuning: &'static Tuning) -> Self {
+        let config = convert::config(start, tuning).ok();
         let mut map = Box::new(Map::new());
         if let Some(config) = &config {
             map.begin(config);
@@ -79,6 +85,12 @@ impl Mirror {
     #[must_use]
     pub fn is_known(&self, cell: Cell) -> bool {
         self.map.class(cell) != Class::Unknown
+    }
+
+    /// Returns true if the pool had no page for something that a beam met.
+    #[must_use]
+    pub const fn is_full(&self) -> bool {
+        self.map.pool_full()
     }
 
     /// Returns heights and preferences in a window; `None` on flat ground.

@@ -226,6 +226,12 @@ impl Record {
         }
     }
 
+    /// Returns the report's part on observations that were not as they should be.
+    #[must_use]
+    pub fn input_faults(&self) -> report::InputFaults {
+        report::InputFaults::of(self.steps.iter().map(|step| &step.command))
+    }
+
     /// Returns the report's part on cost.
     #[must_use]
     pub fn planner(&self) -> report::Planner {

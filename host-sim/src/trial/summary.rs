@@ -67,6 +67,7 @@ pub(super) fn report(
         planner: record.planner(),
         field: record.field(),
         link_stats: record.link_stats,
+        input_faults: record.input_faults(),
         digest: record.digest.to_string(),
         debug: report::Debug {
             map_matches_mirror: map_is_read.then(|| account.mirror.equals(&record.tiles)),

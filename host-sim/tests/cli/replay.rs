@@ -85,7 +85,8 @@ fn a_replay_prints_its_figures_and_writes_its_files() {
         assert_eq!(status, 0, "{stdout}{stderr}");
         let report = &reports(&stdout)[0];
         let keys: Vec<&String> = report.as_object().unwrap().keys().collect();
-        let expected = "degrade link log occupied_cells_5cm quality relations seed steps";
+        let expected = "degrade input_faults late_scans link log map_full_at occupied_cells_5cm quality \
+                        relations seed steps";
         assert_eq!(keys, expected.split(' ').collect::<Vec<_>>());
         assert_eq!(report["steps"], 60);
         assert_eq!(report["degrade"], Value::Null);
@@ -110,6 +111,74 @@ fn a_replay_prints_its_figures_and_writes_its_files() {
         assert_eq!(tum.lines().count(), 60);
         assert!(tum.lines().nth(5).unwrap().starts_with("1.000000 "));
     }
+}
+
+/// The same drive, with two scans swapped and in the newer form, gives the same figures.
+#[test]
+fn late_scans_are_sorted_and_the_newer_form_is_read() {
+    let folder = with_log(180);
+    let plain = log(180);
+    let mut lines: Vec<&str> = plain.lines().collect();
+    // Lines 2 and on are ODOM and FLASER in turn.
+    lines.swap(13, 15);
+    fs::write(folder.path().join("late.log"), lines.join("\n")).unwrap();
+    fs::write(folder.path().join("new.log"), newer(&plain, 180)).unwrap();
+    let figures = |name: &str| {
+        let words = [
+            "replay",
+            name,
+            "--link",
+            "direct",
+            "--json",
+            "--out",
+            name.trim_end_matches(".log"),
+        ];
+        let (status, stdout, stderr) = outcome(&folder, &words);
+        assert_eq!(status, 0, "{stderr}");
+        let tum = name.replace(".log", "/trajectory.tum");
+        (
+            reports(&stdout)[0].clone(),
+            stderr,
+            fs::read(folder.path().join(tum)).unwrap(),
+        )
+    };
+    let (plain, said, path) = figures("a.log");
+    assert_eq!(
+        (&plain["late_scans"], said.contains("sorted")),
+        (&0.into(), false)
+    );
+    assert_eq!(plain["map_full_at"], Value::Null);
+    let (late, said, late_path) = figures("late.log");
+    assert_eq!(late["late_scans"], 1);
+    assert!(
+        said.contains("late.log: the times of 1 scans go back, by 0.20 s at most; sorted"),
+        "{said}"
+    );
+    assert!(path == late_path);
+    let (new, _, new_path) = figures("new.log");
+    assert_eq!(new["occupied_cells_5cm"], plain["occupied_cells_5cm"]);
+    assert!(path == new_path);
+}
+
+/// Turns FLASER lines into ROBOTLASER1 lines.
+fn newer(log: &str, beams: usize) -> String {
+    let (first, step) = (
+        -core::f64::consts::FRAC_PI_2,
+        core::f64::consts::PI / beams as f64,
+    );
+    let line = |line: &str| {
+        let words: Vec<&str> = line.split(' ').collect();
+        if words[0] != "FLASER" {
+            return String::new();
+        }
+        let (ranges, rest) = (words[2..beams + 2].join(" "), &words[beams + 2..]);
+        let (poses, time) = (rest[..6].join(" "), rest[6..].join(" "));
+        format!(
+            "ROBOTLASER1 0 {first} 3.14159 {step} 81.9 0.01 0 {beams} {ranges} 0 {poses} 0.25 0 \
+             0.1 0.1 1e6 {time}\n"
+        )
+    };
+    log.lines().map(line).collect()
 }
 
 #[test]
@@ -210,7 +279,14 @@ fn a_bad_log_is_refused_with_file_and_line_and_writes_nothing() {
     for (text, words) in [
         (nan.as_str(), [at.as_str(), "`NaN`", "mend or delete"]),
         (&short, [&at, "FLASER says 4", "mend or delete"]),
-        ("", ["bad.log:1: ", "no FLASER line", "give a CARMEN log"]),
+        (
+            "",
+            [
+                "bad.log:1: ",
+                "no FLASER or ROBOTLASER1 line",
+                "give a CARMEN log",
+            ],
+        ),
     ] {
         fs::write(folder.path().join("bad.log"), text).unwrap();
         refused(&folder, &[], &words);

@@ -15,7 +15,7 @@ use fieldline_tests::{costs, golden, worlds};
 use fixed::types::I4F12;
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
-use host_sim::replay::carmen::LogScan;
+use host_sim::replay::carmen::{Beams, LogScan};
 use host_sim::replay::run;
 use host_sim::report::Report;
 use host_sim::robot::Footprint;
@@ -354,6 +354,7 @@ fn log_scan(observation: &Observation) -> Option<LogScan> {
             .iter()
             .map(|range| f64::from(*range) / 1000.0)
             .collect(),
+        beams: Beams::half_turn(ranges_mm.len()),
         laser: place,
         odometry: place,
         speed: [

@@ -63,7 +63,7 @@ mod data {
             .map(|(name, text)| relations::read(name, text).unwrap());
         let known: Vec<Vec<Relation>> = known.collect();
         let log = |(name, text): (String, String)| {
-            let scans = carmen::scans(&name, &text).unwrap();
+            let scans = carmen::log(&name, &text).unwrap().scans;
             let own = timed(&scans, scans.iter().map(|scan| scan.odometry));
             let relations = known.iter().find_map(|known| {
                 let offset = clock::offset(known, &own)?;

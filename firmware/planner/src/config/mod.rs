@@ -110,6 +110,9 @@ pub struct Config {
     pub(crate) survey: bool,
 }
 
+/// A robot that slides, is pushed or rolls down is at most so much faster than it drives.
+const SLIDE: f32 = 2.0;
+
 impl Config {
     /// The greatest planning radius, metres: the configuration space grows obstacles by 6 cells at
     /// most.
@@ -198,6 +201,14 @@ impl Config {
         Twist {
             linear_mps: self.max_linear_mps,
             angular_radps: self.max_angular_radps,
+        }
+    }
+
+    /// Returns the greatest speeds of a robot that slides.
+    pub(crate) const fn sliding_speed(&self) -> Twist {
+        Twist {
+            linear_mps: SLIDE * self.max_linear_mps,
+            angular_radps: SLIDE * self.max_angular_radps,
         }
     }
 

@@ -229,10 +229,15 @@ impl Agreement {
         (self.near, self.all.agreeing + self.all.contradicting)
     }
 
+    /// Returns by what share of the surfaces more agree here than elsewhere.
+    pub(super) fn excess(&self, elsewhere: &Self) -> f32 {
+        let more = f32::from(self.close) - f32::from(elsewhere.close);
+        more / f32::from(self.beams.max(1))
+    }
+
     /// Returns true if the scan agrees with the map here and much better than elsewhere.
     pub(super) fn is_better_than(&self, elsewhere: &Self, tuning: &LocaliseTuning) -> bool {
-        let more = f32::from(self.close) - f32::from(elsewhere.close);
-        !self.is_contradicted(false, tuning) && more >= tuning.better_share * f32::from(self.beams)
+        !self.is_contradicted(false, tuning) && self.excess(elsewhere) >= tuning.better_share
     }
 }
 

@@ -13,6 +13,7 @@
 //! | `alignment` | Gauss–Newton, and directions that the scan does not observe |
 //! | `slip` | predictions for wheels that slip |
 //! | `search` | the wider search of a robot that is lost |
+//! | `lost` | which place a lost robot takes |
 //! | `overlap` | how a tile of another map lies in this one |
 //! | `symmetric` | 3 × 3 matrices, and eigenvalues of 2 × 2 |
 //!
@@ -29,6 +30,7 @@
 
 mod alignment;
 mod location;
+mod lost;
 mod motion;
 mod occupancy;
 mod odometry;
@@ -40,7 +42,7 @@ mod symmetric;
 #[cfg(test)]
 mod tests;
 
-use crate::config::{Config, LocaliseTuning};
+use crate::config::Config;
 use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
 use crate::input::Input;
 use crate::map::neighbourhood::Neighbourhood;
@@ -54,7 +56,7 @@ pub(crate) use odometry::carry;
 pub(crate) use overlap::{MOST_CELLS, Overlap, add_tile, is_of_tile, overlap, sd_m};
 use scan_points::ScanPoints;
 use search::Search;
-use slip::likelier;
+use slip::{likelier, predictions};
 pub(crate) use symmetric::Symmetric;
 
 /// The pose at the start.
@@ -266,8 +268,8 @@ impl Localiser {
         // On uneven ground a slip is not followed: ground is often taken for walls there.
         if let Footing::Moved(motion) = &self.footing
             && !is_uneven
+            && let Some(slipped) = predictions(config, (&before.0, &predicted.0), motion)
         {
-            let slipped = [before.0, motion.from(&before.0)];
             let others = slipped.map(|pose| in_cells(&pose));
             let place = likelier(tiles, &points, found.pose, others, tuning);
             if let Some((pose, prior)) = place.and_then(|at| slipped.get(at).zip(others.get(at))) {
@@ -323,51 +325,7 @@ impl Localiser {
             ..predicted.0
         })
     }
-
-    /// Searches on. Returns the predicted pose until the scan agrees with the map at another one.
-    ///
-    /// If no place near by is much better, and the scan does not refute this one, then what
-    /// contradicts the map came or is a fold of the map: the robot goes on.
-    fn search<const TILES: usize, const SLOTS: usize>(
-        &mut self,
-        tiles: &Tiles<TILES, SLOTS>,
-        points: &ScanPoints,
-        (here, predicted): (&Aligned, &MapPose),
-        tuning: &LocaliseTuning,
-    ) -> MapPose {
-        let odom = self.odom();
-        let Footing::Lost(search) = &mut self.footing else {
-            return *predicted;
-        };
-        let was_near = search.is_near();
-        let candidate = search.advance(tiles, points, (&odom, predicted));
-        let is_nowhere_near = was_near && !search.is_near();
-        if let Some(candidate) = candidate {
-            let start = in_cells(&candidate.apply(&odom).0);
-            let wide = Symmetric::diagonal(WIDE_CELLS, WIDE_CELLS, WIDE_RAD).inverse();
-            let wide = wide.unwrap_or_default();
-            let found = align(tiles, points, (start, &wide), start, tuning);
-            let is_taken = if was_near {
-                found.agreement.is_better_than(&here.agreement, tuning)
-            } else {
-                found.is_agreed(tuning)
-            };
-            if is_taken {
-                return self.accept(&found, predicted);
-            }
-        }
-        if is_nowhere_near && !here.agreement.is_refuted(tuning) {
-            self.trusted_steps = tuning.trusted_steps;
-            return self.accept(here, predicted);
-        }
-        *predicted
-    }
 }
-
-/// Variance of a candidate's place, square cells: it is a cell of a coarse search.
-const WIDE_CELLS: f32 = 4.0;
-/// Variance of a candidate's yaw, square radians: 3° squared.
-const WIDE_RAD: f32 = 2.7e-3;
 
 /// Returns a pose in cells.
 fn in_cells(pose: &Pose) -> [f32; 3] {

@@ -8,15 +8,17 @@
 //! bit: plane k of a row of shifts holds bit k of 32 counts. To add a beam is to carry a word
 //! through six planes.
 //!
-//! | round | place | turns |
-//! | --- | --- | --- |
-//! | 0 | where odometry has the robot | ± 30° |
-//! | 1 | there | all |
-//! | 2 to 9 | the eight squares of 3.2 m around it | all |
+//! | rounds | place | turns | decided |
+//! | --- | --- | --- | --- |
+//! | 0 | where odometry has the robot | that odometry allows | after it |
+//! | 1 to 8 | the eight squares of 3.2 m around it | the same | after all |
+//! | 9 to 17 | all nine | all | after all |
 //!
-//! A step takes a few turns, and all rounds take 211 steps, which is 42 s. The best shift and turn
-//! of a round is the start of an alignment, and only an alignment with which the scan agrees ends
-//! the search.
+//! A lost robot stands, so its yaw is wrong by what wheels slipped: 30°, or three standard
+//! deviations of odometry. Only if no place fits so, the robot may have been carried.
+//!
+//! A step takes a few turns, and all rounds take 243 steps, which is 49 s. The best shift and turn
+//! and the best one elsewhere are the starts of alignments (`lost`).
 //!
 //! Units: map cells, radians.
 
@@ -35,13 +37,14 @@ const MOST_BEAMS: usize = (1 << PLANES) - 1;
 const TURN_RAD: f32 = 2.0 * math::PI / TURNS as f32;
 /// Tries of a whole turn.
 const TURNS: u16 = 180;
-/// Tries of the first round.
-const FIRST_TURNS: u16 = 31;
+/// Least tries of a round with the turns that odometry allows.
+const LEAST_TURNS: u16 = 31;
+/// Turns that differ by more are two places, radians.
+const APART_RAD: f32 = 10.0 * math::PI / 180.0;
 /// Turns of a step.
 const TURNS_PER_STEP: u16 = 8;
-/// Places of the rounds, in squares.
-const PLACES: [(i32, i32); 10] = [
-    (0, 0),
+/// Places of the rounds, in squares. The rounds go over them twice.
+const PLACES: [(i32, i32); 9] = [
     (0, 0),
     (1, 0),
     (-1, 0),
@@ -53,14 +56,38 @@ const PLACES: [(i32, i32); 10] = [
     (-1, -1),
 ];
 
+/// A shift and a turn.
+#[derive(Clone, Copy, Debug, Default)]
+struct Candidate {
+    /// In 64ths of a beam: nearer ones win ties. 0 for none.
+    score: i32,
+    motion: MapFromOdom,
+}
+
+impl Candidate {
+    /// Returns true if this is another place than that of `other`.
+    fn is_apart(&self, other: &Self, odom: &OdomPose) -> bool {
+        let [a, b] = [self, other].map(|it| it.motion.apply(odom).0);
+        are_apart(&a, &b)
+    }
+}
+
+/// Returns true if two poses are more than [`APART`] cells or 10° from each other.
+pub(super) fn are_apart(a: &Pose, b: &Pose) -> bool {
+    let apart_m = APART as f32 * CELL_M;
+    (a.x_m - b.x_m).abs() > apart_m
+        || (a.y_m - b.y_m).abs() > apart_m
+        || math::wrap(a.yaw_rad - b.yaw_rad).abs() > APART_RAD
+}
+
 /// The state of a search.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Search {
     round: u8,
     turn: u16,
-    /// Score of the best candidate, in 64ths of a beam: nearer ones win ties.
-    best: i32,
-    candidate: MapFromOdom,
+    /// The best candidate, and the best one elsewhere.
+    best: Candidate,
+    rival: Candidate,
 }
 
 /// The counts of the shifts: for each row of shifts its planes.
@@ -69,22 +96,32 @@ type Counts = [[u32; PLANES]; SIDE as usize];
 impl Search {
     /// Returns a search that begins.
     pub(super) const fn new() -> Self {
+        const NONE: Candidate = Candidate {
+            score: 0,
+            motion: MapFromOdom::IDENTITY,
+        };
         Self {
             round: 0,
             turn: 0,
-            best: 0,
-            candidate: MapFromOdom::IDENTITY,
+            best: NONE,
+            rival: NONE,
         }
     }
 
-    /// Tries a few turns. Returns the best candidate at the end of a round.
+    /// Tries a few turns. Returns the best candidate and the best one elsewhere where the search is
+    /// to decide. `yaw_sd_rad` is the standard deviation of the yaw.
     pub(super) fn advance<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
         points: &[ScanPoint],
         (odom, predicted): (&OdomPose, &MapPose),
-    ) -> Option<MapFromOdom> {
-        let &(right, up) = PLACES.get(usize::from(self.round))?;
+        yaw_sd_rad: f32,
+    ) -> Option<[Option<MapFromOdom>; 2]> {
+        if self.is_over() {
+            return None;
+        }
+        let places = PLACES.len();
+        let &(right, up) = PLACES.get(usize::from(self.round) % places)?;
         let side_m = SIDE as f32 * CELL_M;
         let place = Pose {
             x_m: predicted.0.x_m + right as f32 * side_m,
@@ -94,14 +131,20 @@ impl Search {
         for _ in 0..TURNS_PER_STEP {
             self.take(tiles, points, odom, &place);
             self.turn += 1;
-            if self.turn >= self.turns() {
-                let found = (self.best > 0).then_some(self.candidate);
-                let round = self.round + 1;
-                *self = Self {
-                    round,
-                    ..Self::new()
-                };
-                return found;
+            if self.turn >= self.turns(yaw_sd_rad) {
+                let found = [self.best, self.rival];
+                self.turn = 0;
+                self.round += 1;
+                let is_stage = usize::from(self.round).is_multiple_of(places);
+                if is_stage {
+                    let round = self.round;
+                    *self = Self {
+                        round,
+                        ..Self::new()
+                    };
+                }
+                return (is_stage || self.round == 1)
+                    .then(|| found.map(|it| (it.score > 0).then_some(it.motion)));
             }
         }
         None
@@ -114,11 +157,16 @@ impl Search {
 
     /// Returns true if all rounds are over.
     pub(super) const fn is_over(&self) -> bool {
-        self.round as usize >= PLACES.len()
+        self.round as usize >= 2 * PLACES.len()
     }
 
-    const fn turns(&self) -> u16 {
-        if self.round == 0 { FIRST_TURNS } else { TURNS }
+    /// Returns the number of tries of this round.
+    fn turns(&self, yaw_sd_rad: f32) -> u16 {
+        if usize::from(self.round) >= PLACES.len() {
+            return TURNS;
+        }
+        let allowed = (6.0 * yaw_sd_rad / TURN_RAD) as u16;
+        allowed.clamp(LEAST_TURNS, TURNS)
     }
 
     /// Tries all shifts at one turn: 0, +1, −1, +2, −2, …
@@ -137,20 +185,50 @@ impl Search {
         };
         let counts = count(tiles, points, &turned);
         for (dy, planes) in (-SIDE / 2..).zip(&counts) {
-            let (hits, mask) = most(planes);
-            let dx = nearest(mask);
-            let score = 64 * hits as i32 - dx.abs() - dy.abs();
-            if score > self.best {
-                self.best = score;
+            let mut planes = *planes;
+            // The best shift of a row, and the best one elsewhere in it.
+            for _ in 0..2 {
+                let (hits, mask) = most(&planes);
+                let dx = nearest(mask);
+                let score = 64 * hits as i32 - dx.abs() - dy.abs();
+                if score <= self.rival.score {
+                    break;
+                }
                 let shifted = Pose {
                     x_m: turned.x_m + dx as f32 * CELL_M,
                     y_m: turned.y_m + dy as f32 * CELL_M,
                     ..turned
                 };
-                self.candidate = MapFromOdom::between(odom, &MapPose(shifted));
+                let motion = MapFromOdom::between(odom, &MapPose(shifted));
+                self.rank(Candidate { score, motion }, odom);
+                planes = planes.map(|plane| plane & !beside(dx));
             }
         }
     }
+
+    /// Enters a candidate that is better than the best one elsewhere.
+    fn rank(&mut self, found: Candidate, odom: &OdomPose) {
+        let is_apart = found.is_apart(&self.best, odom);
+        if found.score <= self.best.score {
+            if is_apart {
+                self.rival = found;
+            }
+            return;
+        }
+        if is_apart {
+            self.rival = self.best;
+        } else if !found.is_apart(&self.rival, odom) {
+            self.rival.score = 0;
+        }
+        self.best = found;
+    }
+}
+
+/// Returns the bits of the shifts of a row that are the same place as this one.
+fn beside(dx: i32) -> u32 {
+    let near = (-APART..=APART).map(|by| dx + by + SIDE / 2);
+    let near = near.filter(|bit| (0..SIDE).contains(bit));
+    near.fold(0, |mask, bit| mask | 1 << bit)
 }
 
 /// The best of all shifts of a pose.
@@ -182,9 +260,7 @@ pub(super) fn peak<const TILES: usize, const SLOTS: usize>(
         }
     }
     let (x, y) = peak.shift;
-    let beside = (-APART..=APART).map(|dx| x + dx + SIDE / 2);
-    let beside = beside.filter(|bit| (0..SIDE).contains(bit));
-    let beside = beside.fold(0_u32, |mask, bit| mask | 1 << bit);
+    let beside = beside(x);
     for (dy, planes) in (-SIDE / 2..).zip(&counts) {
         let is_near = (dy - y).abs() <= APART;
         let kept = if is_near { !beside } else { u32::MAX };

@@ -22,18 +22,42 @@
 //! obstacle within a cell r is 1, also in unknown space: a beam that seems to end behind a wall
 //! contradicts it.
 //!
-//! Units: map cells, radians.
+//! A scan comes each period, and no slip is longer than a robot slides in one. A longer step has
+//! left scans out. Then the map holds little of what the new scan sees: in a corridor the last scan
+//! is all of it, and it fits best where it was taken. So a step that long is never taken for a slip.
+//!
+//! Units: map cells, radians; metres for poses.
 
-use crate::config::LocaliseTuning;
+use crate::config::{Config, LocaliseTuning};
+use crate::geometry::Pose;
 use crate::localise::alignment::{Frame, weight};
+use crate::localise::motion::Motion;
 use crate::localise::occupancy::occupancy;
 use crate::localise::scan_points::ScanPoint;
 use crate::map::Tiles;
 use crate::map::neighbourhood::Neighbourhood;
+use crate::math;
 
 /// Ends that differ less across their surface are the same, cells: the alignment reaches one from
 /// the other.
 const SAME_CELLS: f32 = 0.5;
+
+/// Returns where a robot is that stood, and one that went on with its last motion; `None` if
+/// odometry's step is longer than a slip. If the second is too far from odometry, it is the first.
+pub(super) fn predictions(
+    config: &Config,
+    (before, odometry): (&Pose, &Pose),
+    last: &Motion,
+) -> Option<[Pose; 2]> {
+    let (speed, period_s) = (config.sliding_speed(), config.period_s);
+    let (reach_m, turn_rad) = (speed.linear_mps * period_s, speed.angular_radps * period_s);
+    let is_near = |pose: &Pose| {
+        pose.point().distance2(odometry.point()) <= reach_m * reach_m
+            && math::wrap(pose.yaw_rad - odometry.yaw_rad).abs() <= turn_rad
+    };
+    let went_on = Some(last.from(before)).filter(is_near);
+    is_near(before).then(|| [*before, went_on.unwrap_or(*before)])
+}
 
 /// Returns the place of the prediction that the scan makes likelier than all others and than
 /// odometry's; `None` if odometry's is the likeliest.

@@ -2,6 +2,7 @@
 //!
 //! The truth, the rays and the odometry are f64. The scan is exact to a millimetre.
 
+mod lost;
 mod slips;
 mod twin;
 

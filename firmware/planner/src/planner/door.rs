@@ -34,8 +34,6 @@ const MOST_LEAN_RAD: f32 = math::PI / 3.0;
 /// Most time that one step goes on, milliseconds: beyond it nothing that waits for a time waits
 /// any longer.
 const MOST_GAP_MS: u32 = 60_000;
-/// A robot that slides, is pushed or rolls down is at most so much faster than it drives.
-const SLIDE: f32 = 2.0;
 /// What odometry may jump in any time, metres and radians: the error of kept or late reports.
 const JUMP: (f32, f32) = (1.0, 1.0);
 
@@ -124,8 +122,9 @@ impl Door {
             return;
         };
         let elapsed_s = elapsed_ms as f32 * 1e-3;
-        let reach_m = JUMP.0 + SLIDE * config.max_linear_mps * elapsed_s;
-        let turn_rad = JUMP.1 + SLIDE * config.max_angular_radps * elapsed_s;
+        let most = config.sliding_speed();
+        let reach_m = JUMP.0 + most.linear_mps * elapsed_s;
+        let turn_rad = JUMP.1 + most.angular_radps * elapsed_s;
         let is_far = pose.point().distance2(last.point()) > reach_m * reach_m
             || (pose.z_m - last.z_m).abs() > reach_m
             || math::wrap(pose.yaw_rad - last.yaw_rad).abs() > turn_rad;
@@ -204,13 +203,16 @@ fn check(config: &Config, input: &Input<'_>) -> Result<(), InputError> {
 
 /// Clamps a measured velocity to what a robot that slides can have.
 fn limited(config: &Config, velocity: Twist) -> Twist {
-    let (linear, angular) = (
-        SLIDE * config.max_linear_mps,
-        SLIDE * config.max_angular_radps,
-    );
+    let most = config.sliding_speed();
+    let Twist {
+        linear_mps,
+        angular_radps,
+    } = velocity;
     Twist {
-        linear_mps: velocity.linear_mps.min(linear).max(-linear),
-        angular_radps: velocity.angular_radps.min(angular).max(-angular),
+        linear_mps: linear_mps.min(most.linear_mps).max(-most.linear_mps),
+        angular_radps: angular_radps
+            .min(most.angular_radps)
+            .max(-most.angular_radps),
     }
 }
 

@@ -113,6 +113,7 @@ impl Whole<'_, '_, '_> {
             planner: all.planner(),
             field: all.field(),
             link_stats: link_stats(robots),
+            input_faults: input_faults(robots),
             digest: self.digest(),
             debug: report::Debug {
                 map_matches_mirror: all_true(robots, |report| report.debug.map_matches_mirror),
@@ -266,6 +267,11 @@ fn most(robots: &[team::Robot], of: fn(&Report) -> u32) -> u32 {
 fn all_true(robots: &[team::Robot], of: fn(&Report) -> Option<bool>) -> Option<bool> {
     let mut answers = robots.iter().map(|robot| of(&robot.report));
     answers.try_fold(true, |all, answer| answer.map(|answer| all && answer))
+}
+
+fn input_faults(robots: &[team::Robot]) -> report::InputFaults {
+    let counts = robots.iter().map(|robot| robot.report.input_faults);
+    counts.fold(report::InputFaults::default(), |all, of| all + of)
 }
 
 fn link_stats(robots: &[team::Robot]) -> LinkStats {

@@ -51,6 +51,28 @@ fn without_a_slip_the_prediction_is_odometrys() {
     }
 }
 
+/// Recorded logs often have a scan each metre. The robot weaves between boxes that hide each other.
+#[test]
+fn steps_that_leave_scans_out_are_no_slips() {
+    let mut solids = std::vec![[-8.0, 60.0, -1.9, -1.5], [-8.0, 60.0, 1.5, 1.9]];
+    solids.extend((0..40).map(|k| {
+        let x = 1.7 * f64::from(k) - 4.0 + 0.3 * f64::from(k * 7 % 5);
+        let deep = 0.6 * (0.4 + 0.15 * f64::from(k * 3 % 5));
+        let sides = [[1.5 - deep, 1.5], [-1.5, deep - 1.5]];
+        let [low, high] = sides[usize::from(k % 2 == 1)];
+        [x, x + 0.7, low, high]
+    }));
+    for step_m in [0.5, 0.75] {
+        let mut scene = Scene::new(solids.clone());
+        for k in 0..30 {
+            let turn = if k % 2 == 0 { 0.3 } else { -0.3 };
+            scene.step((step_m, turn), (step_m, turn));
+        }
+        let (off_m, turned) = scene.errors();
+        assert!(off_m < 0.3 && turned < 0.03, "{off_m} m, {turned} rad");
+    }
+}
+
 /// The gain of each other prediction, beam by beam, and which is chosen.
 #[test]
 fn the_chosen_prediction_is_that_of_a_naive_twin() {
