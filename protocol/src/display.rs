@@ -58,6 +58,14 @@ impl fmt::Display for Refusal {
             Self::OutOfOrder => f.write_str("the request is older than the last one answered"),
             Self::BadParameter(parameter) => write!(f, "bad parameter: {parameter}"),
             Self::NoTeam => f.write_str("the session has no team; start it with one"),
+            Self::NoCorrection => {
+                f.write_str("no correction of this epoch is open; open one with a greater epoch")
+            }
+            Self::BadCorrection => f.write_str(
+                "a correction must have at most 512 tiles, keep the robot within 10 km, \
+                 and be for flat ground",
+            ),
+            Self::BadTile => f.write_str("the runs of a tile do not have 1024 cells"),
         }
     }
 }

@@ -14,6 +14,8 @@
 //! | [`Request::Path`] | host | [`Reply::Path`] or [`Reply::Refused`] |
 //! | [`Request::Hear`] | host | [`Reply::Heard`] or [`Reply::Refused`] |
 //! | [`Request::Say`] | host | [`Reply::Say`] or [`Reply::Refused`] |
+//! | [`Request::Correct`] | host | [`Reply::Corrected`] or [`Reply::Refused`] |
+//! | [`Request::Tiles`] | host | [`Reply::Corrected`] or [`Reply::Refused`] |
 //!
 //! The device sends two messages without a request: [`Reply::Hello`] after it booted, and
 //! [`Reply::Crash`] before it reboots.
@@ -22,6 +24,7 @@
 //! exact-byte tests check this.
 
 mod command;
+mod correction;
 mod identity;
 mod location;
 mod observation;
@@ -32,6 +35,10 @@ mod session;
 mod team;
 
 pub use command::{Command, Cost, Counters, Fault, Finish, InputFaults, Loops, Stages, Status};
+pub use correction::{
+    CORRECTED_BYTES, CORRECTED_TILES, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress,
+    MOST_CORRECTED, Motion,
+};
 pub use identity::{BUILD_BYTES, CRASH_FILE_BYTES, Cause, Crash, Identity};
 pub use location::{Location, Quality};
 pub use observation::{
@@ -103,6 +110,10 @@ pub enum Request {
     /// Asks for the next packet to pass on to the team. The host asks after each observation until
     /// there is none.
     Say,
+    /// Opens a correction of the map.
+    Correct(Correct),
+    /// Brings tiles of the open correction.
+    Tiles(CorrectedTiles),
 }
 
 /// A message from the device.
@@ -143,4 +154,6 @@ pub enum Reply {
     Heard,
     /// The next packet for the team; `None` until the next step.
     Say(Option<Packet>),
+    /// How far the device is with a correction of the map.
+    Corrected(CorrectionProgress),
 }

@@ -9,9 +9,9 @@ use fixed::types::{I4F12, I16F16};
 use postcard_schema::key::hash::fnv1a64::hash_ty_path;
 
 use crate::message::{
-    BUILD_BYTES, CRASH_FILE_BYTES, DIGEST_TILES, FIELD_SIDE, MAX_BEAMS, MAX_FRONTIERS, MAX_SCANS,
-    NO_RETURN_MM, PATH_PAGE, ROAD_POINTS, Reply, Request, TILE_BYTES, TILE_SKELETON_BYTES,
-    TILE_STAMPS, WANTED_TILES,
+    BUILD_BYTES, CORRECTED_BYTES, CORRECTED_TILES, CRASH_FILE_BYTES, DIGEST_TILES, FIELD_SIDE,
+    MAX_BEAMS, MAX_FRONTIERS, MAX_SCANS, MOST_CORRECTED, NO_RETURN_MM, PATH_PAGE, ROAD_POINTS,
+    Reply, Request, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS, WANTED_TILES,
 };
 
 /// Version of the protocol.
@@ -42,6 +42,9 @@ pub const SCHEMA: u32 = {
         ROAD_POINTS,
         DIGEST_TILES,
         WANTED_TILES,
+        CORRECTED_TILES,
+        CORRECTED_BYTES,
+        MOST_CORRECTED as usize,
         NO_RETURN_MM as usize,
         I16F16::FRAC_NBITS as usize,
         I4F12::FRAC_NBITS as usize,
@@ -73,6 +76,6 @@ mod tests {
     /// message changed as well, raise [`VERSION`].
     #[test]
     fn schema_hash_is_unchanged() {
-        assert_eq!((VERSION, SCHEMA), (1, 0x9c95_521c));
+        assert_eq!((VERSION, SCHEMA), (1, 0xee06_2b7f));
     }
 }

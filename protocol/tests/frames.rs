@@ -12,10 +12,11 @@ use fieldline_protocol::frame::{
     encode_log, encode_reply, encode_request, overhead,
 };
 use fieldline_protocol::message::{
-    self, BUILD_BYTES, CRASH_FILE_BYTES, Cause, Control, Counters, Crash, FIELD_CELL_BYTES,
-    FIELD_SIDE, FieldRow, Hull, Identity, Laser, LoopLimits, MAX_FRONTIERS, MAX_SCANS, Member,
-    NO_RETURN_MM, Order, PATH_PAGE, Path, Preference, Reply, Request, ResidualFrontier,
-    ResidualReason, Start, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS, Team, Tile, UnevenGround,
+    self, BUILD_BYTES, CORRECTED_BYTES, CORRECTED_TILES, CRASH_FILE_BYTES, Cause, Control,
+    CorrectedTile, CorrectedTiles, Counters, Crash, FIELD_CELL_BYTES, FIELD_SIDE, FieldRow, Hull,
+    Identity, Laser, LoopLimits, MAX_FRONTIERS, MAX_SCANS, Member, NO_RETURN_MM, Order, PATH_PAGE,
+    Path, Preference, Reply, Request, ResidualFrontier, ResidualReason, Start, TILE_BYTES,
+    TILE_SKELETON_BYTES, TILE_STAMPS, Team, Tile, UnevenGround,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use proptest::prelude::*;
@@ -200,7 +201,21 @@ fn the_largest_messages_fit_and_fill_their_frames() {
                 .collect(),
         ),
     ];
+    let tile = CorrectedTile {
+        x: i16::MIN,
+        y: i16::MIN,
+        shift: (i8::MIN, i8::MIN),
+        bytes: u16::MAX,
+    };
+    let part = Request::Tiles(CorrectedTiles {
+        epoch: u16::MAX,
+        first: u16::MAX,
+        last: true,
+        tiles: [tile; CORRECTED_TILES].into_iter().collect(),
+        cells: [0xff; CORRECTED_BYTES].into_iter().collect(),
+    });
     assert!(request_frame(1, &start).len() <= MAX_REQUEST_FRAME);
+    assert!(request_frame(1, &part).len() <= MAX_REQUEST_FRAME);
     for reply in others {
         assert!(reply_frame(1, &reply).len() <= MAX_REPLY_FRAME);
     }

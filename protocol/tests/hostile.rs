@@ -9,7 +9,9 @@ mod common;
 use common::{checked_frame, hello, largest_observation, reply_frame, request_frame};
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::frame::{MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side};
-use fieldline_protocol::message::{Identity, Observation, Reply, Request, Scan, Status};
+use fieldline_protocol::message::{
+    CorrectedTile, CorrectedTiles, Identity, Observation, Reply, Request, Scan, Status,
+};
 
 /// Sequence number of the frames around arbitrary bodies.
 const SEQUENCE: u16 = 0x0201;
@@ -124,11 +126,18 @@ fn the_device_survives_any_bytes() {
         .collect(),
         ..Observation::default()
     };
+    let part = CorrectedTiles {
+        epoch: 2,
+        tiles: [CorrectedTile::default(); 3].into_iter().collect(),
+        cells: [63 << 2; 48].into_iter().collect(),
+        ..CorrectedTiles::default()
+    };
     let frames = [
         request_frame(1, &hello(5)),
         request_frame(2, &Request::Frontiers),
         request_frame(3, &Request::Tile { x: 3, y: -3 }),
         request_frame(4, &Request::Observation(observation)),
+        request_frame(5, &Request::Tiles(part)),
     ];
     let target = Target {
         frames: &frames,

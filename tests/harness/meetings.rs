@@ -20,8 +20,8 @@ use fieldline_device::session::{self, Boot};
 use fieldline_device::{Memory, Pilot, SLOTS, State, TILES, convert};
 use fieldline_planner::{Config, Goal, GoalLevel, Order, Tuning, Workspace, step};
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Identity, Observation, Packet, Path, Refusal, ResidualFrontier,
-    Status, Tile, Twist,
+    Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
+    Packet, Path, Refusal, ResidualFrontier, Status, Tile, Twist,
 };
 use host_sim::link::{Link, LinkError, LinkStats};
 use host_sim::report::TeamReport;
@@ -294,6 +294,14 @@ impl Link for Ordered {
             self.state.hear(&config, &packet);
         }
         Ok(())
+    }
+
+    fn open_correction(&mut self, _: &Correct) -> Result<CorrectionProgress, LinkError> {
+        Err(LinkError::Refused("nobody corrects this map".into()))
+    }
+
+    fn send_tiles(&mut self, _: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
+        Err(LinkError::Refused("nobody corrects this map".into()))
     }
 
     fn say(&mut self) -> Result<Option<Packet>, LinkError> {

@@ -2,7 +2,8 @@
 //! command.
 
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Identity, Observation, Packet, Path, ResidualFrontier, Status, Tile,
+    Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
+    Packet, Path, ResidualFrontier, Status, Tile,
 };
 use host_sim::link::{Link, LinkError, LinkStats};
 
@@ -65,6 +66,14 @@ where
         self.link.say()
     }
 
+    fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError> {
+        self.link.open_correction(correct)
+    }
+
+    fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
+        self.link.send_tiles(part)
+    }
+
     fn stats(&self) -> LinkStats {
         self.link.stats()
     }
@@ -120,6 +129,14 @@ mod tests {
             Err(LinkError::Refused("nothing to say".into()))
         }
 
+        fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError> {
+            Err(LinkError::Refused(format!("correction {}", correct.epoch)))
+        }
+
+        fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
+            Err(LinkError::Refused(format!("tile {}", part.first)))
+        }
+
         fn stats(&self) -> LinkStats {
             LinkStats::default()
         }
@@ -142,6 +159,20 @@ mod tests {
         let refused = LinkError::Refused("packet 9".into());
         assert_eq!(link.hear(&packet), Err(refused));
         assert_eq!(link.say(), Err(LinkError::Refused("nothing to say".into())));
+        let correct = Correct {
+            epoch: 5,
+            ..Correct::default()
+        };
+        let refused = LinkError::Refused("correction 5".into());
+        assert_eq!(link.open_correction(&correct), Err(refused));
+        let part = CorrectedTiles {
+            first: 6,
+            ..CorrectedTiles::default()
+        };
+        assert_eq!(
+            link.send_tiles(&part),
+            Err(LinkError::Refused("tile 6".into()))
+        );
         assert_eq!(link.take_log(), [1, 2, 3]);
     }
 }

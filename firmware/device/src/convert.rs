@@ -15,8 +15,10 @@ use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
 
 mod team;
+mod tiles;
 
 pub use team::{packet, wire_packet};
+pub use tiles::{corrected_tile, correction, wire_progress, wire_refusal};
 
 /// Returns a wire quantity as f32.
 fn float(quantity: impl LossyInto<f32>) -> f32 {

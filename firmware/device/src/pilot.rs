@@ -21,8 +21,9 @@ use fieldline_planner::{
     Workspace, step,
 };
 use fieldline_protocol::message::{
-    Activity, Body, Command, Control, Cost, FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS,
-    MAX_SCANS, Observation, Packet, Path, Refusal, ResidualFrontier, Start, Status, Tile, Twist,
+    Activity, Body, Command, Control, Correct, CorrectedTiles, CorrectionProgress, Cost,
+    FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS, MAX_SCANS, Observation, Packet, Path,
+    Refusal, ResidualFrontier, Start, Status, Tile, Twist,
 };
 use heapless::Vec;
 
@@ -179,6 +180,19 @@ impl Pilot {
         observation: &Observation,
         laps: &mut impl StageTimer,
     ) -> Result<Command, Refusal> {
+        let command = self.step(memory, observation, laps)?;
+        Ok(Command {
+            map_epoch: memory.state.map_epoch(),
+            ..command
+        })
+    }
+
+    fn step<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        memory: &mut Memory<'_, TILES, SLOTS>,
+        observation: &Observation,
+        laps: &mut impl StageTimer,
+    ) -> Result<Command, Refusal> {
         let config = self.config.as_ref().ok_or(Refusal::NotStarted)?;
         let Some(input) = convert::input(observation, config.lasers()) else {
             warning!("the scans of an observation do not match the lasers");
@@ -208,6 +222,60 @@ impl Pilot {
             location: location.as_ref().map(convert::wire_location),
             ..command(&output, self.planned)
         })
+    }
+
+    /// Opens a correction of the map. The robot stands until it is closed.
+    ///
+    /// # Errors
+    /// [`Refusal::NotStarted`] without a session, [`Refusal::NoCorrection`],
+    /// [`Refusal::BadCorrection`].
+    pub fn correct<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        memory: &mut Memory<'_, TILES, SLOTS>,
+        correct: &Correct,
+    ) -> Result<CorrectionProgress, Refusal> {
+        self.config.as_ref().ok_or(Refusal::NotStarted)?;
+        let begun = memory.state.begin_correction(&convert::correction(correct));
+        begun
+            .map(convert::wire_progress)
+            .map_err(convert::wire_refusal)
+    }
+
+    /// Takes those tiles of a part that are the next ones of the open correction, and closes it with
+    /// the last part. The answer tells which tile is missing.
+    ///
+    /// # Errors
+    /// As [`Pilot::correct`]; [`Refusal::BadTile`], and the tiles before that one are taken.
+    #[inline(never)]
+    pub fn tiles<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        memory: &mut Memory<'_, TILES, SLOTS>,
+        part: &CorrectedTiles,
+    ) -> Result<CorrectionProgress, Refusal> {
+        let config = self.config.as_ref().ok_or(Refusal::NotStarted)?;
+        let (state, workspace) = (&mut *memory.state, &mut *memory.workspace);
+        let mut progress = state
+            .correction_progress(part.epoch)
+            .map_err(convert::wire_refusal)?;
+        let mut bytes = part.cells.as_slice();
+        for (number, tile) in (u32::from(part.first)..).zip(&part.tiles) {
+            let (cells, rest) = bytes
+                .split_at_checked(tile.bytes.into())
+                .ok_or(Refusal::BadTile)?;
+            bytes = rest;
+            if progress.closed || number != u32::from(progress.next) {
+                continue;
+            }
+            let tile = convert::corrected_tile(tile, cells).ok_or(Refusal::BadTile)?;
+            state
+                .correct_tile(workspace, &tile)
+                .map_err(convert::wire_refusal)?;
+            progress.next += 1;
+        }
+        if part.last {
+            progress = state.finish_correction(config, workspace);
+        }
+        Ok(convert::wire_progress(progress))
     }
 
     /// Takes a packet that another robot of the team said. A packet whose tile is not whole is

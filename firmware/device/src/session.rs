@@ -355,6 +355,14 @@ impl Session {
                 let said = self.pilot.say(memory);
                 said.map_or_else(Reply::Refused, Reply::Say)
             }
+            Request::Correct(correct) => {
+                let progress = self.pilot.correct(memory, correct);
+                progress.map_or_else(Reply::Refused, Reply::Corrected)
+            }
+            Request::Tiles(part) => {
+                let progress = self.pilot.tiles(memory, part);
+                progress.map_or_else(Reply::Refused, Reply::Corrected)
+            }
             // Other functions answer these.
             Request::Hello { .. } | Request::Observation(_) => Reply::Refused(Refusal::OutOfOrder),
         };

@@ -118,7 +118,8 @@ pub use geometry::{CELL_M, Cell, MapPose, Point, Pose, Twist};
 pub use input::{INVALID_MM, Input, InputError, InputFaults, NO_RETURN_MM};
 pub use localise::{Location, Quality};
 pub use planner::{
-    Capacity, CellKind, F405, FieldRow, LoopCounts, Memory, Output, Planner, State, Workspace, step,
+    Capacity, CellKind, CorrectedTile, Correction, CorrectionError, CorrectionProgress, F405,
+    FieldRow, LoopCounts, Memory, Output, Planner, State, Workspace, step,
 };
 pub use profiling::{Stage, StageTimer};
 pub use robot::{LaserMount, MAX_BEAMS, RobotShape};

@@ -15,6 +15,7 @@
 //! globals, no logging. The same bits in give the same bits out, on host and target.
 
 mod charge;
+mod correction;
 mod door;
 mod ending;
 mod ground_model;
@@ -29,6 +30,7 @@ mod steer;
 mod team;
 mod workspace;
 
+pub use correction::{CorrectedTile, Correction, CorrectionError, CorrectionProgress};
 pub use memory::{Capacity, F405, Memory, Planner};
 pub use readout::LoopCounts;
 pub use state::State;
@@ -139,6 +141,12 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     let MapPose(corrected) = state.localiser.to_map(&OdomPose(pose));
     let motion = (&corrected, input.velocity);
     state.team.begin_step(input.time_ms, motion, &mut state.map);
+    // Nothing is planned in a map that is half corrected, and the robot is not blamed for it.
+    if state.correcting.is_open() {
+        state.strategy.frontier.hold(config.period_ms());
+        state.drive.tell(Twist::default());
+        return Output::standing(state.status);
+    }
     let output = match state.team.take_motion(&mut state.map) {
         Some(motion) => {
             state.move_into_team(config, &motion);

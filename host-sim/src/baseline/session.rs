@@ -28,8 +28,9 @@ use fieldline_planner::planner::starts_blocked;
 use fieldline_planner::roadmap::configuration_space::Footprint;
 use fieldline_planner::status::ResidualReason;
 use fieldline_protocol::message::{
-    Command, Control, Cost, Fault, FieldRow, Finish, Identity, MAX_FRONTIERS, Observation, Packet,
-    Path, Refusal, ResidualFrontier, Start, Status, TILE_SKELETON_BYTES, TILE_STAMPS, Tile,
+    Command, Control, Correct, CorrectedTiles, CorrectionProgress, Cost, Fault, FieldRow, Finish,
+    Identity, MAX_FRONTIERS, Observation, Packet, Path, Refusal, ResidualFrontier, Start, Status,
+    TILE_SKELETON_BYTES, TILE_STAMPS, Tile,
 };
 
 use super::chart::Chart;
@@ -361,6 +362,14 @@ impl<S: Strategy> Link for Session<S> {
 
     fn hear(&mut self, _: &Packet) -> Result<(), LinkError> {
         Err(refused(Refusal::NoTeam))
+    }
+
+    fn open_correction(&mut self, _: &Correct) -> Result<CorrectionProgress, LinkError> {
+        Err(LinkError::Refused("a baseline corrects no map".into()))
+    }
+
+    fn send_tiles(&mut self, _: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
+        Err(LinkError::Refused("a baseline corrects no map".into()))
     }
 
     /// A baseline has no team.

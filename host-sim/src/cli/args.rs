@@ -198,6 +198,9 @@ pub(super) struct ExploreArgs {
     /// Compare every step's heading with that of the converged window
     #[arg(long)]
     pub(super) check_field: bool,
+    /// Give a device that was reset its map back, and go on
+    #[arg(long)]
+    pub(super) resume: bool,
     /// Number of pictures during the run, evenly in simulated time, in the folder snapshots
     #[arg(
         long,
@@ -245,6 +248,7 @@ impl Default for ExploreArgs {
             disturb: None,
             people: 0,
             check_field: false,
+            resume: false,
             snapshots: 0,
             robot: RobotArgs::default(),
             json: false,

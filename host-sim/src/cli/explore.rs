@@ -335,6 +335,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         impatience_s: args.tdbvp_impatience.map_or(IMPATIENCE_S, |it| it.0),
         check_field: args.check_field,
         snapshots: args.snapshots,
+        resumes: args.resume,
         ..Mission::default()
     }))
 }

@@ -4,8 +4,8 @@ use fieldline_device::session::{self, Boot};
 use fieldline_device::{Memory, Pilot, SLOTS, State, TILES};
 use fieldline_planner::{Tuning, Workspace};
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Identity, Observation, Packet, Path, Refusal, ResidualFrontier,
-    Status, Tile,
+    Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
+    Packet, Path, Refusal, ResidualFrontier, Status, Tile,
 };
 
 use super::{Link, LinkError, LinkStats};
@@ -105,6 +105,16 @@ impl Link for Direct {
 
     fn say(&mut self) -> Result<Option<Packet>, LinkError> {
         self.with(Pilot::say).map_err(refused)
+    }
+
+    fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError> {
+        self.with(|pilot, memory| pilot.correct(memory, correct))
+            .map_err(refused)
+    }
+
+    fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
+        self.with(|pilot, memory| pilot.tiles(memory, part))
+            .map_err(refused)
     }
 
     /// Every call counts as one frame sent and one received.

@@ -13,8 +13,8 @@ use fieldline_protocol::frame::{
     BodyError, MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_request,
 };
 use fieldline_protocol::message::{
-    Command, Control, Counters, FieldRow, Identity, Observation, Packet, Path, Refusal, Reply,
-    Request, ResidualFrontier, Status, Tile,
+    Command, Control, Correct, CorrectedTiles, CorrectionProgress, Counters, FieldRow, Identity,
+    Observation, Packet, Path, Refusal, Reply, Request, ResidualFrontier, Status, Tile,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 
@@ -129,7 +129,12 @@ impl<L: Line> Endpoint<L> {
         if self.boots.is_none() {
             self.hello()?;
         }
-        self.ask(request, self.policy)
+        let reply = self.ask(request, self.policy);
+        if reply == Err(LinkError::Reset) {
+            // Whoever goes on greets the device again.
+            (self.boots, self.started) = (None, false);
+        }
+        reply
     }
 
     /// Sends a request until it is answered.
@@ -317,6 +322,20 @@ impl<L: Line> Link for Endpoint<L> {
         match self.call(&Request::Say)? {
             Reply::Say(packet) => Ok(packet),
             _ => Err(unexpected("a request for a packet")),
+        }
+    }
+
+    fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError> {
+        match self.call(&Request::Correct(*correct))? {
+            Reply::Corrected(progress) => Ok(progress),
+            _ => Err(unexpected("a correction")),
+        }
+    }
+
+    fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
+        match self.call(&Request::Tiles(part.clone()))? {
+            Reply::Corrected(progress) => Ok(progress),
+            _ => Err(unexpected("a part of a correction")),
         }
     }
 

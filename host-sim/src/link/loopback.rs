@@ -77,6 +77,13 @@ impl<const POOL: usize, const MOST: usize> LocalDevice<POOL, MOST> {
         self.session.log(bytes)
     }
 
+    /// Boots anew, as after a loss of power: the session is lost.
+    pub fn reboot(&mut self) {
+        self.outgoing.clear();
+        self.boots += 1;
+        self.session = boot::<POOL, MOST>(self.boots);
+    }
+
     fn collect(&mut self) {
         while !self.session.pending().is_empty() {
             let count = self.session.pending().len();

@@ -15,10 +15,14 @@
 use core::fmt;
 
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Identity, Observation, Packet, Path, ResidualFrontier, Status, Tile,
+    Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
+    Packet, Path, ResidualFrontier, Status, Tile,
 };
 use serde::{Deserialize, Serialize};
 
+use correction::MapCorrection;
+
+pub mod correction;
 pub mod digest;
 pub mod direct;
 pub mod endpoint;
@@ -103,7 +107,8 @@ pub struct LinkStats {
 
 /// A link: direct call, loopback bytes, QEMU, serial port.
 ///
-/// No method has a default body: the compiler then finds a decorator that forgets to forward one.
+/// No method has a default body but [`Link::correct`], which calls others: the compiler then finds a
+/// decorator that forgets to forward one.
 pub trait Link {
     /// Asks for the device's identity.
     ///
@@ -153,6 +158,35 @@ pub trait Link {
     /// # Errors
     /// As [`Link::hear`].
     fn say(&mut self) -> Result<Option<Packet>, LinkError>;
+    /// Opens a correction of the map.
+    ///
+    /// # Errors
+    /// As [`LinkError`]; [`LinkError::Refused`] by a baseline.
+    fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError>;
+    /// Sends a part of the open correction.
+    ///
+    /// # Errors
+    /// As [`Link::open_correction`].
+    fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError>;
+    /// Corrects the map. The robot stands until this returns.
+    ///
+    /// # Errors
+    /// As [`Link::open_correction`].
+    fn correct(&mut self, correction: &MapCorrection) -> Result<(), LinkError> {
+        let mut progress = self.open_correction(&correction.opening())?;
+        while !progress.closed {
+            let first = progress.next;
+            let part = correction.part(first);
+            progress = self.send_tiles(&part)?;
+            if !progress.closed && progress.next <= first {
+                return Err(LinkError::Refused(format!(
+                    "tile {first} of correction {} was not taken; send it anew with a greater epoch",
+                    correction.epoch
+                )));
+            }
+        }
+        Ok(())
+    }
     /// The counters since the hello.
     fn stats(&self) -> LinkStats;
     /// Returns the device's log bytes (defmt) since the last call; empty if it has no log.

@@ -30,8 +30,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use fieldline_protocol::message::{
-    Command, Control, FieldRow, Identity, Member, Observation, Packet, Path, ResidualFrontier,
-    Status, Team, Tile,
+    Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Member,
+    Observation, Packet, Path, ResidualFrontier, Status, Team, Tile,
 };
 use fieldline_protocol::packet::decode_packet;
 use serde::{Deserialize, Serialize};
@@ -274,6 +274,14 @@ impl Link for Networked {
 
     fn say(&mut self) -> Result<Option<Packet>, LinkError> {
         self.link.say()
+    }
+
+    fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError> {
+        self.link.open_correction(correct)
+    }
+
+    fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
+        self.link.send_tiles(part)
     }
 
     fn stats(&self) -> LinkStats {

@@ -3,7 +3,9 @@
 //! An [`Ask`] is a request of the wire without what belongs to the connection: version, schema and
 //! nonce of a hello, sequence numbers. So it outlives a change of the schema.
 
-use fieldline_protocol::message::{Command, Control, FieldRow, Observation, Packet, Start, Status};
+use fieldline_protocol::message::{
+    Command, Control, Correct, CorrectedTiles, FieldRow, Observation, Packet, Start, Status,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::link::{Link, LinkError};
@@ -30,6 +32,10 @@ pub enum Ask {
     Hear(Box<Packet>),
     /// Asks for the next packet for the team.
     Say,
+    /// Opens a correction of the map.
+    Correct(Box<Correct>),
+    /// Brings tiles of a correction.
+    Tiles(Box<CorrectedTiles>),
     /// Reads a map tile.
     Tile {
         /// Tile column.
@@ -97,6 +103,8 @@ impl Ask {
             Self::Say => Ok(link
                 .say()?
                 .map_or(Answer::Done, |said| Answer::Said(Box::new(said)))),
+            Self::Correct(correct) => link.open_correction(correct).map(|_| Answer::Done),
+            Self::Tiles(part) => link.send_tiles(part).map(|_| Answer::Done),
             Self::Tile { x, y } => link.tile(*x, *y).map(|_| Answer::Done),
             Self::FieldRow { row } => Ok(link
                 .field_row(*row)?

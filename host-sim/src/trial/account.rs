@@ -71,10 +71,11 @@ impl Account {
     }
 }
 
-/// Returns the map for the true poses; `None` if they are the odometry.
+/// Returns the map for the true poses; `None` if they are the odometry, and the map stays where it
+/// is.
 fn seen(setup: &Setup, simulator: &Simulator<'_>) -> Option<Mirror> {
     let drifts = matches!(simulator.config().odometry, OdometryModel::Noisy(_));
-    drifts.then(|| {
+    (drifts || setup.corrects).then(|| {
         Mirror::new(&Start {
             localise: false,
             ..setup.start.clone()
@@ -99,6 +100,10 @@ impl Survey for Account {
         let time_s = f64::from(observation.time_ms) / 1000.0;
         let seen = self.seen.as_ref().unwrap_or(&self.mirror);
         self.coverage.update(time_s, |cell| seen.is_known(cell))
+    }
+
+    fn mirror(&mut self) -> Option<&mut Mirror> {
+        Some(&mut self.mirror)
     }
 
     fn relief(&self, window: &Window) -> Option<Relief> {

@@ -9,13 +9,15 @@ use std::collections::BTreeMap;
 use fieldline_device::{SLOTS, TILES, convert};
 use fieldline_planner::Input;
 use fieldline_planner::config::{Config, Tuning};
-use fieldline_planner::geometry::{Cell, MapPose, Pose};
+use fieldline_planner::geometry::{Cell, MapFromOdom, MapPose, Pose};
 use fieldline_planner::localise::Localiser;
 use fieldline_planner::map::{Class, Map};
+use fieldline_planner::math;
 use fieldline_protocol::message::{Observation, Start, Status, Tile};
 
 use super::relief::Relief;
 use super::snapshot::Window;
+use crate::link::correction::{Classes, CorrectedTile, MapCorrection, Motion};
 
 /// The copy of a device's map.
 #[derive(Debug)]
@@ -25,6 +27,7 @@ pub struct Mirror {
     localiser: Localiser,
     map: Box<Map<TILES, SLOTS>>,
     pose: Pose,
+    epoch: u16,
 }
 
 impl Mirror {
@@ -48,6 +51,7 @@ impl Mirror {
             localiser: Localiser::new(),
             map,
             pose,
+            epoch: 0,
         }
     }
 
@@ -79,6 +83,74 @@ impl Mirror {
         if let Some(config) = &self.config {
             self.map.forget_arrivals(config, self.pose.point().cell());
         }
+    }
+
+    /// Returns the map.
+    #[must_use]
+    pub fn map(&self) -> &Map<TILES, SLOTS> {
+        &self.map
+    }
+
+    /// Returns the robot's pose in the map after the last step or correction.
+    #[must_use]
+    pub const fn pose(&self) -> Pose {
+        self.pose
+    }
+
+    /// Returns the last correction; 0 if there was none.
+    #[must_use]
+    pub const fn epoch(&self) -> u16 {
+        self.epoch
+    }
+
+    /// Returns the tiles in which something was measured.
+    pub fn tiles(&self) -> impl Iterator<Item = ((i16, i16), Classes)> {
+        let tiles = self.map.tiles().touched();
+        tiles.filter_map(|(x, y)| Some(((x as i16, y as i16), self.map.planes((x, y))?)))
+    }
+
+    /// Corrects the map, as the device does.
+    pub fn correct(&mut self, correction: &MapCorrection) {
+        for tile in correction.in_order() {
+            let (x, y) = tile.key;
+            self.map.replace((x.into(), y.into()), &tile.classes);
+        }
+        let motion = convert::correction(&correction.opening());
+        self.localiser.correct_pose(&MapFromOdom {
+            x_m: motion.x_m,
+            y_m: motion.y_m,
+            yaw_rad: math::wrap(motion.yaw_rad),
+        });
+        self.map.end_correction();
+        let MapPose(pose) = self.localiser.to_map(&self.localiser.odom());
+        self.pose = pose;
+        self.epoch = correction.epoch;
+    }
+
+    /// Returns the correction that gives a device with an empty map this one, and the pose.
+    #[must_use]
+    pub fn whole(&self) -> MapCorrection {
+        let odom = self.localiser.odom();
+        let MapPose(pose) = self.localiser.to_map(&odom);
+        let tile = |(key, classes)| CorrectedTile {
+            key,
+            shift: (0, 0),
+            classes,
+        };
+        MapCorrection {
+            epoch: self.epoch.saturating_add(1),
+            motion: Motion::between(&odom.0, &pose),
+            tiles: self.tiles().map(tile).collect(),
+        }
+    }
+
+    /// Begins anew with what a device that was reset was given.
+    pub fn resume(&mut self, correction: &MapCorrection) {
+        self.localiser = Localiser::new();
+        if let Some(config) = &self.config {
+            self.map.begin(config);
+        }
+        self.correct(correction);
     }
 
     /// Returns true if a cell has been measured.

@@ -13,7 +13,7 @@ use fixed::types::I16F16;
 
 use super::account::Account;
 use super::space::SpaceMission;
-use super::{Cast, Record, Setup, Watch, run, summary};
+use super::{Cast, Corrector, Record, Setup, Watch, run, summary};
 use crate::link::{Link, LinkError};
 use crate::report::Report;
 use crate::robot::{
@@ -86,6 +86,8 @@ pub struct Mission {
     pub check_field: bool,
     /// Number of pictures during the run.
     pub snapshots: usize,
+    /// A device that was reset gets its map back, and the run goes on.
+    pub resumes: bool,
 }
 
 impl Default for Mission {
@@ -117,6 +119,7 @@ impl Default for Mission {
             period_ms: SimConfig::default().period_ms,
             check_field: false,
             snapshots: 0,
+            resumes: false,
         }
     }
 }
@@ -317,6 +320,8 @@ pub(super) fn setup(mission: &Mission, simulator: &Simulator<'_>) -> Setup {
         time_limit_ms: mission.time_limit_ms,
         check_field: mission.check_field,
         snapshots: mission.snapshots,
+        resumes: mission.resumes,
+        corrects: false,
     }
 }
 
@@ -330,9 +335,36 @@ pub fn explore(
     link: &mut dyn Link,
     watch: &mut dyn Watch,
 ) -> Result<(Report, Record), MissionError> {
+    explored(mission, world, link, watch, None)
+}
+
+/// As [`explore`], with a corrector of the map.
+///
+/// # Errors
+/// As [`explore`].
+pub fn explore_corrected(
+    mission: &Mission,
+    world: &World,
+    link: &mut dyn Link,
+    watch: &mut dyn Watch,
+    corrector: &mut dyn Corrector,
+) -> Result<(Report, Record), MissionError> {
+    explored(mission, world, link, watch, Some(corrector))
+}
+
+fn explored(
+    mission: &Mission,
+    world: &World,
+    link: &mut dyn Link,
+    watch: &mut dyn Watch,
+    corrector: Option<&mut dyn Corrector>,
+) -> Result<(Report, Record), MissionError> {
     let mut simulator = Simulator::new(world, mission.sim_config())?;
     link.hello()?;
-    let setup = setup(mission, &simulator);
+    let setup = Setup {
+        corrects: corrector.is_some(),
+        ..setup(mission, &simulator)
+    };
     let mut account = Account::new(&setup, &simulator);
     let mut record = run(
         &setup,
@@ -341,6 +373,7 @@ pub fn explore(
             body: &mut simulator,
             survey: &mut account,
             watch,
+            corrector: corrector.unwrap_or(&mut ()),
         },
     );
     record.ground = account.ground.take();

@@ -7,6 +7,7 @@
 
 mod account;
 mod body;
+pub mod corrector;
 pub mod ending;
 pub mod freeze;
 pub mod mirror;
@@ -32,11 +33,13 @@ use fieldline_protocol::message::{
 use crate::link::{Link, LinkError};
 use crate::report::tum::Stamped;
 use freeze::FreezeDetector;
+use mirror::Mirror;
 use relief::Relief;
 use series::Series;
 use snapshot::{Snapshot, Window};
 
 pub use body::Body;
+pub use corrector::Corrector;
 pub use ending::Ending;
 use record::unstamped;
 pub use record::{Record, Step};
@@ -50,6 +53,11 @@ pub trait Survey {
     /// Takes an observation, the true pose, and the planner's answer; returns the fraction of the
     /// explorable world that is known now.
     fn note(&mut self, observation: &Observation, truth: &Stamped, command: &Command) -> f64;
+
+    /// Returns the copy of the device's map, to be corrected with it; `None` without one.
+    fn mirror(&mut self) -> Option<&mut Mirror> {
+        None
+    }
 
     /// Returns heights and preferences in a window that the planner solved; `None` on flat ground.
     fn relief(&self, _window: &Window) -> Option<Relief> {
@@ -105,6 +113,10 @@ pub struct Setup {
     pub check_field: bool,
     /// Number of pictures during the run; map and window are read for each.
     pub snapshots: usize,
+    /// A device that was reset gets its map back, and the run goes on.
+    pub resumes: bool,
+    /// The map is corrected during the run, so coverage is judged by a map of the true poses.
+    pub corrects: bool,
 }
 
 /// The parts of a run.
@@ -118,6 +130,8 @@ pub struct Cast<'a> {
     pub survey: &'a mut dyn Survey,
     /// The watcher.
     pub watch: &'a mut dyn Watch,
+    /// What corrects the map.
+    pub corrector: &'a mut dyn Corrector,
 }
 
 /// Runs until something ends the run. The record is complete up to the end.
@@ -166,11 +180,12 @@ fn step(
 ) -> Result<Command, LinkError> {
     let (observation, truth) = (cast.body.observe(), cast.body.truth());
     let asked = Instant::now();
-    let command = cast.link.observe(&observation)?;
+    let command = corrector::observe(setup, cast, &observation)?;
     let round_trip_us = asked.elapsed().as_secs_f64() * 1e6;
     let coverage = cast.survey.note(&observation, &truth, &command);
     let step = Step::new(&observation, truth, command, round_trip_us);
     record.push(step, coverage);
+    corrector::correct(cast, &observation, &command)?;
     if setup.check_field {
         check_field(cast.link, &command, record)?;
     }

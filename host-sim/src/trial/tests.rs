@@ -1,8 +1,9 @@
 //! Runs with a scripted device and a point robot: every end, and the record after it.
 
 use fieldline_protocol::message::{
-    Command, Control, Fault, FieldRow, Finish, Identity, Location, Observation, Packet, Path,
-    Quality, ResidualFrontier, ResidualReason, Start, Status, Tile, Twist,
+    Command, Control, Correct, CorrectedTiles, CorrectionProgress, Fault, FieldRow, Finish,
+    Identity, Location, Observation, Packet, Path, Quality, ResidualFrontier, ResidualReason,
+    Start, Status, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -113,6 +114,14 @@ impl Link for Script {
     fn hear(&mut self, _: &Packet) -> Result<(), LinkError> {
         Ok(())
     }
+    fn open_correction(&mut self, _: &Correct) -> Result<CorrectionProgress, LinkError> {
+        Err(LinkError::Refused("a script has no map".into()))
+    }
+
+    fn send_tiles(&mut self, _: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
+        Err(LinkError::Refused("a script has no map".into()))
+    }
+
     fn say(&mut self) -> Result<Option<Packet>, LinkError> {
         Ok(None)
     }
@@ -165,12 +174,15 @@ fn trial(link: &mut Script, body: &mut Point, interrupt_ms: u32) -> Record {
         time_limit_ms: 120_000,
         check_field: false,
         snapshots: 2,
+        resumes: false,
+        corrects: false,
     };
     let mut cast = Cast {
         link,
         body,
         survey: &mut Counting(0),
         watch: &mut Until(interrupt_ms),
+        corrector: &mut (),
     };
     run(&setup, &mut cast)
 }

@@ -150,6 +150,8 @@ pub struct Command {
     pub forgot_arrivals: bool,
     /// Counts of observations that were not as they should be.
     pub input_faults: InputFaults,
+    /// The last correction of the map that was closed; 0 if there was none since the session began.
+    pub map_epoch: u16,
     /// The pose in the map; `None` if the session takes odometry for the pose.
     pub location: Option<Location>,
     /// Counters of the link.

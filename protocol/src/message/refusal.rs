@@ -4,7 +4,9 @@ use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 #[cfg(doc)]
-use super::{Laser, MAX_BEAMS, NO_RETURN_MM, Order, SpaceField, Start, UnevenGround};
+use super::{
+    Laser, MAX_BEAMS, MOST_CORRECTED, NO_RETURN_MM, Order, SpaceField, Start, UnevenGround,
+};
 
 /// A parameter of [`Start`], with its accepted range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
@@ -67,4 +69,11 @@ pub enum Refusal {
     BadParameter(Parameter),
     /// The session has no team: [`Start::team`] is `None`.
     NoTeam,
+    /// No correction of this epoch is open.
+    NoCorrection,
+    /// A correction has more than [`MOST_CORRECTED`] tiles, moves the robot more than 10 km from the
+    /// map's origin, or is for uneven ground.
+    BadCorrection,
+    /// The cells of a tile are not those of a tile.
+    BadTile,
 }

@@ -168,11 +168,17 @@ impl TeamTile {
     /// not have exactly the cells of a tile.
     #[must_use]
     pub fn unpack(&self) -> Option<impl Iterator<Item = (u8, usize)> + '_> {
-        let is_plain = self.cells.is_full();
+        Self::unpack_cells(&self.cells)
+    }
+
+    /// As [`TeamTile::unpack`], for the bytes of [`TeamTile::cells`].
+    #[must_use]
+    pub fn unpack_cells(bytes: &[u8]) -> Option<impl Iterator<Item = (u8, usize)> + '_> {
+        let is_plain = bytes.len() == TILE_BYTES;
         let cells = if is_plain {
-            4 * self.cells.len()
+            4 * bytes.len()
         } else {
-            self.cells.iter().map(|run| run_length(*run)).sum()
+            bytes.iter().map(|run| run_length(*run)).sum()
         };
         let run = move |&byte: &u8| {
             let in_plain = (0..4).map(move |k| (byte >> (2 * k) & 3, 1));
@@ -183,7 +189,7 @@ impl TeamTile {
                 .flatten()
                 .chain(as_run.into_iter().flatten())
         };
-        (cells == TILE_CELLS).then(|| self.cells.iter().flat_map(run))
+        (cells == TILE_CELLS).then(|| bytes.iter().flat_map(run))
     }
 }
 

@@ -111,6 +111,7 @@ fn reply_command() {
                 jumps: 6,
                 clock: 130,
             },
+            map_epoch: 200,
             location: Some(Location {
                 x: long(1.0),
                 y: long(-0.5),
@@ -151,6 +152,7 @@ fn reply_command() {
             1, 0xac, 0x02, 2, // loops
             1, // what came is forgotten
             5, 6, 0x82, 0x01, // faults of the input
+            0xc8, 0x01, // epoch of the map
             1,    // a location
             0x80, 0x80, 0x08, 0xff, 0xff, 0x03, 0x80, 0x80, 0x02, // x, y, yaw
             0x80, 0x80, 0x08, 0, 0x80, 0x80, 0x10, 0, 0xff, 0xff, 0x03, 0x80, 0x80, 0x02, 1, 1,
@@ -282,6 +284,9 @@ fn reply_refused() {
         (Refusal::BadParameter(Parameter::Coverage), &[7, 3, 18]),
         (Refusal::BadParameter(Parameter::Team), &[7, 3, 19]),
         (Refusal::NoTeam, &[7, 4]),
+        (Refusal::NoCorrection, &[7, 5]),
+        (Refusal::BadCorrection, &[7, 6]),
+        (Refusal::BadTile, &[7, 7]),
     ] {
         reply_is(Reply::Refused(refusal), body);
     }
@@ -310,9 +315,9 @@ fn reply_crash() {
     }
 }
 
-/// Number 5 is free: no refusal has it.
+/// Number 8 is free: no refusal has it.
 #[test]
 fn an_unknown_refusal_is_not_a_reply() {
     assert_eq!(replies(&frame(Kind::Reply, 1, &[7, 2])).0.len(), 1);
-    assert_eq!(replies(&frame(Kind::Reply, 1, &[7, 5])).0, []);
+    assert_eq!(replies(&frame(Kind::Reply, 1, &[7, 8])).0, []);
 }

@@ -2,13 +2,14 @@
 
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::message::{
-    Control, Hull, INVALID_MM, Laser, LoopLimits, Member, NO_RETURN_MM, Observation, Order, Pose,
-    Preference, Request, Scan, SpaceField, Start, Strategy, Team, Twist, UnevenGround,
+    Control, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress, Hull, INVALID_MM, Laser,
+    LoopLimits, Member, Motion, NO_RETURN_MM, Observation, Order, Pose, Preference, Reply, Request,
+    Scan, SpaceField, Start, Strategy, Team, TeamTile, Twist, UnevenGround,
 };
 use fixed::types::{I4F12, I16F16};
 
 use super::common::{hello, requests};
-use super::{frame, long, request_is, schema, short};
+use super::{frame, long, reply_is, request_is, schema, short};
 
 #[test]
 fn request_hello() {
@@ -224,6 +225,59 @@ fn request_readouts() {
     request_is(Request::FieldRow { row: 60 }, &[4, 60]);
     request_is(Request::Frontiers, &[5]);
     request_is(Request::Path { from: 32 }, &[6, 32]);
+}
+
+#[test]
+fn corrections() {
+    let correct = Correct {
+        epoch: 300,
+        motion: Motion {
+            x: long(1.0),
+            y: long(-0.5),
+            yaw: long(0.0),
+        },
+        tiles: 2,
+    };
+    request_is(
+        Request::Correct(correct),
+        &[
+            9, 0xac, 0x02, // epoch 300
+            0x80, 0x80, 0x08, 0xff, 0xff, 0x03, 0, // 1 m, −0.5 m, no turn
+            2, // two tiles
+        ],
+    );
+    let tile = |x, shift, bytes| CorrectedTile {
+        x,
+        y: -1,
+        shift,
+        bytes,
+    };
+    let free = TeamTile::pack([1; 1024].into_iter());
+    let part = CorrectedTiles {
+        epoch: 300,
+        first: 0,
+        last: true,
+        tiles: [tile(64, (-1, 5), 16), tile(0, (0, 0), 0)]
+            .into_iter()
+            .collect(),
+        cells: free.iter().copied().collect(),
+    };
+    let head = [
+        10, 0xac, 0x02, 0, 1, // the last part
+        2, 0x80, 0x01, 1, 0xff, 5, 16, // sixteen runs
+        0, 1, 0, 0, 0, // a tile that is forgotten
+        16,
+    ];
+    request_is(
+        Request::Tiles(part),
+        &[&head[..], &[63 << 2 | 1; 16]].concat(),
+    );
+    let progress = CorrectionProgress {
+        epoch: 300,
+        next: 2,
+        closed: true,
+    };
+    reply_is(Reply::Corrected(progress), &[12, 0xac, 0x02, 2, 1]);
 }
 
 /// A schema without the strategy's number cannot decode the start, so the device drops it.

@@ -64,6 +64,8 @@ fn witnessed(link: &mut dyn Link, world: &World) -> (Record, Vec<Period>) {
         time_limit_ms: 600_000,
         check_field: false,
         snapshots: 0,
+        resumes: false,
+        corrects: false,
     };
     let mut body = Witness {
         robot,
@@ -76,6 +78,7 @@ fn witnessed(link: &mut dyn Link, world: &World) -> (Record, Vec<Period>) {
             body: &mut body,
             survey: &mut Nobody,
             watch: &mut (),
+            corrector: &mut (),
         },
     );
     assert_eq!(body.robot.safety().collisions, 0);

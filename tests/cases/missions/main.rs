@@ -1,6 +1,7 @@
 //! Whole explorations of flat worlds by the usual strategy, and the links that carry them.
 
 mod buildings;
+mod corrections;
 mod data;
 mod disturbed;
 mod endings;

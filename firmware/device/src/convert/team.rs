@@ -8,6 +8,7 @@ use fieldline_planner::{
 };
 use fieldline_protocol::message as wire;
 
+use super::tiles::planes;
 use super::{float, quantity, twist, wire_twist};
 
 /// Converts the robot's place in its team.
@@ -86,23 +87,10 @@ fn digest(said: &wire::Digest) -> Digest {
 }
 
 fn tile(said: &wire::TeamTile) -> Option<TeamTile> {
-    let mut planes = [[0; 32]; 2];
-    let [low, high] = &mut planes;
-    let cells = said
-        .unpack()?
-        .flat_map(|(class, cells)| core::iter::repeat_n(class, cells));
-    for (number, class) in cells.enumerate() {
-        let (row, bit) = (number / 32, 1 << (number % 32));
-        for (plane, part) in [(&mut *low, class & 1), (&mut *high, class & 2)] {
-            if let Some(word) = plane.get_mut(row).filter(|_| part != 0) {
-                *word |= bit;
-            }
-        }
-    }
     Some(TeamTile {
         tile: (said.x, said.y),
         epoch: said.epoch,
-        planes,
+        planes: planes(&said.cells)?,
     })
 }
 

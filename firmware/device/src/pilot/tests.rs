@@ -11,6 +11,8 @@ use fixed::types::{I4F12, I16F16};
 
 use super::{Memory, Pilot};
 
+mod corrections;
+
 /// Returns a session of the 3-AT with a level and a tilted laser of 181 beams over 180°.
 pub(crate) fn start() -> Start {
     let level = Laser {

@@ -148,7 +148,9 @@ impl CollisionChecker {
         self.incline.as_ref().is_some_and(Incline::is_steep)
     }
 
-    /// Replaces the obstacles by these points of the map, for a robot at `pose`.
+    /// Replaces the obstacles by these points of the map, for a robot at `pose`. It is called from
+    /// two places, so it is not inlined.
+    #[inline(never)]
     pub(crate) fn see(&mut self, pose: &Pose, points: &[Point]) {
         let frame = RobotFrame::of(pose);
         self.threats.clear();

@@ -89,7 +89,8 @@ impl Lane {
 }
 
 /// Returns the bins across a strip in a direction that have an obstacle point; bit [`BINS`] begins
-/// at the robot's centre.
+/// at the robot's centre. It is called from two places, so it is not inlined.
+#[inline(never)]
 fn occupied(checker: &CollisionChecker, yaw_rad: f32) -> u128 {
     let (sin, cos) = math::sin_cos(yaw_rad);
     let bin = |Point { x_m, y_m }| {

@@ -38,7 +38,7 @@ pub use recovery::SCRATCH_WORDS;
 pub use search_query::SearchQuery;
 
 use crate::config::Config;
-use crate::geometry::{MapPose, Point, Twist};
+use crate::geometry::{MapFromOdom, MapPose, Point, Twist};
 use collision::LEAST_MARGIN_M;
 use contact::{Contact, ContactSense};
 use direct::CREEP_MARGIN_M;
@@ -151,6 +151,15 @@ impl Drive {
         if !self.retreats {
             self.track.record(pose);
         }
+    }
+
+    /// Goes on after a correction of the map: the track moves with the robot, and what was begun in
+    /// the old map ends.
+    pub(crate) fn correct(&mut self, motion: &MapFromOdom) {
+        self.track.correct(motion);
+        self.recovery.clear();
+        (self.search, self.lane) = (None, None);
+        (self.retreats, self.wedged) = (false, false);
     }
 
     /// Returns true while the robot goes back along its track.

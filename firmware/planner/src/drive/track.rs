@@ -35,7 +35,7 @@
 //! Units: metres, radians; map frame.
 
 use crate::drive::hull::Place;
-use crate::geometry::{Point, Pose, RobotFrame, Twist};
+use crate::geometry::{MapFromOdom, MapPose, OdomPose, Point, Pose, RobotFrame, Twist};
 use crate::math;
 
 /// Differences that are kept: at least 2.8 m of way, and 28 m of straight way.
@@ -114,6 +114,18 @@ impl Track {
     /// Forgets all poses.
     pub(crate) const fn clear(&mut self) {
         (self.len, self.has_last) = (0, false);
+    }
+
+    /// Moves the track with the robot.
+    pub(crate) fn correct(&mut self, motion: &MapFromOdom) {
+        let [x_m, y_m, yaw_rad] = self.last;
+        let MapPose(pose) = motion.apply(&OdomPose(Pose {
+            x_m,
+            y_m,
+            yaw_rad,
+            ..Pose::default()
+        }));
+        self.last = [pose.x_m, pose.y_m, pose.yaw_rad];
     }
 
     /// Returns true if there is no way back.

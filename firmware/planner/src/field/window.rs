@@ -161,7 +161,8 @@ impl Window {
 
     /// Moves the window by (dx, dy) cells over the field: cell (x, y) takes value, boundary and
     /// preference of (x + dx, y + dy). Cells that enter are obstacles until the next
-    /// [`Window::set_boundary`].
+    /// [`Window::set_boundary`]. It is called from two places, so it is not inlined.
+    #[inline(never)]
     pub fn shift(&mut self, dx: i32, dy: i32) {
         let across = dx.unsigned_abs() as usize;
         let up = dy.unsigned_abs() as usize;

@@ -15,6 +15,7 @@ mod class;
 pub(crate) mod flood;
 mod index;
 mod rolling;
+mod shifts;
 mod sites;
 mod tile_key;
 mod tile_map;
@@ -22,7 +23,8 @@ mod tiling;
 
 pub(crate) use index::{at, inside, inside_mut, masked, masked_mut, wrapped, wrapped_mut};
 pub(crate) use rolling::Rolling;
-pub(crate) use tile_map::TileMap;
+pub(crate) use shifts::{Shift, Shifts, shift};
+pub(crate) use tile_map::{SPARE_WORDS, TileMap};
 pub(crate) use tiling::Block;
 
 pub use class::{Class, Row};

@@ -115,10 +115,45 @@ impl<T: Copy, const N: usize> TileMap<T, N> {
         self.value_mut(place)
     }
 
+    /// Removes a tile. The keys still count from the first one.
+    pub(crate) fn remove(&mut self, tile: (i32, i32)) {
+        if let Some(place) = self.place(tile) {
+            self.keys.remove(place);
+            self.values.copy_within(place + 1.., place);
+        }
+    }
+
     /// Returns the values of all tiles.
     pub(crate) fn values_mut(&mut self) -> &mut [T] {
         let tiles = self.keys.len();
         self.values.get_mut(..tiles).unwrap_or_default()
+    }
+}
+
+/// Words that a tile takes in spare memory.
+pub(crate) const SPARE_WORDS: usize = 3;
+
+impl<T: bytemuck::Pod, const N: usize> TileMap<T, N> {
+    /// Begins anew without tiles, and calls `put` with each tile and value that there was. The
+    /// values have 4 bytes; `spare` holds them meanwhile, and what does not fit is lost.
+    pub(crate) fn rebuild(
+        &mut self,
+        spare: &mut [u32],
+        mut put: impl FnMut(&mut Self, (i32, i32), T),
+    ) {
+        const { assert!(size_of::<T>() == size_of::<u32>()) };
+        let (spare, _) = spare.as_chunks_mut::<SPARE_WORDS>();
+        let old = self.keys.iter().zip(&self.values);
+        let mut tiles = 0;
+        for (place, (&key, value)) in spare.iter_mut().zip(old) {
+            let (x, y) = self.tile(key);
+            *place = [x as u32, y as u32, bytemuck::cast(*value)];
+            tiles += 1;
+        }
+        self.clear();
+        for &[x, y, value] in spare.iter().take(tiles) {
+            put(self, (x as i32, y as i32), bytemuck::cast(value));
+        }
     }
 }
 
@@ -159,6 +194,33 @@ mod tests {
                 assert_eq!(map.get(tile), twin.get(&(tile.1, tile.0)));
             }
         }
+    }
+
+    #[test]
+    fn a_removed_tile_leaves_the_others_in_their_places() {
+        let mut map = TileMap::<u32, 4>::new(0);
+        for x in 0..4 {
+            map.get_or_add((x, -x), x as u32);
+        }
+        map.remove((0, 0));
+        map.remove((2, -2));
+        map.remove((7, 7));
+        let values = [0, 1, 2, 3].map(|x| map.get((x, -x)).copied());
+        assert_eq!(values, [None, Some(1), None, Some(3)]);
+        assert!(map.get_or_add((2, -2), 9).is_some_and(|new| *new == 9));
+    }
+
+    #[test]
+    fn a_map_is_rebuilt_from_what_it_held() {
+        let mut map = TileMap::<u32, 4>::new(0);
+        for x in 0..4 {
+            map.get_or_add((x, -1), x as u32);
+        }
+        map.rebuild(&mut [0; 10], |map, (x, y), value| {
+            map.get_or_add((x - 5, y), 10 + value);
+        });
+        let values = [-5, -4, -3, -2].map(|x| map.get((x, -1)).copied());
+        assert_eq!(values, [Some(10), Some(11), Some(12), None], "three fit");
     }
 
     #[test]

@@ -176,6 +176,15 @@ impl Localiser {
         self.covariance = self.covariance + *covariance;
     }
 
+    /// Moves the pose by a correction of the map. A lost robot begins its search anew there.
+    pub fn correct_pose(&mut self, motion: &MapFromOdom) {
+        self.map_from_odom = motion.after(&self.map_from_odom);
+        self.contradicted = 0;
+        if self.is_lost() {
+            self.footing = Footing::Lost(Search::new());
+        }
+    }
+
     /// Takes odometry and scans of a step. Returns the pose in the map.
     pub fn locate<const TILES: usize, const SLOTS: usize>(
         &mut self,

@@ -19,6 +19,7 @@ use crate::config::MapTuning;
 use crate::geometry::Cell;
 use crate::grid::{Class, Rolling, masked_mut, wrapped_mut};
 use crate::map::arrivals::came;
+use crate::map::tiles::TILE_SIDE;
 
 /// Cells along the window's side.
 pub(crate) const EVIDENCE_SIDE: i32 = 128;
@@ -146,6 +147,24 @@ impl Evidence {
         if self.covers(cell) {
             let (pair, shift) = self.pair(cell);
             *pair &= !(15 << shift);
+        }
+    }
+
+    /// Forgets the evidence for the cells of a tile.
+    pub(super) fn forget_tile(&mut self, (column, row): (i32, i32)) {
+        let of = |tile: i32, origin: i32| {
+            let least = tile * TILE_SIDE;
+            least.max(origin)..(least + TILE_SIDE).min(origin + EVIDENCE_SIDE)
+        };
+        // A tile's columns are not parted by the window's edge in memory.
+        let columns = of(column, self.origin.x);
+        let first = (columns.start & (EVIDENCE_SIDE - 1)) as usize / 2;
+        let pairs = first..first + columns.len() / 2;
+        for y in of(row, self.origin.y) {
+            let counts = wrapped_mut(&mut self.counts, y as usize);
+            if let Some(counts) = counts.get_mut(pairs.clone()) {
+                counts.fill(0);
+            }
         }
     }
 

@@ -49,6 +49,9 @@ pub(super) const fn join_row(
 /// ```text
 /// h ← (rotl(h, 5) xor word) · 0x9e3779b1, over the low plane and then the high plane
 /// ```
+///
+/// It is called from four places, so it is not inlined.
+#[inline(never)]
 pub(crate) fn hash(planes: [&Plane; 2], salt: u32) -> u32 {
     let mix = |hash: u32, word: &u32| (hash.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b1);
     let hash = planes.into_iter().flatten().fold(salt, mix);

@@ -6,6 +6,7 @@
 //! | `compaction` | smaller storage for tiles with little content |
 //! | `versions`, [`exchange`], `join` | for a team: tiles with versions, and their joins |
 //! | `rows` | rows of 32 and 64 cells, for all planning |
+//! | `correction` | tiles that replace others |
 //! | `turn` | the move of a whole map into a team's coordinates |
 //! | `arrivals` | on flat ground, obstacles that came and may be gone |
 //! | `evidence` | counts for and against an obstacle around the robot, on flat ground |
@@ -18,6 +19,7 @@
 
 pub(crate) mod arrivals;
 pub(crate) mod compaction;
+mod correction;
 mod elevation_layer;
 pub(crate) mod evidence;
 pub(crate) mod exchange;

@@ -97,6 +97,14 @@ impl<const TILES: usize> Versions<TILES> {
         }
     }
 
+    /// Begins a tile of the epoch `epoch` anew in its page: a correction replaced its cells.
+    pub(super) fn begin_corrected(&mut self, page: usize, epoch: u16) {
+        self.set_epoch(page, epoch.saturating_add(1));
+        if let Some(news) = self.news_mut(page) {
+            *news = News(CHANGED);
+        }
+    }
+
     /// Begins all tiles anew: the map was moved. Their cells are news.
     pub(super) fn begin_moved(&mut self) {
         self.epochs.fill(0);

@@ -23,6 +23,7 @@ use heapless::Vec;
 
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Point};
+use crate::grid::Shifts;
 use crate::map::Tiles;
 use crate::path::open_stretch::OpenStretch;
 use crate::path::{Path, PlanningContext};
@@ -76,6 +77,11 @@ impl BlockedPassages {
     /// Opens the passage that was blocked last.
     pub(crate) fn open_last(&mut self) {
         self.cells.pop();
+    }
+
+    /// Moves the passages with the tiles that they lie in.
+    pub(crate) fn shift(&mut self, shifts: Shifts<'_>) {
+        self.cells.iter_mut().for_each(|it| shifts.move_short(it));
     }
 
     /// Opens all passages.

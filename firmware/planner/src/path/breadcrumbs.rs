@@ -6,6 +6,7 @@
 //! Units: map cells; the robot drops a crumb every 40 cm.
 
 use crate::geometry::Cell;
+use crate::grid::Shifts;
 
 /// Number of crumbs that are kept: the last 12.8 m.
 const CRUMBS: usize = 32;
@@ -63,6 +64,11 @@ impl Crumbs {
                 y: i32::from(y),
             })
         })
+    }
+
+    /// Moves the crumbs with the tiles that they lie in.
+    pub(crate) fn shift(&mut self, shifts: Shifts<'_>) {
+        self.cells.iter_mut().for_each(|it| shifts.move_short(it));
     }
 
     /// Returns where the robot came from: the last crumb that is at least [`CAME_CELLS`] away. The

@@ -9,7 +9,7 @@
 use heapless::Vec;
 
 use crate::geometry::{Cell, Point};
-use crate::grid::Site;
+use crate::grid::{Shifts, Site};
 use crate::roadmap::Residues;
 use crate::roadmap::skeleton::Frame;
 
@@ -105,6 +105,13 @@ impl Path {
         }
         self.goal = goal;
         self
+    }
+
+    /// Moves the path with the tiles that it lies in. Between two tiles it may be torn.
+    pub(crate) fn shift(&mut self, shifts: Shifts<'_>) {
+        for cell in self.cells.iter_mut().chain([&mut self.goal]) {
+            *cell = shifts.moved_coarse(*cell);
+        }
     }
 
     /// Returns the path with so many more steps, which lead from the robot to its first cell.

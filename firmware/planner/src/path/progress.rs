@@ -185,6 +185,14 @@ impl ProgressChecker {
         self.attempts.retain(|attempt| !attempt.leads_to(goal));
     }
 
+    /// Goes on after a correction that put the robot at `robot`: it has not moved, and the progress
+    /// towards every goal begins anew.
+    pub(crate) fn correct(&mut self, robot: Point) {
+        self.stood = robot;
+        self.attempts.clear();
+        self.closed = false;
+    }
+
     /// Begins the next try, such as the second chance, from where the robot stands.
     pub(crate) fn begin_next_try(&mut self) {
         (self.stood_passages, self.moved) = (0, false);

@@ -6,6 +6,7 @@
 use heapless::Vec;
 
 use crate::geometry::{CELL_M, Cell};
+use crate::grid::Shifts;
 use crate::roadmap::skeleton::Skeleton;
 use crate::status::{ResidualFrontier, ResidualReason};
 
@@ -67,6 +68,13 @@ impl ResidualFrontiers {
     pub(crate) fn list_not_worth_it(&mut self, cell: Cell, cells: u16) {
         if let Some(group) = self.count(cell, ResidualReason::NotWorthIt) {
             group.cells = group.cells.saturating_add(cells.saturating_sub(1));
+        }
+    }
+
+    /// Moves the goals with the tiles that they lie in.
+    pub(crate) fn shift(&mut self, shifts: Shifts<'_>) {
+        for residual in &mut self.list {
+            residual.cell = shifts.moved(residual.cell);
         }
     }
 

@@ -4,6 +4,7 @@
 //!
 //! Units: map cells.
 
+use super::correction::Correcting;
 use super::door::Door;
 use super::ground_model::GroundModel;
 use super::workspace::{RING, SCRATCH};
@@ -56,6 +57,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     pub(super) ends: bool,
     /// This step took what came for gone.
     pub(super) forgot_arrivals: bool,
+    /// What corrects the map.
+    pub(super) correcting: Correcting,
     /// The robot's first cell.
     pub(super) start: Cell,
 }
@@ -98,6 +101,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             has_new_skeleton: false,
             ends: false,
             forgot_arrivals: false,
+            correcting: Correcting::new(),
             start: Cell { x: 0, y: 0 },
         }
     }
@@ -121,6 +125,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.has_new_skeleton = false;
         self.ends = false;
         self.forgot_arrivals = false;
+        self.correcting = Correcting::new();
     }
 
     /// Returns the planner's status after the last step.

@@ -94,8 +94,9 @@ impl Ring {
         *wrapped_mut(&mut self.0, row as usize) = line;
     }
 
-    /// Returns the cells of a row whose disc holds an obstacle.
-    #[inline(always)]
+    /// Returns the cells of a row whose disc holds an obstacle. It is long and called from three
+    /// places, so it is not inlined.
+    #[inline(never)]
     fn blocked(&self, row: i32, footprint: &Footprint) -> u64 {
         footprint.near(|dy| {
             let dy = dy as i32;

@@ -24,6 +24,7 @@ use crate::config::{Config, Strategy, Tuning};
 use crate::field::Window;
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Point, Pose};
+use crate::grid::Shifts;
 use crate::map::Tiles;
 use crate::path::nearest::Centres;
 use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
@@ -88,6 +89,19 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
             Strategy::Sbpf(field) => Own::Sbpf(Sbpf::new(field, false, config)),
             Strategy::Esbpf(field) => Own::Sbpf(Sbpf::new(field, true, config)),
         };
+    }
+
+    /// Moves what lies in the map with its tiles, after a correction that put the robot at `robot`.
+    /// `spare` is memory.
+    #[inline(never)]
+    pub(crate) fn correct(&mut self, shifts: Shifts<'_>, robot: Point, spare: &mut [u32]) {
+        self.frontier.correct(shifts, robot);
+        match &mut self.own {
+            Own::None => {}
+            Own::Ouroboros(ouroboros) => ouroboros.correct(shifts, spare),
+            Own::Tdbvp(tdbvp) => tdbvp.correct(shifts, spare),
+            Own::Sbpf(sbpf) => sbpf.correct(shifts),
+        }
     }
 
     /// Returns the space whose skeleton a strategy plans on.

@@ -140,7 +140,9 @@ impl Team {
         self.map_from_odom.apply(&OdomPose(*odom)).0
     }
 
-    /// Notes the time and the robot's motion at the beginning of a step.
+    /// Notes the time and the robot's motion at the beginning of a step. It is called from two
+    /// places, so it is not inlined.
+    #[inline(never)]
     pub(crate) fn begin_step<const TILES: usize, const SLOTS: usize>(
         &mut self,
         now_ms: u32,

@@ -1,8 +1,11 @@
 //! A host that sends well-formed requests with absurd content, in any order.
 
+use std::collections::VecDeque;
+
 use fieldline_protocol::message::{Observation, Pose, Scan, Start, Twist};
 use fixed::types::I16F16;
 
+use super::corrections::Corrections;
 use super::packets::Team;
 use super::quantities::{angle, centimetres, narrow, origin_ms, wide, wide_within};
 use super::scans::scan;
@@ -28,6 +31,9 @@ pub(super) struct Absurd<C> {
     time_ms: u32,
     pose: Pose,
     team: Team,
+    corrections: Corrections,
+    /// The rest of the requests of a correction.
+    queue: VecDeque<Ask>,
 }
 
 impl<C: Choices> Absurd<C> {
@@ -41,6 +47,8 @@ impl<C: Choices> Absurd<C> {
             time_ms: origin_ms(&mut choices),
             pose: Pose::default(),
             team: Team::default(),
+            corrections: Corrections::default(),
+            queue: VecDeque::new(),
             choices,
         }
     }
@@ -132,6 +140,13 @@ impl<C: Choices> Absurd<C> {
     }
 
     fn ask(&mut self) -> Ask {
+        // Other requests come between those of a correction.
+        if !self.queue.is_empty()
+            && !self.choices.once_in(6)
+            && let Some(ask) = self.queue.pop_front()
+        {
+            return ask;
+        }
         let has_team = self.start.as_ref().is_some_and(|it| it.team.is_some());
         let choices = &mut self.choices;
         match choices.below(64) {
@@ -166,6 +181,10 @@ impl<C: Choices> Absurd<C> {
             },
             61 => Ask::Hello,
             62 if choices.once_in(16) => Ask::Reset,
+            62 => {
+                self.queue.extend(self.corrections.requests(choices));
+                self.queue.pop_front().unwrap_or(Ask::Say)
+            }
             63 if choices.once_in(4) => Ask::Hear(Box::new(self.team.packet(choices))),
             _ => Ask::Observation(Box::new(self.observation())),
         }

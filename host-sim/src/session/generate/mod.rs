@@ -11,6 +11,7 @@
 
 mod absurd;
 mod companion;
+mod corrections;
 mod packets;
 mod plausible;
 mod quantities;

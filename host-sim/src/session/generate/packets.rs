@@ -162,7 +162,7 @@ impl Team {
 
 /// Draws the cells of a tile: all classes in turn, one class, stripes, a chequered or a random
 /// pattern, or bytes that need not be a tile.
-fn cells(choices: &mut impl Choices) -> heapless::Vec<u8, 256> {
+pub(super) fn cells(choices: &mut impl Choices) -> heapless::Vec<u8, 256> {
     let shape = choices.below(6);
     let mut bulk = choices.fork();
     let class = bulk.bits(2) as u8;

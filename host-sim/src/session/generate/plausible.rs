@@ -9,6 +9,7 @@ use fieldline_protocol::message::{
 };
 
 use super::companion::Companion;
+use super::corrections::Corrections;
 use super::packets::Team;
 use super::quantities::{centimetres, origin_ms};
 use super::spoil::{Fate, Faults};
@@ -45,6 +46,8 @@ const NAMES: [&str; 20] = [
 ];
 /// Steps between two readings of the map.
 const READ_EVERY: u64 = 100;
+/// Steps between two corrections.
+const CORRECT_EVERY: u64 = 150;
 /// Steps that a session goes on after the robot has finished.
 const AFTER_END: usize = 20;
 /// Packets of this robot that its peers repeat.
@@ -74,6 +77,7 @@ pub(super) struct Plausible<C> {
     origin_ms: u32,
     faults: Faults,
     team: Team,
+    corrections: Corrections,
     /// A real robot of the team.
     companion: Option<Companion>,
     /// What this robot said, for peers that repeat it.
@@ -113,6 +117,7 @@ impl<C: Choices> Plausible<C> {
                 own: start.team.map_or(0, |team| team.member.id),
                 ..Team::default()
             },
+            corrections: Corrections::default(),
             echoes: VecDeque::new(),
             queue: VecDeque::new(),
             start,
@@ -150,6 +155,10 @@ impl<C: Choices> Plausible<C> {
         }
         if self.choices.once_in(READ_EVERY) {
             self.read();
+        }
+        if self.choices.once_in(CORRECT_EVERY) {
+            let asks = self.corrections.requests(&mut self.choices);
+            self.queue.extend(asks);
         }
     }
 

@@ -203,6 +203,7 @@ impl<'a> Member<'a> {
                 all: common.coverage,
             },
             watch: &mut (),
+            corrector: &mut (),
         };
         let mut series: Series<Snapshot> = Series::new(0);
         let command = step(&self.setup, &mut cast, &mut self.record, &mut series)?;

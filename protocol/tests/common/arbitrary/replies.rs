@@ -1,9 +1,9 @@
 //! What a device answers.
 
 use fieldline_protocol::message::{
-    Cause, Command, Cost, Counters, Crash, Fault, FieldRow, Finish, Identity, InputFaults,
-    Location, Loops, Parameter, Path, Quality, Refusal, Reply, ResidualFrontier, ResidualReason,
-    Stages, Status, Tile,
+    Cause, Command, CorrectionProgress, Cost, Counters, Crash, Fault, FieldRow, Finish, Identity,
+    InputFaults, Location, Loops, Parameter, Path, Quality, Refusal, Reply, ResidualFrontier,
+    ResidualReason, Stages, Status, Tile,
 };
 use proptest::prelude::*;
 
@@ -141,7 +141,7 @@ fn command() -> impl Strategy<Value = Command> {
             loops(),
             any::<bool>(),
             input_faults(),
-            prop::option::of(location()),
+            (any::<u16>(), prop::option::of(location())),
         ),
         counters(),
         stages(),
@@ -151,7 +151,7 @@ fn command() -> impl Strategy<Value = Command> {
             |(
                 velocity,
                 status,
-                (heading, loops, forgot_arrivals, input_faults, location),
+                (heading, loops, forgot_arrivals, input_faults, (map_epoch, location)),
                 counters,
                 stages,
                 cost,
@@ -162,6 +162,7 @@ fn command() -> impl Strategy<Value = Command> {
                 loops,
                 forgot_arrivals,
                 input_faults,
+                map_epoch,
                 location,
                 counters,
                 cost: Cost {
@@ -237,6 +238,9 @@ fn refusal() -> impl Strategy<Value = Refusal> {
         Refusal::NotStarted,
         Refusal::OutOfOrder,
         Refusal::NoTeam,
+        Refusal::NoCorrection,
+        Refusal::BadCorrection,
+        Refusal::BadTile,
         Refusal::BadParameter(Parameter::Beams),
         Refusal::BadParameter(Parameter::MaxAngular),
         Refusal::BadParameter(Parameter::LinearAccel),
@@ -264,5 +268,12 @@ pub(crate) fn reply() -> impl Strategy<Value = Reply> {
         path().prop_map(Reply::Path),
         Just(Reply::Heard),
         prop::option::of(packet()).prop_map(Reply::Say),
+        any::<(u16, u16, bool)>().prop_map(|(epoch, next, closed)| {
+            Reply::Corrected(CorrectionProgress {
+                epoch,
+                next,
+                closed,
+            })
+        }),
     ]
 }

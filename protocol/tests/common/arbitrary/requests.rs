@@ -1,8 +1,8 @@
 //! What a host asks and tells.
 
 use fieldline_protocol::message::{
-    self, Control, Hull, Laser, LoopLimits, Observation, Order, Preference, Request, Scan, Start,
-    UnevenGround,
+    self, Control, Correct, CorrectedTile, CorrectedTiles, Hull, Laser, LoopLimits, Motion,
+    Observation, Order, Preference, Request, Scan, Start, UnevenGround,
 };
 use proptest::prelude::*;
 
@@ -171,6 +171,35 @@ fn observation() -> impl Strategy<Value = Observation> {
     })
 }
 
+fn correct() -> impl Strategy<Value = Correct> {
+    (any::<(u16, u16)>(), [long(), long(), long()]).prop_map(|((epoch, tiles), [x, y, yaw])| {
+        Correct {
+            epoch,
+            motion: Motion { x, y, yaw },
+            tiles,
+        }
+    })
+}
+
+fn corrected_tiles() -> impl Strategy<Value = CorrectedTiles> {
+    let tile = any::<(i16, i16, (i8, i8), u16)>().prop_map(|(x, y, shift, bytes)| CorrectedTile {
+        x,
+        y,
+        shift,
+        bytes,
+    });
+    let head = any::<(u16, u16, bool)>();
+    (head, list(tile), list(any::<u8>())).prop_map(|((epoch, first, last), tiles, cells)| {
+        CorrectedTiles {
+            epoch,
+            first,
+            last,
+            tiles,
+            cells,
+        }
+    })
+}
+
 /// Any request except a hello of another version.
 pub(crate) fn request() -> impl Strategy<Value = Request> {
     prop_oneof![
@@ -183,5 +212,7 @@ pub(crate) fn request() -> impl Strategy<Value = Request> {
         any::<u8>().prop_map(|from| Request::Path { from }),
         packet().prop_map(Request::Hear),
         Just(Request::Say),
+        correct().prop_map(Request::Correct),
+        corrected_tiles().prop_map(Request::Tiles),
     ]
 }

@@ -12,6 +12,7 @@
 
 mod blocking;
 mod chances;
+mod correcting;
 mod looking;
 
 use crate::config::Order;
@@ -303,6 +304,7 @@ impl Frontier {
         self.progress.note_closed();
     }
 
+    #[inline(never)]
     fn forget_path(&mut self) {
         self.progress.forget(self.path.goal());
         self.path.clear();

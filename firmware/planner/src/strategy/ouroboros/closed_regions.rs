@@ -24,7 +24,7 @@
 //! Units: map cells.
 
 use crate::geometry::Cell;
-use crate::grid::TileMap;
+use crate::grid::{Shifts, TileMap};
 
 /// Side of a region as a power of two, cells.
 const REGION_SHIFT: i32 = 3;
@@ -32,6 +32,8 @@ const REGION_SHIFT: i32 = 3;
 pub(crate) const REGION_CELLS: i32 = 1 << REGION_SHIFT;
 /// Regions along a tile as a power of two: a tile's 4 × 4 regions fill a `u16`.
 const TILE_SHIFT: i32 = 2;
+/// Regions of a tile.
+const REGIONS: i32 = 1 << (2 * TILE_SHIFT);
 
 /// Why a region is closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,6 +100,37 @@ impl<const SLOTS: usize> ClosedRegions<SLOTS> {
         }
     }
 
+    /// Moves each region to the one that holds its middle then. Of several, a closed one keeps its
+    /// state. `spare` is memory.
+    pub(super) fn shift(&mut self, shifts: Shifts<'_>, spare: &mut [u32]) {
+        if shifts.is_empty() {
+            return;
+        }
+        self.tiles
+            .rebuild(spare, |tiles, (x, y), [over, other]: [u16; 2]| {
+                for k in 0..REGIONS {
+                    let middle = Cell {
+                        x: (x << TILE_SHIFT | k & 3) * REGION_CELLS + REGION_CELLS / 2,
+                        y: (y << TILE_SHIFT | k >> TILE_SHIFT) * REGION_CELLS + REGION_CELLS / 2,
+                    };
+                    if (over | other) >> k & 1 == 0 {
+                        continue;
+                    }
+                    let to = shifts.moved(middle);
+                    let (tile, bit) = place(to.x >> REGION_SHIFT, to.y >> REGION_SHIFT);
+                    let [into_over, into_other] = match tiles.get_or_add(tile, [0; 2]) {
+                        Some([into, _]) if *into & bit != 0 => continue,
+                        Some(into) => into,
+                        None => continue,
+                    };
+                    if over >> k & 1 != 0 {
+                        (*into_over, *into_other) = (*into_over | bit, *into_other & !bit);
+                    }
+                    *into_other |= (other >> k & 1) * bit;
+                }
+            });
+    }
+
     /// Drops the pending regions.
     pub(crate) fn drop_pending(&mut self) {
         for [over, other] in self.tiles.values_mut() {
@@ -117,6 +150,7 @@ mod tests {
     use super::{Closed, ClosedRegions, place};
     use crate::config::OuroborosTuning;
     use crate::geometry::Cell;
+    use crate::grid::{Shifts, shift};
 
     const NEAR_CELLS: i32 = OuroborosTuning::DEFAULT.near_cells;
 
@@ -168,6 +202,31 @@ mod tests {
         regions.add_pending(at(0), NEAR_CELLS);
         regions.drop_pending();
         assert_eq!(both(&regions), expected);
+    }
+
+    #[test]
+    fn regions_go_with_their_tiles() {
+        let mut regions: ClosedRegions<12> = ClosedRegions::new();
+        for (x, why) in [(4, Closed::Loop), (36, Closed::GivenUp)] {
+            regions.add_pending(Cell { x, y: -20 }, 0);
+            regions.close_pending(why);
+        }
+        regions.add_pending(Cell { x: 12, y: -20 }, 0);
+        // Both land on the same region: one is closed, and the other pending.
+        let list = [shift((0, -1), (16, 4)), shift((1, -1), (-8, 4))];
+        regions.shift(Shifts(&list), &mut [0; 36]);
+        let closed = |regions: &ClosedRegions<12>| {
+            let places = (0..80).step_by(8).filter(|x| {
+                let cell = Cell { x: *x, y: -16 };
+                regions.is_closed(cell)
+            });
+            places.collect::<std::vec::Vec<i32>>()
+        };
+        assert_eq!(closed(&regions), [16, 24]);
+        regions.close_pending(Closed::Loop);
+        assert_eq!(closed(&regions), [16, 24]);
+        let why = [16, 24].map(|x| regions.closed(Cell { x, y: -16 }));
+        assert_eq!(why, [Some(Closed::Loop), Some(Closed::GivenUp)]);
     }
 
     #[test]

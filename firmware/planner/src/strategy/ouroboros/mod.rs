@@ -45,7 +45,7 @@ pub(crate) use shield::Shield;
 
 use crate::config::OuroborosTuning;
 use crate::geometry::{Cell, Pose};
-use crate::grid::Site;
+use crate::grid::{Shifts, Site};
 use crate::path::breadcrumbs::Crumbs;
 use crate::path::context::STEP_M;
 use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
@@ -145,6 +145,20 @@ impl<const SLOTS: usize> Ouroboros<SLOTS> {
     #[must_use]
     pub(crate) const fn tally(&self) -> Tally {
         self.tally
+    }
+
+    /// Moves what lies in the map with its tiles. The round begins anew.
+    pub(crate) fn correct(&mut self, shifts: Shifts<'_>, spare: &mut [u32]) {
+        self.tractor = self.tractor.map(|at| shifts.moved_coarse(at));
+        if let Some(shield) = &mut self.shield {
+            shield.shift(shifts);
+        }
+        if let Some(revisit) = &mut self.revisit {
+            revisit.goal = shifts.moved_coarse(revisit.goal);
+        }
+        self.regions.shift(shifts, spare);
+        self.crumbs.shift(shifts);
+        (self.robot, self.stage) = (None, Stage::Look);
     }
 
     /// Records the robot's pose; called in every step.

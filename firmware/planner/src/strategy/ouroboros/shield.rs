@@ -12,6 +12,7 @@
 
 use crate::config::OuroborosTuning;
 use crate::geometry::Cell;
+use crate::grid::Shifts;
 use crate::path::nearest::Centres;
 use crate::roadmap::branches::{Kind, kind};
 
@@ -75,6 +76,11 @@ impl Shield {
             return Err(Flaw::AtRobot);
         }
         Ok(shield)
+    }
+
+    /// Moves it with the tile that it stands in.
+    pub(super) fn shift(&mut self, shifts: Shifts<'_>) {
+        self.at = shifts.moved_coarse(self.at);
     }
 
     /// Extends it to the obstacles on both sides, as they are now.

@@ -69,6 +69,11 @@ impl Levels {
         }
     }
 
+    /// Forgets which cells a robot visited. The map says what is covered.
+    pub(super) const fn forget_visits(&mut self) {
+        self.visited = [0; SIDE];
+    }
+
     /// Returns the side of a cell, metres.
     pub(super) const fn cell_m(&self) -> f32 {
         self.scale as f32 * CELL_M

@@ -29,6 +29,7 @@ mod tests;
 use crate::clock::since;
 use crate::config::{Config, SpaceField};
 use crate::geometry::{Cell, Point};
+use crate::grid::Shifts;
 use crate::map::Tiles;
 use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::status::{Fault, Finish, Status};
@@ -78,6 +79,14 @@ impl Sbpf {
     /// Returns the heading that the robot follows, radians; `None` if it follows a path or stands.
     pub(super) fn heading_rad(&self) -> Option<f32> {
         self.heading_rad.filter(|_| !self.on_path)
+    }
+
+    /// Moves what lies in the map with its tiles, and forgets where robots were in the area.
+    pub(super) fn correct(&mut self, shifts: Shifts<'_>) {
+        self.errand = self.errand.map(|goal| shifts.moved_coarse(goal));
+        if !shifts.is_empty() {
+            self.levels.forget_visits();
+        }
     }
 
     /// Raises the level of the cell in which a peer is. What peers covered comes with the map.

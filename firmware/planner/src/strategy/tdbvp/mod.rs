@@ -38,6 +38,7 @@ use crate::config::TdbvpTuning;
 use crate::field::local_grid::LocalGrid;
 use crate::field::{Preference, SIDE, Window};
 use crate::geometry::{CELL_M, Cell, Point, Pose};
+use crate::grid::Shifts;
 use crate::path::nearest::Centres;
 use crate::path::search::PathSearch;
 use crate::path::{Path, PlanningContext, PlanningScratch, RoundOutcome};
@@ -108,6 +109,12 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
     #[must_use]
     pub(crate) const fn rails(&self) -> &Rails<SLOTS> {
         &self.rails
+    }
+
+    /// Moves what lies in the map with its tiles.
+    pub(super) fn correct(&mut self, shifts: Shifts<'_>, spare: &mut [u32]) {
+        self.pending.correct(shifts, &mut self.rails);
+        self.rails.shift(shifts, spare);
     }
 
     /// Returns true if the exploration is over and the robot patrols.

@@ -16,6 +16,7 @@
 use heapless::Vec;
 
 use crate::geometry::Cell;
+use crate::grid::Shifts;
 use crate::path::breadcrumbs::Crumbs;
 use crate::strategy::tdbvp::rails::{PLACE_CELLS, Rails};
 
@@ -179,6 +180,20 @@ impl PendingVisits {
         let mut pending = self.pending.iter();
         let pending = pending.find(|pending| pending.place == place);
         pending.is_some_and(|pending| pending.has(cell))
+    }
+
+    /// Writes all stamps, and moves what lies in the map with its tiles.
+    pub(super) fn correct<const SLOTS: usize>(
+        &mut self,
+        shifts: Shifts<'_>,
+        rails: &mut Rails<SLOTS>,
+    ) {
+        self.write_all(rails);
+        self.crumbs.shift(shifts);
+        for left in &mut self.partial {
+            let half = PLACE_CELLS / 2;
+            *left = place(shifts.moved(least_cell(*left).offset(half, half)));
+        }
     }
 
     /// Writes all stamps.

@@ -21,7 +21,7 @@
 //! Units: map cells; ticks of a growing number of steps.
 
 use crate::geometry::Cell;
-use crate::grid::{TileMap, masked, masked_mut};
+use crate::grid::{Shifts, TileMap, masked, masked_mut};
 
 /// Side of a place as a power of two, cells.
 const PLACE_SHIFT: i32 = 4;
@@ -91,6 +91,30 @@ impl<const SLOTS: usize> Rails<SLOTS> {
         }
     }
 
+    /// Moves each place to the one that holds its middle then. Of several, the last visit counts.
+    /// `spare` is memory.
+    pub(super) fn shift(&mut self, shifts: Shifts<'_>, spare: &mut [u32]) {
+        if shifts.is_empty() {
+            return;
+        }
+        self.stamps.rebuild(spare, |stamps, (x, y), old: [u8; 4]| {
+            for (k, stamp) in (0..).zip(old) {
+                let middle = Cell {
+                    x: (x << 1 | k & 1) * PLACE_CELLS + PLACE_CELLS / 2,
+                    y: (y << 1 | k >> 1) * PLACE_CELLS + PLACE_CELLS / 2,
+                };
+                if stamp == 0 {
+                    continue;
+                }
+                let (tile, part) = place(shifts.moved(middle));
+                if let Some(into) = stamps.get_or_add(tile, [0; 4]) {
+                    let into = masked_mut(into, part);
+                    *into = stamp.max(*into);
+                }
+            }
+        });
+    }
+
     /// Takes the earliest stamp of a centre cell that was visited; `None` if none was.
     pub(super) fn set_oldest(&mut self, stamp: Option<u8>) {
         self.oldest = stamp.map_or(self.now, |stamp| stamp.clamp(1, self.now));
@@ -157,6 +181,7 @@ mod tests {
     use super::{Rails, UNVISITED};
     use crate::config::TdbvpTuning;
     use crate::geometry::Cell;
+    use crate::grid::{Shifts, shift};
 
     const PERIOD_MS: u32 = 200;
     /// Steps of a tick at first.
@@ -251,6 +276,31 @@ mod tests {
         }
         assert_eq!(rails.tick_steps, FIRST_STEPS);
         assert_eq!(rails.stamp(place(0)), 1, "visited, as long ago as possible");
+    }
+
+    #[test]
+    fn visits_go_with_their_tiles_and_the_last_one_counts() {
+        let mut rails = rails();
+        let at = |x| Cell { x, y: 20 };
+        for x in [8, 40] {
+            rails.visit(at(x));
+            (0..40).for_each(|_| rails.step());
+        }
+        let [old, new] = [8, 40].map(|x| rails.stamp(at(x)));
+        assert!(old < new);
+        // Whole places.
+        let mut moved = self::rails();
+        moved.stamps.get_or_add((0, 0), [0, 0, old, 0]);
+        moved.stamps.get_or_add((1, 0), [0, 0, new, 0]);
+        let stamps = |rails: &Rails<16>| [8, 24, 40].map(|x| rails.stamp(at(x)));
+        moved.shift(Shifts(&[shift((1, 0), (-16, 4))]), &mut [0; 9]);
+        assert_eq!(stamps(&moved), [old, new, 0]);
+        moved.shift(Shifts(&[shift((0, 0), (-3, 0))]), &mut [0; 9]);
+        assert_eq!(stamps(&moved), [old, new, 0], "by less than half a place");
+        moved.shift(Shifts(&[shift((0, 0), (16, 0))]), &mut [0; 9]);
+        assert_eq!(stamps(&moved), [0, old, new]);
+        moved.shift(Shifts(&[shift((1, 0), (-16, 0))]), &mut [0; 9]);
+        assert_eq!(stamps(&moved), [0, new, 0], "the last visit");
     }
 
     #[test]

@@ -1,0 +1,127 @@
+//! Corrections of the map: parts that come late, twice or not at all.
+
+use fieldline_protocol::message::{
+    Control, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress, Refusal, Status, TeamTile,
+    Twist,
+};
+
+use super::{Bench, Pilot, observation, started};
+
+/// Tile (40, k), far from the robot, all free.
+fn part(epoch: u16, numbers: core::ops::Range<u16>, last: bool) -> CorrectedTiles {
+    let bytes = TeamTile::pack(core::iter::repeat_n(1, 1024));
+    let mut part = CorrectedTiles {
+        epoch,
+        first: numbers.start,
+        last,
+        ..CorrectedTiles::default()
+    };
+    for k in numbers {
+        let tile = CorrectedTile {
+            x: 40,
+            y: k as i16,
+            shift: (1, 1),
+            bytes: bytes.len() as u16,
+        };
+        part.tiles.push(tile).expect("room");
+        part.cells.extend_from_slice(&bytes).expect("room");
+    }
+    part
+}
+
+fn open(pilot: &mut Pilot, bench: &mut Bench, epoch: u16, tiles: u16) {
+    let correct = Correct {
+        epoch,
+        tiles,
+        ..Correct::default()
+    };
+    let begun = pilot.correct(&mut bench.memory(), &correct);
+    assert_eq!(begun, Ok(progress(epoch, 0, false)));
+}
+
+const fn progress(epoch: u16, next: u16, closed: bool) -> CorrectionProgress {
+    CorrectionProgress {
+        epoch,
+        next,
+        closed,
+    }
+}
+
+fn is_known(bench: &mut Bench, k: i16) -> bool {
+    Pilot::tile(&bench.memory(), 40, k).is_some()
+}
+
+#[test]
+fn parts_may_be_lost_and_come_twice() {
+    let (mut pilot, mut bench) = started();
+    open(&mut pilot, &mut bench, 3, 3);
+    let mut send = |part: &CorrectedTiles| pilot.tiles(&mut bench.memory(), part);
+    let whole = send(&part(3, 0..1, false));
+    assert_eq!(whole, Ok(progress(3, 1, false)));
+    let early = send(&part(3, 2..3, true));
+    assert_eq!(early, Ok(progress(3, 1, false)), "tile 1 is missing");
+    let again = send(&part(3, 0..1, false));
+    assert_eq!(again, Ok(progress(3, 1, false)), "it changes nothing");
+    let overlapping = send(&part(3, 0..3, true));
+    assert_eq!(overlapping, Ok(progress(3, 3, true)));
+    let late = send(&part(3, 1..3, true));
+    assert_eq!(late, Ok(progress(3, 3, true)));
+    assert!((0..3).all(|k| is_known(&mut bench, k)));
+    let command = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
+    assert_eq!(command.map(|it| it.map_epoch), Ok(3));
+}
+
+#[test]
+fn a_part_of_another_correction_or_with_bad_cells_is_refused() {
+    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let refused = pilot.tiles(&mut bench.memory(), &part(1, 0..1, true));
+    assert_eq!(refused, Err(Refusal::NotStarted));
+    let refused = pilot.correct(&mut bench.memory(), &Correct::default());
+    assert_eq!(refused, Err(Refusal::NotStarted));
+
+    let (mut pilot, mut bench) = started();
+    let refused = pilot.tiles(&mut bench.memory(), &part(1, 0..1, true));
+    assert_eq!(refused, Err(Refusal::NoCorrection));
+    open(&mut pilot, &mut bench, 2, 2);
+    let refused = pilot.tiles(&mut bench.memory(), &part(1, 0..1, true));
+    assert_eq!(refused, Err(Refusal::NoCorrection));
+    let mut short = part(2, 0..2, true);
+    short.cells.pop();
+    let refused = pilot.tiles(&mut bench.memory(), &short);
+    assert_eq!(refused, Err(Refusal::BadTile));
+    assert!(is_known(&mut bench, 0) && !is_known(&mut bench, 1));
+    let mut wrong = part(2, 1..2, true);
+    wrong.cells[3] = 0;
+    let refused = pilot.tiles(&mut bench.memory(), &wrong);
+    assert_eq!(refused, Err(Refusal::BadTile));
+    let whole = pilot.tiles(&mut bench.memory(), &part(2, 1..2, true));
+    assert_eq!(whole, Ok(progress(2, 2, true)));
+    let correct = Correct {
+        epoch: 3,
+        tiles: 513,
+        ..Correct::default()
+    };
+    let refused = pilot.correct(&mut bench.memory(), &correct);
+    assert_eq!(refused, Err(Refusal::BadCorrection));
+}
+
+#[test]
+fn a_newer_correction_takes_the_place_of_an_open_one() {
+    let (mut pilot, mut bench) = started();
+    open(&mut pilot, &mut bench, 1, 2);
+    let command = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
+    let told = command.map(|it| (it.velocity, it.status, it.map_epoch));
+    assert_eq!(told, Ok((Twist::default(), Status::Exploring, 0)));
+    open(&mut pilot, &mut bench, 2, 0);
+    let closed = pilot.tiles(&mut bench.memory(), &part(2, 0..0, true));
+    assert_eq!(closed, Ok(progress(2, 0, true)));
+    let refused = pilot.tiles(&mut bench.memory(), &part(1, 0..2, true));
+    assert_eq!(refused, Err(Refusal::NoCorrection));
+    let command = pilot.observe(&mut bench.memory(), &observation(200), &mut ());
+    assert_eq!(command.map(|it| it.map_epoch), Ok(2));
+    // The next session begins without.
+    let start = Control::Start(super::start());
+    pilot.control(&mut bench.memory(), &start).expect("valid");
+    let command = pilot.observe(&mut bench.memory(), &observation(400), &mut ());
+    assert_eq!(command.map(|it| it.map_epoch), Ok(0));
+}

@@ -1,0 +1,109 @@
+//! Corrections of a hostile host: any epochs, motions, tiles, shifts and cells; in order, and lost,
+//! doubled or cut short.
+
+use fieldline_protocol::message::{Correct, CorrectedTile, CorrectedTiles, MOST_CORRECTED, Motion};
+
+use super::packets::cells;
+use super::quantities::{angle, wide, wide_within};
+use crate::session::ask::Ask;
+use crate::session::choices::Choices;
+
+/// Greatest ordinary shift of the pose, and turn, in the wire's bits: 2 m and 0.1 rad.
+const MOVES: (i64, i64) = (131_072, 6_554);
+
+/// The corrections of a session.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Corrections {
+    epoch: u16,
+}
+
+impl Corrections {
+    /// Draws the requests of a correction.
+    pub(super) fn requests(&mut self, choices: &mut impl Choices) -> Vec<Ask> {
+        self.epoch = match choices.below(16) {
+            14 => choices.bits(16) as u16,
+            15 => self.epoch,
+            _ => self.epoch.saturating_add(1),
+        };
+        let parts = choices.below(5) as u16;
+        let mut asks = Vec::new();
+        let mut tiles = 0;
+        for number in 0..parts {
+            let mut part = self.part(choices, tiles);
+            tiles += part.tiles.len() as u16;
+            part.last = number + 1 == parts || choices.once_in(8);
+            if choices.once_in(8) {
+                part.first = choices.bits(16) as u16;
+            }
+            let times = choices.pick(&[1, 1, 1, 1, 1, 1, 2, 0]);
+            asks.extend((0..times).map(|_| Ask::Tiles(Box::new(part.clone()))));
+        }
+        let count = match choices.below(16) {
+            14 => choices.bits(16) as u16,
+            15 => MOST_CORRECTED + 1,
+            _ => tiles,
+        };
+        asks.insert(0, Ask::Correct(Box::new(self.opening(choices, count))));
+        asks
+    }
+
+    fn opening(self, choices: &mut impl Choices, tiles: u16) -> Correct {
+        let motion = if choices.once_in(8) {
+            Motion {
+                x: wide(choices),
+                y: wide(choices),
+                yaw: angle(choices),
+            }
+        } else {
+            let (most, most_turn) = MOVES;
+            Motion {
+                x: wide_within(choices, -most, most),
+                y: wide_within(choices, -most, most),
+                yaw: wide_within(choices, -most_turn, most_turn),
+            }
+        };
+        Correct {
+            epoch: self.epoch,
+            motion,
+            tiles,
+        }
+    }
+
+    fn part(self, choices: &mut impl Choices, first: u16) -> CorrectedTiles {
+        let mut part = CorrectedTiles {
+            epoch: if choices.once_in(16) {
+                choices.bits(16) as u16
+            } else {
+                self.epoch
+            },
+            first,
+            ..CorrectedTiles::default()
+        };
+        for _ in 0..choices.below(11) {
+            let bytes = if choices.once_in(4) {
+                heapless::Vec::new()
+            } else {
+                cells(choices)
+            };
+            let is_near = !choices.once_in(8);
+            let mut place = || match is_near {
+                true => choices.between(-6, 6) as i16,
+                false => choices.bits(16) as i16,
+            };
+            let (x, y) = (place(), place());
+            let mut by = || choices.bits(8) as i8;
+            let shift = (by(), by());
+            // What does not fit is left out, and a length may be wrong then.
+            if part.cells.extend_from_slice(&bytes).is_ok() || choices.once_in(8) {
+                let tile = CorrectedTile {
+                    x,
+                    y,
+                    shift,
+                    bytes: bytes.len() as u16,
+                };
+                let _ = part.tiles.push(tile);
+            }
+        }
+        part
+    }
+}
