@@ -6,8 +6,10 @@
 //! w₀ = 1 / (σ² · temper)
 //! ```
 //!
-//! n is the normal of the surface at the end, and m the mean hit nearest to it. An end without a
-//! normal counts along both axes, with less weight. Beams share errors, so that their information
+//! n is the normal of the surface at the end, by the scan or else by the hits around m, and m the
+//! mean hit nearest to the end. An end without a normal is a corner, or a thing of its own. It
+//! counts along both axes, with less weight. On a wall it must not: the hits along a wall lie where
+//! earlier scans met it, and would hold the robot back. Beams share errors, so that their information
 //! is divided by `temper`.
 //!
 //! Units: metres, radians.
@@ -44,8 +46,9 @@ pub(crate) struct Alignment {
     pub(crate) pose: Pose,
     /// Information of the pose, with the prior's; in the grid's frame.
     pub(crate) information: Matrix,
-    /// Information of the scan alone.
-    pub(crate) own: Matrix,
+    /// Information of the ends with a normal alone: what holds the pose. An end without one is
+    /// near to some hit wherever along a wall it lies.
+    pub(crate) held: Matrix,
     /// Share of the ends with a hit near by.
     pub(crate) share: f32,
 }
@@ -61,6 +64,7 @@ pub(crate) struct Prior {
 /// The normal equations of one iteration.
 struct Equations {
     own: Matrix,
+    held: Matrix,
     gradient: Vector,
     near: usize,
     ends: usize,
@@ -76,12 +80,12 @@ pub(crate) fn align<const SIDE: usize, const BEAMS: usize>(
     let mut best = Alignment {
         pose: *start,
         information: prior.information,
-        own: ZERO,
+        held: ZERO,
         share: 0.0,
     };
     for round in 0..MOST {
         let found = equations(grid, scan, &best.pose);
-        best.own = found.own;
+        best.held = found.held;
         best.information = sum(&prior.information, &found.own);
         best.share = found.near as f32 / found.ends.max(1) as f32;
         let off = times(&prior.information, &prior.pose.minus(&best.pose));
@@ -115,6 +119,7 @@ fn equations<const SIDE: usize, const BEAMS: usize>(
 ) -> Equations {
     let mut out = Equations {
         own: ZERO,
+        held: ZERO,
         gradient: [0.0; 3],
         near: 0,
         ends: 0,
@@ -130,11 +135,17 @@ fn equations<const SIDE: usize, const BEAMS: usize>(
         out.near += usize::from(distance2 < NEAR2);
         let arm = [end[0] - frame.x_m, end[1] - frame.y_m];
         let off = [mean[0] - end[0], mean[1] - end[1]];
-        match beam.normal {
-            Some(normal) => out.add(frame.turn(normal), BEAM, off, arm),
+        // Far along a wall the ends lie too far apart for a normal of their own.
+        let normal = beam.normal.map(|normal| frame.turn(normal));
+        match normal.or_else(|| grid.normal(mean)) {
+            Some(normal) => {
+                let (j, weight) = out.add(normal, BEAM, off, arm);
+                add_outer(&mut out.held, &j, weight);
+            }
             None => {
-                out.add([1.0, 0.0], NO_NORMAL * BEAM, off, arm);
-                out.add([0.0, 1.0], NO_NORMAL * BEAM, off, arm);
+                for axis in [[1.0, 0.0], [0.0, 1.0]] {
+                    out.add(axis, NO_NORMAL * BEAM, off, arm);
+                }
             }
         }
     }
@@ -142,8 +153,9 @@ fn equations<const SIDE: usize, const BEAMS: usize>(
 }
 
 impl Equations {
-    /// Adds the distance of an end from its hit along a direction.
-    fn add(&mut self, n: [f32; 2], weight: f32, off: [f32; 2], arm: [f32; 2]) {
+    /// Adds the distance of an end from its hit along a direction. Returns its derivative and its
+    /// weight.
+    fn add(&mut self, n: [f32; 2], weight: f32, off: [f32; 2], arm: [f32; 2]) -> (Vector, f32) {
         let e = n[0] * off[0] + n[1] * off[1];
         let weight = weight / (1.0 + (e / HALVED_M) * (e / HALVED_M));
         let j = [n[0], n[1], n[1] * arm[0] - n[0] * arm[1]];
@@ -151,5 +163,6 @@ impl Equations {
         for (gradient, j) in self.gradient.iter_mut().zip(j) {
             *gradient += weight * j * e;
         }
+        (j, weight)
     }
 }

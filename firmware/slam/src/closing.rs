@@ -4,8 +4,11 @@
 //! 1. **Candidate.** The nearest keyframe that is [`OLD_M`] of way old, within what the way since
 //!    the last closure could have cost.
 //! 2. **Measurement.** A grid of the keyframes around it, a correlative search, and an alignment.
-//!    It counts if most ends are near a wall, if the scan holds the pose in every direction, and if
-//!    the alignment stayed where the search ended.
+//!    It counts if most ends are near a wall, and if the alignment stayed where the search ended.
+//!    It claims only the directions in which walls hold the scan. So in a bare corridor, where many
+//!    places fit, the one nearest to the prediction is taken, and nothing is claimed along it. If
+//!    many places fit and each holds the scan in every direction, the rooms are equal, and nothing
+//!    is measured.
 //! 3. **Agreement.** A closure waits until another one, some way on, moves the newest keyframe by
 //!    the same motion. Two such closures enter the graph together; one alone never moves the map. A
 //!    closure that the next one contradicts is refused.
@@ -15,7 +18,7 @@
 use crate::alignment::{BEAM, Prior, align};
 use crate::correlation::Reach;
 use crate::graph::{Closure, Graph};
-use crate::matrix::{Matrix, diagonal, least_eigenvalue, turned};
+use crate::matrix::{Matrix, diagonal, least_eigenvalue, sum, turned};
 use crate::pose::Pose;
 use crate::scan::{Laser, Scan};
 use crate::workspace::Workspace;
@@ -211,23 +214,25 @@ fn measure<const KEYS: usize, const LOOPS: usize, const BEAMS: usize, const SIDE
         workspace.grid.enter(&key.pose, &scan);
     }
     let grid = &workspace.grid;
-    let start = workspace
-        .planes
-        .search(grid, scan, &here.pose, candidate.reach)?;
+    let planes = &mut workspace.planes;
+    let start = planes.search(grid, scan, &here.pose, candidate.reach)?;
+    let start = planes.nearest_alike(scan, &here.pose, candidate.reach, &start);
     let prior = Prior {
-        pose: start,
+        pose: start.pose,
         information: WEAK,
     };
-    let found = align(grid, scan, &start, &prior);
+    let found = align(grid, scan, &start.pose, &prior);
+    let is_held = least_eigenvalue(&found.held) >= LEAST_BEAMS * BEAM;
     let holds = found.share >= LEAST_SHARE
-        && least_eigenvalue(&found.own) >= LEAST_BEAMS * BEAM
-        && start.between(&found.pose).length_m() < SETTLED_M;
+        && (start.is_only || !is_held)
+        && start.pose.between(&found.pose).length_m() < SETTLED_M;
+    let information = sum(&found.held, &WEAK);
     holds.then(|| Waiting {
         closure: Closure {
             from: candidate.key as u16,
             to: newest as u16,
             measured: old.between(&found.pose),
-            information: softened(&turned(&found.information, old.yaw_rad)),
+            information: softened(&turned(&information, old.yaw_rad)),
         },
         correction: found.pose.compose(&here.pose.inverse()),
         way_m: here.way_m,

@@ -10,6 +10,8 @@
 //!
 //! Units: cells of 10 cm, radians.
 
+use heapless::Vec;
+
 use crate::grid::{CELL_M, Frame, Grid, cell};
 use crate::pose::Pose;
 use crate::scan::Scan;
@@ -26,6 +28,10 @@ const LEAST_ENDS: usize = 20;
 const ENDS: usize = 90;
 /// Least share of all points.
 const LEAST_SHARE: f32 = 0.5;
+/// Another place fits if it has so great a share of the best one's points, and lies farther off than
+/// so many cells.
+const ALIKE: f32 = 0.9;
+const ELSEWHERE: i32 = 5;
 
 /// The planes of a search: points of each cell, and the most of a block that begins at it.
 #[derive(Clone, Debug)]
@@ -40,6 +46,14 @@ pub struct Planes<const SIDE: usize> {
 pub(crate) struct Reach {
     pub(crate) way_m: f32,
     pub(crate) turn_rad: f32,
+}
+
+/// The place of a search among those that fit nearly as well.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Alike {
+    pub(crate) pose: Pose,
+    /// No place elsewhere fits.
+    pub(crate) is_only: bool,
 }
 
 impl<const SIDE: usize> Planes<SIDE> {
@@ -109,53 +123,123 @@ impl<const SIDE: usize> Planes<SIDE> {
         let stride = (hits / ENDS).max(1);
         let most = u32::from(ON) * hits.div_ceil(stride) as u32;
         let mut best = (0, *middle);
-        let turns = libm::ceilf(reach.turn_rad / TURN_RAD) as i32;
-        let cells = libm::ceilf(reach.way_m / CELL_M) as i32;
-        for k in 0..=2 * turns {
-            let turn = if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 };
-            let pose = Pose {
-                yaw_rad: middle.yaw_rad + turn as f32 * TURN_RAD,
-                ..*middle
-            };
-            self.search_turn(scan, stride, &pose, cells, &mut best);
+        let cells = reach.cells();
+        for pose in reach.turns(middle) {
+            let ends = self.ends(scan, stride, &pose);
+            for (x, y) in blocks(cells) {
+                if score(&self.coarse, &ends, x, y) > best.0 {
+                    self.search_block(&ends, (x, y), &pose, &mut best);
+                }
+            }
         }
         (best.0 as f32 >= LEAST_SHARE * most as f32).then_some(best.1)
     }
 
-    /// Searches all shifts of one turn.
-    fn search_turn<const BEAMS: usize>(
+    /// Returns the place nearest to `middle` that fits nearly as well as the one that the last
+    /// search found: that one itself, if it is the only one.
+    pub(crate) fn nearest_alike<const BEAMS: usize>(
+        &self,
+        scan: &Scan<BEAMS>,
+        middle: &Pose,
+        reach: Reach,
+        found: &Pose,
+    ) -> Alike {
+        let stride = (scan.hits().count() / ENDS).max(1);
+        let ends = self.ends(scan, stride, found);
+        let enough = (ALIKE * score(&self.fine, &ends, 0, 0) as f32) as u32;
+        let off = |at: f32, from: f32| cell(at) - cell(from);
+        let own = (off(found.x_m, middle.x_m), off(found.y_m, middle.y_m));
+        let mut nearest = (own.0 * own.0 + own.1 * own.1, *found);
+        let mut is_only = true;
+        let cells = reach.cells();
+        for pose in reach.turns(middle) {
+            let ends = self.ends(scan, stride, &pose);
+            let alike = |&(x, y): &(i32, i32)| score(&self.coarse, &ends, x, y) > enough;
+            for (x, y) in blocks(cells).filter(alike) {
+                for (x, y) in block().map(|(dx, dy)| (x + dx, y + dy)) {
+                    if score(&self.fine, &ends, x, y) <= enough {
+                        continue;
+                    }
+                    is_only &= (x - own.0).abs().max((y - own.1).abs()) <= ELSEWHERE;
+                    if x * x + y * y < nearest.0 {
+                        nearest = (x * x + y * y, shifted(&pose, (x, y)));
+                    }
+                }
+            }
+        }
+        Alike {
+            pose: if is_only { *found } else { nearest.1 },
+            is_only,
+        }
+    }
+
+    /// Returns the cells of a scan's ends in the planes.
+    fn ends<const BEAMS: usize>(
         &self,
         scan: &Scan<BEAMS>,
         stride: usize,
         pose: &Pose,
-        cells: i32,
+    ) -> Vec<(i32, i32), BEAMS> {
+        let frame = Frame::of(pose);
+        let ends = scan.hits().step_by(stride).map(|beam| {
+            let [x_m, y_m] = frame.point(beam.end);
+            (cell(x_m) - self.origin.0, cell(y_m) - self.origin.1)
+        });
+        ends.collect()
+    }
+
+    /// Searches the shifts of a block.
+    fn search_block(
+        &self,
+        ends: &[(i32, i32)],
+        (x, y): (i32, i32),
+        pose: &Pose,
         best: &mut (u32, Pose),
     ) {
-        let frame = Frame::of(pose);
-        let mut ends: heapless::Vec<(i32, i32), BEAMS> = heapless::Vec::new();
-        for beam in scan.hits().step_by(stride) {
-            let [x_m, y_m] = frame.point(beam.end);
-            // There is room for each beam of the scan.
-            let _ = ends.push((cell(x_m) - self.origin.0, cell(y_m) - self.origin.1));
-        }
-        let blocks = || (-cells..=cells).step_by(BLOCK as usize);
-        for (y, x) in blocks().flat_map(|y| blocks().map(move |x| (y, x))) {
-            if score(&self.coarse, &ends, x, y) <= best.0 {
-                continue;
-            }
-            for (dy, dx) in (0..BLOCK).flat_map(|dy| (0..BLOCK).map(move |dx| (dy, dx))) {
-                let points = score(&self.fine, &ends, x + dx, y + dy);
-                if points > best.0 {
-                    let at = Pose {
-                        x_m: pose.x_m + (x + dx) as f32 * CELL_M,
-                        y_m: pose.y_m + (y + dy) as f32 * CELL_M,
-                        ..*pose
-                    };
-                    *best = (points, at);
-                }
+        for (dx, dy) in block() {
+            let points = score(&self.fine, ends, x + dx, y + dy);
+            if points > best.0 {
+                *best = (points, shifted(pose, (x + dx, y + dy)));
             }
         }
     }
+}
+
+impl Reach {
+    fn cells(self) -> i32 {
+        libm::ceilf(self.way_m / CELL_M) as i32
+    }
+
+    /// Returns a pose at each turn, from the middle outwards.
+    fn turns(self, middle: &Pose) -> impl Iterator<Item = Pose> {
+        let turns = libm::ceilf(self.turn_rad / TURN_RAD) as i32;
+        (0..=2 * turns).map(move |k| {
+            let turn = if k % 2 == 0 { k / 2 } else { -(k + 1) / 2 };
+            Pose {
+                yaw_rad: middle.yaw_rad + turn as f32 * TURN_RAD,
+                ..*middle
+            }
+        })
+    }
+}
+
+fn shifted(pose: &Pose, (x, y): (i32, i32)) -> Pose {
+    Pose {
+        x_m: pose.x_m + x as f32 * CELL_M,
+        y_m: pose.y_m + y as f32 * CELL_M,
+        ..*pose
+    }
+}
+
+/// Returns the blocks of the shifts that a search takes.
+fn blocks(cells: i32) -> impl Iterator<Item = (i32, i32)> {
+    let steps = move || (-cells..=cells).step_by(BLOCK as usize);
+    steps().flat_map(move |y| steps().map(move |x| (x, y)))
+}
+
+/// Returns the shifts of a block.
+fn block() -> impl Iterator<Item = (i32, i32)> {
+    (0..BLOCK).flat_map(|dy| (0..BLOCK).map(move |dx| (dx, dy)))
 }
 
 impl<const SIDE: usize> Default for Planes<SIDE> {

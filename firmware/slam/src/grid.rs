@@ -12,7 +12,7 @@
 //!
 //! Units: cells of [`CELL_M`]; metres where a name says so.
 
-use crate::pose::{Pose, sin_cos};
+use crate::pose::{Pose, sin_cos, sqrt};
 use crate::scan::{Beam, Scan};
 
 /// Side of a cell, metres.
@@ -31,6 +31,10 @@ const HIT: u8 = 3;
 const REMEMBERED: u8 = 20;
 /// A beam frees cells up to so far before its end, metres.
 const GUARD_M: f32 = 0.3;
+/// Cells to each side in which the hits of a line are looked for.
+const AROUND: i32 = 2;
+/// Hits lie on a line if their variance across it is a smaller share of that along it.
+const LINE: f32 = 0.1;
 /// Every so many beams free the cells that they cross.
 const FREE_STRIDE: usize = 4;
 
@@ -138,7 +142,7 @@ impl<const SIDE: usize> Grid<SIDE> {
     /// Frees the cells along a beam, up to a guard before its end.
     fn free_along(&mut self, from: [f32; 2], to: [f32; 2], beam: &Beam) {
         let along = [to[0] - from[0], to[1] - from[1]];
-        let length_m = crate::pose::sqrt(along[0] * along[0] + along[1] * along[1]);
+        let length_m = sqrt(along[0] * along[0] + along[1] * along[1]);
         let guard_m = if beam.hit { GUARD_M } else { 0.0 };
         let steps = ((length_m - guard_m) / CELL_M).max(0.0) as usize;
         let mut last = None;
@@ -173,6 +177,46 @@ impl<const SIDE: usize> Grid<SIDE> {
             }
         }
         best
+    }
+}
+
+impl<const SIDE: usize> Grid<SIDE> {
+    /// Returns the normal of the line on which the mean hits around a point lie; `None` if they lie
+    /// on none.
+    pub(crate) fn normal(&self, [x_m, y_m]: [f32; 2]) -> Option<[f32; 2]> {
+        let (x, y) = (cell(x_m), cell(y_m));
+        let (mut count, mut sum, mut squares) = (0.0, [0.0; 2], [0.0; 3]);
+        let cells = (-AROUND..=AROUND).flat_map(|dy| (-AROUND..=AROUND).map(move |dx| (dx, dy)));
+        for (dx, dy) in cells {
+            let Some(it) = self.get(x + dx, y + dy) else {
+                continue;
+            };
+            if it.count >= OCCUPIED {
+                let [u, v] = it.mean.map(|mean| f32::from(mean) / 255.0);
+                let (u, v) = (dx as f32 + u, dy as f32 + v);
+                count += 1.0;
+                sum = [sum[0] + u, sum[1] + v];
+                squares = [squares[0] + u * u, squares[1] + u * v, squares[2] + v * v];
+            }
+        }
+        if count < 3.0 {
+            return None;
+        }
+        let (u, v) = (sum[0] / count, sum[1] / count);
+        let xx = squares[0] / count - u * u;
+        let xy = squares[1] / count - u * v;
+        let yy = squares[2] / count - v * v;
+        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+        let spread = sqrt(half * half + xy * xy);
+        let (least, most) = (mean - spread, mean + spread);
+        // The direction across: that of the least variance.
+        let across = if half > 0.0 {
+            [-xy, half + spread]
+        } else {
+            [spread - half, -xy]
+        };
+        let length = sqrt(across[0] * across[0] + across[1] * across[1]);
+        (least < LINE * most && length > 0.0).then(|| across.map(|it| it / length))
     }
 }
 
@@ -255,6 +299,29 @@ mod tests {
         through.beams[0].end = [3.0, 0.03];
         (0..5).for_each(|_| grid.enter(&pose, &through));
         assert!(!grid.is_occupied(1020, -500));
+    }
+
+    #[test]
+    fn hits_on_a_line_have_its_normal_and_those_of_a_corner_none() {
+        let mut grid: Grid<64> = Grid::new();
+        grid.clear(&Pose::default());
+        let mut line = |from: f32, to: f32, at: &dyn Fn(f32) -> [f32; 2]| {
+            let mut k = from;
+            while k < to {
+                grid.hit(at(k));
+                k += 0.05;
+            }
+        };
+        line(-2.0, 2.0, &|k| [k, 1.02 + 0.5 * k]);
+        line(-2.9, -2.0, &|k| [k, -2.0]);
+        line(-2.9, -2.0, &|k| [-2.0, k]);
+        let [x, y] = grid.normal([0.0, 1.0]).unwrap();
+        let along = (x * 2.0 + y * 1.0).abs() / 5.0_f32.sqrt();
+        assert!(along < 0.1, "the normal stands on the line: {x} {y}");
+        let [x, y] = grid.normal([-2.5, -2.0]).unwrap();
+        assert!(x.abs() < 0.1 && y.abs() > 0.9, "{x} {y}");
+        assert_eq!(grid.normal([-2.0, -2.0]), None, "a corner");
+        assert_eq!(grid.normal([2.5, -2.5]), None, "nothing");
     }
 
     #[test]

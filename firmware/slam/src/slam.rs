@@ -30,6 +30,8 @@ const LOCAL: (f32, usize) = (6.0, 12);
 const GOOD: f32 = 0.8;
 /// Another start than odometry must bring so much more.
 const BETTER: f32 = 0.05;
+/// A located motion that odometry errs more from is wrong: χ² of three numbers, one in a hundred.
+const MOST_CHI2: f32 = 11.3;
 /// How far the local search goes, metres.
 const SEARCH_M: f32 = 0.3;
 /// Least and greatest turn of the local search, radians.
@@ -241,9 +243,19 @@ impl<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> Slam<KEYS, LOOPS
             information: turned(&self.config.motion.information(motion), -predicted.yaw_rad),
         };
         let mut best = align(grid, scan, &predicted, &prior);
+        let located = located.filter(|located| {
+            let off = located.minus(motion);
+            let parts = off.iter().zip(&variances);
+            parts
+                .map(|(off, variance)| off * off / variance)
+                .sum::<f32>()
+                < MOST_CHI2
+        });
         if let Some(located) = located {
-            let other = align(grid, scan, &last.compose(located), &prior);
-            if other.share > best.share + BETTER {
+            // Who located the robot has a whole map, and a grid of the last keyframes is a part.
+            let pose = last.compose(located);
+            let other = align(grid, scan, &pose, &Prior { pose, ..prior });
+            if other.share + BETTER >= best.share {
                 best = other;
             }
         }

@@ -9,6 +9,7 @@ use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
 use host_sim::network::spec::TeamSpec;
 use host_sim::robot::{Disturbances, Limits};
+use host_sim::slam::SlamPlace;
 use host_sim::trial::mission::OdometryProfile;
 use host_sim::trial::space::Area;
 
@@ -19,7 +20,7 @@ use super::strategies;
 use super::team::TeamArgs;
 use super::values::{
     area, failing, ground_parameters, impatience, imu_noise, laser_noise, patrol_for, people, seed,
-    snapshots, start, time_limit, until, working,
+    slam_place, snapshots, start, time_limit, until, working,
 };
 
 /// Explore simulated worlds with the Fieldline planner; without a command, explore the built-in
@@ -201,6 +202,9 @@ pub(super) struct ExploreArgs {
     /// Give a device that was reset its map back, and go on
     #[arg(long)]
     pub(super) resume: bool,
+    /// Close loops by a pose graph, and correct the device's map: off, or host, beside the device
+    #[arg(long, value_name = "WHERE", default_value = "off", value_parser = slam_place)]
+    pub(super) slam: SlamPlace,
     /// Number of pictures during the run, evenly in simulated time, in the folder snapshots
     #[arg(
         long,
@@ -249,6 +253,7 @@ impl Default for ExploreArgs {
             people: 0,
             check_field: false,
             resume: false,
+            slam: SlamPlace::Off,
             snapshots: 0,
             robot: RobotArgs::default(),
             json: false,

@@ -14,6 +14,7 @@ use host_sim::network::udp::Udp;
 use host_sim::network::{self, Networked};
 use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
+use host_sim::slam::SlamPlace;
 use host_sim::trial::Record;
 use host_sim::trial::mission::{self, IMPATIENCE_S, Mission, MissionError, on_device};
 use host_sim::trial::space::SpaceMission;
@@ -303,6 +304,14 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     let odometry = args
         .odometry
         .unwrap_or_else(|| default_odometry(args, uneven_ground.is_none()));
+    if args.slam != SlamPlace::Off
+        && (on_device(&args.strategy).is_none() || uneven_ground.is_some())
+    {
+        bail!(
+            "--slam corrects the map of a device on flat ground; take a strategy on the device and \
+             --ground flat, or say --slam off"
+        );
+    }
     let disturbances = args.disturb.unwrap_or_default();
     if disturbances.needs_wheels() && odometry == OdometryArg::Truth {
         bail!(
@@ -336,6 +345,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         check_field: args.check_field,
         snapshots: args.snapshots,
         resumes: args.resume,
+        slam: args.slam,
         ..Mission::default()
     }))
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Error, Result, bail};
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use fieldline_planner::config::Tuning;
 use fieldline_protocol::message::Status;
@@ -13,11 +13,12 @@ use host_sim::replay::relations::{self, Pose, Relation, RelationError};
 use host_sim::replay::report::{self, Files, RelationErrors, ReplayReport};
 use host_sim::replay::{carmen, clock, run};
 use host_sim::report::{QualityShares, folder};
+use host_sim::slam::SlamPlace;
 use host_sim::trial::wording;
 
 use super::progress::Interrupt;
 use super::robot::TuneArgs;
-use super::values::seed;
+use super::values::{seed, slam_place};
 use super::{note, say};
 
 #[derive(Clone, Debug, Args)]
@@ -51,8 +52,8 @@ pub(super) struct ReplayArgs {
         allow_negative_numbers = true
     )]
     seed: u64,
-    /// Close loops by a pose graph beside the device: off or host
-    #[arg(long, value_name = "WHERE", default_value = "off")]
+    /// Close loops by a pose graph: off, or host, beside the device
+    #[arg(long, value_name = "WHERE", default_value = "off", value_parser = slam_place)]
     slam: SlamPlace,
     /// Variances of the odometry's random walk that the graph expects, as a multiple of the usual
     /// ones [default: that of --degrade, or 20]
@@ -74,16 +75,6 @@ pub(super) struct ReplayArgs {
 /// Variances of the random walk of wheels that nothing is known of, as a multiple of the usual ones:
 /// those of the papers' odometry.
 const UNKNOWN_WHEELS: f64 = 20.0;
-
-/// Where loops are closed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-enum SlamPlace {
-    /// Nowhere.
-    #[default]
-    Off,
-    /// On the host that relays the scans.
-    Host,
-}
 
 /// Replays a log; returns true if the device went on up to the end.
 pub(super) fn run(args: &ReplayArgs) -> Result<bool> {

@@ -2,6 +2,7 @@
 
 use fieldline_protocol::message::UnevenGround;
 use host_sim::robot::{Limits, LimitsError};
+use host_sim::slam::SlamPlace;
 use host_sim::trial::space::Area;
 use host_sim::trial::uneven::{self, ParameterError};
 
@@ -19,6 +20,15 @@ fn whole(text: &str, most: u64) -> Result<u64, String> {
 /// Parses a seed.
 pub(super) fn seed(text: &str) -> Result<u64, String> {
     whole(text, u64::MAX)
+}
+
+/// Parses where loops are closed.
+pub(super) fn slam_place(text: &str) -> Result<SlamPlace, String> {
+    match text {
+        "off" => Ok(SlamPlace::Off),
+        "host" => Ok(SlamPlace::Host),
+        _ => Err("give off or host".into()),
+    }
 }
 
 /// Parses the index of a start.

@@ -19,6 +19,8 @@ pub mod tum;
 
 use serde::{Deserialize, Serialize};
 
+use crate::slam::SlamReport;
+
 pub use crate::link::LinkStats;
 pub use crate::network::Counters;
 pub use grid_map::{GridMap, MapCell};
@@ -121,6 +123,9 @@ pub struct Report {
     /// Datagrams of a team of processes; the key is missing without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub network: Option<Counters>,
+    /// What became of the loops that a pose graph closed; the key is missing without `--slam`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slam: Option<SlamReport>,
 }
 
 /// The parameters of a space-based potential field.

@@ -14,6 +14,7 @@ use fieldline_planner::map::tiles::TILE_SIDE;
 use fieldline_protocol::message::{Observation, Start, TILE_STAMPS, Tile};
 
 use super::made_on_a_large_stack;
+use crate::link::correction::Classes;
 use crate::replay::relations::Pose;
 
 /// Tiles of 3.2 m that have room.
@@ -76,14 +77,25 @@ impl Canvas {
         self.map.shown(x.into(), y.into())
     }
 
+    /// Returns the planes of a tile; `None` if it was never touched.
+    #[must_use]
+    pub fn planes(&self, (x, y): (i16, i16)) -> Option<Classes> {
+        self.map.planes((x.into(), y.into()))
+    }
+
+    /// Returns the tiles that scans may have reached.
+    pub fn keys(&self) -> impl Iterator<Item = (i16, i16)> + use<> {
+        let reach = self.reach.into_iter();
+        reach.flat_map(|[low, high]| {
+            let rows = low.1..=high.1;
+            rows.flat_map(move |y| (low.0..=high.0).map(move |x| (x, y)))
+        })
+    }
+
     /// Returns all tiles, without a skeleton.
     #[must_use]
     pub fn tiles(&self) -> BTreeMap<(i16, i16), Tile> {
-        let Some([low, high]) = self.reach else {
-            return BTreeMap::new();
-        };
-        let keys = (low.1..=high.1).flat_map(|y| (low.0..=high.0).map(move |x| (x, y)));
-        let tiles = keys.filter_map(|(x, y)| {
+        let tiles = self.keys().filter_map(|(x, y)| {
             let cells = self.tile(x, y)?;
             let tile = Tile {
                 x,

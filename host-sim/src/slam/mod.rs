@@ -9,6 +9,7 @@
 //! Units: metres, radians, millimetres where a name says so.
 
 mod canvas;
+mod closer;
 
 use core::fmt;
 
@@ -16,9 +17,10 @@ use fieldline_protocol::message::{
     INVALID_MM, Laser, Location, NO_RETURN_MM, Observation, Quality,
 };
 use fieldline_slam as graph;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 pub use canvas::Canvas;
+pub use closer::LoopCloser;
 
 use crate::replay::relations::Pose;
 
@@ -48,12 +50,22 @@ pub struct PoseGraph {
     is_full: bool,
 }
 
+/// Where loops are closed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SlamPlace {
+    /// Nowhere.
+    #[default]
+    Off,
+    /// On the host that relays the scans.
+    Host,
+}
+
 /// What became of the loops, as in a report.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SlamReport {
     /// Where the graph ran: `host`.
     #[serde(rename = "where")]
-    pub place: &'static str,
+    pub place: String,
     /// Keyframes.
     pub keyframes: usize,
     /// Closures in the graph.
@@ -114,17 +126,19 @@ impl PoseGraph {
         observation: &Observation,
         location: Option<&Location>,
     ) -> (Pose, bool) {
+        let located = location.filter(|it| it.quality != Quality::Lost);
+        let located = located.map(|it| [it.x.to_num(), it.y.to_num(), it.yaw.to_num()]);
+        self.observe_at(observation, located)
+    }
+
+    /// As [`PoseGraph::observe`], with the pose that the device located.
+    pub fn observe_at(&mut self, observation: &Observation, located: Option<Pose>) -> (Pose, bool) {
         let odom = graph::Pose {
             x_m: observation.pose.x.to_num(),
             y_m: observation.pose.y.to_num(),
             yaw_rad: observation.pose.yaw.to_num(),
         };
-        let located = location.filter(|it| it.quality != Quality::Lost);
-        let located = located.map(|it| graph::Pose {
-            x_m: it.x.to_num(),
-            y_m: it.y.to_num(),
-            yaw_rad: it.yaw.to_num(),
-        });
+        let located = located.map(graph_pose);
         let ranges = observation.scans.first().map(|scan| &scan.ranges_mm);
         let ranges: Vec<u16> = ranges
             .into_iter()
@@ -147,6 +161,11 @@ impl PoseGraph {
         (pose(&seen.pose), seen.closed)
     }
 
+    /// Tells that the device's map was corrected, and its located poses with it.
+    pub fn relocate(&mut self, motion: Pose) {
+        self.graph.relocate(&graph_pose(motion));
+    }
+
     /// Solves the graph until it rests.
     pub fn finish(&mut self) {
         self.graph.finish(&mut self.workspace);
@@ -167,7 +186,7 @@ impl PoseGraph {
     pub fn report(&self) -> SlamReport {
         let counts = self.graph.counts();
         SlamReport {
-            place: "host",
+            place: "host".into(),
             keyframes: counts.keyframes,
             closed: counts.closed,
             refused: counts.refused,
@@ -188,6 +207,14 @@ fn made_on_a_large_stack<T: Send + 'static>(make: impl FnOnce() -> T + Send + 's
     made.expect("memory for a thread")
         .join()
         .expect("making it does not panic")
+}
+
+fn graph_pose([x, y, yaw]: Pose) -> graph::Pose {
+    graph::Pose {
+        x_m: x as f32,
+        y_m: y as f32,
+        yaw_rad: yaw as f32,
+    }
 }
 
 fn pose(pose: &graph::Pose) -> Pose {

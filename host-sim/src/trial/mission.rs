@@ -20,6 +20,7 @@ use crate::robot::{
     Disturbances, Footprint, LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M,
 };
 use crate::sim::{SimConfig, Simulator};
+use crate::slam::{LoopCloser, SlamPlace};
 use crate::world::{Start, World, WorldError};
 
 /// The usual impatience of strategy tdbvp, seconds. With 60 s, three adjacent loops took 378 s
@@ -88,6 +89,8 @@ pub struct Mission {
     pub snapshots: usize,
     /// A device that was reset gets its map back, and the run goes on.
     pub resumes: bool,
+    /// Where loops are closed.
+    pub slam: SlamPlace,
 }
 
 impl Default for Mission {
@@ -120,6 +123,7 @@ impl Default for Mission {
             check_field: false,
             snapshots: 0,
             resumes: false,
+            slam: SlamPlace::Off,
         }
     }
 }
@@ -139,6 +143,15 @@ pub enum OdometryProfile {
 }
 
 impl OdometryProfile {
+    /// Returns what a pose graph expects of the wheels.
+    #[must_use]
+    pub fn wheels(self) -> fieldline_slam::Motion {
+        let usual = OdometryNoise::default();
+        let noise = self.noise().unwrap_or(usual);
+        let factor = noise.turn_by_turn / usual.turn_by_turn;
+        fieldline_slam::Motion::WHEELS.times(factor.max(1.0) as f32)
+    }
+
     /// Returns the name on the command line and in the report.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -361,9 +374,18 @@ fn explored(
 ) -> Result<(Report, Record), MissionError> {
     let mut simulator = Simulator::new(world, mission.sim_config())?;
     link.hello()?;
+    let usual = setup(mission, &simulator);
+    let mut closer = match mission.slam {
+        SlamPlace::Host => LoopCloser::new(&usual.start, mission.odometry.wheels()),
+        SlamPlace::Off => None,
+    };
+    let corrector = match (corrector, &mut closer) {
+        (Some(corrector), _) => Some(corrector),
+        (None, closer) => closer.as_mut().map(|closer| closer as &mut dyn Corrector),
+    };
     let setup = Setup {
         corrects: corrector.is_some(),
-        ..setup(mission, &simulator)
+        ..usual
     };
     let mut account = Account::new(&setup, &simulator);
     let mut record = run(
@@ -377,6 +399,7 @@ fn explored(
         },
     );
     record.ground = account.ground.take();
-    let report = summary::report(mission, &simulator, &account, &record);
+    let mut report = summary::report(mission, &simulator, &account, &record);
+    report.slam = closer.map(|closer| closer.report());
     Ok((report, record))
 }

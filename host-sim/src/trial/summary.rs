@@ -73,6 +73,7 @@ pub(super) fn report(
             map_matches_mirror: map_is_read.then(|| account.mirror.equals(&record.tiles)),
         },
         network: None,
+        slam: None,
     }
 }
 
