@@ -35,7 +35,7 @@ pub enum Ask {
     /// Opens a correction of the map.
     Correct(Box<Correct>),
     /// Brings tiles of a correction.
-    Tiles(Box<CorrectedTiles>),
+    CorrectTiles(Box<CorrectedTiles>),
     /// Reads a map tile.
     Tile {
         /// Tile column.
@@ -104,7 +104,7 @@ impl Ask {
                 .say()?
                 .map_or(Answer::Done, |said| Answer::Said(Box::new(said)))),
             Self::Correct(correct) => link.open_correction(correct).map(|_| Answer::Done),
-            Self::Tiles(part) => link.send_tiles(part).map(|_| Answer::Done),
+            Self::CorrectTiles(part) => link.send_tiles(part).map(|_| Answer::Done),
             Self::Tile { x, y } => link.tile(*x, *y).map(|_| Answer::Done),
             Self::FieldRow { row } => Ok(link
                 .field_row(*row)?

@@ -5,8 +5,8 @@
 //! field of a message. A field that no message has is an error.
 
 use fieldline_protocol::message::{
-    Beacon, Digest, Hull, Laser, LoopLimits, Member, Observation, Pose, SpaceField, Start, Team,
-    TeamTile, Twist, UnevenGround, Wanted,
+    Beacon, Correct, CorrectedTiles, Digest, Hull, Laser, LoopLimits, Member, Motion, Observation,
+    Pose, SpaceField, Start, Team, TeamTile, Twist, UnevenGround, Wanted,
 };
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
@@ -33,6 +33,9 @@ fn default_of(key: &str) -> Option<Map<String, Value>> {
         "pose" => json(Pose::default()),
         "velocity" => json(Twist::default()),
         "sbpf" | "esbpf" | "Sbpf" | "Esbpf" => json(SpaceField::default()),
+        "correct" => json(Correct::default()),
+        "correct_tiles" => json(CorrectedTiles::default()),
+        "motion" => json(Motion::default()),
         "Beacon" => json(Beacon::default()),
         "Digest" => json(Digest::default()),
         "Wanted" => json(Wanted::default()),

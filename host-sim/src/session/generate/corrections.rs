@@ -36,7 +36,7 @@ impl Corrections {
                 part.first = choices.bits(16) as u16;
             }
             let times = choices.pick(&[1, 1, 1, 1, 1, 1, 2, 0]);
-            asks.extend((0..times).map(|_| Ask::Tiles(Box::new(part.clone()))));
+            asks.extend((0..times).map(|_| Ask::CorrectTiles(Box::new(part.clone()))));
         }
         let count = match choices.below(16) {
             14 => choices.bits(16) as u16,
