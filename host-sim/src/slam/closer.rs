@@ -25,8 +25,8 @@ use crate::replay::relations::{Pose, compose, inverse};
 use crate::trial::Corrector;
 use crate::trial::mirror::Mirror;
 
-/// A move that is worth a correction, metres: half a cell.
-const LEAST_M: f64 = 0.5 * CELL_M as f64;
+/// A move that is worth a correction, metres: a cell.
+const LEAST_M: f64 = CELL_M as f64;
 /// Side of a tile, metres.
 const TILE_M: f64 = TILE_SIDE as f64 * CELL_M as f64;
 /// Greatest shift of a tile that a correction can say, cells.
