@@ -42,7 +42,7 @@ mod symmetric;
 #[cfg(test)]
 mod tests;
 
-use crate::config::{Config, LocaliseTuning};
+use crate::config::Config;
 use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
 use crate::input::Input;
 use crate::map::neighbourhood::Neighbourhood;
