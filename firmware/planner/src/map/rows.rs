@@ -95,13 +95,10 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
         }
     }
 
-    /// Returns the reader of what may be explored: a tile that the map has no room for reads as
-    /// free.
-    pub(super) const fn of_room(self) -> Self {
-        Self {
-            only_room: true,
-            ..self
-        }
+    /// Returns the reader of what may be explored, if `only_room`: a tile that the map has no room
+    /// for reads as free.
+    pub(crate) const fn of_room(self, only_room: bool) -> Self {
+        Self { only_room, ..self }
     }
 
     /// Looks up the tiles of a row. Returns its number in them and the shift of their columns.

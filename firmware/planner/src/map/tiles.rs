@@ -287,12 +287,6 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         RowReader::new(self, x)
     }
 
-    /// Returns a reader of rows of 64 cells from column `x` on, to which a tile that the map has no
-    /// room for is free: nothing of it can be explored.
-    pub(crate) const fn reader_of_room(&self, x: i32) -> RowReader<'_, TILES, SLOTS> {
-        self.reader(x).of_room()
-    }
-
     /// Returns the planes and the trail of a tile; `None` if it is untouched.
     pub(super) fn column(&self, tile_x: i32, tile_y: i32) -> Option<Column<'_>> {
         let entry = self.entry(tile_x, tile_y);

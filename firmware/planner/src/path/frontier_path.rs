@@ -190,16 +190,10 @@ pub(crate) fn unexplored_beside<const TILES: usize, const SLOTS: usize>(
     tiles: &Tiles<TILES, SLOTS>,
     may_leave_map: bool,
 ) -> Option<Cell> {
-    let reader = |x| {
-        if may_leave_map {
-            tiles.reader(x)
-        } else {
-            tiles.reader_of_room(x)
-        }
-    };
+    let row = |x, y| tiles.reader(x).of_room(!may_leave_map).row(y);
     let unknown = |cell: Cell| {
         (0..2)
-            .map(|dy| (reader(cell.x).row(cell.y + dy).unknown() & 3).count_ones())
+            .map(|dy| (row(cell.x, cell.y + dy).unknown() & 3).count_ones())
             .sum::<u32>()
     };
     [(2, 0), (-2, 0), (0, 2), (0, -2)]

@@ -73,7 +73,7 @@ impl View {
         reach_m: f32,
         clearance: i32,
     ) -> Self {
-        let mut reader = tiles.reader_of_room(from.x - MOST_REACH);
+        let mut reader = tiles.reader(from.x - MOST_REACH).of_room(true);
         let mut rows = [[[0; 2]; WORDS]; SIDE];
         for (y, pairs) in rows.iter_mut().enumerate() {
             let row = reader.row(from.y - MOST_REACH + y as i32);
