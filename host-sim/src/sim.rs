@@ -16,7 +16,7 @@ use crate::metrics::{Overlap, Ride, Safety};
 use crate::people::People;
 use crate::robot::{
     Contacts, Drive, LaserScanner, Mishap, Noise, Odometry, OtherRobot, Pose, Source, Span,
-    Velocity, laser, nearest_m, stand,
+    Velocity, laser, nearest_m, stand, wrap,
 };
 use crate::world::{Ray, World, WorldError};
 pub use config::SimConfig;
@@ -47,6 +47,8 @@ pub struct Simulator<'w> {
     pose: Pose,
     drive: Drive,
     odometry: Odometry,
+    /// Odometry's pose where it began anew.
+    restart: Option<Pose>,
     lasers: [LaserScanner; 2],
     /// Draws the beams that are missing.
     missing: Noise,
@@ -90,6 +92,7 @@ impl<'w> Simulator<'w> {
             pose,
             drive: Drive::new(config.limits),
             odometry: Odometry::new(config.odometry, pose, config.seed),
+            restart: None,
             lasers: [
                 scanner(laser::level(), [Source::LevelRange, Source::LevelFault]),
                 scanner(laser::tilted(), [Source::TiltedRange, Source::TiltedFault]),
@@ -120,7 +123,7 @@ impl<'w> Simulator<'w> {
     pub fn observe(&mut self) -> Observation {
         let mut observation = Observation {
             time_ms: self.time_ms,
-            pose: self.above_start(self.odometry.pose()).to_wire(),
+            pose: self.told_pose().to_wire(),
             velocity: self.odometry.velocity().to_wire(),
             ..Observation::default()
         };
@@ -138,6 +141,23 @@ impl<'w> Simulator<'w> {
             let _ = observation.scans.push(scan);
         }
         observation
+    }
+
+    /// Returns the pose that odometry tells: once it began anew, the motion since then.
+    fn told_pose(&mut self) -> Pose {
+        let pose = self.above_start(self.odometry.pose());
+        if !self.config.disturbances.has_restarted(self.time_ms) {
+            return pose;
+        }
+        let from = *self.restart.get_or_insert(pose);
+        let [x_m, y_m] = from.planar_frame().to_local([pose.x_m, pose.y_m]);
+        Pose {
+            x_m,
+            y_m,
+            z_m: pose.z_m - from.z_m,
+            yaw_rad: wrap(pose.yaw_rad - from.yaw_rad),
+            ..pose
+        }
     }
 
     /// Takes the information out of beams that are missing.

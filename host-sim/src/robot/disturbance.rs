@@ -2,6 +2,7 @@
 //!
 //! | word | disturbance |
 //! | --- | --- |
+//! | `restart@T` | from second T on odometry tells the motion since then: it began anew at zero |
 //! | `slip@T` | in the step at second T the wheels count 0.5 m and 20° too much |
 //! | `spin@A-B` | from second A to B the wheels turn as commanded, and the robot stands |
 //! | `push@A-B` | from A to B the robot moves as commanded, and the wheels count nothing |
@@ -9,8 +10,8 @@
 //! | `missing=P` | each beam carries no information with probability P |
 //!
 //! To odometry a slip is the same whether the wheels or the robot moved alone. Here the wheels do,
-//! so that no slip moves the robot into a wall. The first three change odometry that counts wheels;
-//! they do not change the true pose as odometry. Units: milliseconds inside, seconds in the text.
+//! so that no slip moves the robot into a wall. A slip, a spin and a push change odometry that counts
+//! wheels; they do not change the true pose as odometry. Units: milliseconds inside, seconds in the text.
 
 use core::fmt;
 use core::str::FromStr;
@@ -32,6 +33,8 @@ pub struct Span {
 /// The disturbances of a run; by default none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Disturbances {
+    /// Time at which odometry begins anew, milliseconds.
+    pub restart_ms: Option<u32>,
     /// Time of a slip, milliseconds.
     pub slip_ms: Option<u32>,
     /// The wheels turn, and the robot stands.
@@ -53,6 +56,12 @@ impl Span {
 }
 
 impl Disturbances {
+    /// Returns true if odometry has begun anew.
+    #[must_use]
+    pub fn has_restarted(&self, time_ms: u32) -> bool {
+        self.restart_ms.is_some_and(|at_ms| at_ms <= time_ms)
+    }
+
     /// Returns true if the wheels turn and the robot stands.
     #[must_use]
     pub fn spins(&self, time_ms: u32) -> bool {
@@ -91,8 +100,13 @@ impl Disturbances {
             return Some(());
         }
         let (name, times) = word.split_once('@')?;
-        if name == "slip" {
-            self.slip_ms = Some(milliseconds(times)?);
+        let moment = match name {
+            "slip" => Some(&mut self.slip_ms),
+            "restart" => Some(&mut self.restart_ms),
+            _ => None,
+        };
+        if let Some(moment) = moment {
+            *moment = Some(milliseconds(times)?);
             return Some(());
         }
         let (from, to) = times.split_once('-')?;
@@ -123,8 +137,8 @@ impl fmt::Display for DisturbanceError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "'{}' is no disturbance; use slip@T, spin@A-B, push@A-B, dark@A-B (seconds, A below B) \
-             and missing=P (0 to 0.9), each once, separated by commas",
+            "'{}' is no disturbance; use restart@T, slip@T, spin@A-B, push@A-B, dark@A-B (seconds, A \
+             below B) and missing=P (0 to 0.9), each once, separated by commas",
             self.0
         )
     }
@@ -157,14 +171,17 @@ impl fmt::Display for Disturbances {
             ("push", self.push),
             ("dark", self.dark),
         ];
-        let slip = self.slip_ms.map(|at_ms| format!("slip@{}", seconds(at_ms)));
+        let moments = [("restart", self.restart_ms), ("slip", self.slip_ms)];
+        let moments = moments
+            .iter()
+            .filter_map(|(name, at_ms)| Some(format!("{name}@{}", seconds((*at_ms)?))));
         let spans = spans.iter().filter_map(|(name, span)| {
             let span = span.as_ref()?;
             let [from, to] = [span.from_ms, span.to_ms].map(seconds);
             Some(format!("{name}@{from}-{to}"))
         });
         let missing = (self.missing > 0.0).then(|| format!("missing={}", self.missing));
-        let words: Vec<String> = slip.into_iter().chain(spans).chain(missing).collect();
+        let words: Vec<String> = moments.chain(spans).chain(missing).collect();
         f.write_str(&words.join(","))
     }
 }
@@ -175,10 +192,11 @@ mod tests {
 
     #[test]
     fn a_text_is_read_and_written() {
-        let text = "slip@60,spin@61.5-64,push@70-71,dark@80-82,missing=0.3";
+        let text = "restart@50,slip@60,spin@61.5-64,push@70-71,dark@80-82,missing=0.3";
         let read: Disturbances = text.parse().expect("valid");
         assert_eq!(read.to_string(), text);
         assert_eq!(read.slip_ms, Some(60_000));
+        assert!(read.has_restarted(50_000) && !read.has_restarted(49_999));
         assert!(read.spins(61_500) && read.spins(63_999) && !read.spins(64_000));
         assert!(read.pushes(70_000) && read.is_dark(81_000) && !read.is_dark(79_999));
         assert!(read.needs_wheels());

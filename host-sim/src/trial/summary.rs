@@ -24,7 +24,8 @@ pub(super) fn report(
     let ground = mission.uneven_ground.map_or("flat", |_| "uneven");
     let closes_loops = mission.strategy() == Strategy::Ouroboros;
     let order = on_device(&mission.strategy).map(|_| mission.order());
-    let map_is_read = !record.tiles.is_empty();
+    // The host's copy of the map has no door, which lets odometry begin anew.
+    let is_mirrored = !record.tiles.is_empty() && mission.disturbances.restart_ms.is_none();
     Report {
         schema_version: SCHEMA_VERSION,
         world: world.name().into(),
@@ -70,7 +71,7 @@ pub(super) fn report(
         input_faults: record.input_faults(),
         digest: record.digest.to_string(),
         debug: report::Debug {
-            map_matches_mirror: map_is_read.then(|| account.mirror.equals(&record.tiles)),
+            map_matches_mirror: is_mirrored.then(|| account.mirror.equals(&record.tiles)),
         },
         network: None,
         slam: None,

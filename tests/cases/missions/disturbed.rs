@@ -21,7 +21,7 @@ use fieldline_protocol::message::{Fault, Quality};
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::{golden, runs, worlds};
 use host_sim::link::direct::Direct;
-use host_sim::report::Report;
+use host_sim::report::{InputFaults, Report};
 use host_sim::trial::mission::{Mission, OdometryProfile};
 use host_sim::trial::{Ending, Record, Step};
 use host_sim::world::{Start, World};
@@ -247,6 +247,37 @@ fn scenes<'a>(
     };
     let of = |it| seeds.clone().map(move |seed| scene(it, seed));
     disturbances.iter().flat_map(of).collect()
+}
+
+/// The device takes such a jump for an odometry that began anew, and goes on where it stood.
+#[test]
+fn odometry_that_begins_anew_in_the_middle_of_a_run_changes_little() {
+    let office = worlds::builtin("office");
+    let scene = |disturbances| Scene {
+        world: &office,
+        place: None,
+        disturbances,
+        lasts_s: [100, 100],
+        seed: 1,
+        until_ms: u32::MAX,
+    };
+    let scenes = [scene(""), scene("restart@100")];
+    let played = play(&scenes);
+    let [(_, whole), (_, restarted)] = played.as_slice() else {
+        panic!("two runs");
+    };
+    assert_eq!(whole.report.input_faults, InputFaults::default());
+    let one = InputFaults {
+        jumps: 1,
+        ..InputFaults::default()
+    };
+    assert_eq!(restarted.report.input_faults, one);
+    let errors_m = [whole, restarted].map(|outcome| {
+        assert!(outcome.report.explored(), "{:?}", outcome.report.outcome);
+        assert_eq!(outcome.report.safety.collisions, 0);
+        outcome.report.localization.max_error_m.unwrap_or(f64::MAX)
+    });
+    assert!(errors_m[1] < errors_m[0] + 0.05, "{errors_m:?} m");
 }
 
 #[test]

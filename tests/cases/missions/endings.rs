@@ -7,11 +7,14 @@ use host_sim::link::direct::Direct;
 use host_sim::link::loopback::loopback;
 use host_sim::robot::{LaserNoise, LaserScanner, Pose, Source, laser};
 use host_sim::sim::{SimConfig, Simulator};
-use host_sim::trial::mission::{Mission, explore};
+use host_sim::trial::Step;
+use host_sim::trial::mission::{Mission, OdometryProfile, explore};
 use host_sim::world::{Start, World};
 
 /// Side of a drawn cell, metres.
 const CELL_M: f64 = 0.2;
+/// Side of a tile of the map, metres.
+const TILE_M: f64 = 3.2;
 
 /// Draws a hall of 54 × 54 m, which is more than the map can hold, with a pillar every 3.2 m.
 fn pillars() -> World {
@@ -54,6 +57,34 @@ fn a_world_larger_than_the_map_is_a_fault_and_its_exits_are_listed() {
         report.coverage.fraction
     );
     assert_eq!(report.safety.collisions, 0);
+}
+
+/// Beyond the map there is nothing to match a scan with: a robot that drove on there would lose its
+/// pose.
+#[test]
+fn a_robot_whose_map_is_full_does_not_drive_on_beyond_it() {
+    let world = pillars();
+    for seed in 0..2 {
+        let mission = Mission {
+            seed,
+            odometry: OdometryProfile::Noisy,
+            localise: true,
+            ..Mission::default()
+        };
+        let run = explore(&mission, &world, &mut Direct::new(), &mut ());
+        let (report, record) = run.expect("the start is free");
+        assert_eq!(report.outcome.reason, "map-full");
+        let error_m = report.localization.max_error_m.unwrap_or(f64::MAX);
+        assert!(error_m < 0.3, "seed {seed}: {error_m} m");
+        let tile = |m: f64| (m / TILE_M).floor() as i16;
+        let place = |step: &Step| (tile(step.estimate.x_m), tile(step.estimate.y_m));
+        let beyond = record
+            .steps
+            .iter()
+            .filter(|step| !record.tiles.contains_key(&place(step)));
+        let beyond_s = 0.2 * beyond.count() as f64;
+        assert!(beyond_s < 10.0, "seed {seed}: {beyond_s} s");
+    }
 }
 
 /// Every beam of a robot in the middle of a wall ends at once. The simulator refuses such a start;

@@ -4,7 +4,8 @@
 //! on a surface lie within a cell of an obstacle, and k′ at the other:
 //!
 //! ```text
-//! taken:  the scan agrees there,  and  k − k′ ≥ better_share · n  unless both became one place
+//! far off:   the scan agrees there,  and  k − k′ ≥ better_share · n  unless both became one place
+//! near by:   the same against where the robot takes itself to be, whatever is elsewhere
 //! ```
 //!
 //! So of two places that fit alike none is taken. A hall looks the same from its other end, and a
@@ -13,7 +14,7 @@
 //! Units: metres, radians; cells inside the alignment.
 
 use crate::config::LocaliseTuning;
-use crate::geometry::{CELL_M, MapFromOdom, MapPose, Pose};
+use crate::geometry::MapPose;
 use crate::localise::alignment::{Aligned, align};
 use crate::localise::scan_points::ScanPoints;
 use crate::localise::search::are_apart;
@@ -47,20 +48,22 @@ impl Localiser {
         let Some(found) = search.advance(tiles, points, (&odom, predicted), yaw_sd_rad) else {
             return *predicted;
         };
-        let aligned = |motion: MapFromOdom| {
-            let start = in_cells(&motion.apply(&odom).0);
-            let wide = Symmetric::diagonal(WIDE_CELLS, WIDE_CELLS, WIDE_RAD).inverse();
-            let wide = wide.unwrap_or_default();
-            align(tiles, points, (start, &wide), start, tuning)
+        let found =
+            found.map(|motion| Some(candidate(tiles, points, &motion?.apply(&odom), tuning)));
+        // Near by, the robot's own place is the one that a candidate must excel.
+        let best = if was_near {
+            found[0].as_ref()
+        } else {
+            clear(&found, tuning)
         };
-        if let Some(found) = clear(found.map(|motion| motion.map(aligned)), tuning) {
+        if let Some(found) = best {
             let is_taken = if was_near {
                 found.agreement.is_better_than(&here.agreement, tuning)
             } else {
                 found.is_agreed(tuning)
             };
             if is_taken {
-                return self.accept(&found, predicted);
+                return self.accept(found, predicted);
             }
         }
         if was_near && !here.agreement.is_refuted(tuning) {
@@ -71,24 +74,31 @@ impl Localiser {
     }
 }
 
-/// Returns the better one of two places if it fits clearly better, or if both are one.
-fn clear(found: [Option<Aligned>; 2], tuning: &LocaliseTuning) -> Option<Aligned> {
-    let [Some(a), Some(b)] = found else {
-        return found.into_iter().flatten().next();
-    };
-    let more = a.agreement.excess(&b.agreement);
-    let (better, more) = if more < 0.0 { (b, -more) } else { (a, more) };
-    let is_one = !are_apart(&place(&a), &place(&b));
-    (is_one || more >= tuning.better_share).then_some(better)
+/// Aligns a scan from a candidate's pose, which is that of a coarse search.
+#[inline(never)]
+fn candidate<const TILES: usize, const SLOTS: usize>(
+    tiles: &Tiles<TILES, SLOTS>,
+    points: &ScanPoints,
+    pose: &MapPose,
+    tuning: &LocaliseTuning,
+) -> Aligned {
+    let start = in_cells(&pose.0);
+    let wide = Symmetric::diagonal(WIDE_CELLS, WIDE_CELLS, WIDE_RAD).inverse();
+    align(
+        tiles,
+        points,
+        (start, &wide.unwrap_or_default()),
+        start,
+        tuning,
+    )
 }
 
-/// Returns where an alignment has the robot.
-fn place(aligned: &Aligned) -> Pose {
-    let [x, y, yaw_rad] = aligned.pose;
-    Pose {
-        x_m: x * CELL_M,
-        y_m: y * CELL_M,
-        yaw_rad,
-        ..Pose::default()
-    }
+/// Returns the better one of two places if it fits clearly better, or if both are one.
+fn clear<'a>(found: &'a [Option<Aligned>; 2], tuning: &LocaliseTuning) -> Option<&'a Aligned> {
+    let [Some(a), Some(b)] = found else {
+        return found.iter().flatten().next();
+    };
+    let more = a.agreement.excess(&b.agreement);
+    let better = if more < 0.0 { b } else { a };
+    (more.abs() >= tuning.better_share || !are_apart(&a.pose, &b.pose)).then_some(better)
 }

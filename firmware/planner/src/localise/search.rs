@@ -23,6 +23,7 @@
 //! Units: map cells, radians.
 
 use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
+use crate::localise::in_cells;
 use crate::localise::scan_points::ScanPoint;
 use crate::map::Tiles;
 use crate::math;
@@ -65,19 +66,22 @@ struct Candidate {
 }
 
 impl Candidate {
-    /// Returns true if this is another place than that of `other`.
+    /// Returns true if this is another place than that of `other`. It is asked for twice, so it is
+    /// not inlined.
+    #[inline(never)]
     fn is_apart(&self, other: &Self, odom: &OdomPose) -> bool {
-        let [a, b] = [self, other].map(|it| it.motion.apply(odom).0);
+        let [a, b] = [self, other].map(|it| in_cells(&it.motion.apply(odom).0));
         are_apart(&a, &b)
     }
 }
 
 /// Returns true if two poses are more than [`APART`] cells or 10° from each other.
-pub(super) fn are_apart(a: &Pose, b: &Pose) -> bool {
-    let apart_m = APART as f32 * CELL_M;
-    (a.x_m - b.x_m).abs() > apart_m
-        || (a.y_m - b.y_m).abs() > apart_m
-        || math::wrap(a.yaw_rad - b.yaw_rad).abs() > APART_RAD
+#[inline(never)]
+pub(super) fn are_apart(a: &[f32; 3], b: &[f32; 3]) -> bool {
+    let apart = APART as f32;
+    (a[0] - b[0]).abs() > apart
+        || (a[1] - b[1]).abs() > apart
+        || math::wrap(a[2] - b[2]).abs() > APART_RAD
 }
 
 /// The state of a search.
@@ -108,8 +112,10 @@ impl Search {
         }
     }
 
-    /// Tries a few turns. Returns the best candidate and the best one elsewhere where the search is
+    /// Tries a few turns. It runs only while the robot is lost. Returns the best candidate and the best one elsewhere where the search is
     /// to decide. `yaw_sd_rad` is the standard deviation of the yaw.
+    #[cold]
+    #[inline(never)]
     pub(super) fn advance<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,
@@ -207,6 +213,7 @@ impl Search {
     }
 
     /// Enters a candidate that is better than the best one elsewhere.
+    #[inline(never)]
     fn rank(&mut self, found: Candidate, odom: &OdomPose) {
         let is_apart = found.is_apart(&self.best, odom);
         if found.score <= self.best.score {
@@ -225,10 +232,9 @@ impl Search {
 }
 
 /// Returns the bits of the shifts of a row that are the same place as this one.
-fn beside(dx: i32) -> u32 {
-    let near = (-APART..=APART).map(|by| dx + by + SIDE / 2);
-    let near = near.filter(|bit| (0..SIDE).contains(bit));
-    near.fold(0, |mask, bit| mask | 1 << bit)
+const fn beside(dx: i32) -> u32 {
+    const ALL: u64 = (1 << (2 * APART + 1)) - 1;
+    (ALL << (dx + SIDE / 2) >> APART) as u32
 }
 
 /// The best of all shifts of a pose.
@@ -294,7 +300,9 @@ fn count<const TILES: usize, const SLOTS: usize>(
     counts
 }
 
-/// Returns the greatest count of a row, and the shifts that have it.
+/// Returns the greatest count of a row, and the shifts that have it. It is not inlined: it is called
+/// from four places.
+#[inline(never)]
 fn most(planes: &[u32; PLANES]) -> (u32, u32) {
     let mut mask = u32::MAX;
     let mut count = 0;
@@ -319,7 +327,7 @@ const fn nearest(mask: u32) -> i32 {
 mod tests {
     use std::boxed::Box;
 
-    use super::{Counts, PLANES, SIDE, count, most, nearest};
+    use super::{Counts, PLANES, SIDE, beside, count, most, nearest};
     use crate::geometry::{Cell, Point, Pose};
     use crate::grid::Class;
     use crate::localise::scan_points::ScanPoint;
@@ -331,6 +339,15 @@ mod tests {
         assert_eq!(nearest(1 << 15 | 1 << 18), -1);
         assert_eq!(nearest(1 << 10 | 1 << 18), 2);
         assert_eq!(nearest(1), -16);
+    }
+
+    #[test]
+    fn the_shifts_of_one_place_are_up_to_three_cells_away() {
+        for dx in -SIDE / 2..SIDE / 2 {
+            let near = (dx - 3).max(-SIDE / 2)..=(dx + 3).min(SIDE / 2 - 1);
+            let bits = near.fold(0_u32, |bits, at| bits | 1 << (at + SIDE / 2));
+            assert_eq!(beside(dx), bits, "{dx}");
+        }
     }
 
     #[test]

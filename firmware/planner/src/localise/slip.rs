@@ -49,14 +49,18 @@ pub(super) fn predictions(
     (before, odometry): (&Pose, &Pose),
     last: &Motion,
 ) -> Option<[Pose; 2]> {
+    let went_on = Some(last.from(before)).filter(|pose| is_slip(config, odometry, pose));
+    is_slip(config, odometry, before).then(|| [*before, went_on.unwrap_or(*before)])
+}
+
+/// Returns true if a robot that slides gets from one pose to the other in a period. It is asked for
+/// twice, so it is not inlined.
+#[inline(never)]
+fn is_slip(config: &Config, from: &Pose, to: &Pose) -> bool {
     let (speed, period_s) = (config.sliding_speed(), config.period_s);
     let (reach_m, turn_rad) = (speed.linear_mps * period_s, speed.angular_radps * period_s);
-    let is_near = |pose: &Pose| {
-        pose.point().distance2(odometry.point()) <= reach_m * reach_m
-            && math::wrap(pose.yaw_rad - odometry.yaw_rad).abs() <= turn_rad
-    };
-    let went_on = Some(last.from(before)).filter(is_near);
-    is_near(before).then(|| [*before, went_on.unwrap_or(*before)])
+    to.point().distance2(from.point()) <= reach_m * reach_m
+        && math::wrap(to.yaw_rad - from.yaw_rad).abs() <= turn_rad
 }
 
 /// Returns the place of the prediction that the scan makes likelier than all others and than

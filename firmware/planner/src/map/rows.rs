@@ -8,7 +8,7 @@
 use crate::grid::Row;
 use crate::grid::bits::twice;
 use crate::grid::masked;
-use crate::map::compaction::ZEROS;
+use crate::map::compaction::{ONES, ZEROS};
 use crate::map::tiles::{NO_TRAIL, Plane, Tiles, Visited};
 
 /// Columns of the halo to the left of a [`Line`].
@@ -47,6 +47,11 @@ impl Column<'_> {
         high: &ZEROS,
         visited: &NO_TRAIL,
     };
+    /// A tile that the map has no room for, to a reader of what may be explored.
+    const FREE: Self = Self {
+        low: &ONES,
+        ..Self::EMPTY
+    };
 
     /// Returns the low and the high bits of a row.
     #[inline(always)]
@@ -74,6 +79,8 @@ pub(crate) struct RowReader<'a, const TILES: usize, const SLOTS: usize> {
     x: i32,
     tile_y: i32,
     columns: [Column<'a>; 3],
+    /// A tile without room reads as free: nothing of it can be explored.
+    only_room: bool,
 }
 
 impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
@@ -84,7 +91,14 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
             x,
             tile_y: i32::MIN,
             columns: [Column::EMPTY; 3],
+            only_room: false,
         }
+    }
+
+    /// Returns the reader of what may be explored, if `only_room`: a tile that the map has no room
+    /// for reads as free.
+    pub(crate) const fn of_room(self, only_room: bool) -> Self {
+        Self { only_room, ..self }
     }
 
     /// Looks up the tiles of a row. Returns its number in them and the shift of their columns.
@@ -100,8 +114,15 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
     fn look_up_tiles(&mut self, tile_y: i32) {
         self.tile_y = tile_y;
         for (k, column) in (0..).zip(&mut self.columns) {
-            let found = self.tiles.column((self.x >> 5) + k, tile_y);
-            *column = found.unwrap_or(Column::EMPTY);
+            let tile_x = (self.x >> 5) + k;
+            let found = self.tiles.column(tile_x, tile_y);
+            *column = found.unwrap_or_else(|| {
+                if self.only_room && self.tiles.room(tile_x, tile_y).is_err() {
+                    Column::FREE
+                } else {
+                    Column::EMPTY
+                }
+            });
         }
     }
 

@@ -157,7 +157,8 @@ fn path_along<const TILES: usize, const SLOTS: usize>(
         let (entry, line) = centres.nearest_in_line(robot, is_reached)?;
         Path::down(line, centres.frame, &space.residues, entry)
     };
-    path.extend(unexplored_beside(path.goal(), centres.tiles));
+    // Nearest first, a robot that may not look beyond the map stands at such a goal for good.
+    path.extend(unexplored_beside(path.goal(), centres.tiles, true));
     Some(path)
 }
 
@@ -183,13 +184,16 @@ fn spread<const TILES: usize, const SLOTS: usize>(
 }
 
 /// Returns the coarse cell at a side of `cell` that holds the most unexplored map cells, if any.
+/// What the map has no room for counts only if it `may_leave_map`.
 pub(crate) fn unexplored_beside<const TILES: usize, const SLOTS: usize>(
     cell: Cell,
     tiles: &Tiles<TILES, SLOTS>,
+    may_leave_map: bool,
 ) -> Option<Cell> {
+    let row = |x, y| tiles.reader(x).of_room(!may_leave_map).row(y);
     let unknown = |cell: Cell| {
         (0..2)
-            .map(|dy| (tiles.row(cell.x, cell.y + dy).unknown() & 3).count_ones())
+            .map(|dy| (row(cell.x, cell.y + dy).unknown() & 3).count_ones())
             .sum::<u32>()
     };
     [(2, 0), (-2, 0), (0, 2), (0, -2)]

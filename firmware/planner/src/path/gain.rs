@@ -21,6 +21,9 @@
 //! | as deep as the robot is wide | 0.3 | 0.91 | 0.89 | 0.94 | 0.97 | 99.48 |
 //! | as deep as the robot is wide | 0.25 | 0.91 | 0.89 | 0.94 | 1.01 | 99.56 |
 //!
+//! What the map has no room for counts nothing: a frontier from which only that would be seen is no
+//! goal. So a robot whose map is full explores what its tiles still take, and then ends.
+//!
 //! A round reads the squares of up to 25 places, so their cells lie in words of 32: a core of 32
 //! bits takes several instructions to shift a longer word. A square and its gain take 53,000
 //! instructions on the chip, and took 90,000 in words of 64, with a square of the cells too near to
@@ -70,7 +73,7 @@ impl View {
         reach_m: f32,
         clearance: i32,
     ) -> Self {
-        let mut reader = tiles.reader(from.x - MOST_REACH);
+        let mut reader = tiles.reader(from.x - MOST_REACH).of_room(true);
         let mut rows = [[[0; 2]; WORDS]; SIDE];
         for (y, pairs) in rows.iter_mut().enumerate() {
             let row = reader.row(from.y - MOST_REACH + y as i32);

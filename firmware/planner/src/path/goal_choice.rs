@@ -94,7 +94,7 @@ pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
     let mut path = search.path_from_robot(best.site, best.steps.into());
     path.set_shares_trip(shares_trip);
     stay_on_level(&mut path, best.site, context, scratch);
-    path.extend(unexplored_beside(path.goal(), context.tiles));
+    path.extend(unexplored_beside(path.goal(), context.tiles, false));
     Some(path)
 }
 

@@ -126,6 +126,24 @@ fn a_view_is_what_a_walk_cell_by_cell_finds() {
     assert!(narrow > 20, "{narrow} narrow");
 }
 
+/// Eight free tiles up to x = 0, and none beyond: a pool of 8 has no page for another one.
+#[test]
+fn what_the_map_has_no_room_for_counts_nothing() {
+    fn tiles<const TILES: usize>() -> Box<Tiles<TILES, 64>> {
+        let mut tiles = Box::<Tiles<TILES, 64>>::default();
+        tiles.reset();
+        for (x, y) in (-64..0).flat_map(|x| (-64..64).map(move |y| (x, y))) {
+            tiles.set(Cell { x, y }, Class::Free).expect("room");
+        }
+        tiles
+    }
+    let gain_m2 = |view: View| view.gain_m2();
+    let at = Cell { x: -4, y: 3 };
+    let (full, roomy) = (tiles::<8>(), tiles::<9>());
+    assert!(gain_m2(View::of(&*roomy, at, 3.0, 3)) > 10.0);
+    assert_eq!(gain_m2(View::of(&*full, at, 3.0, 3)), 0.0);
+}
+
 #[test]
 fn in_the_open_the_gain_is_the_unexplored_area_within_reach() {
     let half_free = |x: i32, _: i32| (x <= 0).then_some(Class::Free);
