@@ -241,8 +241,8 @@ impl Pilot {
             .map_err(convert::wire_refusal)
     }
 
-    /// Takes those tiles of a part that are the next ones of the open correction, and closes it with
-    /// the last part. The answer tells which tile is missing.
+    /// Takes those tiles of a part that are the next ones of the open correction, and closes it
+    /// with the last part. The answer tells which tile is missing.
     ///
     /// # Errors
     /// As [`Pilot::correct`]; [`Refusal::BadTile`], and the tiles before that one are taken.

@@ -9,8 +9,8 @@
 //! n is the normal of the surface at the end, by the scan or else by the hits around m, and m the
 //! mean hit nearest to the end. An end without a normal is a corner, or a thing of its own. It
 //! counts along both axes, with less weight. On a wall it must not: the hits along a wall lie where
-//! earlier scans met it, and would hold the robot back. Beams share errors, so that their information
-//! is divided by `temper`.
+//! earlier scans met it, and would hold the robot back. Beams share errors, so that their
+//! information is divided by `temper`.
 //!
 //! Units: metres, radians.
 

@@ -1,7 +1,8 @@
 //! The correlative search: at which shift and turn do most ends of a scan lie on walls?
 //!
 //! ```text
-//! score(dx, dy, turn) = Σ over ends of near(end + (dx, dy))     near: on a wall 4, beside 2, at a corner 1
+//! score(dx, dy, turn) = Σ over ends of near(end + (dx, dy))
+//! near                = 4 on a wall, 2 beside one, 1 at its corner
 //! ```
 //!
 //! Two stages. A coarse plane holds the greatest `near` of the 4 × 4 cells that begin at a cell, so
@@ -28,8 +29,8 @@ const LEAST_ENDS: usize = 20;
 const ENDS: usize = 90;
 /// Least share of all points.
 const LEAST_SHARE: f32 = 0.5;
-/// Another place fits if it has so great a share of the best one's points, and lies farther off than
-/// so many cells.
+/// Another place fits if it has so great a share of the best one's points, and lies farther off
+/// than so many cells.
 const ALIKE: f32 = 0.9;
 const ELSEWHERE: i32 = 5;
 

@@ -72,8 +72,8 @@ pub(super) struct ReplayArgs {
     json: bool,
 }
 
-/// Variances of the random walk of wheels that nothing is known of, as a multiple of the usual ones:
-/// those of the papers' odometry.
+/// Variances of the random walk of wheels that nothing is known of, as a multiple of the usual
+/// ones: those of the papers' odometry.
 const UNKNOWN_WHEELS: f64 = 20.0;
 
 /// Replays a log; returns true if the device went on up to the end.

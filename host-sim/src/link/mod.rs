@@ -107,8 +107,8 @@ pub struct LinkStats {
 
 /// A link: direct call, loopback bytes, QEMU, serial port.
 ///
-/// No method has a default body but [`Link::correct`], which calls others: the compiler then finds a
-/// decorator that forgets to forward one.
+/// No method has a default body but [`Link::correct`], which calls others: the compiler then finds
+/// a decorator that forgets to forward one.
 pub trait Link {
     /// Asks for the device's identity.
     ///
@@ -180,7 +180,7 @@ pub trait Link {
             progress = self.send_tiles(&part)?;
             if !progress.closed && progress.next <= first {
                 return Err(LinkError::Refused(format!(
-                    "tile {first} of correction {} was not taken; send it anew with a greater epoch",
+                    "tile {first} of correction {} was not taken; send it anew with a later epoch",
                     correction.epoch
                 )));
             }

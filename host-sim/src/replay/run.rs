@@ -66,8 +66,8 @@ pub fn odometry(scans: &[LogScan], degrade: Option<f64>, seed: u64) -> Vec<Pose>
     }
 }
 
-/// Returns the session's time at each scan, milliseconds: the log's, but no step takes less than the
-/// session's robot needs for it.
+/// Returns the session's time at each scan, milliseconds: the log's, but no step takes less than
+/// the session's robot needs for it.
 fn times_ms(scans: &[LogScan], odometry: &[Pose]) -> Vec<u32> {
     let limits = start(&LogLaser::of(scans));
     let (speed, turn_rate): (f64, f64) = (limits.max_linear.to_num(), limits.max_angular.to_num());

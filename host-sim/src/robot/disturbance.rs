@@ -10,8 +10,10 @@
 //! | `missing=P` | each beam carries no information with probability P |
 //!
 //! To odometry a slip is the same whether the wheels or the robot moved alone. Here the wheels do,
-//! so that no slip moves the robot into a wall. A slip, a spin and a push change odometry that counts
-//! wheels; they do not change the true pose as odometry. Units: milliseconds inside, seconds in the text.
+//! so that no slip moves the robot into a wall. A slip, a spin and a push change odometry that
+//! counts wheels; they do not change the true pose as odometry.
+//!
+//! Units: milliseconds inside, seconds in the text.
 
 use core::fmt;
 use core::str::FromStr;
@@ -137,8 +139,8 @@ impl fmt::Display for DisturbanceError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "'{}' is no disturbance; use restart@T, slip@T, spin@A-B, push@A-B, dark@A-B (seconds, A \
-             below B) and missing=P (0 to 0.9), each once, separated by commas",
+            "'{}' is no disturbance; use restart@T, slip@T, spin@A-B, push@A-B, dark@A-B (seconds, \
+             A below B) and missing=P (0 to 0.9), each once, separated by commas",
             self.0
         )
     }

@@ -84,7 +84,7 @@ impl fmt::Display for SlamReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{} closures, {} tries refused, {} keyframes on the {}; {} corrections, at most {:.2} m",
+            "{} closures, {} refused, {} keyframes on the {}; {} corrections, at most {:.2} m",
             self.closed, self.refused, self.keyframes, self.place, self.corrections, self.largest_m,
         )?;
         if self.is_full {

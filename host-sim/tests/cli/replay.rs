@@ -85,8 +85,8 @@ fn a_replay_prints_its_figures_and_writes_its_files() {
         assert_eq!(status, 0, "{stdout}{stderr}");
         let report = &reports(&stdout)[0];
         let keys: Vec<&String> = report.as_object().unwrap().keys().collect();
-        let expected = "degrade input_faults late_scans link log map_full_at occupied_cells_5cm quality \
-                        relations seed steps";
+        let expected = "degrade input_faults late_scans link log map_full_at occupied_cells_5cm \
+                        quality relations seed steps";
         assert_eq!(keys, expected.split(' ').collect::<Vec<_>>());
         assert_eq!(report["steps"], 60);
         assert_eq!(report["degrade"], Value::Null);

@@ -1,4 +1,4 @@
-//! Corrections of the map: a motion of the robot's pose, and tiles that replace those of the device.
+//! Corrections of the map: a motion of the robot's pose, and tiles that replace the device's.
 //!
 //! ```text
 //! correct { epoch, motion, tiles: n }   opens a correction; the robot stands

@@ -71,8 +71,8 @@ pub enum Refusal {
     NoTeam,
     /// No correction of this epoch is open.
     NoCorrection,
-    /// A correction has more than [`MOST_CORRECTED`] tiles, moves the robot more than 10 km from the
-    /// map's origin, or is for uneven ground.
+    /// A correction has more than [`MOST_CORRECTED`] tiles, moves the robot more than 10 km from
+    /// the map's origin, or is for uneven ground.
     BadCorrection,
     /// The cells of a tile are not those of a tile.
     BadTile,

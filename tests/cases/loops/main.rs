@@ -8,5 +8,6 @@ mod limits;
 mod overlay;
 mod patrol;
 mod sides;
+mod slam;
 mod sweep;
 mod uneven;

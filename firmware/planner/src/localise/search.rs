@@ -112,8 +112,9 @@ impl Search {
         }
     }
 
-    /// Tries a few turns. It runs only while the robot is lost. Returns the best candidate and the best one elsewhere where the search is
-    /// to decide. `yaw_sd_rad` is the standard deviation of the yaw.
+    /// Tries a few turns. It runs only while the robot is lost. Returns the best candidate and the
+    /// best one elsewhere where the search is to decide. `yaw_sd_rad` is the standard deviation of
+    /// the yaw.
     #[cold]
     #[inline(never)]
     pub(super) fn advance<const TILES: usize, const SLOTS: usize>(
@@ -300,8 +301,8 @@ fn count<const TILES: usize, const SLOTS: usize>(
     counts
 }
 
-/// Returns the greatest count of a row, and the shifts that have it. It is not inlined: it is called
-/// from four places.
+/// Returns the greatest count of a row, and the shifts that have it. It is not inlined: it is
+/// called from four places.
 #[inline(never)]
 fn most(planes: &[u32; PLANES]) -> (u32, u32) {
     let mut mask = u32::MAX;

@@ -24,7 +24,8 @@
 //!
 //! A scan comes each period, and no slip is longer than a robot slides in one. A longer step has
 //! left scans out. Then the map holds little of what the new scan sees: in a corridor the last scan
-//! is all of it, and it fits best where it was taken. So a step that long is never taken for a slip.
+//! is all of it, and it fits best where it was taken. So a step that long is never taken for a
+//! slip.
 //!
 //! Units: map cells, radians; metres for poses.
 

@@ -5,7 +5,7 @@
 //! | of a replaced tile | after |
 //! | --- | --- |
 //! | cells | as told; without a known cell the tile is forgotten, and its page is spare |
-//! | evidence | none: the next beam counts from the class, 12 for an obstacle and 5 for a free cell |
+//! | evidence | none: the next beam counts from the class, 12 of an obstacle, 5 of a free cell |
 //! | trail | forgotten here; the planner puts it where its places go |
 //! | version | the next epoch, and news for the team |
 //!

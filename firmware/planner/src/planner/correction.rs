@@ -265,8 +265,8 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         Ok(())
     }
 
-    /// Finishes the open correction, if it has all its tiles: moves the pose and what is remembered.
-    /// Returns how far it is.
+    /// Finishes the open correction, if it has all its tiles: moves the pose and what is
+    /// remembered. Returns how far it is.
     #[inline(never)]
     pub fn finish_correction(
         &mut self,
