@@ -9,7 +9,8 @@ use crate::strategy::frontier::Frontier;
 
 impl Frontier {
     /// Moves what lies in the map with its tiles. The robot drives on along the moved path until
-    /// the next one is planned. `robot` is its place afterwards. The chances that are spent stay spent.
+    /// the next one is planned. `robot` is its place afterwards. The chances that are spent stay
+    /// spent.
     pub(crate) fn correct(&mut self, shifts: Shifts<'_>, robot: Point) {
         self.residual.shift(shifts);
         self.blocked.shift(shifts);
