@@ -6,9 +6,9 @@
 //!                                    device's map ◄── correction ─┘
 //! ```
 //!
-//! A tile moves with the scan that was taken nearest to its middle. It is sent if it has moved by
-//! half a cell or more since its content was made. Others stay as the device has them: they were
-//! made within half a cell of where they belong.
+//! A tile moves with the scan that was taken nearest to its middle. It is sent if it has moved by a
+//! cell or more since its content was made. Others stay as the device has them: they were made
+//! within a cell of where they belong. Half a cell would correct the map more often than it errs.
 //!
 //! Units: metres, radians; map cells of 10 cm; tiles of 3.2 m.
 
