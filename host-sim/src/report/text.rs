@@ -84,6 +84,9 @@ impl Report {
                 "  position  wrong by {mean_m:.2} m on average, {max_m:.2} m at most"
             ));
         }
+        if let Some(slam) = &self.slam {
+            lines.push(format!("  graph     {slam}"));
+        }
         lines.extend(self.input_faults.line());
         if let Some(network) = &self.network {
             let dropped = network.malformed + network.unauthentic + network.foreign;
