@@ -110,10 +110,4 @@ impl Canvas {
         });
         tiles.collect()
     }
-
-    /// Returns true if a scan met more tiles than there is room for.
-    #[must_use]
-    pub fn is_full(&self) -> bool {
-        self.map.pool_full() || self.map.out_of_box()
-    }
 }

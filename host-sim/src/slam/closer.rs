@@ -71,12 +71,6 @@ impl LoopCloser {
         self.graph.report()
     }
 
-    /// Returns the poses of all scans, as corrected so far.
-    #[must_use]
-    pub fn poses(&self) -> Vec<Pose> {
-        self.graph.poses()
-    }
-
     /// Returns the correction to these poses; `None` if no tile has moved far enough.
     fn correction(&mut self, poses: &[Pose], mirror: &Mirror) -> Option<MapCorrection> {
         let before: BTreeMap<Key, Classes> = mirror.tiles().collect();
