@@ -51,6 +51,15 @@ fn squeeze(word: u32, scale: i32) -> u64 {
     })
 }
 
+/// Returns the window's columns from `first` to `last`.
+fn columns(first: i32, last: i32) -> u64 {
+    let (first, last) = (first.max(0), last.min(SIDE as i32 - 1));
+    if first > last {
+        return 0;
+    }
+    u64::MAX << first & u64::MAX >> (63 - last)
+}
+
 impl LocalGrid {
     /// Returns an empty grid. It is all zeros, so a static one costs no flash.
     #[must_use]
@@ -230,10 +239,10 @@ impl LocalGrid {
             let Some((row, half)) = row.zip(footprint.half_width(dy)) else {
                 continue;
             };
-            for dx in -half..=half {
-                if dx * dx + dy * dy < limit2 && (0..SIDE as i32).contains(&(x + dx)) {
-                    *row &= !(1 << (x + dx));
-                }
+            // The row's cells that are nearer than the limit lie side by side.
+            let nearer = |half: &i32| half * half + dy * dy < limit2;
+            if let Some(half) = (0..=half).rev().find(nearer) {
+                *row &= !columns(x - half, x + half);
             }
         }
     }

@@ -23,7 +23,11 @@ const RING: usize = (2 * MOST_RADIUS + 1).next_power_of_two();
 
 /// The rows of the map around the present one.
 #[derive(Debug, Default)]
-struct Ring([Line; RING]);
+struct Ring {
+    lines: [Line; RING],
+    /// The last row that was put and has an obstacle, if any has.
+    last: Option<i32>,
+}
 
 /// The robot's footprint for planning: a disc. Its row dy covers the columns −h..=h.
 #[derive(Clone, Copy, Debug)]
@@ -86,18 +90,30 @@ impl Footprint {
 impl Ring {
     #[inline(always)]
     fn get(&self, row: i32) -> Line {
-        *wrapped(&self.0, row as usize)
+        *wrapped(&self.lines, row as usize)
     }
 
     #[inline(always)]
     fn put(&mut self, row: i32, line: Line) {
-        *wrapped_mut(&mut self.0, row as usize) = line;
+        *wrapped_mut(&mut self.lines, row as usize) = line;
+        if line.around != 0 {
+            self.last = Some(row);
+        }
     }
 
-    /// Returns the cells of a row whose disc holds an obstacle. It is long and called from three
-    /// places, so it is not inlined.
-    #[inline(never)]
+    /// Returns the cells of a row whose disc holds an obstacle. In open space no row near has one.
+    #[inline(always)]
     fn blocked(&self, row: i32, footprint: &Footprint) -> u64 {
+        match self.last {
+            Some(last) if last >= row - footprint.reach => self.blocked_near(row, footprint),
+            _ => 0,
+        }
+    }
+
+    /// Returns the same as [`Self::blocked`]. It is long and called from three places, so it is not
+    /// inlined.
+    #[inline(never)]
+    fn blocked_near(&self, row: i32, footprint: &Footprint) -> u64 {
         footprint.near(|dy| {
             let dy = dy as i32;
             self.get(row - dy).around | self.get(row + dy).around

@@ -106,6 +106,35 @@ fn the_centre_is_kept_off_cells_but_never_enclosed() {
 
 /// A disc that the robot stands beside, and one that it stands in.
 #[test]
+fn a_kept_off_disc_is_the_one_cell_by_cell() {
+    let footprint = Footprint::new(0.45);
+    let middle = Cell { x: 0, y: 0 };
+    // Also beyond each edge of the window.
+    for off in [(0, 0), (29, -30), (-33, 12), (31, 33), (4, 60)] {
+        let off = Cell { x: off.0, y: off.1 };
+        for limit2 in [0, 1, 2, 9, 14, 400] {
+            let mut grid = LocalGrid::new();
+            grid.update(&room(), &footprint, middle, 1);
+            grid.passable = [ROW; SIDE];
+            grid.block_footprint(off, &footprint, limit2);
+            for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
+                let cell = grid.cell(x, y);
+                let (dx, dy) = (cell.x - off.x, cell.y - off.y);
+                let inside = footprint
+                    .half_width(dy)
+                    .is_some_and(|half| dx.abs() <= half);
+                let closed = inside && dx * dx + dy * dy < limit2;
+                assert_eq!(
+                    LocalGrid::has(&grid.passable, (x, y)),
+                    !closed,
+                    "{off:?} {limit2}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn a_disc_is_closed_up_to_the_robot() {
     let (tiles, footprint) = (room(), Footprint::new(0.3));
     let robot = Cell { x: -10, y: 0 };
