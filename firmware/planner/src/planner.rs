@@ -358,7 +358,6 @@ fn sense<const TILES: usize, const SLOTS: usize>(
     let input = &Input { pose, ..*input };
     if !state.started {
         state.started = true;
-        state.start = input.pose.point().cell();
         if !config.survey && starts_blocked(config, input) {
             state.status = Status::Fault(Fault::StartBlocked);
         }

@@ -17,7 +17,6 @@
 //! | trail | by shift | where its tile is forgotten, or the scratch memory is full |
 //! | arrivals | they are cells | |
 //! | versions for the team | a listed tile is news, of the next epoch | |
-//! | start | by shift | |
 //! | goals given up, blocked passages, viewpoint | by shift | |
 //! | path and goal | by shift, and planned anew on the next skeleton | |
 //! | progress towards goals, skeleton | | always: begun anew |
@@ -296,7 +295,6 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.strategy.correct(shifts, pose.point(), spare);
         self.viewpoints = viewpoint::Search::new();
         self.drive.correct(&motion);
-        self.start = shifts.moved(self.start);
         self.has_new_skeleton = false;
         self.ends = false;
         self.correcting.progress()

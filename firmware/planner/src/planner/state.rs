@@ -12,7 +12,6 @@ use crate::config::{Config, Order};
 use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{self, Drive};
 use crate::field::preference::Preferences;
-use crate::geometry::Cell;
 use crate::input::InputFaults;
 use crate::localise::{Localiser, Location};
 use crate::map::Map;
@@ -59,8 +58,6 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     pub(super) forgot_arrivals: bool,
     /// What corrects the map.
     pub(super) correcting: Correcting,
-    /// The robot's first cell.
-    pub(super) start: Cell,
 }
 
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
@@ -102,7 +99,6 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             ends: false,
             forgot_arrivals: false,
             correcting: Correcting::new(),
-            start: Cell { x: 0, y: 0 },
         }
     }
 

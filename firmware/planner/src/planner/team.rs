@@ -44,7 +44,6 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.strategy.reset(config);
         self.viewpoints = viewpoint::Search::new();
         self.drive = Drive::new();
-        self.start = by.point(self.start.centre()).cell();
         self.has_new_skeleton = false;
         self.ends = false;
     }

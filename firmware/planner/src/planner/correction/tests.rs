@@ -161,7 +161,6 @@ fn a_tile_is_replaced_and_its_marks_go_with_it() {
     let (given_up, _) = bench.state.strategy.frontier.given_up_mut();
     given_up.give_up(here, ResidualReason::NoProgress);
     given_up.give_up(beside, ResidualReason::Unreachable);
-    bench.state.start = here;
     for cell in [here, beside] {
         bench.state.map.mark_trail(cell);
     }
@@ -184,7 +183,6 @@ fn a_tile_is_replaced_and_its_marks_go_with_it() {
     }
     let cells: Vec<Cell> = bench.state.frontiers().iter().map(|it| it.cell).collect();
     assert_eq!(cells, [here.offset(3, 1), beside]);
-    assert_eq!(bench.state.start, here.offset(3, 1));
     let trail = |tile| bench.state.map.trail(tile).collect::<Vec<Cell>>();
     assert_eq!(trail((0, 0)), [block(here.offset(3, 1))]);
     assert_eq!(trail((1, 0)), [block(beside)]);
@@ -272,13 +270,11 @@ fn a_correction_begins_ends_and_is_answered_once() {
 #[test]
 fn of_an_abandoned_correction_only_its_tiles_stay() {
     let mut bench = Bench::with_rooms();
-    bench.state.start = AT;
     bench.begin(1, 2).expect("it is the first one");
     bench.tile(&moved()).expect("it is open");
     bench.begin(2, 0).expect("it is newer");
     assert!(bench.finish().closed);
     assert_eq!(bench.state.location().pose.0.x_m, 1.0, "moved once");
-    assert_eq!(bench.state.start, AT);
     assert_eq!(bench.drawn(10)[0], MOVED[0][..10]);
 }
 
