@@ -312,6 +312,17 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
              --ground flat, or say --slam off"
         );
     }
+    let is_localised = match args.localise {
+        Some(switch) => switch == SwitchArg::On,
+        None => odometry != OdometryArg::Truth,
+    };
+    if args.localise == Some(SwitchArg::On) && on_device(&args.strategy).is_none() {
+        bail!(
+            "--localise corrects the pose on the device, and --strategy {} runs on the host; \
+             take a strategy on the device, or leave --localise out",
+            args.strategy
+        );
+    }
     let disturbances = args.disturb.unwrap_or_default();
     if disturbances.needs_wheels() && odometry == OdometryArg::Truth {
         bail!(
@@ -330,10 +341,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         seed: args.seed,
         start: args.start,
         odometry: odometry.into(),
-        localise: match args.localise {
-            Some(switch) => switch == SwitchArg::On,
-            None => odometry != OdometryArg::Truth,
-        },
+        localise: is_localised,
         imu_rad: args.imu_noise.map(f64::to_radians),
         laser_m: args.laser_noise,
         working,

@@ -237,6 +237,14 @@ fn bad_arguments_are_refused_in_one_line() {
     );
     explore(&["--levels", "maybe"], &["maybe", "on, off"]);
     explore(
+        &["--strategy", "bvp", "--localise", "on"],
+        &["--strategy bvp runs on the host", "leave --localise out"],
+    );
+    explore(
+        &["--strategy", "bvp", "--slam", "host"],
+        &["--slam corrects the map of a device", "say --slam off"],
+    );
+    explore(
         &["--strategy", "terrain", "--ground", "flat"],
         &["means --strategy frontier", "leave --ground flat out"],
     );
