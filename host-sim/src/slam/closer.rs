@@ -6,9 +6,11 @@
 //!                                    device's map ◄── correction ─┘
 //! ```
 //!
-//! A tile moves with the scan that was taken nearest to its middle. It is sent if it has moved by a
-//! cell or more since its content was made. Others stay as the device has them: they were made
-//! within a cell of where they belong. Half a cell would correct the map more often than it errs.
+//! A tile is sent if a scan that reached it has moved by a cell or more since it was drawn there: a
+//! robot that comes back with a wrong pose has drawn into tiles of its first pass, too. Others stay
+//! as the device has them: they were made within a cell of where they belong. Half a cell would
+//! correct the map more often than it errs. What the device remembers of a tile moves with the scan
+//! that was taken nearest to its middle.
 //!
 //! Units: metres, radians; map cells of 10 cm; tiles of 3.2 m.
 
@@ -25,7 +27,7 @@ use crate::replay::relations::{Pose, compose, inverse};
 use crate::trial::Corrector;
 use crate::trial::mirror::Mirror;
 
-/// A move that is worth a correction, metres: a cell.
+/// A scan that has moved less draws what it drew, metres: a cell.
 const LEAST_M: f64 = CELL_M as f64;
 /// Side of a tile, metres.
 const TILE_M: f64 = TILE_SIDE as f64 * CELL_M as f64;
@@ -71,47 +73,32 @@ impl LoopCloser {
         self.graph.report()
     }
 
-    /// Returns the correction to these poses; `None` if no tile has moved far enough.
+    /// Returns the correction to these poses; `None` if the map needs none.
     fn correction(&mut self, poses: &[Pose], mirror: &Mirror) -> Option<MapCorrection> {
-        let before: BTreeMap<Key, Classes> = mirror.tiles().collect();
-        let entered = || {
-            self.scans
-                .iter()
-                .zip(poses)
-                .filter(|(scan, _)| scan.entered)
-        };
-        if entered().all(|(scan, pose)| !moves(scan, pose)) {
+        let moved = self.drawn_anew(poses);
+        if moved.is_empty() {
             return None;
         }
+        let entered = self.scans.iter().zip(poses);
+        let entered = entered.filter(|(scan, _)| scan.entered);
         let canvas = Canvas::of(
             &self.start,
-            entered().map(|(scan, pose)| (&scan.observation, *pose)),
+            entered.map(|(scan, pose)| (&scan.observation, *pose)),
         )?;
+        let before: BTreeMap<Key, Classes> = mirror.tiles().collect();
         let mut tiles = Vec::new();
-        let mut sent = BTreeSet::new();
-        let drawn = canvas.keys().filter(|key| canvas.planes(*key).is_some());
-        let keys: BTreeSet<Key> = before.keys().copied().chain(drawn).collect();
-        for key in keys {
-            let Some((scan, pose)) = self.nearest(key, poses) else {
-                continue;
-            };
-            let [dx, dy] = shift_m(scan, pose, middle(key));
-            let has_moved = dx.hypot(dy) >= LEAST_M || !before.contains_key(&key);
+        for key in moved {
             let classes = canvas.planes(key).unwrap_or_default();
-            if !has_moved || before.get(&key).copied().unwrap_or_default() == classes {
-                continue;
+            if before.get(&key).copied().unwrap_or_default() != classes {
+                tiles.push(CorrectedTile {
+                    key,
+                    shift: self.shift_of(key, poses)?,
+                    classes,
+                });
             }
-            let cells = |m: f64| (m / f64::from(CELL_M)).round();
-            let cells = |m: f64| cells(m).clamp(-MOST_CELLS, MOST_CELLS) as i8;
-            sent.insert(key);
-            tiles.push(CorrectedTile {
-                key,
-                shift: (cells(dx), cells(dy)),
-                classes,
-            });
         }
         for (scan, pose) in self.scans.iter_mut().zip(poses) {
-            if sent.contains(&tile_of(scan.sent)) || sent.contains(&tile_of(*pose)) {
+            if has_moved(scan, pose) {
                 scan.sent = *pose;
             }
         }
@@ -123,6 +110,27 @@ impl LoopCloser {
             motion: Motion { x_m, y_m, yaw_rad },
             tiles,
         })
+    }
+
+    /// Returns the tiles that scans which have moved reached, and those that they reach now.
+    fn drawn_anew(&self, poses: &[Pose]) -> BTreeSet<Key> {
+        let mut tiles = BTreeSet::new();
+        for (scan, pose) in self.scans.iter().zip(poses) {
+            if scan.entered && has_moved(scan, pose) {
+                for place in [scan.sent, *pose] {
+                    tiles.extend(reached(&self.start, &scan.observation, place));
+                }
+            }
+        }
+        tiles
+    }
+
+    /// Returns the shift of what the device remembers of a tile, cells.
+    fn shift_of(&self, key: Key, poses: &[Pose]) -> Option<(i8, i8)> {
+        let (scan, pose) = self.nearest(key, poses)?;
+        let cells = shift_m(scan, pose, middle(key)).map(|m| (m / f64::from(CELL_M)).round());
+        let [dx, dy] = cells.map(|cells| cells.clamp(-MOST_CELLS, MOST_CELLS) as i8);
+        Some((dx, dy))
     }
 
     /// Returns the entered scan that was taken nearest to a tile's middle, and its pose now.
@@ -167,7 +175,7 @@ impl Corrector for LoopCloser {
 }
 
 /// Returns true if a scan has moved far enough, itself or what it saw some metres off.
-fn moves(scan: &Scan, pose: &Pose) -> bool {
+fn has_moved(scan: &Scan, pose: &Pose) -> bool {
     let [x, y, yaw] = scan.sent;
     let turn = crate::robot::wrap(pose[2] - yaw).abs();
     (pose[0] - x).hypot(pose[1] - y).max(turn * TILE_M) >= LEAST_M
@@ -184,7 +192,90 @@ fn middle((x, y): Key) -> [f64; 2] {
     [x, y].map(|at| (f64::from(at) + 0.5) * TILE_M)
 }
 
+/// Returns the tiles that a scan's beams cross from a pose. Beams and places along them are looked
+/// at each half tile.
+fn reached(start: &Start, observation: &Observation, pose: Pose) -> BTreeSet<Key> {
+    let mut tiles = BTreeSet::new();
+    let look_m = 0.5 * TILE_M;
+    for (laser, scan) in start.lasers.iter().zip(&observation.scans) {
+        let step_rad: f64 = laser.bearing_step.to_num();
+        let first_rad: f64 = laser.first_bearing.to_num();
+        let most_m = f64::from(laser.range_limit_mm) * 1e-3;
+        // A step of zero makes it infinite, and the cast the greatest number.
+        let stride = (look_m / (step_rad.abs() * most_m)).max(1.0) as usize;
+        for (number, &range_mm) in (0..).zip(&scan.ranges_mm).step_by(stride) {
+            let (sin, cos) = (first_rad + step_rad * f64::from(number)).sin_cos();
+            // A code for no return is farther than any range.
+            let range_m = (f64::from(range_mm) * 1e-3).min(most_m);
+            let steps = (range_m / look_m).ceil().max(1.0) as u32;
+            tiles.extend((0..=steps).map(|k| {
+                let part_m = range_m * f64::from(k) / f64::from(steps);
+                tile_of(compose(pose, [part_m * cos, part_m * sin, 0.0]))
+            }));
+        }
+    }
+    tiles
+}
+
 fn tile_of([x, y, _]: Pose) -> Key {
     let tile = |m: f64| (m / TILE_M).floor() as i16;
     (tile(x), tile(y))
+}
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+    use fieldline_protocol::message::{Laser, NO_RETURN_MM, Scan as Sweep};
+    use fixed::types::I16F16;
+
+    use super::*;
+
+    /// A laser of five beams over half a turn, and what it saw.
+    fn seen(ranges_mm: [u16; 5]) -> (Start, Observation) {
+        let laser = Laser {
+            beams: 5,
+            first_bearing: I16F16::from_num(-FRAC_PI_2),
+            bearing_step: I16F16::from_num(FRAC_PI_4),
+            range_limit_mm: 8_000,
+            ..Laser::default()
+        };
+        let start = Start {
+            lasers: [laser].into_iter().collect(),
+            ..Start::default()
+        };
+        let scan = Sweep {
+            ranges_mm: ranges_mm.into_iter().collect(),
+        };
+        let observation = Observation {
+            scans: [scan].into_iter().collect(),
+            ..Observation::default()
+        };
+        (start, observation)
+    }
+
+    #[test]
+    fn a_scan_reaches_the_tiles_that_its_beams_cross() {
+        let (start, observation) = seen([1_000, 0, NO_RETURN_MM, 0, 4_000]);
+        let tiles: Vec<Key> = reached(&start, &observation, [1.7, 1.6, 0.0])
+            .into_iter()
+            .collect();
+        // 8 m ahead, 1 m to the right and 4 m to the left.
+        assert_eq!(tiles, [(0, 0), (0, 1), (1, 0), (2, 0), (3, 0)]);
+    }
+
+    #[test]
+    fn a_scan_that_turns_moves_what_it_saw_some_metres_off() {
+        let (_, observation) = seen([0; 5]);
+        let scan = Scan {
+            observation,
+            sent: [5.0, 5.0, 3.1],
+            entered: true,
+        };
+        assert!(!has_moved(&scan, &[5.05, 5.0, 3.1]));
+        assert!(has_moved(&scan, &[5.11, 5.0, 3.1]));
+        assert!(has_moved(&scan, &[5.0, 5.0, -3.1]), "five degrees");
+        let moved = shift_m(&scan, &[5.0, 5.0, 3.1 + 0.1], [8.0, 5.0]);
+        assert!(moved[1] > 0.29 && moved[0].abs() < 0.02, "{moved:?}");
+    }
 }

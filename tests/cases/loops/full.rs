@@ -1,7 +1,7 @@
 //! Cases that take hours: `tests/run --full` runs them.
 
 use crate::sides::{Fork, assert_follows_preference};
-use crate::{closed, impatience, limits, patrol, uneven};
+use crate::{closed, impatience, limits, patrol, slam, uneven};
 
 #[test]
 #[ignore = "takes hours: 420 runs; tests/run --full runs it"]
@@ -19,6 +19,12 @@ fn rails_with_and_without_impatience() {
 #[ignore = "takes long: 210 runs; tests/run --full runs it"]
 fn loops_with_and_without_limits() {
     limits::check_every_start("loop-limits-full");
+}
+
+#[test]
+#[ignore = "takes half an hour: 270 runs; tests/run --full runs it"]
+fn closed_loops_correct_the_map_of_every_start() {
+    slam::check_every_start("slam-full");
 }
 
 #[test]

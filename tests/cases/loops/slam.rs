@@ -13,6 +13,22 @@ use host_sim::report::Report;
 use host_sim::slam::SlamPlace;
 use host_sim::trial::mission::{Mission, OdometryProfile};
 
+/// The papers' worlds with loops.
+const WORLDS: [&str; 6] = [
+    "ouroboros-a",
+    "ouroboros-b",
+    "ouroboros-c",
+    "ouroboros-d",
+    "tdbvp-adjacent",
+    "tdbvp-nested",
+];
+/// Strategies that close loops, and one that does not.
+const STRATEGIES: [&str; 3] = ["ouroboros", "tdbvp", "frontier"];
+/// Starts of each world in the long table.
+const STARTS: usize = 15;
+/// Simulated time of a run of the long table, milliseconds.
+const LIMIT_MS: u32 = 1_800_000;
+
 /// Greatest mean error of the runs that close loops, metres.
 const MOST_ERROR_M: f64 = 0.25;
 
@@ -110,6 +126,133 @@ fn a_strategy_that_closes_loops_corrects_its_map() {
         host < off && host <= MOST_ERROR_M,
         "{host} m, without the graph {off} m"
     );
+}
+
+/// Runs every start with the graph, and compares the errors of each strategy with those of
+/// `frontier` from the same start with golden file `name`.
+pub(crate) fn check_every_start(name: &str) {
+    let worlds = worlds::builtins(&WORLDS);
+    let runs: Vec<(usize, Run)> = (0..worlds.len())
+        .flat_map(|world| STRATEGIES.map(|strategy| (world, strategy)))
+        .flat_map(|(world, strategy)| {
+            (0..STARTS).map(move |start| (world, (strategy, start, SlamPlace::Host)))
+        })
+        .collect();
+    let reports = in_parallel(&runs, |(world, run)| {
+        let mission = Mission {
+            time_limit_ms: LIMIT_MS,
+            ..mission(run)
+        };
+        explored(&mission, &worlds[*world], &mut Direct::new()).0
+    });
+    golden::compare(&format!("{name}.txt"), &summary(&reports).to_string());
+    let mended: Vec<&str> = reports
+        .iter()
+        .map(|report| report.outcome.reason.as_str())
+        .filter(|reason| ["pose-lost", "map-full"].contains(reason))
+        .collect();
+    assert!(mended.is_empty(), "{mended:?}");
+}
+
+/// Returns a row for each world and strategy, and one for all worlds.
+fn summary(reports: &[Report]) -> Table {
+    let heads = [
+        "world",
+        "strategy",
+        "runs",
+        "explored",
+        "stuck",
+        "time limit",
+        "contacts",
+        "s",
+        "error m",
+        "most m",
+        "end m",
+        "corrections",
+        "smaller than frontier",
+        "z",
+    ];
+    let mut table = Table::new(2, &heads);
+    for world in WORLDS.iter().copied().chain(["all"]) {
+        let of = |strategy: &str| -> Vec<&Report> {
+            let here = reports
+                .iter()
+                .filter(|it| world == "all" || it.world == world);
+            here.filter(|it| it.strategy == strategy).collect()
+        };
+        let other = errors(&of("frontier"));
+        for strategy in STRATEGIES {
+            let runs = of(strategy);
+            let ends = |reason: &str| {
+                let ended = runs.iter().filter(|it| it.outcome.reason == reason);
+                ended.count().to_string()
+            };
+            let own = errors(&runs);
+            let smaller = own.iter().zip(&other).filter(|(own, other)| own < other);
+            let (smaller, z) = (smaller.count().to_string(), signed_rank(&own, &other));
+            let pairs = if strategy == "frontier" {
+                ["-".into(), "-".into()]
+            } else {
+                [smaller, number(z, 1)]
+            };
+            let contacts: u32 = runs.iter().map(|it| it.safety.collisions).sum();
+            let corrections = |it: &Report| it.slam.as_ref().map(|slam| slam.corrections as f64);
+            let [smaller, z] = pairs;
+            table.row(vec![
+                world.into(),
+                strategy.into(),
+                runs.len().to_string(),
+                ends("explored"),
+                ends("stuck"),
+                ends("simulated-time"),
+                contacts.to_string(),
+                number(mean(&runs, |it| Some(it.sim_time_s)), 0),
+                number(mean(&runs, |it| it.localization.mean_error_m), 3),
+                number(mean(&runs, |it| it.localization.max_error_m), 2),
+                number(mean(&runs, |it| it.localization.end_error_m), 3),
+                number(mean(&runs, corrections), 0),
+                smaller,
+                z,
+            ]);
+        }
+    }
+    table
+}
+
+fn errors(reports: &[&Report]) -> Vec<f64> {
+    let errors = reports.iter().map(|it| it.localization.mean_error_m);
+    errors.map(|it| it.expect("a run has steps")).collect()
+}
+
+/// Returns z of Wilcoxon's signed-rank test of pairs: below −1.6 the first ones are the smaller
+/// ones, at a level of 5 %. `None` if no pair differs.
+fn signed_rank(one: &[f64], other: &[f64]) -> Option<f64> {
+    let apart = one.iter().zip(other).map(|(one, other)| one - other);
+    let apart: Vec<f64> = apart.filter(|it| *it != 0.0).collect();
+    let rank = |of: &f64| {
+        let nearer = apart.iter().filter(|it| it.abs() < of.abs()).count() as f64;
+        let equal = apart.iter().filter(|it| it.abs() == of.abs()).count() as f64;
+        nearer + 0.5 * (equal + 1.0)
+    };
+    let above: f64 = apart.iter().filter(|it| **it > 0.0).map(rank).sum();
+    let n = apart.len() as f64;
+    let spread = (n * (n + 1.0) * (2.0 * n + 1.0) / 24.0).sqrt();
+    (n > 0.0).then(|| (above - 0.25 * n * (n + 1.0)) / spread)
+}
+
+/// Ten pairs of a textbook's example, one of them equal.
+#[test]
+fn the_signed_rank_test_counts_ranks() {
+    let one = [
+        125.0, 115.0, 130.0, 140.0, 140.0, 115.0, 140.0, 125.0, 140.0, 135.0,
+    ];
+    let other = [
+        110.0, 122.0, 125.0, 120.0, 140.0, 124.0, 123.0, 137.0, 135.0, 145.0,
+    ];
+    // Nine pairs differ: 27 of 45.
+    let z = signed_rank(&one, &other).expect("pairs differ");
+    assert!((z - (27.0 - 22.5) / 71.25_f64.sqrt()).abs() < 1e-9, "{z}");
+    assert_eq!(signed_rank(&one, &one), None);
 }
 
 #[test]
