@@ -72,9 +72,10 @@ pub struct SlamReport {
     pub closed: usize,
     /// Tries to close a loop that brought no closure.
     pub refused: usize,
-    /// Corrections of the map.
+    /// Corrections of the past by closures. A device's map is corrected where they move what it
+    /// shows.
     pub corrections: usize,
-    /// Longest way by which a correction moved the robot's pose, metres.
+    /// Longest way by which a correction moved the robot's pose in the graph, metres.
     pub largest_m: f64,
     /// The graph had no room for a further keyframe.
     pub is_full: bool,
