@@ -25,7 +25,7 @@ const WORLDS: [&str; 6] = [
 /// Strategies that close loops, and one that does not.
 const STRATEGIES: [&str; 3] = ["ouroboros", "tdbvp", "frontier"];
 /// Starts of each world in the long table.
-const STARTS: usize = 15;
+const STARTS: usize = 5;
 /// Simulated time of a run of the long table, milliseconds.
 const LIMIT_MS: u32 = 1_800_000;
 
@@ -128,9 +128,9 @@ fn a_strategy_that_closes_loops_corrects_its_map() {
     );
 }
 
-/// Runs every start with the graph, and compares the errors of each strategy with those of
+/// Runs five starts with the graph, and compares the errors of each strategy with those of
 /// `frontier` from the same start with golden file `name`.
-pub(crate) fn check_every_start(name: &str) {
+pub(crate) fn check_five_starts(name: &str) {
     let worlds = worlds::builtins(&WORLDS);
     let runs: Vec<(usize, Run)> = (0..worlds.len())
         .flat_map(|world| STRATEGIES.map(|strategy| (world, strategy)))
