@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! step ─► pose graph ─ closed a loop ─► poses of all scans ─► map of the corrected poses
-//!                                                                 │ tiles that moved
+//!                                                                 │ tiles that changed
 //!                                    device's map ◄── correction ─┘
 //! ```
 //!
@@ -27,7 +27,7 @@ use crate::replay::relations::{Pose, compose, inverse};
 use crate::trial::Corrector;
 use crate::trial::mirror::Mirror;
 
-/// A scan that has moved less draws what it drew, metres: a cell.
+/// A scan that has moved less is not drawn anew, metres: a cell.
 const LEAST_M: f64 = CELL_M as f64;
 /// Side of a tile, metres.
 const TILE_M: f64 = TILE_SIDE as f64 * CELL_M as f64;
