@@ -306,4 +306,6 @@ impl<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> Slam<KEYS, LOOPS
 }
 
 #[cfg(test)]
+mod aliases;
+#[cfg(test)]
 mod tests;

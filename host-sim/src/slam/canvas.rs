@@ -14,6 +14,7 @@ use fieldline_planner::map::tiles::TILE_SIDE;
 use fieldline_protocol::message::{Observation, Start, TILE_STAMPS, Tile};
 
 use super::made_on_a_large_stack;
+use super::votes::Votes;
 use crate::link::correction::Classes;
 use crate::replay::relations::Pose;
 
@@ -26,6 +27,7 @@ const SLOTS: usize = 4096;
 #[derive(Debug)]
 pub struct Canvas {
     map: Box<Map<TILES, SLOTS>>,
+    votes: Votes,
     /// Least and greatest tile that a scan may have reached.
     reach: Option<[(i16, i16); 2]>,
 }
@@ -41,6 +43,7 @@ impl Canvas {
         let config = convert::config(start, &Tuning::DEFAULT).ok()?;
         let mut canvas = Self {
             map: made_on_a_large_stack(Map::new),
+            votes: Votes::default(),
             reach: None,
         };
         canvas.map.begin(&config);
@@ -57,6 +60,9 @@ impl Canvas {
         let mut pose = input.pose;
         (pose.x_m, pose.y_m, pose.yaw_rad) = (x as f32, y as f32, yaw as f32);
         self.map.observe(config, &Input { pose, ..input });
+        for (laser, ranges_mm) in config.lasers().iter().zip(input.scans) {
+            self.votes.enter(laser, ranges_mm, [x, y, yaw]);
+        }
         let farthest_mm = observation.scans.iter().flat_map(|scan| &scan.ranges_mm);
         // A code for no return is farther than any range.
         let farthest_m = f64::from(farthest_mm.copied().max().unwrap_or(0)) * 1e-3;
@@ -80,7 +86,9 @@ impl Canvas {
     /// Returns the planes of a tile; `None` if it was never touched.
     #[must_use]
     pub fn planes(&self, (x, y): (i16, i16)) -> Option<Classes> {
-        self.map.planes((x.into(), y.into()))
+        let mut planes = self.map.planes((x.into(), y.into()))?;
+        self.votes.mark((x, y), &mut planes);
+        Some(planes)
     }
 
     /// Returns the tiles that scans may have reached.

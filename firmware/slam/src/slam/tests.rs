@@ -22,20 +22,20 @@ type Small = Slam<400, 64, BEAMS>;
 type Room = Workspace<400, 256>;
 
 /// A wall from one point to another, metres.
-type Wall = [f32; 4];
+pub(super) type Wall = [f32; 4];
 
 /// Numbers in −1..1 from a seed.
-struct Noise(u32);
+pub(super) struct Noise(pub(super) u32);
 
 impl Noise {
-    fn next(&mut self) -> f32 {
+    pub(super) fn next(&mut self) -> f32 {
         self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (self.0 >> 8) as f32 / (1 << 23) as f32 - 1.0
     }
 }
 
 /// The four walls of a box.
-fn walls(x0: f32, y0: f32, x1: f32, y1: f32) -> [Wall; 4] {
+pub(super) fn walls(x0: f32, y0: f32, x1: f32, y1: f32) -> [Wall; 4] {
     [
         [x0, y0, x1, y0],
         [x1, y0, x1, y1],
@@ -91,7 +91,7 @@ fn cast(world: &[Wall], pose: &Pose, noise: &mut Noise) -> Vec<u16> {
 
 /// Returns the poses of a robot that drives along a line of points in steps of 10 cm, and turns on
 /// the spot in steps of 0.1 rad.
-fn drive(points: &[[f32; 2]]) -> Vec<Pose> {
+pub(super) fn drive(points: &[[f32; 2]]) -> Vec<Pose> {
     let mut poses: Vec<Pose> = Vec::new();
     let mut yaw = 0.0_f32;
     for pair in points.windows(2) {
@@ -121,7 +121,7 @@ fn drive(points: &[[f32; 2]]) -> Vec<Pose> {
 }
 
 /// Returns odometry along poses: turns are too long by a share, and every step errs a little.
-fn odometry(poses: &[Pose], scale: f32, noise: &mut Noise) -> Vec<Pose> {
+pub(super) fn odometry(poses: &[Pose], scale: f32, noise: &mut Noise) -> Vec<Pose> {
     let mut odom = Vec::from([poses[0]]);
     for pair in poses.windows(2) {
         let step = pair[0].between(&pair[1]);
@@ -136,22 +136,43 @@ fn odometry(poses: &[Pose], scale: f32, noise: &mut Noise) -> Vec<Pose> {
 }
 
 /// The poses of a run, and what became of them.
-struct Run {
-    slam: Box<Small>,
-    live: Vec<Pose>,
+pub(super) struct Run {
+    pub(super) slam: Box<Small>,
+    pub(super) live: Vec<Pose>,
     end: Vec<Pose>,
+    /// The scan that each keyframe is.
+    pub(super) key_scans: Vec<usize>,
 }
 
 fn run(world: &[Wall], poses: &[Pose], odom: &[Pose], seed: u32) -> Run {
+    run_among(world, &[], poses, odom, seed)
+}
+
+/// Runs with people who stay where they are in the robot's frame.
+pub(super) fn run_among(
+    world: &[Wall],
+    people: &[[f32; 2]],
+    poses: &[Pose],
+    odom: &[Pose],
+    seed: u32,
+) -> Run {
     let config = Config::new(LASER, Motion::WHEELS);
     let mut slam: Box<Small> = Box::new(Slam::new(config));
     let mut room: Box<Room> = Box::default();
     let mut noise = Noise(seed);
-    let (mut live, mut hung) = (Vec::new(), Vec::new());
-    for (pose, odom) in poses.iter().zip(odom) {
-        let ranges = cast(world, pose, &mut noise);
+    let (mut live, mut hung, mut key_scans) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, (pose, odom)) in poses.iter().zip(odom).enumerate() {
+        let legs = people.iter().flat_map(|&leg| {
+            let [x, y] = pose.point(leg);
+            walls(x - 0.15, y - 0.15, x + 0.15, y + 0.15)
+        });
+        let around: Vec<Wall> = world.iter().copied().chain(legs).collect();
+        let ranges = cast(&around, pose, &mut noise);
         let seen = slam.observe(odom, None, &ranges, &mut room);
         live.push(seen.pose);
+        if seen.key == key_scans.len() {
+            key_scans.push(number);
+        }
         hung.push((seen.key, seen.from_key));
     }
     slam.finish(&mut room);
@@ -162,6 +183,7 @@ fn run(world: &[Wall], poses: &[Pose], odom: &[Pose], seed: u32) -> Run {
         live,
         end: end.collect(),
         slam,
+        key_scans,
     }
 }
 
