@@ -205,7 +205,8 @@ pub(super) struct ExploreArgs {
     /// Close loops by a pose graph, and correct the device's map: off, or host, beside the device
     #[arg(long, value_name = "WHERE", default_value = "off", value_parser = slam_place)]
     pub(super) slam: SlamPlace,
-    /// Number of pictures during the run, evenly in simulated time, in the folder snapshots
+    /// Number of pictures during the run, evenly in simulated time, in the folder snapshots; with
+    /// --slam also of the map before and after so many of the largest corrections
     #[arg(
         long,
         value_name = "N",

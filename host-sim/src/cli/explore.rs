@@ -179,6 +179,7 @@ fn explore(args: &ExploreArgs, link: &LinkSpec, run: &Run, interrupt: &Interrupt
     let album = Album::new(&run.world, &report, &record);
     folder::write(&run.folder, &report, &record, &album.end())?;
     folder::write_snapshots(&run.folder, album.during())?;
+    folder::write_corrections(&run.folder, album.corrections())?;
     print(args, &report, &record, &run.folder)?;
     Ok(report.explored())
 }

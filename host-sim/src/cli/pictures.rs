@@ -14,6 +14,7 @@ pub(super) struct Album<'a> {
     record: &'a Record,
     ground: Option<Ground<'a>>,
     path: Vec<Stamped>,
+    believed: Vec<Stamped>,
 }
 
 impl<'a> Album<'a> {
@@ -27,6 +28,7 @@ impl<'a> Album<'a> {
             record,
             ground,
             path: record.steps.iter().map(|step| step.truth).collect(),
+            believed: record.steps.iter().map(|step| step.estimate).collect(),
         }
     }
 
@@ -44,6 +46,8 @@ impl<'a> Album<'a> {
             subtitle: &self.report.in_short(),
             map: &self.record.map,
             path: &self.path,
+            believed: self.believed(self.believed.len()),
+            corrected: &self.record.corrected,
             window: self.record.window.as_ref(),
             relief: self.record.relief.as_ref(),
             residual: &at(residual),
@@ -67,10 +71,24 @@ impl<'a> Album<'a> {
             .collect()
     }
 
+    /// Returns the path as it was believed up to a step, if loops are closed.
+    fn believed(&self, steps: usize) -> &[Stamped] {
+        match self.report.slam {
+            Some(_) => &self.believed[..steps.min(self.believed.len())],
+            None => &[],
+        }
+    }
+
     /// Draws the series, in order.
     pub(super) fn during(&self) -> impl Iterator<Item = Vec<u8>> {
         let snapshots = self.record.snapshots.iter();
         snapshots.map(|snapshot| self.moment(snapshot))
+    }
+
+    /// Draws the map before and after the largest corrections, in order.
+    pub(super) fn corrections(&self) -> impl Iterator<Item = [Vec<u8>; 2]> {
+        let corrections = self.record.corrections.iter();
+        corrections.map(|it| [&it.before, &it.after].map(|moment| self.moment(moment)))
     }
 
     fn moment(&self, snapshot: &Snapshot) -> Vec<u8> {
@@ -89,6 +107,8 @@ impl<'a> Album<'a> {
             subtitle: &subtitle,
             map: &snapshot.map,
             path: &self.path[..snapshot.steps.min(self.path.len())],
+            believed: self.believed(snapshot.steps),
+            corrected: &[],
             window: snapshot.window.as_ref(),
             relief: snapshot.relief.as_ref(),
             residual: &[],

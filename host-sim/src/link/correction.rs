@@ -39,6 +39,15 @@ impl Motion {
         }
     }
 
+    /// Returns the way by which a pose moves, metres.
+    #[must_use]
+    pub fn length_at_m(&self, pose: &Pose) -> f64 {
+        let (sin, cos) = self.yaw_rad.sin_cos();
+        let (x, y) = (f64::from(pose.x_m), f64::from(pose.y_m));
+        let to = (self.x_m + cos * x - sin * y, self.y_m + sin * x + cos * y);
+        (to.0 - x).hypot(to.1 - y)
+    }
+
     /// Returns the motion from the pose `before` to the pose `after`.
     #[must_use]
     pub fn between(before: &Pose, after: &Pose) -> Self {

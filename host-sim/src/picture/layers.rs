@@ -13,6 +13,8 @@ use crate::trial::snapshot::{Window, WindowCell};
 const GRID_CELLS: i32 = 50;
 /// Distance between arrows, window cells.
 const ARROW_STEP: usize = 3;
+/// Width of the paths that were believed and corrected, pixels.
+pub(super) const THIN: f32 = 1.2;
 /// Number of colours of the path.
 const PATH_SHADES: usize = 192;
 
@@ -189,6 +191,12 @@ pub(super) fn path(canvas: &mut Canvas, frame: &Frame, path: &[Stamped]) {
             palette::time(share as f32).alpha(1.0),
         );
     }
+}
+
+/// Draws another path as a thin line.
+pub(super) fn line(canvas: &mut Canvas, frame: &Frame, path: &[Stamped], colour: palette::Rgb) {
+    let spots: Vec<Spot> = path.iter().map(|p| frame.metres(p.x_m, p.y_m)).collect();
+    canvas.line(&spots, THIN, colour.alpha(1.0));
 }
 
 /// Draws a diamond on every residual frontier.

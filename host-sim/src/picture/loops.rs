@@ -6,7 +6,7 @@
 
 use super::canvas::{Canvas, Spot};
 use super::layers::{links, skeleton_middle};
-use super::{Frame, Scene, palette};
+use super::{Frame, Scene, layers, palette};
 use crate::report::GridMap;
 use crate::trial::planned_path::{PlannedPath, middle_m};
 
@@ -118,6 +118,18 @@ pub(super) fn keys(scene: &Scene<'_>) -> Vec<Key> {
     if scene.map.visit_stamp_span().is_some() {
         keys.push((age_key, "rail, newest to oldest"));
     }
+    if !scene.believed.is_empty() {
+        keys.push((
+            |canvas, spot| thin(canvas, spot, palette::BELIEVED),
+            "path as believed",
+        ));
+    }
+    if !scene.corrected.is_empty() {
+        keys.push((
+            |canvas, spot| thin(canvas, spot, palette::CORRECTED),
+            "path as corrected",
+        ));
+    }
     let planned_path = scene.planned_path;
     if planned_path.is_some_and(|planned_path| !planned_path.cells.is_empty()) {
         keys.push((
@@ -138,6 +150,11 @@ pub(super) fn keys(scene: &Scene<'_>) -> Vec<Key> {
         keys.push((cross, "loop given up"));
     }
     keys
+}
+
+fn thin(canvas: &mut Canvas, (x, y): Spot, colour: palette::Rgb) {
+    let ends = [(x - 13.0, y), (x + 13.0, y)];
+    canvas.line(&ends, layers::THIN, colour.alpha(1.0));
 }
 
 fn patch(canvas: &mut Canvas, (x, y): Spot, colour: palette::Rgb) {

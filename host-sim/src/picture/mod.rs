@@ -63,6 +63,10 @@ pub struct Scene<'a> {
     pub map: &'a GridMap,
     /// Path of the robot.
     pub path: &'a [Stamped],
+    /// The path as the device believed it while it drove; empty if no loops are closed.
+    pub believed: &'a [Stamped],
+    /// The path as the closed loops corrected it; empty if no loops are closed.
+    pub corrected: &'a [Stamped],
     /// The last window.
     pub window: Option<&'a Window>,
     /// Heights and preferences in it.
@@ -90,6 +94,8 @@ impl<'a> Scene<'a> {
             subtitle: "",
             map,
             path,
+            believed: &[],
+            corrected: &[],
             window: None,
             relief: None,
             residual: &[],
@@ -254,6 +260,8 @@ fn robots_map(canvas: &mut Canvas, frame: &Frame, scene: &Scene<'_>) {
         layers::arrows(canvas, frame, window);
     }
     layers::path(canvas, frame, scene.path);
+    layers::line(canvas, frame, scene.believed, palette::BELIEVED);
+    layers::line(canvas, frame, scene.corrected, palette::CORRECTED);
     layers::residual(canvas, frame, scene.residual);
     for &(x_m, y_m) in scene.not_worth_it {
         layers::hollow_diamond(canvas, frame.metres(x_m, y_m));

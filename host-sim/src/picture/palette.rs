@@ -30,6 +30,10 @@ pub(super) const SKELETON: Rgb = Rgb(0x7f, 0xb2, 0xc4);
 pub(super) const WINDOW: Rgb = Rgb(0x1f, 0x6f, 0xb2);
 /// Start of the path.
 pub(super) const START: Rgb = Rgb(0x1a, 0x93, 0x6f);
+/// The path as the device believed it.
+pub(super) const BELIEVED: Rgb = Rgb(0x8b, 0x93, 0x9e);
+/// The path as closed loops corrected it.
+pub(super) const CORRECTED: Rgb = Rgb(0x1a, 0x93, 0x6f);
 /// Residual frontiers.
 pub(super) const RESIDUE: Rgb = Rgb(0xe0, 0x8e, 0x0b);
 

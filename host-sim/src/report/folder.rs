@@ -8,6 +8,8 @@ use crate::trial::Record;
 
 /// Folder of the pictures during the run.
 const SNAPSHOTS: &str = "snapshots";
+/// The path as closed loops corrected it.
+const CORRECTED: &str = "trajectory_corrected.tum";
 
 /// A file of the run could not be written.
 #[derive(Debug)]
@@ -39,6 +41,7 @@ impl core::error::Error for WriteError {}
 pub fn prepare(folder: &Path) -> Result<(), WriteError> {
     make(folder)?;
     remove_snapshots(folder)?;
+    remove(folder, CORRECTED)?;
     // If the run is killed, the folder has an empty report instead of an older run's.
     put(folder, "report.json", b"")
 }
@@ -69,6 +72,10 @@ pub fn write(
         "trajectory_truth.tum",
         tum::text(&truths).as_bytes(),
     )?;
+    if !record.corrected.is_empty() {
+        let corrected = tum::text(&record.corrected);
+        put(folder, CORRECTED, corrected.as_bytes())?;
+    }
     put(folder, "commands.csv", commands::text(rows).as_bytes())?;
     put(folder, "run.png", picture)
 }
@@ -139,29 +146,66 @@ pub fn write_snapshots(
 ) -> Result<(), WriteError> {
     let folder = folder.join(SNAPSHOTS);
     for (number, picture) in (1..).zip(pictures) {
-        fs::create_dir_all(&folder).map_err(|source| WriteError {
-            path: folder.clone(),
-            source,
-        })?;
-        put(&folder, &format!("{number:03}.png"), &picture)?;
+        make(&folder)?;
+        put(&folder, &moment(number), &picture)?;
     }
     Ok(())
+}
+
+/// Writes pictures before and after each correction as `snapshots/correction-001-before.png` and
+/// `snapshots/correction-001-after.png` and on.
+///
+/// # Errors
+/// As [`WriteError`], at the first file that cannot be written.
+pub fn write_corrections(
+    folder: &Path,
+    pictures: impl Iterator<Item = [Vec<u8>; 2]>,
+) -> Result<(), WriteError> {
+    let folder = folder.join(SNAPSHOTS);
+    for (number, pictures) in (1..).zip(pictures) {
+        make(&folder)?;
+        for (name, picture) in correction(number).iter().zip(pictures) {
+            put(&folder, name, &picture)?;
+        }
+    }
+    Ok(())
+}
+
+fn moment(number: usize) -> String {
+    format!("{number:03}.png")
+}
+
+fn correction(number: usize) -> [String; 2] {
+    ["before", "after"].map(|when| format!("correction-{number:03}-{when}.png"))
 }
 
 /// Removes the pictures of an earlier run. Other files in the folder stay.
 fn remove_snapshots(folder: &Path) -> Result<(), WriteError> {
     let folder = folder.join(SNAPSHOTS);
     for number in 1.. {
-        let path = folder.join(format!("{number:03}.png"));
-        match fs::remove_file(&path) {
-            Ok(()) => {}
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => break,
-            Err(source) => return Err(WriteError { path, source }),
+        if !remove(&folder, &moment(number))? {
+            break;
+        }
+    }
+    for number in 1.. {
+        let [before, after] = correction(number);
+        if !(remove(&folder, &before)? | remove(&folder, &after)?) {
+            break;
         }
     }
     // Fails if the folder is not empty.
     let _ = fs::remove_dir(&folder);
     Ok(())
+}
+
+/// Removes a file. Returns false if there is none.
+fn remove(folder: &Path, name: &str) -> Result<bool, WriteError> {
+    let path = folder.join(name);
+    match fs::remove_file(&path) {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(false),
+        Err(source) => Err(WriteError { path, source }),
+    }
 }
 
 fn put(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
@@ -171,7 +215,7 @@ fn put(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
 
 #[cfg(test)]
 mod tests {
-    use super::{prepare, write, write_snapshots};
+    use super::{prepare, write, write_corrections, write_snapshots};
     use crate::report::tests::sample;
     use crate::trial::Record;
 
@@ -215,7 +259,10 @@ mod tests {
         write_snapshots(folder, core::iter::empty()).unwrap();
         assert!(!series.exists());
         write_snapshots(folder, (0..12).map(|k| vec![k])).unwrap();
-        assert_eq!(names().len(), 12);
+        write_corrections(folder, (0..2).map(|k| [vec![k], vec![k + 1]])).unwrap();
+        assert_eq!(names().len(), 16);
+        let after = std::fs::read(series.join("correction-002-after.png"));
+        assert_eq!(after.unwrap(), [2]);
         assert_eq!(std::fs::read(series.join("012.png")).unwrap(), [11]);
         std::fs::write(series.join("mine.png"), b"").unwrap();
         prepare(folder).unwrap();

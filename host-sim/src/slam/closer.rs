@@ -43,6 +43,9 @@ pub struct LoopCloser {
     graph: PoseGraph,
     start: Start,
     scans: Vec<Scan>,
+    /// Corrections sent, and the longest way by which one moved the robot, metres.
+    sent: usize,
+    largest_m: f64,
 }
 
 /// A scan of the run.
@@ -64,13 +67,25 @@ impl LoopCloser {
             graph: PoseGraph::new(start.lasers.first()?, motion),
             start: start.clone(),
             scans: Vec::new(),
+            sent: 0,
+            largest_m: 0.0,
         })
     }
 
     /// Returns what became of the loops.
     #[must_use]
     pub fn report(&self) -> SlamReport {
-        self.graph.report()
+        SlamReport {
+            corrections: self.sent,
+            largest_m: self.largest_m,
+            ..self.graph.report()
+        }
+    }
+
+    /// Returns the poses of all scans, as corrected so far.
+    #[must_use]
+    pub fn poses(&self) -> Vec<Pose> {
+        self.graph.poses()
     }
 
     /// Returns the correction to these poses; `None` if the map needs none.
@@ -168,6 +183,9 @@ impl Corrector for LoopCloser {
         }
         let poses = self.graph.poses();
         let correction = self.correction(&poses, mirror)?;
+        self.sent += 1;
+        let moved_m = correction.motion.length_at_m(&mirror.pose());
+        self.largest_m = self.largest_m.max(moved_m);
         let Motion { x_m, y_m, yaw_rad } = correction.motion;
         self.graph.relocate([x_m, y_m, yaw_rad]);
         Some(correction)

@@ -73,10 +73,9 @@ pub struct SlamReport {
     pub closed: usize,
     /// Tries to close a loop that brought no closure.
     pub refused: usize,
-    /// Corrections of the past by closures. A device's map is corrected where they move what it
-    /// shows.
+    /// Corrections of the device's map; in a replay, of the past poses.
     pub corrections: usize,
-    /// Longest way by which a correction moved the robot's pose in the graph, metres.
+    /// Longest way by which a correction moved the robot, metres.
     pub largest_m: f64,
     /// The graph had no room for a further keyframe.
     pub is_full: bool,

@@ -1,7 +1,8 @@
 //! Corrections of the map during a run, and the return of the map to a device that was reset.
 //!
 //! A [`Corrector`] looks at every step and at the host's copy of the map, and may correct the map.
-//! The copy follows the correction, so it still equals the device's map.
+//! The copy follows the correction, so it still equals the device's map. If pictures are wanted, the
+//! map is read before and after the largest corrections.
 //!
 //! A device that was reset has lost its session. If the run resumes, it gets the same session, and
 //! its map back by a correction with every tile of the copy. The state of its strategy is not
@@ -10,12 +11,24 @@
 use fieldline_protocol::message::{Command, Control, Observation};
 
 use super::mirror::Mirror;
-use super::{Cast, Setup};
+use super::snapshot::{self, Snapshot};
+use super::{Cast, Record, Setup};
 use crate::link::LinkError;
 use crate::link::correction::MapCorrection;
 
 /// Most resets in a row after which a run does not go on.
 const MOST_RESETS: usize = 8;
+
+/// Map and window before and after a correction of the map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Corrected {
+    /// Way by which it moved the robot in the map, metres.
+    pub moved_m: f64,
+    /// Before it.
+    pub before: Snapshot,
+    /// After it.
+    pub after: Snapshot,
+}
 
 /// Corrects the map during a run.
 pub trait Corrector {
@@ -37,18 +50,55 @@ impl Corrector for () {
 
 /// Sends a correction if there is one after this step.
 pub(super) fn correct(
+    setup: &Setup,
     cast: &mut Cast<'_>,
-    observation: &Observation,
-    command: &Command,
+    (observation, command): (&Observation, &Command),
+    record: &mut Record,
 ) -> Result<(), LinkError> {
     let Some(mirror) = cast.survey.mirror() else {
         return Ok(());
     };
-    if let Some(correction) = cast.corrector.correct(observation, command, mirror) {
-        cast.link.correct(&correction)?;
+    let Some(correction) = cast.corrector.correct(observation, command, mirror) else {
+        return Ok(());
+    };
+    let moved_m = correction.motion.length_at_m(&mirror.pose());
+    let is_shown = is_among(setup.snapshots, moved_m, &record.corrections);
+    let before = if is_shown {
+        Some(snapshot::take(cast.link, record)?)
+    } else {
+        None
+    };
+    cast.link.correct(&correction)?;
+    if let Some(mirror) = cast.survey.mirror() {
         mirror.correct(&correction);
     }
+    if let Some(before) = before {
+        let after = snapshot::take(cast.link, record)?;
+        record.corrections.push(Corrected {
+            moved_m,
+            before,
+            after,
+        });
+        leave_out_smallest(setup.snapshots, &mut record.corrections);
+    }
     Ok(())
+}
+
+/// Returns true if a correction is one of the `wanted` largest so far.
+fn is_among(wanted: usize, moved_m: f64, corrections: &[Corrected]) -> bool {
+    let larger = corrections.iter().filter(|other| other.moved_m >= moved_m);
+    larger.count() < wanted
+}
+
+/// Leaves out the smallest corrections of more than `wanted`. The others stay in order.
+fn leave_out_smallest(wanted: usize, corrections: &mut Vec<Corrected>) {
+    while corrections.len() > wanted {
+        let sizes = corrections.iter().map(|other| other.moved_m).enumerate();
+        let Some((smallest, _)) = sizes.min_by(|(_, one), (_, other)| one.total_cmp(other)) else {
+            return;
+        };
+        corrections.remove(smallest);
+    }
 }
 
 /// Makes a step; a device that was reset gets its session and its map back, if the run resumes.

@@ -16,6 +16,7 @@ use super::space::SpaceMission;
 use super::{Cast, Corrector, Record, Setup, Watch, run, summary};
 use crate::link::{Link, LinkError};
 use crate::report::Report;
+use crate::report::tum::Stamped;
 use crate::robot::{
     Disturbances, Footprint, LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M,
 };
@@ -400,6 +401,21 @@ fn explored(
     );
     record.ground = account.ground.take();
     let mut report = summary::report(mission, &simulator, &account, &record);
-    report.slam = closer.map(|closer| closer.report());
+    if let Some(closer) = closer {
+        record.corrected = corrected_path(&closer, &record);
+        report.slam = Some(closer.report());
+    }
     Ok((report, record))
+}
+
+/// Returns the path of the last corrected poses, with the times of the steps.
+fn corrected_path(closer: &LoopCloser, record: &Record) -> Vec<Stamped> {
+    let steps = record.steps.iter().zip(closer.poses());
+    let stamped = steps.map(|(step, [x_m, y_m, yaw_rad])| Stamped {
+        x_m,
+        y_m,
+        yaw_rad,
+        ..step.estimate
+    });
+    stamped.collect()
 }

@@ -185,7 +185,7 @@ fn step(
     let coverage = cast.survey.note(&observation, &truth, &command);
     let step = Step::new(&observation, truth, command, round_trip_us);
     record.push(step, coverage);
-    corrector::correct(cast, &observation, &command)?;
+    corrector::correct(setup, cast, (&observation, &command), record)?;
     if setup.check_field {
         check_field(cast.link, &command, record)?;
     }

@@ -7,6 +7,7 @@ use fieldline_protocol::message::{
 };
 use fixed::types::I16F16;
 
+use super::corrector::Corrected;
 use super::planned_path::PlannedPath;
 use super::relief::Relief;
 use super::snapshot::{Snapshot, Window};
@@ -60,6 +61,10 @@ pub struct Record {
     pub frontiers: Vec<ResidualFrontier>,
     /// Map and window during the run, for pictures.
     pub snapshots: Vec<Snapshot>,
+    /// Map and window before and after the largest corrections of the map, for pictures.
+    pub corrections: Vec<Corrected>,
+    /// The path as closed loops corrected it; empty if none are closed.
+    pub corrected: Vec<Stamped>,
     /// The true ground, in an uneven world.
     pub ground: Option<GroundTruth>,
     /// Angles between headings and those of converged windows, with `check_field`.
@@ -86,6 +91,8 @@ impl Default for Record {
             relief: None,
             frontiers: Vec::new(),
             snapshots: Vec::new(),
+            corrections: Vec::new(),
+            corrected: Vec::new(),
             ground: None,
             heading_errors_deg: Vec::new(),
             link_stats: LinkStats::default(),
