@@ -145,13 +145,13 @@ pub(super) struct Run {
 }
 
 fn run(world: &[Wall], poses: &[Pose], odom: &[Pose], seed: u32) -> Run {
-    run_among(world, &[], poses, odom, seed)
+    run_among(world, |_, _| Vec::new(), poses, odom, seed)
 }
 
-/// Runs with people who stay where they are in the robot's frame.
+/// Runs with people, whose places are given for the number of a pose and the pose.
 pub(super) fn run_among(
     world: &[Wall],
-    people: &[[f32; 2]],
+    people: impl Fn(usize, &Pose) -> Vec<[f32; 2]>,
     poses: &[Pose],
     odom: &[Pose],
     seed: u32,
@@ -162,10 +162,8 @@ pub(super) fn run_among(
     let mut noise = Noise(seed);
     let (mut live, mut hung, mut key_scans) = (Vec::new(), Vec::new(), Vec::new());
     for (number, (pose, odom)) in poses.iter().zip(odom).enumerate() {
-        let legs = people.iter().flat_map(|&leg| {
-            let [x, y] = pose.point(leg);
-            walls(x - 0.15, y - 0.15, x + 0.15, y + 0.15)
-        });
+        let legs = people(number, pose).into_iter();
+        let legs = legs.flat_map(|[x, y]| walls(x - 0.15, y - 0.15, x + 0.15, y + 0.15));
         let around: Vec<Wall> = world.iter().copied().chain(legs).collect();
         let ranges = cast(&around, pose, &mut noise);
         let seen = slam.observe(odom, None, &ranges, &mut room);
