@@ -25,10 +25,10 @@ pub use closer::LoopCloser;
 
 use crate::replay::relations::Pose;
 
-/// Most keyframes: 2 km with one each half metre.
-pub const KEYFRAMES: usize = 4096;
-/// Most closures.
-pub const CLOSURES: usize = 1024;
+/// Most keyframes. A robot that turns much makes four a metre, so they last for 4 km at least.
+pub const KEYFRAMES: usize = 16_384;
+/// Most closures. There is at most one each metre of way.
+pub const CLOSURES: usize = 8_192;
 /// Most ranges of a scan.
 const BEAMS: usize = fieldline_protocol::message::MAX_BEAMS;
 /// Cells of 10 cm along the side of a grid: 51 m.
