@@ -197,6 +197,12 @@ fn check_team(args: &ExploreArgs) -> Result<()> {
             args.strategy
         );
     }
+    if args.slam != SlamPlace::Off {
+        bail!(
+            "--slam does not know what a robot hears by --team; say --slam off, or take host-sim \
+             team, which has --slam host"
+        );
+    }
     Ok(())
 }
 

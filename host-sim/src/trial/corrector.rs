@@ -9,7 +9,7 @@
 
 use fieldline_protocol::message::{Command, Control, Observation};
 
-use super::mirror::Mirror;
+use super::map_copy::MapCopy;
 use super::{Cast, Setup};
 use crate::link::LinkError;
 use crate::link::correction::MapCorrection;
@@ -24,13 +24,13 @@ pub trait Corrector {
         &mut self,
         observation: &Observation,
         command: &Command,
-        mirror: &Mirror,
+        copy: &dyn MapCopy,
     ) -> Option<MapCorrection>;
 }
 
 /// Corrects nothing.
 impl Corrector for () {
-    fn correct(&mut self, _: &Observation, _: &Command, _: &Mirror) -> Option<MapCorrection> {
+    fn correct(&mut self, _: &Observation, _: &Command, _: &dyn MapCopy) -> Option<MapCorrection> {
         None
     }
 }
@@ -41,12 +41,12 @@ pub(super) fn correct(
     observation: &Observation,
     command: &Command,
 ) -> Result<(), LinkError> {
-    let Some(mirror) = cast.survey.mirror() else {
+    let Some(copy) = cast.survey.copy() else {
         return Ok(());
     };
-    if let Some(correction) = cast.corrector.correct(observation, command, mirror) {
+    if let Some(correction) = cast.corrector.correct(observation, command, copy) {
         cast.link.correct(&correction)?;
-        mirror.correct(&correction);
+        copy.correct(&correction);
     }
     Ok(())
 }

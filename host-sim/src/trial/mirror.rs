@@ -113,7 +113,7 @@ impl Mirror {
     pub fn correct(&mut self, correction: &MapCorrection) {
         for tile in correction.in_order() {
             let (x, y) = tile.key;
-            self.map.replace((x.into(), y.into()), &tile.classes);
+            self.map.replace((x.into(), y.into()), &tile.classes, false);
         }
         let motion = convert::correction(&correction.opening());
         self.localiser.correct_pose(&MapFromOdom {

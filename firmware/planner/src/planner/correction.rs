@@ -16,7 +16,7 @@
 //! | evidence | | in listed tiles; elsewhere it stays |
 //! | trail | by shift | where its tile is forgotten, or the scratch memory is full |
 //! | arrivals | they are cells | |
-//! | versions for the team | a listed tile is news, of the next epoch | |
+//! | versions for the team | a listed tile is news, of the next era | |
 //! | goals given up, blocked passages, viewpoint | by shift | |
 //! | path and goal | by shift, and planned anew on the next skeleton | |
 //! | progress towards goals, skeleton | | always: begun anew |
@@ -29,6 +29,7 @@
 //! | pending visits | their stamps are written | which cells of a place were visited |
 //! | cells of an area that robots visited (sbpf) | | if a tile is shifted; covered stay covered |
 //! | peers, right of way | they stay: the next beacon is a step away | |
+//! | motion into the team's coordinates | it stays: it holds at the start, which a closed loop leaves | |
 //! | obstacle points, contacts | they stay: they lie in the odometry's frame | |
 //! | heights of uneven ground | | a correction is refused there |
 //!
@@ -260,7 +261,8 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
                 correcting.trail += 1;
             }
         }
-        self.map.replace((column, row), &tile.planes);
+        self.map
+            .replace((column, row), &tile.planes, self.team.is_member());
         Ok(())
     }
 

@@ -67,7 +67,7 @@ impl Bench {
         let mut bench = Self::new(builder().build().expect("valid"));
         for tile in [0, 1] {
             let planes = planes(ROOMS, AT.x - 32 * tile);
-            bench.state.map.replace((tile, 0), &planes);
+            bench.state.map.replace((tile, 0), &planes, false);
         }
         bench
     }
