@@ -137,6 +137,9 @@ fn robots(text: &str) -> Result<usize, String> {
 /// Explores a world with a team; returns true if it ended explored.
 pub(super) fn run(args: &TeamArgs) -> Result<bool> {
     let links = links(args)?;
+    if args.slam != SlamPlace::Off && args.ground == Some(GroundArg::Uneven) {
+        bail!("--slam corrects a team's maps on flat ground; say --ground flat, or --slam off");
+    }
     strategies::check_space(&args.strategy, args.until.is_some())?;
     let (name, at) = with_start(&args.world);
     let world = World::open(name)?;

@@ -12,6 +12,11 @@
 //! correct the map more often than it errs. What the device remembers of a tile moves with the scan
 //! that was taken nearest to its middle.
 //!
+//! **On uneven ground** the graph takes the beams alone that end at what stands, as the localiser
+//! does, and the map is drawn from all beams with the height that the device had then. A tile keeps
+//! its heights in the device. Cells that the device resolved without a beam are unknown in a tile
+//! that is drawn anew.
+//!
 //! **In a team** each robot has a graph of its own scans. A tile belongs to the robot that measured
 //! it first, and only that robot's graph corrects it:
 //!
@@ -31,6 +36,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use fieldline_device::convert::quantity;
 use fieldline_planner::geometry::CELL_M;
 use fieldline_planner::map::tiles::TILE_SIDE;
 use fieldline_protocol::message::{Command, Observation, Quality, Start};
@@ -242,9 +248,14 @@ impl Corrector for LoopCloser {
             Some(frame) => compose(inverse(frame), at),
             None => at,
         };
-        let observation = copy.measured(observation);
+        let standing = copy.standing(observation);
+        let mut observation = copy.measured(observation);
+        if self.start.uneven_ground.is_some() {
+            // The height was corrected with the pose; a closed loop leaves it.
+            observation.pose.z = quantity(copy.pose().z_m);
+        }
         let located = entered.then_some(in_graph);
-        let (_, closed) = self.graph.observe_at(&observation, located);
+        let (_, closed) = self.graph.observe_at(&standing, located);
         self.scans.push(Scan {
             observation,
             sent: at,

@@ -35,6 +35,12 @@ pub trait MapCopy {
         observation.clone()
     }
 
+    /// Returns the last step's observation with the beams that end at what stands: they end there
+    /// from other places, too.
+    fn standing(&self, observation: &Observation) -> Observation {
+        self.measured(observation)
+    }
+
     /// Returns true if other robots measure the map too.
     fn is_shared(&self) -> bool {
         false
@@ -67,5 +73,9 @@ impl MapCopy for Mirror {
 
     fn correct(&mut self, correction: &MapCorrection) {
         Self::correct(self, correction);
+    }
+
+    fn standing(&self, observation: &Observation) -> Observation {
+        Self::standing(self, observation)
     }
 }
