@@ -9,6 +9,7 @@ use core::ops::Range;
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::report::TeamReport;
+use host_sim::slam::SlamPlace;
 use host_sim::trial::mission::{Mission, OdometryProfile};
 use host_sim::trial::team::{Appointment, StartError, TeamMission, TeamRecord, Timetable, explore};
 use host_sim::world::World;
@@ -40,6 +41,8 @@ pub struct TeamRun<'a> {
     pub odometry: OdometryProfile,
     /// Errors of the starts that the robots are told, as on the command line; empty for none.
     pub start_error: &'a str,
+    /// Where loops are closed.
+    pub slam: SlamPlace,
     /// Seed of the noise.
     pub seed: u64,
 }
@@ -58,6 +61,7 @@ impl<'a> TeamRun<'a> {
             join: &[],
             odometry: OdometryProfile::Truth,
             start_error: "",
+            slam: SlamPlace::Off,
             seed: 0,
         }
     }
@@ -92,6 +96,7 @@ impl<'a> TeamRun<'a> {
             seed: self.seed,
             odometry: self.odometry,
             localise: self.odometry != OdometryProfile::Truth,
+            slam: self.slam,
             ..Mission::default()
         };
         let start_error = match self.start_error {
@@ -130,6 +135,9 @@ impl<'a> TeamRun<'a> {
         }
         if !self.start_error.is_empty() {
             words.push(format!("start={}", self.start_error.replace(',', "/")));
+        }
+        if self.slam != SlamPlace::Off {
+            words.push("slam=host".into());
         }
         if self.strategy != "frontier" {
             words.push(self.strategy.into());

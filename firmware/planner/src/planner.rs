@@ -19,6 +19,8 @@ mod correction;
 mod door;
 mod ending;
 mod ground_model;
+#[cfg(feature = "internals")]
+pub mod host_copy;
 mod make_way;
 mod memory;
 mod plan;

@@ -198,6 +198,12 @@ fn check_team(args: &ExploreArgs) -> Result<()> {
             args.strategy
         );
     }
+    if args.slam != SlamPlace::Off {
+        bail!(
+            "--slam does not know what a robot hears by --team; say --slam off, or take host-sim \
+             team, which has --slam host"
+        );
+    }
     Ok(())
 }
 
@@ -305,12 +311,9 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     let odometry = args
         .odometry
         .unwrap_or_else(|| default_odometry(args, uneven_ground.is_none()));
-    if args.slam != SlamPlace::Off
-        && (on_device(&args.strategy).is_none() || uneven_ground.is_some())
-    {
+    if args.slam != SlamPlace::Off && on_device(&args.strategy).is_none() {
         bail!(
-            "--slam corrects the map of a device on flat ground; take a strategy on the device and \
-             --ground flat, or say --slam off"
+            "--slam corrects the map of a device; take a strategy on the device, or say --slam off"
         );
     }
     let is_localised = match args.localise {

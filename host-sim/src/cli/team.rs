@@ -11,6 +11,7 @@ use host_sim::picture::{TeamScene, team_png};
 use host_sim::radio::{MOST_ROBOTS, RadioSpec};
 use host_sim::report::tum::Stamped;
 use host_sim::report::{TeamReport, folder};
+use host_sim::slam::SlamPlace;
 use host_sim::trial::mission::on_device;
 use host_sim::trial::team::{
     Appointment, StartError, TeamError, TeamMission, TeamRecord, Timetable, explore, starts,
@@ -22,7 +23,7 @@ use super::explore::{mission, with_start};
 use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
 use super::robot::RobotArgs;
-use super::values::{seed, start, time_limit, until};
+use super::values::{seed, slam_place, start, time_limit, until};
 use super::{note, say, strategies};
 
 #[derive(Clone, Debug, Args)]
@@ -100,6 +101,9 @@ pub(super) struct TeamArgs {
     /// degrees, as in 0.3,5 [default: the starts are known]
     #[arg(long, value_name = "M,DEG")]
     start_error: Option<StartError>,
+    /// Where loops are closed and the maps corrected, robot by robot: off, host
+    #[arg(long, value_name = "WHERE", default_value = "off", value_parser = slam_place)]
+    slam: SlamPlace,
     /// Simulated seconds after which the run ends
     #[arg(
         long,
@@ -133,6 +137,9 @@ fn robots(text: &str) -> Result<usize, String> {
 /// Explores a world with a team; returns true if it ended explored.
 pub(super) fn run(args: &TeamArgs) -> Result<bool> {
     let links = links(args)?;
+    if args.slam != SlamPlace::Off && args.ground == Some(GroundArg::Uneven) {
+        bail!("--slam corrects a team's maps on flat ground; say --ground flat, or --slam off");
+    }
     strategies::check_space(&args.strategy, args.until.is_some())?;
     let (name, at) = with_start(&args.world);
     let world = World::open(name)?;
@@ -189,6 +196,7 @@ fn common(args: &TeamArgs, start: usize) -> ExploreArgs {
         odometry: Some(args.odometry),
         time_limit: args.time_limit,
         until: args.until,
+        slam: args.slam,
         robot: args.robot.clone(),
         ..ExploreArgs::default()
     }

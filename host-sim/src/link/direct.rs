@@ -51,6 +51,11 @@ impl Direct {
         &self.state
     }
 
+    /// Returns the planner's memory.
+    pub(crate) const fn state_mut(&mut self) -> &mut State {
+        &mut self.state
+    }
+
     /// Runs `act` on the pilot and its memory.
     fn with<T>(&mut self, act: impl FnOnce(&mut Pilot, &mut Memory<'_, TILES, SLOTS>) -> T) -> T {
         self.calls += 1;

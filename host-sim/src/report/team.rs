@@ -175,6 +175,9 @@ impl TeamReport {
                 robot.report.path_length_m,
                 robot.report.coverage.fraction * 100.0,
             ));
+            if let Some(slam) = &robot.report.slam {
+                lines.push(format!("    graph   {slam}"));
+            }
         }
         lines.join("\n")
     }

@@ -91,6 +91,11 @@ impl Canvas {
         Some(planes)
     }
 
+    /// Returns the planes of all tiles.
+    pub fn all_planes(&self) -> impl Iterator<Item = ((i16, i16), Classes)> {
+        self.keys().filter_map(|key| Some((key, self.planes(key)?)))
+    }
+
     /// Returns the tiles that scans may have reached.
     pub fn keys(&self) -> impl Iterator<Item = (i16, i16)> + use<> {
         let reach = self.reach.into_iter();

@@ -12,20 +12,42 @@
 //! correct the map more often than it errs. What the device remembers of a tile moves with the scan
 //! that was taken nearest to its middle.
 //!
+//! **On uneven ground** the graph takes the beams alone that end at what stands, as the localiser
+//! does, and the map is drawn from all beams with the height that the device had then. A tile keeps
+//! its heights in the device. Cells that the device resolved without a beam are unknown in a tile
+//! that is drawn anew.
+//!
+//! **In a team** each robot has a graph of its own scans. A tile belongs to the robot that measured
+//! it first, and only that robot's graph corrects it:
+//!
+//! | of a team's robot | what a correction does |
+//! | --- | --- |
+//! | tiles of its own | redrawn; what peers added goes by the tile's shift (`others.rs`) |
+//! | tiles of a peer | nothing: they lie where the peer's graph puts them |
+//! | scans taken in a tile of a peer | stay: the pose was found in the peer's map |
+//! | its pose in a tile of a peer | stays |
+//! | the others' copies of a tile | are replaced: a corrected tile is of a new era |
+//! | its move into the team's coordinates | moves all that the device has; the graph stays as it is |
+//!
+//! So two graphs pull at one tile only if both robots measured it before they heard of each other, as
+//! at starts side by side; there the corrections are small.
+//!
 //! Units: metres, radians; map cells of 10 cm; tiles of 3.2 m.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use fieldline_device::convert::quantity;
 use fieldline_planner::geometry::CELL_M;
 use fieldline_planner::map::tiles::TILE_SIDE;
 use fieldline_protocol::message::{Command, Observation, Quality, Start};
 use fieldline_slam as graph;
 
+use super::others::{Others, class_at};
 use super::{Canvas, PoseGraph, SlamReport};
 use crate::link::correction::{Classes, CorrectedTile, MapCorrection, Motion};
 use crate::replay::relations::{Pose, compose, inverse};
-use crate::trial::Corrector;
-use crate::trial::mirror::Mirror;
+use crate::trial::map_copy::Key;
+use crate::trial::{Corrector, MapCopy};
 
 /// A scan that has moved less is not drawn anew, metres: a cell.
 const LEAST_M: f64 = CELL_M as f64;
@@ -33,9 +55,6 @@ const LEAST_M: f64 = CELL_M as f64;
 const TILE_M: f64 = TILE_SIDE as f64 * CELL_M as f64;
 /// Greatest shift of a tile that a correction can say, cells.
 const MOST_CELLS: f64 = 127.0;
-
-/// Column and row of a tile.
-type Key = (i16, i16);
 
 /// Closes the loops of a run.
 #[derive(Debug)]
@@ -46,6 +65,8 @@ pub struct LoopCloser {
     /// Corrections sent, and the longest way by which one moved the robot, metres.
     sent: usize,
     largest_m: f64,
+    /// From the graph's coordinates to the map's; `None` while they are the same.
+    map_from_graph: Option<Pose>,
 }
 
 /// A scan of the run.
@@ -56,6 +77,8 @@ struct Scan {
     sent: Pose,
     /// The device entered it.
     entered: bool,
+    /// It was taken in a tile of a peer.
+    of_peer: bool,
 }
 
 impl LoopCloser {
@@ -69,6 +92,7 @@ impl LoopCloser {
             scans: Vec::new(),
             sent: 0,
             largest_m: 0.0,
+            map_from_graph: None,
         })
     }
 
@@ -82,49 +106,103 @@ impl LoopCloser {
         }
     }
 
-    /// Returns the poses of all scans, as corrected so far.
-    #[must_use]
-    pub fn poses(&self) -> Vec<Pose> {
-        self.graph.poses()
-    }
-
     /// Returns the correction to these poses; `None` if the map needs none.
-    fn correction(&mut self, poses: &[Pose], mirror: &Mirror) -> Option<MapCorrection> {
-        let moved = self.drawn_anew(poses);
+    fn correction(&mut self, poses: &[Pose], copy: &dyn MapCopy) -> Option<MapCorrection> {
+        let mut moved = self.drawn_anew(poses);
+        moved.retain(|key| !copy.is_of_peer(*key));
         if moved.is_empty() {
             return None;
         }
-        let entered = self.scans.iter().zip(poses);
-        let entered = entered.filter(|(scan, _)| scan.entered);
-        let canvas = Canvas::of(
-            &self.start,
-            entered.map(|(scan, pose)| (&scan.observation, *pose)),
-        )?;
-        let before: BTreeMap<Key, Classes> = mirror.tiles().collect();
-        let mut tiles = Vec::new();
-        for key in moved {
-            let classes = canvas.planes(key).unwrap_or_default();
-            if before.get(&key).copied().unwrap_or_default() != classes {
-                tiles.push(CorrectedTile {
-                    key,
-                    shift: self.shift_of(key, poses)?,
-                    classes,
-                });
-            }
+        let before = copy.tiles();
+        let mut drawn = self.drawn(&moved, poses)?;
+        if copy.is_shared() {
+            self.keep_others(&mut drawn, &before)?;
         }
+        drawn.retain(|tile| before.get(&tile.key).copied().unwrap_or_default() != tile.classes);
         for (scan, pose) in self.scans.iter_mut().zip(poses) {
             if has_moved(scan, pose) {
                 scan.sent = *pose;
             }
         }
-        let at = mirror.pose();
-        let at = [at.x_m, at.y_m, at.yaw_rad].map(f64::from);
-        let [x_m, y_m, yaw_rad] = compose(*poses.last()?, inverse(at));
+        let [x_m, y_m, yaw_rad] = compose(*poses.last()?, inverse(pose_of(copy)));
         Some(MapCorrection {
-            epoch: mirror.epoch().checked_add(1)?,
+            epoch: copy.epoch().checked_add(1)?,
             motion: Motion { x_m, y_m, yaw_rad },
-            tiles,
+            tiles: drawn,
         })
+    }
+
+    /// Returns these tiles of the map that the scans at some poses make.
+    fn drawn(&self, keys: &BTreeSet<Key>, poses: &[Pose]) -> Option<Vec<CorrectedTile>> {
+        let canvas = self.canvas(poses.iter().copied())?;
+        let tile = |key: &Key| {
+            Some(CorrectedTile {
+                key: *key,
+                shift: self.shift_of(*key, poses)?,
+                classes: canvas.planes(*key).unwrap_or_default(),
+            })
+        };
+        keys.iter().map(tile).collect()
+    }
+
+    /// Returns the map that the scans make which the device entered.
+    fn canvas(&self, poses: impl Iterator<Item = Pose>) -> Option<Canvas> {
+        let scans = self.scans.iter().zip(poses);
+        let entered = scans.filter(|(scan, _)| scan.entered);
+        Canvas::of(
+            &self.start,
+            entered.map(|(scan, pose)| (&scan.observation, pose)),
+        )
+    }
+
+    /// Keeps what others measured in the tiles.
+    fn keep_others(
+        &self,
+        drawn: &mut [CorrectedTile],
+        before: &BTreeMap<Key, Classes>,
+    ) -> Option<()> {
+        let own = self.canvas(self.scans.iter().map(|scan| scan.sent))?;
+        let own: BTreeMap<Key, Classes> = own.all_planes().collect();
+        let mut others = Others::default();
+        for tile in &*drawn {
+            if let Some(known) = before.get(&tile.key) {
+                let own_at = |cell| class_at(cell, |key| own.get(&key).copied());
+                others.take((tile.key, known), tile.shift, own_at);
+            }
+        }
+        for tile in drawn {
+            others.fill(tile.key, &mut tile.classes);
+        }
+        Some(())
+    }
+
+    /// Returns the pose of every scan: the graph's, or the device's in a tile of a peer.
+    #[must_use]
+    pub fn poses(&self) -> Vec<Pose> {
+        let corrected = self.graph.poses().into_iter().zip(&self.scans);
+        let pose = |(pose, scan): (Pose, &Scan)| match self.map_from_graph {
+            _ if scan.of_peer => scan.sent,
+            Some(frame) => compose(frame, pose),
+            None => pose,
+        };
+        corrected.map(pose).collect()
+    }
+
+    /// Returns a motion of the map in the graph's coordinates.
+    fn in_graph(&self, motion: Pose) -> Pose {
+        self.map_from_graph.map_or(motion, |frame| {
+            compose(inverse(frame), compose(motion, frame))
+        })
+    }
+
+    /// Follows the whole map, which moved.
+    fn follow(&mut self, motion: Motion) {
+        let motion = [motion.x_m, motion.y_m, motion.yaw_rad];
+        let frame = self.map_from_graph.unwrap_or_default();
+        self.map_from_graph = Some(compose(motion, frame));
+        for scan in &mut self.scans {
+            scan.sent = compose(motion, scan.sent);
+        }
     }
 
     /// Returns the tiles that scans which have moved reached, and those that they reach now.
@@ -148,14 +226,15 @@ impl LoopCloser {
         Some((dx, dy))
     }
 
-    /// Returns the entered scan that was taken nearest to a tile's middle, and its pose now.
+    /// Returns the entered scan that was taken nearest to a tile's middle, not in a tile of a peer,
+    /// and its pose now.
     fn nearest<'a>(&'a self, key: Key, poses: &'a [Pose]) -> Option<(&'a Scan, &'a Pose)> {
         let [x, y] = middle(key);
         let entered = self
             .scans
             .iter()
             .zip(poses)
-            .filter(|(scan, _)| scan.entered);
+            .filter(|(scan, _)| scan.entered && !scan.of_peer);
         let far = |scan: &Scan| (scan.sent[0] - x).hypot(scan.sent[1] - y);
         entered.min_by(|(one, _), (other, _)| far(one).total_cmp(&far(other)))
     }
@@ -166,30 +245,51 @@ impl Corrector for LoopCloser {
         &mut self,
         observation: &Observation,
         command: &Command,
-        mirror: &Mirror,
+        copy: &dyn MapCopy,
     ) -> Option<MapCorrection> {
-        let at = mirror.pose();
-        let at = [at.x_m, at.y_m, at.yaw_rad].map(f64::from);
+        if let Some(motion) = copy.moved() {
+            self.follow(motion);
+        }
+        let at = pose_of(copy);
         let location = command.location;
         let is_lost = location.is_some_and(|it| it.quality == Quality::Lost);
-        let (_, closed) = self.graph.observe_at(observation, (!is_lost).then_some(at));
+        let entered = !is_lost && copy.moved().is_none();
+        let in_graph = match self.map_from_graph {
+            Some(frame) => compose(inverse(frame), at),
+            None => at,
+        };
+        let standing = copy.standing(observation);
+        let mut observation = copy.measured(observation);
+        if self.start.uneven_ground.is_some() {
+            // The height was corrected with the pose; a closed loop leaves it.
+            observation.pose.z = quantity(copy.pose().z_m);
+        }
+        let located = entered.then_some(in_graph);
+        let (_, closed) = self.graph.observe_at(&standing, located);
         self.scans.push(Scan {
-            observation: observation.clone(),
+            observation,
             sent: at,
-            entered: !is_lost,
+            entered,
+            of_peer: copy.is_of_peer(tile_of(at)),
         });
         if !closed {
             return None;
         }
-        let poses = self.graph.poses();
-        let correction = self.correction(&poses, mirror)?;
+        let poses = self.poses();
+        let correction = self.correction(&poses, copy)?;
         self.sent += 1;
-        let moved_m = correction.motion.length_at_m(&mirror.pose());
+        let moved_m = correction.motion.length_at_m(&copy.pose());
         self.largest_m = self.largest_m.max(moved_m);
         let Motion { x_m, y_m, yaw_rad } = correction.motion;
-        self.graph.relocate([x_m, y_m, yaw_rad]);
+        self.graph.relocate(self.in_graph([x_m, y_m, yaw_rad]));
         Some(correction)
     }
+}
+
+/// Returns the robot's pose in the map.
+fn pose_of(copy: &dyn MapCopy) -> Pose {
+    let at = copy.pose();
+    [at.x_m, at.y_m, at.yaw_rad].map(f64::from)
 }
 
 /// Returns true if a scan has moved far enough, itself or what it saw some metres off.
@@ -289,6 +389,7 @@ mod tests {
             observation,
             sent: [5.0, 5.0, 3.1],
             entered: true,
+            of_peer: false,
         };
         assert!(!has_moved(&scan, &[5.05, 5.0, 3.1]));
         assert!(has_moved(&scan, &[5.11, 5.0, 3.1]));

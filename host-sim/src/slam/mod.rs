@@ -10,6 +10,7 @@
 
 mod canvas;
 mod closer;
+mod others;
 mod votes;
 
 use core::fmt;

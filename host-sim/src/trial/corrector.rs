@@ -10,7 +10,7 @@
 
 use fieldline_protocol::message::{Command, Control, Observation};
 
-use super::mirror::Mirror;
+use super::map_copy::MapCopy;
 use super::snapshot::{self, Snapshot};
 use super::{Cast, Record, Setup};
 use crate::link::LinkError;
@@ -37,13 +37,13 @@ pub trait Corrector {
         &mut self,
         observation: &Observation,
         command: &Command,
-        mirror: &Mirror,
+        copy: &dyn MapCopy,
     ) -> Option<MapCorrection>;
 }
 
 /// Corrects nothing.
 impl Corrector for () {
-    fn correct(&mut self, _: &Observation, _: &Command, _: &Mirror) -> Option<MapCorrection> {
+    fn correct(&mut self, _: &Observation, _: &Command, _: &dyn MapCopy) -> Option<MapCorrection> {
         None
     }
 }
@@ -55,13 +55,13 @@ pub(super) fn correct(
     (observation, command): (&Observation, &Command),
     record: &mut Record,
 ) -> Result<(), LinkError> {
-    let Some(mirror) = cast.survey.mirror() else {
+    let Some(copy) = cast.survey.copy() else {
         return Ok(());
     };
-    let Some(correction) = cast.corrector.correct(observation, command, mirror) else {
+    let Some(correction) = cast.corrector.correct(observation, command, copy) else {
         return Ok(());
     };
-    let moved_m = correction.motion.length_at_m(&mirror.pose());
+    let moved_m = correction.motion.length_at_m(&copy.pose());
     let is_shown = is_among(setup.snapshots, moved_m, &record.corrections);
     let before = if is_shown {
         Some(snapshot::take(cast.link, record)?)
@@ -69,9 +69,7 @@ pub(super) fn correct(
         None
     };
     cast.link.correct(&correction)?;
-    if let Some(mirror) = cast.survey.mirror() {
-        mirror.correct(&correction);
-    }
+    copy.correct(&correction);
     if let Some(before) = before {
         let after = snapshot::take(cast.link, record)?;
         record.corrections.push(Corrected {

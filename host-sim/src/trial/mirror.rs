@@ -103,6 +103,23 @@ impl Mirror {
         self.epoch
     }
 
+    /// Returns the last step's observation, on uneven ground with the beams of the first laser alone
+    /// that end at what stands.
+    #[must_use]
+    pub fn standing(&self, observation: &Observation) -> Observation {
+        let mut seen = observation.clone();
+        let uneven = self.config.as_ref().filter(|it| it.ground().is_some());
+        if let Some(config) = uneven
+            && let Some(input) = convert::input(observation, config.lasers())
+            && let Some(scan) = seen.scans.first_mut()
+        {
+            let pose = self.pose;
+            let standing = self.map.standing(config, &Input { pose, ..input });
+            scan.ranges_mm = standing.into_iter().collect();
+        }
+        seen
+    }
+
     /// Returns the tiles in which something was measured.
     pub fn tiles(&self) -> impl Iterator<Item = ((i16, i16), Classes)> {
         let tiles = self.map.tiles().touched();
@@ -112,17 +129,19 @@ impl Mirror {
     /// Corrects the map, as the device does.
     pub fn correct(&mut self, correction: &MapCorrection) {
         for tile in correction.in_order() {
-            let (x, y) = tile.key;
-            self.map.replace((x.into(), y.into()), &tile.classes);
+            let at = (tile.key.0.into(), tile.key.1.into());
+            self.map.expand(at, &mut ());
+            self.map.replace(at, &tile.classes, false);
         }
         let motion = convert::correction(&correction.opening());
+        let MapPose(before) = self.localiser.to_map(&self.localiser.odom());
         self.localiser.correct_pose(&MapFromOdom {
             x_m: motion.x_m,
             y_m: motion.y_m,
             yaw_rad: math::wrap(motion.yaw_rad),
         });
-        self.map.end_correction();
         let MapPose(pose) = self.localiser.to_map(&self.localiser.odom());
+        self.map.end_correction(before.point(), pose.point());
         self.pose = pose;
         self.epoch = correction.epoch;
     }

@@ -10,6 +10,7 @@ mod body;
 pub mod corrector;
 pub mod ending;
 pub mod freeze;
+pub mod map_copy;
 pub mod mirror;
 pub mod mission;
 pub mod oracle;
@@ -41,6 +42,7 @@ use snapshot::{Snapshot, Window};
 pub use body::Body;
 pub use corrector::Corrector;
 pub use ending::Ending;
+pub use map_copy::MapCopy;
 use record::unstamped;
 pub use record::{Record, Step};
 
@@ -54,9 +56,15 @@ pub trait Survey {
     /// explorable world that is known now.
     fn note(&mut self, observation: &Observation, truth: &Stamped, command: &Command) -> f64;
 
-    /// Returns the copy of the device's map, to be corrected with it; `None` without one.
+    /// Returns the copy of a lone robot's map, which a device that was reset gets back; `None`
+    /// without one.
     fn mirror(&mut self) -> Option<&mut Mirror> {
         None
+    }
+
+    /// Returns the copy of the device's map, to be corrected with it; `None` without one.
+    fn copy(&mut self) -> Option<&mut dyn MapCopy> {
+        self.mirror().map(|mirror| mirror as &mut dyn MapCopy)
     }
 
     /// Returns heights and preferences in a window that the planner solved; `None` on flat ground.

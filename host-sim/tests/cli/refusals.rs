@@ -392,6 +392,15 @@ fn bad_teams_are_refused_in_one_line() {
         &["2 links", "3 robots"],
     );
     team(&["--strategy", "bvp"], &["bvp", "--radio off"]);
+    team(
+        &["--strategy", "bvp", "--radio", "off", "--slam", "host"],
+        &["--slam corrects the map of a device", "say --slam off"],
+    );
+    team(&["--slam", "chip"], &["--slam", "off", "host"]);
+    team(
+        &["--slam", "host", "--ground", "uneven"],
+        &["--slam corrects a team's maps", "--slam off"],
+    );
     team(&["--start", "99"], &["starts", "--start"]);
     for error in ["0.3", "0,5", "9,5", "0.3,90", "far"] {
         team(&["--start-error", error], &["--start-error", "0.3,5"]);

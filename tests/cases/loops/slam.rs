@@ -1,7 +1,8 @@
 //! Loops closed by the pose graph beside the link: the device's map is corrected while it explores.
 //!
-//! `golden/slam.txt` has runs with the papers' odometry, with and without the graph, and
-//! `slam-full.txt` five starts of each published world that has loops.
+//! `golden/slam.txt` has runs with the papers' odometry, with and without the graph,
+//! `slam-uneven.txt` runs on uneven ground with the usual noise, and `slam-full.txt` five starts of
+//! each published world that has loops.
 
 use fieldline_tests::digests::Digest;
 use fieldline_tests::golden;
@@ -13,6 +14,7 @@ use host_sim::link::loopback::loopback;
 use host_sim::report::Report;
 use host_sim::slam::SlamPlace;
 use host_sim::trial::mission::{Mission, OdometryProfile};
+use host_sim::trial::uneven::TABLE_I;
 
 /// Strategies that close loops, and one that does not.
 const STRATEGIES: [&str; 3] = ["ouroboros", "tdbvp", "frontier"];
@@ -124,6 +126,55 @@ fn a_strategy_that_closes_loops_corrects_its_map() {
         host < off && host <= MOST_ERROR_M,
         "{host} m, without the graph {off} m"
     );
+}
+
+/// A run on uneven ground: its seed, and where loops are closed.
+fn on_uneven_ground(seed: u64, slam: SlamPlace) -> Mission {
+    Mission {
+        seed,
+        uneven_ground: Some(TABLE_I),
+        odometry: OdometryProfile::Noisy,
+        localise: true,
+        slam,
+        ..Mission::default()
+    }
+}
+
+/// In `building` walls stand around the robot, and heights go with them.
+#[test]
+fn on_uneven_ground_a_map_among_walls_is_corrected() {
+    let worlds = worlds::builtins(&["building"]);
+    let runs: Vec<(u64, SlamPlace)> = (0..2)
+        .flat_map(|seed| [SlamPlace::Off, SlamPlace::Host].map(|slam| (seed, slam)))
+        .collect();
+    let reports = in_parallel(&runs, |&(seed, slam)| {
+        explored(
+            &on_uneven_ground(seed, slam),
+            &worlds[0],
+            &mut Direct::new(),
+        )
+        .0
+    });
+    let digests: Vec<Digest> = reports
+        .iter()
+        .map(|report| Digest::of(report, &format!("uneven-slam={}", place(report))))
+        .collect();
+    golden::compare_runs("slam-uneven", &table(&reports).to_string(), &digests);
+    for report in &reports {
+        let run = format!("seed {} {}", report.seed, place(report));
+        let safety = &report.safety;
+        let lost = [safety.collisions, safety.falls, safety.tips];
+        assert_eq!(lost, [0; 3], "{run}");
+        assert!(report.explored(), "{run}");
+        assert_eq!(report.debug.map_matches_mirror, Some(true), "{run}");
+    }
+    let of = |slam: &str| {
+        let chosen = reports.iter().filter(|report| place(report) == slam);
+        let chosen: Vec<&Report> = chosen.collect();
+        mean(&chosen, |report| report.localization.mean_error_m).expect("there are runs")
+    };
+    let (off, host) = (of("off"), of("host"));
+    assert!(host < off, "{host} m, without the graph {off} m");
 }
 
 /// Runs five starts with the graph, and compares the errors of each strategy with those of
@@ -267,4 +318,20 @@ fn corrections_are_the_same_over_bytes() {
     assert_eq!(by_call.slam, by_bytes.slam);
     let corrections = by_call.slam.map_or(0, |slam| slam.corrections);
     assert!(corrections > 2, "{corrections} corrections");
+}
+
+#[test]
+fn corrections_on_uneven_ground_are_the_same_over_bytes() {
+    let worlds = worlds::builtins(&["building"]);
+    let limited = |link: &str| Mission {
+        link: link.into(),
+        time_limit_ms: 400_000,
+        ..on_uneven_ground(1, SlamPlace::Host)
+    };
+    let by_call = explored(&limited("direct"), &worlds[0], &mut Direct::new()).0;
+    let by_bytes = explored(&limited("loopback"), &worlds[0], &mut loopback()).0;
+    assert_eq!(by_call.digest, by_bytes.digest);
+    assert_eq!(by_call.slam, by_bytes.slam);
+    let corrections = by_call.slam.map_or(0, |slam| slam.corrections);
+    assert!(corrections > 0, "nothing was corrected");
 }

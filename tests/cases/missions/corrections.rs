@@ -18,9 +18,8 @@ use host_sim::link::line::Line;
 use host_sim::link::loopback::{LocalDevice, loopback};
 use host_sim::link::{Link, LinkError};
 use host_sim::report::Report;
-use host_sim::trial::Corrector;
-use host_sim::trial::mirror::Mirror;
 use host_sim::trial::mission::{Mission, OdometryProfile, explore_corrected};
+use host_sim::trial::{Corrector, MapCopy};
 use host_sim::world::World;
 
 use crate::links::faulty;
@@ -78,8 +77,8 @@ impl Moves {
     }
 
     /// Draws the moved map.
-    fn correction(&self, mirror: &Mirror, robot: &Pose) -> MapCorrection {
-        let map = Cells(mirror.tiles().collect());
+    fn correction(&self, mirror: &dyn MapCopy, robot: &Pose) -> MapCorrection {
+        let map = Cells(mirror.tiles());
         let column = robot.point().cell().x.div_euclid(SIDE);
         let mut keys: BTreeSet<(i16, i16)> = map.0.keys().copied().collect();
         for key in map.0.keys() {
@@ -168,7 +167,7 @@ impl Corrector for Script {
         &mut self,
         observation: &Observation,
         command: &Command,
-        mirror: &Mirror,
+        mirror: &dyn MapCopy,
     ) -> Option<MapCorrection> {
         assert_eq!(command.map_epoch, mirror.epoch(), "every command tells it");
         self.since += 1;

@@ -5,4 +5,5 @@ mod drift;
 mod dropout;
 mod full;
 mod meetings;
+mod slam;
 mod small;

@@ -89,6 +89,19 @@ impl<'a> Elevation<'a> {
         }
     }
 
+    /// Moves the window with its content by some cells along x and y.
+    pub(crate) fn move_by(&mut self, [dx, dy]: [i32; 2]) {
+        // Of each byte of a cell: the first one, and the distance to the next cell's.
+        for [first, next] in [[0, 2], [1, 2]] {
+            let heights = self.heights.as_flattened_mut();
+            roll(heights, first, [next, next * SIDE], dx);
+            roll(heights, first, [next * SIDE, next], dy);
+        }
+        roll(self.marks, 0, [1, SIDE], dx);
+        roll(self.marks, 0, [SIDE, 1], dy);
+        *self.origin = self.origin.offset(dx, dy);
+    }
+
     fn mark_mut(&mut self, cell: Cell) -> Option<&mut u8> {
         self.marks.get_mut(slot(*self.origin, cell)?)
     }
@@ -216,6 +229,30 @@ impl<'a> Elevation<'a> {
             *mark &= COUNT;
         }
         self.measure(cell, height_m);
+    }
+}
+
+/// Cells along the window's side.
+const SIDE: usize = WINDOW_SIDE as usize;
+
+/// Moves the bytes of every line of a window by some places along the line, around its end.
+/// `along` is the distance from one place of a line to the next, `across` from line to line.
+///
+/// It is called from four places, so it is not inlined.
+#[inline(never)]
+fn roll(bytes: &mut [u8], first: usize, [along, across]: [usize; 2], by: i32) {
+    for line in 0..SIDE {
+        let mut old = [0; SIDE];
+        let place = |k: usize| first + line * across + k * along;
+        for (k, old) in old.iter_mut().enumerate() {
+            *old = bytes.get(place(k)).copied().unwrap_or(0);
+        }
+        for (k, old) in (by..).zip(old) {
+            let to = (k & (WINDOW_SIDE - 1)) as usize;
+            if let Some(byte) = bytes.get_mut(place(to)) {
+                *byte = old;
+            }
+        }
     }
 }
 

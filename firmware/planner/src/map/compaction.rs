@@ -306,7 +306,15 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         half
     }
 
-    fn expand_tile(&mut self, place: usize, side_table: &mut impl SideTable) -> Result<(), NoRoom> {
+    /// Gives the tile at a place of the directory a page, if it is compact.
+    ///
+    /// # Errors
+    /// [`NoRoom`] if the pool is full.
+    pub(super) fn expand_tile(
+        &mut self,
+        place: usize,
+        side_table: &mut impl SideTable,
+    ) -> Result<(), NoRoom> {
         let entry = self.entry_at(place);
         let (low, kept) = match entry {
             Entry::Untouched | Entry::Page(_) => return Ok(()),

@@ -6,8 +6,7 @@
 //!
 //! Units: map cells.
 
-use crate::config::Config;
-use crate::config::UnevenGround;
+use crate::config::{Config, GroundTuning, UnevenGround};
 use crate::geometry::Cell;
 use crate::grid::bits::ones64;
 use crate::ground::classify::{self, RiseLimits};
@@ -87,6 +86,19 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                 self.classify(&limits, y);
             }
         }
+    }
+
+    /// Moves the elevation window with its heights by whole cells. Landmarks are forgotten: the next
+    /// scans mark them anew.
+    pub(super) fn move_heights(&mut self, by: [i32; 2]) {
+        let mut elevation = Elevation::new(
+            self.evidence.bytes_mut(),
+            self.tiles.mark_bytes_mut(),
+            &mut self.window,
+            &GroundTuning::DEFAULT,
+        );
+        elevation.move_by(by);
+        self.tiles.landmark_bytes_mut().fill(0);
     }
 
     /// Enters what beams see through doorways into cells that are unknown.
@@ -223,7 +235,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             self.evidence.bytes_mut(),
             self.tiles.mark_bytes_mut(),
             &mut self.window,
-            &crate::config::GroundTuning::DEFAULT,
+            &GroundTuning::DEFAULT,
         );
         elevation.follow(middle);
         let half = WINDOW_SIDE / 2;

@@ -1,7 +1,8 @@
 //! What a team's exchange needs of the map: the versions of its tiles, and joins with the tiles of
 //! others.
 //!
-//! A tile in which nothing is known has no version, so it is never said.
+//! A tile in which nothing is known has no version, so it is never said, unless a correction forgot
+//! it: others may have it.
 //!
 //! Units: tiles of 32 × 32 cells.
 
@@ -13,7 +14,7 @@ use crate::map::compaction::{Entry, ZEROS};
 use crate::map::join::{hash, join_row, row_of};
 use crate::map::tile::{Cells, Plane};
 use crate::map::tiles::{NoRoom, TILE_SIDE, Tiles};
-use crate::map::versions::MEASURED;
+use crate::map::versions::{ERA, MEASURED};
 
 /// A tile with its version.
 #[derive(Clone, Copy, Debug)]
@@ -52,9 +53,9 @@ impl TileView<'_> {
         self.epoch.wrapping_sub(MEASURED)
     }
 
-    /// Returns true if nothing in the tile is known.
+    /// Returns true if nothing in the tile is known, and no correction forgot it.
     fn is_unknown(&self) -> bool {
-        self.planes == [&ZEROS; 2]
+        self.planes == [&ZEROS; 2] && self.epoch < ERA
     }
 }
 
@@ -64,7 +65,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.directory.keys().len()
     }
 
-    /// Returns the tile at a place of the directory; `None` if nothing in it is known.
+    /// Returns the tile at a place of the directory; `None` if it has no version.
     fn view_at(&self, place: usize) -> Option<TileView<'_>> {
         let entry = self.entry_at(place);
         let epoch = match entry {
@@ -160,7 +161,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         stand: Stand,
         has_evidence: bool,
     ) -> Result<(), NoRoom> {
-        if *cells == [ZEROS; 2] {
+        if *cells == [ZEROS; 2] && epoch < ERA {
             return Ok(());
         }
         let page = self.tiles.touch(tile.0, tile.1)?;

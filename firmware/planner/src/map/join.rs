@@ -3,18 +3,21 @@
 //! ```text
 //! equal epochs      per cell the greater of unknown < free < obstacle < negative
 //! different epochs  the cells of the greater epoch, its unknown cells filled from the other
+//! different eras    the cells of the greater era: a correction replaced the other's
 //! ```
 //!
 //! X ≤ Y if the epochs are equal and no cell of X is greater, or if X has the lower epoch and Y
-//! knows every cell that X knows. A join is commutative and idempotent, and no less than both. The
+//! knows every cell that X knows, or if X is of an earlier era. A join is commutative and idempotent, and no less than both. The
 //! order is finite. So however packets are lost, doubled or late: members that go on to exchange
 //! tiles that differ end with equal maps.
 //!
-//! A cell whose class goes down (an obstacle that became free) is only kept by a greater epoch.
+//! A cell whose class goes down (an obstacle that became free) is only kept by a greater epoch, and
+//! one that becomes unknown by a greater era.
 //!
 //! Units: cells; a word holds the 32 cells of a row.
 
 use crate::map::tile::{Cells, Plane};
+use crate::map::versions::ERA;
 
 /// Returns the words of a row that two versions of equal epochs know together: per cell the greater
 /// class.
@@ -35,12 +38,14 @@ pub(super) const fn join_row(
     (epoch, row): (u16, [u32; 2]),
     (other_epoch, other): (u16, [u32; 2]),
 ) -> [u32; 2] {
+    let is_later = epoch > other_epoch;
+    let (later, earlier) = if is_later { (row, other) } else { (other, row) };
     if epoch == other_epoch {
         greater(row, other)
-    } else if epoch > other_epoch {
-        filled(row, other)
+    } else if epoch / ERA == other_epoch / ERA {
+        filled(later, earlier)
     } else {
-        filled(other, row)
+        later
     }
 }
 
@@ -67,7 +72,7 @@ pub(super) fn row_of([low, high]: &Cells, row: usize) -> [u32; 2] {
 mod tests {
     use std::vec::Vec;
 
-    use super::join_row;
+    use super::{ERA, join_row};
 
     type Version = (u16, [u32; 2]);
 
@@ -84,7 +89,7 @@ mod tests {
         (0..32).all(|k| {
             let (a, b) = (cell(one, k), cell(other, k));
             match one.0.cmp(&other.0) {
-                core::cmp::Ordering::Less => a == 0 || b != 0,
+                core::cmp::Ordering::Less => one.0 / ERA < other.0 / ERA || a == 0 || b != 0,
                 core::cmp::Ordering::Equal => a <= b,
                 core::cmp::Ordering::Greater => false,
             }
@@ -97,6 +102,8 @@ mod tests {
             let (a, b) = (cell(one, k), cell(other, k));
             match one.0.cmp(&other.0) {
                 core::cmp::Ordering::Equal => a.max(b),
+                core::cmp::Ordering::Greater if one.0 / ERA > other.0 / ERA => a,
+                core::cmp::Ordering::Less if one.0 / ERA < other.0 / ERA => b,
                 core::cmp::Ordering::Greater if a != 0 => a,
                 core::cmp::Ordering::Less if b == 0 => a,
                 _ => b,
@@ -115,7 +122,7 @@ mod tests {
         for _ in 0..20_000 {
             let [one, other] = [(); 2].map(|()| {
                 (
-                    random() as u16 % 3,
+                    [0, 1, 2, ERA, ERA + 1, 2 * ERA][random() as usize % 6],
                     [random() | random(), random() & random()],
                 )
             });

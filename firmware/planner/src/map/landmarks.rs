@@ -68,7 +68,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
 
     /// Returns true if a cell is a landmark.
     #[inline]
-    fn is_landmark(&self, cell: Cell) -> bool {
+    pub(super) fn is_landmark(&self, cell: Cell) -> bool {
         let (byte, bit) = bit_of(cell);
         let bits = self.landmark_bytes().get(byte);
         bits.is_some_and(|bits| bits & bit != 0) && self.class(cell) == Class::Unknown

@@ -13,6 +13,7 @@
 //! | `integrate`, `traversal` | beams into classes and counts |
 //! | `elevation_layer` | the elevation window into classes, on uneven ground |
 //! | `landmarks` | what beams met far off on uneven ground, for the localiser alone |
+//! | `standing` | for a host, the beams that end at what stands |
 //! | [`obstacle_points`] | single returns near the robot, finer than cells |
 //!
 //! Units: map cells of [`CELL_M`](crate::geometry::CELL_M).
@@ -29,6 +30,8 @@ pub(crate) mod landmarks;
 pub(crate) mod neighbourhood;
 pub mod obstacle_points;
 pub(crate) mod rows;
+#[cfg(feature = "internals")]
+mod standing;
 mod tile;
 pub mod tiles;
 mod traversal;

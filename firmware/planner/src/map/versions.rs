@@ -2,6 +2,9 @@
 //!
 //! - The *epoch* of a tile is raised when the robot says a tile in which a cell's class went down
 //!   since it was said before ([`super::join`]).
+//! - A correction of the map begins the next *era* of a tile, [`ERA`] epochs long: what others have
+//!   of an earlier era is replaced and fills nothing. There are 63 of them; a tile that is
+//!   corrected more often stays in the last one.
 //! - A tile that the robot changed by its own measurement is *due* once it was left alone for 2 s,
 //!   and after 4 s while it goes on to change. A join is no measurement.
 //!
@@ -15,6 +18,8 @@ use crate::grid::{inside, inside_mut};
 /// Epoch of a tile that the robot measured. Epoch 0 is that of a tile that was moved with the map
 /// into the team's coordinates: what others measured there counts more.
 pub(crate) const MEASURED: u16 = 1;
+/// Epochs of an era; a power of two. A robot that raises an epoch each 2 s takes half an hour.
+pub(super) const ERA: u16 = 1024;
 /// A cell changed since the last sweep.
 const CHANGED: u8 = 1;
 /// A cell's class went down since the tile was said.
@@ -97,9 +102,11 @@ impl<const TILES: usize> Versions<TILES> {
         }
     }
 
-    /// Begins a tile of the epoch `epoch` anew in its page: a correction replaced its cells.
-    pub(super) fn begin_corrected(&mut self, page: usize, epoch: u16) {
-        self.set_epoch(page, epoch.saturating_add(1));
+    /// Begins a tile anew in its page: a correction replaced its cells, which were of the epoch
+    /// `epoch`; `None` if it had none.
+    pub(super) fn begin_corrected(&mut self, page: usize, epoch: Option<u16>) {
+        let next = epoch.map_or(MEASURED, |epoch| epoch | (ERA - 1));
+        self.set_epoch(page, next.saturating_add(1));
         if let Some(news) = self.news_mut(page) {
             *news = News(CHANGED);
         }
@@ -160,7 +167,7 @@ impl<const TILES: usize> Versions<TILES> {
 mod tests {
     use std::vec::Vec;
 
-    use super::{MEASURED, Versions};
+    use super::{ERA, MEASURED, Versions};
 
     /// Returns the sweeps after which a page is due that changes before these sweeps.
     fn due(changes: &[usize]) -> Vec<usize> {
@@ -187,6 +194,19 @@ mod tests {
         assert_eq!(due(&[0]), [2]);
         assert_eq!(due(&[0, 2]), [3]);
         assert_eq!(due(&[0, 1, 2, 3, 4, 5, 6]), [3, 7]);
+    }
+
+    #[test]
+    fn a_correction_begins_an_era_and_a_new_tile_needs_none() {
+        let mut versions = Versions::<1>::new();
+        let mut corrected = |epoch| {
+            versions.begin_corrected(0, epoch);
+            versions.epoch(0)
+        };
+        assert_eq!(corrected(None), MEASURED + 1);
+        let first = corrected(Some(MEASURED));
+        assert_eq!([first, corrected(Some(first + 5))], [ERA, 2 * ERA]);
+        assert_eq!(corrected(Some(u16::MAX - 3)), u16::MAX);
     }
 
     #[test]

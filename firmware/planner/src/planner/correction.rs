@@ -16,7 +16,7 @@
 //! | evidence | | in listed tiles; elsewhere it stays |
 //! | trail | by shift | where its tile is forgotten, or the scratch memory is full |
 //! | arrivals | they are cells | |
-//! | versions for the team | a listed tile is news, of the next epoch | |
+//! | versions for the team | a listed tile is news, of the next era | |
 //! | goals given up, blocked passages, viewpoint | by shift | |
 //! | path and goal | by shift, and planned anew on the next skeleton | |
 //! | progress towards goals, skeleton | | always: begun anew |
@@ -29,8 +29,11 @@
 //! | pending visits | their stamps are written | which cells of a place were visited |
 //! | cells of an area that robots visited (sbpf) | | if a tile is shifted; covered stay covered |
 //! | peers, right of way | they stay: the next beacon is a step away | |
+//! | motion into the team's coordinates | it stays: it holds at the start, which a closed loop leaves | |
 //! | obstacle points, contacts | they stay: they lie in the odometry's frame | |
-//! | heights of uneven ground | | a correction is refused there |
+//! | heights of a tile on uneven ground | with the tile's cells | in tiles without a known cell |
+//! | heights around the robot | with the robot, by whole cells | |
+//! | landmarks | | always: the next scans mark them anew |
 //!
 //! So no correction moves a wall into the robot, and none puts the robot into a wall that its own
 //! beams have not met.
@@ -123,7 +126,7 @@ pub struct CorrectionProgress {
 /// The reason why a correction is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CorrectionError {
-    /// It has too many tiles, takes the robot too far away, or the ground is uneven.
+    /// It has too many tiles, or takes the robot too far away.
     Unusable,
     /// It is not the last one, or has no more tiles.
     NotOpen,
@@ -202,7 +205,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let MapPose(pose) = self.localiser.to_map(&self.localiser.odom());
         let Point { x_m, y_m } = motion.point(pose.point());
         let is_near = x_m.abs() <= MOST_M && y_m.abs() <= MOST_M && motion.yaw_rad.is_finite();
-        if correction.tiles > MOST_TILES || !is_near || self.ground.is_uneven() {
+        if correction.tiles > MOST_TILES || !is_near {
             return Err(CorrectionError::Unusable);
         }
         self.correcting = Correcting {
@@ -260,7 +263,9 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
                 correcting.trail += 1;
             }
         }
-        self.map.replace((column, row), &tile.planes);
+        let in_team = self.team.is_member();
+        self.ground
+            .replace(&mut self.map, (column, row), &tile.planes, in_team);
         Ok(())
     }
 
@@ -284,9 +289,10 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let (list, _) = list.as_chunks::<2>();
         let list: &[Shift] = list.get(..shifts).unwrap_or_default();
         let shifts = Shifts(list);
+        let MapPose(before) = self.localiser.to_map(&self.localiser.odom());
         self.localiser.correct_pose(&motion);
         let MapPose(pose) = self.localiser.to_map(&self.localiser.odom());
-        self.map.end_correction();
+        self.map.end_correction(before.point(), pose.point());
         for &word in trail.iter().take(blocks) {
             self.map.mark_trail(unpack(word));
         }

@@ -25,7 +25,7 @@ use crate::field::preference::Preferences;
 use crate::geometry::{Cell, OdomPose, Point, Pose, RobotFrame};
 use crate::input::Input;
 use crate::map::obstacle_points::ObstaclePoints;
-use crate::map::{Map, Tiles, obstacle_points};
+use crate::map::{Map, SideTable as _, Tiles, obstacle_points};
 use crate::path::height_levels::{HeightLevels, LevelCost};
 use crate::roadmap::configuration_space::Footprint;
 use crate::robot::RobotShape;
@@ -99,6 +99,23 @@ impl<const TILES: usize> GroundModel<TILES> {
                 levels.note(&map.heights(), map.tiles());
                 map.compact(levels);
             }
+        }
+    }
+
+    /// Replaces a tile of the map by a correction; its heights stay with it.
+    pub(super) fn replace<const SLOTS: usize>(
+        &mut self,
+        map: &mut Map<TILES, SLOTS>,
+        tile: (i32, i32),
+        planes: &[[u32; 32]; 2],
+        in_team: bool,
+    ) {
+        if let Self::Uneven(levels) = self {
+            map.expand(tile, levels);
+        }
+        let spare = map.replace(tile, planes, in_team);
+        if let (Self::Uneven(levels), Some(page)) = (self, spare) {
+            levels.release_page(page);
         }
     }
 

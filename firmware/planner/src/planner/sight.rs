@@ -15,13 +15,14 @@ use crate::input::{INVALID_MM, Input, informative_range_mm};
 use crate::planner::sense;
 use crate::planner::state::State;
 use crate::robot::MAX_BEAMS;
+use crate::team::peers::Peers;
 
 /// A beam that ends in a peer frees the cells up to this distance before it, millimetres: two
 /// cells.
 const BEFORE_PEER_MM: u16 = 200;
 
 /// The ranges of a scan.
-type Ranges = Vec<u16, { MAX_BEAMS as usize }>;
+pub(super) type Ranges = Vec<u16, { MAX_BEAMS as usize }>;
 
 /// Locates the robot and enters scans and odometry, without the beams that end in a peer as seen
 /// from the pose that odometry tells. Not inlined: its scans lie on the stack only while the
@@ -33,14 +34,7 @@ pub(super) fn sense_without_peers<const TILES: usize, const SLOTS: usize>(
     (input, expected): (&Input<'_>, &Pose),
 ) -> MapPose {
     let mut seen = [const { Ranges::new() }; 2];
-    for ((laser, scan), seen) in config.lasers.iter().zip(input.scans).zip(&mut seen) {
-        // A dropout is known by its neighbours, which may be hidden.
-        let range = |i| informative_range_mm(scan, i, laser.range_limit_mm);
-        let ranges = (0..scan.len()).map(|i| range(i).unwrap_or(INVALID_MM));
-        seen.extend(ranges.take(MAX_BEAMS.into()));
-        let peers = state.team.peers();
-        peers.hide(input.time_ms, expected, laser, seen);
-    }
+    hide_peers(config, state.team.peers(), (input, expected), &mut seen);
     let [first, second] = &seen;
     let without_peers = Input {
         scans: [first, second],
@@ -51,6 +45,22 @@ pub(super) fn sense_without_peers<const TILES: usize, const SLOTS: usize>(
         free_before_peers(config, state, &Input { pose, ..*input }, &seen);
     }
     MapPose(pose)
+}
+
+/// Copies the ranges of an input but those of beams that end in a peer.
+pub(super) fn hide_peers(
+    config: &Config,
+    peers: &Peers,
+    (input, expected): (&Input<'_>, &Pose),
+    seen: &mut [Ranges; 2],
+) {
+    for ((laser, scan), seen) in config.lasers.iter().zip(input.scans).zip(seen) {
+        // A dropout is known by its neighbours, which may be hidden.
+        let range = |i| informative_range_mm(scan, i, laser.range_limit_mm);
+        let ranges = (0..scan.len()).map(|i| range(i).unwrap_or(INVALID_MM));
+        seen.extend(ranges.take(MAX_BEAMS.into()));
+        peers.hide(input.time_ms, expected, laser, seen);
+    }
 }
 
 /// Frees the cells before the peers, along the beams of the level lasers that were hidden.

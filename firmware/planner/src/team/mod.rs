@@ -127,6 +127,12 @@ impl Team {
         self.member.is_some()
     }
 
+    /// Returns the time of the last step, milliseconds of the session's clock.
+    #[cfg(feature = "internals")]
+    pub(crate) const fn now_ms(&self) -> u32 {
+        self.now_ms
+    }
+
     /// Returns the peers.
     pub(crate) const fn peers(&self) -> &Peers {
         &self.peers

@@ -21,13 +21,15 @@ use super::super::freeze::FreezeDetector;
 use super::super::record::{self, Record};
 use super::super::series::Series;
 use super::super::snapshot::{self, Snapshot};
-use super::super::{Body, Cast, Ending, Setup, Survey, ended, step};
+use super::super::{Body, Cast, Corrector, Ending, MapCopy, Setup, Survey, ended, step};
+use super::copy::TeamCopy;
 use crate::link::said::Said;
 use crate::link::{Link, LinkError};
 use crate::metrics::Coverage;
 use crate::radio::{Radio, Station};
 use crate::report::tum::Stamped;
 use crate::sim::{Fleet, Loss};
+use crate::slam::{LoopCloser, SlamReport};
 
 /// A robot's place in the team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,6 +65,26 @@ pub(super) struct Common<'a, 'w> {
     pub(super) coverage: &'a mut Coverage,
 }
 
+/// What closes a robot's loops: its graph, and the copy of its map while it explores.
+struct Closing {
+    motion: fieldline_slam::Motion,
+    closer: LoopCloser,
+    copy: Option<TeamCopy>,
+    /// The copy was the device's map when the exploration ended.
+    matches: Option<bool>,
+}
+
+impl Closing {
+    fn of(setup: &Setup, motion: fieldline_slam::Motion) -> Option<Self> {
+        Some(Self {
+            motion,
+            closer: LoopCloser::new(&setup.start, motion)?,
+            copy: Some(TeamCopy::new(&setup.start)),
+            matches: None,
+        })
+    }
+}
+
 /// A robot of a team.
 pub(super) struct Member<'a> {
     number: usize,
@@ -75,6 +97,7 @@ pub(super) struct Member<'a> {
     pub(super) talk: Talk,
     /// When its map came to lie in the team's coordinates: it said tiles then. Milliseconds.
     pub(super) met_ms: Option<u32>,
+    closing: Option<Closing>,
 }
 
 impl<'a> Member<'a> {
@@ -95,9 +118,26 @@ impl<'a> Member<'a> {
             record: Record::default(),
             talk: Talk::default(),
             met_ms: None,
+            closing: None,
         };
         member.start();
         member
+    }
+
+    /// Closes its loops from now on, for wheels with this noise. Call it before the first step.
+    pub(super) fn close_loops(&mut self, motion: fieldline_slam::Motion) {
+        self.closing = Closing::of(&self.setup, motion);
+    }
+
+    /// Returns what became of its loops; `None` if none are closed.
+    pub(super) fn slam(&self) -> Option<SlamReport> {
+        self.closing.as_ref().map(|it| it.closer.report())
+    }
+
+    /// Returns true if the host's copy of its map was right when its exploration ended; `None` if
+    /// there was none, or it did not end.
+    pub(super) fn copy_matches(&self) -> Option<bool> {
+        self.closing.as_ref()?.matches
     }
 
     /// Returns true if it belongs to the team.
@@ -142,6 +182,9 @@ impl<'a> Member<'a> {
             team.member.boot = team.member.boot.wrapping_add(1);
         }
         self.account.forget(&self.setup);
+        if let Some(motion) = self.closing.as_ref().map(|it| it.motion) {
+            self.close_loops(motion);
+        }
         self.freeze = FreezeDetector::default();
         self.start();
     }
@@ -192,6 +235,15 @@ impl<'a> Member<'a> {
 
     /// Makes a step of the exploration.
     fn explore(&mut self, common: &mut Common<'_, '_>) -> Result<Option<Twist>, LinkError> {
+        let (mut corrector, copy) = match &mut self.closing {
+            Some(it) => (Some(&mut it.closer), it.copy.as_mut()),
+            None => (None, None),
+        };
+        let mut none = ();
+        let corrector: &mut dyn Corrector = match &mut corrector {
+            Some(closer) => *closer,
+            None => &mut none,
+        };
         let mut cast = Cast {
             link: self.link,
             body: &mut Seat {
@@ -201,9 +253,10 @@ impl<'a> Member<'a> {
             survey: &mut Witness {
                 own: &mut self.account,
                 all: common.coverage,
+                copy,
             },
             watch: &mut (),
-            corrector: &mut (),
+            corrector,
         };
         let mut series: Series<Snapshot> = Series::new(0);
         let command = step(&self.setup, &mut cast, &mut self.record, &mut series)?;
@@ -217,13 +270,25 @@ impl<'a> Member<'a> {
         let Some(ending) = ending else {
             return Ok(Some(command.velocity));
         };
+        if let Some(closing) = &mut self.closing {
+            // The device hears on, and nothing more is corrected.
+            closing.matches = closing.copy.take().map(|copy| copy.equals(self.link));
+        }
         self.end(ending);
         Ok(Some(Twist::default()))
+    }
+
+    /// Returns the copy of its map, which hears and says what the device does.
+    fn copy(&mut self) -> Option<&mut TeamCopy> {
+        self.closing.as_mut()?.copy.as_mut()
     }
 
     fn hear(&mut self, packets: &[Vec<u8>]) -> Result<(), LinkError> {
         for packet in packets.iter().filter_map(|bytes| decode_packet(bytes)) {
             self.link.hear(&packet)?;
+            if let Some(copy) = self.copy() {
+                copy.hear(&packet);
+            }
             self.talk.heard += 1;
         }
         Ok(())
@@ -245,6 +310,9 @@ impl<'a> Member<'a> {
             if matches!(body, Some(wire::Body::Digest(_) | wire::Body::Tile(_))) {
                 self.met_ms.get_or_insert(time_ms);
             }
+        }
+        if let Some(copy) = self.copy() {
+            copy.say();
         }
         Ok(())
     }
@@ -314,14 +382,23 @@ impl Body for Seat<'_, '_> {
 struct Witness<'a> {
     own: &'a mut Account,
     all: &'a mut Coverage,
+    /// The copy of the device's map, if it is corrected.
+    copy: Option<&'a mut TeamCopy>,
 }
 
 impl Survey for Witness<'_> {
     fn note(&mut self, observation: &Observation, truth: &Stamped, command: &Command) -> f64 {
         let fraction = self.own.note(observation, truth, command);
+        if let Some(copy) = &mut self.copy {
+            copy.observe(observation, command);
+        }
         let time_s = f64::from(observation.time_ms) / 1000.0;
         let own = &self.own;
         self.all.update(time_s, |cell| own.has_seen(cell));
         fraction
+    }
+    fn copy(&mut self) -> Option<&mut dyn MapCopy> {
+        let copy = self.copy.as_mut()?;
+        Some(&mut **copy)
     }
 }

@@ -10,6 +10,7 @@
 //! [`MOST_SETTLE_MS`]. So what was lost is repaired. That time counts nowhere.
 
 mod agreement;
+mod copy;
 mod member;
 mod misplaced;
 mod starts;
@@ -28,6 +29,7 @@ use crate::metrics::Coverage;
 use crate::radio::{MOST_ROBOTS, Radio, RadioSpec, Station};
 use crate::report::{GridMap, TeamReport};
 use crate::sim::{Fleet, FleetError, SimConfig, Simulator};
+use crate::slam::SlamPlace;
 use crate::world::{Start, World, WorldError};
 use member::{Common, Member, Presence};
 pub use misplaced::StartError;
@@ -276,6 +278,7 @@ fn begin<'a>(
         link.hello().map_err(|error| of_robot(error.into()))?;
         let simulator: &Simulator<'_> = &fleet.robots()[robot];
         let mut setup = mission::setup(&missions[robot], simulator);
+        setup.corrects = missions[robot].slam == SlamPlace::Host;
         setup.start.team = team.radio.on.then(|| {
             let (seed, start) = (missions[robot].seed, simulator.start());
             let known = Member::of_wire(robot);
@@ -285,7 +288,11 @@ fn begin<'a>(
             Some(first) => first.account.beside(&setup, simulator),
             None => Account::new(&setup, simulator),
         };
-        members.push(Member::begin(robot, link.as_mut(), setup, account));
+        let mut member = Member::begin(robot, link.as_mut(), setup, account);
+        if missions[robot].slam == SlamPlace::Host {
+            member.close_loops(missions[robot].odometry.wheels());
+        }
+        members.push(member);
     }
     Ok(members)
 }

@@ -68,8 +68,9 @@ impl Whole<'_, '_, '_> {
         report.safety.robot_contacts = Some(self.fleet.contacts(robot));
         if self.team.radio.on {
             // The device's map also has what the robot heard.
-            report.debug.map_matches_mirror = None;
+            report.debug.map_matches_mirror = member.copy_matches();
         }
+        report.slam = member.slam();
         team::Robot {
             robot,
             start_pose: [start.x_m, start.y_m, start.yaw_rad],
@@ -118,6 +119,7 @@ impl Whole<'_, '_, '_> {
             debug: report::Debug {
                 map_matches_mirror: all_true(robots, |report| report.debug.map_matches_mirror),
             },
+            slam: None,
             ..first.clone()
         }
     }
