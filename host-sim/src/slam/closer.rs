@@ -29,8 +29,8 @@
 //! | the others' copies of a tile | are replaced: a corrected tile is of a new era |
 //! | its move into the team's coordinates | moves all that the device has; the graph stays as it is |
 //!
-//! So two graphs pull at one tile only if both robots measured it before they heard of each other, as
-//! at starts side by side; there the corrections are small.
+//! So two graphs pull at one tile only if both robots measured it before they heard of each other,
+//! as at starts side by side; there the corrections are small.
 //!
 //! Units: metres, radians; map cells of 10 cm; tiles of 3.2 m.
 

@@ -1,8 +1,8 @@
 //! Corrections of the map during a run, and the return of the map to a device that was reset.
 //!
 //! A [`Corrector`] looks at every step and at the host's copy of the map, and may correct the map.
-//! The copy follows the correction, so it still equals the device's map. If pictures are wanted, the
-//! map is read before and after the largest corrections.
+//! The copy follows the correction, so it still equals the device's map. If pictures are wanted,
+//! the map is read before and after the largest corrections.
 //!
 //! A device that was reset has lost its session. If the run resumes, it gets the same session, and
 //! its map back by a correction with every tile of the copy. The state of its strategy is not

@@ -103,8 +103,8 @@ impl Mirror {
         self.epoch
     }
 
-    /// Returns the last step's observation, on uneven ground with the beams of the first laser alone
-    /// that end at what stands.
+    /// Returns the last step's observation, on uneven ground with the beams of the first laser
+    /// alone that end at what stands.
     #[must_use]
     pub fn standing(&self, observation: &Observation) -> Observation {
         let mut seen = observation.clone();

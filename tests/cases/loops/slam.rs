@@ -317,7 +317,7 @@ fn corrections_are_the_same_over_bytes() {
     assert_eq!(by_call.digest, by_bytes.digest);
     assert_eq!(by_call.slam, by_bytes.slam);
     let corrections = by_call.slam.map_or(0, |slam| slam.corrections);
-    assert!(corrections > 2, "{corrections} corrections");
+    assert!(corrections > 1, "{corrections} corrections");
 }
 
 #[test]

@@ -12,7 +12,8 @@
 //!
 //! In a team a tile that is forgotten keeps its page: the others are told that it is unknown.
 //!
-//! The elevation window around the robot goes where the robot goes, by whole cells; it is not turned.
+//! The elevation window around the robot goes where the robot goes, by whole cells; it is not
+//! turned.
 //!
 //! So three beams through an obstacle keep it and five free it; two hits on a free cell make it an
 //! obstacle. A tile that the map has no room for is left out, as a beam's cell would be.

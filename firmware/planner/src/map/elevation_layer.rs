@@ -88,8 +88,8 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         }
     }
 
-    /// Moves the elevation window with its heights by whole cells. Landmarks are forgotten: the next
-    /// scans mark them anew.
+    /// Moves the elevation window with its heights by whole cells. Landmarks are forgotten: the
+    /// next scans mark them anew.
     pub(super) fn move_heights(&mut self, by: [i32; 2]) {
         let mut elevation = Elevation::new(
             self.evidence.bytes_mut(),

@@ -7,9 +7,9 @@
 //! ```
 //!
 //! X ≤ Y if the epochs are equal and no cell of X is greater, or if X has the lower epoch and Y
-//! knows every cell that X knows, or if X is of an earlier era. A join is commutative and idempotent, and no less than both. The
-//! order is finite. So however packets are lost, doubled or late: members that go on to exchange
-//! tiles that differ end with equal maps.
+//! knows every cell that X knows, or if X is of an earlier era. A join is commutative and
+//! idempotent, and no less than both. The order is finite. So however packets are lost, doubled or
+//! late: members that go on to exchange tiles that differ end with equal maps.
 //!
 //! A cell whose class goes down (an obstacle that became free) is only kept by a greater epoch, and
 //! one that becomes unknown by a greater era.

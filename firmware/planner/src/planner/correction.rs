@@ -29,7 +29,7 @@
 //! | pending visits | their stamps are written | which cells of a place were visited |
 //! | cells of an area that robots visited (sbpf) | | if a tile is shifted; covered stay covered |
 //! | peers, right of way | they stay: the next beacon is a step away | |
-//! | motion into the team's coordinates | it stays: it holds at the start, which a closed loop leaves | |
+//! | motion into the team's coordinates | it stays: a closed loop leaves the start | |
 //! | obstacle points, contacts | they stay: they lie in the odometry's frame | |
 //! | heights of a tile on uneven ground | with the tile's cells | in tiles without a known cell |
 //! | heights around the robot | with the robot, by whole cells | |

@@ -232,7 +232,10 @@ fn play(draw: fn(&mut Noise) -> Scene, seeds: core::ops::Range<u32>) -> Played {
     played
 }
 
-const SCENES: [(&str, fn(&mut Noise) -> Scene); 4] = [
+/// A kind of scene: its name, and what draws it.
+type Kind = (&'static str, fn(&mut Noise) -> Scene);
+
+const SCENES: [Kind; 4] = [
     ("corridors", corridors),
     ("rooms", rooms),
     ("pillars", pillars),
@@ -240,7 +243,7 @@ const SCENES: [(&str, fn(&mut Noise) -> Scene); 4] = [
 ];
 
 /// Plays so many seeds of each scene. Returns the number of runs that were misled.
-fn misled(scenes: &[(&str, fn(&mut Noise) -> Scene)], seeds: u32) -> usize {
+fn misled(scenes: &[Kind], seeds: u32) -> usize {
     let (mut closures, mut misled) = (0, 0);
     for &(name, draw) in scenes {
         let played = play(draw, 0..seeds);

@@ -7,8 +7,8 @@
 //! ```
 //!
 //! The planner is deterministic, and only what the survey takes changes the map, but for one thing:
-//! when a robot takes what came for gone, which every command tells. So the copy equals the device's
-//! map, cell for cell, and nothing need be read over the wire.
+//! when a robot takes what came for gone, which every command tells. So the copy equals the
+//! device's map, cell for cell, and nothing need be read over the wire.
 //!
 //! A tile is *of a peer* if the peer's version came before a cell of it was known here.
 //!
