@@ -27,7 +27,7 @@
 //! | scans taken in a tile of a peer | stay: the pose was found in the peer's map |
 //! | its pose in a tile of a peer | stays |
 //! | the others' copies of a tile | are replaced: a corrected tile is of a new era |
-//! | its move into the team's coordinates | moves all that the device has; the graph stays as it is |
+//! | its move into the team's coordinates | moves all that the device has; the graph stays |
 //!
 //! So two graphs pull at one tile only if both robots measured it before they heard of each other,
 //! as at starts side by side; there the corrections are small.
