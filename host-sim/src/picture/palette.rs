@@ -33,7 +33,7 @@ pub(super) const START: Rgb = Rgb(0x1a, 0x93, 0x6f);
 /// The path as the device believed it.
 pub(super) const BELIEVED: Rgb = Rgb(0x8b, 0x93, 0x9e);
 /// The path as closed loops corrected it.
-pub(super) const CORRECTED: Rgb = Rgb(0x1a, 0x93, 0x6f);
+pub(super) const CORRECTED: Rgb = START;
 /// Residual frontiers.
 pub(super) const RESIDUE: Rgb = Rgb(0xe0, 0x8e, 0x0b);
 

@@ -220,6 +220,7 @@ mod tests {
         }
         assert_eq!(map.due_place(0), Some(0));
     }
+
     /// Joins another map with what this one says of the tile.
     fn tell(map: &Plan, other: &mut Plan) {
         let view = map.view((0, 0)).expect("it has a version");
@@ -255,6 +256,7 @@ mod tests {
         tell(&peer, &mut map);
         assert_eq!(map.planes((0, 0)), Some([[0; 32]; 2]));
     }
+
     /// A map on uneven ground, with room for the marks of its window.
     fn uneven() -> Box<Map<152, 400>> {
         let mut map = Box::new(Map::new());
