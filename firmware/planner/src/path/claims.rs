@@ -24,6 +24,8 @@
 //!
 //! Units: coarse steps of 20 cm; sites of the skeleton's plane.
 
+use core::ops::ControlFlow;
+
 use heapless::Vec;
 
 use crate::field::local_grid::SCALES;
@@ -78,10 +80,14 @@ impl Claims {
         }
         search.spread_entering(&entries, frontier, |site, steps| {
             let is_in = |(first, _): &(Site, u16)| is_in_group(*first, site);
-            if !claims.groups.iter().any(is_in) {
-                let steps = u16::try_from(steps).unwrap_or(u16::MAX);
-                // The farthest ones do not fit.
-                let _ = claims.groups.push((site, steps));
+            if claims.groups.iter().any(is_in) {
+                return ControlFlow::Continue(());
+            }
+            let steps = u16::try_from(steps).unwrap_or(u16::MAX);
+            // The farthest ones do not fit.
+            match claims.groups.push((site, steps)) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(_) => ControlFlow::Break(()),
             }
         });
         claims

@@ -21,7 +21,7 @@
 //!
 //! Units: metres, square metres; coarse steps of 20 cm.
 
-use core::ops::Range;
+use core::ops::{ControlFlow, Range};
 
 use crate::config::OrderTuning;
 use crate::geometry::{Cell, Point};
@@ -116,9 +116,16 @@ fn best_candidate<const TILES: usize, const SLOTS: usize>(
     let claims = Claims::find(search, context, frontier);
     let mut candidates = Candidates::new(words);
     let (centres, robot) = (search.centres, context.pose.point().cell());
+    let shared = present.filter(|present| present.shares_trip);
     search.spread_from(robot, frontier, |site, steps| {
         if !residual.is_given_up(centres.cell(site)) {
             candidates.add(site, steps);
+        }
+        // The goal of a shared trip may be far behind those that are not worth theirs.
+        if shared.is_none() && candidates.len() > before + MOST_JUDGED {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
         }
     });
     let (instalment, next) = instalment(candidates.len(), before);
@@ -132,11 +139,8 @@ fn best_candidate<const TILES: usize, const SLOTS: usize>(
         search,
         robot: Heading::of(context),
     };
-    let is_present = |it: &Candidate| {
-        let shared = present.filter(|present| present.shares_trip);
-        shared.is_some_and(|present| present.is_beside(centres.cell(it.site)))
-    };
-    // The goal of a shared trip may be far behind those that are not worth theirs.
+    let is_present =
+        |it: &Candidate| shared.is_some_and(|present| present.is_beside(centres.cell(it.site)));
     let beyond = candidates
         .range(instalment.end..candidates.len())
         .find(is_present);
@@ -317,9 +321,11 @@ fn path_on_level<const TILES: usize, const SLOTS: usize>(
     let robot = context.pose.point().cell();
     let mut found = None;
     search.spread_from(robot, context.skeleton.frontier()?, |site, steps| {
-        if site == goal {
-            found.get_or_insert(steps);
+        if site != goal {
+            return ControlFlow::Continue(());
         }
+        found = Some(steps);
+        ControlFlow::Break(())
     });
     let steps = found.filter(|&steps| steps <= level.most_steps)?;
     Some(search.path_from_robot(goal, steps))

@@ -8,6 +8,8 @@
 //!
 //! Units: coarse steps of 20 cm; sites of the skeleton's plane.
 
+use core::ops::ControlFlow;
+
 use heapless::Vec;
 
 use crate::field::local_grid::SCALES;
@@ -24,13 +26,14 @@ const MOST_PIECES: usize = 4;
 const MOST_ENTRIES: usize = 64;
 
 impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
-    /// Spreads a wave from the robot as far as the centre cells go. Calls `visit` with each cell of
-    /// `marks` and the steps to it, the nearest first on each piece of the skeleton.
+    /// Spreads a wave from the robot as far as the centre cells go, or to where `visit` breaks it
+    /// off. Calls `visit` with each cell of `marks` and the steps to it, the nearest first on each
+    /// piece of the skeleton.
     pub(crate) fn spread_from(
         &mut self,
         robot: Cell,
         marks: Plane<'_>,
-        mut visit: impl FnMut(Site, u32),
+        mut visit: impl FnMut(Site, u32) -> ControlFlow<()>,
     ) {
         let mut wave = Wavefront::new();
         wave.start(&mut self.space);
@@ -42,27 +45,28 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
             } else {
                 &SCALES[..1]
             };
-            if !self.enter_piece(&mut wave, (robot, scales), marks, &mut visit) {
-                break;
+            match self.enter_piece(&mut wave, (robot, scales), marks, &mut visit) {
+                Some(ControlFlow::Continue(())) => entered = true,
+                Some(ControlFlow::Break(())) => return,
+                None => break,
             }
-            entered = true;
         }
         if !entered && let Some((site, line)) = self.centres.nearest_in_line(robot, |_| true) {
             let entry = (site, line.count() as u32);
-            self.run(&mut wave, &[entry], marks, &mut visit);
+            let _ = self.run(&mut wave, &[entry], marks, &mut visit);
         }
     }
 
     /// Spreads the wave over the nearest piece of the skeleton that it has not reached. Returns
-    /// false if there is none near the robot.
+    /// `None` if there is none near the robot.
     #[inline(never)]
     fn enter_piece(
         &mut self,
         wave: &mut Wavefront,
         (robot, scales): (Cell, &[i32]),
         marks: Plane<'_>,
-        visit: &mut impl FnMut(Site, u32),
-    ) -> bool {
+        visit: &mut impl FnMut(Site, u32) -> ControlFlow<()>,
+    ) -> Option<ControlFlow<()>> {
         let mut entries = Vec::<(Site, u32), MOST_ENTRIES>::new();
         let Self {
             centres,
@@ -74,8 +78,7 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
             // What does not fit is farther off than others.
             let _ = entries.push((site, steps));
         });
-        self.run(wave, &entries, marks, visit);
-        any
+        any.then(|| self.run(wave, &entries, marks, visit))
     }
 
     /// Spreads a wave that enters these cells, each after its steps. Calls `visit` as
@@ -84,21 +87,22 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
         &mut self,
         entries: &[(Site, u32)],
         marks: Plane<'_>,
-        mut visit: impl FnMut(Site, u32),
+        mut visit: impl FnMut(Site, u32) -> ControlFlow<()>,
     ) {
         let mut wave = Wavefront::new();
         wave.start(&mut self.space);
-        self.run(&mut wave, entries, marks, &mut visit);
+        let _ = self.run(&mut wave, entries, marks, &mut visit);
     }
 
-    /// Runs the wave to its end, through these entries.
+    /// Runs the wave through these entries to its end, or to the end of the level in which `visit`
+    /// breaks it off.
     fn run(
         &mut self,
         wave: &mut Wavefront,
         entries: &[(Site, u32)],
         marks: Plane<'_>,
-        visit: &mut impl FnMut(Site, u32),
-    ) {
+        visit: &mut impl FnMut(Site, u32) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
         let space = &mut self.space;
         let mut level = 0;
         loop {
@@ -109,12 +113,18 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
                 // The wave is at the next entry at once.
                 let later = entries.iter().map(|(_, steps)| *steps);
                 let Some(next) = later.filter(|steps| *steps > level).min() else {
-                    return;
+                    return ControlFlow::Continue(());
                 };
                 level = next;
                 continue;
             }
-            wave.for_each_new(space, marks, |site| visit(site, level));
+            let mut flow = ControlFlow::Continue(());
+            wave.for_each_new(space, marks, |site| {
+                if flow.is_continue() {
+                    flow = visit(site, level);
+                }
+            });
+            flow?;
             wave.run_levels(space, 1);
             level += 1;
         }
