@@ -86,7 +86,8 @@ pub enum ResidualReason {
 pub struct ResidualFrontier {
     /// One of its cells.
     pub cell: Cell,
-    /// The number of its cells.
+    /// The number of its cells. Of what is not worth the trip those beyond the goals that were
+    /// judged with it may be missing.
     pub cells: u16,
     /// Why it was left.
     pub reason: ResidualReason,

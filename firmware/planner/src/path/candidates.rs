@@ -28,7 +28,7 @@ pub(crate) struct Candidate {
     /// The nearest one, and the steps to it.
     pub(crate) site: Site,
     pub(crate) steps: u16,
-    /// Number of cells.
+    /// Number of cells that the wave met.
     pub(crate) cells: u16,
 }
 
