@@ -86,8 +86,8 @@ pub enum ResidualReason {
 pub struct ResidualFrontier {
     /// One of its cells.
     pub cell: Cell,
-    /// The number of its cells. Of what is not worth the trip those beyond the goals that were
-    /// judged with it may be missing.
+    /// The number of its cells. One that is not worth the trip may have more: the search ends when
+    /// it has met enough goals.
     pub cells: u16,
     /// Why it was left.
     pub reason: ResidualReason,

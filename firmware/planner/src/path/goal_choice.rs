@@ -13,11 +13,11 @@
 //! its own. A goal is *worth* its trip if G ≥ worth · max(t, 1 m), if it has an opening, or
 //! together with others ([`crate::path::shared_trip`]).
 //!
-//! Frontier cells near each other are one *candidate*: the nearest by path stands for them. One
-//! wave from the robot finds them all, the nearest first, with their paths
-//! ([`crate::path::robot_wave`], [`crate::path::candidates`]). A round judges the nearest
-//! [`MOST_JUDGED`]. If none is worth its trip, the next round judges the ones behind them, and so
-//! on until none is left.
+//! Frontier cells near each other are one *candidate*: the nearest by path stands for them. A wave
+//! from the robot finds them, the nearest first, with their paths ([`crate::path::robot_wave`],
+//! [`crate::path::candidates`]). A round judges the nearest [`MOST_JUDGED`], and its wave breaks
+//! off when it has met one more. If none is worth its trip, the next round judges the ones behind
+//! them, and so on until none is left.
 //!
 //! Units: metres, square metres; coarse steps of 20 cm.
 

@@ -1,10 +1,11 @@
-//! A wave from the robot over the centre cells: the steps to every frontier cell, and the way back
-//! from it.
+//! A wave from the robot over the centre cells: the steps to the frontier cells, and the way back
+//! from each.
 //!
 //! The wave enters the centre cells near the robot one after another, each after as many steps as
 //! the robot needs to it. So the path to a goal begins where robot and path together have the
 //! fewest steps. The nearest centre cells may belong to a piece of the skeleton that leads nowhere.
-//! So further waves enter the pieces that the ones before did not reach.
+//! So further waves enter the pieces that the ones before did not reach. Whoever has met enough
+//! cells breaks the wave off.
 //!
 //! Units: coarse steps of 20 cm; sites of the skeleton's plane.
 
@@ -94,8 +95,7 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
         let _ = self.run(&mut wave, entries, marks, &mut visit);
     }
 
-    /// Runs the wave through these entries to its end, or to the end of the level in which `visit`
-    /// breaks it off.
+    /// Runs the wave through these entries to its end, or until `visit` breaks it off.
     fn run(
         &mut self,
         wave: &mut Wavefront,
