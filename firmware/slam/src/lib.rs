@@ -25,7 +25,7 @@ mod closing;
 mod correlation;
 mod graph;
 mod grid;
-mod matrix;
+pub mod matrix;
 mod motion;
 mod pose;
 mod scan;

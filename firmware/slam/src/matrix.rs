@@ -9,20 +9,20 @@
 use crate::pose::{sin_cos, sqrt};
 
 /// A 3 × 3 matrix, row by row.
-pub(crate) type Matrix = [[f32; 3]; 3];
+pub type Matrix = [[f32; 3]; 3];
 /// Three numbers: two of length and an angle.
-pub(crate) type Vector = [f32; 3];
+pub type Vector = [f32; 3];
 
 /// A matrix of zeros.
 pub(crate) const ZERO: Matrix = [[0.0; 3]; 3];
 
 /// Returns the diagonal matrix.
-pub(crate) const fn diagonal([x, y, yaw]: Vector) -> Matrix {
+pub const fn diagonal([x, y, yaw]: Vector) -> Matrix {
     [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, yaw]]
 }
 
 /// Returns A x.
-pub(crate) fn times(a: &Matrix, x: &Vector) -> Vector {
+pub fn times(a: &Matrix, x: &Vector) -> Vector {
     a.map(|row| dot(&row, x))
 }
 
@@ -51,7 +51,7 @@ pub(crate) fn sum(a: &Matrix, b: &Matrix) -> Matrix {
 }
 
 /// Adds w j jᵀ to a matrix.
-pub(crate) fn add_outer(a: &mut Matrix, j: &Vector, w: f32) {
+pub fn add_outer(a: &mut Matrix, j: &Vector, w: f32) {
     for (row, x) in a.iter_mut().zip(j) {
         for (cell, y) in row.iter_mut().zip(j) {
             *cell += w * x * y;
@@ -60,7 +60,7 @@ pub(crate) fn add_outer(a: &mut Matrix, j: &Vector, w: f32) {
 }
 
 /// Returns Rᵀ A R, with R the turn of the plane by an angle.
-pub(crate) fn turned(a: &Matrix, angle: f32) -> Matrix {
+pub fn turned(a: &Matrix, angle: f32) -> Matrix {
     let (sin, cos) = sin_cos(angle);
     let turn = |[x, y, z]: Vector| [cos * x + sin * y, cos * y - sin * x, z];
     // The columns of A R, then the rows of Rᵀ (A R); A is symmetric.
@@ -75,7 +75,7 @@ fn transpose([a, b, c]: &Matrix) -> Matrix {
 
 /// The factor L of a positive definite matrix.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Cholesky {
+pub struct Cholesky {
     diagonal: Vector,
     /// Below the diagonal: (1, 0), (2, 0), (2, 1).
     below: Vector,
@@ -83,13 +83,13 @@ pub(crate) struct Cholesky {
 
 impl Cholesky {
     /// The factor of the unit matrix.
-    pub(crate) const UNIT: Self = Self {
+    pub const UNIT: Self = Self {
         diagonal: [1.0; 3],
         below: [0.0; 3],
     };
 
     /// Factors a matrix; `None` if it is not positive definite.
-    pub(crate) fn of(a: &Matrix) -> Option<Self> {
+    pub fn of(a: &Matrix) -> Option<Self> {
         let [[a00, ..], [a10, a11, _], [a20, a21, a22]] = *a;
         let root = |square: f32| (square > 0.0).then(|| sqrt(square));
         let l00 = root(a00)?;
@@ -109,6 +109,11 @@ impl Cholesky {
         [l00 * x + l10 * y + l20 * z, l11 * y + l21 * z, l22 * z]
     }
 
+    /// Returns the logarithm of the root of A's determinant.
+    pub fn log_root_determinant(&self) -> f32 {
+        self.diagonal.iter().map(|it| libm::logf(*it)).sum()
+    }
+
     /// Returns L⁻¹ x.
     pub(crate) fn forward(&self, [x, y, z]: &Vector) -> Vector {
         let ([l00, l11, l22], [l10, l20, l21]) = (self.diagonal, self.below);
@@ -118,7 +123,7 @@ impl Cholesky {
     }
 
     /// Returns L⁻ᵀ x.
-    pub(crate) fn backward(&self, [x, y, z]: &Vector) -> Vector {
+    pub fn backward(&self, [x, y, z]: &Vector) -> Vector {
         let ([l00, l11, l22], [l10, l20, l21]) = (self.diagonal, self.below);
         let c = z / l22;
         let b = (y - l21 * c) / l11;
@@ -126,7 +131,7 @@ impl Cholesky {
     }
 
     /// Returns the solution x of L Lᵀ x = b.
-    pub(crate) fn solve(&self, b: &Vector) -> Vector {
+    pub fn solve(&self, b: &Vector) -> Vector {
         self.backward(&self.forward(b))
     }
 }

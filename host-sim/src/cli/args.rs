@@ -10,6 +10,7 @@ use host_sim::link::spec::LinkSpec;
 use host_sim::network::spec::TeamSpec;
 use host_sim::robot::{Disturbances, Limits};
 use host_sim::slam::SlamPlace;
+use host_sim::slam::particles::ParticleSpec;
 use host_sim::trial::mission::OdometryProfile;
 use host_sim::trial::space::Area;
 
@@ -205,6 +206,12 @@ pub(super) struct ExploreArgs {
     /// Close loops by a pose graph, and correct the device's map: off, or host, beside the device
     #[arg(long, value_name = "WHERE", default_value = "off", value_parser = slam_place)]
     pub(super) slam: SlamPlace,
+    /// A particle filter beside the run, which judges it and changes nothing, as in `300` or
+    /// `300,proposal=motion,noise=20`; proposal matched or motion, noise in multiples of the usual
+    /// variances for an odometry of its own [default noise: the run's odometry, 20 if that is the
+    /// truth]
+    #[arg(long, value_name = "SPEC")]
+    pub(super) particles: Option<ParticleSpec>,
     /// Number of pictures during the run, evenly in simulated time, in the folder snapshots; with
     /// --slam also of the map before and after so many of the largest corrections
     #[arg(
@@ -255,6 +262,7 @@ impl Default for ExploreArgs {
             check_field: false,
             resume: false,
             slam: SlamPlace::Off,
+            particles: None,
             snapshots: 0,
             robot: RobotArgs::default(),
             json: false,

@@ -327,6 +327,9 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
             args.strategy
         );
     }
+    if args.particles.is_some() && uneven_ground.is_some() {
+        bail!("--particles takes level scans; leave it out, or say --ground flat");
+    }
     let disturbances = args.disturb.unwrap_or_default();
     if disturbances.needs_wheels() && odometry == OdometryArg::Truth {
         bail!(
@@ -358,6 +361,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         snapshots: args.snapshots,
         resumes: args.resume,
         slam: args.slam,
+        particles: args.particles,
         ..Mission::default()
     }))
 }

@@ -20,6 +20,7 @@ pub mod tum;
 use serde::{Deserialize, Serialize};
 
 use crate::slam::SlamReport;
+use crate::slam::particles::ParticleReport;
 
 pub use crate::link::LinkStats;
 pub use crate::network::Counters;
@@ -126,6 +127,9 @@ pub struct Report {
     /// What became of the loops that a pose graph closed; the key is missing without `--slam`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slam: Option<SlamReport>,
+    /// What a particle filter beside the run told; the key is missing without `--particles`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub particles: Option<ParticleReport>,
 }
 
 /// The parameters of a space-based potential field.

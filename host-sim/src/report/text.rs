@@ -87,6 +87,9 @@ impl Report {
         if let Some(slam) = &self.slam {
             lines.push(format!("  graph     {slam}"));
         }
+        if let Some(particles) = &self.particles {
+            lines.push(format!("  particles {particles}"));
+        }
         lines.extend(self.input_faults.line());
         if let Some(network) = &self.network {
             let dropped = network.malformed + network.unauthentic + network.foreign;

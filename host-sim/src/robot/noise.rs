@@ -38,6 +38,8 @@ pub enum Source {
     People = 12,
     /// Errors of the starts that a team's robots are told.
     Start = 13,
+    /// Draws of a particle filter: a stream for each particle, and one for their choice.
+    Particle = 14,
 }
 
 /// One stream.
@@ -51,8 +53,14 @@ impl Noise {
     /// The stream of a source under a seed.
     #[must_use]
     pub fn new(seed: u64, source: Source) -> Self {
+        Self::numbered(seed, source, 0)
+    }
+
+    /// One of many streams of a source under a seed, by its number below 2⁵⁶.
+    #[must_use]
+    pub fn numbered(seed: u64, source: Source, number: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        rng.set_stream(source as u64);
+        rng.set_stream(source as u64 | number << 8);
         Self { rng, spare: None }
     }
 
@@ -102,5 +110,8 @@ mod tests {
         assert_eq!(first, draw(1, Source::LevelRange));
         assert_ne!(first, draw(2, Source::LevelRange));
         assert_ne!(first, draw(1, Source::TiltedRange));
+        let numbered = |number| Noise::numbered(1, Source::LevelRange, number).uniform();
+        assert_eq!(numbered(0).to_bits(), first[0]);
+        assert_ne!(numbered(1).to_bits(), first[0]);
     }
 }

@@ -67,13 +67,18 @@ impl OdometryNoise {
     /// are 20 times the default's.
     #[must_use]
     pub fn papers() -> Self {
-        let usual = Self::default();
+        Self::default().times(20.0)
+    }
+
+    /// Returns the noise with the variances of its random walk in the plane times a factor.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
         Self {
-            turn_by_turn: 20.0 * usual.turn_by_turn,
-            turn_by_distance: 20.0 * usual.turn_by_distance,
-            distance_by_distance: 20.0 * usual.distance_by_distance,
-            distance_by_turn: 20.0 * usual.distance_by_turn,
-            ..usual
+            turn_by_turn: factor * self.turn_by_turn,
+            turn_by_distance: factor * self.turn_by_distance,
+            distance_by_distance: factor * self.distance_by_distance,
+            distance_by_turn: factor * self.distance_by_turn,
+            ..self
         }
     }
 

@@ -11,6 +11,7 @@
 mod canvas;
 mod closer;
 mod others;
+pub mod particles;
 mod votes;
 
 use core::fmt;

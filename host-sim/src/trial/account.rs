@@ -15,6 +15,7 @@ use crate::metrics::{Coverage, Footing, GroundTruth};
 use crate::report::tum::Stamped;
 use crate::robot::{OdometryModel, laser};
 use crate::sim::Simulator;
+use crate::slam::particles::Beside;
 
 /// The map's copy and the coverage judged by it.
 #[derive(Debug)]
@@ -25,6 +26,8 @@ pub(super) struct Account {
     pub(super) coverage: Coverage,
     /// The true ground in an uneven world.
     pub(super) ground: Option<GroundTruth>,
+    /// A particle filter beside the run.
+    pub(super) particles: Option<Beside>,
 }
 
 impl Account {
@@ -44,6 +47,7 @@ impl Account {
                 None => Coverage::new(world, start, simulator.config().radius_m, range_m),
             },
             ground: footing.map(|footing| GroundTruth::new(world, &footing, working)),
+            particles: None,
         }
     }
 }
@@ -56,6 +60,7 @@ impl Account {
             seen: seen(setup, simulator),
             coverage: self.coverage.clone(),
             ground: self.ground.clone(),
+            particles: None,
         }
     }
 
@@ -88,6 +93,9 @@ impl Survey for Account {
         self.mirror.observe(observation, command.status);
         if command.forgot_arrivals {
             self.mirror.forget_arrivals();
+        }
+        if let Some(particles) = &mut self.particles {
+            particles.observe(observation, truth);
         }
         if let Some(seen) = &mut self.seen {
             let pose = record::unstamped(truth);

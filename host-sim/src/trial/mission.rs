@@ -21,6 +21,7 @@ use crate::robot::{
     Disturbances, Footprint, LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M,
 };
 use crate::sim::{SimConfig, Simulator};
+use crate::slam::particles::{Beside, ParticleSpec};
 use crate::slam::{LoopCloser, SlamPlace};
 use crate::world::{Start, World, WorldError};
 
@@ -92,6 +93,8 @@ pub struct Mission {
     pub resumes: bool,
     /// Where loops are closed.
     pub slam: SlamPlace,
+    /// A particle filter beside the run, on flat ground.
+    pub particles: Option<ParticleSpec>,
 }
 
 impl Default for Mission {
@@ -125,6 +128,7 @@ impl Default for Mission {
             snapshots: 0,
             resumes: false,
             slam: SlamPlace::Off,
+            particles: None,
         }
     }
 }
@@ -389,6 +393,7 @@ fn explored(
         ..usual
     };
     let mut account = Account::new(&setup, &simulator);
+    account.particles = beside(mission, &setup, &simulator);
     let mut record = run(
         &setup,
         &mut Cast {
@@ -406,6 +411,17 @@ fn explored(
         report.slam = Some(closer.report());
     }
     Ok((report, record))
+}
+
+/// Returns the particle filter beside a run; `None` if there is to be none, or the robot has no
+/// laser.
+fn beside(mission: &Mission, setup: &Setup, simulator: &Simulator<'_>) -> Option<Beside> {
+    let (spec, laser) = (mission.particles?, setup.start.lasers.first()?);
+    let [x0, y0] = simulator.world().occupancy().origin_m();
+    let [width, height] = simulator.world().size_m();
+    let world = (*simulator.pose(), [x0, y0, x0 + width, y0 + height]);
+    let noise = mission.odometry.noise();
+    Some(Beside::new(spec, laser, world, noise, mission.seed))
 }
 
 /// Returns the path of the last corrected poses, with the times of the steps.

@@ -75,6 +75,10 @@ pub(super) fn report(
         },
         network: None,
         slam: None,
+        particles: account
+            .particles
+            .as_ref()
+            .map(|it| it.report(account.coverage.fraction())),
     }
 }
 

@@ -413,3 +413,26 @@ fn bad_teams_are_refused_in_one_line() {
         &["nowhere.yaml", "office"],
     );
 }
+
+#[test]
+fn a_bad_particle_filter_is_refused_in_one_line() {
+    let folder = folder();
+    for (spec, words) in [
+        ("0", "1 to 1000"),
+        ("300,proposal=best", "use motion or matched"),
+        ("300,noise=-1", "0 to 1000"),
+    ] {
+        let (status, _, stderr) = outcome(&folder, &["explore", "--particles", spec]);
+        assert_eq!(status, 2, "{spec}: {stderr}");
+        assert!(stderr.contains(words), "{spec}: {stderr}");
+    }
+    let uneven = [
+        "explore",
+        "slope",
+        "--ground",
+        "uneven",
+        "--particles",
+        "30",
+    ];
+    refused(&folder, &uneven, &["--particles", "--ground flat"]);
+}

@@ -120,6 +120,7 @@ impl Whole<'_, '_, '_> {
                 map_matches_mirror: all_true(robots, |report| report.debug.map_matches_mirror),
             },
             slam: None,
+            particles: None,
             ..first.clone()
         }
     }
