@@ -239,6 +239,7 @@ const fn wire_parameter(parameter: Parameter) -> wire::Parameter {
 pub fn wire_status(status: planner::Status) -> wire::Status {
     match status {
         planner::Status::Exploring => wire::Status::Exploring,
+        planner::Status::NoScan => wire::Status::NoScan,
         planner::Status::Finished(finish) => wire::Status::Finished(match finish {
             planner::Finish::Explored => wire::Finish::Explored,
             planner::Finish::BoxedIn => wire::Finish::BoxedIn,

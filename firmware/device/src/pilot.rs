@@ -99,7 +99,7 @@ impl Pilot {
     pub const fn status(&self) -> Status {
         match self.planned {
             _ if self.latched => Status::EmergencyStop,
-            Status::Exploring if self.paused => Status::Paused,
+            Status::Exploring | Status::NoScan if self.paused => Status::Paused,
             status => status,
         }
     }
@@ -198,7 +198,7 @@ impl Pilot {
             warning!("the scans of an observation do not match the lasers");
             return Ok(stopped(Status::Fault(Fault::BadObservation)));
         };
-        if self.status() != Status::Exploring {
+        if !matches!(self.status(), Status::Exploring | Status::NoScan) {
             memory.state.stand(config, &input);
             return Ok(stopped(self.status()));
         }
@@ -212,7 +212,7 @@ impl Pilot {
             });
         }
         self.planned = convert::wire_status(output.status);
-        if self.planned != Status::Exploring {
+        if !matches!(self.planned, Status::Exploring | Status::NoScan) {
             info!("exploration ended");
         }
         let location = config.localises().then(|| memory.state.location());

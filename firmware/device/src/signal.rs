@@ -33,7 +33,7 @@ impl Signal {
     pub const fn of(status: Status) -> Self {
         match status {
             Status::Idle => Self::Ready,
-            Status::Exploring => Self::Exploring,
+            Status::Exploring | Status::NoScan => Self::Exploring,
             Status::Paused => Self::Paused,
             Status::EmergencyStop => Self::EmergencyStop,
             Status::Finished(_) => Self::Finished,

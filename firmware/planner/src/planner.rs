@@ -41,7 +41,7 @@ pub use workspace::{CellKind, FieldRow, Workspace};
 use crate::config::Config;
 use crate::field::{SolverConfig, Stop, solve};
 use crate::geometry::{MapPose, OdomPose, Twist};
-use crate::input::{Input, InputError};
+use crate::input::{INVALID_MM, Input, InputError};
 use crate::profiling::{Stage, StageTimer};
 use crate::roadmap::configuration_space::Footprint;
 use crate::robot::LaserMount;
@@ -188,7 +188,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     input: Input<'_>,
     timer: &mut impl StageTimer,
 ) -> Output {
-    if state.status != Status::Exploring {
+    if !state.status.goes_on() {
         return Output::standing(state.status);
     }
     let MapPose(expected) = state.localiser.to_map(&OdomPose(input.pose));
@@ -359,10 +359,14 @@ fn sense<const TILES: usize, const SLOTS: usize>(
     let MapPose(pose) = state.localiser.locate(config, &state.map, input);
     let input = &Input { pose, ..*input };
     if !state.started {
-        state.started = true;
-        if !config.survey && starts_blocked(config, input) {
-            state.status = Status::Fault(Fault::StartBlocked);
-        }
+        state.started = config.survey || tells(input);
+        state.status = match state.started {
+            false => Status::NoScan,
+            true if !config.survey && starts_blocked(config, input) => {
+                Status::Fault(Fault::StartBlocked)
+            }
+            true => Status::Exploring,
+        };
     }
     if state.localiser.may_enter() {
         state.map.observe(config, input);
@@ -430,13 +434,22 @@ fn level_scans<'a>(
     scans.filter(|(laser, _)| laser.is_level())
 }
 
-/// Returns true if nine of ten beams of the level laser end inside the robot's own hull.
+/// Returns true if a beam tells anything.
+#[must_use]
+pub fn tells(input: &Input<'_>) -> bool {
+    let mut ranges = input.scans.iter().copied().flatten();
+    ranges.any(|&range_mm| range_mm != INVALID_MM)
+}
+
+/// Returns true if nine of ten beams of the level laser that tell anything end inside the robot's
+/// own hull.
 #[must_use]
 pub fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
     let level = level_scans(config, input).next();
     level.is_some_and(|(_, ranges_mm)| {
+        let told = || ranges_mm.iter().filter(|&&range_mm| range_mm != INVALID_MM);
         let blocked = |&&range: &&u16| f32::from(range) * 1e-3 < BLOCKED_M;
-        !ranges_mm.is_empty()
-            && ranges_mm.iter().filter(blocked).count() * 10 >= ranges_mm.len() * 9
+        let count = told().count();
+        count > 0 && told().filter(blocked).count() * 10 >= count * 9
     })
 }

@@ -26,6 +26,16 @@ pub enum Status {
     Finished(Finish),
     /// The planner cannot continue.
     Fault(Fault),
+    /// No beam has told anything yet. The robot stands until one does.
+    NoScan,
+}
+
+impl Status {
+    /// Returns true if the planner goes on with the next observation.
+    #[must_use]
+    pub const fn goes_on(self) -> bool {
+        matches!(self, Self::Exploring | Self::NoScan)
+    }
 }
 
 /// The reason why an exploration is complete.
@@ -99,6 +109,7 @@ impl fmt::Display for Status {
             Self::Exploring => f.write_str("exploring"),
             Self::Finished(finish) => write!(f, "finished: {finish}"),
             Self::Fault(fault) => write!(f, "fault: {fault}"),
+            Self::NoScan => f.write_str("no scan yet"),
         }
     }
 }

@@ -24,7 +24,7 @@ use fieldline_planner::input::Input;
 use fieldline_planner::map::Map;
 use fieldline_planner::map::obstacle_points::{self, ObstaclePoints};
 use fieldline_planner::math;
-use fieldline_planner::planner::starts_blocked;
+use fieldline_planner::planner::{starts_blocked, tells};
 use fieldline_planner::roadmap::configuration_space::Footprint;
 use fieldline_planner::status::ResidualReason;
 use fieldline_protocol::message::{
@@ -92,7 +92,7 @@ impl<S: Strategy> Session<S> {
 
     fn status(&self) -> Status {
         match self.status {
-            Status::Exploring if self.paused => Status::Paused,
+            Status::Exploring | Status::NoScan if self.paused => Status::Paused,
             status => status,
         }
     }
@@ -164,10 +164,12 @@ impl<S: Strategy> Session<S> {
     /// Integrates scans and odometry into the map and the obstacle points.
     fn sense(&mut self, config: &Config, input: &Input<'_>) {
         if !self.started {
-            self.started = true;
-            if starts_blocked(config, input) {
-                self.status = Status::Fault(Fault::StartBlocked);
-            }
+            self.started = tells(input);
+            self.status = match self.started {
+                false => Status::NoScan,
+                true if starts_blocked(config, input) => Status::Fault(Fault::StartBlocked),
+                true => Status::Exploring,
+            };
         }
         self.map.observe(config, input);
         if config.ground().is_some() {
@@ -320,7 +322,9 @@ impl<S: Strategy> Link for Session<S> {
         };
         let command = match convert::input(observation, config.lasers()) {
             None => standing(Status::Fault(Fault::BadObservation)),
-            Some(input) if self.status() == Status::Exploring => self.step(&config, &input),
+            Some(input) if matches!(self.status(), Status::Exploring | Status::NoScan) => {
+                self.step(&config, &input)
+            }
             Some(_) => standing(self.status()),
         };
         self.config = Some(config);

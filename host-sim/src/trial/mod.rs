@@ -226,11 +226,12 @@ fn ended(
     }
 }
 
-/// Returns true if the planner says that it explores. A lost robot that searches for its place says
+/// Returns true if the planner says that it explores, or waits for a scan. A lost robot that searches for its place says
 /// so and may stand.
 fn explores(status: Status, command: &Command) -> bool {
     let is_lost = |location: &Location| location.quality == Quality::Lost;
-    status == Status::Exploring && !command.location.as_ref().is_some_and(is_lost)
+    matches!(status, Status::Exploring | Status::NoScan)
+        && !command.location.as_ref().is_some_and(is_lost)
 }
 
 /// Stops the robot. After a broken link it gets no command and drives on until its watchdog stops

@@ -8,6 +8,7 @@ pub fn status(status: Status) -> String {
     match status {
         Status::Idle => "idle".into(),
         Status::Exploring => "exploring".into(),
+        Status::NoScan => "no-scan".into(),
         Status::Paused => "paused".into(),
         Status::EmergencyStop => "emergency-stop".into(),
         Status::Finished(why) => format!("finished({})", finish(why)),

@@ -24,6 +24,8 @@ pub enum Status {
     Finished(Finish),
     /// The planner cannot continue.
     Fault(Fault),
+    /// No beam has told anything yet. The robot stands until one does.
+    NoScan,
 }
 
 /// Why an exploration ended.

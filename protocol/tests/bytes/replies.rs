@@ -85,6 +85,7 @@ fn reply_control_with_every_status() {
         (Status::Fault(Fault::Stuck), &[2, 5, 4]),
         (Status::Fault(Fault::PoseLost), &[2, 5, 5]),
         (Status::Fault(Fault::Trapped), &[2, 5, 6]),
+        (Status::NoScan, &[2, 6]),
     ] {
         reply_is(Reply::Control(status), body);
     }

@@ -1,7 +1,11 @@
-//! Ends of an exploration: the world is larger than the map, or the robot starts inside a wall.
+//! Ends of an exploration: the world is larger than the map, or the robot starts inside a wall; and
+//! its beginning, before the first scan.
 
-use fieldline_protocol::message::{Fault, Observation, Status, Strategy, Twist};
+use fieldline_protocol::message::{
+    Control, Fault, INVALID_MM, Observation, Status, Strategy, Twist,
+};
 use fieldline_tests::worlds;
+use host_sim::baseline::{Bvp, Session};
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::link::loopback::loopback;
@@ -115,7 +119,7 @@ fn a_robot_that_starts_inside_a_wall_says_so_and_stands() {
     let start = simulator.start_message(Strategy::Frontier);
     let links: [Box<dyn Link>; 2] = [Box::new(Direct::new()), Box::new(loopback())];
     for mut link in links {
-        link.control(&fieldline_protocol::message::Control::Start(start.clone()))
+        link.control(&Control::Start(start.clone()))
             .expect("the session is allowed");
         // The fault stays.
         for time_ms in [0, 200, 400] {
@@ -129,5 +133,47 @@ fn a_robot_that_starts_inside_a_wall_says_so_and_stands() {
                 (Status::Fault(Fault::StartBlocked), Twist::default())
             );
         }
+    }
+}
+
+/// A lidar that spins up tells nothing at first. The robot waits for it, and says so.
+#[test]
+fn a_robot_without_a_scan_yet_waits_for_one() {
+    let office = worlds::builtin("office");
+    let mut robot = Simulator::new(&office, SimConfig::default()).expect("the start is free");
+    let start = robot.start_message(Strategy::Frontier);
+    let links: [Box<dyn Link>; 3] = [
+        Box::new(Direct::new()),
+        Box::new(loopback()),
+        Box::new(Session::new(Bvp::new())),
+    ];
+    for mut link in links {
+        link.control(&Control::Start(start.clone()))
+            .expect("the session is allowed");
+        let mut observe = |time_ms, dark: bool| {
+            let mut observation = robot.observe();
+            observation.time_ms = time_ms;
+            if dark {
+                let ranges = observation
+                    .scans
+                    .iter_mut()
+                    .flat_map(|it| &mut it.ranges_mm);
+                ranges.for_each(|range_mm| *range_mm = INVALID_MM);
+            }
+            link.observe(&observation).expect("the device answers")
+        };
+        for step in 0..20 {
+            let command = observe(200 * step, true);
+            assert_eq!(
+                (command.status, command.velocity),
+                (Status::NoScan, Twist::default())
+            );
+        }
+        let moves = (20..30).any(|step| {
+            let command = observe(200 * step, false);
+            assert_eq!(command.status, Status::Exploring);
+            command.velocity != Twist::default()
+        });
+        assert!(moves);
     }
 }

@@ -81,7 +81,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let robot = &config.robot;
         let path = self.strategy.frontier.path();
         let activity = match self.status {
-            Status::Exploring => self.team.way.activity(),
+            Status::Exploring | Status::NoScan => self.team.way.activity(),
             Status::Finished(_) => Activity::Finished,
             Status::Fault(_) => Activity::Faulted,
         };

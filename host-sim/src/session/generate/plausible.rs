@@ -217,7 +217,10 @@ impl<C: Choices> Plausible<C> {
         robot.drive(Some(command.velocity));
         let goes_on = matches!(
             command.status,
-            Status::Exploring | Status::Paused | Status::Fault(Fault::BadObservation)
+            Status::Exploring
+                | Status::NoScan
+                | Status::Paused
+                | Status::Fault(Fault::BadObservation)
         );
         if !goes_on || robot.loss().is_some() {
             self.left = self.left.min(AFTER_END);

@@ -32,6 +32,7 @@ fn status() -> impl Strategy<Value = Status> {
         Just(Status::Exploring),
         Just(Status::Paused),
         Just(Status::EmergencyStop),
+        Just(Status::NoScan),
         finish.prop_map(Status::Finished),
         fault.prop_map(Status::Fault),
     ]
