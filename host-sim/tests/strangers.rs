@@ -1,7 +1,8 @@
 //! Other peers on a serial port: none, a foreign one, a device of another schema, a device that
 //! still boots.
 //!
-//! The program names the peer in one line and starts no run, within 5 s on the line's clock.
+//! The program names the peer in one line and starts no run, within 5 s on the line's clock, or the
+//! seconds of `--wait`.
 #![cfg(unix)]
 
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -144,12 +145,14 @@ fn booting(deaf: usize) -> impl FnMut(&[u8]) -> Vec<u8> + Send {
     }
 }
 
-/// The program's exit status and error output of an exploration over this port.
-fn explore(port: &Port) -> (i32, String) {
+/// The program's exit status and error output of an exploration over this port, which waits so many
+/// seconds for a board.
+fn explore(port: &Port, wait: &str) -> (i32, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let output = Command::new(env!("CARGO_BIN_EXE_host-sim"))
         .current_dir(folder.path())
-        .args(["explore", "loop", "--time-limit", "2", "--json", "--link"])
+        .args(["explore", "loop", "--time-limit", "2", "--json"])
+        .args(["--wait", wait, "--link"])
         .arg(format!("serial:{}", port.name))
         .output()
         .expect("runs");
@@ -160,7 +163,7 @@ fn explore(port: &Port) -> (i32, String) {
 #[track_caller]
 fn refused(peer: impl Peer, words: &[&str]) {
     let port = Port::with(peer);
-    let (status, said) = explore(&port);
+    let (status, said) = explore(&port, "0");
     assert_eq!(status, 2, "{said}");
     assert_eq!(said.lines().count(), 1, "{said}");
     for word in [&port.name, "host-sim: --link serial:"]
@@ -194,9 +197,23 @@ fn a_device_of_another_schema_is_named() {
 #[test]
 fn the_program_waits_for_a_device_that_still_boots() {
     let port = Port::with(booting(3));
-    let (status, said) = explore(&port);
+    let (status, said) = explore(&port, "0");
     assert_eq!(status, 1, "{said}");
     assert!(said.contains("the simulated time ran out"), "{said}");
+}
+
+/// Six seconds of hellos, one each 0.2 s.
+#[test]
+fn a_board_that_boots_for_six_seconds_is_waited_for_and_the_user_is_told() {
+    let port = Port::with(booting(30));
+    let (status, said) = explore(&port, "15");
+    assert_eq!(status, 1, "{said}");
+    for words in [
+        "waits up to 15 s for the board to boot",
+        "the simulated time ran out",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
 }
 
 #[test]
@@ -204,7 +221,7 @@ fn a_device_on_a_pty_answers_and_its_port_is_locked() {
     let port = Port::with(booting(0));
     let mut link = serial::serial(&port.name, BAUD).expect("a port");
     assert_eq!(link.hello().expect("a device").boots, 1);
-    let (status, said) = explore(&port);
+    let (status, said) = explore(&port, "0");
     assert_eq!(status, 2, "{said}");
     assert!(said.contains("another program has it open"), "{said}");
 }

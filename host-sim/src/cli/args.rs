@@ -1,5 +1,6 @@
 //! The arguments of the command line; `values.rs` parses their values.
 
+use core::time::Duration;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -21,7 +22,7 @@ use super::strategies;
 use super::team::TeamArgs;
 use super::values::{
     area, failing, ground_parameters, impatience, imu_noise, laser_noise, patrol_for, people, seed,
-    slam_place, snapshots, start, time_limit, until, working,
+    slam_place, snapshots, start, time_limit, until, wait, working,
 };
 
 /// Explore simulated worlds with the Fieldline planner; without a command, explore the built-in
@@ -181,6 +182,9 @@ pub(super) struct ExploreArgs {
     /// Run no faster than real time
     #[arg(long)]
     pub(super) realtime: bool,
+    /// Seconds to wait for a board on a serial port that still boots, at most 600
+    #[arg(long, value_name = "S", default_value = "15", value_parser = wait)]
+    pub(super) wait: Duration,
     /// This robot is one of a team of processes, as in
     /// id=2,bind=0.0.0.0:47002,peers=10.0.0.3:47003+10.0.0.4:47004; also find=GROUP:PORT,
     /// interface=A, key=FILE, pace=N
@@ -255,6 +259,7 @@ impl Default for ExploreArgs {
             tdbvp_impatience: None,
             out: None,
             realtime: false,
+            wait: Duration::from_secs(15),
             team: None,
             fault: None,
             disturb: None,

@@ -1,13 +1,15 @@
 //! `host-sim explore`: explores worlds; writes folders and reports.
 
+use core::time::Duration;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use anyhow::{Context as _, Result, bail};
 
 use fieldline_protocol::message::{Preference, UnevenGround};
-use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
+use host_sim::link::{Link, LinkError};
 use host_sim::network::carrier::Carrier;
 use host_sim::network::spec::TeamSpec;
 use host_sim::network::udp::Udp;
@@ -161,6 +163,11 @@ fn explore(args: &ExploreArgs, link: &LinkSpec, run: &Run, interrupt: &Interrupt
     }
     let planner = strategies::open(&args.strategy, link, &options)
         .with_context(|| format!("--link {link}"))?;
+    let mut planner = planner;
+    if let LinkSpec::Serial { device, .. } = link {
+        await_board(planner.as_mut(), device, args.wait)
+            .map_err(|error| anyhow::anyhow!("--link {link}: {error}"))?;
+    }
     let (mut planner, network) = join(args, planner)?;
     let pace = args.team.as_ref().map(|team| team.pace);
     let pace = pace.or(args.realtime.then_some(1.0));
@@ -182,6 +189,26 @@ fn explore(args: &ExploreArgs, link: &LinkSpec, run: &Run, interrupt: &Interrupt
     folder::write_corrections(&run.folder, album.corrections())?;
     print(args, &report, &record, &run.folder)?;
     Ok(report.explored())
+}
+
+/// Says hello until the board answers, for some time. A board that still boots hears nothing.
+fn await_board(planner: &mut dyn Link, port: &str, wait: Duration) -> Result<(), LinkError> {
+    let begun = Instant::now();
+    let mut is_told = false;
+    loop {
+        match planner.hello() {
+            Err(LinkError::Silent) if begun.elapsed() < wait => {
+                if !is_told {
+                    let seconds = wait.as_secs();
+                    note(&format!(
+                        "host-sim: {port}: waits up to {seconds} s for the board to boot"
+                    ));
+                    is_told = true;
+                }
+            }
+            answer => return answer.map(|_| ()),
+        }
+    }
 }
 
 /// Refuses a team of processes with several worlds, or with a strategy that does not talk.

@@ -1,5 +1,7 @@
 //! Values of arguments: parsed from text, checked against their ranges.
 
+use core::time::Duration;
+
 use fieldline_protocol::message::UnevenGround;
 use host_sim::robot::{Limits, LimitsError};
 use host_sim::slam::SlamPlace;
@@ -34,6 +36,11 @@ pub(super) fn slam_place(text: &str) -> Result<SlamPlace, String> {
 /// Parses the index of a start.
 pub(super) fn start(text: &str) -> Result<usize, String> {
     whole(text, u64::from(u16::MAX)).map(|number| number as usize)
+}
+
+/// Parses seconds to wait for a board.
+pub(super) fn wait(text: &str) -> Result<Duration, String> {
+    whole(text, 600).map(Duration::from_secs)
 }
 
 /// Parses a number of people.

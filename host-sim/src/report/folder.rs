@@ -1,4 +1,8 @@
 //! The folder of a run. Errors name the file and the remedy.
+//!
+//! Invariant: a file that has its name is whole. It is written beside, and renamed. A run that is
+//! killed leaves the files of an earlier run as they were, and a file that says so. The report comes
+//! last, so a folder with a new report has all of its files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,6 +12,11 @@ use crate::trial::Record;
 
 /// Folder of the pictures during the run.
 const SNAPSHOTS: &str = "snapshots";
+/// In the folder of a run that has begun and not ended.
+const UNFINISHED: &str = "unfinished.txt";
+/// What that file says.
+const EXPLANATION: &str = "A run began here and has not ended: it is under way, or was killed.\n\
+                           Other files in this folder are those of an earlier run.\n";
 /// The path as closed loops corrected it.
 const CORRECTED: &str = "trajectory_corrected.tum";
 
@@ -34,19 +43,17 @@ impl core::fmt::Display for WriteError {
 // No source: the message includes it.
 impl core::error::Error for WriteError {}
 
-/// Makes `folder` and checks that files can be written to it.
+/// Makes `folder`, checks that files can be written to it, and marks it as that of a run that has
+/// not ended. The files of an earlier run stay.
 ///
 /// # Errors
 /// As [`WriteError`].
 pub fn prepare(folder: &Path) -> Result<(), WriteError> {
     make(folder)?;
-    remove_snapshots(folder)?;
-    remove(folder, CORRECTED)?;
-    // If the run is killed, the folder has an empty report instead of an older run's.
-    put(folder, "report.json", b"")
+    put(folder, UNFINISHED, EXPLANATION.as_bytes())
 }
 
-/// Writes every file of a run into `folder`.
+/// Writes every file of a run into `folder`, in place of those of an earlier run.
 ///
 /// # Errors
 /// As [`WriteError`], at the first file that cannot be written.
@@ -59,7 +66,7 @@ pub fn write(
     let estimates: Vec<_> = record.steps.iter().map(|step| step.estimate).collect();
     let truths: Vec<_> = record.steps.iter().map(|step| step.truth).collect();
     let rows = record.steps.iter().map(|s| (&s.estimate, &s.command));
-    put(folder, "report.json", report.to_json_pretty().as_bytes())?;
+    remove_snapshots(folder)?;
     put(folder, "map.pgm", &ros_map::pgm(&record.map))?;
     put(
         folder,
@@ -72,12 +79,21 @@ pub fn write(
         "trajectory_truth.tum",
         tum::text(&truths).as_bytes(),
     )?;
-    if !record.corrected.is_empty() {
+    if record.corrected.is_empty() {
+        remove(folder, CORRECTED)?;
+    } else {
         let corrected = tum::text(&record.corrected);
         put(folder, CORRECTED, corrected.as_bytes())?;
     }
     put(folder, "commands.csv", commands::text(rows).as_bytes())?;
-    put(folder, "run.png", picture)
+    put(folder, "run.png", picture)?;
+    end(folder, &report.to_json_pretty())
+}
+
+/// Writes the report, and takes the mark of a run that has not ended away.
+fn end(folder: &Path, report: &str) -> Result<(), WriteError> {
+    put(folder, "report.json", report.as_bytes())?;
+    remove(folder, UNFINISHED).map(|_| ())
 }
 
 /// Writes the files of a team as a whole into `folder`.
@@ -90,10 +106,10 @@ pub fn write_team(
     map: &GridMap,
     picture: &[u8],
 ) -> Result<(), WriteError> {
-    put(folder, "report.json", report.to_json_pretty().as_bytes())?;
     put(folder, "map.pgm", &ros_map::pgm(map))?;
     put(folder, "map.yaml", ros_map::yaml(map, "map.pgm").as_bytes())?;
-    put(folder, "run.png", picture)
+    put(folder, "run.png", picture)?;
+    end(folder, &report.to_json_pretty())
 }
 
 /// Makes `folder`, and changes nothing in it.
@@ -127,13 +143,7 @@ pub fn write_replay(
     if let Some(relations) = relations {
         return put(folder, RELATIONS, relations.as_bytes());
     }
-    let path = folder.join(RELATIONS);
-    match fs::remove_file(&path) {
-        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-            Err(WriteError { path, source })
-        }
-        _ => Ok(()),
-    }
+    remove(folder, RELATIONS).map(|_| ())
 }
 
 /// Writes pictures as `snapshots/001.png` and on; makes no folder if there are none.
@@ -209,8 +219,12 @@ fn remove(folder: &Path, name: &str) -> Result<bool, WriteError> {
 }
 
 fn put(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), WriteError> {
-    let path = folder.join(name);
-    fs::write(&path, bytes).map_err(|source| WriteError { path, source })
+    let (path, beside) = (folder.join(name), folder.join(format!(".{name}.part")));
+    let written = fs::write(&beside, bytes).and_then(|()| fs::rename(&beside, &path));
+    written.map_err(|source| {
+        let _ = fs::remove_file(&beside);
+        WriteError { path, source }
+    })
 }
 
 #[cfg(test)]
@@ -246,6 +260,31 @@ mod tests {
     }
 
     #[test]
+    fn a_run_that_does_not_end_leaves_the_earlier_files_whole_and_a_mark() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        prepare(folder).unwrap();
+        write(folder, &sample(), &Record::default(), b"picture").unwrap();
+        let report = || std::fs::read(folder.join("report.json")).unwrap();
+        let before = report();
+        assert!(!folder.join("unfinished.txt").exists());
+        prepare(folder).unwrap();
+        assert_eq!(report(), before);
+        let mark = std::fs::read_to_string(folder.join("unfinished.txt")).unwrap();
+        assert!(mark.contains("earlier run"), "{mark}");
+        // A folder stands where the picture is to go: the report stays that of the earlier run.
+        std::fs::remove_file(folder.join("run.png")).unwrap();
+        std::fs::create_dir(folder.join("run.png")).unwrap();
+        let mut other = sample();
+        other.seed += 1;
+        let error = write(folder, &other, &Record::default(), b"").unwrap_err();
+        assert!(error.to_string().contains("run.png"), "{error}");
+        assert_eq!(report(), before);
+        assert!(folder.join("unfinished.txt").exists());
+        assert!(!folder.join(".run.png.part").exists());
+    }
+
+    #[test]
     fn a_series_replaces_the_earlier_one_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path();
@@ -255,6 +294,7 @@ mod tests {
             let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
             names.collect::<std::collections::BTreeSet<_>>()
         };
+        let begin = || write(folder, &sample(), &Record::default(), b"").unwrap();
         prepare(folder).unwrap();
         write_snapshots(folder, core::iter::empty()).unwrap();
         assert!(!series.exists());
@@ -265,11 +305,11 @@ mod tests {
         assert_eq!(after.unwrap(), [2]);
         assert_eq!(std::fs::read(series.join("012.png")).unwrap(), [11]);
         std::fs::write(series.join("mine.png"), b"").unwrap();
-        prepare(folder).unwrap();
+        begin();
         write_snapshots(folder, (0..1).map(|k| vec![k])).unwrap();
         assert_eq!(names(), ["001.png", "mine.png"].map(String::from).into());
         std::fs::remove_file(series.join("mine.png")).unwrap();
-        prepare(folder).unwrap();
+        begin();
         assert!(!series.exists());
     }
 
