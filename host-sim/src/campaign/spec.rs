@@ -122,7 +122,8 @@ pub fn parse(text: &str, path: &Path, name: &str) -> Result<Spec, CampaignError>
         let shard = text.get_ref().parse();
         shard.map_err(|reason: String| reader.error(&text.span(), reason))
     });
-    let shard = shard.transpose()?;
+    let shard = shard.transpose();
+    let shard = shard.map_err(|error: CampaignError| error.in_file(path))?;
     let plan = reader
         .plan(file, name)
         .map_err(|error| error.in_file(path))?;

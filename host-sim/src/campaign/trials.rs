@@ -65,9 +65,10 @@ pub fn run(
     heard: &mut dyn FnMut(Finished) -> Result<(), CampaignError>,
 ) -> Result<(), CampaignError> {
     let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let (send, results) = mpsc::channel::<Finished>();
+    // Without a buffer: no trial begins whose thread could not give its last result away.
+    let (send, results) = mpsc::sync_channel::<Finished>(0);
     let is_over = || stop.load(Ordering::Relaxed) || (crew.interrupted)();
-    let work = |send: mpsc::Sender<Finished>| {
+    let work = |send: mpsc::SyncSender<Finished>| {
         while !is_over() {
             let Some(trial) = trials.get(next.fetch_add(1, Ordering::Relaxed)) else {
                 break;

@@ -12,7 +12,7 @@ use host_sim::campaign::plan::{Plan, SLAM_OFF, Trial};
 use host_sim::campaign::shards::{self, Shard};
 use host_sim::campaign::source::Source;
 use host_sim::campaign::spec::{self, Spec};
-use host_sim::campaign::store::{Finished, Store};
+use host_sim::campaign::store::{self, Finished, Store};
 use host_sim::campaign::trials::{self, Crew, Explore};
 use host_sim::campaign::{columns, markdown, numbers, results};
 use host_sim::report::Report;
@@ -76,6 +76,9 @@ pub(super) struct CampaignArgs {
     /// Run the trials that failed again
     #[arg(long)]
     retry: bool,
+    /// Print the commands of the trials, and run none
+    #[arg(long)]
+    list: bool,
     /// Options of explore for every trial
     #[arg(last = true, value_name = "EXPLORE OPTIONS", requires = "worlds")]
     options: Vec<String>,
@@ -114,6 +117,12 @@ pub(super) fn run(args: &CampaignArgs) -> Result<bool> {
     let shard = args.shard.or(shard);
     let explorer = Explorer::open(&plan, &source)?;
     explorer.check(&plan, &source)?;
+    let all = Shard::trials(shard, &plan);
+    if args.list {
+        all.iter()
+            .try_for_each(|trial| say(&store::command(trial)))?;
+        return Ok(true);
+    }
     let folder = args
         .out
         .clone()
@@ -122,43 +131,35 @@ pub(super) fn run(args: &CampaignArgs) -> Result<bool> {
     for text in &store.notes {
         note(&format!("host-sim: {text}"));
     }
-    let all = Shard::trials(shard, &plan);
-    let count = all.len();
-    let open = store.open_trials(all);
-    if !store.finished.is_empty() {
-        let done = store.finished.len();
-        note(&format!(
-            "host-sim: {done} of {count} trials are there; {} to go",
-            open.len()
-        ));
-    }
-    let is_whole = explore(args, &explorer, &open, &mut store, count)?;
+    let is_whole = explore(args, &explorer, all, &mut store)?;
     if is_whole {
         store.rewrite()?;
-    } else {
-        note(&format!(
-            "host-sim: {} of {count} trials are done; the same command goes on",
-            store.finished.len()
-        ));
     }
     if shard.is_some() {
+        let place = folder.display();
         note(&format!(
-            "files in {}; join the shards by campaign merge",
-            folder.display()
+            "files in {place}; join the shards by campaign merge"
         ));
         return Ok(is_whole && store.finished.iter().all(|it| it.failure.is_none()));
     }
     Ok(conclude(&folder, &plan, &store.finished)? && is_whole)
 }
 
-/// Runs the open trials; returns true if none is left.
+/// Runs those of the trials that are not in the folder yet; returns true if none is left.
 fn explore(
     args: &CampaignArgs,
     explorer: &Explorer,
-    open: &[Trial],
+    all: Vec<Trial>,
     store: &mut Store,
-    count: usize,
 ) -> Result<bool> {
+    let (count, before) = (all.len(), store.finished.len());
+    let open = store.open_trials(all);
+    if before > 0 {
+        let left = open.len();
+        note(&format!(
+            "host-sim: {before} of {count} trials are there; {left} to go"
+        ));
+    }
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let interrupt = Interrupt::listen()?;
     let crew = Crew {
@@ -166,8 +167,8 @@ fn explore(
         jobs: args.jobs.map_or(cores, usize::from),
         interrupted: &|| interrupt.pressed(),
     };
-    let mut line = Trials::new(store.finished.len(), count);
-    let result = trials::run(&crew, open, &mut |finished: Finished| {
+    let mut line = Trials::new(before, count);
+    let result = trials::run(&crew, &open, &mut |finished: Finished| {
         line.finished(&format!(
             "{} · {} · start {} · seed {}",
             finished.world, finished.strategy, finished.start, finished.seed
@@ -179,7 +180,13 @@ fn explore(
     });
     line.end();
     result?;
-    Ok(store.finished.len() == count)
+    let done = store.finished.len();
+    if done < count {
+        note(&format!(
+            "host-sim: {done} of {count} trials are done; the same command goes on"
+        ));
+    }
+    Ok(done == count)
 }
 
 /// Writes tables and plots, and prints the table; returns true if no trial failed.

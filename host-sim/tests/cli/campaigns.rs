@@ -1,9 +1,10 @@
 //! Campaigns: the same runs as `explore`, resumed after kills, divided into shards, and refusals.
 
+use core::time::Duration;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use serde_json::Value;
 use tempfile::TempDir;
@@ -241,7 +242,7 @@ fn bad_campaigns_are_refused_in_one_line_with_file_and_line() {
             "wrlds = []",
             ["bad.toml:3: unknown field `wrlds`", "did you mean worlds?"],
         ),
-        ("starts = 7", ["bad.toml:3: ", "has no start 7"]),
+        ("starts = 7", ["bad.toml:3: ", "only 2 starts"]),
         ("slam = \"hosts\"", ["bad.toml:2: ", "give off or host"]),
         (
             "odometry = \"nosy\"",
@@ -315,6 +316,29 @@ fn bad_arguments_of_a_campaign_are_refused_in_one_line() {
         .output()
         .expect("runs");
     assert!(String::from_utf8_lossy(&output.stdout).contains("--shard"));
+}
+
+#[test]
+fn the_committed_campaigns_are_good() {
+    let folder = folder();
+    let campaigns = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/campaigns");
+    let mut counts = Vec::new();
+    for file in fs::read_dir(campaigns).expect("a folder") {
+        let path = file.expect("a file").path();
+        let words = ["campaign", "--list", path.to_str().expect("a name")];
+        let (status, stdout, stderr) = outcome(&folder, &words);
+        assert_eq!(status, 0, "{stderr}");
+        assert!(
+            stdout
+                .lines()
+                .all(|line| line.starts_with("host-sim explore ")),
+            "{stdout}"
+        );
+        counts.push(stdout.lines().count());
+    }
+    counts.sort_unstable();
+    assert_eq!(counts, [36, 600]);
+    assert!(!folder.path().join("out").exists(), "nothing was written");
 }
 
 #[test]

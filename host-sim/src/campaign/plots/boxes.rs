@@ -1,8 +1,11 @@
 //! Box plots by world and strategy: box from quartile to quartile, line at the median, whiskers to
 //! the least and the greatest, a dot for each trial.
 
-use plotters::chart::ChartBuilder;
+use plotters::backend::SVGBackend;
+use plotters::chart::{ChartBuilder, ChartContext};
+use plotters::coord::types::RangedCoordf64;
 use plotters::element::{Circle, PathElement, Rectangle, Text};
+use plotters::prelude::Cartesian2d;
 use plotters::style::text_anchor::{HPos, VPos};
 use plotters::style::{Color as _, IntoFont as _};
 
@@ -19,6 +22,9 @@ const SLOT: u32 = 34;
 const HEIGHT: u32 = 320;
 /// Width of the labels of the axis.
 const AXIS: u32 = 72;
+
+/// The field with the boxes.
+type Field<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// The greatest value by the least above which the axis is logarithmic.
 const WIDE: f64 = 30.0;
@@ -105,7 +111,7 @@ impl Chart<'_> {
             / width;
         let height = TITLE + legend_lines * LEGEND_LINE + HEIGHT + 40;
         drawing((width, height), |canvas| {
-            let top = head(canvas, &self.title, self.labels, &square)?;
+            let top = head(canvas, &self.title, self.labels, square)?;
             self.field(canvas, top, scale, &samples)
         })
         .map(Some)
@@ -144,29 +150,12 @@ impl Chart<'_> {
         for (number, (group, samples)) in self.groups.iter().zip(samples).enumerate() {
             let left = slots * number as f64;
             for (index, sample) in samples.iter().enumerate() {
-                let at = left + index as f64 + 1.0;
-                let colour = colour(index);
-                let Some(summary) = Summary::of(sample) else {
-                    continue;
-                };
-                let marks = summary.quartiles.map(|value| scale.at(value));
-                let [least, lower, median, upper, greatest] = marks;
-                let thin = colour.stroke_width(2);
-                for whisker in [[(at, least), (at, lower)], [(at, upper), (at, greatest)]] {
-                    chart.draw_series([PathElement::new(whisker.to_vec(), thin)])?;
-                }
-                for cap in [least, greatest] {
-                    let ends = vec![(at - 0.18, cap), (at + 0.18, cap)];
-                    chart.draw_series([PathElement::new(ends, thin)])?;
-                }
-                let corners = [(at - 0.36, lower), (at + 0.36, upper)];
-                chart.draw_series([Rectangle::new(corners, colour.mix(0.25).filled())])?;
-                chart.draw_series([Rectangle::new(corners, thin)])?;
-                let line = vec![(at - 0.36, median), (at + 0.36, median)];
-                chart.draw_series([PathElement::new(line, colour.stroke_width(4))])?;
-                let dot =
-                    |value: &f64| Circle::new((at, scale.at(*value)), 2, colour.mix(0.7).filled());
-                chart.draw_series(sample.iter().map(dot))?;
+                draw_box(
+                    &mut chart,
+                    scale,
+                    (left + index as f64 + 1.0, index),
+                    sample,
+                )?;
             }
             let (x, y) = chart.backend_coord(&(left + slots / 2.0, scale.from));
             let style = label_style(HPos::Center, VPos::Top);
@@ -174,4 +163,43 @@ impl Chart<'_> {
         }
         Ok(())
     }
+}
+
+/// Draws the box of a strategy at a place of the axis.
+fn draw_box(
+    chart: &mut Field<'_, '_>,
+    scale: Scale,
+    (at, index): (f64, usize),
+    sample: &[f64],
+) -> Result<(), Failure> {
+    let Some(summary) = Summary::of(sample) else {
+        return Ok(());
+    };
+    let colour = colour(index);
+    let marks = summary.quartiles.map(|value| scale.at(value));
+    let [least, lower, median, upper, greatest] = marks;
+    let across = |half: f64, y: f64| vec![(at - half, y), (at + half, y)];
+    let corners = [(at - 0.36, lower), (at + 0.36, upper)];
+    chart.draw_series([Rectangle::new(corners, colour.mix(0.25).filled())])?;
+    let thin = colour.stroke_width(2);
+    let (left, right) = (at - 0.36, at + 0.36);
+    let frame = [
+        (left, lower),
+        (left, upper),
+        (right, upper),
+        (right, lower),
+        (left, lower),
+    ];
+    let whiskers = [
+        vec![(at, least), (at, lower)],
+        vec![(at, upper), (at, greatest)],
+    ];
+    let caps = [across(0.18, least), across(0.18, greatest)];
+    let lines = whiskers.into_iter().chain(caps).chain([frame.to_vec()]);
+    chart.draw_series(lines.map(|line| PathElement::new(line, thin)))?;
+    let middle = PathElement::new(across(0.36, median), colour.stroke_width(4));
+    chart.draw_series([middle])?;
+    let dot = |value: &f64| Circle::new((at, scale.at(*value)), 2, colour.mix(0.7).filled());
+    chart.draw_series(sample.iter().map(dot))?;
+    Ok(())
 }

@@ -36,7 +36,7 @@ pub(super) fn draw(
     };
     let end_s = end_s.max(1.0);
     drawing(SIZE, |canvas| {
-        let top = head(canvas, title, labels, &sample)?;
+        let top = head(canvas, title, labels, sample)?;
         let (_, below) = canvas.split_vertically(top);
         let mut chart = ChartBuilder::on(&below)
             .margin_left(14)

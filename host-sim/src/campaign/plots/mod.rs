@@ -57,6 +57,9 @@ type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Anything that can go wrong while drawing.
 type Failure = Box<dyn core::error::Error>;
 
+/// Draws the sample of a strategy at a place.
+type Swatch = fn(&Canvas<'_>, usize, (i32, i32)) -> Result<(), Failure>;
+
 /// A world with an odometry: its label, and its trials of each strategy.
 struct Group<'a> {
     label: String,
@@ -188,7 +191,7 @@ fn head(
     canvas: &Canvas<'_>,
     title: &str,
     labels: &[String],
-    swatch: &dyn Fn(&Canvas<'_>, usize, (i32, i32)) -> Result<(), Failure>,
+    swatch: Swatch,
 ) -> Result<u32, Failure> {
     let style = ("sans-serif", 20).into_font().color(&BLACK);
     canvas.draw(&Text::new(title.to_owned(), (LEFT, 10), style))?;

@@ -143,7 +143,7 @@ fn bad_files_are_refused_with_their_line() {
         ),
         (
             "[[variants]]\nname = \"x\"",
-            ["c.toml:3:", "missing field", "`strategy`"],
+            ["c.toml:", "missing field", "`strategy`"],
         ),
         ("worlds = 1", ["c.toml:3:", "duplicate key", ""]),
         ("x = = 1", ["c.toml:3:", "", ""]),
