@@ -2,9 +2,11 @@
 #![forbid(unsafe_code)]
 
 pub mod baseline;
+pub mod campaign;
 pub mod link;
 pub mod metrics;
 pub mod network;
+mod panics;
 pub mod people;
 pub mod picture;
 pub mod radio;

@@ -25,7 +25,6 @@
 //! | [`ablation`] | every tuned constant at half and at double its default |
 //! | [`bitmap`] | seeded bit maps; thinning and search cell by cell, as oracles |
 //! | [`field`] | seeded windows of the field, and their solution in f64 |
-//! | [`wilcoxon`] | the signed-rank test of paired runs |
 //! | [`plot`] | lines over a pair of axes, as an SVG |
 //! | [`costs`] | instructions of a step on the emulated chip |
 //! | [`emulator`] | the image for the chip, and QEMU |
@@ -65,7 +64,6 @@ pub mod teams;
 pub mod truth;
 pub mod uneven;
 pub mod watched;
-pub mod wilcoxon;
 pub mod worlds;
 
 /// Runs the Rust in the project's pages as tests.

@@ -15,6 +15,7 @@ use host_sim::slam::particles::ParticleSpec;
 use host_sim::trial::mission::OdometryProfile;
 use host_sim::trial::space::Area;
 
+use super::campaign::CampaignArgs;
 use super::replay::ReplayArgs;
 use super::robot::RobotArgs;
 use super::sessions::{ReplaySessionArgs, SessionsArgs};
@@ -38,6 +39,9 @@ pub(super) struct Cli {
 pub(super) enum Command {
     /// Explore worlds; write a folder with report, map, trajectory, commands and picture of each
     Explore(Box<ExploreArgs>),
+    /// Compare strategies, worlds and options over starts and seeds; write every trial, tables and
+    /// plots into a folder, and go on there after a kill
+    Campaign(Box<CampaignArgs>),
     /// Explore a world with several robots; write a folder with report, map and picture of the team
     /// and a folder of each robot
     Team(Box<TeamArgs>),

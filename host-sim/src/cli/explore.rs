@@ -1,30 +1,24 @@
 //! `host-sim explore`: explores worlds; writes folders and reports.
 
-use core::time::Duration;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Result, bail};
 
-use fieldline_protocol::message::{Preference, UnevenGround};
-use host_sim::link::spec::{LinkSpec, Options};
-use host_sim::link::{Link, LinkError};
-use host_sim::network::carrier::Carrier;
-use host_sim::network::spec::TeamSpec;
-use host_sim::network::udp::Udp;
-use host_sim::network::{self, Networked};
+use fieldline_protocol::message::UnevenGround;
+use host_sim::link::spec::LinkSpec;
 use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
 use host_sim::slam::SlamPlace;
 use host_sim::trial::Record;
-use host_sim::trial::mission::{self, IMPATIENCE_S, Mission, MissionError, on_device};
+use host_sim::trial::mission::{self, IMPATIENCE_S, Mission, on_device};
 use host_sim::trial::space::SpaceMission;
 use host_sim::trial::uneven;
 use host_sim::world::World;
 
 use super::args::{ExploreArgs, GroundArg, OdometryArg, SwitchArg};
 use super::pictures::Album;
+use super::prepared::Prepared;
 use super::progress::{Interrupt, Onlooker};
 use super::strategies::{self, FRONTIER, TERRAIN};
 use super::{note, say};
@@ -38,24 +32,12 @@ struct Run {
 
 /// Explores every world; returns true if every run ended explored.
 pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
-    let args = &without_alias(args)?;
-    let link = strategies::link_of(&args.strategy, args.robot.link(args.link.as_ref()))?;
-    strategies::check(&args.strategy, args.check_field, args.fault.is_some())?;
-    strategies::check_rails(
-        &args.strategy,
-        args.patrol_for,
-        args.tdbvp_impatience.is_some(),
-    )?;
-    let has_space = args.until.is_some() || args.area.is_some() || args.sbpf_impatience.is_some();
-    strategies::check_space(&args.strategy, has_space)?;
-    let mission = mission(args, &link)?;
-    check_reference(&mission)?;
-    check_team(args)?;
-    let runs = runs(args, &mission)?;
+    let prepared = Prepared::new(&without_alias(args)?)?;
+    let runs = runs(&prepared.args, &prepared.mission)?;
     let interrupt = Interrupt::listen()?;
     let mut all_explored = true;
     for run in &runs {
-        all_explored &= explore(args, &link, run, &interrupt)?;
+        all_explored &= explore(&prepared, run, &interrupt)?;
         if interrupt.pressed() {
             break;
         }
@@ -147,117 +129,24 @@ fn unique(names: impl Iterator<Item = String>) -> Vec<String> {
 }
 
 /// Makes one run, from hello to folder; returns true if it ended explored.
-fn explore(args: &ExploreArgs, link: &LinkSpec, run: &Run, interrupt: &Interrupt) -> Result<bool> {
-    let options = Options {
-        faults: args
-            .fault
-            .as_ref()
-            .map_or_else(Default::default, |f| f.faults),
-        seed: args.seed,
-        real_time: args.realtime,
-        tuning: args.robot.tuning(link)?,
-    };
+fn explore(prepared: &Prepared, run: &Run, interrupt: &Interrupt) -> Result<bool> {
+    let args = &prepared.args;
     let name = run.world.name();
     for text in run.world.notes() {
         note(&format!("host-sim: {name}: {text}"));
     }
-    let planner = strategies::open(&args.strategy, link, &options)
-        .with_context(|| format!("--link {link}"))?;
-    let mut planner = planner;
-    if let LinkSpec::Serial { device, .. } = link {
-        await_board(planner.as_mut(), device, args.wait)
-            .map_err(|error| anyhow::anyhow!("--link {link}: {error}"))?;
-    }
-    let (mut planner, network) = join(args, planner)?;
     let pace = args.team.as_ref().map(|team| team.pace);
     let pace = pace.or(args.realtime.then_some(1.0));
     let mut onlooker = Onlooker::new(name, pace, interrupt.clone());
-    let result = mission::explore(&run.mission, &run.world, planner.as_mut(), &mut onlooker);
+    let result = prepared.play_mission(&run.mission, &run.world, &mut onlooker);
     onlooker.finish();
-    let (mut report, record) = match result {
-        Err(MissionError::Link(error)) => bail!("--link {link}: {error}"),
-        result => result?,
-    };
-    if let Some(network) = network {
-        report.network = Some(network.read());
-        // The device's map also has what the robot heard.
-        report.debug.map_matches_mirror = None;
-    }
+    let (report, record) = result?;
     let album = Album::new(&run.world, &report, &record);
     folder::write(&run.folder, &report, &record, &album.end())?;
     folder::write_snapshots(&run.folder, album.during())?;
     folder::write_corrections(&run.folder, album.corrections())?;
     print(args, &report, &record, &run.folder)?;
     Ok(report.explored())
-}
-
-/// Says hello until the board answers, for some time. A board that still boots hears nothing.
-fn await_board(planner: &mut dyn Link, port: &str, wait: Duration) -> Result<(), LinkError> {
-    let begun = Instant::now();
-    let mut is_told = false;
-    loop {
-        match planner.hello() {
-            Err(LinkError::Silent) if begun.elapsed() < wait => {
-                if !is_told {
-                    let seconds = wait.as_secs();
-                    note(&format!(
-                        "host-sim: {port}: waits up to {seconds} s for the board to boot"
-                    ));
-                    is_told = true;
-                }
-            }
-            answer => return answer.map(|_| ()),
-        }
-    }
-}
-
-/// Refuses a team of processes with several worlds, or with a strategy that does not talk.
-fn check_team(args: &ExploreArgs) -> Result<()> {
-    if args.team.is_none() {
-        return Ok(());
-    }
-    if args.worlds.len() != 1 {
-        bail!("--team is for one world; name only one");
-    }
-    if on_device(&args.strategy).is_none() {
-        bail!(
-            "--strategy {} does not talk to a team; leave --team out",
-            args.strategy
-        );
-    }
-    if args.slam != SlamPlace::Off {
-        bail!(
-            "--slam does not know what a robot hears by --team; say --slam off, or take host-sim \
-             team, which has --slam host"
-        );
-    }
-    Ok(())
-}
-
-/// Makes the planner a member of its team, if it has one; returns its counters too.
-fn join(
-    args: &ExploreArgs,
-    planner: Box<dyn Link>,
-) -> Result<(Box<dyn Link>, Option<network::Account>)> {
-    let Some(team) = &args.team else {
-        return Ok((planner, None));
-    };
-    let key = team.read_key().context("--team")?;
-    let carrier = carrier(team).map_err(anyhow::Error::msg);
-    let member = Networked::new(planner, carrier.context("--team")?, key, team.id);
-    let account = member.account();
-    Ok((Box::new(member), Some(account)))
-}
-
-/// Opens what carries the packets of a team.
-fn carrier(team: &TeamSpec) -> Result<Box<dyn Carrier>, String> {
-    if team.zenoh.is_none() && team.zenoh_listen.is_none() {
-        return Ok(Box::new(Udp::open(team)?));
-    }
-    #[cfg(feature = "zenoh")]
-    return Ok(Box::new(network::zenoh::Zenoh::open(team)?));
-    #[cfg(not(feature = "zenoh"))]
-    Err("this program was built without zenoh; build it with --features host-sim/zenoh".into())
 }
 
 /// Returns the parameters of uneven ground; `None` on flat ground.
@@ -300,18 +189,6 @@ fn uneven_ground(args: &ExploreArgs) -> Result<Option<UnevenGround>> {
         ),
         ..parameters
     }))
-}
-
-/// Refuses `--check-field` for a field with preferences, which the direct solution does not have.
-fn check_reference(mission: &Mission) -> Result<()> {
-    let preference = mission.uneven_ground.map(|ground| ground.preference);
-    if mission.check_field && preference.is_some_and(|which| which != Preference::Off) {
-        bail!(
-            "--check-field has no reference for a field with preferences; \
-             say --preference off, or leave --check-field out"
-        );
-    }
-    Ok(())
 }
 
 /// Returns the odometry of a run whose user names none: it drifts where the device corrects it, and

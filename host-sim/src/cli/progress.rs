@@ -1,4 +1,4 @@
-//! The progress line during a run, the pacer, and the interrupt key.
+//! The progress line during a run or a campaign, the pacer, and the interrupt key.
 
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::time::Duration;
@@ -9,6 +9,8 @@ use anyhow::{Context as _, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use host_sim::trial::{Flow, Progress, Watch, wording};
+
+use super::note;
 
 /// Ticks of the bar: tenths of a percent.
 const TICKS: u64 = 1_000;
@@ -88,6 +90,76 @@ impl Watch for Onlooker {
     }
 }
 
+/// The progress of a campaign: a bar on a terminal, a line now and then elsewhere.
+pub(super) struct Trials {
+    bar: ProgressBar,
+    began: Instant,
+    /// Trials that were there before.
+    before: usize,
+    done: usize,
+    count: usize,
+    said: Instant,
+}
+
+/// Least time between two lines where there is no terminal.
+const SAY_EVERY: Duration = Duration::from_secs(30);
+
+impl Trials {
+    /// Makes the progress of `count` trials, of which `before` are done.
+    pub(super) fn new(before: usize, count: usize) -> Self {
+        let bar = ProgressBar::new(count as u64);
+        let style = ProgressStyle::with_template("{pos} of {len} {bar:24.cyan/black.dim} {msg}");
+        if let Ok(style) = style {
+            bar.set_style(style.progress_chars("━━─"));
+        }
+        bar.set_position(before as u64);
+        Self {
+            bar,
+            began: Instant::now(),
+            before,
+            done: before,
+            count,
+            said: Instant::now(),
+        }
+    }
+
+    /// Shows that a trial finished.
+    pub(super) fn finished(&mut self, name: &str) {
+        self.done += 1;
+        let (made, left) = (self.done - self.before, self.count - self.done);
+        let left = self.began.elapsed().mul_f64(left as f64 / made as f64);
+        let left = time_left(left);
+        self.bar.set_position(self.done as u64);
+        self.bar.set_message(format!("{left} left, last {name}"));
+        if self.bar.is_hidden() && self.said.elapsed() >= SAY_EVERY {
+            self.said = Instant::now();
+            note(&format!(
+                "{} of {} trials, {left} left, last {name}",
+                self.done, self.count
+            ));
+        }
+    }
+
+    /// Prints a line above the bar.
+    pub(super) fn note(&self, line: &str) {
+        self.bar.suspend(|| note(line));
+    }
+
+    /// Removes the bar.
+    pub(super) fn end(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// Returns a time as hours, minutes and seconds.
+fn time_left(time: Duration) -> String {
+    let seconds = time.as_secs();
+    match (seconds / 3_600, seconds / 60 % 60, seconds % 60) {
+        (0, minutes, seconds) => format!("{minutes}:{seconds:02} min"),
+        (hours, minutes, _) => format!("{hours}:{minutes:02} h"),
+    }
+}
+
 fn message(progress: &Progress) -> String {
     format!(
         "{:5.1} % known  {:6.1} s  {:6.1} m  {}",
@@ -115,7 +187,8 @@ fn doing(progress: &Progress) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::message;
+    use super::{message, time_left};
+    use core::time::Duration;
     use fieldline_protocol::message::{Loops, Status};
     use host_sim::trial::Progress;
 
@@ -139,5 +212,11 @@ mod tests {
         };
         let progress = Progress { loops, ..progress };
         assert!(message(&progress).ends_with("m  exploring, closing a loop, 2 given up"));
+    }
+
+    #[test]
+    fn the_time_left_is_in_minutes_or_hours() {
+        assert_eq!(time_left(Duration::from_secs(65)), "1:05 min");
+        assert_eq!(time_left(Duration::from_secs(7_500)), "2:05 h");
     }
 }

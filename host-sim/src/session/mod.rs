@@ -21,7 +21,6 @@ pub mod choices;
 mod compact;
 pub mod generate;
 pub mod judge;
-mod panics;
 pub mod play;
 pub mod script;
 pub mod shrink;

@@ -11,10 +11,10 @@ use fieldline_protocol::message::{Cost, Status};
 use super::ask::{Answer, Ask};
 use super::generate::{Host, Replayed};
 use super::judge::{Finding, Judge, Kind, Limits};
-use super::panics::caught;
 use super::target::{Capacity, Target, TargetSpec};
 use crate::link::LinkError;
 use crate::link::digest::Digest;
+use crate::panics::caught;
 
 /// What a session did.
 #[derive(Clone, Debug, Default)]

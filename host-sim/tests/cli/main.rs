@@ -1,5 +1,6 @@
 //! The program on the command line: its files, its output, and its errors.
 
+mod campaigns;
 mod commands;
 mod refusals;
 mod replay;

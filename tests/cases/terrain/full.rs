@@ -16,8 +16,8 @@ use fieldline_tests::digests::Digest;
 use fieldline_tests::runs::{FRONTIER, in_parallel};
 use fieldline_tests::table::{Table, number};
 use fieldline_tests::uneven::{self, Summary, UnevenRun};
-use fieldline_tests::wilcoxon::signed_rank;
 use fieldline_tests::{flatness, golden, truth, worlds};
+use host_sim::campaign::statistics::signed_rank;
 
 use crate::scenarios;
 use crate::shared::{WatchedRun, assert_explored, explore};

@@ -1,4 +1,4 @@
-//! Catches panics of a device in this process, with their place.
+//! Catches panics of a device or a trial in this process, with their place.
 
 use core::cell::{Cell, RefCell};
 use core::panic::AssertUnwindSafe;
@@ -14,7 +14,7 @@ thread_local! {
 ///
 /// # Errors
 /// The place and the message of the panic.
-pub(super) fn caught<T>(act: impl FnOnce() -> T) -> Result<T, (String, String)> {
+pub(crate) fn caught<T>(act: impl FnOnce() -> T) -> Result<T, (String, String)> {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         let usual = panic::take_hook();
