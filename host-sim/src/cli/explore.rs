@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Result, bail};
 
 use fieldline_protocol::message::{Preference, UnevenGround};
+use host_sim::baseline::bvp_papers::Relaxation;
 use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::network::carrier::Carrier;
@@ -46,6 +47,8 @@ pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     )?;
     let has_space = args.until.is_some() || args.area.is_some() || args.sbpf_impatience.is_some();
     strategies::check_space(&args.strategy, has_space)?;
+    let has_relaxation = args.bvp_sweeps.is_some() || args.bvp_precision.is_some();
+    strategies::check_relaxation(&args.strategy, has_relaxation)?;
     let mission = mission(args, &link)?;
     check_reference(&mission)?;
     check_team(args)?;
@@ -159,7 +162,7 @@ fn explore(args: &ExploreArgs, link: &LinkSpec, run: &Run, interrupt: &Interrupt
     for text in run.world.notes() {
         note(&format!("host-sim: {name}: {text}"));
     }
-    let planner = strategies::open(&args.strategy, link, &options)
+    let planner = strategies::open(&args.strategy, link, &options, run.mission.relaxation)
         .with_context(|| format!("--link {link}"))?;
     let (mut planner, network) = join(args, planner)?;
     let pace = args.team.as_ref().map(|team| team.pace);
@@ -353,6 +356,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         time_limit_ms: args.time_limit,
         patrol_s: args.patrol_for,
         space: space(args),
+        relaxation: relaxation(args),
         impatience_s: args.tdbvp_impatience.map_or(IMPATIENCE_S, |it| it.0),
         check_field: args.check_field,
         snapshots: args.snapshots,
@@ -371,6 +375,15 @@ fn space(args: &ExploreArgs) -> SpaceMission {
     }
 }
 
+/// Returns how the stored potential of a baseline is relaxed.
+fn relaxation(args: &ExploreArgs) -> Relaxation {
+    let usual = Relaxation::DEFAULT;
+    Relaxation {
+        sweeps: args.bvp_sweeps.unwrap_or(usual.sweeps),
+        precision: args.bvp_precision.map_or(usual.precision, Into::into),
+    }
+}
+
 /// Prints the report on standard output, and advice on standard error.
 fn print(args: &ExploreArgs, report: &Report, record: &Record, folder: &Path) -> Result<()> {
     if args.json {
@@ -378,7 +391,7 @@ fn print(args: &ExploreArgs, report: &Report, record: &Record, folder: &Path) ->
     } else {
         say(&report.to_text())?;
     }
-    if let Some(advice) = record.ending.advice() {
+    if let Some(advice) = strategies::advice(&args.strategy, &record.ending) {
         note(&format!("host-sim: {}: {advice}", report.world));
     }
     if let Some(error) = &record.read_out_error {

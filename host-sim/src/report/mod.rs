@@ -59,6 +59,9 @@ pub struct Report {
     pub worth: Option<f64>,
     /// Area, target and impatience of strategies sbpf and esbpf; `null` for other strategies.
     pub space_field: Option<SpaceField>,
+    /// How strategy bvp-papers relaxes its potential; the key is missing for other strategies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relaxation: Option<Relaxation>,
     /// Link to the planner, as given to `--link`.
     pub link: String,
     /// Seed of every random number of the run.
@@ -126,6 +129,15 @@ pub struct Report {
     /// What became of the loops that a pose graph closed; the key is missing without `--slam`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slam: Option<SlamReport>,
+}
+
+/// The relaxation of a stored potential.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Relaxation {
+    /// Sweeps of the whole grid in each step.
+    pub sweeps: u16,
+    /// Type of the stored values: `f32` or `f64`.
+    pub precision: String,
 }
 
 /// The parameters of a space-based potential field.
