@@ -44,6 +44,9 @@ const LOOK_AROUND_RADPS: f32 = 0.6;
 const LOOK_AROUND_MARGIN_M: f32 = 0.025;
 /// Time without a goal after which the exploration ends, milliseconds.
 const EMPTY_MS: u32 = 1_000;
+/// Time without a direction after which the exploration ends, milliseconds. \[Maffei14\]: a field
+/// "can take a very long time to converge and start attracting the robot".
+pub const FLAT_MS: u32 = 30_000;
 /// A robot with less free space than this is boxed in, cells: 1 m², as in the planner.
 const BOX_CELLS: usize = 100;
 
@@ -56,7 +59,8 @@ pub struct Session<S> {
     status: Status,
     paused: bool,
     started: bool,
-    empty_since_ms: Option<u32>,
+    /// Since when the strategy has no path.
+    idle_since_ms: Option<u32>,
     map: Box<Map<TILES, SLOTS>>,
     obstacle_points: ObstaclePoints,
     heights: HeightGrid,
@@ -78,7 +82,7 @@ impl<S: Strategy> Session<S> {
             status: Status::Idle,
             paused: false,
             started: false,
-            empty_since_ms: None,
+            idle_since_ms: None,
             map: Box::new(Map::new()),
             obstacle_points: ObstaclePoints::new(),
             heights: HeightGrid::default(),
@@ -110,7 +114,7 @@ impl<S: Strategy> Session<S> {
         self.status = Status::Exploring;
         self.paused = false;
         self.started = false;
-        self.empty_since_ms = None;
+        self.idle_since_ms = None;
         Ok(())
     }
 
@@ -125,7 +129,7 @@ impl<S: Strategy> Session<S> {
                 .draw(self.map.tiles(), &footprint, input.pose.point());
             self.plan(config, input);
         }
-        if self.status == Status::Exploring && self.empty_since_ms.is_none() {
+        if self.status == Status::Exploring && self.idle_since_ms.is_none() {
             self.follow(config, input)
         } else {
             standing(self.status)
@@ -136,18 +140,28 @@ impl<S: Strategy> Session<S> {
     fn plan(&mut self, config: &Config, input: &Input<'_>) {
         let scene = scene(config, &self.chart, &self.heights, input);
         match self.strategy.plan(&scene) {
-            Outcome::Path => self.empty_since_ms = None,
+            Outcome::Path => self.idle_since_ms = None,
             Outcome::Stuck => self.status = Status::Fault(Fault::Stuck),
             Outcome::Nothing => {
-                let since = *self.empty_since_ms.get_or_insert(input.time_ms);
-                if input.time_ms.wrapping_sub(since) >= EMPTY_MS {
+                if self.is_idle_for(EMPTY_MS, input.time_ms) {
                     self.status = self.conclude(input.pose.point().cell());
+                }
+            }
+            Outcome::Flat => {
+                if self.is_idle_for(FLAT_MS, input.time_ms) {
+                    self.status = Status::Finished(Finish::NothingAttracts);
                 }
             }
         }
         if config.ground().is_some() {
             self.resolve_gaps(config);
         }
+    }
+
+    /// Returns true if the robot has had nowhere to go for this time. It stands meanwhile.
+    fn is_idle_for(&mut self, limit_ms: u32, time_ms: u32) -> bool {
+        let since_ms = *self.idle_since_ms.get_or_insert(time_ms);
+        time_ms.wrapping_sub(since_ms) >= limit_ms
     }
 
     /// Marks the gaps of the ground at goals that were dropped as unobservable, as the planner

@@ -37,6 +37,8 @@ pub enum Outcome {
     Path,
     /// There is no path to unexplored space.
     Nothing,
+    /// Unexplored space can be reached, but nothing tells the robot in which direction.
+    Flat,
     /// The robot cannot move, whatever its goal.
     Stuck,
 }

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use fieldline_protocol::message::{Preference, UnevenGround};
+use host_sim::baseline::bvp_papers::Precision;
 use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
 use host_sim::network::spec::TeamSpec;
@@ -23,7 +24,7 @@ use super::strategies;
 use super::team::TeamArgs;
 use super::values::{
     area, failing, ground_parameters, impatience, imu_noise, laser_noise, patrol_for, people, seed,
-    slam_place, snapshots, start, time_limit, until, wait, working,
+    slam_place, snapshots, start, sweeps, time_limit, until, wait, working,
 };
 
 /// Explore simulated worlds with the Fieldline planner; without a command, explore the built-in
@@ -74,8 +75,9 @@ pub(super) struct ExploreArgs {
     /// start N
     #[arg(value_name = "WORLD[@N]", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
-    /// Strategy: frontier, ouroboros or tdbvp on the device, or a baseline on the host, bvp or
-    /// greedy-frontier
+    /// Strategy: frontier, ouroboros, tdbvp, sbpf or esbpf on the device, or a baseline on the host:
+    /// bvp (the converged field of the whole grid), bvp-papers (some sweeps a step, as the papers
+    /// ran it) or greedy-frontier
     #[arg(long, default_value = strategies::FRONTIER, value_parser = strategies::parse)]
     pub(super) strategy: String,
     /// Ground that the planner expects [default: flat; uneven if --preference, --levels or
@@ -179,6 +181,12 @@ pub(super) struct ExploreArgs {
         allow_negative_numbers = true
     )]
     pub(super) tdbvp_impatience: Option<Impatience>,
+    /// Gauss-Seidel sweeps of the whole grid in each step, 1 to 10000; for bvp-papers [default: 100]
+    #[arg(long, value_name = "N", value_parser = sweeps, allow_negative_numbers = true)]
+    pub(super) bvp_sweeps: Option<u16>,
+    /// Type in which the potential is stored; for bvp-papers [default: f64]
+    #[arg(long, value_enum, value_name = "TYPE")]
+    pub(super) bvp_precision: Option<PrecisionArg>,
     /// Folder of the run; with several runs, the folder of their folders [default:
     /// out/WORLD-STRATEGY-SEED, on uneven ground out/WORLD-STRATEGY-uneven-SEED]
     #[arg(long, value_name = "DIR")]
@@ -261,6 +269,8 @@ impl Default for ExploreArgs {
             area: None,
             sbpf_impatience: None,
             tdbvp_impatience: None,
+            bvp_sweeps: None,
+            bvp_precision: None,
             out: None,
             realtime: false,
             wait: Duration::from_secs(15),
@@ -319,6 +329,23 @@ pub(super) enum PreferenceArg {
     Global,
     /// The sum of both
     Both,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum PrecisionArg {
+    /// Single precision
+    F32,
+    /// Double precision
+    F64,
+}
+
+impl From<PrecisionArg> for Precision {
+    fn from(precision: PrecisionArg) -> Self {
+        match precision {
+            PrecisionArg::F32 => Self::F32,
+            PrecisionArg::F64 => Self::F64,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

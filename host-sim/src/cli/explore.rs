@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 
 use fieldline_protocol::message::UnevenGround;
+use host_sim::baseline::bvp_papers::Relaxation;
 use host_sim::link::spec::LinkSpec;
 use host_sim::report::{Report, folder};
 use host_sim::robot::Limits;
@@ -260,6 +261,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         time_limit_ms: args.time_limit,
         patrol_s: args.patrol_for,
         space: space(args),
+        relaxation: relaxation(args),
         impatience_s: args.tdbvp_impatience.map_or(IMPATIENCE_S, |it| it.0),
         check_field: args.check_field,
         snapshots: args.snapshots,
@@ -279,6 +281,15 @@ fn space(args: &ExploreArgs) -> SpaceMission {
     }
 }
 
+/// Returns how the stored potential of a baseline is relaxed.
+fn relaxation(args: &ExploreArgs) -> Relaxation {
+    let usual = Relaxation::DEFAULT;
+    Relaxation {
+        sweeps: args.bvp_sweeps.unwrap_or(usual.sweeps),
+        precision: args.bvp_precision.map_or(usual.precision, Into::into),
+    }
+}
+
 /// Prints the report on standard output, and advice on standard error.
 fn print(args: &ExploreArgs, report: &Report, record: &Record, folder: &Path) -> Result<()> {
     if args.json {
@@ -286,7 +297,7 @@ fn print(args: &ExploreArgs, report: &Report, record: &Record, folder: &Path) ->
     } else {
         say(&report.to_text())?;
     }
-    if let Some(advice) = record.ending.advice() {
+    if let Some(advice) = strategies::advice(&args.strategy, &record.ending) {
         note(&format!("host-sim: {}: {advice}", report.world));
     }
     if let Some(error) = &record.read_out_error {

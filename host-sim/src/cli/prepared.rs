@@ -45,6 +45,8 @@ impl Prepared {
         let has_space =
             args.until.is_some() || args.area.is_some() || args.sbpf_impatience.is_some();
         strategies::check_space(&args.strategy, has_space)?;
+        let has_relaxation = args.bvp_sweeps.is_some() || args.bvp_precision.is_some();
+        strategies::check_relaxation(&args.strategy, has_relaxation)?;
         let mission = explore::mission(args, &link)?;
         check_reference(&mission)?;
         check_team(args)?;
@@ -82,7 +84,7 @@ impl Prepared {
             real_time: args.realtime,
             tuning: args.robot.tuning(link)?,
         };
-        let mut planner = strategies::open(&args.strategy, link, &options)
+        let mut planner = strategies::open(&args.strategy, link, &options, mission.relaxation)
             .with_context(|| format!("--link {link}"))?;
         if let LinkSpec::Serial { device, .. } = link {
             let answer = await_board(planner.as_mut(), device, args.wait);

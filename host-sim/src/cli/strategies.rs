@@ -4,12 +4,14 @@
 //! has a map.
 
 use anyhow::{Result, bail};
-use fieldline_protocol::message::Strategy;
+use fieldline_protocol::message::{Finish, Strategy};
 
-use host_sim::baseline::{Bvp, GreedyFrontier, Session};
+use host_sim::baseline::bvp_papers::Relaxation;
+use host_sim::baseline::{Bvp, BvpPapers, GreedyFrontier, Session};
 use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
-use host_sim::trial::mission::{STRATEGIES, on_device};
+use host_sim::trial::Ending;
+use host_sim::trial::mission::{BVP_PAPERS, STRATEGIES, on_device};
 
 /// The default strategy.
 pub(super) const FRONTIER: &str = "frontier";
@@ -21,12 +23,15 @@ pub(super) const TERRAIN: &str = "terrain";
 const BVP: &str = "bvp";
 
 /// Constructor of a baseline.
-type Make = fn() -> Box<dyn Link>;
+type Make = fn(Relaxation) -> Box<dyn Link>;
 
 /// The baselines by name.
 const BASELINES: &[(&str, Make)] = &[
-    (BVP, || Box::new(Session::new(Bvp::new()))),
-    ("greedy-frontier", || {
+    (BVP, |_| Box::new(Session::new(Bvp::new()))),
+    (BVP_PAPERS, |relaxation| {
+        Box::new(Session::new(BvpPapers::new(relaxation)))
+    }),
+    ("greedy-frontier", |_| {
         Box::new(Session::new(GreedyFrontier::default()))
     }),
 ];
@@ -114,11 +119,39 @@ pub(super) fn check_space(strategy: &str, has_space: bool) -> Result<()> {
     }
 }
 
-/// Opens the planner of a strategy.
-pub(super) fn open(strategy: &str, link: &LinkSpec, options: &Options) -> Result<Box<dyn Link>> {
+/// Refuses sweeps and a precision for strategies that store no potential.
+pub(super) fn check_relaxation(strategy: &str, has_relaxation: bool) -> Result<()> {
+    if has_relaxation && strategy != BVP_PAPERS {
+        bail!(
+            "--strategy {strategy} makes no fixed number of sweeps; \
+             leave --bvp-sweeps and --bvp-precision out, or say {BVP_PAPERS}"
+        )
+    }
+    Ok(())
+}
+
+/// Returns advice on the end of a run.
+pub(super) fn advice(strategy: &str, ending: &Ending) -> Option<String> {
+    match ending {
+        Ending::Finished(Finish::NothingAttracts) if strategy == BVP_PAPERS => Some(
+            "the stored potential is flat around the robot, and unexplored space is left; \
+             more --bvp-sweeps may help, and --strategy bvp solves the field"
+                .into(),
+        ),
+        _ => ending.advice(),
+    }
+}
+
+/// Opens the planner of a strategy. `relaxation` is for the baseline that stores its potential.
+pub(super) fn open(
+    strategy: &str,
+    link: &LinkSpec,
+    options: &Options,
+    relaxation: Relaxation,
+) -> Result<Box<dyn Link>> {
     let baseline = BASELINES.iter().find(|(name, _)| *name == strategy);
     Ok(match baseline {
-        Some((_, make)) => make(),
+        Some((_, make)) => make(relaxation),
         None => link.open(options)?,
     })
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
 
+use host_sim::baseline::bvp_papers::Relaxation;
 use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::picture::{TeamScene, team_png};
@@ -18,12 +19,12 @@ use host_sim::trial::team::{
 };
 use host_sim::world::World;
 
-use super::args::{ExploreArgs, GroundArg, OdometryArg};
+use super::args::{ExploreArgs, GroundArg, Impatience, OdometryArg};
 use super::explore::{mission, with_start};
 use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
 use super::robot::RobotArgs;
-use super::values::{seed, slam_place, start, time_limit, until};
+use super::values::{impatience, seed, slam_place, start, time_limit, until};
 use super::{note, say, strategies};
 
 #[derive(Clone, Debug, Args)]
@@ -72,6 +73,10 @@ pub(super) struct TeamArgs {
     /// Share of the area whose coverage ends a robot's run, above 0, at most 1; for sbpf and esbpf
     #[arg(long, value_name = "SHARE", value_parser = until)]
     until: Option<u16>,
+    /// Simulated seconds without a newly covered cell after which sbpf or esbpf follows a path to
+    /// a frontier, or never [default: never for sbpf, 5 for esbpf]
+    #[arg(long, value_name = "S|never", value_parser = impatience, allow_negative_numbers = true)]
+    sbpf_impatience: Option<Impatience>,
     /// Link of all robots, or a list with the link of each, as in direct,direct,qemu [default:
     /// loopback; direct for baselines]
     #[arg(long, value_name = "LINK,LINK", value_delimiter = ',')]
@@ -140,7 +145,8 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
     if args.slam != SlamPlace::Off && args.ground == Some(GroundArg::Uneven) {
         bail!("--slam corrects a team's maps on flat ground; say --ground flat, or --slam off");
     }
-    strategies::check_space(&args.strategy, args.until.is_some())?;
+    let has_space = args.until.is_some() || args.sbpf_impatience.is_some();
+    strategies::check_space(&args.strategy, has_space)?;
     let (name, at) = with_start(&args.world);
     let world = World::open(name)?;
     let team = TeamMission {
@@ -196,6 +202,7 @@ fn common(args: &TeamArgs, start: usize) -> ExploreArgs {
         odometry: Some(args.odometry),
         time_limit: args.time_limit,
         until: args.until,
+        sbpf_impatience: args.sbpf_impatience,
         slam: args.slam,
         robot: args.robot.clone(),
         ..ExploreArgs::default()
@@ -240,7 +247,8 @@ fn open(args: &TeamArgs, links: &[LinkSpec]) -> Result<Vec<Box<dyn Link>>> {
             tuning: args.robot.tuning(link)?,
             ..Options::default()
         };
-        strategies::open(&args.strategy, link, &options).with_context(|| format!("--link {link}"))
+        strategies::open(&args.strategy, link, &options, Relaxation::DEFAULT)
+            .with_context(|| format!("--link {link}"))
     };
     links.iter().map(open).collect()
 }

@@ -13,6 +13,9 @@ use super::args::Impatience;
 /// Most pictures during a run. Each is read over the link and held until the end.
 const MOST_SNAPSHOTS: u64 = 500;
 
+/// Most sweeps of a step. A minute of the simulated robot then takes hours.
+const MOST_SWEEPS: u16 = 10_000;
+
 /// Parses a number without sign or point, at most `most`.
 fn whole(text: &str, most: u64) -> Result<u64, String> {
     let number = text.parse().ok().filter(|number| *number <= most);
@@ -87,6 +90,13 @@ pub(super) fn impatience(text: &str) -> Result<Impatience, String> {
     }
     let seconds = whole(text, u64::from(u16::MAX)).map_err(|error| format!("{error}, or never"))?;
     Ok(Impatience(Some(seconds as u16)))
+}
+
+/// Parses a number of sweeps.
+pub(super) fn sweeps(text: &str) -> Result<u16, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|number| (1..=MOST_SWEEPS).contains(number));
+    number.ok_or_else(|| format!("give a whole number from 1 to {MOST_SWEEPS}"))
 }
 
 /// Parses a number of pictures.
@@ -164,6 +174,8 @@ mod tests {
             assert!(area(bad).is_err(), "{bad}");
         }
         assert_eq!((snapshots("0"), snapshots("500")), (Ok(0), Ok(500)));
+        assert_eq!((sweeps("1"), sweeps("10000")), (Ok(1), Ok(10_000)));
+        assert!(sweeps("0").is_err() && sweeps("10001").is_err() && sweeps("-1").is_err());
         assert!(snapshots("501").is_err() && snapshots("-1").is_err());
     }
 }

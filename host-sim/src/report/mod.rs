@@ -60,6 +60,9 @@ pub struct Report {
     pub worth: Option<f64>,
     /// Area, target and impatience of strategies sbpf and esbpf; `null` for other strategies.
     pub space_field: Option<SpaceField>,
+    /// How strategy bvp-papers relaxes its potential; the key is missing for other strategies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relaxation: Option<Relaxation>,
     /// Link to the planner, as given to `--link`.
     pub link: String,
     /// Seed of every random number of the run.
@@ -130,6 +133,15 @@ pub struct Report {
     /// What a particle filter beside the run told; the key is missing without `--particles`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub particles: Option<ParticleReport>,
+}
+
+/// The relaxation of a stored potential.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Relaxation {
+    /// Sweeps of the whole grid in each step.
+    pub sweeps: u16,
+    /// Type of the stored values: `f32` or `f64`.
+    pub precision: String,
 }
 
 /// The parameters of a space-based potential field.

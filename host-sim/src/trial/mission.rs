@@ -14,6 +14,7 @@ use fixed::types::I16F16;
 use super::account::Account;
 use super::space::SpaceMission;
 use super::{Cast, Corrector, Record, Setup, Watch, run, summary};
+use crate::baseline::bvp_papers::Relaxation;
 use crate::link::{Link, LinkError};
 use crate::report::Report;
 use crate::report::tum::Stamped;
@@ -28,6 +29,9 @@ use crate::world::{Start, World, WorldError};
 /// The usual impatience of strategy tdbvp, seconds. With 60 s, three adjacent loops took 378 s
 /// instead of 343 s (means of four starts), and rooms without a loop 810 s instead of 584 s.
 pub const IMPATIENCE_S: Option<u16> = Some(15);
+
+/// The baseline that stores its potential from step to step.
+pub const BVP_PAPERS: &str = "bvp-papers";
 
 /// The usual impatience of strategy esbpf, seconds. Strategy sbpf has none.
 const ESBPF_IMPATIENCE_S: Option<u16> = Some(5);
@@ -83,6 +87,8 @@ pub struct Mission {
     pub impatience_s: Option<u16>,
     /// Area and end of the exploration; for strategies sbpf and esbpf.
     pub space: SpaceMission,
+    /// How the stored potential is relaxed; for the report of [`BVP_PAPERS`].
+    pub relaxation: Relaxation,
     /// Time from one observation to the next, milliseconds.
     pub period_ms: u32,
     /// Compare every heading with that of the converged window.
@@ -123,6 +129,7 @@ impl Default for Mission {
             patrol_s: 0,
             impatience_s: IMPATIENCE_S,
             space: SpaceMission::default(),
+            relaxation: Relaxation::DEFAULT,
             period_ms: SimConfig::default().period_ms,
             check_field: false,
             snapshots: 0,

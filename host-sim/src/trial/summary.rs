@@ -3,7 +3,7 @@
 use fieldline_protocol::message::{Finish, Order, Strategy};
 
 use super::account::Account;
-use super::mission::{Mission, on_device};
+use super::mission::{BVP_PAPERS, Mission, on_device};
 use super::{Ending, Record, wording};
 use crate::metrics::patrol::{Patrol, without_spurs};
 use crate::metrics::{CellSet, Loops, map_error};
@@ -42,6 +42,7 @@ pub(super) fn report(
             _ => None,
         },
         space_field: space_field(mission, world),
+        relaxation: relaxation(mission),
         link: mission.link.clone(),
         seed: mission.seed,
         odometry: mission.odometry.name().into(),
@@ -122,6 +123,14 @@ fn space_field(mission: &Mission, world: &World) -> Option<report::SpaceField> {
         area_m: sides.map(|metres| (metres.to_num::<f64>() * 100.0).round() / 100.0),
         until: f64::from(field.until_permille) / 1000.0,
         impatience: impatience.map_or("never".into(), |seconds| seconds.to_string()),
+    })
+}
+
+/// Returns how the stored potential is relaxed; `None` for other strategies.
+fn relaxation(mission: &Mission) -> Option<report::Relaxation> {
+    (mission.strategy == BVP_PAPERS).then(|| report::Relaxation {
+        sweeps: mission.relaxation.sweeps,
+        precision: mission.relaxation.precision.name().into(),
     })
 }
 

@@ -269,6 +269,21 @@ fn bad_arguments_are_refused_in_one_line() {
         &["frontier", "leave --tdbvp-impatience out"],
     );
     explore(&["--tdbvp-impatience", "-1"], &["-1", "or never"]);
+    for option in [["--bvp-sweeps", "9"], ["--bvp-precision", "f32"]] {
+        explore(&option, &["frontier", "or say bvp-papers"]);
+    }
+    explore(
+        &["--strategy", "bvp-papers", "--bvp-sweeps", "0"],
+        &["from 1 to 10000"],
+    );
+    explore(
+        &["--strategy", "bvp-papers", "--bvp-precision", "f16"],
+        &["f16", "f32, f64"],
+    );
+    explore(
+        &["--strategy", "bvp-papers", "--ground", "uneven"],
+        &["bvp-papers takes all ground for flat"],
+    );
     for option in [
         ["--until", "0.9"],
         ["--area", "0,0,9,9"],
@@ -395,6 +410,11 @@ fn bad_teams_are_refused_in_one_line() {
     team(
         &["--strategy", "bvp", "--radio", "off", "--slam", "host"],
         &["--slam corrects the map of a device", "say --slam off"],
+    );
+    team(&["--sbpf-impatience", "9"], &["frontier", "or say esbpf"]);
+    team(
+        &["--strategy", "esbpf", "--sbpf-impatience", "-1"],
+        &["-1", "or never"],
     );
     team(&["--slam", "chip"], &["--slam", "off", "host"]);
     team(

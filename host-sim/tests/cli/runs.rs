@@ -97,6 +97,20 @@ fn json_prints_one_report_per_line_and_nothing_else() {
 }
 
 #[test]
+fn a_team_takes_the_impatience_of_a_space_field() {
+    let folder = folder();
+    let impatience = |more: &[&str]| {
+        let args = ["team", "partition@1", "--json", "--strategy", "esbpf"];
+        let (_, stdout, _) = outcome(&folder, &[&args, more].concat());
+        let report: Value = serde_json::from_str(&stdout).expect("one report");
+        report["robots"][0]["space_field"]["impatience"].clone()
+    };
+    assert_eq!(impatience(&[]), "5");
+    assert_eq!(impatience(&["--sbpf-impatience", "never"]), "never");
+    assert_eq!(impatience(&["--sbpf-impatience", "20"]), "20");
+}
+
+#[test]
 fn a_space_field_ends_with_its_target_and_its_reason() {
     let folder = folder();
     let run = |strategy| {

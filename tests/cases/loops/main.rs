@@ -9,5 +9,6 @@ mod overlay;
 mod patrol;
 mod sides;
 mod slam;
+mod stored;
 mod sweep;
 mod uneven;

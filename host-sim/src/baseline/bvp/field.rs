@@ -13,12 +13,12 @@
 //! Units: cells of the chart; headings in radians, counter-clockwise from x.
 
 use fieldline_planner::config::KERNEL_CELLS;
-use fieldline_planner::geometry::{CELL_M, Cell, Point};
-use fieldline_planner::math;
+use fieldline_planner::geometry::{Cell, Point};
 
 use super::boundary::{Boundary, Kind};
 use super::multigrid::Multigrid;
 use crate::baseline::chart::Chart;
+use crate::baseline::slope;
 
 /// q of a goal: 2^1000.
 pub(super) const GOAL: f64 = f64::from_bits((1023 + 1000) << 52);
@@ -125,28 +125,7 @@ impl Field {
     /// Returns the heading of −∇p at a point of a free cell, interpolated between cell centres;
     /// `None` where p is flat.
     pub(super) fn heading_at(&self, point: Point) -> Option<f32> {
-        self.gradient(point.cell())?;
-        let (x, y) = (point.x_m / CELL_M - 0.5, point.y_m / CELL_M - 0.5);
-        let (west, south) = (math::floor(x), math::floor(y));
-        let (along, up) = (f64::from(x - west as f32), f64::from(y - south as f32));
-        let mut sum = (0.0, 0.0);
-        for (dx, dy, weight) in [
-            (0, 0, (1.0 - along) * (1.0 - up)),
-            (1, 0, along * (1.0 - up)),
-            (0, 1, (1.0 - along) * up),
-            (1, 1, along * up),
-        ] {
-            let cell = Cell {
-                x: west + dx,
-                y: south + dy,
-            };
-            if let Some((gx, gy)) = self.gradient(cell) {
-                sum = (sum.0 + weight * gx, sum.1 + weight * gy);
-            }
-        }
-        // f32 cannot hold the magnitude of the gradient, and the heading does not need it.
-        let size = sum.0.abs().max(sum.1.abs());
-        (size > 0.0).then(|| math::atan2((sum.1 / size) as f32, (sum.0 / size) as f32))
+        slope::heading(point, |cell| self.gradient(cell))
     }
 
     /// Returns 2 ∇q at the centre of a free cell.

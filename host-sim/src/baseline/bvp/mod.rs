@@ -35,8 +35,9 @@ use fieldline_planner::field::preference::Preferences;
 use fieldline_planner::geometry::{Cell, Point};
 use fieldline_planner::math;
 use fieldline_planner::status::ResidualFrontier;
-use fieldline_protocol::message::{FIELD_SIDE, FieldRow};
+use fieldline_protocol::message::FieldRow;
 
+use super::slope::{self, Role};
 use super::strategy::{Outcome, Scene, Strategy, UnevenScene};
 use boundary::Kind;
 use field::{Field, GOAL};
@@ -184,33 +185,16 @@ impl Strategy for Bvp {
 
     /// Returns a row of the part of the grid around the robot.
     fn field_row(&self, row: u8) -> Option<FieldRow> {
-        let half = FIELD_SIDE as i32 / 2;
-        if usize::from(row) >= FIELD_SIDE || self.field.cells() == 0 {
+        if self.field.cells() == 0 {
             return None;
         }
-        let y = self.robot.y - half + i32::from(row);
-        let cells = (0..FIELD_SIDE as i32).map(|x| Cell {
-            x: self.robot.x - half + x,
-            y,
-        });
-        let mut packed = [0u8; FIELD_SIDE.div_ceil(4)];
-        for (x, cell) in cells.clone().enumerate() {
-            let code = match self.field.kind(cell) {
-                Kind::Free(_) => 0,
-                Kind::Obstacle => 1,
-                Kind::Goal => 2,
+        slope::field_row(self.robot, row, |cell| {
+            let role = match self.field.kind(cell) {
+                Kind::Free(_) => Role::Free,
+                Kind::Obstacle => Role::Obstacle,
+                Kind::Goal => Role::Goal,
             };
-            packed[x / 4] |= code << (2 * (x % 4));
-        }
-        Some(FieldRow {
-            row,
-            origin_x: (self.robot.x - half) as i16,
-            origin_y: (self.robot.y - half) as i16,
-            scale: 1,
-            q: cells
-                .map(|cell| (self.field.q(cell) / GOAL) as f32)
-                .collect(),
-            cells: packed.into_iter().collect(),
+            (role, (self.field.q(cell) / GOAL) as f32)
         })
     }
 }

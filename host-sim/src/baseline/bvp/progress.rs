@@ -5,6 +5,8 @@
 //! - the robot moves and comes no nearer to it for [`PROGRESS_MS`];
 //! - the robot stands and comes no nearer to it for [`STANDING_MS`].
 //!
+//! With [`Patience::Endless`] only the first case counts.
+//!
 //! Goals dropped without progress become goals again, once, when no other goal is left. After
 //! [`STUCK_DROPS`] goals dropped in a row without motion the robot is stuck.
 //!
@@ -37,6 +39,16 @@ const REACHED_STEPS: u32 = 6;
 /// Least distance that counts as motion, metres.
 const MOVED_M: f32 = 0.3;
 
+/// When a goal that comes no nearer is dropped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::baseline) enum Patience {
+    /// After [`PROGRESS_MS`] or [`STANDING_MS`].
+    #[default]
+    Limited,
+    /// Never.
+    Endless,
+}
+
 /// The goal that the field leads to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pursuit {
@@ -48,7 +60,8 @@ struct Pursuit {
 
 /// The progress checker.
 #[derive(Clone, Debug, Default)]
-pub(super) struct ProgressChecker {
+pub(in crate::baseline) struct ProgressChecker {
+    patience: Patience,
     dropped: Vec<ResidualFrontier>,
     pursuit: Option<Pursuit>,
     /// Place and time of the last motion, and the number of goals dropped since.
@@ -65,13 +78,21 @@ fn near(a: Cell, b: Cell, radius_m: f32) -> bool {
 }
 
 impl ProgressChecker {
+    /// Makes a checker without a goal.
+    pub(in crate::baseline) fn new(patience: Patience) -> Self {
+        Self {
+            patience,
+            ..Self::default()
+        }
+    }
+
     /// Returns the dropped goals, each with its reason.
-    pub(super) fn dropped(&self) -> &[ResidualFrontier] {
+    pub(in crate::baseline) fn dropped(&self) -> &[ResidualFrontier] {
         &self.dropped
     }
 
     /// Returns true if an unexplored cell lies near a dropped goal.
-    pub(super) fn is_dropped(&self, cell: Cell) -> bool {
+    pub(in crate::baseline) fn is_dropped(&self, cell: Cell) -> bool {
         self.dropped
             .iter()
             .any(|goal| near(goal.cell, cell, DROP_RADIUS_M))
@@ -94,7 +115,12 @@ impl ProgressChecker {
     }
 
     /// Notes that the robot is at `at` and that the field leads it to `goal`, `steps` cells away.
-    pub(super) fn note(&mut self, at: Point, (goal, steps): (Cell, u32), time_ms: u32) {
+    pub(in crate::baseline) fn note(
+        &mut self,
+        at: Point,
+        (goal, steps): (Cell, u32),
+        time_ms: u32,
+    ) {
         if (at.x_m - self.stood.x_m).hypot(at.y_m - self.stood.y_m) > MOVED_M {
             (self.stood, self.stood_ms, self.stood_drops) = (at, time_ms, 0);
         }
@@ -120,6 +146,9 @@ impl ProgressChecker {
         if time_ms.wrapping_sub(pursuit.since_ms) <= limit_ms {
             return;
         }
+        if !reached && self.patience == Patience::Endless {
+            return;
+        }
         if !reached && stood_ms > STANDING_MS {
             self.stood_ms = time_ms;
             self.stood_drops += 1;
@@ -139,7 +168,7 @@ impl ProgressChecker {
 
 #[cfg(test)]
 mod tests {
-    use super::ProgressChecker;
+    use super::{Patience, ProgressChecker};
     use fieldline_planner::geometry::{Cell, Point};
     use fieldline_planner::status::ResidualReason;
 
@@ -178,6 +207,20 @@ mod tests {
             Some((6, ResidualReason::Unobservable))
         );
         assert_eq!(dropped_s(|_| 0.0, |t| 1000 - t), None, "it comes nearer");
+    }
+
+    #[test]
+    fn endless_patience_drops_only_what_was_reached() {
+        let dropped = |steps: u32| {
+            let mut checker = ProgressChecker::new(Patience::Endless);
+            for t in 0..200 {
+                checker.note(Point::default(), (GOAL, steps), t * 1000);
+            }
+            assert!(!checker.is_stuck());
+            checker.dropped().first().map(|goal| goal.reason)
+        };
+        assert_eq!(dropped(30), None);
+        assert_eq!(dropped(3), Some(ResidualReason::Unobservable));
     }
 
     #[test]

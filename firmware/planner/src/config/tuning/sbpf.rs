@@ -16,6 +16,9 @@ tuning! {
         /// runs of two robots reach their target in three worlds, in the same time; with 0 they
         /// take longer, and with 0.3, 1 and 10 not all reach it.
         peer: f32 = 3.0, 0.0..=10.0, "1";
+        /// Repulsion of a covered cell beside an obstacle's of 1: 1 in \[Kenealy15, eq. 3\], which
+        /// sums over every cell with a level. 0 leaves them out.
+        covered: f32 = 0.0, 0.0..=10.0, "1";
         /// Time without a newly covered cell after which a robot that follows forces only is
         /// trapped.
         trapped_ms: u32 = 60_000, 1_000..=1_000_000, "ms";

@@ -8,7 +8,11 @@
 //! ```
 //!
 //! The drive follows the direction of F. Cells that a peer visited repel as obstacles do, but with
-//! a weight of their own, and α = 0.
+//! a weight of their own, and α = 0. So do covered cells, with the weight `sbpf.covered`.
+//!
+//! Departs from \[Kenealy15, eq. 3\]: that weight is 0. The paper repels from "previous visited
+//! areas" too. A robot sees all round within ρ₀, so the covered cells near it push to no side, and
+//! those far off little.
 //!
 //! Departs from \[Kenealy15, eq. 5\] in a team: without *w* the farthest cells attract all robots
 //! alike, and two that start side by side stay so. How much faster than one robot a team has seen
@@ -111,21 +115,35 @@ pub(super) fn attraction(
     force
 }
 
-/// Returns `F_rep`, with the share of the peers.
+/// Returns `F_rep`, with the shares of the peers and of covered cells. At most all cells of the area
+/// are summed: 64 × 64.
 pub(super) fn repulsion(levels: &Levels, at: Place, twist_rad: f32, tuning: &SbpfTuning) -> Vector {
-    let (mut walls, mut peers) = (Vector::default(), Vector::default());
+    let [mut walls, mut peers, mut covered] = [Vector::default(); 3];
     for y in levels.rows() {
         let stones = levels.obstacle(y);
-        for x in ones64(stones | levels.visited(y)) {
+        let tracks = levels.visited(y);
+        let rest = if tuning.covered > 0.0 {
+            levels.covered(y)
+        } else {
+            0
+        };
+        for x in ones64(stones | tracks | rest) {
             let away = from_cell(levels, at, x, y);
             if let Some(part) = repulsion_of(away, levels.cell_m(), tuning.range_m) {
-                let is_wall = stones >> x & 1 == 1;
-                if is_wall { &mut walls } else { &mut peers }.add(away, part);
+                let sum = if stones >> x & 1 == 1 {
+                    &mut walls
+                } else if tracks >> x & 1 == 1 {
+                    &mut peers
+                } else {
+                    &mut covered
+                };
+                sum.add(away, part);
             }
         }
     }
     let mut force = walls.turned(twist_rad);
     force.add(peers, tuning.peer);
+    force.add(covered, tuning.covered);
     force
 }
 

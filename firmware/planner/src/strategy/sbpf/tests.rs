@@ -286,6 +286,43 @@ fn forces_are_the_naive_sums() {
     }
 }
 
+/// With a weight, every covered cell repels too, once and without the twist \[Kenealy15, eq. 3\].
+#[test]
+fn covered_cells_repel_by_their_weight() {
+    let mut seed = 5;
+    for round in 0..10 {
+        let drawing = Drawing::random(&mut seed, SIDE);
+        let levels = drawing.levels(2, Cell::default());
+        let at = Place {
+            x: 20.3 + round as f32,
+            y: 31.6,
+        };
+        let cell_m = f64::from(levels.cell_m());
+        let range_m = f64::from(TUNING.range_m);
+        let mut naive = [0.0; 2];
+        for (y, row) in drawing.0.iter().enumerate() {
+            for x in (0..row.len()).filter(|&x| row[x] == b'.') {
+                let away = [(at.x, x), (at.y, y)]
+                    .map(|(at, cell)| (f64::from(at) - cell as f64 - 0.5) * cell_m);
+                let rho = away[0].hypot(away[1]).max(0.5 * cell_m);
+                let part = (1.0 / rho - 1.0 / range_m).max(0.0) / rho.powi(3);
+                naive = [0, 1].map(|k| naive[k] + 2.0 * part * away[k]);
+            }
+        }
+        let with = |covered| {
+            let tuning = SbpfTuning { covered, ..TUNING };
+            forces::repulsion(&levels, at, 0.5, &tuning)
+        };
+        let (without, found) = (with(0.0), with(2.0));
+        let size = naive[0].hypot(naive[1]);
+        let near = |found: f32, without: f32, part: f64| {
+            (f64::from(found) - f64::from(without) - part).abs() < 1e-3 * size
+        };
+        assert!(near(found.x, without.x, naive[0]), "round {round}");
+        assert!(near(found.y, without.y, naive[1]), "round {round}");
+    }
+}
+
 #[test]
 fn the_conveyor_belt_leads_along_a_wall() {
     // A wall ahead, to the north; the attraction is beyond its two ends.
