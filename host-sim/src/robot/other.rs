@@ -5,7 +5,7 @@
 //! is cut with the box's three slabs in the box's own frame; the first face that it enters is the
 //! hit. Hulls touch if the rectangles of [`Footprint`] overlap, seen from above. Metres.
 
-use super::footprint::Footprint;
+use super::footprint::{Footprint, disc_crossing};
 use super::pose::Pose;
 use crate::world::Ray;
 
@@ -57,6 +57,9 @@ impl OtherRobot {
         if dot(&offset, &offset) > reach_m * reach_m {
             return None;
         }
+        if self.footprint.is_round {
+            return self.cast_disc(ray, &offset, top_m, limit_m);
+        }
         let (a, b) = (self.footprint.half_length_m, self.footprint.half_width_m);
         let slabs = [[-a, a], [-b, b], [0.0, top_m]];
         let (mut enter_m, mut leave_m) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -72,6 +75,22 @@ impl OtherRobot {
             enter_m = enter_m.max(ends[0].min(ends[1]));
             leave_m = leave_m.min(ends[0].max(ends[1]));
         }
+        (enter_m > 0.0 && enter_m <= leave_m && enter_m <= limit_m).then_some(enter_m)
+    }
+
+    /// As [`Self::cast`], for an upright cylinder.
+    fn cast_disc(&self, ray: &Ray, offset: &[f64; 3], top_m: f64, limit_m: f64) -> Option<f64> {
+        let [start, along] = [offset, &ray.direction]
+            .map(|vector| [0, 1, 2].map(|axis| dot(vector, &self.axes[axis])));
+        let radius_m = self.footprint.half_length_m;
+        let side = disc_crossing(radius_m, [start[0], start[1]], [along[0], along[1]])?;
+        let between = if along[2] == 0.0 {
+            (0.0..=top_m).contains(&start[2]).then_some(side)?
+        } else {
+            let ends = [0.0, top_m].map(|height| (height - start[2]) / along[2]);
+            [ends[0].min(ends[1]), ends[0].max(ends[1])]
+        };
+        let (enter_m, leave_m) = (side[0].max(between[0]), side[1].min(between[1]));
         (enter_m > 0.0 && enter_m <= leave_m && enter_m <= limit_m).then_some(enter_m)
     }
 }

@@ -1,13 +1,14 @@
 //! The announcement: the start message, which tells a planner what is simulated.
 //!
-//! Lengths are rounded to the wire's numbers. Accelerations are rounded down, so that the planner
+//! Lengths are rounded to the wire's numbers. A round hull is told as the square around it, since the
+//! wire knows boxes only: the planner then counts on more room than the robot needs. Accelerations are rounded down, so that the planner
 //! never counts on more than there is.
 
 use fieldline_protocol::message::{Hull, LoopLimits, Start, Strategy};
 use fixed::types::I4F12;
 
 use super::Simulator;
-use crate::robot::{Footprint, laser};
+use crate::robot::{Footprint, LaserScanner};
 
 /// The greatest number of the wire that is at most `quantity`.
 fn at_most(quantity: f64) -> I4F12 {
@@ -35,7 +36,7 @@ impl Simulator<'_> {
         let limits = &self.config.limits;
         Start {
             strategy,
-            lasers: [laser::level(), laser::tilted()].into_iter().collect(),
+            lasers: self.lasers.iter().map(LaserScanner::announced).copied().collect(),
             hull: hull(&self.config.footprint),
             robot_radius_mm: millimetres(self.config.radius_m),
             max_linear: I4F12::saturating_from_num(limits.linear_mps),
