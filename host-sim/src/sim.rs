@@ -6,7 +6,7 @@
 //! climb, stops the robot there. A lost ground contact or a slope too steep ends the drive for
 //! good. The same world, configuration (with its seed) and commands give the same run, bit for bit.
 
-mod announcement;
+pub(crate) mod announcement;
 mod config;
 mod fleet;
 

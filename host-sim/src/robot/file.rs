@@ -94,7 +94,7 @@ struct LaserKeys {
     first: Option<Number>,
     step: Option<Number>,
     field: Option<Number>,
-    beams: Spanned<usize>,
+    beams: Number,
     least_range: Option<Number>,
     range: Number,
     noise: Option<NoiseKeys>,
@@ -134,16 +134,29 @@ const ROUNDING: f64 = 1.0 / 4096.0;
 
 /// Reads the text of a robot file.
 pub(super) fn read(file: &str, name: &str, text: &str) -> Result<RobotSpec, RobotError> {
-    let keys = serde_saphyr::from_str::<Keys>(text).map_err(|error| RobotError {
-        file: file.into(),
-        line: error.location().map(|at| at.line()),
-        what: format!("{}; docs/ROBOT.md explains the keys", plain(&error)),
+    let keys = serde_saphyr::from_str::<Keys>(text).map_err(|error| {
+        let line = error.location().map_or(1, |at| at.line());
+        RobotError {
+            file: file.into(),
+            line: Some(line),
+            what: format!(
+                "{} in `{}`; docs/ROBOT.md explains the keys",
+                plain(&error),
+                line_of(text, line)
+            ),
+        }
     })?;
     robot(name, &keys).map_err(|(at, what)| RobotError {
         file: file.into(),
         line: Some(at.line()),
         what,
     })
+}
+
+/// Returns a line of a text, from 1, without the space around it.
+fn line_of(text: &str, line: u64) -> &str {
+    let index = usize::try_from(line).unwrap_or(1).saturating_sub(1);
+    text.lines().nth(index).unwrap_or_default().trim()
 }
 
 /// Returns the parser's words without its own place, which the error has already.
@@ -163,12 +176,20 @@ fn robot(name: &str, keys: &Keys) -> Result<RobotSpec, Fault> {
         hull,
         drive: drive(&keys.drive)?,
         lidars: lidars(&keys.lasers)?,
-        odometry: keys.odometry.as_ref().map_or(Ok(OdometryNoise::default()), odometry)?,
+        odometry: keys
+            .odometry
+            .as_ref()
+            .map_or(Ok(OdometryNoise::default()), odometry)?,
     })
 }
 
 /// Returns a number that must lie in a range.
-fn within(key: &str, number: &Number, range: RangeInclusive<f64>, unit: &str) -> Result<f64, Fault> {
+fn within(
+    key: &str,
+    number: &Number,
+    range: RangeInclusive<f64>,
+    unit: &str,
+) -> Result<f64, Fault> {
     if range.contains(&number.value) {
         return Ok(number.value);
     }
@@ -281,7 +302,9 @@ fn lidars(keys: &Spanned<Vec<Spanned<LaserKeys>>>) -> Result<Vec<Lidar>, Fault> 
         return Err((keys.referenced, what));
     }
     let numbered = keys.value.iter().enumerate();
-    numbered.map(|(number, keys)| lidar(keys, number == 0)).collect()
+    numbered
+        .map(|(number, keys)| lidar(keys, number == 0))
+        .collect()
 }
 
 fn lidar(keys: &Spanned<LaserKeys>, is_first: bool) -> Result<Lidar, Fault> {
@@ -295,7 +318,11 @@ fn lidar(keys: &Spanned<LaserKeys>, is_first: bool) -> Result<Lidar, Fault> {
     };
     let pitch_deg = or("pitch", it.pitch.as_ref(), (0.0, pitches), " degrees")?;
     let yaw_deg = or("yaw", it.yaw.as_ref(), (0.0, -360.0..=360.0), " degrees")?;
-    if let Some(yaw) = it.yaw.as_ref().filter(|_| yaw_deg != 0.0 && pitch_deg != 0.0) {
+    if let Some(yaw) = it
+        .yaw
+        .as_ref()
+        .filter(|_| yaw_deg != 0.0 && pitch_deg != 0.0)
+    {
         let what = "the planner knows no laser that is both turned and tilted; leave yaw or pitch \
                     out";
         return Err((yaw.referenced, what.into()));
@@ -337,9 +364,12 @@ fn lidar(keys: &Spanned<LaserKeys>, is_first: bool) -> Result<Lidar, Fault> {
 fn sweep(keys: &Spanned<LaserKeys>) -> Result<Sweep, Fault> {
     let it = &keys.value;
     let beams = it.beams.value;
-    if !Sweep::BEAMS.contains(&beams) {
-        return Err((it.beams.referenced, format!("{beams} beams; give 4 to 720")));
-    }
+    let beams = if beams.fract() == 0.0 && (4.0..=720.0).contains(&beams) {
+        beams as usize
+    } else {
+        let what = format!("beams is {beams}; give a whole number from 4 to 720");
+        return Err((it.beams.referenced, what));
+    };
     let step_deg = match (&it.step, &it.field) {
         (Some(step), None) => within("step", step, 0.01..=120.0, " degrees")?,
         (None, Some(field)) => {
@@ -385,7 +415,11 @@ fn noise(keys: Option<&NoiseKeys>) -> Result<LaserNoise, Fault> {
     Ok(LaserNoise {
         sigma_m: or("sd", keys.sd.as_ref(), sd, " m")?,
         lost: share("lost", keys.lost.as_ref(), usual.lost)?,
-        false_return: share("false_return", keys.false_return.as_ref(), usual.false_return)?,
+        false_return: share(
+            "false_return",
+            keys.false_return.as_ref(),
+            usual.false_return,
+        )?,
     })
 }
 
@@ -411,18 +445,25 @@ fn odometry(keys: &OdometryKeys) -> Result<OdometryNoise, Fault> {
     let walk = |key, number: &Option<Number>, usual: f64| {
         or(key, number.as_ref(), (times * usual, 0.0..=1.0), "")
     };
-    let scale = |key, number: &Option<Number>, usual: f64| {
-        or(key, number.as_ref(), (usual, 0.0..=0.2), "")
-    };
+    let scale =
+        |key, number: &Option<Number>, usual: f64| or(key, number.as_ref(), (usual, 0.0..=0.2), "");
     Ok(OdometryNoise {
         turn_by_turn: walk("turn_by_turn", &keys.turn_by_turn, usual.turn_by_turn)?,
-        turn_by_distance: walk("turn_by_distance", &keys.turn_by_distance, usual.turn_by_distance)?,
+        turn_by_distance: walk(
+            "turn_by_distance",
+            &keys.turn_by_distance,
+            usual.turn_by_distance,
+        )?,
         distance_by_distance: walk(
             "distance_by_distance",
             &keys.distance_by_distance,
             usual.distance_by_distance,
         )?,
-        distance_by_turn: walk("distance_by_turn", &keys.distance_by_turn, usual.distance_by_turn)?,
+        distance_by_turn: walk(
+            "distance_by_turn",
+            &keys.distance_by_turn,
+            usual.distance_by_turn,
+        )?,
         distance_scale: scale("distance_scale", &keys.distance_scale, usual.distance_scale)?,
         turn_scale: scale("turn_scale", &keys.turn_scale, usual.turn_scale)?,
         ..usual

@@ -247,7 +247,12 @@ impl Placed {
     fn to_point_m(&self, point: [f64; 2]) -> f64 {
         let ([a, b], local) = (self.half, self.frame.to_local(point));
         match self.radius_m {
-            Some(radius_m) => (local[0] * local[0] + local[1] * local[1]).sqrt().max(radius_m) - radius_m,
+            Some(radius_m) => {
+                (local[0] * local[0] + local[1] * local[1])
+                    .sqrt()
+                    .max(radius_m)
+                    - radius_m
+            }
             None => point_to_box(local, [-a, -b, a, b]),
         }
     }

@@ -25,7 +25,7 @@
 //! A sector stands at its middle, so with g beams a return may be `(g − 1)/2` beams aside of where
 //! it was. Metres, radians; codes in millimetres.
 
-use fieldline_protocol::message::{Laser, MAX_BEAMS, INVALID_MM, NO_RETURN_MM, Scan};
+use fieldline_protocol::message::{INVALID_MM, Laser, MAX_BEAMS, NO_RETURN_MM, Scan};
 use fixed::types::{I4F12, I16F16};
 
 use super::footprint::Footprint;
@@ -163,6 +163,15 @@ impl Sectors {
         Scan {
             ranges_mm: codes.collect(),
         }
+    }
+
+    /// Returns position and range, in metres, of every beam of a scan that met something.
+    pub fn returns<'a>(&'a self, ranges_m: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
+        self.pairs(ranges_m.len()).filter_map(|(position, beam)| {
+            let range_m = ranges_m[beam];
+            let reading = self.read(position, range_m);
+            matches!(reading, Reading::Return(_)).then_some((position, range_m))
+        })
     }
 
     /// Positions and beams that belong together. Every beam has a position, and every position a

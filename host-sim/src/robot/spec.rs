@@ -146,7 +146,10 @@ impl Sweep {
             ));
         }
         if !Self::RANGES_M.contains(&self.most_m) {
-            return Some(format!("the range must be 0.1 to 100 m, not {}", self.most_m));
+            return Some(format!(
+                "the range must be 0.1 to 100 m, not {}",
+                self.most_m
+            ));
         }
         None
     }

@@ -65,7 +65,8 @@ impl<'w> Fleet<'w> {
     /// [`FleetError`] if one cannot stand at its start or two overlap there.
     pub fn new(world: &'w World, configs: &[SimConfig]) -> Result<Self, FleetError> {
         let placed = (0..).zip(configs).map(|(robot, config)| {
-            Simulator::new(world, config.clone()).map_err(|error| FleetError::Start { robot, error })
+            Simulator::new(world, config.clone())
+                .map_err(|error| FleetError::Start { robot, error })
         });
         let robots: Vec<Simulator<'w>> = placed.collect::<Result<_, _>>()?;
         let mut fleet = Self {

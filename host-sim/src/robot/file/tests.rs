@@ -51,8 +51,13 @@ fn a_fault_names_file_line_and_remedy() {
         ("height: 0.2", "height: 3", 1, "give 0 to 2 m"),
         ("width: 0.3", "width: 1.4", 1, "at most 1.1"),
         ("track: 0.25, ", "", 2, "effective_track"),
-        ("speed: 0.5", "speed: fast", 2, "floating point"),
-        ("speed: 0.5", "speed: 1.6", 2, "acceleration is 0.4; give 0.53"),
+        ("speed: 0.5", "speed: fast", 2, "floating point in `drive:"),
+        (
+            "speed: 0.5",
+            "speed: 1.6",
+            2,
+            "acceleration is 0.4; give 0.53",
+        ),
         ("speed: 0.5", "speed: .nan", 2, "nan"),
         (
             "turn_rate: 90",
@@ -64,9 +69,14 @@ fn a_fault_names_file_line_and_remedy() {
         ("    field: 270\n", "", 4, "`field`"),
         ("field: 270", "step: 1", 4, "needs `first`"),
         ("beams: 541", "beams: 3", 8, "4 to 720"),
-        ("beams: 541", "beams: 5.5", 8, "beams"),
+        ("beams: 541", "beams: 5.5", 8, "a whole number"),
         ("range: 10", "range: 10\n    pitch: 20", 10, "pitch is 20"),
-        ("range: 10", "range: 10\n    least_range: 11", 10, "give 0 to 10 m"),
+        (
+            "range: 10",
+            "range: 10\n    least_range: 11",
+            10,
+            "give 0 to 10 m",
+        ),
         ("[40, 50]", "[40, 900]", 10, "as in [170, -170]"),
         ("[40, 50]", "[-180, 179.9]", 4, "covers every beam"),
         ("times: 4", "times: -1", 11, "give 0 to 1000"),
@@ -91,6 +101,11 @@ fn broken_yaml_and_missing_keys_have_a_line_too() {
 
 #[test]
 fn a_missing_file_lists_the_presets() {
-    let error = RobotSpec::open("no/robot.yaml").expect_err("missing").to_string();
-    assert!(error.contains("no/robot.yaml") && error.contains("turtlebot3-burger"), "{error}");
+    let error = RobotSpec::open("no/robot.yaml")
+        .expect_err("missing")
+        .to_string();
+    assert!(
+        error.contains("no/robot.yaml") && error.contains("turtlebot3-burger"),
+        "{error}"
+    );
 }

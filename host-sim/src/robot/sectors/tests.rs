@@ -102,12 +102,20 @@ fn a_wall_on_the_left_is_on_the_left_however_the_lidar_turns() {
         let step: f64 = sectors.laser().bearing_step.to_num();
         let mut returns = 0;
         for (sector, range_mm) in scan.ranges_mm.iter().enumerate() {
-            let bearing = (first + step * sector as f64).to_degrees().rem_euclid(360.0);
+            let bearing = (first + step * sector as f64)
+                .to_degrees()
+                .rem_euclid(360.0);
             let is_return = *range_mm == 1000;
             returns += u32::from(is_return);
             let off = (bearing - 90.0).abs();
-            assert!(is_return || off > 8.0, "{clockwise} {upside_down} {bearing}");
-            assert!(!is_return || off < 12.0, "{clockwise} {upside_down} {bearing}");
+            assert!(
+                is_return || off > 8.0,
+                "{clockwise} {upside_down} {bearing}"
+            );
+            assert!(
+                !is_return || off < 12.0,
+                "{clockwise} {upside_down} {bearing}"
+            );
         }
         assert!(returns >= 8, "{returns}");
     }
@@ -147,7 +155,12 @@ fn reading() -> impl Strategy<Value = f64> {
 }
 
 fn scans() -> impl Strategy<Value = (Lidar, Vec<f64>)> {
-    let shape = (4..=720_usize, any::<bool>(), any::<bool>(), -400.0..400.0_f64);
+    let shape = (
+        4..=720_usize,
+        any::<bool>(),
+        any::<bool>(),
+        -400.0..400.0_f64,
+    );
     let scan = shape.prop_flat_map(|(beams, clockwise, upside_down, first_deg)| {
         let lidar = Lidar {
             clockwise,
