@@ -364,12 +364,12 @@ fn lidar(keys: &Spanned<LaserKeys>, is_first: bool) -> Result<Lidar, Fault> {
 fn sweep(keys: &Spanned<LaserKeys>) -> Result<Sweep, Fault> {
     let it = &keys.value;
     let beams = it.beams.value;
-    let beams = if beams.fract() == 0.0 && (4.0..=720.0).contains(&beams) {
-        beams as usize
-    } else {
-        let what = format!("beams is {beams}; give a whole number from 4 to 720");
+    let is_whole = beams.fract() == 0.0 && (4.0..=4096.0).contains(&beams);
+    if !is_whole {
+        let what = format!("beams is {beams}; give a whole number from 4 to 4096");
         return Err((it.beams.referenced, what));
-    };
+    }
+    let beams = beams as usize;
     let step_deg = match (&it.step, &it.field) {
         (Some(step), None) => within("step", step, 0.01..=120.0, " degrees")?,
         (None, Some(field)) => {

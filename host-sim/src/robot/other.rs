@@ -179,4 +179,49 @@ mod tests {
         assert_eq!(other.cast(&towards(-3.0), 12.0), None);
         assert_eq!(nearest_m(&[], &towards(3.0), 12.0), None);
     }
+
+    #[test]
+    fn rays_hit_a_round_robot_where_sampling_finds_it() {
+        let hull = Footprint::disc(0.2, 0.3);
+        let pose = Pose {
+            x_m: 2.0,
+            y_m: 1.0,
+            pitch_rad: 0.2,
+            roll_rad: -0.1,
+            yaw_rad: 0.7,
+            ..Pose::default()
+        };
+        let robot = OtherRobot::new(hull, pose);
+        let is_within = |point: &[f64; 3]| {
+            let offset = [point[0] - 2.0, point[1] - 1.0, point[2]];
+            let [x, y, z] = [0, 1, 2].map(|axis| dot(&offset, &robot.axes[axis]));
+            x * x + y * y <= 0.04 && (0.0..=MAST_M).contains(&z)
+        };
+        let mut hits = 0;
+        for k in 0..200 {
+            let angle = 0.5 * f64::from(k % 50 - 25) / 25.0;
+            let down = -0.4 + 0.2 * f64::from(k / 50);
+            let direction = [angle.cos(), angle.sin(), down];
+            let length = dot(&direction, &direction).sqrt();
+            let ray = Ray {
+                origin_m: [0.0, 0.5, 0.4],
+                direction: direction.map(|part| part / length),
+            };
+            let at = |range_m: f64| {
+                [0, 1, 2].map(|axis| ray.origin_m[axis] + range_m * ray.direction[axis])
+            };
+            let steps = (0..4000).map(|step| 0.001 * f64::from(step));
+            let sampled = steps.into_iter().find(|range_m| is_within(&at(*range_m)));
+            let cast = robot.cast(&ray, 4.0);
+            match (cast, sampled) {
+                (Some(a), Some(b)) => assert!((a - b).abs() < 2e-3, "{k}: {a} {b}"),
+                // A ray may graze the rim between two samples.
+                (Some(a), None) => assert!(!is_within(&at(a + 0.02)), "{k}"),
+                (None, Some(_)) => panic!("{k}"),
+                (None, None) => {}
+            }
+            hits += u32::from(cast.is_some());
+        }
+        assert!(hits > 10, "{hits}");
+    }
 }

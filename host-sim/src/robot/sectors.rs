@@ -6,7 +6,7 @@
 //!
 //! | beams of a sector | sector |
 //! | --- | --- |
-//! | at least one return | the nearest return |
+//! | at least one return | the nearest return, or the mean of its surface |
 //! | all without return | [`NO_RETURN_MM`]: free up to the range |
 //! | else | [`INVALID_MM`]: no information |
 //!
@@ -22,8 +22,17 @@
 //! number of beams than promised is taken as spread evenly over the same field. So [`Sectors::fold`]
 //! is total: every list of numbers is a scan of the announced laser.
 //!
-//! A sector stands at its middle, so with g beams a return may be `(g − 1)/2` beams aside of where
-//! it was. Metres, radians; codes in millimetres.
+//! A sector stands at its middle. A wall that is seen askew is nearer at one end of the sector than in
+//! its middle, so the nearest return alone would thicken it. With r the nearest and s the step,
+//! returns up to
+//!
+//! ```text
+//! r (1 + 2 s (g − 1))
+//! ```
+//!
+//! count as one surface with it: a plane up to 63° askew, whose tangent is 2. The sector has their
+//! mean. So a nearest return is never lost, and never farther than that. A return may be
+//! `(g − 1)/2` beams aside of where it was. Metres, radians; codes in millimetres.
 
 use fieldline_protocol::message::{INVALID_MM, Laser, MAX_BEAMS, NO_RETURN_MM, Scan};
 use fixed::types::{I4F12, I16F16};
@@ -34,6 +43,9 @@ use super::lidar::Lidar;
 /// Greatest range that the wire can say, metres.
 pub const FARTHEST_RANGE_M: f64 = (NO_RETURN_MM - 1) as f64 / 1000.0;
 
+/// Tangent of the angle up to which a plane is one surface.
+const ASKEW: f64 = 2.0;
+
 /// A lidar's beams, as the wire has them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sectors {
@@ -42,6 +54,8 @@ pub struct Sectors {
     promised: usize,
     /// Beams of a sector.
     group: usize,
+    /// Share of the nearest range up to which returns behind it are its surface.
+    depth: f64,
     is_reversed: bool,
     least_m: f64,
     most_m: f64,
@@ -65,7 +79,21 @@ enum Own {
 enum Reading {
     Nothing,
     NoReturn,
-    Return(u16),
+    /// Metres.
+    Return(f64),
+}
+
+/// What the beams of a sector say.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sector {
+    /// The nearest return, metres.
+    nearest_m: Option<f64>,
+    /// Sum and number of the returns of its surface.
+    surface: (f64, u32),
+    /// Some beam has no return.
+    is_free: bool,
+    /// Some beam has no information, so the sector is not free.
+    is_unknown: bool,
 }
 
 impl Sectors {
@@ -92,6 +120,7 @@ impl Sectors {
             laser,
             promised,
             group,
+            depth: ASKEW * step_rad * (group - 1) as f64,
             is_reversed: lidar.is_reversed(),
             least_m: lidar.least_m,
             most_m,
@@ -149,19 +178,21 @@ impl Sectors {
     /// Returns a scan for the wire. `ranges_m` are the readings in the lidar's own order, in metres.
     #[must_use]
     pub fn fold(&self, ranges_m: &[f64]) -> Scan {
-        let mut sectors: Vec<Option<Reading>> = vec![None; usize::from(self.laser.beams)];
-        for (position, beam) in self.pairs(ranges_m.len()) {
-            let reading = self.read(position, ranges_m[beam]);
-            let sector = &mut sectors[position / self.group];
-            *sector = Some(sector.map_or(reading, |before| before.and(reading)));
+        let mut sectors = vec![Sector::default(); usize::from(self.laser.beams)];
+        let readings = || {
+            let pairs = self.pairs(ranges_m.len());
+            pairs.map(|(position, beam)| {
+                (position / self.group, self.read(position, ranges_m[beam]))
+            })
+        };
+        for (sector, reading) in readings() {
+            sectors[sector].note(reading);
         }
-        let codes = sectors.iter().map(|sector| match sector {
-            Some(Reading::Return(range_mm)) => *range_mm,
-            Some(Reading::NoReturn) => NO_RETURN_MM,
-            Some(Reading::Nothing) | None => INVALID_MM,
-        });
+        for (sector, reading) in readings() {
+            sectors[sector].gather(reading, self.depth);
+        }
         Scan {
-            ranges_mm: codes.collect(),
+            ranges_mm: sectors.iter().map(Sector::code).collect(),
         }
     }
 
@@ -202,8 +233,7 @@ impl Sectors {
         } else if range_m >= self.most_m {
             Reading::NoReturn
         } else {
-            let millimetres = (range_m * 1000.0).round() as u16;
-            Reading::Return(millimetres.clamp(INVALID_MM + 1, NO_RETURN_MM - 1))
+            Reading::Return(range_m)
         }
     }
 
@@ -220,14 +250,38 @@ impl Sectors {
     }
 }
 
-impl Reading {
-    /// Two beams of one sector.
-    fn and(self, other: Self) -> Self {
-        match (self, other) {
-            (Self::Return(a), Self::Return(b)) => Self::Return(a.min(b)),
-            (Self::Return(a), _) | (_, Self::Return(a)) => Self::Return(a),
-            (Self::NoReturn, Self::NoReturn) => Self::NoReturn,
-            _ => Self::Nothing,
+impl Sector {
+    /// Takes one of its beams.
+    fn note(&mut self, reading: Reading) {
+        match reading {
+            Reading::Nothing => self.is_unknown = true,
+            Reading::NoReturn => self.is_free = true,
+            Reading::Return(range_m) => {
+                let nearest_m = self.nearest_m.unwrap_or(range_m);
+                self.nearest_m = Some(nearest_m.min(range_m));
+            }
+        }
+    }
+
+    /// Takes a return that lies on the surface of the nearest one: at most that share behind it.
+    fn gather(&mut self, reading: Reading, depth: f64) {
+        if let (Reading::Return(range_m), Some(nearest_m)) = (reading, self.nearest_m)
+            && range_m <= nearest_m * (1.0 + depth)
+        {
+            self.surface.0 += range_m;
+            self.surface.1 += 1;
+        }
+    }
+
+    /// Returns its code.
+    fn code(&self) -> u16 {
+        match (self.surface, self.is_free, self.is_unknown) {
+            ((sum_m, count @ 1..), ..) => {
+                let millimetres = (sum_m / f64::from(count) * 1000.0).round() as u16;
+                millimetres.clamp(INVALID_MM + 1, NO_RETURN_MM - 1)
+            }
+            (_, true, false) => NO_RETURN_MM,
+            _ => INVALID_MM,
         }
     }
 }

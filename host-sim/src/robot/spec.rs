@@ -88,7 +88,8 @@ impl RobotSpec {
         file::read(file, name, text)
     }
 
-    /// The robot with another sweep of its level lidar, which keeps its mount and its errors.
+    /// The robot with another sweep of its level lidar, counter-clockwise and upright. Its place, its
+    /// yaw, its mask and its errors stay.
     #[must_use]
     pub fn with_sweep(mut self, sweep: &Sweep) -> Self {
         if let Some(level) = self.lidars.first_mut() {
@@ -96,6 +97,8 @@ impl RobotSpec {
             level.step_rad = sweep.step_rad;
             level.beams = sweep.beams;
             level.most_m = sweep.most_m;
+            level.least_m = level.least_m.min(sweep.most_m);
+            (level.clockwise, level.upside_down) = (false, false);
         }
         self
     }
@@ -122,7 +125,7 @@ pub struct Sweep {
 
 impl Sweep {
     /// Beams of a lidar.
-    pub const BEAMS: core::ops::RangeInclusive<usize> = 4..=720;
+    pub const BEAMS: core::ops::RangeInclusive<usize> = 4..=4096;
     /// Greatest range of a lidar, metres.
     pub const RANGES_M: core::ops::RangeInclusive<f64> = 0.1..=100.0;
 
@@ -131,7 +134,7 @@ impl Sweep {
     pub fn fault(&self) -> Option<String> {
         let turn = self.step_rad * self.beams.saturating_sub(1) as f64;
         if !Self::BEAMS.contains(&self.beams) {
-            return Some(format!("{} beams; give 4 to 720", self.beams));
+            return Some(format!("{} beams; give 4 to 4096", self.beams));
         }
         if !(self.first_rad.abs() <= 2.0 * TAU) {
             return Some("the first angle must be within two turns".into());
@@ -197,8 +200,8 @@ mod tests {
             ("0,1,360", "as in"),
             ("x,1,360,12", "'x'"),
             ("0,1,3.5,12", "'3.5'"),
-            ("0,1,3,12", "4 to 720"),
-            ("0,1,721,12", "4 to 720"),
+            ("0,1,3,12", "4 to 4096"),
+            ("0,0.05,4097,12", "4 to 4096"),
             ("0,2,360,12", "less than a turn"),
             ("0,0,360,12", "above 0"),
             ("9999,1,360,12", "two turns"),
@@ -219,5 +222,10 @@ mod tests {
         assert_eq!(robot.lidars[1], usual.lidars[1]);
         assert_eq!(robot.lidars[0].position_m, usual.lidars[0].position_m);
         assert_eq!(robot.lidars[0].beams, 450);
+        // Also of a lidar that turned the other way: −90° to 90° is ahead.
+        let ahead: Sweep = "-90,1,181,8".parse().expect("a sweep");
+        let round = RobotSpec::open("round-0.35").expect("a preset");
+        let right_rad = round.with_sweep(&ahead).lidars[0].rightmost_rad();
+        assert!((right_rad.to_degrees() + 90.0).abs() < 1e-9);
     }
 }

@@ -48,7 +48,7 @@ pub(super) fn report(
         odometry: mission.odometry.name().into(),
         start: mission.start,
         injected_faults: mission.fault.clone(),
-        robot: Some(mission.robot.clone()).filter(|name| name != DEFAULT),
+        robot_name: Some(mission.robot.clone()).filter(|name| name != DEFAULT),
         disturbances: disturbances(mission),
         people: Some(mission.people).filter(|count| *count > 0),
         noise: noise(simulator.config()),

@@ -3,6 +3,7 @@
 mod commands;
 mod refusals;
 mod replay;
+mod robots;
 mod runs;
 mod sessions;
 

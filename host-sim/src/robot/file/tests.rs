@@ -68,7 +68,7 @@ fn a_fault_names_file_line_and_remedy() {
         ("z: 0.2\n", "z: 0\n", 6, "give 0.01"),
         ("    field: 270\n", "", 4, "`field`"),
         ("field: 270", "step: 1", 4, "needs `first`"),
-        ("beams: 541", "beams: 3", 8, "4 to 720"),
+        ("beams: 541", "beams: 3", 8, "4 to 4096"),
         ("beams: 541", "beams: 5.5", 8, "a whole number"),
         ("range: 10", "range: 10\n    pitch: 20", 10, "pitch is 20"),
         (

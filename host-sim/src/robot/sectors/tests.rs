@@ -39,6 +39,7 @@ fn many_beams_become_sectors_of_equal_width() {
         (450, 0.8, 150, 3),
         (541, 0.5, 181, 3),
         (720, 0.5, 180, 4),
+        (1081, 0.25, 181, 6),
     ] {
         let sectors = sectors(&lidar(0.0, step_deg, beams));
         assert_eq!(usize::from(sectors.laser().beams), on_wire, "{beams}");
@@ -178,18 +179,30 @@ fn is_return(range_m: f64) -> bool {
     (0.1..12.0).contains(&range_m)
 }
 
+/// Returns true if a code is that of the nearest return, or behind it by no more than one surface.
+fn is_of_surface(sectors: &Sectors, nearest_m: f64, code: u16) -> bool {
+    let step_rad = sectors.bearing_rad(1) - sectors.bearing_rad(0);
+    let depth = 2.0 * step_rad * (sectors.group() - 1) as f64;
+    let code_m = f64::from(code) / 1000.0;
+    (nearest_m - 6e-4..=nearest_m * (1.0 + depth) + 1e-3).contains(&code_m)
+}
+
 proptest! {
-    /// Every list of numbers is a scan of the announced laser, and its nearest return is the scan's.
+    /// Every list of numbers is a scan of the announced laser, and its nearest return is the scan's,
+    /// or the mean of its surface.
     #[test]
     fn the_nearest_return_is_never_lost((lidar, ranges_m) in scans()) {
         let sectors = sectors(&lidar);
         let codes = sectors.fold(&ranges_m).ranges_mm;
         prop_assert_eq!(codes.len(), usize::from(sectors.laser().beams));
         let nearest = ranges_m.iter().copied().filter(|range| is_return(*range));
-        let nearest_mm = nearest.map(|range| (range * 1000.0).round() as u16).min();
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
         let codes = codes.iter().copied();
         let least = codes.filter(|code| ![INVALID_MM, NO_RETURN_MM].contains(code)).min();
-        prop_assert_eq!(least, nearest_mm);
+        prop_assert_eq!(least.is_some(), nearest.is_finite());
+        if let Some(least) = least {
+            prop_assert!(is_of_surface(&sectors, nearest, least), "{} {}", nearest, least);
+        }
     }
 
     /// Each sector, by the beams that lie in it.
@@ -209,7 +222,8 @@ proptest! {
             let returns = beams.iter().filter(|range| is_return(**range));
             let nearest = returns.copied().fold(f64::INFINITY, f64::min);
             let expected = if nearest.is_finite() {
-                (nearest * 1000.0).round() as u16
+                prop_assert!(is_of_surface(&sectors, nearest, *code), "{:?}", beams);
+                continue;
             } else if beams.iter().all(|range| *range >= 12.0) {
                 NO_RETURN_MM
             } else {
@@ -241,6 +255,26 @@ proptest! {
             prop_assert!(off <= 2.0, "{} {}", middle, expected);
         }
     }
+}
+
+/// A plane askew by less than 63° is where it is at the sector's middle; something before it wins.
+#[test]
+fn a_wall_askew_is_not_thickened_and_a_post_before_it_is_kept() {
+    let sectors = sectors(&lidar(0.0, 1.0, 360));
+    assert_eq!(sectors.group(), 2);
+    let askew = |beam: usize| 3.0 / (f64::to_radians(beam as f64 - 45.0)).cos();
+    let mut ranges_m: Vec<f64> = (0..90).map(askew).collect();
+    ranges_m.resize(360, f64::INFINITY);
+    let codes = sectors.fold(&ranges_m).ranges_mm;
+    for (sector, code) in codes[..45].iter().enumerate() {
+        let middle = 3.0 / (f64::to_radians(2.0 * sector as f64 + 0.5 - 45.0)).cos();
+        assert!(
+            (f64::from(*code) / 1000.0 - middle).abs() < 2e-3,
+            "{sector}"
+        );
+    }
+    ranges_m[31] = 2.5;
+    assert_eq!(sectors.fold(&ranges_m).ranges_mm[15], 2500);
 }
 
 #[test]
