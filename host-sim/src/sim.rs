@@ -6,7 +6,7 @@
 //! climb, stops the robot there. A lost ground contact or a slope too steep ends the drive for
 //! good. The same world, configuration (with its seed) and commands give the same run, bit for bit.
 
-mod announcement;
+pub(crate) mod announcement;
 mod config;
 mod fleet;
 
@@ -16,7 +16,7 @@ use crate::metrics::{Overlap, Ride, Safety};
 use crate::people::People;
 use crate::robot::{
     Contacts, Drive, LaserScanner, Mishap, Noise, Odometry, OtherRobot, Pose, Source, Span,
-    Velocity, laser, nearest_m, stand, wrap,
+    Velocity, nearest_m, stand, wrap,
 };
 use crate::world::{Ray, World, WorldError};
 pub use config::SimConfig;
@@ -26,6 +26,12 @@ pub use fleet::{Fleet, FleetError};
 const CONTACT_OVER_M: f64 = 0.01;
 /// Distance from its beginning at which a contact with the ground ends, metres.
 const EDGE_OVER_M: f64 = 0.05;
+
+/// Noise of ranges and of faults, of the first lidar and of the second.
+const SOURCES: [[Source; 2]; 2] = [
+    [Source::LevelRange, Source::LevelFault],
+    [Source::TiltedRange, Source::TiltedFault],
+];
 
 /// Why the robot is lost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +55,7 @@ pub struct Simulator<'w> {
     odometry: Odometry,
     /// Odometry's pose where it began anew.
     restart: Option<Pose>,
-    lasers: [LaserScanner; 2],
+    lasers: Vec<LaserScanner>,
     /// Draws the beams that are missing.
     missing: Noise,
     path_length_m: f64,
@@ -81,11 +87,14 @@ impl<'w> Simulator<'w> {
     /// [`WorldError::People`] if the people have no room.
     pub fn new(world: &'w World, config: SimConfig) -> Result<Self, WorldError> {
         let pose = start_pose(world, &config)?;
-        let scanner =
-            |laser, sources| LaserScanner::new(&laser, config.laser_noise, config.seed, sources);
+        let lidars = config.lidars.iter().zip(SOURCES);
+        let lasers = lidars
+            .map(|(lidar, sources)| {
+                LaserScanner::of(lidar, &config.footprint, config.seed, sources)
+            })
+            .collect();
         let mut simulator = Self {
             world,
-            config,
             time_ms: 0,
             commanded_ms: 0,
             start_z_m: pose.z_m,
@@ -93,10 +102,7 @@ impl<'w> Simulator<'w> {
             drive: Drive::new(config.limits),
             odometry: Odometry::new(config.odometry, pose, config.seed),
             restart: None,
-            lasers: [
-                scanner(laser::level(), [Source::LevelRange, Source::LevelFault]),
-                scanner(laser::tilted(), [Source::TiltedRange, Source::TiltedFault]),
-            ],
+            lasers,
             missing: Noise::new(config.seed, Source::Missing),
             path_length_m: 0.0,
             in_contact: false,
@@ -111,7 +117,9 @@ impl<'w> Simulator<'w> {
             people: People::none(config.seed),
             touches_person: false,
             bumped: None,
+            config,
         };
+        let config = &simulator.config;
         let (footprint, crowd) = (&config.footprint, (config.people, config.seed));
         simulator.people = People::new(world, simulator.start(), (footprint, &pose), crowd)?;
         simulator.overlap.add(pose.x_m, pose.y_m);
@@ -137,7 +145,7 @@ impl<'w> Simulator<'w> {
             };
             let mut scan = self.lasers[laser].scan_among(world, moving, &self.pose);
             self.disturb(&mut scan);
-            // The vector holds two scans, and there are two lasers.
+            // The vector holds two scans, and there are at most two lasers.
             let _ = observation.scans.push(scan);
         }
         observation

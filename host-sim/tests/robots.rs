@@ -21,11 +21,7 @@ impl Watch for Unwatched {
 /// its radius can explore and touched nothing.
 fn assert_explores([length_m, width_m]: [f64; 2], radius_m: f64) {
     let mission = Mission {
-        hull: Footprint {
-            half_length_m: 0.5 * length_m,
-            half_width_m: 0.5 * width_m,
-            height_m: 0.4,
-        },
+        hull: Footprint::rectangle(length_m, width_m, 0.4),
         radius_m,
         // Everything that can be seen, also what is not worth a trip.
         order: Some(Order::Gain { worth: I4F12::ZERO }),
@@ -54,11 +50,7 @@ fn a_long_robot_explores_the_office() {
 #[test]
 fn a_hull_in_a_wall_is_refused_at_its_start() {
     let mission = Mission {
-        hull: Footprint {
-            half_length_m: 2.0,
-            half_width_m: 2.0,
-            height_m: 0.4,
-        },
+        hull: Footprint::rectangle(4.0, 4.0, 0.4),
         ..Mission::default()
     };
     let world = World::builtin("narrow-doors").expect("built in");

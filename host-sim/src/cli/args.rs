@@ -58,6 +58,15 @@ pub(super) enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// List the robots that are known by name, or print one as a robot file
+    Robots {
+        /// Preset to print
+        #[arg(value_name = "PRESET")]
+        name: Option<String>,
+        /// Print one JSON object a line
+        #[arg(long, conflicts_with = "name")]
+        json: bool,
+    },
     /// List the planner's tuned constants with meaning, unit, range and default
     Tuning {
         /// One JSON object a line

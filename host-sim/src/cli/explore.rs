@@ -213,6 +213,9 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         );
     }
     let uneven_ground = uneven_ground(args)?;
+    if uneven_ground.is_some() {
+        args.robot.check_uneven()?;
+    }
     let odometry = args
         .odometry
         .unwrap_or_else(|| default_odometry(args, uneven_ground.is_none()));

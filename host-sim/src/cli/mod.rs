@@ -14,6 +14,7 @@ mod prepared;
 mod progress;
 mod replay;
 mod robot;
+mod robots;
 mod sessions;
 mod solve;
 mod strategies;
@@ -71,6 +72,7 @@ fn run(cli: &Cli) -> Result<bool> {
         Some(Command::Sessions(args)) => sessions::run(args),
         Some(Command::ReplaySession(args)) => sessions::replay(args),
         Some(Command::Worlds { json }) => worlds::run(*json).map(|()| true),
+        Some(Command::Robots { name, json }) => robots::run(name.as_deref(), *json).map(|()| true),
         Some(Command::Tuning { json }) => tuning::run(*json).map(|()| true),
         Some(Command::Solve(args)) => solve::run(args).map(|()| true),
     }

@@ -9,15 +9,18 @@ use fieldline_planner::config::Tuning;
 use fieldline_protocol::message::Status;
 use fieldline_slam::Motion;
 use host_sim::link::spec::{LinkSpec, Options};
+use host_sim::replay::carmen::LogScan;
 use host_sim::replay::relations::{self, Pose, Relation, RelationError};
 use host_sim::replay::report::{self, Files, RelationErrors, ReplayReport};
+use host_sim::replay::wire::LogLaser;
 use host_sim::replay::{carmen, clock, run};
 use host_sim::report::{QualityShares, folder};
+use host_sim::robot::RobotSpec;
 use host_sim::slam::SlamPlace;
 use host_sim::trial::wording;
 
 use super::progress::Interrupt;
-use super::robot::TuneArgs;
+use super::robot::{TuneArgs, robot};
 use super::values::{seed, slam_place};
 use super::{note, say};
 
@@ -43,6 +46,10 @@ pub(super) struct ReplayArgs {
     /// with variances times this [default: the log's own odometry]
     #[arg(long, value_name = "K", value_parser = factor, allow_negative_numbers = true)]
     degrade: Option<f64>,
+    /// Robot that made the log, a robot file or a preset: its first laser's mount, sweep, range and
+    /// mask, its hull and its speeds [default: the laser as the log tells it]
+    #[arg(long, value_name = "FILE|PRESET", value_parser = robot)]
+    robot: Option<RobotSpec>,
     /// Seed of the drift
     #[arg(
         long,
@@ -82,6 +89,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     let log = carmen::log(&args.log.display().to_string(), &text).map_err(Error::msg)?;
     note_late(args, &log);
     let scans = log.scans;
+    let laser = laser(args, &scans)?;
     let times = || scans.iter().map(|scan| scan.time);
     let own: Vec<(f64, Pose)> = times()
         .zip(scans.iter().map(|scan| scan.odometry))
@@ -109,7 +117,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
         .max(1.0);
     let motion = Motion::WHEELS.times(noise as f32);
     let slam = (args.slam == SlamPlace::Host).then_some(motion);
-    let replayed = run::run(&scans, &odometry, planner.as_mut(), slam, &mut step);
+    let replayed = run::run(&laser, &scans, &odometry, planner.as_mut(), slam, &mut step);
     let replayed = replayed.with_context(context)?;
     if replayed.poses.len() < scans.len() {
         bail!("interrupted after {} scans", replayed.poses.len());
@@ -126,12 +134,15 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
             let errors: Vec<RelationError> = errors.iter().map(|(_, error)| *error).collect();
             RelationErrors::of(&errors)
         }),
-        occupied_cells_5cm: report::occupied_cells(&scans, &replayed.poses),
+        occupied_cells_5cm: report::occupied_cells(&laser, &scans, &replayed.poses),
         quality: QualityShares::of(&replayed.qualities),
         input_faults: replayed.input_faults,
         late_scans: log.late,
         map_full_at: run::is_default_pool(replayed.tile_pool)
-            .then(|| run::map_full_at(&scans, &odometry, tuning.unwrap_or(&Tuning::DEFAULT)))
+            .then(|| {
+                let tuning = tuning.unwrap_or(&Tuning::DEFAULT);
+                run::map_full_at(&laser, &scans, &odometry, tuning)
+            })
             .flatten(),
         slam: replayed.slam.clone(),
     };
@@ -156,6 +167,16 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     }
     note(&format!("{log}: files in {}", folder.display()));
     Ok(replayed.status == Status::Exploring)
+}
+
+/// Returns the laser that made the scans.
+fn laser(args: &ReplayArgs, scans: &[LogScan]) -> Result<LogLaser> {
+    match &args.robot {
+        None => Ok(LogLaser::of(scans)),
+        Some(robot) => LogLaser::of_robot(scans, robot)
+            .map_err(Error::msg)
+            .with_context(|| format!("{} with --robot {}", args.log.display(), robot.name)),
+    }
 }
 
 /// Says that scans were sorted, if so.

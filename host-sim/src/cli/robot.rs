@@ -1,5 +1,5 @@
-//! Arguments about the robot's hull, the order in which it takes frontiers, the loops that it
-//! closes, and the planner's tuned constants.
+//! Arguments about the robot, its hull and its lidar, the order in which it takes frontiers, the
+//! loops that it closes, and the planner's tuned constants.
 
 use anyhow::{Context as _, Result, bail};
 use clap::{Args, ValueEnum};
@@ -7,16 +7,28 @@ use fieldline_planner::{RobotShape, Tuning};
 use fieldline_protocol::message::{LoopLimits, Order};
 use fixed::types::{I4F12, I16F16};
 use host_sim::link::spec::LinkSpec;
-use host_sim::robot::Footprint;
+use host_sim::robot::{Footprint, RobotSpec, Sweep};
 use host_sim::trial::mission::{Mission, on_device};
 
 #[derive(Clone, Debug, Default, Args)]
 pub(super) struct RobotArgs {
-    /// Length, width and height of the robot's hull, metres [default: 0.508x0.497x0.277]
+    /// Robot file or preset; `host-sim robots` lists the presets [default: pioneer-3at]
+    #[arg(long, value_name = "FILE|PRESET", value_parser = robot)]
+    robot: Option<RobotSpec>,
+    /// Sweep of the level lidar: first angle and step in degrees, beams, range in metres, as in
+    /// -135,0.5,541,12 [default: the robot's]
+    #[arg(
+        long,
+        value_name = "FIRST,STEP,BEAMS,RANGE",
+        value_parser = sweep,
+        allow_hyphen_values = true
+    )]
+    laser: Option<Sweep>,
+    /// Length, width and height of the robot's hull, metres [default: the robot's]
     #[arg(long, value_name = "LxWxH", value_parser = hull)]
     hull: Option<Footprint>,
     /// Radius around the robot's centre that the planner keeps clear, metres: 0.05 to 0.6 [default:
-    /// half the hull's width and 0.05, rounded up to 0.01]
+    /// the robot's; with --hull half its width and 0.05, rounded up to 0.01]
     #[arg(long, value_name = "M", value_parser = radius)]
     radius: Option<f64>,
     /// Limits of the loops that ouroboros closes, metres: any of
@@ -54,13 +66,41 @@ enum OrderArg {
 impl RobotArgs {
     /// Returns `mission` with this robot and these loops.
     pub(super) fn applied(&self, mission: Mission) -> Mission {
-        let hull = self.hull.unwrap_or(mission.hull);
-        Mission {
-            hull,
-            radius_m: self.radius.unwrap_or_else(|| planning_radius_m(&hull)),
-            loops: self.loops.unwrap_or(mission.loops),
-            ..mission
+        let mut robot = self.spec();
+        if let Some(hull) = self.hull {
+            robot.hull = hull;
+            robot.radius_m = planning_radius_m(&hull);
         }
+        robot.radius_m = self.radius.unwrap_or(robot.radius_m);
+        Mission {
+            loops: self.loops.unwrap_or(mission.loops),
+            ..mission.with_robot(&robot)
+        }
+    }
+
+    /// Returns the robot, with the lidar that was asked for.
+    fn spec(&self) -> RobotSpec {
+        let robot = self.robot.clone().unwrap_or_default();
+        match &self.laser {
+            Some(sweep) => robot.with_sweep(sweep),
+            None => robot,
+        }
+    }
+
+    /// Refuses uneven ground for a robot without a second lidar.
+    ///
+    /// # Errors
+    /// As said.
+    pub(super) fn check_uneven(&self) -> Result<()> {
+        let robot = self.spec();
+        if robot.lidars.len() < 2 {
+            bail!(
+                "uneven ground needs a second laser that looks down, and robot {} has one; add it \
+                 to the robot file, or say --ground flat",
+                robot.name
+            );
+        }
+        Ok(())
     }
 
     /// Returns the order of frontiers for a strategy.
@@ -139,6 +179,14 @@ fn number(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| format!("'{text}' is not a number"))
 }
 
+pub(super) fn robot(text: &str) -> Result<RobotSpec, String> {
+    RobotSpec::open(text).map_err(|error| error.to_string())
+}
+
+fn sweep(text: &str) -> Result<Sweep, String> {
+    text.parse()
+}
+
 fn hull(text: &str) -> Result<Footprint, String> {
     let remedy = "say length, width and height in metres, as in 0.9x0.6x0.4";
     let sides: Vec<f64> = text.split('x').map(number).collect::<Result<_, _>>()?;
@@ -151,11 +199,7 @@ fn hull(text: &str) -> Result<Footprint, String> {
             "length and width must be 0.001 to 4 m and the height at most 2 m; {remedy}"
         ));
     }
-    Ok(Footprint {
-        half_length_m: 0.5 * length,
-        half_width_m: 0.5 * width,
-        height_m: height,
-    })
+    Ok(Footprint::rectangle(length, width, height))
 }
 
 fn radius(text: &str) -> Result<f64, String> {

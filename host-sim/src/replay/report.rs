@@ -83,8 +83,7 @@ impl RelationErrors {
 
 /// Returns the number of cells that hold an end of a beam.
 #[must_use]
-pub fn occupied_cells(scans: &[LogScan], poses: &[Pose]) -> usize {
-    let laser = LogLaser::of(scans);
+pub fn occupied_cells(laser: &LogLaser, scans: &[LogScan], poses: &[Pose]) -> usize {
     let cell = |m: f64| (m / CELL_M).floor() as i32;
     let mut cells = BTreeSet::new();
     for (scan, pose) in scans.iter().zip(poses) {

@@ -68,8 +68,8 @@ pub fn odometry(scans: &[LogScan], degrade: Option<f64>, seed: u64) -> Vec<Pose>
 
 /// Returns the session's time at each scan, milliseconds: the log's, but no step takes less than
 /// the session's robot needs for it.
-fn times_ms(scans: &[LogScan], odometry: &[Pose]) -> Vec<u32> {
-    let limits = start(&LogLaser::of(scans));
+fn times_ms(laser: &LogLaser, scans: &[LogScan], odometry: &[Pose]) -> Vec<u32> {
+    let limits = start(laser);
     let (speed, turn_rate): (f64, f64) = (limits.max_linear.to_num(), limits.max_angular.to_num());
     let began = scans.first().map_or(0.0, |scan| scan.time);
     let mut last: Option<(f64, Pose)> = None;
@@ -89,10 +89,14 @@ fn times_ms(scans: &[LogScan], odometry: &[Pose]) -> Vec<u32> {
 /// Returns the number of the first scan, from 1, of which the map of a device of the default image
 /// could not take everything; `None` if it takes all.
 #[must_use]
-pub fn map_full_at(scans: &[LogScan], odometry: &[Pose], tuning: &'static Tuning) -> Option<usize> {
-    let laser = LogLaser::of(scans);
-    let mut mirror = Mirror::tuned(&start(&laser), tuning);
-    let times = times_ms(scans, odometry);
+pub fn map_full_at(
+    laser: &LogLaser,
+    scans: &[LogScan],
+    odometry: &[Pose],
+    tuning: &'static Tuning,
+) -> Option<usize> {
+    let mut mirror = Mirror::tuned(&start(laser), tuning);
+    let times = times_ms(laser, scans, odometry);
     let steps = scans.iter().zip(odometry).zip(times);
     let full = steps.map(|((scan, odom), time_ms)| {
         mirror.observe(&laser.observation(scan, time_ms, *odom), Status::Exploring);
@@ -109,25 +113,25 @@ pub fn is_default_pool(tile_pool: u16) -> bool {
     usize::from(tile_pool) == TILES
 }
 
-/// Replays scans with this odometry, with a pose graph beside the device if `slam` has the noise of
+/// Replays scans of a laser with this odometry, with a pose graph beside the device if `slam` has the noise of
 /// the wheels. `step` is called before each step with its number, and ends
 /// the replay if it returns false.
 ///
 /// # Errors
 /// As [`LinkError`].
 pub fn run(
+    laser: &LogLaser,
     scans: &[LogScan],
     odometry: &[Pose],
     link: &mut dyn Link,
     slam: Option<Motion>,
     step: &mut dyn FnMut(usize) -> bool,
 ) -> Result<Replayed, LinkError> {
-    let laser = LogLaser::of(scans);
-    let mut graph = slam.map(|motion| PoseGraph::new(&laser.laser, motion));
+    let mut graph = slam.map(|motion| PoseGraph::new(laser.announced(), motion));
     let tile_pool = link.hello()?.tile_pool;
-    let start = start(&laser);
+    let start = start(laser);
     let mut status = link.control(&Control::Start(start.clone()))?;
-    let times = times_ms(scans, odometry);
+    let times = times_ms(laser, scans, odometry);
     let (mut poses, mut qualities) = (Vec::new(), Vec::new());
     let mut map_from_odom = [0.0; 3];
     let mut input_faults = InputFaults::default();
@@ -216,12 +220,16 @@ mod tests {
     fn scans_far_apart_with_equal_times_are_no_jumps_of_odometry() {
         let scans = log(20);
         let own = odometry(&scans, None, 0);
-        let replayed = run(&scans, &own, &mut Direct::new(), None, &mut |_| true).unwrap();
+        let laser = LogLaser::of(&scans);
+        let replayed = run(&laser, &scans, &own, &mut Direct::new(), None, &mut |_| {
+            true
+        });
+        let replayed = replayed.unwrap();
         assert_eq!(replayed.input_faults, InputFaults::default());
         let [x, y, _] = replayed.poses[19];
         assert!((x - 28.5).abs() < 1.0 && y.abs() < 0.1, "{x} {y}");
         assert!(is_default_pool(replayed.tile_pool));
-        assert_eq!(map_full_at(&scans, &own, &Tuning::DEFAULT), None);
+        assert_eq!(map_full_at(&laser, &scans, &own, &Tuning::DEFAULT), None);
     }
 
     #[test]
@@ -229,7 +237,8 @@ mod tests {
         // Two tiles across, one for each 3.2 m.
         let scans = log(300);
         let own = odometry(&scans, None, 0);
-        let full = map_full_at(&scans, &own, &Tuning::DEFAULT).unwrap();
+        let laser = LogLaser::of(&scans);
+        let full = map_full_at(&laser, &scans, &own, &Tuning::DEFAULT).unwrap();
         let tiles = 2.0 * (1.5 * full as f64 + 12.0) / 3.2;
         assert!(
             (tiles - TILES as f64).abs() < 12.0,

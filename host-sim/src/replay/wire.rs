@@ -1,22 +1,21 @@
 //! A log as a session: its start message and its observations.
 //!
-//! A scan on the wire has at most 181 beams. A log with more keeps every k-th, each at its own
-//! angle. The session's laser states these angles, so no beam is turned to another one.
+//! The scans go on the wire by [`Sectors`]: of a log with more beams than the wire has, neighbours
+//! become a sector with the nearest return of them.
 //!
 //! A reading beyond the range limit saw nothing, and is free up to it. The limit is 12 m, or the
 //! laser's range or the log's greatest reading if that is less: some lasers report their limit for
-//! nothing.
+//! nothing. A robot that the log is said to be of has its own lidar, hull and speeds instead.
 //!
 //! Units: metres, radians; ranges in millimetres.
 
-use fieldline_protocol::message::{
-    INVALID_MM, Laser, MAX_BEAMS, NO_RETURN_MM, Observation, Scan, Start,
-};
-use fixed::types::{I4F12, I16F16};
+use fieldline_protocol::message::{Laser, Observation, Start};
+use fixed::types::I4F12;
 
 use super::carmen::LogScan;
 use super::relations::{Pose, compose, inverse};
-use crate::robot::{self, Velocity, wrap};
+use crate::robot::{self, LaserNoise, Lidar, RobotSpec, Sectors, Velocity, wrap};
+use crate::sim::announcement;
 
 /// Greatest range limit, metres: that of the simulated lasers.
 const LIMIT_M: f64 = 12.0;
@@ -27,14 +26,13 @@ const SAME: f64 = 2e-3;
 /// Farthest mount from the robot's centre, metres.
 const FARTHEST_M: f64 = 1.0;
 
-/// The laser of a log, and which of its beams the wire has.
+/// The laser of a log, and how the wire has its beams.
 #[derive(Clone, Debug)]
 pub struct LogLaser {
-    /// As announced to the device.
-    pub laser: Laser,
-    /// Every so many beams of the log are sent.
-    pub stride: usize,
-    limit_m: f64,
+    lidar: Lidar,
+    sectors: Sectors,
+    /// The robot that made the log, if it is known.
+    robot: Option<RobotSpec>,
 }
 
 impl LogLaser {
@@ -48,45 +46,72 @@ impl LogLaser {
             .min(most_m)
             .min((greatest_m * 1000.0).floor() / 1000.0)
             .max(0.1);
-        let beams = scans.first().map_or(1, |scan| scan.ranges.len());
-        let stride = beams.div_ceil(MAX_BEAMS);
-        let angle = |beam| scans.first().map_or(0.0, |scan| scan.angle(beam));
         let [x, y, _] = mount(scans);
-        let laser = Laser {
-            x: I4F12::saturating_from_num(x),
-            y: I4F12::saturating_from_num(y),
-            z: I4F12::from_num(HEIGHT_M),
-            pitch: I4F12::ZERO,
-            first_bearing: I16F16::from_num(angle(0)),
-            bearing_step: I16F16::from_num(angle(stride) - angle(0)),
-            beams: beams.div_ceil(stride) as u16,
-            range_limit_mm: (limit_m * 1000.0).round() as u16,
+        let lidar = Lidar {
+            position_m: [x, y, HEIGHT_M],
+            yaw_rad: 0.0,
+            pitch_rad: 0.0,
+            upside_down: false,
+            clockwise: false,
+            first_rad: scans.first().map_or(0.0, |scan| scan.beams.first_rad),
+            step_rad: scans.first().map_or(1.0, |scan| scan.beams.step_rad),
+            beams: scans.first().map_or(1, |scan| scan.ranges.len()),
+            least_m: 0.0,
+            most_m: limit_m,
+            noise: LaserNoise::NONE,
+            mask: Vec::new(),
+            ignores_hull: false,
         };
         Self {
-            laser,
-            stride,
-            limit_m,
+            sectors: Sectors::new(&lidar, &robot::Footprint::PIONEER_3AT),
+            lidar,
+            robot: None,
         }
     }
 
-    /// Returns a range for the wire, millimetres or a code.
-    fn code(&self, range_m: f64) -> u16 {
-        if range_m <= 0.0 {
-            INVALID_MM
-        } else if range_m >= self.limit_m {
-            NO_RETURN_MM
-        } else {
-            ((range_m * 1000.0).round() as u16).clamp(INVALID_MM + 1, NO_RETURN_MM - 1)
+    /// Returns the level lidar of a robot that made these scans. Mount, sweep and range are the
+    /// robot's, whatever the log tells.
+    ///
+    /// # Errors
+    /// The numbers of beams, if they differ by more than one, and the remedy.
+    pub fn of_robot(scans: &[LogScan], robot: &RobotSpec) -> Result<Self, String> {
+        let lidar = robot.lidars.first().cloned();
+        let lidar = lidar.ok_or("the robot has no laser; give it one")?;
+        let strange = scans
+            .iter()
+            .find(|scan| scan.ranges.len().abs_diff(lidar.beams) > 1);
+        if let Some(scan) = strange {
+            return Err(format!(
+                "the scan of line {} has {} beams, and the laser of robot {} has {}; write beams: \
+                 {} into the robot file",
+                scan.line,
+                scan.ranges.len(),
+                robot.name,
+                lidar.beams,
+                scan.ranges.len()
+            ));
         }
+        Ok(Self {
+            sectors: Sectors::new(&lidar, &robot.hull),
+            lidar,
+            robot: Some(robot.clone()),
+        })
+    }
+
+    /// Returns the laser as announced to the device.
+    #[must_use]
+    pub const fn announced(&self) -> &Laser {
+        self.sectors.laser()
     }
 
     /// Returns the ends of a scan's beams that met something, in the robot's frame.
     pub fn ends<'a>(&'a self, scan: &'a LogScan) -> impl Iterator<Item = [f64; 2]> + 'a {
-        let [x, y]: [f64; 2] = [self.laser.x.to_num(), self.laser.y.to_num()];
-        let beams = scan.ranges.iter().enumerate().step_by(self.stride);
-        let hits = beams.filter(|(_, range)| **range > 0.0 && **range < self.limit_m);
-        hits.map(move |(beam, range)| {
-            let (sin, cos) = scan.angle(beam).sin_cos();
+        let laser = self.sectors.laser();
+        let [x, y]: [f64; 2] = [laser.x.to_num(), laser.y.to_num()];
+        let (right, step) = (self.lidar.rightmost_rad(), self.lidar.step_rad);
+        let hits = self.sectors.returns(&scan.ranges);
+        hits.map(move |(position, range)| {
+            let (sin, cos) = (right + position as f64 * step).sin_cos();
             [x + range * cos, y + range * sin]
         })
     }
@@ -95,7 +120,6 @@ impl LogLaser {
     #[must_use]
     pub fn observation(&self, scan: &LogScan, time_ms: u32, odometry: Pose) -> Observation {
         let [x_m, y_m, yaw] = odometry;
-        let ranges = scan.ranges.iter().step_by(self.stride);
         let pose = robot::Pose {
             x_m,
             y_m,
@@ -106,9 +130,7 @@ impl LogLaser {
             linear_mps: scan.speed[0],
             angular_radps: scan.speed[1],
         };
-        let scan = Scan {
-            ranges_mm: ranges.map(|range| self.code(*range)).collect(),
-        };
+        let scan = self.sectors.fold(&scan.ranges);
         Observation {
             time_ms,
             pose: pose.to_wire(),
@@ -139,16 +161,27 @@ fn mount(scans: &[LogScan]) -> Pose {
 /// Returns the start message of a session that localises and maps.
 #[must_use]
 pub fn start(laser: &LogLaser) -> Start {
+    let body = match &laser.robot {
+        Some(robot) => announcement::of_robot(&robot.hull, robot.radius_m, &robot.drive),
+        None => unknown_robot(),
+    };
     Start {
-        lasers: [laser.laser].into_iter().collect(),
+        lasers: [*laser.announced()].into_iter().collect(),
+        period_ms: 200,
+        localise: true,
+        survey: true,
+        ..body
+    }
+}
+
+/// Returns the body of a robot that nothing is known of.
+fn unknown_robot() -> Start {
+    Start {
         robot_radius_mm: 300,
         max_linear: I4F12::lit("0.7"),
         max_angular: I4F12::lit("2.44"),
         linear_accel: I4F12::lit("0.3"),
         angular_accel: I4F12::lit("1.75"),
-        period_ms: 200,
-        localise: true,
-        survey: true,
         ..Start::default()
     }
 }
@@ -157,6 +190,7 @@ pub fn start(laser: &LogLaser) -> Start {
 mod tests {
     use super::super::carmen::Beams;
     use super::*;
+    use fieldline_protocol::message::{INVALID_MM, NO_RETURN_MM};
 
     fn scan(ranges: Vec<f64>) -> LogScan {
         LogScan {
@@ -170,22 +204,23 @@ mod tests {
         }
     }
 
+    /// A sector of two beams stands half a beam to the left of the first.
     #[test]
-    fn beams_keep_their_angles() {
-        for (beams, sent, step_deg, last_deg) in [
-            (180, 180, 1.0, 89.0),
-            (181, 181, 1.0, 90.0),
-            (360, 180, 1.0, 89.0),
-            (361, 181, 1.0, 90.0),
-            (90, 90, 2.0, 88.0),
+    fn beams_and_sectors_have_their_angles() {
+        for (beams, sent, step_deg, first_deg, last_deg) in [
+            (180, 180, 1.0, -90.0, 89.0),
+            (181, 181, 1.0, -90.0, 90.0),
+            (360, 180, 1.0, -89.75, 89.25),
+            (361, 181, 1.0, -89.75, 90.25),
+            (90, 90, 2.0, -90.0, 88.0),
         ] {
             let scan = scan(vec![5.0; beams]);
             let laser = LogLaser::of(core::slice::from_ref(&scan));
-            let step = laser.laser.bearing_step.to_num::<f64>().to_degrees();
-            let first = laser.laser.first_bearing.to_num::<f64>().to_degrees();
-            assert_eq!(usize::from(laser.laser.beams), sent);
+            let step = laser.announced().bearing_step.to_num::<f64>().to_degrees();
+            let first = laser.announced().first_bearing.to_num::<f64>().to_degrees();
+            assert_eq!(usize::from(laser.announced().beams), sent);
             assert!((step - step_deg).abs() < 1e-3, "{beams}: {step}");
-            assert!((first + 90.0).abs() < 1e-3);
+            assert!((first - first_deg).abs() < 1e-3);
             let last = first + step * (sent - 1) as f64;
             assert!((last - last_deg).abs() < 0.1, "{beams}: {last}");
             let sent_ranges = &laser.observation(&scan, 0, [0.0; 3]).scans[0].ranges_mm;
@@ -197,7 +232,7 @@ mod tests {
     fn a_reading_beyond_the_limit_saw_nothing_and_one_of_zero_says_nothing() {
         let scan = scan(vec![0.0, 1.5, 81.9, 11.9]);
         let laser = LogLaser::of(core::slice::from_ref(&scan));
-        assert_eq!(laser.laser.range_limit_mm, 12_000);
+        assert_eq!(laser.announced().range_limit_mm, 12_000);
         let ranges = &laser.observation(&scan, 0, [0.0; 3]).scans[0].ranges_mm;
         assert_eq!(ranges[..], [INVALID_MM, 1500, NO_RETURN_MM, 11_900]);
         assert_eq!(laser.ends(&scan).count(), 2);
@@ -207,8 +242,27 @@ mod tests {
     fn a_limit_below_12_m_is_the_greatest_reading() {
         let scan = scan(vec![8.191, 2.0, 8.191]);
         let laser = LogLaser::of(core::slice::from_ref(&scan));
-        assert_eq!(laser.laser.range_limit_mm, 8191);
+        assert_eq!(laser.announced().range_limit_mm, 8191);
         assert_eq!(laser.ends(&scan).count(), 1);
+    }
+
+    #[test]
+    fn a_robot_brings_its_own_lidar() {
+        let scans = [scan(vec![2.0; 450]), scan(vec![2.0; 451])];
+        let robot = RobotSpec::open("round-0.35").expect("a preset");
+        let laser = LogLaser::of_robot(&scans, &robot).expect("one beam more is no matter");
+        for scan in &scans {
+            let ranges = &laser.observation(scan, 0, [0.0; 3]).scans[0].ranges_mm;
+            assert_eq!(ranges[..], [2000; 150]);
+            let ends = laser.ends(scan);
+            assert!(
+                ends.map(|[x, y]| x.hypot(y))
+                    .all(|r| (r - 2.0).abs() < 1e-9)
+            );
+        }
+        assert_eq!(start(&laser).robot_radius_mm, 230);
+        let error = LogLaser::of_robot(&[scan(vec![2.0; 360])], &robot).expect_err("too few");
+        assert!(error.contains("360") && error.contains("450"), "{error}");
     }
 
     #[test]

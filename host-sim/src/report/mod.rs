@@ -73,6 +73,9 @@ pub struct Report {
     pub start: usize,
     /// Faults put on the link, as given to `--fault`.
     pub injected_faults: Option<String>,
+    /// Name of the robot, its file's or its preset's; the key is missing for the usual one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robot_name: Option<String>,
     /// Faults of wheels and lasers, as given to `--disturb`; the key is missing without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disturbances: Option<String>,

@@ -1,4 +1,5 @@
-//! The ground that the robot covers: a rectangle, tested exactly against the world's solid cells.
+//! The ground that the robot covers: a rectangle or a disc, tested exactly against the world's
+//! solid cells.
 //!
 //! The nearest points of two convex shapes that do not overlap include a corner of one of them,
 //! so the gap between the rectangle and a cell is the least over the eight corners. The shapes
@@ -6,7 +7,8 @@
 //! the test where nothing can be near.
 //!
 //! The rectangle of a leaning robot is the shadow of its box: the bottom corners move in and the
-//! top corners move out. Walls count as higher than the robot. Metres.
+//! top corners move out. A leaning disc covers the disc around that shadow's middle which has half
+//! of its longer side as radius. Walls count as higher than the robot. Metres.
 
 use super::other::OtherRobot;
 use super::pose::{PlanarFrame, Pose};
@@ -15,7 +17,7 @@ use crate::world::{GridCell, World};
 /// Greatest clearance that is measured, metres.
 pub const FARTHEST_M: f64 = 1.0;
 
-/// A rectangle around the robot's centre.
+/// A rectangle around the robot's centre, or a disc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint {
     /// Half its length, along the heading, metres.
@@ -24,6 +26,8 @@ pub struct Footprint {
     pub half_width_m: f64,
     /// Height of the body over that rectangle, metres.
     pub height_m: f64,
+    /// True for the disc in the rectangle, which is then a square.
+    pub is_round: bool,
 }
 
 /// The rectangle at a pose, with its centre as the origin of its frame.
@@ -31,19 +35,42 @@ pub struct Footprint {
 struct Placed {
     half: [f64; 2],
     frame: PlanarFrame,
+    /// Radius of the disc that takes the rectangle's place.
+    radius_m: Option<f64>,
 }
 
 impl Footprint {
     /// The Pioneer 3-AT: 0.508 m long, 0.497 m wide, its deck 0.277 m high.
-    pub const PIONEER_3AT: Self = Self {
-        half_length_m: 0.254,
-        half_width_m: 0.2485,
-        height_m: 0.277,
-    };
+    pub const PIONEER_3AT: Self = Self::rectangle(0.508, 0.497, 0.277);
 
-    /// Distance from the centre to a corner, metres.
+    /// A rectangle of this length and width under a body of this height, metres.
+    #[must_use]
+    pub const fn rectangle(length_m: f64, width_m: f64, height_m: f64) -> Self {
+        Self {
+            half_length_m: 0.5 * length_m,
+            half_width_m: 0.5 * width_m,
+            height_m,
+            is_round: false,
+        }
+    }
+
+    /// A disc of this radius under a body of this height, metres.
+    #[must_use]
+    pub const fn disc(radius_m: f64, height_m: f64) -> Self {
+        Self {
+            half_length_m: radius_m,
+            half_width_m: radius_m,
+            height_m,
+            is_round: true,
+        }
+    }
+
+    /// Distance from the centre to the farthest point of the outline, metres.
     #[must_use]
     pub fn circumradius_m(&self) -> f64 {
+        if self.is_round {
+            return self.half_length_m;
+        }
         (self.half_length_m * self.half_length_m + self.half_width_m * self.half_width_m).sqrt()
     }
 
@@ -123,10 +150,20 @@ impl Footprint {
     /// The gap from the hull at a pose to a disc, seen from above; 0 if they overlap.
     #[must_use]
     pub fn gap_to_disc_m(&self, pose: &Pose, middle_m: [f64; 2], radius_m: f64) -> f64 {
-        let placed = self.place(pose);
-        let [a, b] = placed.half;
-        let to_middle_m = point_to_box(placed.frame.to_local(middle_m), [-a, -b, a, b]);
-        (to_middle_m - radius_m).max(0.0)
+        (self.place(pose).to_point_m(middle_m) - radius_m).max(0.0)
+    }
+
+    /// The part of a ray from `from` along `(ahead, left)` that lies over the hull of a robot on
+    /// level ground: its beginning and its end, in lengths of that vector; `None` if it passes by.
+    #[must_use]
+    pub fn crossing_m(&self, from: [f64; 2], along: [f64; 2]) -> Option<[f64; 2]> {
+        let [enter, leave] = if self.is_round {
+            disc_crossing(self.half_length_m, from, along)?
+        } else {
+            let halves = [self.half_length_m, self.half_width_m];
+            box_crossing(halves, from, along)?
+        };
+        (leave >= 0.0).then_some([enter.max(0.0), leave])
     }
 
     /// Distance from the pose to the farthest corner of the shadow, or more, metres.
@@ -134,6 +171,7 @@ impl Footprint {
         if pose.pitch_rad == 0.0 && pose.roll_rad == 0.0 {
             return self.circumradius_m();
         }
+        // That of the box, also for a disc: it is only a bound.
         let [[x0, x1], [y0, y1]] = self.shadow(pose);
         let (a, b) = (x1.max(-x0), y1.max(-y0));
         (a * a + b * b).sqrt()
@@ -160,11 +198,42 @@ impl Footprint {
     fn place(&self, pose: &Pose) -> Placed {
         let [[x0, x1], [y0, y1]] = self.shadow(pose);
         let (x, y) = (0.5 * (x0 + x1), 0.5 * (y0 + y1));
+        let half = [0.5 * (x1 - x0), 0.5 * (y1 - y0)];
         Placed {
-            half: [0.5 * (x1 - x0), 0.5 * (y1 - y0)],
+            half,
             frame: pose.planar_frame().shifted([x, y]),
+            radius_m: self.is_round.then(|| half[0].max(half[1])),
         }
     }
+}
+
+/// Where a ray enters and leaves a disc around the origin.
+pub(super) fn disc_crossing(radius_m: f64, from: [f64; 2], along: [f64; 2]) -> Option<[f64; 2]> {
+    let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+    let (square, half) = (dot(along, along), dot(from, along));
+    let outside = dot(from, from) - radius_m * radius_m;
+    if square == 0.0 {
+        return (outside <= 0.0).then_some([f64::NEG_INFINITY, f64::INFINITY]);
+    }
+    let root = half * half - square * outside;
+    (root >= 0.0).then(|| [-root.sqrt(), root.sqrt()].map(|root| (root - half) / square))
+}
+
+/// Where a ray enters and leaves a rectangle around the origin.
+fn box_crossing(halves: [f64; 2], from: [f64; 2], along: [f64; 2]) -> Option<[f64; 2]> {
+    let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
+    for (half, (from, along)) in halves.into_iter().zip(from.into_iter().zip(along)) {
+        if along == 0.0 {
+            if from.abs() > half {
+                return None;
+            }
+            continue;
+        }
+        let ends = [-half, half].map(|side| (side - from) / along);
+        enter = enter.max(ends[0].min(ends[1]));
+        leave = leave.min(ends[0].max(ends[1]));
+    }
+    (enter <= leave).then_some([enter, leave])
 }
 
 impl Placed {
@@ -174,8 +243,36 @@ impl Placed {
         [[a, b], [-a, b], [-a, -b], [a, -b]].map(|corner| self.frame.to_world(corner))
     }
 
+    /// Distance from a point to the shape; 0 inside.
+    fn to_point_m(&self, point: [f64; 2]) -> f64 {
+        let ([a, b], local) = (self.half, self.frame.to_local(point));
+        match self.radius_m {
+            Some(radius_m) => {
+                (local[0] * local[0] + local[1] * local[1])
+                    .sqrt()
+                    .max(radius_m)
+                    - radius_m
+            }
+            None => point_to_box(local, [-a, -b, a, b]),
+        }
+    }
+
+    /// The gap to another shape if one of them is a disc, negative if they overlap.
+    fn disc_gap_m(&self, other: &Self) -> Option<f64> {
+        let middle = other.frame.to_world([0.0; 2]);
+        match (self.radius_m, other.radius_m) {
+            (None, None) => None,
+            (_, Some(radius_m)) => Some(self.to_point_m(middle) - radius_m),
+            (Some(_), None) => other.disc_gap_m(self),
+        }
+    }
+
     /// Returns true if no edge direction of either shape separates them.
     fn overlaps(&self, [x0, y0, x1, y1]: [f64; 4]) -> bool {
+        if let Some(radius_m) = self.radius_m {
+            let middle = self.frame.to_world([0.0; 2]);
+            return point_to_box(middle, [x0, y0, x1, y1]) < radius_m;
+        }
         let corners = self.corners();
         let (low, high) = spread(corners.map(|c| c[0]));
         if high <= x0 || low >= x1 {
@@ -194,6 +291,9 @@ impl Placed {
 
     /// Returns true if no edge direction of either rectangle separates them.
     fn meets(&self, other: &Self) -> bool {
+        if let Some(gap_m) = self.disc_gap_m(other) {
+            return gap_m < 0.0;
+        }
         let parted = |by: &Self, corners: [[f64; 2]; 4]| {
             let local = corners.map(|corner| by.frame.to_local(corner));
             (0..2).any(|axis| {
@@ -206,6 +306,9 @@ impl Placed {
 
     /// Least distance from a corner of another rectangle to this one.
     fn between_m(&self, other: &Self) -> f64 {
+        if let Some(gap_m) = self.disc_gap_m(other) {
+            return gap_m;
+        }
         let [a, b] = self.half;
         let corners = other.corners().map(|corner| self.frame.to_local(corner));
         let gaps = corners.map(|corner| point_to_box(corner, [-a, -b, a, b]));
@@ -216,6 +319,9 @@ impl Placed {
     fn gap_m(&self, square: [f64; 4]) -> f64 {
         let [x0, y0, x1, y1] = square;
         let [a, b] = self.half;
+        if let Some(radius_m) = self.radius_m {
+            return point_to_box(self.frame.to_world([0.0; 2]), square) - radius_m;
+        }
         let to_rectangle = square_corners(square)
             .map(|corner| point_to_box(self.frame.to_local(corner), [-a, -b, a, b]));
         let to_square = self.corners().map(|c| point_to_box(c, [x0, y0, x1, y1]));
@@ -261,175 +367,4 @@ fn solid_cells(world: &World, pose: &Pose, reach_m: f64) -> impl Iterator<Item =
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::world::{Class, Occupancy};
-    use rand_chacha::ChaCha8Rng;
-    use rand_chacha::rand_core::{Rng, SeedableRng};
-
-    const ROBOT: Footprint = Footprint::PIONEER_3AT;
-
-    fn random_world(rng: &mut ChaCha8Rng) -> World {
-        let mut grid = Occupancy::filled(60, 50, 0.06, [-1.0, 0.5], Class::Free);
-        for _ in 0..8 {
-            let cell = GridCell {
-                i: i64::from(rng.next_u32() % 60),
-                j: i64::from(rng.next_u32() % 50),
-            };
-            grid.set(cell, Class::Wall);
-        }
-        World::flat("random", grid, Vec::new())
-    }
-
-    fn upright(x_m: f64, y_m: f64, yaw_rad: f64) -> Pose {
-        Pose {
-            x_m,
-            y_m,
-            yaw_rad,
-            ..Pose::default()
-        }
-    }
-
-    /// Least distance between points spread over the outlines and insides of both, 0.02 m apart.
-    fn sampled_m(world: &World, pose: &Pose) -> f64 {
-        let placed = ROBOT.place(pose);
-        let mut nearest = FARTHEST_M;
-        for square in solid_cells(world, pose, FARTHEST_M + 0.4) {
-            for a in -13..=13 {
-                for b in -13..=13 {
-                    let (x, y) = (
-                        f64::from(a) / 13.0 * placed.half[0],
-                        f64::from(b) / 13.0 * placed.half[1],
-                    );
-                    let point = placed.frame.to_world([x, y]);
-                    nearest = nearest.min(point_to_box(point, square));
-                }
-            }
-        }
-        nearest
-    }
-
-    #[test]
-    fn clearance_is_what_sampling_finds() {
-        let mut rng = ChaCha8Rng::seed_from_u64(31);
-        let (mut touching, mut near, mut far) = (0, 0, 0);
-        for _ in 0..15 {
-            let world = random_world(&mut rng);
-            for _ in 0..16 {
-                let mut uniform = |low: f64, high: f64| {
-                    low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX)
-                };
-                let pose = upright(uniform(-1.0, 2.6), uniform(0.5, 3.5), uniform(-4.0, 4.0));
-                let exact = ROBOT.clearance_m(&world, &pose);
-                let sampled = sampled_m(&world, &pose);
-                // Samples are at most 14 mm from any point of the rectangle.
-                assert!(exact <= sampled + 1e-12, "{pose:?}: {exact} > {sampled}");
-                assert!(sampled <= exact + 0.0138, "{pose:?}: {exact}, {sampled}");
-                assert_eq!(ROBOT.overlaps(&world, &pose), exact == 0.0);
-                assert!(ROBOT.clearance_bound_m(&world, &pose) <= exact.max(0.0));
-                touching += u32::from(exact == 0.0);
-                near += u32::from(exact > 0.0 && exact < 0.2);
-                far += u32::from(exact >= 0.2);
-            }
-        }
-        assert!(
-            touching > 30 && near > 30 && far > 5,
-            "{touching} {near} {far}"
-        );
-    }
-
-    #[test]
-    fn the_gap_between_two_robots_is_what_sampling_finds() {
-        let mut rng = ChaCha8Rng::seed_from_u64(33);
-        let mut uniform = |low: f64, high: f64| {
-            low + (high - low) * f64::from(rng.next_u32()) / f64::from(u32::MAX)
-        };
-        let (mut touching, mut apart) = (0, 0);
-        for _ in 0..300 {
-            let here = upright(0.0, 0.0, uniform(-3.0, 3.0));
-            let other = OtherRobot::new(
-                ROBOT,
-                upright(uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-3.0, 3.0)),
-            );
-            let (ours, theirs) = (ROBOT.place(&here), ROBOT.place(other.pose()));
-            let mut sampled = f64::INFINITY;
-            for a in -13..=13 {
-                for b in -13..=13 {
-                    let share = [f64::from(a) / 13.0, f64::from(b) / 13.0];
-                    let point = theirs
-                        .frame
-                        .to_world([share[0] * theirs.half[0], share[1] * theirs.half[1]]);
-                    let [x, y] = ours.half;
-                    let local = ours.frame.to_local(point);
-                    sampled = sampled.min(point_to_box(local, [-x, -y, x, y]));
-                }
-            }
-            let gap_m = ROBOT.gap_m(&here, &other);
-            assert!(
-                gap_m <= sampled + 1e-12 && sampled <= gap_m + 0.0138,
-                "{gap_m} {sampled}"
-            );
-            assert_eq!(ROBOT.touches(&here, &other), gap_m == 0.0);
-            touching += u32::from(gap_m == 0.0);
-            apart += u32::from(gap_m > 0.0);
-        }
-        assert!(touching > 50 && apart > 50, "{touching} {apart}");
-    }
-
-    #[test]
-    fn a_door_just_wider_than_the_robot_lets_it_pass_straight_only() {
-        // A gap of 0.6 m at y in [0.7, 1.3].
-        let mut grid = Occupancy::filled(60, 40, 0.05, [0.0, 0.0], Class::Free);
-        for j in (0..14).chain(26..40) {
-            for i in 28..32 {
-                grid.set(GridCell { i, j }, Class::Wall);
-            }
-        }
-        let world = World::flat("door", grid, Vec::new());
-        let clearance = ROBOT.clearance_m(&world, &upright(1.5, 1.0, 0.0));
-        assert!((clearance - (0.3 - 0.2485)).abs() < 1e-9, "{clearance}");
-        assert!(ROBOT.overlaps(&world, &upright(1.5, 1.0, 0.6)));
-        assert!(!ROBOT.overlaps(&world, &upright(1.5, 1.0, 0.1)));
-        // At a lean of 20° to the right the deck extends by 0.277 sin 20° and the side moves in.
-        let leaning = Pose {
-            roll_rad: 20.0_f64.to_radians(),
-            ..upright(1.5, 1.0, 0.0)
-        };
-        let out = 0.2485 * 20.0_f64.to_radians().cos() + 0.277 * 20.0_f64.to_radians().sin();
-        assert!(out > 0.3 && ROBOT.overlaps(&world, &leaning));
-        let aside = Pose {
-            y_m: 1.04,
-            ..leaning
-        };
-        let clearance = ROBOT.clearance_m(&world, &aside);
-        assert!((clearance - (0.34 - out)).abs() < 1e-9, "{clearance}");
-    }
-
-    /// Every corner of the rotated box lies in the shadow, and a corner touches each of its sides.
-    #[test]
-    fn the_shadow_is_the_box_seen_from_above() {
-        let mut rng = ChaCha8Rng::seed_from_u64(32);
-        for _ in 0..200 {
-            let mut angle = || (f64::from(rng.next_u32()) / f64::from(u32::MAX) - 0.5) * 1.2;
-            let pose = Pose {
-                pitch_rad: angle(),
-                roll_rad: angle(),
-                ..Pose::default()
-            };
-            let [forward, left, up] = pose.axes();
-            let mut reached = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-            for k in 0..8 {
-                let sign = |bit: u32| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
-                let (a, b) = (sign(0) * ROBOT.half_length_m, sign(1) * ROBOT.half_width_m);
-                let h = 0.5 * (1.0 + sign(2)) * ROBOT.height_m;
-                for (axis, [low, high]) in reached.iter_mut().enumerate() {
-                    let place = a * forward[axis] + b * left[axis] + h * up[axis];
-                    (*low, *high) = (low.min(place), high.max(place));
-                }
-            }
-            for (ours, exact) in ROBOT.shadow(&pose).iter().zip(&reached) {
-                assert!((ours[0] - exact[0]).abs() < 1e-12 && (ours[1] - exact[1]).abs() < 1e-12);
-            }
-        }
-    }
-}
+mod tests;

@@ -1,4 +1,4 @@
-//! The two laser scanners: their mounts, their beams and their errors.
+//! The laser scanners: the two usual mounts, the beams, and their errors.
 //!
 //! A beam at bearing b leaves along `(cos b, sin b, 0)`, turned by the mount's pitch and then by
 //! the robot's attitude. Mount and bearings are first rounded to the wire's fixed-point numbers,
@@ -6,13 +6,17 @@
 //!
 //! A measured range is `r + σ·N(0,1)`, rounded to millimetres. With a small probability no return
 //! comes (dark or shiny surfaces); with a smaller one a return comes from nearer than the wall
-//! (dust, an edge hit by half of the beam).
+//! (dust, an edge hit by half of the beam). The readings go through [`Sectors`], as those of a real
+//! lidar: the simulated one turns the way that it turns, and has as many beams as it has.
 
-use fieldline_protocol::message::{self, INVALID_MM, MAX_BEAMS, NO_RETURN_MM, Scan};
+use fieldline_protocol::message::{self, MAX_BEAMS, Scan};
 use fixed::types::{I4F12, I16F16};
 
+use super::footprint::Footprint;
+use super::lidar::Lidar;
 use super::noise::{Noise, Source};
 use super::pose::Pose;
+use super::sectors::Sectors;
 use crate::world::{Ray, World};
 
 /// Errors of a laser.
@@ -45,8 +49,8 @@ impl LaserNoise {
     };
 }
 
-/// Least range that is reported, metres: anything nearer is the laser's own housing.
-const NEAREST_M: f64 = 0.02;
+/// Least range that a beam measures, metres: anything nearer is the laser's own housing.
+pub(super) const NEAREST_M: f64 = 0.02;
 
 /// The level scanner: 0.10 m ahead of the centre, 0.40 m up.
 #[must_use]
@@ -77,9 +81,10 @@ fn mount(x_m: f64, z_m: f64, down_deg: f64) -> message::Laser {
 /// One scanner.
 #[derive(Clone, Debug)]
 pub struct LaserScanner {
+    sectors: Sectors,
     /// Origin of the beams in the robot's frame, metres.
     position_m: [f64; 3],
-    /// Directions of the beams in the robot's frame.
+    /// Directions of the beams in the robot's frame, from right to left.
     directions: Vec<[f64; 3]>,
     limit_m: f64,
     errors: LaserNoise,
@@ -95,25 +100,34 @@ impl LaserScanner {
         laser: &message::Laser,
         errors: LaserNoise,
         seed: u64,
-        [range, fault]: [Source; 2],
+        sources: [Source; 2],
     ) -> Self {
-        let pitch: f64 = laser.pitch.to_num();
-        let (first, step): (f64, f64) = (laser.first_bearing.to_num(), laser.bearing_step.to_num());
-        let directions = (0..laser.beams.min(MAX_BEAMS as u16))
-            .map(|beam| {
-                let bearing = first + step * f64::from(beam);
-                let (cos, sin) = (libm::cos(bearing), libm::sin(bearing));
-                [cos * libm::cos(pitch), sin, -cos * libm::sin(pitch)]
-            })
-            .collect();
+        let lidar = Lidar::announced(laser, errors);
+        Self::of(&lidar, &Footprint::PIONEER_3AT, seed, sources)
+    }
+
+    /// A lidar on a robot with this hull, with noise `sources` for ranges and faults.
+    #[must_use]
+    pub fn of(lidar: &Lidar, hull: &Footprint, seed: u64, [range, fault]: [Source; 2]) -> Self {
+        let sectors = Sectors::new(lidar, hull);
+        let laser = sectors.laser();
         Self {
             position_m: [laser.x.to_num(), laser.y.to_num(), laser.z.to_num()],
-            directions,
-            limit_m: f64::from(laser.range_limit_mm) / 1000.0,
-            errors,
+            directions: (0..sectors.promised())
+                .map(|position| sectors.direction(position))
+                .collect(),
+            limit_m: lidar.most_m,
+            errors: lidar.noise,
             range: Noise::new(seed, range),
             fault: Noise::new(seed, fault),
+            sectors,
         }
+    }
+
+    /// The laser to announce to the planner.
+    #[must_use]
+    pub const fn announced(&self) -> &message::Laser {
+        self.sectors.laser()
     }
 
     /// Measures one sweep from a pose.
@@ -139,7 +153,7 @@ impl LaserScanner {
             pose.y_m + offset[1],
             pose.z_m + offset[2],
         ];
-        let mut scan = Scan::default();
+        let mut readings_m = Vec::with_capacity(self.directions.len());
         for beam in 0..self.directions.len() {
             let ray = Ray {
                 origin_m,
@@ -147,45 +161,35 @@ impl LaserScanner {
             };
             let hit_m = world.cast(&ray, self.limit_m).map(|hit| hit.range_m);
             let nearer_m = moving(&ray, hit_m.unwrap_or(self.limit_m));
-            let code = self.measure(nearer_m.or(hit_m));
-            // The vector holds MAX_BEAMS, and there are no more directions than that.
-            let _ = scan.ranges_mm.push(code);
+            readings_m.push(self.measure(nearer_m.or(hit_m)));
         }
-        scan
+        if self.sectors.is_reversed() {
+            readings_m.reverse();
+        }
+        self.sectors.fold(&readings_m)
     }
 
-    /// Returns the range code that the scanner reports for a true range.
-    fn measure(&mut self, range_m: Option<f64>) -> u16 {
+    /// Returns the reading that the scanner reports for a true range, metres; infinite without a
+    /// return.
+    fn measure(&mut self, range_m: Option<f64>) -> f64 {
         // Every beam makes all draws, so that no beam shifts the draws of the next.
         let error_m = self.errors.sigma_m * self.range.normal();
         let (fate, place) = (self.fault.uniform(), self.fault.uniform());
         let reach_m = range_m.unwrap_or(self.limit_m);
         if fate < self.errors.false_return {
-            return code(NEAREST_M + place * (reach_m - NEAREST_M).max(0.0));
+            return NEAREST_M + place * (reach_m - NEAREST_M).max(0.0);
         }
         match range_m {
-            Some(range_m) if fate < 1.0 - self.errors.lost => {
-                let measured_m = range_m + error_m;
-                if measured_m > self.limit_m {
-                    NO_RETURN_MM
-                } else {
-                    code(measured_m)
-                }
-            }
-            _ => NO_RETURN_MM,
+            Some(range_m) if fate < 1.0 - self.errors.lost => (range_m + error_m).max(NEAREST_M),
+            _ => f64::INFINITY,
         }
     }
-}
-
-/// A range in millimetres, kept between the two codes.
-fn code(range_m: f64) -> u16 {
-    let millimetres = (range_m.max(NEAREST_M) * 1000.0).round() as u16;
-    millimetres.clamp(INVALID_MM + 1, NO_RETURN_MM - 1)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fieldline_protocol::message::NO_RETURN_MM;
 
     fn scanner(laser: &message::Laser, errors: LaserNoise, seed: u64) -> LaserScanner {
         LaserScanner::new(
@@ -270,20 +274,20 @@ mod tests {
                 .ranges_mm[90],
         );
         let count = 20_000;
-        let ahead: Vec<u16> = (0..count)
-            .map(|_| laser.measure(Some(truth / 1000.0)))
+        let ahead: Vec<f64> = (0..count)
+            .map(|_| 1000.0 * laser.measure(Some(truth / 1000.0)))
             .collect();
         let share = |test: &dyn Fn(f64) -> bool| {
-            ahead.iter().filter(|r| test(f64::from(**r))).count() as f64 / f64::from(count)
+            ahead.iter().filter(|r| test(**r)).count() as f64 / f64::from(count)
         };
-        let lost = share(&|range| range == f64::from(NO_RETURN_MM));
+        let lost = share(&|range| range.is_infinite());
         let near = share(&|range| range < truth - 100.0);
         // Four standard errors; a false return is within 100 mm of the wall in 3.5 % of its cases.
         assert!((lost - 0.05).abs() < 0.0062, "{lost}");
         assert!((near - 0.029).abs() < 0.0048, "{near}");
         let good: Vec<f64> = ahead
             .iter()
-            .map(|range| f64::from(*range) - truth)
+            .map(|range| range - truth)
             .filter(|error| error.abs() < 100.0)
             .collect();
         let variance = good.iter().map(|e| e * e).sum::<f64>() / good.len() as f64;

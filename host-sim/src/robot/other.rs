@@ -5,7 +5,7 @@
 //! is cut with the box's three slabs in the box's own frame; the first face that it enters is the
 //! hit. Hulls touch if the rectangles of [`Footprint`] overlap, seen from above. Metres.
 
-use super::footprint::Footprint;
+use super::footprint::{Footprint, disc_crossing};
 use super::pose::Pose;
 use crate::world::Ray;
 
@@ -57,6 +57,9 @@ impl OtherRobot {
         if dot(&offset, &offset) > reach_m * reach_m {
             return None;
         }
+        if self.footprint.is_round {
+            return self.cast_disc(ray, &offset, top_m, limit_m);
+        }
         let (a, b) = (self.footprint.half_length_m, self.footprint.half_width_m);
         let slabs = [[-a, a], [-b, b], [0.0, top_m]];
         let (mut enter_m, mut leave_m) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -72,6 +75,22 @@ impl OtherRobot {
             enter_m = enter_m.max(ends[0].min(ends[1]));
             leave_m = leave_m.min(ends[0].max(ends[1]));
         }
+        (enter_m > 0.0 && enter_m <= leave_m && enter_m <= limit_m).then_some(enter_m)
+    }
+
+    /// As [`Self::cast`], for an upright cylinder.
+    fn cast_disc(&self, ray: &Ray, offset: &[f64; 3], top_m: f64, limit_m: f64) -> Option<f64> {
+        let [start, along] = [offset, &ray.direction]
+            .map(|vector| [0, 1, 2].map(|axis| dot(vector, &self.axes[axis])));
+        let radius_m = self.footprint.half_length_m;
+        let side = disc_crossing(radius_m, [start[0], start[1]], [along[0], along[1]])?;
+        let between = if along[2] == 0.0 {
+            (0.0..=top_m).contains(&start[2]).then_some(side)?
+        } else {
+            let ends = [0.0, top_m].map(|height| (height - start[2]) / along[2]);
+            [ends[0].min(ends[1]), ends[0].max(ends[1])]
+        };
+        let (enter_m, leave_m) = (side[0].max(between[0]), side[1].min(between[1]));
         (enter_m > 0.0 && enter_m <= leave_m && enter_m <= limit_m).then_some(enter_m)
     }
 }
@@ -159,5 +178,50 @@ mod tests {
         assert_eq!(other.cast(&towards(0.1), 12.0), None);
         assert_eq!(other.cast(&towards(-3.0), 12.0), None);
         assert_eq!(nearest_m(&[], &towards(3.0), 12.0), None);
+    }
+
+    #[test]
+    fn rays_hit_a_round_robot_where_sampling_finds_it() {
+        let hull = Footprint::disc(0.2, 0.3);
+        let pose = Pose {
+            x_m: 2.0,
+            y_m: 1.0,
+            pitch_rad: 0.2,
+            roll_rad: -0.1,
+            yaw_rad: 0.7,
+            ..Pose::default()
+        };
+        let robot = OtherRobot::new(hull, pose);
+        let is_within = |point: &[f64; 3]| {
+            let offset = [point[0] - 2.0, point[1] - 1.0, point[2]];
+            let [x, y, z] = [0, 1, 2].map(|axis| dot(&offset, &robot.axes[axis]));
+            x * x + y * y <= 0.04 && (0.0..=MAST_M).contains(&z)
+        };
+        let mut hits = 0;
+        for k in 0..200 {
+            let angle = 0.5 * f64::from(k % 50 - 25) / 25.0;
+            let down = -0.4 + 0.2 * f64::from(k / 50);
+            let direction = [angle.cos(), angle.sin(), down];
+            let length = dot(&direction, &direction).sqrt();
+            let ray = Ray {
+                origin_m: [0.0, 0.5, 0.4],
+                direction: direction.map(|part| part / length),
+            };
+            let at = |range_m: f64| {
+                [0, 1, 2].map(|axis| ray.origin_m[axis] + range_m * ray.direction[axis])
+            };
+            let steps = (0..4000).map(|step| 0.001 * f64::from(step));
+            let sampled = steps.into_iter().find(|range_m| is_within(&at(*range_m)));
+            let cast = robot.cast(&ray, 4.0);
+            match (cast, sampled) {
+                (Some(a), Some(b)) => assert!((a - b).abs() < 2e-3, "{k}: {a} {b}"),
+                // A ray may graze the rim between two samples.
+                (Some(a), None) => assert!(!is_within(&at(a + 0.02)), "{k}"),
+                (None, Some(_)) => panic!("{k}"),
+                (None, None) => {}
+            }
+            hits += u32::from(cast.is_some());
+        }
+        assert!(hits > 10, "{hits}");
     }
 }

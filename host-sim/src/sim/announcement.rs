@@ -1,13 +1,14 @@
 //! The announcement: the start message, which tells a planner what is simulated.
 //!
-//! Lengths are rounded to the wire's numbers. Accelerations are rounded down, so that the planner
+//! Lengths are rounded to the wire's numbers. A round hull is told as the square around it, since the
+//! wire knows boxes only: the planner then counts on more room than the robot needs. Accelerations are rounded down, so that the planner
 //! never counts on more than there is.
 
-use fieldline_protocol::message::{Hull, LoopLimits, Start, Strategy};
+use fieldline_protocol::message::{Hull, Start, Strategy};
 use fixed::types::I4F12;
 
 use super::Simulator;
-use crate::robot::{Footprint, laser};
+use crate::robot::{DriveLimits, Footprint, LaserScanner};
 
 /// The greatest number of the wire that is at most `quantity`.
 fn at_most(quantity: f64) -> I4F12 {
@@ -28,27 +29,35 @@ fn hull(footprint: &Footprint) -> Hull {
     }
 }
 
+/// Returns what a start message tells of a robot's body; the rest has its defaults.
+pub(crate) fn of_robot(footprint: &Footprint, radius_m: f64, limits: &DriveLimits) -> Start {
+    Start {
+        hull: hull(footprint),
+        robot_radius_mm: millimetres(radius_m),
+        max_linear: I4F12::saturating_from_num(limits.linear_mps),
+        max_angular: I4F12::saturating_from_num(limits.angular_radps),
+        linear_accel: at_most(limits.acceleration_mps2.min(limits.braking_mps2)),
+        angular_accel: at_most(limits.angular_radps2),
+        ..Start::default()
+    }
+}
+
 impl Simulator<'_> {
     /// The start message for the planner.
     #[must_use]
     pub fn start_message(&self, strategy: Strategy) -> Start {
-        let limits = &self.config.limits;
+        let config = &self.config;
         Start {
             strategy,
-            lasers: [laser::level(), laser::tilted()].into_iter().collect(),
-            hull: hull(&self.config.footprint),
-            robot_radius_mm: millimetres(self.config.radius_m),
-            max_linear: I4F12::saturating_from_num(limits.linear_mps),
-            max_angular: I4F12::saturating_from_num(limits.angular_radps),
-            linear_accel: at_most(limits.acceleration_mps2.min(limits.braking_mps2)),
-            angular_accel: at_most(limits.angular_radps2),
-            period_ms: u16::try_from(self.config.period_ms).unwrap_or(u16::MAX),
-            uneven_ground: None,
-            loops: LoopLimits::default(),
+            lasers: self
+                .lasers
+                .iter()
+                .map(LaserScanner::announced)
+                .copied()
+                .collect(),
+            period_ms: u16::try_from(config.period_ms).unwrap_or(u16::MAX),
             order: strategy.order(),
-            team: None,
-            localise: false,
-            survey: false,
+            ..of_robot(&config.footprint, config.radius_m, &config.limits)
         }
     }
 }

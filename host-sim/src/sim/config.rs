@@ -1,12 +1,13 @@
 //! Parameters of a simulated run.
 
 use crate::robot::{
-    Disturbances, DriveLimits, Footprint, LaserNoise, Limits, OdometryModel, RADIUS_M, Traction,
+    Disturbances, DriveLimits, Footprint, Lidar, Limits, OdometryModel, RADIUS_M, Traction,
+    usual_lidars,
 };
 use crate::world::Start;
 
 /// Parameters of a simulated run.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SimConfig {
     /// Seed of all noise. Default: 0.
     pub seed: u64,
@@ -16,8 +17,8 @@ pub struct SimConfig {
     pub place: Option<Start>,
     /// Model of the odometry. Default: the truth.
     pub odometry: OdometryModel,
-    /// Errors of the lasers. Default: [`LaserNoise::default`].
-    pub laser_noise: LaserNoise,
+    /// The lidars, one or two, the first one level. Default: [`usual_lidars`].
+    pub lidars: Vec<Lidar>,
     /// Faults of wheels and lasers. Default: none.
     pub disturbances: Disturbances,
     /// Number of people who walk about. Default: 0.
@@ -49,7 +50,7 @@ impl Default for SimConfig {
             start: 0,
             place: None,
             odometry: OdometryModel::Truth,
-            laser_noise: LaserNoise::default(),
+            lidars: usual_lidars(),
             disturbances: Disturbances::default(),
             people: 0,
             footprint: Footprint::PIONEER_3AT,

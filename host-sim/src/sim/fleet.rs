@@ -65,7 +65,8 @@ impl<'w> Fleet<'w> {
     /// [`FleetError`] if one cannot stand at its start or two overlap there.
     pub fn new(world: &'w World, configs: &[SimConfig]) -> Result<Self, FleetError> {
         let placed = (0..).zip(configs).map(|(robot, config)| {
-            Simulator::new(world, *config).map_err(|error| FleetError::Start { robot, error })
+            Simulator::new(world, config.clone())
+                .map_err(|error| FleetError::Start { robot, error })
         });
         let robots: Vec<Simulator<'w>> = placed.collect::<Result<_, _>>()?;
         let mut fleet = Self {
@@ -241,7 +242,7 @@ mod tests {
     fn a_fleet_of_one_is_the_robot_alone_bit_for_bit() {
         let world = World::builtin("office").expect("built in");
         let config = SimConfig::default();
-        let mut alone = Simulator::new(&world, config).expect("fits");
+        let mut alone = Simulator::new(&world, config.clone()).expect("fits");
         let mut fleet = Fleet::new(&world, &[config]).expect("fits");
         for step in 0..60 {
             assert_eq!(fleet.observe(0), alone.observe());

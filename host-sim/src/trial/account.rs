@@ -13,7 +13,7 @@ use super::snapshot::Window;
 use super::{Setup, Survey, record};
 use crate::metrics::{Coverage, Footing, GroundTruth};
 use crate::report::tum::Stamped;
-use crate::robot::{OdometryModel, laser};
+use crate::robot::OdometryModel;
 use crate::sim::Simulator;
 use crate::slam::particles::Beside;
 
@@ -35,7 +35,8 @@ impl Account {
     pub(super) fn new(setup: &Setup, simulator: &Simulator<'_>) -> Self {
         let (world, working) = (simulator.world(), &simulator.config().working);
         let start = simulator.start();
-        let range_m = f64::from(laser::level().range_limit_mm) / 1000.0;
+        let level = setup.start.lasers.first();
+        let range_m = f64::from(level.map_or(0, |laser| laser.range_limit_mm)) / 1000.0;
         let uneven = world.elevation();
         let footing =
             uneven.map(|_| Footing::new(world, start, simulator.config().radius_m, working));

@@ -18,8 +18,10 @@ use crate::baseline::bvp_papers::Relaxation;
 use crate::link::{Link, LinkError};
 use crate::report::Report;
 use crate::report::tum::Stamped;
+use crate::robot::presets::DEFAULT;
 use crate::robot::{
-    Disturbances, Footprint, LaserNoise, Limits, OdometryModel, OdometryNoise, RADIUS_M,
+    Disturbances, DriveLimits, Footprint, Lidar, Limits, OdometryModel, OdometryNoise, RADIUS_M,
+    RobotSpec, usual_lidars,
 };
 use crate::sim::{SimConfig, Simulator};
 use crate::slam::particles::{Beside, ParticleSpec};
@@ -60,12 +62,20 @@ pub struct Mission {
     /// Standard deviation of roll and pitch, radians. If `None`, 0 with true odometry and that of
     /// [`OdometryNoise`] with noisy odometry.
     pub imu_rad: Option<f64>,
-    /// Standard deviation of ranges, metres; that of [`LaserNoise`] if `None`.
+    /// Standard deviation of ranges, metres; that of each lidar if `None`.
     pub laser_m: Option<f64>,
     /// Faults of wheels and lasers.
     pub disturbances: Disturbances,
     /// Number of people who walk about.
     pub people: usize,
+    /// Name of the robot, for the report.
+    pub robot: String,
+    /// Limits of the robot's drive.
+    pub drive: DriveLimits,
+    /// The robot's lidars, one or two, the first one level.
+    pub lidars: Vec<Lidar>,
+    /// Errors of odometry that is [`OdometryProfile::Noisy`].
+    pub wheels: OdometryNoise,
     /// The robot's hull.
     pub hull: Footprint,
     /// Radius around the robot's centre that the planner keeps clear, metres.
@@ -119,6 +129,10 @@ impl Default for Mission {
             laser_m: None,
             disturbances: Disturbances::default(),
             people: 0,
+            robot: DEFAULT.into(),
+            drive: DriveLimits::default(),
+            lidars: usual_lidars(),
+            wheels: OdometryNoise::default(),
             hull: Footprint::PIONEER_3AT,
             radius_m: RADIUS_M,
             order: None,
@@ -155,15 +169,6 @@ pub enum OdometryProfile {
 }
 
 impl OdometryProfile {
-    /// Returns what a pose graph expects of the wheels.
-    #[must_use]
-    pub fn wheels(self) -> fieldline_slam::Motion {
-        let usual = OdometryNoise::default();
-        let noise = self.noise().unwrap_or(usual);
-        let factor = noise.turn_by_turn / usual.turn_by_turn;
-        fieldline_slam::Motion::WHEELS.times(factor.max(1.0) as f32)
-    }
-
     /// Returns the name on the command line and in the report.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -252,6 +257,37 @@ pub fn on_device(name: &str) -> Option<Strategy> {
 }
 
 impl Mission {
+    /// Returns the mission of another robot.
+    #[must_use]
+    pub fn with_robot(self, robot: &RobotSpec) -> Self {
+        Self {
+            robot: robot.name.clone(),
+            drive: robot.drive,
+            lidars: robot.lidars.clone(),
+            wheels: robot.odometry,
+            hull: robot.hull,
+            radius_m: robot.radius_m,
+            ..self
+        }
+    }
+
+    /// Returns the errors of the odometry; `None` for the truth.
+    fn odometry_noise(&self) -> Option<OdometryNoise> {
+        match self.odometry {
+            OdometryProfile::Noisy => Some(self.wheels),
+            other => other.noise(),
+        }
+    }
+
+    /// Returns what a pose graph expects of the wheels.
+    #[must_use]
+    pub fn motion(&self) -> fieldline_slam::Motion {
+        let usual = OdometryNoise::default();
+        let noise = self.odometry_noise().unwrap_or(usual);
+        let factor = noise.turn_by_turn / usual.turn_by_turn;
+        fieldline_slam::Motion::WHEELS.times(factor.max(1.0) as f32)
+    }
+
     /// Returns the strategy that the device is told.
     pub(super) fn strategy(&self) -> Strategy {
         match on_device(&self.strategy).unwrap_or_default() {
@@ -295,13 +331,16 @@ impl Mission {
 
     /// Returns the simulator's configuration.
     pub(super) fn sim_config(&self) -> SimConfig {
-        let lasers = LaserNoise::default();
+        let mut lidars = self.lidars.clone();
+        for lidar in &mut lidars {
+            lidar.noise.sigma_m = self.laser_m.unwrap_or(lidar.noise.sigma_m);
+        }
         SimConfig {
             seed: self.seed,
             start: self.start,
             place: self.place,
             period_ms: self.period_ms,
-            odometry: match (self.odometry.noise(), self.imu_rad) {
+            odometry: match (self.odometry_noise(), self.imu_rad) {
                 (Some(usual), imu_rad) => OdometryModel::Noisy(OdometryNoise {
                     attitude_rad: imu_rad.unwrap_or(usual.attitude_rad),
                     ..usual
@@ -309,10 +348,8 @@ impl Mission {
                 (None, Some(imu_rad)) => OdometryModel::Tilting(imu_rad),
                 (None, None) => OdometryModel::Truth,
             },
-            laser_noise: LaserNoise {
-                sigma_m: self.laser_m.unwrap_or(lasers.sigma_m),
-                ..lasers
-            },
+            lidars,
+            limits: self.drive,
             disturbances: self.disturbances,
             people: self.people,
             footprint: self.hull,
@@ -388,7 +425,7 @@ fn explored(
     link.hello()?;
     let usual = setup(mission, &simulator);
     let mut closer = match mission.slam {
-        SlamPlace::Host => LoopCloser::new(&usual.start, mission.odometry.wheels()),
+        SlamPlace::Host => LoopCloser::new(&usual.start, mission.motion()),
         SlamPlace::Off => None,
     };
     let corrector = match (corrector, &mut closer) {

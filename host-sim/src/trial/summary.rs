@@ -10,6 +10,7 @@ use crate::metrics::{CellSet, Loops, map_error};
 use crate::report::true_ground::{ClassScores, TrueGround, degrees};
 use crate::report::{self, Report, SCHEMA_VERSION};
 use crate::robot::OdometryModel;
+use crate::robot::presets::DEFAULT;
 use crate::sim::{SimConfig, Simulator};
 use crate::world::World;
 
@@ -48,6 +49,7 @@ pub(super) fn report(
         odometry: mission.odometry.name().into(),
         start: mission.start,
         injected_faults: mission.fault.clone(),
+        robot_name: Some(mission.robot.clone()).filter(|name| name != DEFAULT),
         disturbances: disturbances(mission),
         people: Some(mission.people).filter(|count| *count > 0),
         noise: noise(simulator.config()),
@@ -199,7 +201,7 @@ fn noise(config: &SimConfig) -> report::Noise {
         OdometryModel::Noisy(noise) => noise.attitude_rad,
     };
     report::Noise {
-        laser_m: config.laser_noise.sigma_m,
+        laser_m: config.lidars.first().map_or(0.0, |it| it.noise.sigma_m),
         imu_deg: degrees(imu_rad),
     }
 }

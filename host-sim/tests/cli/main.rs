@@ -4,6 +4,7 @@ mod campaigns;
 mod commands;
 mod refusals;
 mod replay;
+mod robots;
 mod runs;
 mod sessions;
 

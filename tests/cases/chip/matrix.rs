@@ -110,12 +110,7 @@ fn flat() -> Vec<Case> {
             it.order = Some(Order::Gain { worth });
         }),
         of("--hull 0.9x0.6x0.4 --radius 0.5", "hall", |it| {
-            let hull = Footprint {
-                half_length_m: 0.45,
-                half_width_m: 0.3,
-                height_m: 0.4,
-            };
-            (it.hull, it.radius_m) = (hull, 0.5);
+            (it.hull, it.radius_m) = (Footprint::rectangle(0.9, 0.6, 0.4), 0.5);
         }),
         corrected("--odometry noisy", |_| ()),
         corrected("--odometry papers", |it| {

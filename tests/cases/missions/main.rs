@@ -15,5 +15,6 @@ mod orders;
 mod people;
 mod periods;
 mod replay;
+mod robots;
 mod space;
 mod whole;

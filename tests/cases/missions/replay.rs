@@ -13,6 +13,7 @@ mod data {
     use host_sim::replay::carmen::{self, LogScan};
     use host_sim::replay::relations::{self, Pose, Relation, RelationError};
     use host_sim::replay::report::{self, RelationErrors};
+    use host_sim::replay::wire::LogLaser;
     use host_sim::replay::{clock, run};
     use host_sim::report::QualityShares;
 
@@ -113,7 +114,9 @@ mod data {
     fn row(job: &Job<'_>) -> Vec<String> {
         let log = job.log;
         let odometry = run::odometry(&log.scans, job.degrade, job.seed);
+        let laser = LogLaser::of(&log.scans);
         let replayed = run::run(
+            &laser,
             &log.scans,
             &odometry,
             &mut Direct::default(),
@@ -128,7 +131,7 @@ mod data {
         let long = errors(log, poses, |relation| !is_short(relation));
         let metres = |errors: &Option<RelationErrors>| errors.map(|it| it.translation_m.mean);
         let shares = QualityShares::of(&replayed.qualities);
-        let cells = |poses: &[Pose]| report::occupied_cells(&log.scans, poses).to_string();
+        let cells = |poses: &[Pose]| report::occupied_cells(&laser, &log.scans, poses).to_string();
         vec![
             log.name.clone(),
             number(job.degrade, 0),

@@ -260,7 +260,7 @@ fn robot(choices: &mut impl Choices) -> Option<Simulator<'static>> {
     };
     let alone = SimConfig {
         people: 0,
-        ..config
+        ..config.clone()
     };
     // People may find no room; then there are none.
     let robot = Simulator::new(world, config).or_else(|_| Simulator::new(world, alone));

@@ -290,7 +290,7 @@ fn begin<'a>(
         };
         let mut member = Member::begin(robot, link.as_mut(), setup, account);
         if missions[robot].slam == SlamPlace::Host {
-            member.close_loops(missions[robot].odometry.wheels());
+            member.close_loops(missions[robot].motion());
         }
         members.push(member);
     }

@@ -37,13 +37,13 @@ impl<'w> Places<'w> {
     /// # Errors
     /// As [`WorldError::Start`].
     pub(super) fn new(world: &'w World, config: SimConfig) -> Result<Self, WorldError> {
-        let first = Simulator::new(world, config)?.start();
+        let first = Simulator::new(world, config.clone())?.start();
         Ok(Self {
             world,
-            config,
             first,
             reach: CellSet::reach(world, first, config.radius_m),
             taken: vec![first],
+            config,
         })
     }
 
@@ -125,7 +125,7 @@ impl<'w> Places<'w> {
         let footprint = &self.config.footprint;
         let config = SimConfig {
             place: Some(start),
-            ..self.config
+            ..self.config.clone()
         };
         self.off_m(&start) >= 2.0 * footprint.circumradius_m() + BETWEEN_M
             && self.reaches(&start)
