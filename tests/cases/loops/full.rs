@@ -1,7 +1,7 @@
 //! Cases that take hours: `tests/run --full` runs them.
 
 use crate::sides::{Fork, assert_follows_preference};
-use crate::{closed, impatience, limits, patrol, slam, stored, uneven};
+use crate::{closed, impatience, limits, patrol, slam, uneven};
 
 #[test]
 #[ignore = "takes hours: 420 runs; tests/run --full runs it"]
@@ -13,12 +13,6 @@ fn loops_of_every_start_are_closed_on_the_way() {
 #[ignore = "takes minutes: 120 runs; tests/run --full runs it"]
 fn rails_with_and_without_impatience() {
     impatience::check_every_start("impatience-full");
-}
-
-#[test]
-#[ignore = "takes a quarter of an hour: 102 runs; tests/run --full runs it"]
-fn the_papers_baseline_from_three_starts() {
-    stored::check_three_starts("bvp-papers-full");
 }
 
 #[test]

@@ -9,6 +9,5 @@ mod overlay;
 mod patrol;
 mod sides;
 mod slam;
-mod stored;
 mod sweep;
 mod uneven;

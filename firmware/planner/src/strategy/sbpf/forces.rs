@@ -10,9 +10,8 @@
 //! The drive follows the direction of F. Cells that a peer visited repel as obstacles do, but with
 //! a weight of their own, and α = 0. So do covered cells, with the weight `sbpf.covered`.
 //!
-//! Departs from \[Kenealy15, eq. 3\]: that weight is 0. The paper repels from "previous visited
-//! areas" too. A robot sees all round within ρ₀, so the covered cells near it push to no side, and
-//! those far off little.
+//! Departs from \[Kenealy15, eq. 3\]: that weight is 0. The paper sums over every cell with a level,
+//! so it repels from covered cells too; 1 is its form.
 //!
 //! Departs from \[Kenealy15, eq. 5\] in a team: without *w* the farthest cells attract all robots
 //! alike, and two that start side by side stay so. How much faster than one robot a team has seen
