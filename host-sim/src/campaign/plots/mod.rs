@@ -79,18 +79,20 @@ pub fn write(folder: &Path, plan: &Plan, finished: &[Finished]) -> Result<(), Ca
     let folder = folder.join(FOLDER);
     fs::create_dir_all(&folder)
         .map_err(|error| CampaignError::io("make this folder", &folder, &error))?;
-    for (name, column, axis) in [
-        ("time", "sim_time_s", "simulated time to the end, s"),
+    for (name, column, axis, may_be_log) in [
+        ("time", "sim_time_s", "simulated time to the end, s", false),
         (
             "error",
             "localization.mean_error_m",
             "mean error of the position, m",
+            true,
         ),
     ] {
         let chart = boxes::Chart {
             title: format!("{}: {axis}", plan.name),
             axis,
             column,
+            may_be_log,
             labels: &labels,
             groups: &groups,
         };
