@@ -126,8 +126,8 @@ pub struct Trial {
 }
 
 impl Plan {
-    /// Returns what is compared, in order. A strategy on the host closes no loops, so it has one arm
-    /// whatever `slam` says.
+    /// Returns what is compared, in order. A strategy on the host closes no loops, so it has one
+    /// arm whatever `slam` says.
     #[must_use]
     pub fn arms(&self) -> Vec<Arm> {
         let plain = self.strategies.iter().map(|name| Variant {
@@ -258,8 +258,8 @@ impl Plan {
         }
     }
 
-    /// Refuses an odometry of a variant beside several of the campaign, which would give equal trials
-    /// several names.
+    /// Refuses an odometry of a variant beside several of the campaign, which would give equal
+    /// trials several names.
     fn check_variants(&self, arms: &[Arm]) -> Result<(), CampaignError> {
         let own = arms.iter().find(|arm| arm.odometry.is_some());
         match own {

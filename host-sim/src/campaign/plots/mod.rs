@@ -6,8 +6,8 @@
 //! | `error.svg` | box plots of the mean error of the position |
 //! | `coverage-WORLD.svg` | share known over simulated time: median and quartiles of a strategy |
 //!
-//! The colours are those of \[Okabe08\], which the colour-blind can tell apart; lines also differ in
-//! their dashes. Sizes are pixels.
+//! The colours are those of \[Okabe08\], which the colour-blind can tell apart; lines also differ
+//! in their dashes. Sizes are pixels.
 //!
 //! Okabe08: M. Okabe, K. Ito, "Color universal design", 2008.
 
