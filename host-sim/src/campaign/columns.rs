@@ -7,8 +7,8 @@
 //! trial.below_1m                what the campaign itself measured
 //! ```
 //!
-//! A number counts as it is, true as 1 and false as 0, a text by how often it is there. `null` and a
-//! key that is not there are no value.
+//! A number counts as it is, true as 1 and false as 0, a text by how often it is there. `null` and
+//! a key that is not there are no value.
 
 use serde_json::Value;
 

@@ -14,7 +14,7 @@ pub fn text(table: &Table, plan: &Plan) -> String {
     let mut text = format!("# Campaign {}\n\n", table.name);
     let _ = writeln!(
         text,
-        "{} of {} trials: {} starts, {} seeds each. Mean ± standard deviation; (n) where not all \
+        "{} of {} trials; starts: {}, seeds: {}. Mean ± standard deviation; (n) where not all \
          trials have a value.",
         table.finished,
         table.trials,

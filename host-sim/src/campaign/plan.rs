@@ -126,8 +126,8 @@ pub struct Trial {
 }
 
 impl Plan {
-    /// Returns what is compared, in order. A strategy on the host closes no loops, so it has one arm
-    /// whatever `slam` says.
+    /// Returns what is compared, in order. A strategy on the host closes no loops, so it has one
+    /// arm whatever `slam` says.
     #[must_use]
     pub fn arms(&self) -> Vec<Arm> {
         let plain = self.strategies.iter().map(|name| Variant {
@@ -249,7 +249,7 @@ impl Plan {
                 labels.join(", ")
             )));
         }
-        self.check_odometry(&arms)?;
+        self.check_variants(&arms)?;
         match self.count() {
             Some(count) if count <= MOST_TRIALS => Ok(()),
             _ => Err(CampaignError::new(format!(
@@ -258,22 +258,30 @@ impl Plan {
         }
     }
 
-    /// Refuses to compare strategies whose default odometry differs, and an odometry of a variant
-    /// beside several of the campaign, which would give equal trials several names.
-    fn check_odometry(&self, arms: &[Arm]) -> Result<(), CampaignError> {
-        let own = |arm: &&Arm| arm.odometry.is_some();
-        if let Some(arm) = arms.iter().find(own)
-            && self.odometry.len() > 1
-        {
-            return Err(CampaignError::new(format!(
+    /// Refuses an odometry of a variant beside several of the campaign, which would give equal
+    /// trials several names.
+    fn check_variants(&self, arms: &[Arm]) -> Result<(), CampaignError> {
+        let own = arms.iter().find(|arm| arm.odometry.is_some());
+        match own {
+            Some(arm) if self.odometry.len() > 1 => Err(CampaignError::new(format!(
                 "variant {} has an odometry of its own, and `odometry` has several; leave one out",
                 arm.entry
-            )));
+            ))),
+            _ => Ok(()),
         }
-        let open: Vec<&Arm> = arms.iter().filter(|arm| !own(arm)).collect();
-        let runs_on_device = |arm: &&&Arm| on_device(&arm.strategy).is_some();
-        let device = open.iter().find(runs_on_device);
-        let host = open.iter().find(|arm| !runs_on_device(arm));
+    }
+
+    /// Refuses to compare strategies whose default odometry differs. To be called once the
+    /// strategies are known to exist.
+    ///
+    /// # Errors
+    /// Two such strategies, and the remedy.
+    pub fn check_odometry(&self) -> Result<(), CampaignError> {
+        let arms = self.arms();
+        let open = || arms.iter().filter(|arm| arm.odometry.is_none());
+        let runs_on_device = |arm: &&Arm| on_device(&arm.strategy).is_some();
+        let device = open().find(runs_on_device);
+        let host = open().find(|arm| !runs_on_device(arm));
         match (device, host) {
             (Some(device), Some(host)) if self.odometry.is_empty() => {
                 Err(CampaignError::new(format!(

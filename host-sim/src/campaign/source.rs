@@ -57,7 +57,8 @@ impl Source {
     }
 
     /// Returns the error of the plan as a whole with file and the line of the key that it names.
-    pub(super) fn placed(&self, error: CampaignError) -> CampaignError {
+    #[must_use]
+    pub fn placed(&self, error: CampaignError) -> CampaignError {
         let named = |key: &&(String, String)| error.reason.contains(&format!("`{}`", key.0));
         let line = self
             .lines

@@ -117,6 +117,8 @@ pub(super) fn run(args: &CampaignArgs) -> Result<bool> {
     let shard = args.shard.or(shard);
     let explorer = Explorer::open(&plan, &source)?;
     explorer.check(&plan, &source)?;
+    plan.check_odometry()
+        .map_err(|error| source.placed(error))?;
     let all = Shard::trials(shard, &plan);
     if args.list {
         all.iter()

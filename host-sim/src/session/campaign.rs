@@ -1,4 +1,6 @@
 //! Many sessions from a range of seeds, on several threads; each new finding becomes a file.
+//!
+//! The campaigns of [`crate::campaign`], which compare strategies, are another thing.
 
 use core::ops::Range;
 use core::sync::atomic::{AtomicU64, Ordering};

@@ -274,6 +274,10 @@ fn bad_campaigns_are_refused_in_one_line_with_file_and_line() {
     write(&folder, "bad.toml", &text.replace("lop", "cave"));
     let words = ["bad.toml:4: ", "unknown strategy 'frontir'"];
     refused(&folder, &["campaign", "bad.toml"], &words);
+    let mixed = head.replace("[\"frontier\"]", "[\"frontier\", \"bvp\"]");
+    write(&folder, "bad.toml", &mixed);
+    let words = ["bad.toml: frontier and bvp have different odometry"];
+    refused(&folder, &["campaign", "bad.toml"], &words);
     write(&folder, "bad.toml", &head.replace("loop", "loop@1"));
     refused(
         &folder,

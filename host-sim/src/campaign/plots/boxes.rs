@@ -39,10 +39,10 @@ struct Scale {
 
 impl Scale {
     /// Chooses the axis for these values; `None` if there are none.
-    fn of(values: impl Iterator<Item = f64> + Clone) -> Option<Self> {
+    fn of(values: impl Iterator<Item = f64> + Clone, may_be_log: bool) -> Option<Self> {
         let most = values.clone().reduce(f64::max)?;
         let least = values.reduce(f64::min)?;
-        if least > 0.0 && most > WIDE * least {
+        if may_be_log && least > 0.0 && most > WIDE * least {
             let (from, to) = (least.log10() - 0.1, most.log10() + 0.1);
             let is_log = true;
             return Some(Self { is_log, from, to });
@@ -83,6 +83,8 @@ pub(super) struct Chart<'a> {
     pub(super) axis: &'a str,
     /// Path of the column.
     pub(super) column: &'a str,
+    /// The axis is logarithmic if the values differ by much.
+    pub(super) may_be_log: bool,
     /// Names of the strategies.
     pub(super) labels: &'a [String],
     pub(super) groups: &'a [Group<'a>],
@@ -92,7 +94,8 @@ impl Chart<'_> {
     /// Draws the plot; `None` if no trial has a value.
     pub(super) fn draw(&self) -> Result<Option<String>, Failure> {
         let samples: Vec<Vec<Vec<f64>>> = self.groups.iter().map(|it| self.samples(it)).collect();
-        let Some(scale) = Scale::of(samples.iter().flatten().flatten().copied()) else {
+        let values = samples.iter().flatten().flatten().copied();
+        let Some(scale) = Scale::of(values, self.may_be_log) else {
             return Ok(None);
         };
         let slots = self.labels.len() as u32 + 1;
@@ -202,4 +205,25 @@ fn draw_box(
     let dot = |value: &f64| Circle::new((at, scale.at(*value)), 2, colour.mix(0.7).filled());
     chart.draw_series(sample.iter().map(dot))?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Scale;
+
+    #[test]
+    fn an_axis_is_logarithmic_where_values_differ_by_much_and_may_be() {
+        let scale = |values: &[f64], may_be_log| Scale::of(values.iter().copied(), may_be_log);
+        let log = scale(&[0.1, 1.0, 10.0], true).unwrap();
+        assert!(log.is_log && log.from < log.at(0.1) && log.at(10.0) < log.to);
+        let labels = [-1.0, -0.5, 0.0, 0.5, 1.0, 2.2].map(|at| log.label(at));
+        assert_eq!(labels, ["0.1", "0.32", "1", "3.2", "10", "158"]);
+        for (values, may_be_log) in [(vec![0.1, 10.0], false), (vec![0.0, 10.0], true)] {
+            let linear = scale(&values, may_be_log).unwrap();
+            assert!(!linear.is_log && linear.from == 0.0 && linear.to > 10.0);
+            assert_eq!(linear.label(2.5), "2.5");
+        }
+        assert_eq!(scale(&[0.0], true).unwrap().to, 1.0);
+        assert!(scale(&[], true).is_none());
+    }
 }

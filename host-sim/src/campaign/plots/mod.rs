@@ -6,8 +6,8 @@
 //! | `error.svg` | box plots of the mean error of the position |
 //! | `coverage-WORLD.svg` | share known over simulated time: median and quartiles of a strategy |
 //!
-//! The colours are those of \[Okabe08\], which the colour-blind can tell apart; lines also differ in
-//! their dashes. Sizes are pixels.
+//! The colours are those of \[Okabe08\], which the colour-blind can tell apart; lines also differ
+//! in their dashes. Sizes are pixels.
 //!
 //! Okabe08: M. Okabe, K. Ito, "Color universal design", 2008.
 
@@ -79,18 +79,20 @@ pub fn write(folder: &Path, plan: &Plan, finished: &[Finished]) -> Result<(), Ca
     let folder = folder.join(FOLDER);
     fs::create_dir_all(&folder)
         .map_err(|error| CampaignError::io("make this folder", &folder, &error))?;
-    for (name, column, axis) in [
-        ("time", "sim_time_s", "simulated time to the end, s"),
+    for (name, column, axis, may_be_log) in [
+        ("time", "sim_time_s", "simulated time to the end, s", false),
         (
             "error",
             "localization.mean_error_m",
             "mean error of the position, m",
+            true,
         ),
     ] {
         let chart = boxes::Chart {
             title: format!("{}: {axis}", plan.name),
             axis,
             column,
+            may_be_log,
             labels: &labels,
             groups: &groups,
         };

@@ -51,16 +51,6 @@ fn without_a_result_there_is_no_plot() {
 }
 
 #[test]
-fn an_axis_is_logarithmic_where_values_differ_by_much() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut lines = all();
-    lines[0] = crate::campaign::store::tests::finished(0, "office", "frontier", 1.5);
-    write(folder.path(), &plan(), &lines).unwrap();
-    let time = fs::read_to_string(folder.path().join("plots/time.svg")).unwrap();
-    assert!(time.contains("(logarithmic)"));
-}
-
-#[test]
 fn colours_differ() {
     for (index, colour) in COLOURS.iter().enumerate() {
         assert!(!COLOURS[..index].contains(colour), "{index}");

@@ -165,11 +165,13 @@ fn bad_files_are_refused_with_their_line() {
 #[test]
 fn strategies_whose_default_odometry_differs_need_one() {
     let text = "worlds = [\"a\"]\nstrategies = [\"bvp\", \"frontier\"]\n";
-    refused(
-        text,
-        &["frontier and bvp have different odometry by default"],
+    let error = read(text).check_odometry().unwrap_err().to_string();
+    assert!(
+        error.contains("frontier and bvp have different odometry by default"),
+        "{error}"
     );
-    read(&format!("{text}odometry = \"truth\""));
+    let plan = read(&format!("{text}odometry = \"truth\""));
+    assert_eq!(plan.check_odometry(), Ok(()));
     let own = "odometry = [\"truth\", \"noisy\"]\n[[variants]]\nname = \"x\"\n\
                strategy = \"frontier\"\nodometry = \"papers\"";
     refused(

@@ -1,4 +1,4 @@
-//! The rank-sum test of two unpaired samples [Mann47].
+//! The rank-sum test of two unpaired samples \[Mann47\].
 //!
 //! ```text
 //! U = Σ rank(a) - m (m + 1) / 2            m values of a, n of b, ranks in both together

@@ -1,4 +1,4 @@
-//! The signed-rank test of paired measurements [Wilcoxon45].
+//! The signed-rank test of paired measurements \[Wilcoxon45\].
 //!
 //! ```text
 //! W+ = Σ rank(|d_k|) over d_k > 0
