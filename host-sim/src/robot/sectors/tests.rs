@@ -162,7 +162,7 @@ fn scans() -> impl Strategy<Value = (Lidar, Vec<f64>)> {
         any::<bool>(),
         -400.0..400.0_f64,
     );
-    let scan = shape.prop_flat_map(|(beams, clockwise, upside_down, first_deg)| {
+    shape.prop_flat_map(|(beams, clockwise, upside_down, first_deg)| {
         let lidar = Lidar {
             clockwise,
             upside_down,
@@ -171,8 +171,7 @@ fn scans() -> impl Strategy<Value = (Lidar, Vec<f64>)> {
         let least = beams - beams / 8;
         let ranges = prop::collection::vec(reading(), least..=beams + beams / 8);
         (Just(lidar), ranges)
-    });
-    scan
+    })
 }
 
 fn is_return(range_m: f64) -> bool {
