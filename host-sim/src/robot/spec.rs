@@ -88,8 +88,8 @@ impl RobotSpec {
         file::read(file, name, text)
     }
 
-    /// The robot with another sweep of its level lidar, counter-clockwise and upright. Its place, its
-    /// yaw, its mask and its errors stay.
+    /// The robot with another sweep of its level lidar, counter-clockwise and upright. Its place,
+    /// its yaw, its mask and its errors stay.
     #[must_use]
     pub fn with_sweep(mut self, sweep: &Sweep) -> Self {
         if let Some(level) = self.lidars.first_mut() {

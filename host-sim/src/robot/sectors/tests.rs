@@ -187,8 +187,8 @@ fn is_of_surface(sectors: &Sectors, nearest_m: f64, code: u16) -> bool {
 }
 
 proptest! {
-    /// Every list of numbers is a scan of the announced laser, and its nearest return is the scan's,
-    /// or the mean of its surface.
+    /// Every list of numbers is a scan of the announced laser, and its nearest return is the
+    /// scan's, or the mean of its surface.
     #[test]
     fn the_nearest_return_is_never_lost((lidar, ranges_m) in scans()) {
         let sectors = sectors(&lidar);
