@@ -113,8 +113,8 @@ pub fn is_default_pool(tile_pool: u16) -> bool {
     usize::from(tile_pool) == TILES
 }
 
-/// Replays scans of a laser with this odometry, with a pose graph beside the device if `slam` has the noise of
-/// the wheels. `step` is called before each step with its number, and ends
+/// Replays scans of a laser with this odometry, with a pose graph beside the device if `slam` has
+/// the noise of the wheels. `step` is called before each step with its number, and ends
 /// the replay if it returns false.
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! A log as a session: its start message and its observations.
 //!
 //! The scans go on the wire by [`Sectors`]: of a log with more beams than the wire has, neighbours
-//! become a sector with the nearest return of them.
+//! become a sector.
 //!
 //! A reading beyond the range limit saw nothing, and is free up to it. The limit is 12 m, or the
 //! laser's range or the log's greatest reading if that is less: some lasers report their limit for

@@ -150,7 +150,7 @@ impl Footprint {
     /// The gap from the hull at a pose to a disc, seen from above; 0 if they overlap.
     #[must_use]
     pub fn gap_to_disc_m(&self, pose: &Pose, middle_m: [f64; 2], radius_m: f64) -> f64 {
-        (self.place(pose).to_point_m(middle_m) - radius_m).max(0.0)
+        (self.place(pose).off_m(middle_m) - radius_m).max(0.0)
     }
 
     /// The part of a ray from `from` along `(ahead, left)` that lies over the hull of a robot on
@@ -244,7 +244,7 @@ impl Placed {
     }
 
     /// Distance from a point to the shape; 0 inside.
-    fn to_point_m(&self, point: [f64; 2]) -> f64 {
+    fn off_m(&self, point: [f64; 2]) -> f64 {
         let ([a, b], local) = (self.half, self.frame.to_local(point));
         match self.radius_m {
             Some(radius_m) => {
@@ -262,7 +262,7 @@ impl Placed {
         let middle = other.frame.to_world([0.0; 2]);
         match (self.radius_m, other.radius_m) {
             (None, None) => None,
-            (_, Some(radius_m)) => Some(self.to_point_m(middle) - radius_m),
+            (_, Some(radius_m)) => Some(self.off_m(middle) - radius_m),
             (Some(_), None) => other.disc_gap_m(self),
         }
     }

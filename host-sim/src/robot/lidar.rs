@@ -83,8 +83,8 @@ impl Lidar {
         self.upside_down != self.clockwise
     }
 
-    /// Bearing on the robot of position 0, radians. The middle of the sweep is within half a turn of
-    /// straight ahead.
+    /// Bearing on the robot of position 0, radians. The middle of the sweep is within half a turn
+    /// of straight ahead.
     #[must_use]
     pub fn rightmost_rad(&self) -> f64 {
         let sweep = self.step_rad * self.beams.saturating_sub(1) as f64;

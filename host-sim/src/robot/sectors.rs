@@ -1,8 +1,8 @@
 //! Scans of any shape in the form of the wire: turned right, cleaned, and reduced to sectors.
 //!
 //! The wire has at most [`MAX_BEAMS`] ranges a scan. A lidar with m beams is cut into sectors of
-//! `g = ⌈m / MAX_BEAMS⌉` neighbouring beams; `⌈m / g⌉` sectors go on the wire, each at the middle of
-//! its beams. No beam is left out:
+//! `g = ⌈m / MAX_BEAMS⌉` neighbouring beams; `⌈m / g⌉` sectors go on the wire, each at the middle
+//! of its beams. No beam is left out:
 //!
 //! | beams of a sector | sector |
 //! | --- | --- |
@@ -19,11 +19,11 @@
 //! | the greatest range or more, +∞ | no return |
 //!
 //! The greatest range is that of the lidar, at most what the wire can say. A scan with another
-//! number of beams than promised is taken as spread evenly over the same field. So [`Sectors::fold`]
-//! is total: every list of numbers is a scan of the announced laser.
+//! number of beams than promised is taken as spread evenly over the same field. So
+//! [`Sectors::fold`] is total: every list of numbers is a scan of the announced laser.
 //!
-//! A sector stands at its middle. A wall that is seen askew is nearer at one end of the sector than in
-//! its middle, so the nearest return alone would thicken it. With r the nearest and s the step,
+//! A sector stands at its middle. A wall that is seen askew is nearer at one end of the sector than
+//! in its middle, so the nearest return alone would thicken it. With r the nearest and s the step,
 //! returns up to
 //!
 //! ```text
@@ -175,7 +175,8 @@ impl Sectors {
         [cos * libm::cos(pitch), sin, -cos * libm::sin(pitch)]
     }
 
-    /// Returns a scan for the wire. `ranges_m` are the readings in the lidar's own order, in metres.
+    /// Returns a scan for the wire. `ranges_m` are the readings in the lidar's own order, in
+    /// metres.
     #[must_use]
     pub fn fold(&self, ranges_m: &[f64]) -> Scan {
         let mut sectors = vec![Sector::default(); usize::from(self.laser.beams)];

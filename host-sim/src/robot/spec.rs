@@ -88,8 +88,8 @@ impl RobotSpec {
         file::read(file, name, text)
     }
 
-    /// The robot with another sweep of its level lidar, counter-clockwise and upright. Its place, its
-    /// yaw, its mask and its errors stay.
+    /// The robot with another sweep of its level lidar, counter-clockwise and upright. Its place,
+    /// its yaw, its mask and its errors stay.
     #[must_use]
     pub fn with_sweep(mut self, sweep: &Sweep) -> Self {
         if let Some(level) = self.lidars.first_mut() {
@@ -136,10 +136,11 @@ impl Sweep {
         if !Self::BEAMS.contains(&self.beams) {
             return Some(format!("{} beams; give 4 to 4096", self.beams));
         }
-        if !(self.first_rad.abs() <= 2.0 * TAU) {
+        if !(-2.0 * TAU..=2.0 * TAU).contains(&self.first_rad) {
             return Some("the first angle must be within two turns".into());
         }
-        if !(self.step_rad > 0.0) || turn > TAU * (1.0 - 1e-6) {
+        let is_sweep = self.step_rad > 0.0 && turn <= TAU * (1.0 - 1e-6);
+        if !is_sweep {
             return Some(format!(
                 "{} beams with a step of {:.3} degrees sweep {:.1} degrees; give a step above 0 \
                  and less than a turn in all",

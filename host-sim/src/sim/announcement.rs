@@ -1,8 +1,8 @@
 //! The announcement: the start message, which tells a planner what is simulated.
 //!
-//! Lengths are rounded to the wire's numbers. A round hull is told as the square around it, since the
-//! wire knows boxes only: the planner then counts on more room than the robot needs. Accelerations are rounded down, so that the planner
-//! never counts on more than there is.
+//! Lengths are rounded to the wire's numbers. A round hull is told as the square around it, since
+//! the wire knows boxes only: the planner then counts on more room than the robot needs.
+//! Accelerations are rounded down, so that the planner never counts on more than there is.
 
 use fieldline_protocol::message::{Hull, Start, Strategy};
 use fixed::types::I4F12;

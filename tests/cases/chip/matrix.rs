@@ -17,6 +17,7 @@ use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::replay::carmen::{Beams, LogScan};
 use host_sim::replay::run;
+use host_sim::replay::wire::LogLaser;
 use host_sim::report::Report;
 use host_sim::robot::Footprint;
 use host_sim::trial::mission::{Mission, OdometryProfile};
@@ -316,9 +317,11 @@ fn replay(image: &Path) -> Taken {
         &world,
         &mut Watched::new(Direct::new(), note),
     );
+    let laser = LogLaser::of(&log);
     let odometry = run::odometry(&log, Some(2.0), 0);
     let by = |link: &mut dyn Link| {
-        run::run(&log, &odometry, link, None, &mut |_| true).expect("the replay goes on to its end")
+        run::run(&laser, &log, &odometry, link, None, &mut |_| true)
+            .expect("the replay goes on to its end")
     };
     let (mut instructions, mut stack_bytes) = (0, 0);
     let mut counted = Watched::new(chip(image), |_: &mut _, _: &_, command: &Command| {

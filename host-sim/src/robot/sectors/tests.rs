@@ -162,7 +162,7 @@ fn scans() -> impl Strategy<Value = (Lidar, Vec<f64>)> {
         any::<bool>(),
         -400.0..400.0_f64,
     );
-    let scan = shape.prop_flat_map(|(beams, clockwise, upside_down, first_deg)| {
+    shape.prop_flat_map(|(beams, clockwise, upside_down, first_deg)| {
         let lidar = Lidar {
             clockwise,
             upside_down,
@@ -171,8 +171,7 @@ fn scans() -> impl Strategy<Value = (Lidar, Vec<f64>)> {
         let least = beams - beams / 8;
         let ranges = prop::collection::vec(reading(), least..=beams + beams / 8);
         (Just(lidar), ranges)
-    });
-    scan
+    })
 }
 
 fn is_return(range_m: f64) -> bool {
@@ -188,8 +187,8 @@ fn is_of_surface(sectors: &Sectors, nearest_m: f64, code: u16) -> bool {
 }
 
 proptest! {
-    /// Every list of numbers is a scan of the announced laser, and its nearest return is the scan's,
-    /// or the mean of its surface.
+    /// Every list of numbers is a scan of the announced laser, and its nearest return is the
+    /// scan's, or the mean of its surface.
     #[test]
     fn the_nearest_return_is_never_lost((lidar, ranges_m) in scans()) {
         let sectors = sectors(&lidar);
