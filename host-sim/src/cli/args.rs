@@ -84,8 +84,8 @@ pub(super) struct ExploreArgs {
     /// start N
     #[arg(value_name = "WORLD[@N]", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
-    /// Strategy: frontier, ouroboros, tdbvp, sbpf or esbpf on the device, or a baseline on the host:
-    /// bvp (the converged field of the whole grid), bvp-papers (some sweeps a step, as the papers
+    /// Strategy: frontier, ouroboros, tdbvp, sbpf or esbpf on the device, or a baseline on the
+    /// host: bvp (the converged field of the whole grid), bvp-papers (some sweeps a step, as the papers
     /// ran it) or greedy-frontier
     #[arg(long, default_value = strategies::FRONTIER, value_parser = strategies::parse)]
     pub(super) strategy: String,
@@ -190,7 +190,8 @@ pub(super) struct ExploreArgs {
         allow_negative_numbers = true
     )]
     pub(super) tdbvp_impatience: Option<Impatience>,
-    /// Gauss-Seidel sweeps of the whole grid in each step, 1 to 10000; for bvp-papers [default: 100]
+    /// Gauss-Seidel sweeps of the whole grid in each step, 1 to 10000; for bvp-papers [default:
+    /// 100]
     #[arg(long, value_name = "N", value_parser = sweeps, allow_negative_numbers = true)]
     pub(super) bvp_sweeps: Option<u16>,
     /// Type in which the potential is stored; for bvp-papers [default: f64]

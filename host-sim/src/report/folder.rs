@@ -1,8 +1,8 @@
 //! The folder of a run. Errors name the file and the remedy.
 //!
 //! Invariant: a file that has its name is whole. It is written beside, and renamed. A run that is
-//! killed leaves the files of an earlier run as they were, and a file that says so. The report comes
-//! last, so a folder with a new report has all of its files.
+//! killed leaves the files of an earlier run as they were, and a file that says so. The report
+//! comes last, so a folder with a new report has all of its files.
 
 use std::fs;
 use std::path::{Path, PathBuf};

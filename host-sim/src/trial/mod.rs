@@ -226,8 +226,8 @@ fn ended(
     }
 }
 
-/// Returns true if the planner says that it explores, or waits for a scan. A lost robot that searches for its place says
-/// so and may stand.
+/// Returns true if the planner says that it explores, or waits for a scan. A lost robot that
+/// searches for its place says so and may stand.
 fn explores(status: Status, command: &Command) -> bool {
     let is_lost = |location: &Location| location.quality == Quality::Lost;
     matches!(status, Status::Exploring | Status::NoScan)

@@ -68,8 +68,8 @@ impl Stored {
         self.has_goals = self.reaches_goal(home);
     }
 
-    /// Appends a free cell to the run that ends before it, or begins another. The outermost ring has
-    /// no free cell, so no run goes on in the next row.
+    /// Appends a free cell to the run that ends before it, or begins another. The outermost ring
+    /// has no free cell, so no run goes on in the next row.
     fn extend_runs(&mut self, index: usize) {
         self.cells += 1;
         match self.runs.last_mut() {

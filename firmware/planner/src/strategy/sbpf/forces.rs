@@ -10,8 +10,8 @@
 //! The drive follows the direction of F. Cells that a peer visited repel as obstacles do, but with
 //! a weight of their own, and α = 0. So do covered cells, with the weight `sbpf.covered`.
 //!
-//! Departs from \[Kenealy15, eq. 3\]: that weight is 0. The paper sums over every cell with a level,
-//! so it repels from covered cells too; 1 is its form.
+//! Departs from \[Kenealy15, eq. 3\]: that weight is 0. The paper sums over every cell with a
+//! level, so it repels from covered cells too; 1 is its form.
 //!
 //! Departs from \[Kenealy15, eq. 5\] in a team: without *w* the farthest cells attract all robots
 //! alike, and two that start side by side stay so. How much faster than one robot a team has seen
@@ -114,8 +114,8 @@ pub(super) fn attraction(
     force
 }
 
-/// Returns `F_rep`, with the shares of the peers and of covered cells. At most all cells of the area
-/// are summed: 64 × 64.
+/// Returns `F_rep`, with the shares of the peers and of covered cells. At most all cells of the
+/// area are summed: 64 × 64.
 pub(super) fn repulsion(levels: &Levels, at: Place, twist_rad: f32, tuning: &SbpfTuning) -> Vector {
     let [mut walls, mut peers, mut covered] = [Vector::default(); 3];
     for y in levels.rows() {
