@@ -85,8 +85,8 @@ pub(super) struct ExploreArgs {
     #[arg(value_name = "WORLD[@N]", default_values_t = [String::from("office")])]
     pub(super) worlds: Vec<String>,
     /// Strategy: frontier, ouroboros, tdbvp, sbpf or esbpf on the device, or a baseline on the
-    /// host: bvp (the converged field of the whole grid), bvp-papers (some sweeps a step, as the papers
-    /// ran it) or greedy-frontier
+    /// host: bvp (the converged field of the whole grid), bvp-papers (some sweeps a step, as the
+    /// papers ran it) or greedy-frontier
     #[arg(long, default_value = strategies::FRONTIER, value_parser = strategies::parse)]
     pub(super) strategy: String,
     /// Ground that the planner expects [default: flat; uneven if --preference, --levels or

@@ -19,9 +19,9 @@
 //!   (`phir2-lab/laeg`, `loop_exploration.cpp`) makes 100 in-place iterations of a potential of
 //!   type `double` for each plan.
 //! - The field is flat where the stored values of the cells beside the robot's are equal:
-//!   \[Jorge15\] says "there is no gradient descent to follow". The robot then stands, and the sweeps go on. If
-//!   p is flat for [`super::session::FLAT_MS`] the run ends as
-//!   *nothing attracts*. A run ends *explored* only if no unexplored cell can be reached.
+//!   \[Jorge15\] says "there is no gradient descent to follow". The robot then stands, and the
+//!   sweeps go on. If p is flat for [`super::session::FLAT_MS`] the run ends as *nothing attracts*.
+//!   A run ends *explored* only if no unexplored cell can be reached.
 //! - A goal is never given up because the robot comes no nearer to it. Only one that the robot has
 //!   reached, and that its lasers do not show for [`super::bvp::progress::LOOK_MS`], is dropped.
 //!   A robot that moves less than 0.3 m in [`STUCK_MS`] is *stuck*.
