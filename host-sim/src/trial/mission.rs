@@ -464,7 +464,7 @@ fn beside(mission: &Mission, setup: &Setup, simulator: &Simulator<'_>) -> Option
     let [x0, y0] = simulator.world().occupancy().origin_m();
     let [width, height] = simulator.world().size_m();
     let world = (*simulator.pose(), [x0, y0, x0 + width, y0 + height]);
-    let noise = mission.odometry.noise();
+    let noise = mission.odometry_noise();
     Some(Beside::new(spec, laser, world, noise, mission.seed))
 }
 
