@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | `time.svg` | box plots of the time to the end, by world and strategy |
 //! | `error.svg` | box plots of the mean error of the position |
+//! | `particles.svg` | box plots of PFErr, if the trials have a particle filter |
 //! | `coverage-WORLD.svg` | share known over simulated time: median and quartiles of a strategy |
 //!
 //! The colours are those of \[Okabe08\], which the colour-blind can tell apart; lines also differ
@@ -85,6 +86,12 @@ pub fn write(folder: &Path, plan: &Plan, finished: &[Finished]) -> Result<(), Ca
             "error",
             "localization.mean_error_m",
             "mean error of the position, m",
+            true,
+        ),
+        (
+            "particles",
+            "particles.pf_error_m",
+            "PFErr, mean error of the particles, m",
             true,
         ),
     ] {
