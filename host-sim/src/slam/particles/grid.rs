@@ -274,8 +274,7 @@ fn cell_at([x, y]: [f64; 2]) -> [i32; 2] {
     [floor(x / CELL_M), floor(y / CELL_M)]
 }
 
-/// Returns the greatest whole number that is no greater; several times as fast as `f64::floor` on
-/// processors without an instruction for it.
+/// Returns the greatest whole number that is no greater than `x`.
 fn floor(x: f64) -> i32 {
     let whole = x as i32;
     whole - i32::from(x < f64::from(whole))

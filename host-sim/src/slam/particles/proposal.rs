@@ -26,7 +26,7 @@ use crate::robot::{Noise, OdometryNoise, wrap};
 
 /// Standard deviation of a beam's end from the nearest mean hit, metres.
 const SIGMA_M: f64 = 0.06;
-/// Divisor of a scan's log likelihood. Frozen before any result of the papers was looked at.
+/// Divisor of a scan's log likelihood, which no table of the papers was used to choose.
 const TEMPER: f64 = 4.0;
 /// Every so many beams a beam is weighed.
 const WEIGHS_EVERY: usize = 3;
@@ -90,6 +90,7 @@ pub(super) fn advance(
     }
 }
 
+/// Returns the pose after a motion in its own frame, its heading within half a turn.
 fn moved(pose: Pose, motion: Pose) -> Pose {
     let [x, y, yaw] = compose(pose, motion);
     [x, y, wrap(yaw)]
