@@ -5,7 +5,7 @@
 //! - the robot moves and comes no nearer to it for [`PROGRESS_MS`];
 //! - the robot stands and comes no nearer to it for [`STANDING_MS`].
 //!
-//! With [`Patience::Endless`] only the first case counts.
+//! With an endless patience only the first case counts.
 //!
 //! Goals dropped without progress become goals again, once, when no other goal is left. After
 //! [`STUCK_DROPS`] goals dropped in a row without motion the robot is stuck.
