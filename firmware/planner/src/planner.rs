@@ -54,6 +54,9 @@ use steer::{begin_retreat, look_about, retreat, steer};
 
 /// A range below this is inside the robot's own hull, metres.
 const BLOCKED_M: f32 = 0.12;
+/// Steps in a row in which no beam tells anything, from which on the robot stands until one does.
+/// One scan may be lost on the line.
+const DARK_STEPS: u8 = 2;
 
 /// Thinning budget of a step, words of 32 coarse cells. It is about 1.3 million instructions
 /// (`tests/golden/costs.txt`).
@@ -215,6 +218,15 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if !plans || state.status != Status::Exploring {
         return Output::standing(state.status);
     }
+    state.dark_steps = if tells(&input) {
+        0
+    } else {
+        state.dark_steps.saturating_add(1)
+    };
+    if state.dark_steps >= DARK_STEPS {
+        state.strategy.frontier.hold(config.period_ms());
+        return Output::standing(state.status);
+    }
     let drive = &state.drive;
     if drive.is_searching() || drive.is_retreating() || state.viewpoints.is_running() {
         state.strategy.frontier.hold(config.period_ms());
@@ -367,6 +379,10 @@ fn sense<const TILES: usize, const SLOTS: usize>(
             }
             true => Status::Exploring,
         };
+        if state.started {
+            let odom = state.localiser.odom();
+            state.ground.surround(&odom, &config.robot);
+        }
     }
     if state.localiser.may_enter() {
         state.map.observe(config, input);

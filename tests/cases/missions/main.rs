@@ -17,4 +17,5 @@ mod periods;
 mod replay;
 mod robots;
 mod space;
+mod starts;
 mod whole;

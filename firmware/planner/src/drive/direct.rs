@@ -69,11 +69,7 @@ pub(super) fn velocity<H: Fn(Place) -> Option<f32>>(
     rolls: bool,
 ) -> Option<Twist> {
     let checker = query.checker;
-    let admits = |&twist: &Twist| {
-        let creeps = twist.linear_mps.abs() <= CREEP_MPS;
-        let margin_m = if creeps { CREEP_MARGIN_M } else { MARGIN_M };
-        checker.admits(twist, now, config, margin_m)
-    };
+    let admits = |&twist: &Twist| is_admitted(config, twist, now, checker);
     // A turn that the robot cannot finish would wedge it.
     let can_turn = |turn| checker.is_arc_clear(Place::default(), 0.0, turn, CREEP_MARGIN_M);
     let turn = |error| turns(config, error).into_iter().flatten().find(admits);
@@ -99,6 +95,18 @@ pub(super) fn velocity<H: Fn(Place) -> Option<f32>>(
             let turns_back = checker.is_steep() && can_turn(opposite);
             turns_back.then(|| turn(opposite)).flatten()
         })
+}
+
+/// Returns the first admissible velocity ahead, whatever the field's heading.
+pub(super) fn straight(config: &Config, now: Twist, checker: &CollisionChecker) -> Option<Twist> {
+    ahead(config, 0.0).find(|&twist| is_admitted(config, twist, now, checker))
+}
+
+/// Returns true if the checker admits a velocity with the clearance for its speed.
+fn is_admitted(config: &Config, twist: Twist, now: Twist, checker: &CollisionChecker) -> bool {
+    let creeps = twist.linear_mps.abs() <= CREEP_MPS;
+    let margin_m = if creeps { CREEP_MARGIN_M } else { MARGIN_M };
+    checker.admits(twist, now, config, margin_m)
 }
 
 /// Returns true if the robot can follow the field's heading faster than it creeps.

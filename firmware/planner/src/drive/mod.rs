@@ -295,6 +295,10 @@ impl Drive {
             if let Some(twist) = self.direct(config, field, now, query) {
                 return twist;
             }
+            let ahead = || direct::straight(config, now, checker);
+            if let Some(twist) = query.is_surrounded.then(ahead).flatten() {
+                return twist;
+            }
             if is_moving(now) || self.is_resting() {
                 return Twist::default();
             }

@@ -37,6 +37,9 @@ pub struct SearchQuery<'a, H> {
     pub squeezes: bool,
     /// The robot goes through no gap that leaves it little clearance.
     pub is_careful: bool,
+    /// The robot has just started, and a turn on the spot would sweep what it has not seen: where it
+    /// cannot follow the field, it drives straight ahead.
+    pub is_surrounded: bool,
     /// The lane that the robot follows instead of the field.
     pub(super) lane: Option<Lane>,
 }
@@ -54,6 +57,7 @@ impl<'a, H: Fn(Place) -> Option<f32>> SearchQuery<'a, H> {
             potential_at,
             squeezes: true,
             is_careful: false,
+            is_surrounded: false,
             lane: None,
         }
     }

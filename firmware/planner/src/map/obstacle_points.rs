@@ -38,6 +38,11 @@
 //! | what it felt | 0 | 3 |
 //! | what it felt when it turned | 0 | 1 |
 //!
+//! An *unseen* point lies beside the hull of a robot that starts. Nothing tells that there is room:
+//! the robot may stand on its dock, or in a corner. So it drives straight ahead, where the laser has
+//! looked, until a turn on the spot sweeps no unseen point. Unseen points go as others do: when a beam passes or the robot leaves them
+//! behind. A robot that is wedged among them removes them, because it has to try.
+//!
 //! Invariants: at most `MAX_POINTS` points, of which the farthest gives way; as many counts as
 //! points.
 //! Units: metres, odometry frame.
@@ -45,22 +50,31 @@
 use heapless::Vec;
 
 use crate::config::{Config, MapTuning, Tuning};
-use crate::geometry::{CELL_M, Cell, Point, Pose};
+use crate::geometry::{CELL_M, Cell, Point, Pose, RobotFrame};
 use crate::grid::bits::ones;
 use crate::input::{has_company, informative_range_mm};
 use crate::map::integrate::{level_beams, sensor_point};
 use crate::map::{Class, Tiles};
 use crate::math;
-use crate::robot::LaserMount;
+use crate::robot::{LaserMount, RobotShape};
 
 /// Greatest number of points.
 pub(crate) const MAX_POINTS: usize = 256;
+/// The count of a felt point.
+const FELT: u8 = 0;
+/// The count of an unseen point: more than any number of returns.
+const UNSEEN: u8 = u8::MAX;
+/// Distance of an unseen point from the hull, metres. A robot with less room cannot move off without
+/// a touch.
+const UNSEEN_M: f32 = 0.03;
+/// Greatest distance between two unseen points, metres.
+const UNSEEN_EVERY_M: f32 = 0.05;
 
 /// The obstacle points around the robot.
 #[derive(Debug, Default)]
 pub struct ObstaclePoints {
     points: Vec<Point, MAX_POINTS>,
-    /// Number of returns of each point, up to `max_returns`; 0 for a felt point.
+    /// Number of returns of each point, up to `max_returns`; or [`FELT`], or [`UNSEEN`].
     returns: Vec<u8, MAX_POINTS>,
     /// The felt points lie around the robot, and may hold it where nothing is.
     is_trap: bool,
@@ -123,7 +137,7 @@ impl ObstaclePoints {
         {
             let stays = within_reach(tuning, pose, point)
                 && !is_inside(config, pose, point)
-                && (returns == 0
+                && (returns == FELT
                     || match visibility((pose, from), laser, ranges_mm, point, tuning.through_m) {
                         Visibility::Hit => true,
                         Visibility::Through => false,
@@ -146,7 +160,8 @@ impl ObstaclePoints {
         let known = self.points.iter_mut().zip(&mut self.returns);
         let mut known = known.filter(|(point, _)| near(point));
         if let Some((point, returns)) = known.next() {
-            *returns = (*returns + 1).min(tuning.max_returns);
+            let before = if *returns == UNSEEN { 0 } else { *returns };
+            *returns = (before + 1).min(tuning.max_returns);
             let part = 1.0 / f32::from(*returns);
             point.x_m += part * (end.x_m - point.x_m);
             point.y_m += part * (end.y_m - point.y_m);
@@ -155,25 +170,53 @@ impl ObstaclePoints {
         }
     }
 
+    /// Enters unseen points all around the hull of a robot at `pose`.
+    pub(crate) fn surround(&mut self, pose: &Pose, robot: &RobotShape) {
+        let frame = RobotFrame::of(pose);
+        let (x_m, y_m) = (
+            robot.half_length_m + UNSEEN_M,
+            robot.half_width_m + UNSEEN_M,
+        );
+        let ends = side(x_m).flat_map(|x| [(x, y_m), (x, -y_m)]);
+        let outline = ends.chain(side(y_m).flat_map(|y| [(x_m, y), (-x_m, y)]));
+        for (x_m, y_m) in outline {
+            self.insert(pose.point(), frame.to_map(Point { x_m, y_m }), UNSEEN);
+        }
+    }
+
+    /// Returns true if a robot at `pose` that turns on the spot would sweep an unseen point.
+    pub(crate) fn is_surrounded(&self, pose: &Pose, robot: &RobotShape) -> bool {
+        let reach_m = robot.half_diagonal_m + UNSEEN_M;
+        let is_near = |point: &Point| point.distance2(pose.point()) < reach_m * reach_m;
+        let mut counted = self.points.iter().zip(&self.returns);
+        counted.any(|(point, &returns)| returns == UNSEEN && is_near(point))
+    }
+
     /// Enters the points where the hull of a robot at `centre` met something, in place of those of
     /// the contact before. They are a trap if they lie around it.
     pub(crate) fn feel(&mut self, centre: Point, felt: impl Iterator<Item = Point>, is_trap: bool) {
-        self.remove_felt();
+        self.remove_counted(|returns| returns == FELT);
         self.is_trap = is_trap;
-        felt.for_each(|point| self.insert(centre, point, 0));
+        felt.for_each(|point| self.insert(centre, point, FELT));
     }
 
-    /// Removes the points of a trap. Returns true if there were any.
-    pub(crate) fn open_trap(&mut self) -> bool {
-        core::mem::replace(&mut self.is_trap, false) && self.remove_felt()
+    /// Removes the points of a trap, and the unseen ones that surround a robot at `pose`. Returns true
+    /// if there were any.
+    pub(crate) fn open_trap(&mut self, pose: &Pose, robot: &RobotShape) -> bool {
+        let is_trap = core::mem::replace(&mut self.is_trap, false);
+        let is_surrounded = self.is_surrounded(pose, robot);
+        self.remove_counted(|returns| match returns {
+            UNSEEN => is_surrounded,
+            returns => returns == FELT && is_trap,
+        })
     }
 
-    /// Removes the felt points. Returns true if there were any.
-    fn remove_felt(&mut self) -> bool {
+    /// Removes the points with these counts. Returns true if there were any.
+    fn remove_counted(&mut self, of: impl Fn(u8) -> bool) -> bool {
         let before = self.points.len();
         let mut index = 0;
         while let Some(&returns) = self.returns.get(index) {
-            if returns == 0 {
+            if of(returns) {
                 self.remove(index);
             } else {
                 index += 1;
@@ -204,6 +247,12 @@ impl ObstaclePoints {
         let _ = self.points.push(point);
         let _ = self.returns.push(returns);
     }
+}
+
+/// Returns places from -`half_m` to `half_m`, at most [`UNSEEN_EVERY_M`] apart.
+fn side(half_m: f32) -> impl Iterator<Item = f32> {
+    let parts = math::floor(2.0 * half_m / UNSEEN_EVERY_M) + 1;
+    (0..=parts).map(move |k| half_m * (2.0 * k as f32 / parts as f32 - 1.0))
 }
 
 /// Returns the centres of the obstacle cells within the reach behind: [`ObstaclePoints`] may never

@@ -119,6 +119,21 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
+    /// Notes that nothing has been seen around a robot that starts at `odom`.
+    pub(super) fn surround(&mut self, odom: &OdomPose, robot: &RobotShape) {
+        if let Self::Flat(points) = self {
+            points.surround(&odom.0, robot);
+        }
+    }
+
+    /// Returns true if a robot at `odom` that turns on the spot would sweep what was never seen.
+    pub(super) fn is_surrounded(&self, odom: &OdomPose, robot: &RobotShape) -> bool {
+        match self {
+            Self::Flat(points) => points.is_surrounded(&odom.0, robot),
+            Self::Uneven(_) => false,
+        }
+    }
+
     /// Notes where the hull of a robot at `odom` met something.
     pub(super) fn feel(&mut self, odom: &OdomPose, robot: &RobotShape, contact: Contact) {
         if let Self::Flat(points) = self {
@@ -127,10 +142,11 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
-    /// Opens the trap of what a turning robot felt on all sides. Returns true if there was one.
-    pub(super) fn open_trap(&mut self) -> bool {
+    /// Opens the trap of what a turning robot at `odom` felt on all sides, or of what was never seen
+    /// around it. Returns true if there was one.
+    pub(super) fn open_trap(&mut self, odom: &OdomPose, robot: &RobotShape) -> bool {
         match self {
-            Self::Flat(points) => points.open_trap(),
+            Self::Flat(points) => points.open_trap(&odom.0, robot),
             Self::Uneven(_) => false,
         }
     }

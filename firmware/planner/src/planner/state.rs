@@ -50,6 +50,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     pub(super) blocked_direction: Option<SlopeDirection>,
     pub(super) status: Status,
     pub(super) started: bool,
+    /// Steps in a row in which no beam told anything.
+    pub(super) dark_steps: u8,
     /// A skeleton is complete and no path was planned on it yet.
     pub(super) has_new_skeleton: bool,
     /// No frontier is left, and the next step ends the exploration.
@@ -95,6 +97,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             blocked_direction: None,
             status: Status::Exploring,
             started: false,
+            dark_steps: 0,
             has_new_skeleton: false,
             ends: false,
             forgot_arrivals: false,
@@ -118,6 +121,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         (self.slope_direction, self.blocked_direction) = (None, None);
         self.status = Status::Exploring;
         self.started = false;
+        self.dark_steps = 0;
         self.has_new_skeleton = false;
         self.ends = false;
         self.forgot_arrivals = false;

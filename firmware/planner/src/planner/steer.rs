@@ -69,6 +69,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     let mut checker = CollisionChecker::empty(&config.robot);
     checker.stand_on(incline.clone());
     obstruct(&mut checker, state, config, input);
+    let odom = state.localiser.odom();
     let velocity = if here.is_some() {
         let potential_at = |place: Place| {
             let (x, y) = local_grid::position((origin, scale), input.pose.to_map(place.point()));
@@ -79,6 +80,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         // A gap that is hardly wider than the hull may let the robot in and not out again.
         query.squeezes = state.strategy.frontier.has_second_chance();
         query.is_careful = !query.squeezes && config.order() != Order::Nearest;
+        query.is_surrounded = state.ground.is_surrounded(&odom, &config.robot);
         let rested = state.drive.is_resting();
         let velocity = state.drive.follow(
             config,
@@ -100,7 +102,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         state.strategy.frontier.note_closed();
         Twist::default()
     };
-    if state.drive.take_wedged() && !state.ground.open_trap() {
+    if state.drive.take_wedged() && !state.ground.open_trap(&odom, &config.robot) {
         // What another robot closes will be open again.
         if checker.has_company() {
             state.team.way.shut();

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::drive::CollisionChecker;
+use crate::geometry::Twist;
 use crate::input::{INVALID_MM, NO_RETURN_MM};
-use crate::robot::RobotShape;
 
 const ROBOT: RobotShape = RobotShape::PIONEER_3AT;
 const CONFIG: Config = Config::pioneer_3at(Vec::new());
@@ -89,12 +89,15 @@ fn only_a_trap_opens_and_only_once() {
     obstacles.update(&CONFIG, &here, (&LASER, &thing(0, 800)), NOBODY);
     let seen = obstacles.points().len();
     obstacles.feel(here.point(), felt(), false);
-    assert!(!obstacles.open_trap(), "it lies on one side");
+    assert!(
+        !obstacles.open_trap(&Pose::default(), &ROBOT),
+        "it lies on one side"
+    );
     assert_eq!(obstacles.points().len(), seen + 1);
     obstacles.feel(here.point(), felt(), true);
-    assert!(obstacles.open_trap());
+    assert!(obstacles.open_trap(&Pose::default(), &ROBOT));
     assert_eq!(obstacles.points().len(), seen, "what was seen stays");
-    assert!(!obstacles.open_trap());
+    assert!(!obstacles.open_trap(&Pose::default(), &ROBOT));
 }
 
 #[test]
@@ -164,4 +167,67 @@ fn the_robot_keeps_three_centimetres_more_off_what_stands_than_off_what_is_gone(
     );
     assert_eq!(unknown_m, gone_m);
     assert!((gone_m - stands_m - 0.03).abs() < 1e-4, "{stands_m}");
+}
+
+/// The laser looks ahead from the middle of the hull: what lies beside and behind it stays unseen.
+#[test]
+fn unseen_points_go_when_a_beam_passes_or_the_robot_is_wedged() {
+    let surrounded = || {
+        let mut obstacles = ObstaclePoints::new();
+        obstacles.surround(&Pose::default(), &ROBOT);
+        obstacles.update(
+            &CONFIG,
+            &Pose::default(),
+            (&LASER, &[NO_RETURN_MM; 181]),
+            NOBODY,
+        );
+        obstacles
+    };
+    let mut obstacles = surrounded();
+    let is_behind = |point: &Point| point.x_m < 0.01;
+    assert!(obstacles.points().len() > 20);
+    assert!(obstacles.points().iter().all(is_behind));
+    for (x_m, expected) in [(0.0, true), (0.2, true), (0.4, false)] {
+        let pose = Pose {
+            x_m,
+            ..Pose::default()
+        };
+        assert_eq!(obstacles.is_surrounded(&pose, &ROBOT), expected, "{x_m}");
+    }
+    let checker = CollisionChecker::new(&ROBOT, &Pose::default(), obstacles.points());
+    let admits = |linear_mps, angular_radps| {
+        let told = Twist {
+            linear_mps,
+            angular_radps,
+        };
+        checker.admits(told, Twist::default(), &CONFIG, 0.025)
+    };
+    assert!(admits(0.4, 0.0), "ahead");
+    assert!(!admits(-0.15, 0.0), "back");
+    assert!(!admits(0.0, 0.6), "a turn");
+    assert!(obstacles.open_trap(&Pose::default(), &ROBOT));
+    assert!(obstacles.points().is_empty() && !obstacles.open_trap(&Pose::default(), &ROBOT));
+    let mut obstacles = surrounded();
+    let turned = Pose {
+        yaw_rad: math::PI,
+        ..Pose::default()
+    };
+    obstacles.update(&CONFIG, &turned, (&LASER, &[NO_RETURN_MM; 181]), NOBODY);
+    assert!(obstacles.points().len() < 6, "{:?}", obstacles.points());
+}
+
+#[test]
+fn a_return_takes_the_place_of_an_unseen_point() {
+    let mut obstacles = ObstaclePoints::new();
+    obstacles.surround(&Pose::default(), &ROBOT);
+    let wall_mm = ((ROBOT.half_length_m + UNSEEN_M) * 1e3) as u16 + 10;
+    obstacles.update(
+        &CONFIG,
+        &Pose::default(),
+        (&LASER, &thing(0, wall_mm)),
+        NOBODY,
+    );
+    let ahead = |point: &&Point| point.x_m > 0.2 && point.y_m.abs() < 0.01;
+    let nearest = obstacles.points().iter().find(ahead).expect("a point");
+    assert!((nearest.x_m - 1e-3 * f32::from(wall_mm)).abs() < 0.002);
 }
