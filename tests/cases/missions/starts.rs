@@ -15,6 +15,7 @@
 //!
 //! Units: metres, radians.
 
+use fieldline_tests::golden;
 use host_sim::link::direct::Direct;
 use host_sim::trial::mission::{Mission, OdometryProfile, explore};
 use host_sim::world::{Class, GridCell, Occupancy, Start, World};
@@ -69,22 +70,56 @@ fn tight(place: &str, gap_m: f64) -> World {
     World::flat(place, plan, vec![Start { x_m, y_m, yaw_rad }])
 }
 
+/// Explores from a place with this gap. Returns how the run ends, the number of touches, and the
+/// share that is known.
+fn run(place: &str, gap_m: f64, seed: u64) -> (String, u32, f64) {
+    let mission = Mission {
+        seed,
+        odometry: OdometryProfile::Noisy,
+        localise: true,
+        ..Mission::default()
+    };
+    let run = explore(&mission, &tight(place, gap_m), &mut Direct::new(), &mut ());
+    let report = run.expect("the start is free").0;
+    let (reason, touches) = (report.outcome.reason, report.safety.collisions);
+    (reason, touches, report.coverage.fraction)
+}
+
 #[test]
 fn robots_leave_tight_places_without_a_touch() {
     for (place, gaps_m) in PLACES {
         for (&gap_m, seed) in gaps_m.iter().cycle().zip(0..6) {
-            let mission = Mission {
-                seed,
-                odometry: OdometryProfile::Noisy,
-                localise: true,
-                ..Mission::default()
-            };
-            let run = explore(&mission, &tight(place, gap_m), &mut Direct::new(), &mut ());
-            let report = run.expect("the start is free").0;
-            let end = (report.outcome.reason.as_str(), report.safety.collisions);
+            let (reason, touches, known) = run(place, gap_m, seed);
+            let end = (reason.as_str(), touches);
             assert_eq!(end, ("explored", 0), "{place}, {gap_m} m, seed {seed}");
-            let known = report.coverage.fraction;
             assert!(known > 0.97, "{place}, {gap_m} m, seed {seed}: {known}");
         }
+    }
+}
+
+mod full {
+    use super::{golden, run};
+    use fieldline_tests::table::Table;
+
+    #[test]
+    #[ignore = "takes minutes: 150 runs; tests/run --full runs it"]
+    fn starts_in_tight_places() {
+        let mut table = Table::new(1, &["place", "gap m", "explored", "touched", "touches"]);
+        for place in ["dock", "bay", "corner"] {
+            for gap_m in [0.02, 0.03, 0.05, 0.08, 0.12] {
+                let runs: Vec<_> = (0..10).map(|seed| run(place, gap_m, seed)).collect();
+                let explored = runs.iter().filter(|run| run.0 == "explored").count();
+                let touched = runs.iter().filter(|run| run.1 > 0).count();
+                let touches: u32 = runs.iter().map(|run| run.1).sum();
+                table.row(vec![
+                    place.into(),
+                    format!("{gap_m:.2}"),
+                    explored.to_string(),
+                    touched.to_string(),
+                    touches.to_string(),
+                ]);
+            }
+        }
+        golden::compare("starts-full.txt", &format!("Ten seeds each.\n\n{table}"));
     }
 }

@@ -284,6 +284,10 @@ impl Drive {
             self.search = None;
         }
         if self.search.is_none() {
+            let ahead = || direct::straight(config, now, checker);
+            if let Some(twist) = query.is_surrounded.then(ahead).flatten() {
+                return twist;
+            }
             let planned = self.recovery.next(config.period_s);
             if let Some(twist) = planned.filter(admits) {
                 return twist;
@@ -293,10 +297,6 @@ impl Drive {
                 return Twist::default();
             };
             if let Some(twist) = self.direct(config, field, now, query) {
-                return twist;
-            }
-            let ahead = || direct::straight(config, now, checker);
-            if let Some(twist) = query.is_surrounded.then(ahead).flatten() {
                 return twist;
             }
             if is_moving(now) || self.is_resting() {
