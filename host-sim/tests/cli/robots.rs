@@ -150,7 +150,9 @@ fn a_log_is_replayed_with_the_lidar_that_made_it() {
     // The walls are in the middle of cells, and have 484 of them. Half a turn folds the room.
     let own = replay(&["--robot", "my.yaml"]);
     assert!((300..=600).contains(&own), "{own}");
-    assert_ne!(own, replay(&[]));
+    assert_ne!(own, replay(&["--laser", "-90,0.4,451,12"]));
+    let words = ["451 beams", "--laser -180,", "--robot FILE"];
+    refused(&folder, &["replay", "a.log"], &words);
     let usual = ["replay", "a.log", "--robot", "pioneer-3at"];
     refused(&folder, &usual, &["451", "181", "beams: 451"]);
 }
