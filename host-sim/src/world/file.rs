@@ -4,15 +4,18 @@
 //! | --- | --- | --- |
 //! | `image` | occupancy, PGM or PNG, relative to the file | none, if there is an `elevation` |
 //! | `resolution` | side of a pixel, metres | required |
-//! | `origin` | x, y in metres of the lower left corner; yaw, radians: the picture is turned by it | required |
+//! | `origin` | x, y of the lower left corner, metres; yaw of the picture, radians | required |
 //! | `negate` | 1 if white is occupied | 0 |
 //! | `occupied_thresh` | above this occupancy is wall | 0.65 |
 //! | `free_thresh` | below this occupancy is free; in between is unknown | 0.196 |
-//! | `mode` | `trinary`; `scale` is read the same way; `raw`: a value of 0 to 100 is the occupancy in percent, any other is unknown | `trinary` |
+//! | `mode` | `trinary`; `scale` is read the same way; `raw`, see below | `trinary` |
 //! | `wall_height` | metres above the ground | 1.5 |
-//! | `glass`, `low` | rectangles of walls that a beam goes through or over, see [`super::materials`] | none |
+//! | `glass`, `low` | walls that beams go through or over, see [`super::materials`] | none |
 //! | `elevation` | heights of the ground, see [`super::heights`] | flat |
-//! | `robots` | list of `[x, y, yaw]`; a bad one is noted, and refused if a run begins there | the origin of the frame, or else the widest place |
+//! | `robots` | list of `[x, y, yaw]` | the origin of the frame, or else the widest place |
+//!
+//! A `raw` value of 0 to 100 is the occupancy in percent, any other is unknown. A bad start is
+//! noted, and refused if a run begins there.
 //!
 //! A picture of more than [`WHOLE_PIXELS`] pixels is cut to its known part, and so is a turned one.
 //! What is built afterwards takes [`CELL_BYTES`] a cell; more than [`MOST_BYTES`] is refused.
@@ -27,6 +30,7 @@ use super::heights::Heights;
 use super::image::Image;
 use super::materials::Materials;
 use super::occupancy::{Occupancy, Thresholds};
+use super::origin::origin;
 use super::shades::Shades;
 use super::yaml::{self, BadKey, Node, Table};
 use super::{Start, WALL_HEIGHT_M, World, WorldError};
@@ -109,13 +113,21 @@ impl Loader<'_> {
             }
         };
         self.check_extent(&occupancy, &keys)?;
-        let occupancy = Self::cut(occupancy, &plan);
+        let is_cut = plan.yaw_rad != 0.0 || occupancy.width() * occupancy.height() > WHOLE_PIXELS;
+        let occupancy = if is_cut {
+            Self::cut(&occupancy, &plan)
+        } else {
+            occupancy
+        };
         self.check_memory(&occupancy, elevation.as_ref(), &keys)?;
         let name = self.path.file_stem().unwrap_or_default().to_string_lossy();
         let wall_heights = plan.materials.heights(&occupancy, &keys);
         let wall_heights = wall_heights.map_err(|bad| self.value(bad))?;
         let mut world = World::new(&name, occupancy, elevation, plan.wall_height_m, Vec::new());
         world.wall_heights = wall_heights;
+        if is_cut {
+            world.border_m = world.wall_height_m;
+        }
         world.notes = notes;
         world.starts = match plan.starts {
             Some(starts) => starts,
@@ -149,16 +161,12 @@ impl Loader<'_> {
     }
 
     /// Returns a large or turned plan cut to its known part, and turned.
-    fn cut(plan: Occupancy, read: &Plan<'_>) -> Occupancy {
-        let is_turned = read.yaw_rad != 0.0;
-        if !is_turned && plan.width() * plan.height() <= WHOLE_PIXELS {
-            return plan;
-        }
+    fn cut(plan: &Occupancy, read: &Plan<'_>) -> Occupancy {
         let known = plan.known_part();
-        if is_turned {
-            known.turned(read.origin_m, read.yaw_rad)
-        } else {
+        if read.yaw_rad == 0.0 {
             known
+        } else {
+            known.turned(read.origin_m, read.yaw_rad)
         }
     }
 
@@ -338,55 +346,6 @@ pub(super) fn length(keys: &Table<'_>, key: &str) -> Result<Option<f64>, BadKey>
         )),
         other => Ok(other),
     }
-}
-
-/// x, y and yaw of `origin`, if the key is present: metres and radians, the yaw within a turn.
-pub(super) fn origin(keys: &Table<'_>) -> Result<Option<([f64; 2], f64)>, BadKey> {
-    let Some(node) = keys.node("origin") else {
-        return Ok(None);
-    };
-    if let Some((name, word)) = not_a_number(node) {
-        let remedy = match name {
-            "yaw" => "some map savers write that for an orientation of zeros; write 0",
-            _ => "write where the picture's lower left corner lies, metres",
-        };
-        return Err(keys.bad("origin", &format!("{name} is NaN (`{word}`); {remedy}")));
-    }
-    let Some(numbers) = node.numbers(2..=3) else {
-        return Err(keys.bad(
-            "origin",
-            &format!("{node} is not [x, y, yaw]; give metres and radians"),
-        ));
-    };
-    let yaw = numbers.get(2).copied().unwrap_or(0.0);
-    let turns = core::f64::consts::TAU;
-    if yaw.abs() > turns {
-        let reason = format!("a yaw of {yaw} is more than a turn; give radians");
-        return Err(keys.bad("origin", &reason));
-    }
-    Ok(Some(([numbers[0], numbers[1]], yaw)))
-}
-
-/// Returns which number of an origin is NaN, and the word: `.nan` of YAML, or `nan` and `-nan` as
-/// other programs write it.
-fn not_a_number(node: &Node) -> Option<(&'static str, String)> {
-    let Node::List(list) = node else {
-        return None;
-    };
-    let is_nan = |node: &Node| match node {
-        Node::Number(number) => number.is_nan(),
-        Node::Text(text) => text.parse::<f64>().is_ok_and(f64::is_nan),
-        _ => false,
-    };
-    let named = ["x", "y", "yaw"].into_iter().zip(list);
-    let mut bad = named.filter(|(_, node)| is_nan(node));
-    bad.next().map(|(name, node)| {
-        let word = match node {
-            Node::Text(text) => text.clone(),
-            other => other.to_string(),
-        };
-        (name, word)
-    })
 }
 
 fn thresholds(keys: &Table<'_>) -> Result<Thresholds, BadKey> {

@@ -13,9 +13,10 @@
 //! become notes.
 
 use super::elevation::{Elevation, HeightScale};
-use super::file::{length, origin};
+use super::file::length;
 use super::image::Image;
 use super::occupancy::Occupancy;
+use super::origin::origin;
 use super::yaml::{BadKey, Node, Table};
 
 /// Keys of an `elevation`.

@@ -5,8 +5,8 @@
 //! | `glass: [[x0, y0, x1, y1], …]` | of glass | goes through, to what is behind |
 //! | `low: [[x0, y0, x1, y1, height], …]` | as high as said | goes over, if it is higher |
 //!
-//! A wall cell belongs to a rectangle if its centre lies in it. The robot touches such a wall as any
-//! other, and it bounds the floor as any other. Only rays know the material.
+//! A wall cell belongs to a rectangle if its centre lies in it. The robot touches such a wall as
+//! any other, and it bounds the floor as any other. Only rays know the material.
 //!
 //! Metres.
 

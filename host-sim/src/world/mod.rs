@@ -20,6 +20,7 @@ mod image;
 mod materials;
 mod memo;
 mod occupancy;
+mod origin;
 mod pgm;
 mod png_file;
 mod ray;
@@ -79,6 +80,9 @@ pub struct World {
     walls: ray::Walls,
     elevation: Option<Elevation>,
     wall_height_m: f64,
+    /// Height of what lies outside of the grid, metres: infinite, or that of the walls for a picture
+    /// that was cut, whose unknown parts lie there.
+    border_m: f64,
     /// Heights of walls that are of glass or lower than the rest.
     wall_heights: Option<materials::WallHeights>,
     starts: Vec<Start>,
@@ -165,6 +169,7 @@ impl World {
             distance,
             elevation,
             wall_height_m,
+            border_m: f64::INFINITY,
             wall_heights: None,
             starts,
             notes: Vec::new(),
@@ -263,11 +268,11 @@ impl World {
             .or(ground)
     }
 
-    /// Height of the top of the wall on a cell; infinite outside of the map, and below everything
-    /// for glass. Over a hole it counts from 0.
+    /// Height of the top of the wall on a cell; infinite outside of a whole picture, and below
+    /// everything for glass. Over a hole it counts from 0.
     fn wall_top_m(&self, cell: GridCell) -> f64 {
         let Some(index) = self.occupancy.index(cell) else {
-            return f64::INFINITY;
+            return self.border_m;
         };
         let own = self.wall_heights.as_ref().and_then(|it| it.of(index));
         let [x_m, y_m] = self.occupancy.centre(cell);

@@ -85,7 +85,7 @@ fn a_replay_prints_its_figures_and_writes_its_files() {
         assert_eq!(status, 0, "{stdout}{stderr}");
         let report = &reports(&stdout)[0];
         let keys: Vec<&String> = report.as_object().unwrap().keys().collect();
-        let expected = "degrade input_faults laser late_scans link log map_full_at \
+        let expected = "degrade input_faults laser late_scans link log made_by map_full_at \
                         occupied_cells_5cm quality relations resampled seed skipped steps";
         assert_eq!(keys, expected.split(' ').collect::<Vec<_>>());
         assert_eq!(report["steps"], 60);
@@ -287,7 +287,7 @@ fn drift_is_corrected_and_without_a_factor_there_is_none() {
     let folder = with_log(181);
     fs::write(folder.path().join("r"), relations(0.0)).unwrap();
     let line = |more: &str| {
-        let line = format!("replay a.log --relations r --link direct --json{more}");
+        let line = format!("replay a.log --relations r --link direct --json --force{more}");
         let words: Vec<&str> = line.split(' ').collect();
         let (status, stdout, stderr) = outcome(&folder, &words);
         assert_eq!(status, 0, "{stderr}");
@@ -313,6 +313,7 @@ fn the_clock_of_relations_is_found_or_said() {
             "--link",
             "direct",
             "--json",
+            "--force",
         ];
         let (status, stdout, stderr) = outcome(&folder, &[&start, more].concat());
         assert_eq!(status, 0, "{stderr}");

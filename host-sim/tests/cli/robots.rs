@@ -30,7 +30,7 @@ fn with_robot(text: &str) -> TempDir {
 
 /// Explores for ten seconds; returns the report.
 fn ten_seconds(folder: &TempDir, more: &[&str]) -> serde_json::Value {
-    let usual = "explore office --link direct --time-limit 10 --json";
+    let usual = "explore office --link direct --time-limit 10 --json --force";
     let words: Vec<&str> = usual.split(' ').chain(more.iter().copied()).collect();
     let (status, stdout, stderr) = outcome(folder, &words);
     assert_eq!(status, 1, "{more:?}: {stderr}");
@@ -142,7 +142,7 @@ fn a_log_is_replayed_with_the_lidar_that_made_it() {
     let folder = with_robot(ROBOT);
     fs::write(folder.path().join("a.log"), log(451)).unwrap();
     let replay = |more: &[&str]| {
-        let usual = ["replay", "a.log", "--link", "direct", "--json"];
+        let usual = ["replay", "a.log", "--link", "direct", "--json", "--force"];
         let (status, stdout, stderr) = outcome(&folder, &[&usual[..], more].concat());
         assert_eq!(status, 0, "{stderr}");
         reports(&stdout)[0]["occupied_cells_5cm"].as_u64().unwrap()

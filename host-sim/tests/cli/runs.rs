@@ -100,7 +100,14 @@ fn json_prints_one_report_per_line_and_nothing_else() {
 fn a_team_takes_the_impatience_of_a_space_field() {
     let folder = folder();
     let impatience = |more: &[&str]| {
-        let args = ["team", "partition@1", "--json", "--strategy", "esbpf"];
+        let args = [
+            "team",
+            "partition@1",
+            "--json",
+            "--force",
+            "--strategy",
+            "esbpf",
+        ];
         let (_, stdout, _) = outcome(&folder, &[&args, more].concat());
         let report: Value = serde_json::from_str(&stdout).expect("one report");
         report["robots"][0]["space_field"]["impatience"].clone()
@@ -172,7 +179,14 @@ fn snapshots_of_an_uneven_run_change_no_result() {
     let folder = folder();
     let run = |more: &[&str]| {
         // The score of the map against the true ground needs true poses.
-        let arguments = ["explore", "causeway@1", "--time-limit", "13", "--json"];
+        let arguments = [
+            "explore",
+            "causeway@1",
+            "--time-limit",
+            "13",
+            "--json",
+            "--force",
+        ];
         let arguments = [&arguments[..], &["--odometry", "truth"], more].concat();
         let (status, stdout, _) = outcome(&folder, &arguments);
         assert_eq!(status, 1, "the time limit ended it");
@@ -213,7 +227,7 @@ fn snapshots_of_an_uneven_run_change_no_result() {
 fn the_alias_terrain_is_frontier_on_uneven_ground() {
     let folder = folder();
     let run = |more: &[&str]| {
-        let arguments = ["explore", "slope", "--time-limit", "5", "--json"];
+        let arguments = ["explore", "slope", "--time-limit", "5", "--json", "--force"];
         let (status, stdout, stderr) = outcome(&folder, &[&arguments, more].concat());
         assert_eq!(status, 1, "the time limit ended it: {stderr}");
         (reports(&stdout).remove(0), stderr)
@@ -260,7 +274,14 @@ fn the_alias_terrain_is_frontier_on_uneven_ground() {
 fn the_link_and_its_faults_change_no_command() {
     let folder = folder();
     let digest = |more: &[&str]| {
-        let arguments = ["explore", "cluttered", "--time-limit", "20", "--json"];
+        let arguments = [
+            "explore",
+            "cluttered",
+            "--time-limit",
+            "20",
+            "--json",
+            "--force",
+        ];
         let (_, stdout, _) = outcome(&folder, &[&arguments, more].concat());
         let report = reports(&stdout).remove(0);
         (
@@ -281,7 +302,7 @@ fn the_link_and_its_faults_change_no_command() {
 fn silence_or_a_reset_ends_the_run_with_a_typed_fault() {
     let folder = folder();
     for (fault, reason) in [("silent@60", "link-silent"), ("reset@60", "device-reset")] {
-        let arguments = ["explore", "loop", "--json", "--fault", fault];
+        let arguments = ["explore", "loop", "--json", "--force", "--fault", fault];
         let (status, stdout, stderr) = outcome(&folder, &arguments);
         let report = &reports(&stdout)[0];
         assert_eq!(status, 1);
@@ -416,18 +437,21 @@ fn a_folder_of_other_options_is_replaced_by_force_only() {
 #[test]
 fn a_map_without_its_walls_says_so() {
     let folder = folder();
-    let border = |k: usize| !(2..=121).contains(&k);
     let pixel = |k: usize| {
-        if border(k / 124) || border(k % 124) {
-            0
-        } else {
-            254
+        let farthest = [k / 164, k % 164]
+            .map(|at| (2 * at).abs_diff(163))
+            .into_iter()
+            .max();
+        match farthest {
+            Some(0..120) => 254,
+            Some(120..124) => 0,
+            _ => 205,
         }
     };
-    let mut pgm = b"P5 124 124 255\n".to_vec();
-    pgm.extend((0..124 * 124).map(pixel));
+    let mut pgm = b"P5 164 164 255\n".to_vec();
+    pgm.extend((0..164 * 164).map(pixel));
     fs::write(folder.path().join("map.pgm"), pgm).unwrap();
-    let keys = "image: map.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nrobots: [[3, 3, 0]]\n";
+    let keys = "image: map.pgm\nresolution: 0.05\norigin: [-1, -1, 0]\nrobots: [[3, 3, 0]]\n";
     let share = |name: &str, height: &str| {
         let file = format!("{name}.yaml");
         fs::write(

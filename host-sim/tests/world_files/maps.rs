@@ -200,7 +200,10 @@ fn each_fault_has_its_error_line() {
                 .into(),
         ),
         (
-            format!("{}elevation: {{image: map.pgm}}", KEYS.replace(", 0]", ", 0.5]")),
+            format!(
+                "{}elevation: {{image: map.pgm}}",
+                KEYS.replace(", 0]", ", 0.5]")
+            ),
             "origin: a yaw of 0.5 is not supported with an elevation; turn both pictures and set \
              it to 0"
                 .into(),
@@ -240,8 +243,8 @@ fn each_fault_has_its_error_line() {
         ),
         (
             format!("image: clear.png\n{KEYS}"),
-            "image clear.png: it has no free floor, and 75.0 % of its pixels are transparent, which \
-             count as unknown; flatten the picture onto white and save it without alpha"
+            "image clear.png: it has no free floor, and 75.0 % of its pixels are transparent, \
+             which count as unknown; flatten the picture onto white and save it without alpha"
                 .into(),
         ),
         (
@@ -463,6 +466,17 @@ fn a_large_picture_is_cut_to_its_known_part() {
     let world = World::load(&folder.write("world.yaml", text)).expect("loads");
     let grid = world.occupancy();
     assert_eq!((grid.width(), grid.height()), (62, 42));
+    // Outside lie walls of the usual height, as in the whole picture.
+    let ray = |z| Ray {
+        origin_m: [41.0, 34.0, z],
+        direction: [1.0, 0.0, 0.0],
+    };
+    assert!(
+        world
+            .cast(&ray(1.4), 12.0)
+            .is_some_and(|hit| hit.range_m < 3.0)
+    );
+    assert_eq!(world.cast(&ray(1.6), 12.0), None);
     // Row 939 from the top is row 1060 from the bottom, and one row of rim is below it.
     let [x, y] = grid.origin_m();
     assert!(
@@ -498,8 +512,8 @@ fn a_threshold_that_frees_the_unknown_grey_and_clear_pixels_are_noted() {
     png(&folder.0.join("map.png"), (2, 2), kind, &data);
     let text = format!("image: map.png\n{KEYS}robots: [[-0.5, 3.5, 0]]");
     let world = World::load(&folder.write("world.yaml", text)).expect("loads");
-    let note = "25.0 % of its pixels are transparent and count as unknown; flatten the picture onto \
-                white if they are floor";
+    let note = "25.0 % of its pixels are transparent and count as unknown; flatten the picture \
+                onto white if they are floor";
     assert_eq!(world.notes(), [note]);
 }
 
