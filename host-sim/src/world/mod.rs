@@ -80,8 +80,8 @@ pub struct World {
     walls: ray::Walls,
     elevation: Option<Elevation>,
     wall_height_m: f64,
-    /// Height of what lies outside of the grid, metres: infinite, or that of the walls for a picture
-    /// that was cut, whose unknown parts lie there.
+    /// Height of what lies outside of the grid, metres: infinite, or that of the walls for a
+    /// picture that was cut, whose unknown parts lie there.
     border_m: f64,
     /// Heights of walls that are of glass or lower than the rest.
     wall_heights: Option<materials::WallHeights>,
