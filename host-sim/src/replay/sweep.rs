@@ -18,7 +18,7 @@
 //! | 240° (Hokuyo URG), 270° (Hokuyo UTM) | half of it to the right |
 //! | a turn, counter-clockwise or clockwise | behind, or ahead |
 //!
-//! The best reading is taken if its misfit is at most [`CLEARLY`] of the next one's. If none is,
+//! The best reading is taken if its misfit is at most `CLEARLY` of the next one's. If none is,
 //! 180, 181 and 361 beams are 180°, which no other usual laser has; another number is ambiguous.
 //!
 //! Units: metres, radians.
