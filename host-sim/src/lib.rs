@@ -5,6 +5,7 @@ pub mod baseline;
 pub mod campaign;
 pub mod link;
 pub mod metrics;
+pub mod near;
 pub mod network;
 mod panics;
 pub mod people;

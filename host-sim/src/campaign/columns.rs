@@ -12,8 +12,8 @@
 
 use serde_json::Value;
 
-use super::near;
 use super::store::Finished;
+use crate::near;
 
 /// First word of the paths to what the campaign itself measured.
 const OWN: &str = "trial";

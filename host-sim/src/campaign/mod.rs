@@ -25,7 +25,6 @@
 pub mod columns;
 pub mod csv;
 pub mod markdown;
-mod near;
 pub mod numbers;
 pub mod plan;
 pub mod plots;

@@ -25,7 +25,8 @@ use toml::{Spanned, Value};
 use super::plan::{Options, Plan, SLAM_OFF, Setting, Variant};
 use super::shards::Shard;
 use super::source::Source;
-use super::{CampaignError, columns, near, numbers};
+use super::{CampaignError, columns, numbers};
+use crate::near;
 
 /// Options of `explore` that a campaign has keys for, or that make no sense in one.
 const NOT_OPTIONS: [(&str, &str); 11] = [

@@ -201,6 +201,9 @@ pub(super) struct ExploreArgs {
     /// out/WORLD-STRATEGY-SEED, on uneven ground out/WORLD-STRATEGY-uneven-SEED]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+    /// Replace the run of the folder, though it was made with other options
+    #[arg(long)]
+    pub(super) force: bool,
     /// Run no faster than real time
     #[arg(long)]
     pub(super) realtime: bool,
@@ -282,6 +285,7 @@ impl Default for ExploreArgs {
             bvp_sweeps: None,
             bvp_precision: None,
             out: None,
+            force: false,
             realtime: false,
             wait: Duration::from_secs(15),
             team: None,

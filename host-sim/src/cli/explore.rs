@@ -3,17 +3,18 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail};
+use anyhow::{Error, Result, bail};
 
 use fieldline_protocol::message::UnevenGround;
 use host_sim::baseline::bvp_papers::Relaxation;
 use host_sim::link::spec::LinkSpec;
-use host_sim::report::{Report, folder};
+use host_sim::report::{MadeBy, Report, folder};
 use host_sim::robot::Limits;
 use host_sim::slam::SlamPlace;
 use host_sim::trial::Record;
 use host_sim::trial::mission::{self, IMPATIENCE_S, Mission, on_device};
 use host_sim::trial::space::SpaceMission;
+use host_sim::trial::surprises::surprises;
 use host_sim::trial::uneven;
 use host_sim::world::World;
 
@@ -22,19 +23,23 @@ use super::pictures::Album;
 use super::prepared::Prepared;
 use super::progress::{Interrupt, Onlooker};
 use super::strategies::{self, FRONTIER, TERRAIN};
-use super::{note, say};
+use super::{made_by, note, say};
 
 /// A run to make.
 struct Run {
     world: World,
     mission: Mission,
     folder: PathBuf,
+    made_by: MadeBy,
 }
 
 /// Explores every world; returns true if every run ended explored.
 pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     let prepared = Prepared::new(&without_alias(args)?)?;
     let runs = runs(&prepared.args, &prepared.mission)?;
+    for run in &runs {
+        folder::prepare(&run.folder)?;
+    }
     let interrupt = Interrupt::listen()?;
     let mut all_explored = true;
     for run in &runs {
@@ -61,20 +66,26 @@ fn without_alias(args: &ExploreArgs) -> Result<ExploreArgs> {
     Ok(args)
 }
 
-/// Opens every world and prepares every folder, before the first run.
+/// Opens every world and checks every folder, before the first run.
 fn runs(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Run>> {
-    let open = |name: &String| {
-        let (name, start) = with_start(name);
+    let open = |text: &String| {
+        let (name, start) = with_start(text);
         let world = World::open(name)?;
         let mission = Mission {
             start: start.unwrap_or(mission.start),
             ..mission.clone()
         };
         mission::check(&mission, &world)?;
-        Ok((world, mission))
+        let own = [
+            ("worlds", name.to_owned()),
+            ("start", mission.start.to_string()),
+        ];
+        let made_by = made_by::of_run(&mission.robot, &own);
+        Ok((world, mission, made_by))
     };
-    let worlds: Vec<(World, Mission)> = args.worlds.iter().map(open).collect::<Result<_>>()?;
-    let names = unique(worlds.iter().map(|(world, mission)| {
+    let worlds: Vec<(World, Mission, MadeBy)> =
+        args.worlds.iter().map(open).collect::<Result<_>>()?;
+    let names = unique(worlds.iter().map(|(world, mission, _)| {
         let start = match mission.start {
             0 => String::new(),
             start => format!("@{start}"),
@@ -89,17 +100,20 @@ fn runs(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Run>> {
     worlds
         .into_iter()
         .zip(names)
-        .map(|((world, mission), name)| {
+        .map(|((world, mission, made_by), name)| {
             let folder = match &args.out {
                 Some(out) if single => out.clone(),
                 Some(out) => out.join(name),
                 None => Path::new("out").join(name),
             };
-            folder::prepare(&folder)?;
+            if !args.force {
+                made_by.may_replace(&folder).map_err(Error::msg)?;
+            }
             Ok(Run {
                 world,
                 mission,
                 folder,
+                made_by,
             })
         })
         .collect()
@@ -136,12 +150,16 @@ fn explore(prepared: &Prepared, run: &Run, interrupt: &Interrupt) -> Result<bool
     for text in run.world.notes() {
         note(&format!("host-sim: {name}: {text}"));
     }
+    for text in surprises(&run.mission, &run.world) {
+        note(&format!("host-sim: {name}: {text}"));
+    }
     let pace = args.team.as_ref().map(|team| team.pace);
     let pace = pace.or(args.realtime.then_some(1.0));
     let mut onlooker = Onlooker::new(name, pace, interrupt.clone());
     let result = prepared.play_mission(&run.mission, &run.world, &mut onlooker);
     onlooker.finish();
-    let (report, record) = result?;
+    let (mut report, record) = result?;
+    report.made_by = Some(run.made_by.clone());
     let album = Album::new(&run.world, &report, &record);
     folder::write(&run.folder, &report, &record, &album.end())?;
     folder::write_snapshots(&run.folder, album.during())?;

@@ -9,6 +9,7 @@
 mod args;
 mod campaign;
 mod explore;
+mod made_by;
 mod pictures;
 mod prepared;
 mod progress;
@@ -30,6 +31,8 @@ use anyhow::{Error, Result};
 use clap::{CommandFactory as _, FromArgMatches as _};
 
 use args::{Cli, Command, ExploreArgs};
+use host_sim::link::image::IMAGE_VARIABLE;
+use host_sim::link::spec::LinkSpec;
 
 /// Exit status if a run ended otherwise than explored.
 const UNFINISHED: u8 = 1;
@@ -58,6 +61,7 @@ pub(crate) fn main() -> ExitCode {
 
 fn parse(arguments: impl Iterator<Item = std::ffi::OsString>) -> Result<Cli, clap::Error> {
     let matches = Cli::command().try_get_matches_from(arguments)?;
+    made_by::keep(&matches);
     Cli::from_arg_matches(&matches)
 }
 
@@ -89,6 +93,13 @@ fn say(line: &str) -> Result<()> {
 /// Prints a line on standard error. A failure to print is ignored.
 fn note(line: &str) {
     let _ = writeln!(io::stderr(), "{line}");
+}
+
+/// Says that a link builds an image first, which may take minutes.
+fn note_build(link: &LinkSpec) {
+    if *link == LinkSpec::Qemu && std::env::var_os(IMAGE_VARIABLE).is_none() {
+        note("host-sim: --link qemu: builds the image for the chip, if it is not up to date");
+    }
 }
 
 fn complain(message: &str) -> ExitCode {

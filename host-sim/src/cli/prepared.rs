@@ -22,8 +22,8 @@ use host_sim::world::World;
 
 use super::args::ExploreArgs;
 use super::explore;
-use super::note;
 use super::strategies;
+use super::{note, note_build};
 
 /// Arguments that fit together, and what they mean.
 pub(super) struct Prepared {
@@ -84,6 +84,7 @@ impl Prepared {
             real_time: args.realtime,
             tuning: args.robot.tuning(link)?,
         };
+        note_build(link);
         let mut planner = strategies::open(&args.strategy, link, &options, mission.relaxation)
             .with_context(|| format!("--link {link}"))?;
         if let LinkSpec::Serial { device, .. } = link {

@@ -9,20 +9,20 @@ use fieldline_planner::config::Tuning;
 use fieldline_protocol::message::Status;
 use fieldline_slam::Motion;
 use host_sim::link::spec::{LinkSpec, Options};
-use host_sim::replay::carmen::LogScan;
 use host_sim::replay::relations::{self, Pose, Relation, RelationError};
-use host_sim::replay::report::{self, Files, RelationErrors, ReplayReport};
+use host_sim::replay::report::{self, Files, ReadLaser, RelationErrors, ReplayReport};
+use host_sim::replay::sweep::{self, By};
 use host_sim::replay::wire::LogLaser;
 use host_sim::replay::{carmen, clock, run};
 use host_sim::report::{QualityShares, folder};
-use host_sim::robot::RobotSpec;
+use host_sim::robot::{RobotSpec, Sweep};
 use host_sim::slam::SlamPlace;
 use host_sim::trial::wording;
 
 use super::progress::Interrupt;
-use super::robot::{TuneArgs, robot};
+use super::robot::{self as robots, TuneArgs, robot};
 use super::values::{seed, slam_place};
-use super::{note, say};
+use super::{made_by, note, note_build, say};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct ReplayArgs {
@@ -50,6 +50,15 @@ pub(super) struct ReplayArgs {
     /// mask, its hull and its speeds [default: the laser as the log tells it]
     #[arg(long, value_name = "FILE|PRESET", value_parser = robot)]
     robot: Option<RobotSpec>,
+    /// Sweep of the laser: first angle and step in degrees, beams, range in metres, as in
+    /// -180,1,360,12 [default: told by the lines, or found by the scans]
+    #[arg(
+        long,
+        value_name = "FIRST,STEP,BEAMS,RANGE",
+        value_parser = robots::sweep,
+        allow_hyphen_values = true
+    )]
+    laser: Option<Sweep>,
     /// Seed of the drift
     #[arg(
         long,
@@ -72,6 +81,9 @@ pub(super) struct ReplayArgs {
     /// Folder of the replay [default: out/LOG-replay-SEED]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replace the run of the folder, though it was made with other options
+    #[arg(long)]
+    force: bool,
     #[command(flatten)]
     tune: TuneArgs,
     /// Print only the figures, one JSON object
@@ -86,16 +98,16 @@ const UNKNOWN_WHEELS: f64 = 20.0;
 /// Replays a log; returns true if the device went on up to the end.
 pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     let text = carmen::read(&args.log).map_err(Error::msg)?;
-    let log = carmen::log(&args.log.display().to_string(), &text).map_err(Error::msg)?;
+    let mut log = carmen::log(&args.log.display().to_string(), &text).map_err(Error::msg)?;
     note_late(args, &log);
+    let (laser, known) = laser(args, &mut log)?;
     let scans = log.scans;
-    let laser = laser(args, &scans)?;
     let times = || scans.iter().map(|scan| scan.time);
     let own: Vec<(f64, Pose)> = times()
         .zip(scans.iter().map(|scan| scan.odometry))
         .collect();
     let truth = args.relations.as_ref();
-    let truth = truth.map(|file| known(args, file, &own)).transpose()?;
+    let truth = truth.map(|file| with_times(args, file, &own)).transpose()?;
     let link = args.tune.link(args.link.as_ref()).cloned();
     let link = link.unwrap_or_default();
     let tuning = args.tune.tuning(&link)?;
@@ -105,7 +117,13 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     };
     let folder = args.out.clone().unwrap_or_else(|| usual_folder(args));
     let interrupt = Interrupt::listen()?;
+    let robot = args.robot.as_ref().map_or("", |robot| &robot.name);
+    let made_by = made_by::of_run(robot, &[]);
+    if !args.force {
+        made_by.may_replace(&folder).map_err(Error::msg)?;
+    }
     folder::make(&folder)?;
+    note_build(&link);
     let context = || format!("--link {link}");
     let mut planner = link.open(&options).with_context(context)?;
     let odometry = run::odometry(&scans, args.degrade, args.seed);
@@ -138,6 +156,9 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
         quality: QualityShares::of(&replayed.qualities),
         input_faults: replayed.input_faults,
         late_scans: log.late,
+        skipped: log.left_out,
+        resampled: log.resampled,
+        laser: ReadLaser::of(&laser, known),
         map_full_at: run::is_default_pool(replayed.tile_pool)
             .then(|| {
                 let tuning = tuning.unwrap_or(&Tuning::DEFAULT);
@@ -145,6 +166,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
             })
             .flatten(),
         slam: replayed.slam.clone(),
+        made_by: Some(made_by),
     };
     let files = Files {
         report: &report,
@@ -169,14 +191,30 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     Ok(replayed.status == Status::Exploring)
 }
 
-/// Returns the laser that made the scans.
-fn laser(args: &ReplayArgs, scans: &[LogScan]) -> Result<LogLaser> {
-    match &args.robot {
-        None => Ok(LogLaser::of(scans)),
-        Some(robot) => LogLaser::of_robot(scans, robot)
+/// Returns the laser that made the scans, and how its sweep is known.
+fn laser(args: &ReplayArgs, log: &mut carmen::Log) -> Result<(LogLaser, By)> {
+    let file = args.log.display();
+    let laser = match (&args.robot, &args.laser) {
+        (None, None) => {
+            let known = sweep::find(&file.to_string(), log).map_err(Error::msg)?;
+            return Ok((LogLaser::of(&log.scans), known));
+        }
+        (None, Some(sweep)) => LogLaser::of_sweep(&log.scans, sweep)
             .map_err(Error::msg)
-            .with_context(|| format!("{} with --robot {}", args.log.display(), robot.name)),
-    }
+            .with_context(|| file.to_string()),
+        (Some(robot), told) => {
+            let name = robot.name.clone();
+            let robot = robot.clone();
+            let robot = match told {
+                Some(sweep) => robot.with_sweep(sweep),
+                None => robot,
+            };
+            LogLaser::of_robot(&log.scans, &robot)
+                .map_err(Error::msg)
+                .with_context(|| format!("{file} with --robot {name}"))
+        }
+    };
+    Ok((laser?, By::Option))
 }
 
 /// Says that scans were sorted, if so.
@@ -192,7 +230,7 @@ fn note_late(args: &ReplayArgs, log: &carmen::Log) {
 }
 
 /// Reads the relations, with the log's times.
-fn known(args: &ReplayArgs, file: &Path, own: &[(f64, Pose)]) -> Result<Vec<Relation>> {
+fn with_times(args: &ReplayArgs, file: &Path, own: &[(f64, Pose)]) -> Result<Vec<Relation>> {
     let name = file.display();
     let text = carmen::read(file).map_err(Error::msg)?;
     let read = relations::read(&name.to_string(), &text).map_err(Error::msg)?;

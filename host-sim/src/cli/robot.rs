@@ -3,10 +3,11 @@
 
 use anyhow::{Context as _, Result, bail};
 use clap::{Args, ValueEnum};
-use fieldline_planner::{RobotShape, Tuning};
+use fieldline_planner::{RobotShape, Tuning, TuningError};
 use fieldline_protocol::message::{LoopLimits, Order};
 use fixed::types::{I4F12, I16F16};
 use host_sim::link::spec::LinkSpec;
+use host_sim::near;
 use host_sim::robot::{Footprint, RobotSpec, Sweep};
 use host_sim::trial::mission::{Mission, on_device};
 
@@ -158,14 +159,24 @@ impl TuneArgs {
                 .split_once('=')
                 .with_context(|| format!("--tune {text} has no value; say NAME=VALUE"))?;
             let value = number(value).map_err(anyhow::Error::msg);
-            let set = tuning.set(
-                name,
-                value.with_context(|| format!("--tune {text}"))? as f32,
-            );
-            set.with_context(|| format!("--tune {text}; host-sim tuning lists the constants"))?;
+            let value = value.with_context(|| format!("--tune {text}"))? as f32;
+            match tuning.set(name, value) {
+                Err(TuningError::Unknown) => bail!(
+                    "--tune {text}: no tuned constant has this name; host-sim tuning lists them{}",
+                    near_constant(name)
+                ),
+                set => set.with_context(|| format!("--tune {text}"))?,
+            }
         }
         Ok(Some(Box::leak(Box::new(tuning))))
     }
+}
+
+/// Returns `; did you mean X?` if a constant has nearly this name.
+fn near_constant(name: &str) -> String {
+    let mut known = Vec::new();
+    Tuning::DEFAULT.parameters(|tuned| known.push(format!("{}.{}", tuned.room, tuned.name)));
+    near::hint(name, known.iter().map(String::as_str))
 }
 
 /// Returns the radius that the planner gives a hull without another one.
@@ -183,7 +194,7 @@ pub(super) fn robot(text: &str) -> Result<RobotSpec, String> {
     RobotSpec::open(text).map_err(|error| error.to_string())
 }
 
-fn sweep(text: &str) -> Result<Sweep, String> {
+pub(super) fn sweep(text: &str) -> Result<Sweep, String> {
     text.parse()
 }
 

@@ -10,6 +10,7 @@ use host_sim::baseline::bvp_papers::Relaxation;
 use host_sim::baseline::{Bvp, BvpPapers, GreedyFrontier, Session};
 use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
+use host_sim::near;
 use host_sim::trial::Ending;
 use host_sim::trial::mission::{BVP_PAPERS, STRATEGIES, on_device};
 
@@ -47,8 +48,9 @@ pub(super) fn parse(name: &str) -> Result<String, String> {
         Ok(name.into())
     } else {
         Err(format!(
-            "unknown strategy '{name}'; use {}",
-            known.join(", ")
+            "unknown strategy '{name}'; use {}{}",
+            known.join(", "),
+            near::hint(name, known.iter().copied())
         ))
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Error, Result, bail};
 use clap::Args;
 
 use host_sim::baseline::bvp_papers::Relaxation;
@@ -14,6 +14,7 @@ use host_sim::report::tum::Stamped;
 use host_sim::report::{TeamReport, folder};
 use host_sim::slam::SlamPlace;
 use host_sim::trial::mission::on_device;
+use host_sim::trial::surprises::surprises;
 use host_sim::trial::team::{
     Appointment, StartError, TeamError, TeamMission, TeamRecord, Timetable, explore, starts,
 };
@@ -25,7 +26,7 @@ use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
 use super::robot::RobotArgs;
 use super::values::{impatience, seed, slam_place, start, time_limit, until};
-use super::{note, say, strategies};
+use super::{made_by, note, note_build, say, strategies};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct TeamArgs {
@@ -121,6 +122,9 @@ pub(super) struct TeamArgs {
     /// Folder of the run [default: out/WORLD-STRATEGY-team-ROBOTS-SEED]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replace the run of the folder, though it was made with other options
+    #[arg(long)]
+    force: bool,
     /// Run no faster than real time
     #[arg(long)]
     realtime: bool,
@@ -168,8 +172,16 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
         let (robots, seed) = (args.robots, args.seed);
         Path::new("out").join(format!("{world}-{strategy}-team-{robots}-{seed}"))
     });
+    let own = [("world", args.world.clone())];
+    let made_by = made_by::of_run(&team.mission.robot, &own);
+    if !args.force {
+        made_by.may_replace(&folder).map_err(Error::msg)?;
+    }
     folder::prepare(&folder)?;
     for text in world.notes() {
+        note(&format!("host-sim: {}: {text}", world.name()));
+    }
+    for text in surprises(&team.mission, &world) {
         note(&format!("host-sim: {}: {text}", world.name()));
     }
     let mut planners = open(args, &links)?;
@@ -187,6 +199,8 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
         }
         result => result?,
     };
+    let mut report = report;
+    report.whole.made_by = Some(made_by);
     write(&folder, &world, &report, &record)?;
     print(args, &report, &record, &folder)?;
     Ok(report.whole.explored())
@@ -240,6 +254,7 @@ fn radio(args: &TeamArgs) -> Result<RadioSpec> {
 }
 
 fn open(args: &TeamArgs, links: &[LinkSpec]) -> Result<Vec<Box<dyn Link>>> {
+    links.iter().for_each(note_build);
     let open = |link: &LinkSpec| {
         let options = Options {
             seed: args.seed,

@@ -15,9 +15,9 @@
 //! Units: metres, radians.
 
 use crate::report::{GridMap, MapCell};
-use crate::world::{Class, DistanceField, GridCell, Occupancy, World};
+use crate::world::{Class, DistanceField, GridCell, Occupancy, Start, World};
 
-use super::MAP_CELL_M;
+use super::{CellSet, MAP_CELL_M};
 
 /// Distance beyond which an obstacle cell is a ghost, metres.
 pub const GHOST_M: f64 = 0.3;
@@ -134,6 +134,61 @@ pub fn map_error(world: &World, map: &GridMap) -> Option<MapError> {
     })
 }
 
+/// Returns the share of the true walls that the map has; `None` without walls.
+///
+/// A wall is a solid cell with an edge in common with floor that is connected with the start. The
+/// map has it if one of its obstacle cells, aligned as in [`map_error`], is within [`GHOST_M`].
+#[must_use]
+pub fn walls_share(world: &World, start: Start, map: &GridMap) -> Option<f64> {
+    let walls = walls(world, start);
+    let cells = obstacles(map);
+    if walls.is_empty() || cells.is_empty() {
+        return (!walls.is_empty()).then_some(0.0);
+    }
+    let count = cells.len() as f64;
+    let middle = [0, 1].map(|k| cells.iter().map(|at| at[k]).sum::<f64>() / count);
+    let best = align(&Surfaces::of(world), &cells, middle);
+    let grid = world.occupancy();
+    let resolution_m = grid.resolution_m();
+    let margin = (GHOST_M / resolution_m).ceil();
+    let origin_m = grid.origin_m().map(|at| at - margin * resolution_m);
+    let [width, height] = [grid.width(), grid.height()].map(|it| it + 2 * margin as usize);
+    let mut held = Occupancy::filled(width, height, resolution_m, origin_m, Class::Free);
+    for at in cells {
+        let [x, y] = best.apply(middle, at);
+        held.set(held.cell_at(x, y), Class::Wall);
+    }
+    let distance = DistanceField::new(&held);
+    let found = walls.iter().filter(|cell| {
+        let [x, y] = grid.centre(**cell);
+        distance.from_centre_m(held.cell_at(x, y)) <= GHOST_M
+    });
+    Some(found.count() as f64 / walls.len() as f64)
+}
+
+/// Returns the solid cells beside the floor that is connected with the start.
+fn walls(world: &World, start: Start) -> Vec<GridCell> {
+    let grid = world.occupancy();
+    let floor = CellSet::free(world, start);
+    let mut walls = Vec::new();
+    for j in -1..=grid.height() as i64 {
+        for i in -1..=grid.width() as i64 {
+            let beside = [(1, 0), (-1, 0), (0, 1), (0, -1)];
+            let is_floor = |(di, dj)| {
+                floor.contains(GridCell {
+                    i: i + di,
+                    j: j + dj,
+                })
+            };
+            let cell = GridCell { i, j };
+            if grid.is_solid(cell) && beside.into_iter().any(is_floor) {
+                walls.push(cell);
+            }
+        }
+    }
+    walls
+}
+
 /// Returns the centres of the obstacle cells.
 fn obstacles(map: &GridMap) -> Vec<[f64; 2]> {
     let (width, height) = (map.width as i32, map.height as i32);
@@ -188,9 +243,9 @@ fn align(surfaces: &Surfaces, cells: &[[f64; 2]], middle: [f64; 2]) -> Rigid {
 
 #[cfg(test)]
 mod tests {
-    use super::map_error;
+    use super::{map_error, walls_share};
     use crate::report::{GridMap, MapCell};
-    use crate::world::World;
+    use crate::world::{Start, World};
 
     /// A room of 8 × 6 m with walls of 0.2 m and a box.
     fn room() -> World {
@@ -244,6 +299,25 @@ mod tests {
         let moved = map_error(&room(), &map(0.06, [0.35, -0.25])).expect("walls");
         assert!(moved.wall_p95_m <= 0.12, "{moved:?}");
         assert_eq!(moved.ghost_share, 0.0);
+    }
+
+    #[test]
+    fn a_map_has_the_share_of_the_walls_that_it_has() {
+        let start = Start {
+            x_m: 1.0,
+            y_m: 1.0,
+            ..Start::default()
+        };
+        let share = |map: &GridMap| walls_share(&room(), start, map).expect("walls");
+        assert_eq!(share(&map(0.0, [0.0, 0.0])), 1.0);
+        assert!(share(&map(0.06, [0.35, -0.25])) > 0.98);
+        assert_eq!(share(&GridMap::unknown(0, 0, 5, 5)), 0.0);
+        let mut half = map(0.0, [0.0, 0.0]);
+        for (x, y) in (0..82).flat_map(|x| (31..70).map(move |y| (x, y))) {
+            half.set(x, y, MapCell::Free);
+        }
+        // The box is in the half that is gone.
+        assert!((0.4..0.6).contains(&share(&half)), "{}", share(&half));
     }
 
     #[test]

@@ -22,7 +22,7 @@ pub use crossings::crossings;
 pub use footing::{Footing, HEADINGS};
 pub use ground_truth::{GroundTruth, TrueClass};
 pub use loops::{LEAST_M, Loops};
-pub use map_error::{GHOST_M, MapError, map_error};
+pub use map_error::{GHOST_M, MapError, map_error, walls_share};
 pub use map_score::{MapScore, Score};
 pub use overlap::{EARLIER_M, NEAR_M, Overlap};
 pub use patrol::Patrol;

@@ -9,6 +9,7 @@
 //! | file | holds |
 //! | --- | --- |
 //! | [`carmen`] | the log: scans, odometry |
+//! | [`sweep`] | the sweep of a laser whose lines do not tell it |
 //! | [`drift`] | drifting odometry from corrected poses |
 //! | [`wire`] | the log as a session's start and its observations |
 //! | [`run`] | the session over a link |
@@ -24,4 +25,5 @@ pub mod drift;
 pub mod relations;
 pub mod report;
 pub mod run;
+pub mod sweep;
 pub mod wire;

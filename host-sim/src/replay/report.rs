@@ -11,14 +11,15 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::carmen::LogScan;
+use super::carmen::{LeftOut, Lines, LogScan};
 use super::relations::{Pose, Relation, RelationError, Spread, compose, spread};
 use super::run::Replayed;
+use super::sweep::By;
 use super::wire::LogLaser;
 use crate::picture::{Scene, run_png};
 use crate::report::folder::{self, WriteError};
 use crate::report::tum::{self, Stamped};
-use crate::report::{GridMap, InputFaults, QualityShares, json_line};
+use crate::report::{GridMap, InputFaults, MadeBy, QualityShares, json_line};
 use crate::slam::SlamReport;
 
 /// Side of the cells that are counted, metres.
@@ -47,11 +48,75 @@ pub struct ReplayReport {
     pub input_faults: InputFaults,
     /// Scans of the log whose time was before one that came before them.
     pub late_scans: usize,
+    /// Lines of the log that were left out, by reason.
+    pub skipped: LeftOut,
+    /// Scans with some beams more or less than usual; `None` if there are none.
+    pub resampled: Option<Lines>,
+    /// How the scans were read.
+    pub laser: ReadLaser,
     /// The first scan, from 1, of which the map had no room for everything; `None` if it had.
     pub map_full_at: Option<usize>,
     /// What became of the loops; without `--slam`, none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slam: Option<SlamReport>,
+    /// Version, command line and options; the key is missing for a replay of a program.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub made_by: Option<MadeBy>,
+}
+
+/// How the scans were read.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ReadLaser {
+    /// Beams of a scan.
+    pub beams: usize,
+    /// Angle of the first beam in the laser's frame, degrees counter-clockwise.
+    pub first_deg: f64,
+    /// Angle from one beam to the next, degrees; below 0 for a laser that turns clockwise.
+    pub step_deg: f64,
+    /// How that is known.
+    pub known_by: By,
+}
+
+impl ReadLaser {
+    /// Returns how a log's laser was read.
+    #[must_use]
+    pub fn of(laser: &LogLaser, known_by: By) -> Self {
+        let lidar = laser.lidar();
+        let sign = if lidar.clockwise { -1.0 } else { 1.0 };
+        let rounded = |rad: f64| (rad.to_degrees() * 1e4).round() / 1e4;
+        Self {
+            beams: lidar.beams,
+            first_deg: rounded(lidar.first_rad),
+            step_deg: rounded(sign * lidar.step_rad),
+            known_by,
+        }
+    }
+
+    /// Returns the sweep in words.
+    fn line(&self) -> String {
+        let Self {
+            beams,
+            first_deg,
+            step_deg,
+            known_by,
+        } = *self;
+        // The last beam of a whole turn is one step before the first.
+        let whole = (beams as f64 * step_deg.abs()).round() == 360.0;
+        let gaps = if whole {
+            beams
+        } else {
+            beams.saturating_sub(1)
+        };
+        let field = (gaps as f64 * step_deg.abs()).round();
+        let how = match known_by {
+            By::Line => "told by its lines",
+            By::Option => "told by the options",
+            By::Scans => "found by its scans in turns",
+            By::Count => "usual for this number of beams",
+        };
+        let side = if step_deg < 0.0 { ", clockwise" } else { "" };
+        format!("{beams} beams from {first_deg}° in steps of {step_deg}°: {field}°{side}, {how}")
+    }
 }
 
 /// Errors against relations, absolute values.
@@ -133,6 +198,19 @@ impl ReplayReport {
         if let Some(scan) = self.map_full_at {
             // Writing into a string does not fail.
             let _ = write!(out, "; map full at scan {scan} of {}", self.steps);
+        }
+        // Writing into a string does not fail.
+        let _ = write!(out, "\n  laser      {}", self.laser.line());
+        if !self.skipped.is_empty() {
+            let _ = write!(out, "\n  skipped    {}", self.skipped);
+        }
+        if let Some(Lines { lines, first_line }) = self.resampled {
+            let beams = self.laser.beams;
+            let _ = write!(
+                out,
+                "\n  resampled  {lines} scans with some beams more or less than {beams} (the first \
+                 is line {first_line})"
+            );
         }
         if let Some(slam) = &self.slam {
             let _ = write!(out, "\n  loops      {slam}");
@@ -251,8 +329,20 @@ mod tests {
                 ..InputFaults::default()
             },
             late_scans: 1,
+            skipped: LeftOut::default(),
+            resampled: Some(Lines {
+                lines: 2,
+                first_line: 7,
+            }),
+            laser: ReadLaser {
+                beams: 360,
+                first_deg: -180.0,
+                step_deg: 1.0,
+                known_by: By::Scans,
+            },
             map_full_at: Some(2),
             slam: None,
+            made_by: None,
         };
         assert_eq!(
             report.to_json_line(),
@@ -261,7 +351,9 @@ mod tests {
              \"max\":0.3},\"rotation_deg\":{\"mean\":1.5,\"sd\":0.5,\"max\":2.0}},\
              \"occupied_cells_5cm\":7,\"quality\":{\"tracking\":0.5,\"degenerate\":0.0,\
              \"lost\":0.5},\"input_faults\":{\"refused\":0,\"jumps\":1,\"clock\":0},\
-             \"late_scans\":1,\"map_full_at\":2}"
+             \"late_scans\":1,\"skipped\":{},\"resampled\":{\"lines\":2,\"first_line\":7},\
+             \"laser\":{\"beams\":360,\"first_deg\":-180.0,\"step_deg\":1.0,\
+             \"known_by\":\"scans\"},\"map_full_at\":2}"
         );
         assert!(report.to_text().ends_with(
             "\

@@ -12,9 +12,9 @@
 use fieldline_protocol::message::{Laser, Observation, Start};
 use fixed::types::I4F12;
 
-use super::carmen::LogScan;
+use super::carmen::{self, LogScan, usual_beams};
 use super::relations::{Pose, compose, inverse};
-use crate::robot::{self, LaserNoise, Lidar, RobotSpec, Sectors, Velocity, wrap};
+use crate::robot::{self, LaserNoise, Lidar, RobotSpec, Sectors, Sweep, Velocity, wrap};
 use crate::sim::announcement;
 
 /// Greatest range limit, metres: that of the simulated lasers.
@@ -40,24 +40,53 @@ impl LogLaser {
     #[must_use]
     pub fn of(scans: &[LogScan]) -> Self {
         let readings = || scans.iter().flat_map(|scan| &scan.ranges);
-        let greatest_m = readings().copied().fold(0.0, f64::max);
-        let most_m = scans.first().map_or(LIMIT_M, |scan| scan.beams.most_m);
+        let measured = readings().copied().filter(|range_m| range_m.is_finite());
+        let greatest_m = measured.fold(0.0, f64::max);
+        let beams = scans.first().map(|scan| scan.beams);
+        let most_m = beams.map_or(LIMIT_M, |beams| beams.most_m);
         let limit_m = LIMIT_M
             .min(most_m)
             .min((greatest_m * 1000.0).floor() / 1000.0)
             .max(0.1);
-        let [x, y, _] = mount(scans);
+        let (first_rad, step_rad) = beams.map_or((0.0, 1.0), |it| (it.first_rad, it.step_rad));
+        Self::unknown(
+            scans,
+            &Sweep {
+                first_rad,
+                step_rad: step_rad.abs(),
+                beams: usual_beams(scans).unwrap_or(1),
+                most_m: limit_m,
+            },
+            step_rad < 0.0,
+        )
+    }
+
+    /// Returns the laser of these scans with the sweep that was told: counter-clockwise, of this
+    /// range. The mount is the log's.
+    ///
+    /// # Errors
+    /// As [`LogLaser::of_robot`].
+    pub fn of_sweep(scans: &[LogScan], sweep: &Sweep) -> Result<Self, String> {
+        has_beams(scans, sweep.beams, "--laser has", |usual| {
+            format!("give {usual} to --laser")
+        })?;
+        Ok(Self::unknown(scans, sweep, false))
+    }
+
+    /// Returns the laser of a robot that nothing else is known of.
+    fn unknown(scans: &[LogScan], sweep: &Sweep, clockwise: bool) -> Self {
+        let [x, y, yaw_rad] = mount(scans);
         let lidar = Lidar {
             position_m: [x, y, HEIGHT_M],
-            yaw_rad: 0.0,
+            yaw_rad,
             pitch_rad: 0.0,
             upside_down: false,
-            clockwise: false,
-            first_rad: scans.first().map_or(0.0, |scan| scan.beams.first_rad),
-            step_rad: scans.first().map_or(1.0, |scan| scan.beams.step_rad),
-            beams: scans.first().map_or(1, |scan| scan.ranges.len()),
+            clockwise,
+            first_rad: sweep.first_rad,
+            step_rad: sweep.step_rad,
+            beams: sweep.beams,
             least_m: 0.0,
-            most_m: limit_m,
+            most_m: sweep.most_m,
             noise: LaserNoise::NONE,
             mask: Vec::new(),
             ignores_hull: false,
@@ -73,29 +102,27 @@ impl LogLaser {
     /// robot's, whatever the log tells.
     ///
     /// # Errors
-    /// The numbers of beams, if they differ by more than one, and the remedy.
+    /// The numbers of beams, if the usual one differs by more than a few, and the remedy.
     pub fn of_robot(scans: &[LogScan], robot: &RobotSpec) -> Result<Self, String> {
         let lidar = robot.lidars.first().cloned();
         let lidar = lidar.ok_or("the robot has no laser; give it one")?;
-        let strange = scans
-            .iter()
-            .find(|scan| scan.ranges.len().abs_diff(lidar.beams) > 1);
-        if let Some(scan) = strange {
-            return Err(format!(
-                "the scan of line {} has {} beams, and the laser of robot {} has {}; write beams: \
-                 {} into the robot file",
-                scan.line,
-                scan.ranges.len(),
-                robot.name,
-                lidar.beams,
-                scan.ranges.len()
-            ));
-        }
+        has_beams(
+            scans,
+            lidar.beams,
+            &format!("the laser of robot {} has", robot.name),
+            |usual| format!("write beams: {usual} into the robot file"),
+        )?;
         Ok(Self {
             sectors: Sectors::new(&lidar, &robot.hull),
             lidar,
             robot: Some(robot.clone()),
         })
+    }
+
+    /// The lidar, as it was read.
+    #[must_use]
+    pub const fn lidar(&self) -> &Lidar {
+        &self.lidar
     }
 
     /// Returns the laser as announced to the device.
@@ -140,6 +167,22 @@ impl LogLaser {
     }
 }
 
+/// Checks that scans have about this number of beams.
+fn has_beams(
+    scans: &[LogScan],
+    beams: usize,
+    whose: &str,
+    remedy: impl Fn(usize) -> String,
+) -> Result<(), String> {
+    match usual_beams(scans) {
+        Some(usual) if !carmen::is_near(usual, beams) => Err(format!(
+            "the scans have {usual} beams, and {whose} {beams}; {}",
+            remedy(usual)
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// Returns the laser's pose on the robot: that of the first scan, if it is the same in all scans.
 /// A log whose laser poses were corrected has no constant one. Its laser counts as central.
 fn mount(scans: &[LogScan]) -> Pose {
@@ -149,13 +192,15 @@ fn mount(scans: &[LogScan]) -> Pose {
     };
     let is_same = |scan: &LogScan| {
         let mount = of(scan);
-        (0..2).all(|axis| (mount[axis] - first[axis]).abs() < SAME) && wrap(mount[2]).abs() < SAME
+        (0..2).all(|axis| (mount[axis] - first[axis]).abs() < SAME)
+            && wrap(mount[2] - first[2]).abs() < SAME
     };
-    if first[0].hypot(first[1]) < FARTHEST_M && scans.iter().all(is_same) {
-        first
-    } else {
-        [0.0; 3]
+    if first[0].hypot(first[1]) >= FARTHEST_M || !scans.iter().all(is_same) {
+        return [0.0; 3];
     }
+    // What is less is the rounding of the log.
+    let yaw = wrap(first[2]);
+    [first[0], first[1], if yaw.abs() < SAME { 0.0 } else { yaw }]
 }
 
 /// Returns the start message of a session that localises and maps.

@@ -11,6 +11,7 @@ pub mod grid_map;
 mod input_faults;
 mod localization;
 pub mod loop_closing;
+pub mod made_by;
 pub mod ros_map;
 pub mod team;
 mod text;
@@ -28,6 +29,7 @@ pub use grid_map::{GridMap, MapCell};
 pub use input_faults::InputFaults;
 pub use localization::{Localization, QualityShares};
 pub use loop_closing::{GivenUp, LoopClosing};
+pub use made_by::MadeBy;
 pub use team::TeamReport;
 pub use true_ground::TrueGround;
 
@@ -65,6 +67,9 @@ pub struct Report {
     pub relaxation: Option<Relaxation>,
     /// Link to the planner, as given to `--link`.
     pub link: String,
+    /// Version, command line and options; the key is missing for a run of a program or a campaign.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub made_by: Option<MadeBy>,
     /// Seed of every random number of the run.
     pub seed: u64,
     /// `truth` or `noisy`.
@@ -257,10 +262,13 @@ pub struct Safety {
 /// The map's obstacle cells against the true surfaces, after the best rigid alignment of the map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MapErrors {
-    /// Distance of an obstacle cell to a true surface.
-    pub wall_error_m: WallError,
+    /// Distance of an obstacle cell to a true surface; `null` for a map without obstacles.
+    pub wall_error_m: Option<WallError>,
     /// Share of the obstacle cells farther than 0.3 m from every true surface.
     pub ghost_share: f64,
+    /// Share of the true walls around the floor that have an obstacle cell within 0.3 m.
+    #[serde(default)]
+    pub walls_share: Option<f64>,
 }
 
 /// Percentiles of the distance of an obstacle cell to a true surface.

@@ -4,6 +4,9 @@ use super::{GivenUp, LoopClosing, Loops, Report};
 
 /// Least share of the ground that an explored run has truly seen.
 const LEAST_SEEN: f64 = 0.97;
+/// Share of the walls by which the map may have less of them than of the floor. Corners and the far
+/// sides of posts are not seen by every run.
+const MISSING_WALLS: f64 = 0.15;
 
 impl Report {
     /// Returns world, strategy, uneven ground and seed on one line.
@@ -84,6 +87,7 @@ impl Report {
                 "  position  wrong by {mean_m:.2} m on average, {max_m:.2} m at most"
             ));
         }
+        lines.extend(self.walls());
         if let Some(slam) = &self.slam {
             lines.push(format!("  graph     {slam}"));
         }
@@ -112,6 +116,18 @@ impl Report {
         lines.join("\n")
     }
 
+    /// Returns a line if the map has far fewer of the walls than of the floor.
+    fn walls(&self) -> Option<String> {
+        let share = self.map?.walls_share?;
+        (share < self.coverage.fraction - MISSING_WALLS).then(|| {
+            format!(
+                "  walls     only {:.0} % of the true walls are in the map; the laser does not see \
+                 what is lower than its beam, or of glass",
+                share * 100.0
+            )
+        })
+    }
+
     /// Returns true if the run ended as explored with less than 97 % of the ground truly seen.
     #[must_use]
     pub fn is_falsely_explored(&self) -> bool {
@@ -123,6 +139,9 @@ impl Report {
         match self.outcome.status.as_str() {
             "finished" => self.outcome.reason.clone(),
             "fault" | "lost" => format!("{} ({})", self.outcome.status, self.outcome.reason),
+            "frozen" if self.outcome.reason == "no-scan" => {
+                "frozen (no scan from the lidar)".into()
+            }
             status => status.into(),
         }
     }
@@ -178,7 +197,7 @@ fn minutes(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use crate::report::tests::sample;
-    use crate::report::{GivenUp, LoopClosing, TrueGround};
+    use crate::report::{GivenUp, LoopClosing, MapErrors, TrueGround};
 
     #[test]
     fn the_summary_has_all_parts_in_order() {
@@ -251,6 +270,24 @@ mod tests {
         report.input_faults.jumps = 1;
         let line = "  input     2 observations refused, 1 jumps of odometry, 0 times out of order";
         assert!(report.to_text().lines().any(|it| it == line));
+    }
+
+    #[test]
+    fn a_map_without_its_walls_says_so() {
+        let mut report = sample();
+        let with_share = |walls_share| {
+            Some(MapErrors {
+                walls_share,
+                ..MapErrors::default()
+            })
+        };
+        for share in [None, Some(0.95)] {
+            report.map = with_share(share);
+            assert!(!report.to_text().contains("  walls "));
+        }
+        report.map = with_share(Some(0.034));
+        let line = "  walls     only 3 % of the true walls are in the map; ";
+        assert!(report.to_text().lines().any(|it| it.starts_with(line)));
     }
 
     #[test]

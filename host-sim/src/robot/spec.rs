@@ -19,6 +19,7 @@ use super::lidar::Lidar;
 use super::odometry::OdometryNoise;
 use super::presets::{self, DEFAULT};
 use super::{RADIUS_M, Sectors};
+use crate::near;
 
 /// A robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,8 +73,9 @@ impl RobotSpec {
             file: name.into(),
             line: None,
             what: format!(
-                "cannot read this robot ({error}); give a robot file, or a preset: {}",
-                presets::names().join(", ")
+                "cannot read this robot ({error}); give a robot file, or a preset: {}{}",
+                presets::names().join(", "),
+                near::hint(name, presets::names())
             ),
         })?;
         let stem = Path::new(name).file_stem().unwrap_or_default();

@@ -21,6 +21,8 @@ pub enum Ending {
     TimeLimit,
     /// The planner said that it explored, and the robot did not move or turn for a minute.
     Frozen,
+    /// As frozen, and the planner still waited for a scan.
+    NoScan,
     /// The user stopped it.
     Interrupted,
     /// The robot left its team.
@@ -36,7 +38,7 @@ impl Ending {
             Self::Fault(_) | Self::Link(_) => "fault",
             Self::Lost(_) => "lost",
             Self::TimeLimit => "time-limit",
-            Self::Frozen => "frozen",
+            Self::Frozen | Self::NoScan => "frozen",
             Self::Interrupted => "interrupted",
             Self::Left => "left",
         }
@@ -58,6 +60,7 @@ impl Ending {
             Self::Lost(Loss::Tipped) => "tipped",
             Self::TimeLimit => "simulated-time",
             Self::Frozen => "no-motion",
+            Self::NoScan => "no-scan",
             Self::Interrupted => "user",
             Self::Left => "timetable",
         }
@@ -101,6 +104,9 @@ impl Ending {
             Self::TimeLimit => "the simulated time ran out; allow more with --time-limit".into(),
             Self::Frozen => "the robot did not move or turn for a minute while exploring; \
                  see run.png"
+                .into(),
+            Self::NoScan => "the lidar never spoke: no scan with a range came for a minute; check \
+                 that it has power, turns and is read, and its least_range, mask and hull"
                 .into(),
             Self::Interrupted => "stopped by the user".into(),
             Self::Left => "the robot left its team and did not join again".into(),
@@ -152,6 +158,7 @@ mod tests {
         assert_eq!(words(Ending::Lost(Loss::Tipped)), ("lost", "tipped"));
         assert_eq!(words(Ending::TimeLimit), ("time-limit", "simulated-time"));
         assert_eq!(words(Ending::Frozen), ("frozen", "no-motion"));
+        assert_eq!(words(Ending::NoScan), ("frozen", "no-scan"));
     }
 
     #[test]

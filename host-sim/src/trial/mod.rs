@@ -21,6 +21,7 @@ pub mod series;
 pub mod snapshot;
 pub mod space;
 mod summary;
+pub mod surprises;
 pub mod team;
 pub mod uneven;
 pub mod wording;
@@ -221,7 +222,10 @@ fn ended(
         Status::Fault(why) => Some(Ending::Fault(why)),
         _ if flow == Flow::Interrupt => Some(Ending::Interrupted),
         _ if progress.time_ms >= setup.time_limit_ms => Some(Ending::TimeLimit),
-        status if freeze.step(&truth, explores(status, command)) => Some(Ending::Frozen),
+        status if freeze.step(&truth, explores(status, command)) => Some(match status {
+            Status::NoScan => Ending::NoScan,
+            _ => Ending::Frozen,
+        }),
         _ => None,
     }
 }

@@ -6,13 +6,13 @@ use super::account::Account;
 use super::mission::{BVP_PAPERS, Mission, on_device};
 use super::{Ending, Record, wording};
 use crate::metrics::patrol::{Patrol, without_spurs};
-use crate::metrics::{CellSet, Loops, map_error};
+use crate::metrics::{CellSet, Loops, map_error, walls_share};
 use crate::report::true_ground::{ClassScores, TrueGround, degrees};
 use crate::report::{self, Report, SCHEMA_VERSION};
 use crate::robot::OdometryModel;
 use crate::robot::presets::DEFAULT;
 use crate::sim::{SimConfig, Simulator};
-use crate::world::World;
+use crate::world::{Start, World};
 
 /// Returns the report.
 pub(super) fn report(
@@ -45,6 +45,7 @@ pub(super) fn report(
         space_field: space_field(mission, world),
         relaxation: relaxation(mission),
         link: mission.link.clone(),
+        made_by: None,
         seed: mission.seed,
         odometry: mission.odometry.name().into(),
         start: mission.start,
@@ -67,7 +68,7 @@ pub(super) fn report(
         safety: safety(simulator),
         true_ground: true_ground(simulator, record),
         localization: record.localization(),
-        map: map_errors(world, record),
+        map: map_errors(world, simulator.start(), record),
         planner: record.planner(),
         field: record.field(),
         link_stats: record.link_stats,
@@ -91,17 +92,21 @@ fn disturbances(mission: &Mission) -> Option<String> {
 }
 
 /// Returns the errors of the map's walls. In an uneven world an obstacle may be a slope.
-fn map_errors(world: &World, record: &Record) -> Option<report::MapErrors> {
+fn map_errors(world: &World, start: Start, record: &Record) -> Option<report::MapErrors> {
     if world.elevation().is_some() {
         return None;
     }
-    let error = map_error(world, &record.map)?;
+    if record.map.known() == 0 {
+        return None;
+    }
+    let error = map_error(world, &record.map);
     Some(report::MapErrors {
-        wall_error_m: report::WallError {
+        wall_error_m: error.map(|error| report::WallError {
             p50: error.wall_p50_m,
             p95: error.wall_p95_m,
-        },
-        ghost_share: error.ghost_share,
+        }),
+        ghost_share: error.map_or(0.0, |error| error.ghost_share),
+        walls_share: walls_share(world, start, &record.map),
     })
 }
 

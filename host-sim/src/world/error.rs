@@ -3,6 +3,7 @@
 use core::fmt;
 
 use super::{KINDS, builtin};
+use crate::near;
 
 /// Why a world cannot be opened.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,8 +73,9 @@ impl fmt::Display for WorldError {
             }
             Self::Unreadable { file, reason } => write!(
                 f,
-                "{file}: cannot read this world ({reason}); give {}",
-                accepted()
+                "{file}: cannot read this world ({reason}); give {}{}",
+                accepted(),
+                near::hint(file, builtin::names().into_iter().chain(kinds()))
             ),
             Self::Generated { name, reason } => write!(f, "{name}: {reason}"),
             Self::Syntax { file, reason } => {
@@ -94,6 +96,11 @@ impl fmt::Display for WorldError {
             Self::People { world, reason } => write!(f, "{world}: {reason}"),
         }
     }
+}
+
+/// Words that begin the name of a generated world.
+fn kinds() -> impl Iterator<Item = &'static str> {
+    KINDS.into_iter().map(|kind| kind.word())
 }
 
 /// Lists what names a world.

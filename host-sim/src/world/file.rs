@@ -4,14 +4,21 @@
 //! | --- | --- | --- |
 //! | `image` | occupancy, PGM or PNG, relative to the file | none, if there is an `elevation` |
 //! | `resolution` | side of a pixel, metres | required |
-//! | `origin` | x, y in metres of the lower left corner, yaw (must be 0) | required |
+//! | `origin` | x, y of the lower left corner, metres; yaw of the picture, radians | required |
 //! | `negate` | 1 if white is occupied | 0 |
 //! | `occupied_thresh` | above this occupancy is wall | 0.65 |
 //! | `free_thresh` | below this occupancy is free; in between is unknown | 0.196 |
-//! | `mode` | `trinary`; `scale` is read the same way | `trinary` |
+//! | `mode` | `trinary`; `scale` is read the same way; `raw`, see below | `trinary` |
 //! | `wall_height` | metres above the ground | 1.5 |
+//! | `glass`, `low` | walls that beams go through or over, see [`super::materials`] | none |
 //! | `elevation` | heights of the ground, see [`super::heights`] | flat |
 //! | `robots` | list of `[x, y, yaw]` | the origin of the frame, or else the widest place |
+//!
+//! A `raw` value of 0 to 100 is the occupancy in percent, any other is unknown. A bad start is
+//! noted, and refused if a run begins there.
+//!
+//! A picture of more than [`WHOLE_PIXELS`] pixels is cut to its known part, and so is a turned one.
+//! What is built afterwards takes [`CELL_BYTES`] a cell; more than [`MOST_BYTES`] is refused.
 //!
 //! Any other key is an error, so that a misspelt key is not a setting that is silently ignored.
 
@@ -21,12 +28,15 @@ use std::path::{Path, PathBuf};
 use super::elevation::Elevation;
 use super::heights::Heights;
 use super::image::Image;
+use super::materials::Materials;
 use super::occupancy::{Occupancy, Thresholds};
+use super::origin::origin;
+use super::shades::Shades;
 use super::yaml::{self, BadKey, Node, Table};
 use super::{Start, WALL_HEIGHT_M, World, WorldError};
 
 /// Keys of a world file.
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 12] = [
     "image",
     "resolution",
     "origin",
@@ -35,9 +45,18 @@ const KEYS: [&str; 10] = [
     "free_thresh",
     "mode",
     "wall_height",
+    "glass",
+    "low",
     "elevation",
     "robots",
 ];
+
+/// Pixels of a picture that is kept whole, unknown parts and all.
+const WHOLE_PIXELS: usize = 4_000_000;
+/// Memory of a cell of the world in a run: classes, distances, rays, reach and coverage.
+const CELL_BYTES: usize = 90;
+/// Most memory of a world, bytes.
+const MOST_BYTES: usize = 2_000_000_000;
 
 /// Greatest side of a world, metres.
 const LARGEST_M: f64 = 1_000.0;
@@ -74,6 +93,13 @@ impl Loader<'_> {
             None => None,
         };
         let mut notes = Vec::new();
+        let walls = match walls {
+            Some((walls, seen)) => {
+                notes.extend(seen);
+                Some(walls)
+            }
+            None => None,
+        };
         let elevation = match &plan.heights {
             Some(heights) => Some(self.elevation(heights, walls.as_ref(), &mut notes)?),
             None => None,
@@ -87,17 +113,86 @@ impl Loader<'_> {
             }
         };
         self.check_extent(&occupancy, &keys)?;
+        let is_cut = plan.yaw_rad != 0.0 || occupancy.width() * occupancy.height() > WHOLE_PIXELS;
+        let occupancy = if is_cut {
+            Self::cut(&occupancy, &plan)
+        } else {
+            occupancy
+        };
+        self.check_memory(&occupancy, elevation.as_ref(), &keys)?;
         let name = self.path.file_stem().unwrap_or_default().to_string_lossy();
+        let wall_heights = plan.materials.heights(&occupancy, &keys);
+        let wall_heights = wall_heights.map_err(|bad| self.value(bad))?;
         let mut world = World::new(&name, occupancy, elevation, plan.wall_height_m, Vec::new());
+        world.wall_heights = wall_heights;
+        if is_cut {
+            world.border_m = world.wall_height_m;
+        }
         world.notes = notes;
         world.starts = match plan.starts {
             Some(starts) => starts,
             None => vec![world.default_start()],
         };
-        for (index, start) in world.starts.iter().enumerate() {
-            world.check_start(&self.file, index, *start)?;
-        }
+        self.check_starts(&mut world)?;
         Ok(world)
+    }
+
+    /// Refuses a world of which no start can be used. Notes those that cannot.
+    fn check_starts(&self, world: &mut World) -> Result<(), WorldError> {
+        let checks = world.starts.iter().enumerate();
+        let checks = checks.map(|(index, start)| world.check_start(&self.file, index, *start));
+        let bad: Vec<WorldError> = checks.filter_map(Result::err).collect();
+        if bad.len() == world.starts.len()
+            && let Some(first) = bad.into_iter().next()
+        {
+            return Err(first);
+        }
+        let checks = world.starts.iter().enumerate();
+        let checks = checks.map(|(index, start)| world.check_start(&self.file, index, *start));
+        let notes = checks.filter_map(|check| match check {
+            Err(WorldError::Start { index, reason, .. }) => Some(format!(
+                "robots[{index}]: {reason}; no run begins there, the other starts are good"
+            )),
+            _ => None,
+        });
+        let notes: Vec<String> = notes.collect();
+        world.notes.extend(notes);
+        Ok(())
+    }
+
+    /// Returns a large or turned plan cut to its known part, and turned.
+    fn cut(plan: &Occupancy, read: &Plan<'_>) -> Occupancy {
+        let known = plan.known_part();
+        if read.yaw_rad == 0.0 {
+            known
+        } else {
+            known.turned(read.origin_m, read.yaw_rad)
+        }
+    }
+
+    /// Refuses a world that takes more than [`MOST_BYTES`].
+    fn check_memory(
+        &self,
+        plan: &Occupancy,
+        ground: Option<&Elevation>,
+        keys: &Table<'_>,
+    ) -> Result<(), WorldError> {
+        let cells = plan.width() * plan.height();
+        let heights = ground.map_or(0, |ground| ground.width() * ground.height());
+        let bytes = cells * CELL_BYTES + heights * size_of::<f64>();
+        if bytes <= MOST_BYTES {
+            return Ok(());
+        }
+        let reason = format!(
+            "the known part has {} x {} cells of {} m, which take about {:.1} GB, and {:.1} GB is \
+             the limit; scale the picture down, or cut it",
+            plan.width(),
+            plan.height(),
+            plan.resolution_m(),
+            bytes as f64 / 1e9,
+            MOST_BYTES as f64 / 1e9
+        );
+        Err(self.value(keys.bad("image", &reason)))
     }
 
     /// Refuses a world that the wire's cells or the memory cannot hold: its resolution or origin is
@@ -124,15 +219,25 @@ impl Loader<'_> {
         Ok(())
     }
 
-    fn walls(&self, name: &str, plan: &Plan<'_>) -> Result<Occupancy, WorldError> {
+    /// Reads the walls, and notes what may surprise in their picture.
+    fn walls(&self, name: &str, plan: &Plan<'_>) -> Result<(Occupancy, Vec<String>), WorldError> {
         let image = self.image(name)?;
         let (resolution_m, origin_m) = (plan.resolution_m, plan.origin_m);
-        Ok(Occupancy::from_image(
-            &image,
-            plan.thresholds,
-            resolution_m,
-            origin_m,
-        ))
+        let shades = Shades::of(&image);
+        if plan.thresholds.is_raw && image.full != 255 * image.channels {
+            let reason = "mode raw needs values of 8 bits; save the picture with 8 bits";
+            return Err(self.image_error(name, reason));
+        }
+        let walls = Occupancy::from_image(&image, plan.thresholds, resolution_m, origin_m);
+        if shades.transparent > 0 && walls.free_bounds_m().is_none() {
+            let reason = format!(
+                "it has no free floor, and {:.1} % of its pixels are transparent, which count as \
+                 unknown; flatten the picture onto white and save it without alpha",
+                100.0 * shades.transparent_share()
+            );
+            return Err(self.image_error(name, &reason));
+        }
+        Ok((walls, shades.notes(&plan.thresholds)))
     }
 
     fn elevation(
@@ -180,8 +285,10 @@ struct Plan<'a> {
     image: Option<&'a str>,
     resolution_m: f64,
     origin_m: [f64; 2],
+    yaw_rad: f64,
     thresholds: Thresholds,
     wall_height_m: f64,
+    materials: Materials,
     heights: Option<Heights<'a>>,
     starts: Option<Vec<Start>>,
 }
@@ -189,19 +296,38 @@ struct Plan<'a> {
 impl<'a> Plan<'a> {
     fn read(keys: &Table<'a>) -> Result<Self, BadKey> {
         let resolution_m = keys.required("resolution", length(keys, "resolution")?, "0.05")?;
-        let origin_m = keys.required("origin", origin(keys)?, "[0, 0, 0]")?;
-        match keys.text("mode")? {
-            None | Some("trinary" | "scale") => {}
+        let (origin_m, yaw_rad) = keys.required("origin", origin(keys)?, "[0, 0, 0]")?;
+        let is_raw = match keys.text("mode")? {
+            None | Some("trinary" | "scale") => false,
+            Some("raw") => true,
             Some(mode) => {
-                return Err(keys.bad("mode", &format!("{mode} is not supported; use trinary")));
+                let reason = format!("{mode} is not supported; use trinary, scale or raw");
+                return Err(keys.bad("mode", &reason));
             }
+        };
+        if is_raw && keys.flag("negate")? == Some(true) {
+            let reason =
+                "1 has no meaning with mode raw, whose values are occupancies; set it to 0";
+            return Err(keys.bad("negate", reason));
+        }
+        if yaw_rad != 0.0 && keys.node("elevation").is_some() {
+            let reason = format!(
+                "a yaw of {yaw_rad} is not supported with an elevation; turn both pictures and set \
+                 it to 0"
+            );
+            return Err(keys.bad("origin", &reason));
         }
         Ok(Self {
             image: keys.text("image")?,
             resolution_m,
             origin_m,
-            thresholds: thresholds(keys)?,
+            yaw_rad,
+            thresholds: Thresholds {
+                is_raw,
+                ..thresholds(keys)?
+            },
             wall_height_m: length(keys, "wall_height")?.unwrap_or(WALL_HEIGHT_M),
+            materials: Materials::read(keys)?,
             heights: match keys.node("elevation") {
                 Some(node) => Some(Heights::read(node, resolution_m, origin_m)?),
                 None => None,
@@ -222,27 +348,6 @@ pub(super) fn length(keys: &Table<'_>, key: &str) -> Result<Option<f64>, BadKey>
     }
 }
 
-/// x and y of `origin`, if the key is present; its yaw must be 0.
-pub(super) fn origin(keys: &Table<'_>) -> Result<Option<[f64; 2]>, BadKey> {
-    let Some(node) = keys.node("origin") else {
-        return Ok(None);
-    };
-    let Some(numbers) = node.numbers(2..=3) else {
-        return Err(keys.bad(
-            "origin",
-            &format!("{node} is not [x, y, yaw]; give metres and radians"),
-        ));
-    };
-    match numbers.get(2) {
-        Some(yaw) if *yaw != 0.0 => {
-            let reason =
-                format!("a yaw of {yaw} is not supported; rotate the image and set it to 0");
-            Err(keys.bad("origin", &reason))
-        }
-        _ => Ok(Some([numbers[0], numbers[1]])),
-    }
-}
-
 fn thresholds(keys: &Table<'_>) -> Result<Thresholds, BadKey> {
     let free = keys.number("free_thresh")?.unwrap_or(0.196);
     let occupied = keys.number("occupied_thresh")?.unwrap_or(0.65);
@@ -260,6 +365,7 @@ fn thresholds(keys: &Table<'_>) -> Result<Thresholds, BadKey> {
         occupied,
         free,
         negate: keys.flag("negate")?.unwrap_or(false),
+        is_raw: false,
     })
 }
 

@@ -13,9 +13,10 @@
 //! become notes.
 
 use super::elevation::{Elevation, HeightScale};
-use super::file::{length, origin};
+use super::file::length;
 use super::image::Image;
 use super::occupancy::Occupancy;
+use super::origin::origin;
 use super::yaml::{BadKey, Node, Table};
 
 /// Keys of an `elevation`.
@@ -63,6 +64,12 @@ impl<'a> Heights<'a> {
             no_data: no_data(&keys)?,
         };
         let (own_resolution, own_origin) = (length(&keys, "resolution")?, origin(&keys)?);
+        if let Some((_, yaw)) = own_origin.filter(|(_, yaw)| *yaw != 0.0) {
+            let reason =
+                format!("a yaw of {yaw} is not supported; rotate the image and set it to 0");
+            return Err(keys.bad("origin", &reason));
+        }
+        let own_origin = own_origin.map(|(origin_m, _)| origin_m);
         Ok(Self {
             image: keys.required("image", keys.text("image")?, "heights.png")?,
             scale,

@@ -17,11 +17,14 @@ mod generated;
 mod ground_ray;
 mod heights;
 mod image;
+mod materials;
 mod memo;
 mod occupancy;
+mod origin;
 mod pgm;
 mod png_file;
 mod ray;
+mod shades;
 mod starts;
 mod traversal;
 mod yaml;
@@ -77,6 +80,11 @@ pub struct World {
     walls: ray::Walls,
     elevation: Option<Elevation>,
     wall_height_m: f64,
+    /// Height of what lies outside of the grid, metres: infinite, or that of the walls for a
+    /// picture that was cut, whose unknown parts lie there.
+    border_m: f64,
+    /// Heights of walls that are of glass or lower than the rest.
+    wall_heights: Option<materials::WallHeights>,
     starts: Vec<Start>,
     notes: Vec<String>,
     seen: Memo,
@@ -161,6 +169,8 @@ impl World {
             distance,
             elevation,
             wall_height_m,
+            border_m: f64::INFINITY,
+            wall_heights: None,
             starts,
             notes: Vec::new(),
             seen: Memo::default(),
@@ -258,14 +268,15 @@ impl World {
             .or(ground)
     }
 
-    /// Height of the top of the wall on a cell; infinite outside of the map. Over a hole it counts
-    /// from 0.
+    /// Height of the top of the wall on a cell; infinite outside of a whole picture, and below
+    /// everything for glass. Over a hole it counts from 0.
     fn wall_top_m(&self, cell: GridCell) -> f64 {
-        if self.occupancy.index(cell).is_none() {
-            return f64::INFINITY;
-        }
+        let Some(index) = self.occupancy.index(cell) else {
+            return self.border_m;
+        };
+        let own = self.wall_heights.as_ref().and_then(|it| it.of(index));
         let [x_m, y_m] = self.occupancy.centre(cell);
-        self.ground_m(x_m, y_m).unwrap_or(0.0) + self.wall_height_m
+        self.ground_m(x_m, y_m).unwrap_or(0.0) + own.unwrap_or(self.wall_height_m)
     }
 
     /// Metres between a footprint at a pose and the nearest solid cell: 0 if they overlap, and at

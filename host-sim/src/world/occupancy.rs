@@ -45,6 +45,8 @@ pub struct Thresholds {
     pub free: f64,
     /// True if white is occupied.
     pub negate: bool,
+    /// True if values of 0 to 100 are occupancies in percent, and any other is unknown.
+    pub is_raw: bool,
 }
 
 /// A grid of classes.
@@ -90,11 +92,17 @@ impl Occupancy {
     ) -> Self {
         let (width, height) = (image.width, image.height);
         let mut grid = Self::filled(width, height, resolution_m, origin_m, Class::Unknown);
+        // A raw value is the mean of the channels.
+        let scale = if thresholds.is_raw {
+            image.channels.max(1)
+        } else {
+            1
+        };
         for row in 0..height {
             for i in 0..width {
                 let pixel = row * width + i;
                 if !image.is_transparent(pixel) {
-                    let class = thresholds.class(image.samples[pixel], image.full);
+                    let class = thresholds.class(image.samples[pixel] / scale, image.full);
                     grid.classes[(height - 1 - row) * width + i] = class;
                 }
             }
@@ -187,6 +195,75 @@ impl Occupancy {
         })
     }
 
+    /// Returns the part that is not unknown with a rim of one cell; all of it if all is unknown.
+    ///
+    /// Every cell keeps its place. Outside of a grid is unknown too, so nothing is lost.
+    #[must_use]
+    pub fn known_part(&self) -> Self {
+        let known = |(_, class): &(usize, &Class)| **class != Class::Unknown;
+        let places = self.classes.iter().enumerate().filter(known);
+        let places = places.map(|(k, _)| [k % self.width, k / self.width]);
+        let bounds = places.fold(None, |bounds, [i, j]| {
+            let [i0, j0, i1, j1] = bounds.unwrap_or([i, j, i, j]);
+            Some([i0.min(i), j0.min(j), i1.max(i), j1.max(j)])
+        });
+        let Some([i0, j0, i1, j1]) = bounds else {
+            return self.clone();
+        };
+        let (i0, j0) = (i0.saturating_sub(1), j0.saturating_sub(1));
+        let (i1, j1) = ((i1 + 2).min(self.width), (j1 + 2).min(self.height));
+        let row = |j: usize| &self.classes[j * self.width + i0..j * self.width + i1];
+        let corner = [i0, j0].map(|cells| cells as f64 * self.resolution_m);
+        Self {
+            width: i1 - i0,
+            height: j1 - j0,
+            resolution_m: self.resolution_m,
+            origin_m: [0, 1].map(|k| self.origin_m[k] + corner[k]),
+            classes: (j0..j1).flat_map(row).copied().collect(),
+        }
+    }
+
+    /// Returns the grid turned counter-clockwise about a point, with cells along the axes again.
+    /// Each new cell has the class of the old one that its centre lies in.
+    #[must_use]
+    pub fn turned(&self, about_m: [f64; 2], yaw_rad: f64) -> Self {
+        let (sin, cos) = yaw_rad.sin_cos();
+        let turn = |sin: f64, [x, y]: [f64; 2]| {
+            let (dx, dy) = (x - about_m[0], y - about_m[1]);
+            [
+                about_m[0] + cos * dx - sin * dy,
+                about_m[1] + sin * dx + cos * dy,
+            ]
+        };
+        let sides = [self.width, self.height].map(|cells| cells as f64 * self.resolution_m);
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|[u, v]| {
+            let corner = [
+                self.origin_m[0] + u * sides[0],
+                self.origin_m[1] + v * sides[1],
+            ];
+            turn(sin, corner)
+        });
+        let least = [0, 1].map(|k| corners.iter().map(|it| it[k]).fold(f64::INFINITY, f64::min));
+        let most = [0, 1].map(|k| {
+            corners
+                .iter()
+                .map(|it| it[k])
+                .fold(f64::NEG_INFINITY, f64::max)
+        });
+        // A corner that is a rounding error beyond a cell needs no cell more.
+        let cells =
+            [0, 1].map(|k| ((most[k] - least[k]) / self.resolution_m - 1e-6).ceil() as usize);
+        let mut grid = Self::filled(cells[0], cells[1], self.resolution_m, least, Class::Unknown);
+        for j in 0..cells[1] as i64 {
+            for i in 0..cells[0] as i64 {
+                let cell = GridCell { i, j };
+                let [x, y] = turn(-sin, grid.centre(cell));
+                grid.set(cell, self.class(self.cell_at(x, y)));
+            }
+        }
+        grid
+    }
+
     /// Changes a cell; does nothing outside.
     pub fn set(&mut self, cell: GridCell, class: Class) {
         if let Some(index) = self.index(cell) {
@@ -196,9 +273,14 @@ impl Occupancy {
 }
 
 impl Thresholds {
-    fn class(&self, sample: u32, full: u32) -> Class {
+    /// Class of a sample, of which `full` is white.
+    pub(super) fn class(&self, sample: u32, full: u32) -> Class {
         let dark = if self.negate { sample } else { full - sample };
-        let occupancy = f64::from(dark) / f64::from(full);
+        let occupancy = match (self.is_raw, sample) {
+            (true, 0..=100) => f64::from(sample) / 100.0,
+            (true, _) => return Class::Unknown,
+            (false, _) => f64::from(dark) / f64::from(full),
+        };
         if occupancy > self.occupied {
             Class::Wall
         } else if occupancy < self.free {

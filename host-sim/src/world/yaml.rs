@@ -2,6 +2,7 @@
 //!
 //! The parser knows the YAML syntax; this module checks the keys and their types.
 
+use crate::near;
 use core::fmt;
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
@@ -34,10 +35,17 @@ pub(super) struct Table<'a> {
 /// Parses one document.
 pub(super) fn parse(text: &str) -> Result<Node, String> {
     serde_saphyr::from_str(text).map_err(|error| {
-        error
+        let reason = error
             .without_snippet()
             .render_with_formatter(&serde_saphyr::UserMessageFormatter)
-            .replace('\n', " ")
+            .replace('\n', " ");
+        // The parser refuses it before the key is known.
+        let is_origin =
+            |line: &str| line.starts_with("origin:") && line.to_ascii_lowercase().contains(".nan");
+        if text.lines().any(is_origin) {
+            return reason + "; some map savers write NaN for the yaw of an origin: write 0 there";
+        }
+        reason
     })
 }
 
@@ -60,7 +68,9 @@ impl<'a> Table<'a> {
         {
             None => Ok(table),
             Some((key, _)) => {
-                Err(table.bad(key, &format!("unknown key; known are {}", known.join(", "))))
+                let near = near::hint(key, known.iter().copied());
+                let known = known.join(", ");
+                Err(table.bad(key, &format!("unknown key; known are {known}{near}")))
             }
         }
     }

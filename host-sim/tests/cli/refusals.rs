@@ -141,7 +141,7 @@ fn bad_worlds_are_refused_in_one_line() {
         ("resolution: 0.1", "resolution: 1e9", "1000 m a side"),
         ("origin: [0, 0, 0]", "origin: [.inf, 0, 0]", "finite"),
         ("origin: [0, 0, 0]", "origin: [500000, 0, 0]", "3000 m"),
-        ("origin: [0, 0, 0]", "origin: [0, 0, 1]", "yaw"),
+        ("origin: [0, 0, 0]", "origin: [0, 0, 90]", "yaw"),
         (
             "free_thresh: 0.196",
             "free_thresh: 0.9",

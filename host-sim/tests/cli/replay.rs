@@ -85,8 +85,8 @@ fn a_replay_prints_its_figures_and_writes_its_files() {
         assert_eq!(status, 0, "{stdout}{stderr}");
         let report = &reports(&stdout)[0];
         let keys: Vec<&String> = report.as_object().unwrap().keys().collect();
-        let expected = "degrade input_faults late_scans link log map_full_at occupied_cells_5cm \
-                        quality relations seed steps";
+        let expected = "degrade input_faults laser late_scans link log made_by map_full_at \
+                        occupied_cells_5cm quality relations resampled seed skipped steps";
         assert_eq!(keys, expected.split(' ').collect::<Vec<_>>());
         assert_eq!(report["steps"], 60);
         assert_eq!(report["degrade"], Value::Null);
@@ -181,6 +181,83 @@ fn newer(log: &str, beams: usize) -> String {
     log.lines().map(line).collect()
 }
 
+/// A log as drivers write it gives the figures of the clean one, and tells what it left out.
+#[test]
+fn what_drivers_write_is_read_skipped_and_counted() {
+    let folder = with_log(181);
+    let clean = log(181);
+    let mut lines: Vec<String> = clean.lines().map(str::to_owned).collect();
+    // Lines 3, 5, … are ODOM, from the third on; the scans are behind them.
+    let scan = lines[21].clone();
+    let words: Vec<&str> = scan.split(' ').collect();
+    let with_ranges = |code: &str| {
+        let mut words = words.clone();
+        words[2..183].fill(code);
+        words.join(" ")
+    };
+    let late = scan
+        .replace(" host ", " host 0 ")
+        .replacen(" 1.8 host 0 1.8", " -9 host 1.8", 1);
+    let extra = [with_ranges("0"), late, words[..100].join(" ")];
+    lines[30] = lines[30].replacen(" 0.25 ", " nan ", 1);
+    lines.splice(22..22, extra);
+    fs::write(folder.path().join("wild.log"), lines.join("\n")).unwrap();
+    let figures = |name: &str, more: &[&str]| {
+        let start = [
+            "replay",
+            name,
+            "--link",
+            "direct",
+            "--out",
+            name.trim_end_matches(".log"),
+        ];
+        let (status, stdout, stderr) = outcome(&folder, &[&start, more].concat());
+        assert_eq!(status, 0, "{stderr}");
+        stdout
+    };
+    let report = |name| reports(&figures(name, &["--json"]))[0].clone();
+    let (plain, wild) = (report("a.log"), report("wild.log"));
+    for key in ["steps", "occupied_cells_5cm", "quality"] {
+        assert_eq!(plain[key], wild[key], "{key}");
+    }
+    assert_eq!(plain["skipped"], serde_json::json!({}));
+    let expected = serde_json::json!({
+        "time_back": {"lines": 1, "first_line": 24},
+        "empty": {"lines": 1, "first_line": 23},
+        "not_finite": {"lines": 1, "first_line": 34},
+        "garbled": {"lines": 1, "first_line": 25},
+    });
+    assert_eq!(wild["skipped"], expected);
+    let text = figures("wild.log", &[]);
+    assert!(
+        text.contains("skipped    1 line whose time goes back (line 24)"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_sweep_is_told_by_the_option() {
+    let folder = with_log(181);
+    let line = "replay a.log --link direct --json --out out --laser";
+    let run = |sweep: &str| {
+        let words: Vec<&str> = line.split(' ').chain([sweep]).collect();
+        outcome(&folder, &words)
+    };
+    let (status, stdout, stderr) = run("-90,1,181,12");
+    assert_eq!(status, 0, "{stderr}");
+    let laser = &reports(&stdout)[0]["laser"];
+    assert_eq!(
+        (&laser["known_by"], &laser["step_deg"]),
+        (&"option".into(), &1.0.into())
+    );
+    let (status, _, stderr) = run("-180,1,360,12");
+    assert_eq!(status, 2);
+    assert!(
+        stderr.contains("the scans have 181 beams, and --laser has 360"),
+        "{stderr}"
+    );
+}
+
 #[test]
 fn call_and_bytes_give_the_same_poses_and_map() {
     let folder = with_log(180);
@@ -210,7 +287,7 @@ fn drift_is_corrected_and_without_a_factor_there_is_none() {
     let folder = with_log(181);
     fs::write(folder.path().join("r"), relations(0.0)).unwrap();
     let line = |more: &str| {
-        let line = format!("replay a.log --relations r --link direct --json{more}");
+        let line = format!("replay a.log --relations r --link direct --json --force{more}");
         let words: Vec<&str> = line.split(' ').collect();
         let (status, stdout, stderr) = outcome(&folder, &words);
         assert_eq!(status, 0, "{stderr}");
@@ -236,6 +313,7 @@ fn the_clock_of_relations_is_found_or_said() {
             "--link",
             "direct",
             "--json",
+            "--force",
         ];
         let (status, stdout, stderr) = outcome(&folder, &[&start, more].concat());
         assert_eq!(status, 0, "{stderr}");
@@ -263,27 +341,23 @@ fn refused(folder: &TempDir, more: &[&str], words: &[&str]) {
 fn a_bad_log_is_refused_with_file_and_line_and_writes_nothing() {
     let folder = folder();
     let good = log(4);
-    let lines: Vec<&str> = good.lines().collect();
-    let first = lines
-        .iter()
-        .position(|line| line.starts_with("FLASER"))
-        .unwrap();
-    let at = format!("bad.log:{}: ", first + 1);
-    let with = |line: &str| {
-        let mut lines = lines.clone();
-        lines[first] = line;
-        lines.join("\n")
-    };
-    let nan = with("FLASER 4 1 NaN 1 1 0 0 0 0 0 0 0 host 0");
-    let short = with("FLASER 4 1 1 1 0 0 0 0 0 0 0 host 0");
+    let poses = good.replace(" host ", " NaN host ");
+    let cut = good.replace("FLASER 4 ", "FLASER 4 1 ");
     for (text, words) in [
-        (nan.as_str(), [at.as_str(), "`NaN`", "mend or delete"]),
-        (&short, [&at, "FLASER says 4", "mend or delete"]),
+        (
+            poses.as_str(),
+            [
+                "bad.log:",
+                "of 60 scans 60 cannot be used",
+                "mend or delete",
+            ],
+        ),
+        (&cut, ["bad.log:4: ", "FLASER says 4", "mend or delete"]),
         (
             "",
             [
                 "bad.log:1: ",
-                "no FLASER or ROBOTLASER1 line",
+                "no FLASER, RLASER or ROBOTLASER1 line",
                 "give a CARMEN log",
             ],
         ),

@@ -30,7 +30,7 @@ fn with_robot(text: &str) -> TempDir {
 
 /// Explores for ten seconds; returns the report.
 fn ten_seconds(folder: &TempDir, more: &[&str]) -> serde_json::Value {
-    let usual = "explore office --link direct --time-limit 10 --json";
+    let usual = "explore office --link direct --time-limit 10 --json --force";
     let words: Vec<&str> = usual.split(' ').chain(more.iter().copied()).collect();
     let (status, stdout, stderr) = outcome(folder, &words);
     assert_eq!(status, 1, "{more:?}: {stderr}");
@@ -142,7 +142,7 @@ fn a_log_is_replayed_with_the_lidar_that_made_it() {
     let folder = with_robot(ROBOT);
     fs::write(folder.path().join("a.log"), log(451)).unwrap();
     let replay = |more: &[&str]| {
-        let usual = ["replay", "a.log", "--link", "direct", "--json"];
+        let usual = ["replay", "a.log", "--link", "direct", "--json", "--force"];
         let (status, stdout, stderr) = outcome(&folder, &[&usual[..], more].concat());
         assert_eq!(status, 0, "{stderr}");
         reports(&stdout)[0]["occupied_cells_5cm"].as_u64().unwrap()
@@ -150,7 +150,9 @@ fn a_log_is_replayed_with_the_lidar_that_made_it() {
     // The walls are in the middle of cells, and have 484 of them. Half a turn folds the room.
     let own = replay(&["--robot", "my.yaml"]);
     assert!((300..=600).contains(&own), "{own}");
-    assert_ne!(own, replay(&[]));
+    assert_ne!(own, replay(&["--laser", "-90,0.4,451,12"]));
+    let words = ["451 beams", "--laser -180,", "--robot FILE"];
+    refused(&folder, &["replay", "a.log"], &words);
     let usual = ["replay", "a.log", "--robot", "pioneer-3at"];
     refused(&folder, &usual, &["451", "181", "beams: 451"]);
 }

@@ -100,7 +100,14 @@ fn json_prints_one_report_per_line_and_nothing_else() {
 fn a_team_takes_the_impatience_of_a_space_field() {
     let folder = folder();
     let impatience = |more: &[&str]| {
-        let args = ["team", "partition@1", "--json", "--strategy", "esbpf"];
+        let args = [
+            "team",
+            "partition@1",
+            "--json",
+            "--force",
+            "--strategy",
+            "esbpf",
+        ];
         let (_, stdout, _) = outcome(&folder, &[&args, more].concat());
         let report: Value = serde_json::from_str(&stdout).expect("one report");
         report["robots"][0]["space_field"]["impatience"].clone()
@@ -172,7 +179,14 @@ fn snapshots_of_an_uneven_run_change_no_result() {
     let folder = folder();
     let run = |more: &[&str]| {
         // The score of the map against the true ground needs true poses.
-        let arguments = ["explore", "causeway@1", "--time-limit", "13", "--json"];
+        let arguments = [
+            "explore",
+            "causeway@1",
+            "--time-limit",
+            "13",
+            "--json",
+            "--force",
+        ];
         let arguments = [&arguments[..], &["--odometry", "truth"], more].concat();
         let (status, stdout, _) = outcome(&folder, &arguments);
         assert_eq!(status, 1, "the time limit ended it");
@@ -213,7 +227,7 @@ fn snapshots_of_an_uneven_run_change_no_result() {
 fn the_alias_terrain_is_frontier_on_uneven_ground() {
     let folder = folder();
     let run = |more: &[&str]| {
-        let arguments = ["explore", "slope", "--time-limit", "5", "--json"];
+        let arguments = ["explore", "slope", "--time-limit", "5", "--json", "--force"];
         let (status, stdout, stderr) = outcome(&folder, &[&arguments, more].concat());
         assert_eq!(status, 1, "the time limit ended it: {stderr}");
         (reports(&stdout).remove(0), stderr)
@@ -260,7 +274,14 @@ fn the_alias_terrain_is_frontier_on_uneven_ground() {
 fn the_link_and_its_faults_change_no_command() {
     let folder = folder();
     let digest = |more: &[&str]| {
-        let arguments = ["explore", "cluttered", "--time-limit", "20", "--json"];
+        let arguments = [
+            "explore",
+            "cluttered",
+            "--time-limit",
+            "20",
+            "--json",
+            "--force",
+        ];
         let (_, stdout, _) = outcome(&folder, &[&arguments, more].concat());
         let report = reports(&stdout).remove(0);
         (
@@ -281,7 +302,7 @@ fn the_link_and_its_faults_change_no_command() {
 fn silence_or_a_reset_ends_the_run_with_a_typed_fault() {
     let folder = folder();
     for (fault, reason) in [("silent@60", "link-silent"), ("reset@60", "device-reset")] {
-        let arguments = ["explore", "loop", "--json", "--fault", fault];
+        let arguments = ["explore", "loop", "--json", "--force", "--fault", fault];
         let (status, stdout, stderr) = outcome(&folder, &arguments);
         let report = &reports(&stdout)[0];
         assert_eq!(status, 1);
@@ -349,6 +370,121 @@ fn the_interrupt_key_ends_a_run_with_a_report() {
         "{time_s} s: faster than the clock on the wall"
     );
     assert_eq!(files(&folder.path().join("run")), FILES);
+}
+
+/// The key ends the run in hand, and no further one begins.
+#[cfg(unix)]
+#[test]
+fn the_interrupt_key_begins_no_further_run() {
+    use std::process::{Command, Stdio};
+    let folder = folder();
+    let child = Command::new(env!("CARGO_BIN_EXE_host-sim"))
+        .args(["explore", "hall", "loop", "--realtime", "--json"])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(core::time::Duration::from_secs(3));
+    let id = child.id().to_string();
+    let status = Command::new("kill").args(["-INT", &id]).status();
+    assert!(status.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let reports = reports(&String::from_utf8(output.stdout).unwrap());
+    assert_eq!(reports.len(), 1);
+    assert_eq!(reports[0]["world"], "hall");
+}
+
+#[test]
+fn a_folder_of_other_options_is_replaced_by_force_only() {
+    let folder = folder();
+    let run = |more: &[&str]| {
+        let start = ["explore", "hall", "--time-limit", "2", "--out", "run"];
+        outcome(&folder, &[&start, more].concat())
+    };
+    let report = || {
+        let text = fs::read_to_string(folder.path().join("run/report.json")).unwrap();
+        serde_json::from_str::<Value>(&text).unwrap()
+    };
+    assert_eq!(run(&[]).0, 1);
+    let made_by = &report()["made_by"];
+    assert_eq!(made_by["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(made_by["command_line"][1], "hall");
+    assert_eq!(made_by["robot"], "pioneer-3at");
+    let options = &made_by["options"];
+    assert_eq!(
+        (&options["time-limit"], &options["people"]),
+        (&"2".into(), &"0".into())
+    );
+    // The same run, said in other words.
+    assert_eq!(run(&["--seed", "0", "--json"]).0, 1);
+    let (status, _, stderr) = run(&["--seed", "3"]);
+    assert_eq!(status, 2, "{stderr}");
+    for words in [
+        "`explore --seed 0`",
+        "`explore --seed 3`",
+        "--force",
+        "--out",
+    ] {
+        assert!(stderr.contains(words), "no {words:?} in {stderr}");
+    }
+    assert_eq!(report()["seed"], 0);
+    assert_eq!(run(&["--seed", "3", "--force"]).0, 1);
+    assert_eq!(report()["seed"], 3);
+}
+
+/// A room of 6 m whose walls are below the level laser's beam.
+#[test]
+fn a_map_without_its_walls_says_so() {
+    let folder = folder();
+    let pixel = |k: usize| {
+        let farthest = [k / 164, k % 164]
+            .map(|at| (2 * at).abs_diff(163))
+            .into_iter()
+            .max();
+        match farthest {
+            Some(0..120) => 254,
+            Some(120..124) => 0,
+            _ => 205,
+        }
+    };
+    let mut pgm = b"P5 164 164 255\n".to_vec();
+    pgm.extend((0..164 * 164).map(pixel));
+    fs::write(folder.path().join("map.pgm"), pgm).unwrap();
+    let keys = "image: map.pgm\nresolution: 0.05\norigin: [-1, -1, 0]\nrobots: [[3, 3, 0]]\n";
+    let share = |name: &str, height: &str| {
+        let file = format!("{name}.yaml");
+        fs::write(
+            folder.path().join(&file),
+            format!("{keys}wall_height: {height}\n"),
+        )
+        .unwrap();
+        let line = [
+            "explore",
+            &file,
+            "--odometry",
+            "truth",
+            "--link",
+            "direct",
+            "--out",
+            name,
+        ];
+        let (_, stdout, stderr) = outcome(&folder, &line);
+        let report = fs::read_to_string(folder.path().join(name).join("report.json"));
+        let report: Value = serde_json::from_str(&report.expect(&stderr)).unwrap();
+        let share = report["map"]["walls_share"].as_f64().expect("walls");
+        (share, stdout)
+    };
+    let (usual, said) = share("usual", "1.5");
+    assert!(
+        usual > 0.9 && !said.contains("of the true walls"),
+        "{usual}: {said}"
+    );
+    let (low, said) = share("low", "0.15");
+    assert!(
+        low < 0.1 && said.contains("% of the true walls are in the map"),
+        "{low}: {said}"
+    );
 }
 
 #[test]

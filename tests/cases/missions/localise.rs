@@ -34,7 +34,7 @@ fn table(reports: &[Report]) -> Table {
         let corrected = if at.corrected { "on" } else { "off" };
         let more = vec![
             number(at.end_error_m, 3),
-            number(report.map.map(|map| map.wall_error_m.p95), 3),
+            number(report.map.and_then(|map| Some(map.wall_error_m?.p95)), 3),
             percent(report.map.map(|map| map.ghost_share)),
             percent(at.quality.map(|quality| quality.lost)),
             report.safety.collisions.to_string(),

@@ -56,7 +56,7 @@ fn cells(reports: &[Report], worlds: &[&str]) -> Vec<String> {
     let group: Vec<&Report> = group.collect();
     let error = |report: &Report| report.localization.mean_error_m;
     let worst = group.iter().filter_map(|it| error(it)).reduce(f64::max);
-    let wall = |report: &Report| report.map.map(|map| map.wall_error_m.p95);
+    let wall = |report: &Report| report.map.and_then(|map| Some(map.wall_error_m?.p95));
     let ghosts = |report: &Report| report.map.map(|map| 100.0 * map.ghost_share);
     vec![
         number(runs::mean(&group, error), 3),

@@ -43,7 +43,7 @@ fn table(reports: &[Report]) -> String {
     let table = odometry::table(reports, &["people"], &more, |report| {
         let safety = &report.safety;
         let more = vec![
-            number(report.map.map(|map| map.wall_error_m.p95), 3),
+            number(report.map.and_then(|map| Some(map.wall_error_m?.p95)), 3),
             number(report.map.map(|map| 100.0 * map.ghost_share), 2),
             number(safety.min_person_gap_m, 3),
             safety.collisions.to_string(),

@@ -4,7 +4,8 @@
 const ALIKE: f64 = 0.8;
 
 /// Returns `; did you mean X?` if a known name is near, or else nothing.
-pub(super) fn hint<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+#[must_use]
+pub fn hint<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
     let likeness = |other: &str| strsim::jaro_winkler(name, other);
     let nearest = known
         .into_iter()
