@@ -276,6 +276,7 @@ mod tests {
             late_scans: 1,
             map_full_at: Some(2),
             slam: None,
+            particles: None,
         };
         assert_eq!(
             report.to_json_line(),

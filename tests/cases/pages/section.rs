@@ -115,7 +115,8 @@ fn prose(text: &str) -> String {
         while let Some((before, inner, after)) = between(rest, open, close) {
             left.push_str(before);
             // A lone sign is no mark: "p < 0.0001".
-            let is_mark = !inner.contains("\n\n") && !(open == "<" && inner.starts_with(' '));
+            let is_lone = open == "<" && inner.starts_with(' ');
+            let is_mark = !is_lone && !inner.contains("\n\n");
             left.push_str(if is_mark { put } else { open });
             rest = if is_mark {
                 after

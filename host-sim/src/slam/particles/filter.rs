@@ -87,8 +87,8 @@ impl Filter {
     }
 
     /// Moves the particles by an increment of odometry, and takes a scan. The first scan is only
-    /// entered: there is no map to weigh it by. Returns of each particle the place of the one that it
-    /// is a copy of, if they were resampled.
+    /// entered: there is no map to weigh it by. If they were resampled, it returns for each the
+    /// place of the one that it is a copy of.
     pub(super) fn update(&mut self, increment: Pose, scan: &Scan) -> Option<Vec<usize>> {
         let mut parents = None;
         if self.updates > 0 {
@@ -142,8 +142,8 @@ impl Filter {
     }
 
     /// Draws as many particles as there are, each as often as its weight says. One random number
-    /// moves a comb of equal teeth, so a particle of weight w is drawn ⌊N w⌋ or ⌈N w⌉ times. Returns
-    /// the places of those that were drawn.
+    /// moves a comb of equal teeth, so a particle of weight w is drawn ⌊N w⌋ or ⌈N w⌉ times.
+    /// Returns the places of those that were drawn.
     fn resample(&mut self) -> Vec<usize> {
         let count = self.particles.len();
         let first = self.comb.uniform();
