@@ -10,13 +10,16 @@ use fieldline_protocol::message::Status;
 use fieldline_slam::Motion;
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::replay::relations::{self, Pose, Relation, RelationError};
-use host_sim::replay::report::{self, Files, ReadLaser, RelationErrors, ReplayReport};
+use host_sim::replay::report::{
+    self, Files, ParticlePath, ReadLaser, RelationErrors, ReplayReport,
+};
 use host_sim::replay::sweep::{self, By};
 use host_sim::replay::wire::LogLaser;
 use host_sim::replay::{carmen, clock, run};
 use host_sim::report::{QualityShares, folder};
-use host_sim::robot::{RobotSpec, Sweep};
+use host_sim::robot::{OdometryNoise, RobotSpec, Sweep};
 use host_sim::slam::SlamPlace;
+use host_sim::slam::particles::{self, ParticleSpec};
 use host_sim::trial::wording;
 
 use super::progress::Interrupt;
@@ -75,6 +78,10 @@ pub(super) struct ReplayArgs {
     /// ones [default: that of --degrade, or 20]
     #[arg(long, value_name = "K", value_parser = factor, allow_negative_numbers = true)]
     slam_noise: Option<f64>,
+    /// A particle filter over the same scans, which judges them and changes nothing, as in `300` or
+    /// `300,proposal=motion,noise=4`; noise as that of --slam-noise
+    #[arg(long, value_name = "SPEC")]
+    particles: Option<ParticleSpec>,
     /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback]
     #[arg(long)]
     link: Option<LinkSpec>,
@@ -141,17 +148,29 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
         bail!("interrupted after {} scans", replayed.poses.len());
     }
     let estimated: Vec<(f64, Pose)> = times().zip(replayed.poses.iter().copied()).collect();
-    let errors = truth.map(|truth| relations::errors(&truth, &estimated));
+    let errors = truth
+        .as_ref()
+        .map(|truth| relations::errors(truth, &estimated));
+    let particles = args.particles.as_ref().map(|spec| {
+        let wheels = OdometryNoise::default().times(spec.noise.unwrap_or(noise));
+        let observations = run::observations(&laser, &scans, &odometry);
+        let told = (laser.announced(), wheels);
+        let poses = particles::path(spec, told, &observations, args.seed);
+        let path: Vec<(f64, Pose)> = times().zip(poses.iter().copied()).collect();
+        let errors = truth.as_ref().map(|truth| relations::errors(truth, &path));
+        ParticlePath {
+            filter: spec.to_string(),
+            relations: errors.as_deref().and_then(spread),
+            occupied_cells_5cm: report::occupied_cells(&laser, &scans, &poses),
+        }
+    });
     let report = ReplayReport {
         log: args.log.display().to_string(),
         link: link.to_string(),
         seed: args.seed,
         degrade: args.degrade,
         steps: scans.len(),
-        relations: errors.as_ref().and_then(|errors| {
-            let errors: Vec<RelationError> = errors.iter().map(|(_, error)| *error).collect();
-            RelationErrors::of(&errors)
-        }),
+        relations: errors.as_deref().and_then(spread),
         occupied_cells_5cm: report::occupied_cells(&laser, &scans, &replayed.poses),
         quality: QualityShares::of(&replayed.qualities),
         input_faults: replayed.input_faults,
@@ -167,6 +186,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
             .flatten(),
         slam: replayed.slam.clone(),
         made_by: Some(made_by),
+        particles,
     };
     let files = Files {
         report: &report,
@@ -265,6 +285,12 @@ fn usual_folder(args: &ReplayArgs) -> PathBuf {
 fn finite(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite());
     number.ok_or_else(|| "give a number of seconds, as in 1211.353".into())
+}
+
+/// Returns the errors against relations; `None` if there are none.
+fn spread(errors: &[(Relation, RelationError)]) -> Option<RelationErrors> {
+    let errors: Vec<RelationError> = errors.iter().map(|(_, error)| *error).collect();
+    RelationErrors::of(&errors)
 }
 
 fn factor(text: &str) -> Result<f64, String> {

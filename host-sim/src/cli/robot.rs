@@ -33,9 +33,10 @@ pub(super) struct RobotArgs {
     #[arg(long, value_name = "M", value_parser = radius)]
     radius: Option<f64>,
     /// Limits of the loops that ouroboros closes, metres: any of
-    /// `least=20,most=120,per_frontier=10,detour=2,slack=20`, the defaults
+    /// `least=20,most=120,per_frontier=10,detour=2,slack=20`, the defaults; `revisits=off` ends
+    /// where nothing is left to explore, as in the paper, though a loop is open
     #[arg(long, value_name = "LIMITS", value_parser = loops)]
-    loops: Option<LoopLimits>,
+    loops: Option<Loops>,
     /// Order in which frontiers are taken [default: gain for frontier, nearest for the others]
     #[arg(long, value_name = "ORDER")]
     order: Option<OrderArg>,
@@ -53,6 +54,14 @@ pub(super) struct TuneArgs {
     /// Sets a tuned constant, as in `ground.blind_radius_m=1.2`; `host-sim tuning` lists them
     #[arg(long, value_name = "NAME=VALUE")]
     tune: Vec<String>,
+}
+
+/// The loops that ouroboros closes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Loops {
+    limits: LoopLimits,
+    /// True if the robot drives back to loops that are open when nothing is left to explore.
+    revisits: bool,
 }
 
 /// An order of frontiers.
@@ -74,7 +83,7 @@ impl RobotArgs {
         }
         robot.radius_m = self.radius.unwrap_or(robot.radius_m);
         Mission {
-            loops: self.loops.unwrap_or(mission.loops),
+            loops: self.loops.map_or(mission.loops, |loops| loops.limits),
             ..mission.with_robot(&robot)
         }
     }
@@ -127,14 +136,29 @@ impl RobotArgs {
         }))
     }
 
-    /// As [`TuneArgs::link`].
+    /// As [`TuneArgs::link`]; revisits that are off ask for a direct link too.
     pub(super) fn link<'a>(&self, link: Option<&'a LinkSpec>) -> Option<&'a LinkSpec> {
-        self.tune.link(link)
+        let link = self.tune.link(link);
+        link.or(self.leaves_loops_open().then_some(&LinkSpec::Direct))
     }
 
-    /// As [`TuneArgs::tuning`].
+    /// As [`TuneArgs::tuning`], with revisits off if that was asked for.
     pub(super) fn tuning(&self, link: &LinkSpec) -> Result<Option<&'static Tuning>> {
-        self.tune.tuning(link)
+        let tuning = self.tune.tuning(link)?;
+        if !self.leaves_loops_open() {
+            return Ok(tuning);
+        }
+        if *link != LinkSpec::Direct {
+            bail!("--loops revisits=off changes a planner in this process only; say --link direct");
+        }
+        let mut tuning = *tuning.unwrap_or(&Tuning::DEFAULT);
+        tuning.ouroboros.most_branches = 0;
+        Ok(Some(Box::leak(Box::new(tuning))))
+    }
+
+    /// Returns true if revisits are off.
+    fn leaves_loops_open(&self) -> bool {
+        self.loops.is_some_and(|loops| !loops.revisits)
     }
 }
 
@@ -229,8 +253,9 @@ fn worth(text: &str) -> Result<I4F12, String> {
     Err("the worth of a trip must be 0 to 7 m²/m".into())
 }
 
-fn loops(text: &str) -> Result<LoopLimits, String> {
+fn loops(text: &str) -> Result<Loops, String> {
     let mut limits = LoopLimits::default();
+    let mut revisits = true;
     for part in text.split(',') {
         let (name, value) = part
             .split_once('=')
@@ -241,9 +266,13 @@ fn loops(text: &str) -> Result<LoopLimits, String> {
             "per_frontier" => &mut limits.most_per_frontier,
             "detour" => &mut limits.detour,
             "slack" => &mut limits.slack,
+            "revisits" => {
+                revisits = switch(value)?;
+                continue;
+            }
             _ => {
                 return Err(format!(
-                    "unknown limit '{name}'; use least, most, per_frontier, detour, slack"
+                    "unknown limit '{name}'; use least, most, per_frontier, detour, slack, revisits"
                 ));
             }
         };
@@ -251,5 +280,13 @@ fn loops(text: &str) -> Result<LoopLimits, String> {
             .filter(|limit| *limit >= I16F16::ZERO)
             .ok_or_else(|| format!("{name} must be 0 to 32767"))?;
     }
-    Ok(limits)
+    Ok(Loops { limits, revisits })
+}
+
+fn switch(text: &str) -> Result<bool, String> {
+    match text {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        _ => Err(format!("'{text}' is neither on nor off")),
+    }
 }

@@ -62,6 +62,9 @@ pub struct ReplayReport {
     /// Version, command line and options; the key is missing for a replay of a program.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub made_by: Option<MadeBy>,
+    /// A particle filter over the same scans; without `--particles`, none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub particles: Option<ParticlePath>,
 }
 
 /// How the scans were read.
@@ -117,6 +120,17 @@ impl ReadLaser {
         let side = if step_deg < 0.0 { ", clockwise" } else { "" };
         format!("{beams} beams from {first_deg}° in steps of {step_deg}°: {field}°{side}, {how}")
     }
+}
+
+/// The path of the best particle of a filter, judged as the device's poses are.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ParticlePath {
+    /// The filter, as it was asked for.
+    pub filter: String,
+    /// Errors against relations; `None` without them.
+    pub relations: Option<RelationErrors>,
+    /// Cells of 5 cm that hold an end of a beam.
+    pub occupied_cells_5cm: usize,
 }
 
 /// Errors against relations, absolute values.
@@ -214,6 +228,15 @@ impl ReplayReport {
         }
         if let Some(slam) = &self.slam {
             let _ = write!(out, "\n  loops      {slam}");
+        }
+        if let Some(particles) = &self.particles {
+            let ParticlePath { filter, .. } = particles;
+            let cells = particles.occupied_cells_5cm;
+            let _ = write!(out, "\n  particles  {filter}: {cells} cells of 5 cm");
+            if let Some(errors) = &particles.relations {
+                let Spread { mean, sd, max } = errors.translation_m;
+                let _ = write!(out, "; {mean:.4} ± {sd:.4} m, at most {max:.3} m");
+            }
         }
         if let Some(line) = self.input_faults.line() {
             out += "\n";
@@ -343,6 +366,7 @@ mod tests {
             map_full_at: Some(2),
             slam: None,
             made_by: None,
+            particles: None,
         };
         assert_eq!(
             report.to_json_line(),

@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 
 use fieldline_device::TILES;
 use fieldline_planner::config::Tuning;
-use fieldline_protocol::message::{Control, Location, Quality, Status, Tile};
+use fieldline_protocol::message::{Control, Location, Observation, Quality, Status, Tile};
 use fieldline_slam::Motion;
 
 use super::carmen::LogScan;
@@ -64,6 +64,16 @@ pub fn odometry(scans: &[LogScan], degrade: Option<f64>, seed: u64) -> Vec<Pose>
         None => own,
         Some(k) => drift::drifting(&own, drift::noise(k), seed),
     }
+}
+
+/// Returns the observations of a replay, as a device would get them.
+#[must_use]
+pub fn observations(laser: &LogLaser, scans: &[LogScan], odometry: &[Pose]) -> Vec<Observation> {
+    let times = times_ms(laser, scans, odometry);
+    let steps = scans.iter().zip(odometry).zip(times);
+    steps
+        .map(|((scan, odom), time_ms)| laser.observation(scan, time_ms, *odom))
+        .collect()
 }
 
 /// Returns the session's time at each scan, milliseconds: the log's, but no step takes less than

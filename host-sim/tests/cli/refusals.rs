@@ -313,6 +313,11 @@ fn bad_arguments_are_refused_in_one_line() {
     explore(&["--radius", "0.7"], &["--radius", "0.05 to 0.6 m"]);
     explore(&["--loops", "least=-1"], &["--loops", "0 to 32767"]);
     explore(&["--loops", "longest=9"], &["longest", "least, most"]);
+    explore(&["--loops", "revisits=no"], &["'no'", "on nor off"]);
+    explore(
+        &["--loops", "revisits=off", "--link", "loopback"],
+        &["revisits=off", "say --link direct"],
+    );
     explore(
         &["--tune", "ouroboros.none=1"],
         &["none", "host-sim tuning"],

@@ -103,8 +103,7 @@ impl Beside {
         let odometry = self.odometry(observation, place);
         if let Some(last) = self.last.replace(odometry) {
             self.since = compose(self.since, between(last, odometry));
-            let [x, y, turn] = self.since;
-            if x * x + y * y >= EACH.0 * EACH.0 || turn.abs() >= EACH.1 {
+            if is_far(self.since) {
                 self.take(observation, place);
             }
         } else {
@@ -178,8 +177,13 @@ impl Beside {
     }
 }
 
+/// Returns true if a scan is due after this motion.
+pub(super) fn is_far([x, y, turn]: Pose) -> bool {
+    x * x + y * y >= EACH.0 * EACH.0 || turn.abs() >= EACH.1
+}
+
 /// Returns the motion from one pose to another, with a turn of at most half a circle.
-fn between(from: Pose, to: Pose) -> Pose {
+pub(super) fn between(from: Pose, to: Pose) -> Pose {
     let [x, y, turn] = compose(inverse(from), to);
     [x, y, wrap(turn)]
 }

@@ -87,20 +87,23 @@ impl Filter {
     }
 
     /// Moves the particles by an increment of odometry, and takes a scan. The first scan is only
-    /// entered: there is no map to weigh it by.
-    pub(super) fn update(&mut self, increment: Pose, scan: &Scan) {
+    /// entered: there is no map to weigh it by. If they were resampled, it returns for each the
+    /// place of the one that it is a copy of.
+    pub(super) fn update(&mut self, increment: Pose, scan: &Scan) -> Option<Vec<usize>> {
+        let mut parents = None;
         if self.updates > 0 {
             self.advance(increment, scan);
             let effective = self.normalise();
             self.best = self.heaviest();
             if effective < 0.5 * self.particles.len() as f64 {
-                self.resample();
+                parents = Some(self.resample());
             }
         }
         self.updates += 1;
         self.particles
             .par_iter_mut()
             .for_each(|particle| particle.grid.enter(particle.pose, scan));
+        parents
     }
 
     fn advance(&mut self, increment: Pose, scan: &Scan) {
@@ -140,7 +143,8 @@ impl Filter {
 
     /// Draws as many particles as there are, each as often as its weight says. One random number
     /// moves a comb of equal teeth, so a particle of weight w is drawn ⌊N w⌋ or ⌈N w⌉ times.
-    fn resample(&mut self) {
+    /// Returns the places of those that were drawn.
+    fn resample(&mut self) -> Vec<usize> {
         let count = self.particles.len();
         let first = self.comb.uniform();
         let weights = self
@@ -169,6 +173,7 @@ impl Filter {
         self.particles = drawn.iter().map(copy).collect();
         self.best = best.unwrap_or(0);
         self.resampled += 1;
+        drawn
     }
 
     /// Returns the distances from a true place, once the particles have moved on by odometry.
@@ -183,6 +188,19 @@ impl Filter {
             mean_m: sum / self.particles.len() as f64,
             best_m: distance(&self.particles[self.best]),
         }
+    }
+
+    /// Returns the poses of all particles.
+    pub(super) fn poses(&self) -> Vec<Pose> {
+        self.particles
+            .iter()
+            .map(|particle| particle.pose)
+            .collect()
+    }
+
+    /// Returns the place of the best particle.
+    pub(super) const fn best(&self) -> usize {
+        self.best
     }
 
     /// Returns the map of the best particle.

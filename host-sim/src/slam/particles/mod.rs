@@ -14,12 +14,14 @@
 mod beside;
 mod filter;
 mod grid;
+mod path;
 mod proposal;
 mod report;
 mod scan;
 mod spec;
 
 pub use beside::Beside;
+pub use path::path;
 pub use proposal::Proposal;
 pub use report::ParticleReport;
 pub use spec::{MOST_PARTICLES, ParticleSpec};

@@ -25,7 +25,7 @@ tuning! {
         /// at the robot's own place in the window.
         clear_cells: i32 = 2, 0..=8, "coarse cells";
         /// Branches that one call of the search for a revisit looks at. Those with too short a
-        /// stretch cost no wave.
-        most_branches: usize = 12, 1..=100, "branches";
+        /// stretch cost no wave. With 0 there are no revisits, as in the paper.
+        most_branches: usize = 12, 0..=100, "branches";
     }
 }

@@ -7,7 +7,7 @@
 //! Departs from \[Jorge15, Algorithm 1, line 25\], where the exploration is complete; \[Jorge15,
 //! V\] names "revisiting in fully explored maps" as open. Whatever the result of a revisit is, its
 //! stretch becomes a closed region, so there is an end of revisits; and a revisit has the budget of
-//! a loop.
+//! a loop. With 0 `most_branches` there are none.
 //!
 //! Units: metres; map cells; steps along the skeleton, 20 cm each.
 
@@ -54,8 +54,12 @@ pub(super) fn find<const TILES: usize, const SLOTS: usize>(
     regions: &mut ClosedRegions<SLOTS>,
     scratch: &mut PlanningScratch<'_>,
 ) -> Found {
+    let most_branches = round.tuning.ouroboros.most_branches;
+    if most_branches == 0 {
+        return Found::None;
+    }
     let mut looked = 0;
-    for _ in 0..round.tuning.ouroboros.most_branches {
+    for _ in 0..most_branches {
         let Some(site) = first_open(round, regions, &mut looked) else {
             return Found::None;
         };

@@ -2,7 +2,7 @@
 
 use std::vec::Vec;
 
-use crate::config::LoopLimits;
+use crate::config::{LoopLimits, Tuning};
 use crate::geometry::Cell;
 use crate::strategy::ouroboros::closed_regions::{Closed, ClosedRegions};
 use crate::strategy::ouroboros::revisit::{self, Found, Revisit};
@@ -155,6 +155,20 @@ fn there_is_no_revisit_to_a_loop_that_is_not_worth_closing() {
     };
     let mut regions = regions(&scene);
     assert_eq!(revisits(&mut scene, &mut regions), []);
+}
+
+#[test]
+fn there_is_no_revisit_with_no_branches() {
+    let mut scene = Scene::parse(RIGHT_LOOP_OPEN);
+    let mut regions = regions(&scene);
+    let mut tuning = Tuning::DEFAULT;
+    tuning.ouroboros.most_branches = 0;
+    let mut round = scene.round();
+    round.tuning = &tuning;
+    let found = revisit::find(&mut round, &mut regions, &mut Memory::new().lend());
+    assert!(matches!(found, Found::None), "{found:?}");
+    // The same scene has one.
+    assert_eq!(revisits(&mut scene, &mut regions).len(), 1);
 }
 
 #[test]
