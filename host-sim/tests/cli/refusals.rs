@@ -467,7 +467,10 @@ fn fences_orders_and_budgets_that_are_none() {
     explore(&["--no-go", "0,0,nan,1"], &["--no-go", "corners x0,y0"]);
     explore(&["--no-go", "0,0,1,1,1,0,0,1"], &["crossings"]);
     explore(&["--no-go", "0,0,0,1"], &["area of a polygon"]);
-    explore(&["--bounds", "0,0,5,5"], &["robots[0]", "out of the bounds"]);
+    explore(
+        &["--bounds", "0,0,5,5"],
+        &["robots[0]", "out of the bounds"],
+    );
     explore(&["--no-go", "11,6,13,8"], &["robots[0]", "no-go"]);
     explore(
         &["--strategy", "bvp", "--bounds", "6,3,18,11"],

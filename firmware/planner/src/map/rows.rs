@@ -218,6 +218,39 @@ mod tests {
     use crate::map::Class;
 
     #[test]
+    fn a_forbidden_cell_is_an_obstacle_to_planning_and_what_it_is_to_the_map() {
+        let mut tiles = Tiles::<16, 16>::new();
+        tiles.reset();
+        for (x, y) in (0..40).flat_map(|x| (0..40).map(move |y| (x, y))) {
+            tiles.set(Cell { x, y }, Class::Free).unwrap();
+        }
+        tiles.mark_visited(Cell { x: 21, y: 21 });
+        let corners = [(-0.5, 2.0), (5.0, 2.0), (5.0, 3.0), (-0.5, 3.0)];
+        let corners = corners.map(|(x_m, y_m)| crate::geometry::Point { x_m, y_m });
+        tiles.set_fence(&crate::fence::Fence::new().no_go(&corners));
+        let (mut planned, mut measured) = (tiles.reader(-10), tiles.measured(-10));
+        for y in -2..45 {
+            let forbidden = if (20..30).contains(&y) {
+                u64::MAX >> 4 << 5 & u64::MAX >> 4
+            } else {
+                0
+            };
+            let (row, seen) = (planned.row(y), measured.row(y));
+            assert_eq!(row.obstacle(), forbidden, "row {y}");
+            assert_eq!(row.unknown(), seen.unknown() & !forbidden, "row {y}");
+            assert_eq!(row.free(), seen.free() & !forbidden, "row {y}");
+            assert_eq!(seen.obstacle(), 0);
+            let line = tiles.reader(-10).line(y);
+            assert_eq!(line.around, forbidden);
+            assert_eq!(line.unknown, (row.unknown() >> HALO) as u32);
+        }
+        let inside = Cell { x: 3, y: 25 };
+        assert_eq!(tiles.class(inside), Class::Free);
+        assert_eq!(tiles.planned_class(inside), Class::Obstacle);
+        assert_eq!(tiles.planned_class(Cell { x: 3, y: 30 }), Class::Free);
+    }
+
+    #[test]
     fn a_line_is_the_middle_of_a_row() {
         let mut tiles = Tiles::<16, 16>::new();
         tiles.reset();

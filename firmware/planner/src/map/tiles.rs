@@ -281,6 +281,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
+    /// Sets where the robot may be. A reset keeps it.
+    pub(crate) fn set_fence(&mut self, fence: &Fence) {
+        self.fence.clone_from(fence);
+    }
+
     /// Returns the fence.
     pub(crate) const fn fence(&self) -> &Fence {
         &self.fence

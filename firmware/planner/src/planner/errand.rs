@@ -105,7 +105,10 @@ pub enum TaskError {
 #[derive(Debug)]
 pub(super) struct Errands {
     home: Pose,
-    going: Option<Going>,
+    /// The robot is on the errand `last`. It is no option: the initial value is all zeros, and a
+    /// static one costs no flash.
+    is_going: bool,
+    last: Going,
     /// The way driven so far, by odometry, and where it ends, metres.
     driven_m: f32,
     driven_to: Point,
@@ -141,7 +144,15 @@ impl Errands {
                 pitch_rad: 0.0,
                 yaw_rad: 0.0,
             },
-            going: None,
+            is_going: false,
+            last: Going {
+                errand: Errand::Home,
+                to: Point { x_m: 0.0, y_m: 0.0 },
+                yaw_rad: None,
+                is_there: false,
+                straight_rad: None,
+                turned_ms: 0,
+            },
             driven_m: 0.0,
             driven_to: Point { x_m: 0.0, y_m: 0.0 },
             measured_m: (0.0, 0.0),
@@ -178,17 +189,31 @@ impl Errands {
 
     /// Returns true on an errand.
     pub(super) const fn is_going(&self) -> bool {
-        self.going.is_some()
+        self.is_going
+    }
+
+    /// Returns the errand on which the robot is.
+    const fn going(&self) -> Option<Going> {
+        if self.is_going { Some(self.last) } else { None }
+    }
+
+    /// Returns the errand on which the robot is.
+    const fn going_mut(&mut self) -> Option<&mut Going> {
+        if self.is_going {
+            Some(&mut self.last)
+        } else {
+            None
+        }
     }
 
     /// Returns the heading of the straight way to the goal, radians, while the robot drives it.
     pub(super) fn straight_rad(&self) -> Option<f32> {
-        self.going?.straight_rad
+        self.going()?.straight_rad
     }
 
     /// Returns the cell that the robot drives to.
     pub(super) fn goal(&self) -> Option<Cell> {
-        self.going.map(|going| going.to.cell())
+        self.going().map(|going| going.to.cell())
     }
 
     /// Moves home and goal with the tiles that they lie in.
@@ -206,7 +231,7 @@ impl Errands {
             y_m,
             ..self.home
         };
-        if let Some(going) = &mut self.going {
+        if let Some(going) = self.going_mut() {
             going.to = moved(going.to);
         }
     }
@@ -215,7 +240,7 @@ impl Errands {
     pub(super) fn turn(&mut self, by: &MapFromOdom) {
         let MapPose(home) = by.apply(&OdomPose(self.home));
         self.home = home;
-        if let Some(going) = &mut self.going
+        if let Some(going) = self.going_mut()
             && going.errand == Errand::Home
         {
             (going.to, going.yaw_rad) = (home.point(), Some(home.yaw_rad));
@@ -291,7 +316,8 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// Begins an errand, or goes on exploring. What was begun before is given up.
     fn plan_anew(&mut self, going: Option<Going>) {
         self.status = going.map_or(Status::Exploring, |it| Status::Going(it.errand));
-        self.errands.going = going;
+        self.errands.is_going = going.is_some();
+        self.errands.last = going.unwrap_or(self.errands.last);
         self.strategy.begin_errand();
         self.viewpoints = viewpoint::Search::new();
         self.ends = false;
@@ -299,7 +325,8 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 
     /// Ends the errand: the robot is there, or cannot get there.
     pub(super) fn end_errand(&mut self, arrived: bool) {
-        if let Some(Going { errand, .. }) = self.errands.going.take() {
+        if let Some(Going { errand, .. }) = self.errands.going() {
+            self.errands.is_going = false;
             self.status = match arrived {
                 true => Status::Arrived(errand),
                 false => Status::Unreachable(errand),
@@ -352,7 +379,7 @@ pub(super) fn approach<const TILES: usize, const SLOTS: usize>(
     footprint: &Footprint,
     input: &Input<'_>,
 ) -> Option<Output> {
-    let going = state.errands.going.as_mut()?;
+    let going = state.errands.going_mut()?;
     let robot = input.pose.point();
     let left_m = robot.distance_m(going.to);
     if !going.is_there {
@@ -400,7 +427,7 @@ fn turn<const TILES: usize, const SLOTS: usize>(
     state: &mut State<TILES, SLOTS>,
     input: &Input<'_>,
 ) -> Output {
-    let Some(going) = state.errands.going else {
+    let Some(going) = state.errands.going() else {
         return Output::default();
     };
     let wanted = going.yaw_rad.unwrap_or(input.pose.yaw_rad);
@@ -429,7 +456,7 @@ fn turn<const TILES: usize, const SLOTS: usize>(
             && checker.admits(twist, input.velocity, config, TURN_MARGIN_M);
         is_free.then_some(twist)
     });
-    match (found, &mut state.errands.going) {
+    match (found, state.errands.going_mut()) {
         (Some(_), Some(going)) => going.turned_ms = input.time_ms,
         _ if since(input.time_ms, going.turned_ms) > NO_ROOM_MS => state.end_errand(false),
         _ => {}

@@ -224,21 +224,29 @@ mod tests {
 
     #[test]
     fn strips_agree_with_the_cell_by_cell_twin() {
-        let tiles = scattered();
+        let mut tiles = scattered();
+        strips_agree(&tiles);
+        let corners = [(-1.3, -2.0), (3.1, 0.4), (1.7, 2.2)];
+        let corners = corners.map(|(x_m, y_m)| crate::geometry::Point { x_m, y_m });
+        tiles.set_fence(&crate::fence::Fence::new().no_go(&corners));
+        strips_agree(&tiles);
+    }
+
+    fn strips_agree(tiles: &Tiles<9, 24>) {
         for radius in [0.1, 0.15, 0.2, 0.3, 0.35, 0.45] {
             let footprint = Footprint::new(radius);
             for x in [-40, -7, 32] {
-                for_each_strip(&tiles, &footprint, (x, -31), 62, |y, strip| {
+                for_each_strip(tiles, &footprint, (x, -31), 62, |y, strip| {
                     for k in 0..32 {
                         let cell = Cell { x: x + k, y };
                         assert_eq!(
                             strip.passable >> k & 1 == 1,
-                            is_passable(&tiles, &footprint, cell),
+                            is_passable(tiles, &footprint, cell),
                             "radius {radius}, {cell:?}"
                         );
                         assert_eq!(
                             strip.unknown >> k & 1 == 1,
-                            tiles.class(cell) == Class::Unknown
+                            tiles.planned_class(cell) == Class::Unknown
                         );
                     }
                 });
