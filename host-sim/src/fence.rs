@@ -5,8 +5,8 @@
 //! depth of a point = its distance from the nearest side of a polygon on whose wrong side it lies
 //! ```
 //!
-//! Units: metres in the world's frame. The simulated odometry begins at the true start pose, so that
-//! is the frame of the device's map as well.
+//! Units: metres in the world's frame. The simulated odometry begins at the true start pose, so
+//! that is the frame of the device's map as well.
 
 use fieldline_device::convert;
 use fieldline_planner::planner::may_stand;

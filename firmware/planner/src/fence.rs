@@ -55,9 +55,9 @@ pub struct Fence {
 }
 
 impl Fence {
-    /// The most corners of all polygons together.
+    /// Greatest number of corners of all polygons together.
     pub const MOST_CORNERS: usize = 32;
-    /// The most polygons: each has three corners at least.
+    /// Greatest number of polygons: each has three corners at least.
     pub const MOST_POLYGONS: usize = Self::MOST_CORNERS / 3;
 
     /// Returns a fence that forbids nothing.
@@ -151,8 +151,8 @@ impl Fence {
         (!passes).then(|| self.row(x, y))
     }
 
-    /// Calls `each` with the forbidden cells that border on allowed ones, in the square that reaches
-    /// `reach` cells from a cell to all sides, at most 30: the rows nearest to it first.
+    /// Calls `each` with the forbidden cells that border on allowed ones, in the square that
+    /// reaches `reach` cells from a cell to all sides, at most 30: the rows nearest to it first.
     pub(crate) fn for_each_rim(&self, middle: Cell, reach: i32, mut each: impl FnMut(Cell)) {
         let reach = reach.clamp(0, 30);
         // The square begins in bit 1.

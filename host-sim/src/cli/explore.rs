@@ -325,8 +325,8 @@ fn orders(args: &ExploreArgs) -> Result<Orders> {
     };
     if orders != Orders::default() && on_device(&args.strategy).is_none() {
         bail!(
-            "--strategy {} takes no orders; leave --goto, --then, --range-m and --time-s out, or take \
-             a strategy on the device",
+            "--strategy {} takes no orders; leave --goto, --then, --range-m and --time-s out, or \
+             take a strategy on the device",
             args.strategy
         );
     }

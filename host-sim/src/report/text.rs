@@ -137,8 +137,8 @@ impl Report {
         lines.join("\n")
     }
 
-    /// Returns true if the run ended as explored with less than 97 % of the ground truly seen. Behind
-    /// a fence nothing says how much may be seen.
+    /// Returns true if the run ended as explored with less than 97 % of the ground truly seen.
+    /// Behind a fence nothing says how much may be seen.
     #[must_use]
     pub fn is_falsely_explored(&self) -> bool {
         self.fence.is_none()

@@ -249,8 +249,8 @@ fn ended(
     }
 }
 
-/// Returns true if the planner says that it explores, drives by order, or waits for a scan. A lost robot that
-/// searches for its place says so and may stand.
+/// Returns true if the planner says that it explores, drives by order, or waits for a scan. A lost
+/// robot that searches for its place says so and may stand.
 fn explores(status: Status, command: &Command) -> bool {
     let is_lost = |location: &Location| location.quality == Quality::Lost;
     status.goes_on() && !command.location.as_ref().is_some_and(is_lost)

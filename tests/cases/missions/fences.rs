@@ -1,8 +1,8 @@
 //! Bounds, no-go polygons and the way home, drawn at random around the start of flat worlds.
 //!
-//! What must hold: no place of the true hull is as deep as a map cell in what is forbidden, or, with
-//! odometry that drifts and is corrected, deeper than that and the greatest error of the pose; no
-//! touch; and each run ends with a reason. A robot that says that it is home is there.
+//! What must hold: no place of the true hull is as deep as a map cell in what is forbidden, or,
+//! with odometry that drifts and is corrected, deeper than that and the greatest error of the pose;
+//! no touch; and each run ends with a reason. A robot that says that it is home is there.
 
 use fieldline_tests::random::Random;
 use fieldline_tests::runs::{explored, in_parallel};

@@ -184,9 +184,9 @@ impl CollisionChecker {
         }
     }
 
-    /// Adds forbidden cells (their centres), each inflated by half a cell. A robot that a correction
-    /// of its pose put over one may leave it, and come no deeper. In a full list they take the
-    /// place of what is farthest off.
+    /// Adds forbidden cells (their centres), each inflated by half a cell. A robot that a
+    /// correction of its pose put over one may leave it, and come no deeper. In a full list they
+    /// take the place of what is farthest off.
     pub(crate) fn fence_off(&mut self, pose: &Pose, fence: &Fence, reach: i32) {
         let frame = RobotFrame::of(pose);
         fence.for_each_rim(pose.point().cell(), reach, |cell| {

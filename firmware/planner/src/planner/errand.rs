@@ -63,14 +63,14 @@ const NO_ROOM_MS: u32 = 10_000;
 /// ```
 /// use fieldline_planner::{
 ///     Capacity, Config, Errand, Input, LaserMount, Planner, Point, Pose, RobotShape, Status, Task,
-///     Twist,
+///     TaskError, Twist,
 /// };
 ///
 /// let config = Config::builder(RobotShape::PIONEER_3AT)
 ///     .laser(LaserMount::level(0.10, 0.40))
 ///     .build()?;
 /// let mut planner = Box::new(Planner::<Capacity<16, 20>>::new(&config));
-/// assert!(planner.order(Task::Home).is_err(), "nothing was seen yet");
+/// assert_eq!(planner.order(Task::Home), Err(TaskError::NotReady), "nothing was seen yet");
 /// planner.step(&Input {
 ///     time_ms: 0,
 ///     pose: Pose::default(),

@@ -3,8 +3,8 @@
 //!
 //! A cell is *passable* if no obstacle cell lies in the disc of the robot's radius around it, or if
 //! the robot has been there; unknown cells obstruct nothing. All planning (skeleton, local grid)
-//! works on passable cells. A cell that the fence forbids is an obstacle. So a gap that the robot does not fit through is no way, and a door of
-//! 0.8 m keeps a lane of two or three cells.
+//! works on passable cells. A cell that the fence forbids is an obstacle. So a gap that the robot
+//! does not fit through is no way, and a door of 0.8 m keeps a lane of two or three cells.
 //!
 //! Bit-parallel: 32 columns at a time over rows of 64 bits.
 //!
