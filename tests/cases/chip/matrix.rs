@@ -13,7 +13,6 @@ use fieldline_tests::uneven::UnevenRun;
 use fieldline_tests::watched::Watched;
 use fieldline_tests::{costs, golden, worlds};
 use fixed::types::I4F12;
-use host_sim::fence::Fence;
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::replay::carmen::{Beams, LogScan};
@@ -106,16 +105,6 @@ fn flat() -> Vec<Case> {
         patrol,
         of("--order nearest", "office", |it| {
             it.order = Some(Order::Nearest);
-        }),
-        of("--bounds 6,3,18,11 --no-go 13.5,8,14.5,9", "office", |it| {
-            it.fence = Fence {
-                bounds: vec!["6,3,18,11".parse().expect("a rectangle")],
-                no_go: vec!["13.5,8,14.5,9".parse().expect("a rectangle")],
-            };
-        }),
-        of("--range-m 6 --then home", "office", |it| {
-            it.orders.home = true;
-            it.orders.budget.range_m = Some(6);
         }),
         of("--worth 0", "office", |it| {
             let worth = I4F12::ZERO;
