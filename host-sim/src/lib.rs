@@ -3,6 +3,7 @@
 
 pub mod baseline;
 pub mod campaign;
+pub mod fence;
 pub mod link;
 pub mod metrics;
 pub mod near;

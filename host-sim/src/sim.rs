@@ -353,8 +353,12 @@ impl<'w> Simulator<'w> {
         }
     }
 
-    /// Measures the clearance if it may be a new least value or end a contact.
+    /// Measures how deep the hull lies in what is forbidden, and the clearance if it may be a new
+    /// least value or end a contact.
     fn track_clearance(&mut self) {
+        let (fence, hull) = (&self.config.fence, &self.config.footprint);
+        let depth_m = fence.hull_depth_m(hull, &self.pose);
+        self.safety.deepest_forbidden_m = self.safety.deepest_forbidden_m.max(depth_m);
         let needed_m = if self.in_contact {
             CONTACT_OVER_M
         } else {

@@ -46,6 +46,10 @@ impl fmt::Display for Parameter {
             Self::Team => {
                 "the odometry's origin must lie within 400 m and a hundred turns of the team's"
             }
+            Self::Fence => {
+                "the fence must have at most 10 polygons and 32 corners within 3200 m, and each \
+                 polygon 3 corners or more, an area, and sides that do not cross"
+            }
         })
     }
 }
@@ -66,6 +70,13 @@ impl fmt::Display for Refusal {
                  and be for flat ground",
             ),
             Self::BadTile => f.write_str("the runs of a tile do not have 1024 cells"),
+            Self::NotReady => f.write_str(
+                "the robot takes no order to drive: it has no scan yet, does not know where it is, \
+                 started where it cannot or must not be, or only surveys",
+            ),
+            Self::BadGoal => f.write_str(
+                "the goal must lie within 3200 m of the map's origin, where the fence allows it",
+            ),
         }
     }
 }

@@ -34,7 +34,9 @@ mod residual;
 mod session;
 mod team;
 
-pub use command::{Command, Cost, Counters, Fault, Finish, InputFaults, Loops, Stages, Status};
+pub use command::{
+    Command, Cost, Counters, Errand, Fault, Finish, InputFaults, Loops, Stages, Status,
+};
 pub use correction::{
     CORRECTED_BYTES, CORRECTED_TILES, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress,
     MOST_CORRECTED, Motion,
@@ -51,7 +53,8 @@ pub use readout::{
 pub use refusal::{Parameter, Refusal};
 pub use residual::{MAX_FRONTIERS, ResidualFrontier, ResidualReason};
 pub use session::{
-    Control, Hull, Laser, LoopLimits, Order, Preference, SpaceField, Start, Strategy, UnevenGround,
+    Budget, Control, FENCE_CORNERS, FENCE_POLYGONS, Fence, FencePolygon, Hull, Laser, LoopLimits,
+    Order, Preference, SpaceField, Start, Strategy, UnevenGround,
 };
 pub use team::{
     Activity, Beacon, Body, DIGEST_TILES, Digest, Member, Packet, ROAD_POINTS, ROAD_UNIT_CM, Team,

@@ -12,11 +12,12 @@ use fieldline_protocol::frame::{
     encode_log, encode_reply, encode_request, overhead,
 };
 use fieldline_protocol::message::{
-    self, BUILD_BYTES, CORRECTED_BYTES, CORRECTED_TILES, CRASH_FILE_BYTES, Cause, Control,
-    CorrectedTile, CorrectedTiles, Counters, Crash, FIELD_CELL_BYTES, FIELD_SIDE, FieldRow, Hull,
-    Identity, Laser, LoopLimits, MAX_FRONTIERS, MAX_SCANS, Member, NO_RETURN_MM, Order, PATH_PAGE,
-    Path, Preference, Reply, Request, ResidualFrontier, ResidualReason, Start, TILE_BYTES,
-    TILE_SKELETON_BYTES, TILE_STAMPS, Team, Tile, UnevenGround,
+    self, BUILD_BYTES, Budget, CORRECTED_BYTES, CORRECTED_TILES, CRASH_FILE_BYTES, Cause, Control,
+    CorrectedTile, CorrectedTiles, Counters, Crash, FENCE_CORNERS, FENCE_POLYGONS,
+    FIELD_CELL_BYTES, FIELD_SIDE, Fence, FencePolygon, FieldRow, Hull, Identity, Laser, LoopLimits,
+    MAX_FRONTIERS, MAX_SCANS, Member, NO_RETURN_MM, Order, PATH_PAGE, Path, Preference, Reply,
+    Request, ResidualFrontier, ResidualReason, Start, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS,
+    Team, Tile, UnevenGround,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use proptest::prelude::*;
@@ -149,6 +150,19 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         }),
         localise: true,
         survey: true,
+        fence: Fence {
+            corners: [(farthest, farthest); FENCE_CORNERS].into_iter().collect(),
+            polygons: [FencePolygon {
+                corners: u8::MAX,
+                bounds: true,
+            }; FENCE_POLYGONS]
+                .into_iter()
+                .collect(),
+        },
+        budget: Budget {
+            range_m: Some(u16::MAX),
+            time_s: Some(u16::MAX),
+        },
     }));
     let file = "f".repeat(CRASH_FILE_BYTES).as_str().try_into().unwrap();
     let crash = Crash {

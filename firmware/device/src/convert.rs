@@ -7,12 +7,14 @@
 //! the same bits on every machine.
 
 use fieldline_planner::{
-    self as planner, Area, Cell, Config, Input, InputFaults, LaserMount, LoopCounts, LoopLimits,
-    Order, Parameter, Pose, PreferenceMode, ResidualReason, RobotShape, SpaceField, State,
-    Strategy, Tuning, Twist, UnevenGround,
+    self as planner, Area, Budget, Cell, Config, Fence, Input, InputFaults, LaserMount, LoopCounts,
+    LoopLimits, Order, Parameter, Point, Pose, PreferenceMode, ResidualReason, RobotShape,
+    SpaceField, State, Strategy, Task, TaskError, Tuning, Twist, UnevenGround,
 };
 use fieldline_protocol::message as wire;
 use fixed::traits::{Fixed, LossyInto};
+use fixed::types::I16F16;
+use heapless::Vec;
 
 mod team;
 mod tiles;
@@ -161,6 +163,26 @@ fn space_field(field: &wire::SpaceField) -> SpaceField {
     }
 }
 
+/// Converts a fence from the wire; `None` if its polygons do not have all corners.
+fn fence(fence: &wire::Fence) -> Option<Fence> {
+    let mut corners = fence.corners.as_slice();
+    let mut result = Fence::new();
+    for polygon in &fence.polygons {
+        let (own, rest) = corners.split_at_checked(polygon.corners.into())?;
+        let point = |&(x, y): &(I16F16, I16F16)| Point {
+            x_m: float(x),
+            y_m: float(y),
+        };
+        let own: Vec<Point, { wire::FENCE_CORNERS }> = own.iter().map(point).collect();
+        result = match polygon.bounds {
+            true => result.bounds(&own),
+            false => result.no_go(&own),
+        };
+        corners = rest;
+    }
+    corners.is_empty().then_some(result)
+}
+
 /// Converts the parameters of a session from the wire. The planner checks them. Not inlined: the
 /// builder's copies must not be on the stack while the state is cleared.
 ///
@@ -201,6 +223,11 @@ pub fn config(start: &wire::Start, tuning: &'static Tuning) -> Result<Config, wi
         builder = builder.team(team::place(team));
     }
     builder
+        .fence(fence(&start.fence).ok_or(wire::Parameter::Fence)?)
+        .budget(Budget {
+            range_m: start.budget.range_m,
+            time_s: start.budget.time_s,
+        })
         .build()
         .map_err(|error| wire_parameter(error.parameter))
 }
@@ -229,8 +256,42 @@ const fn wire_parameter(parameter: Parameter) -> wire::Parameter {
         Parameter::LoopLimits => wire::Parameter::LoopLimits,
         Parameter::Worth => wire::Parameter::Worth,
         Parameter::TeamPlace => wire::Parameter::Team,
+        Parameter::FenceCorners
+        | Parameter::FenceCorner
+        | Parameter::FenceArea
+        | Parameter::FenceCrossings => wire::Parameter::Fence,
         // The solver's parameters do not come from the wire.
         Parameter::UnevenGround | Parameter::Solver => wire::Parameter::UnevenGround,
+    }
+}
+
+const fn errand(errand: planner::Errand) -> wire::Errand {
+    match errand {
+        planner::Errand::Home => wire::Errand::Home,
+        planner::Errand::Goal => wire::Errand::Goal,
+    }
+}
+
+/// Converts an order to drive from the wire; `None` for any other change of the session.
+#[must_use]
+pub fn task(control: &wire::Control) -> Option<Task> {
+    match *control {
+        wire::Control::Home => Some(Task::Home),
+        wire::Control::Explore => Some(Task::Explore),
+        wire::Control::GoTo { x, y } => Some(Task::GoTo(Point {
+            x_m: float(x),
+            y_m: float(y),
+        })),
+        _ => None,
+    }
+}
+
+/// Converts the reason for which an order to drive is refused, for the wire.
+#[must_use]
+pub const fn wire_task_error(error: TaskError) -> wire::Refusal {
+    match error {
+        TaskError::NotReady => wire::Refusal::NotReady,
+        TaskError::BadGoal => wire::Refusal::BadGoal,
     }
 }
 
@@ -240,6 +301,9 @@ pub fn wire_status(status: planner::Status) -> wire::Status {
     match status {
         planner::Status::Exploring => wire::Status::Exploring,
         planner::Status::NoScan => wire::Status::NoScan,
+        planner::Status::Going(to) => wire::Status::Going(errand(to)),
+        planner::Status::Arrived(to) => wire::Status::Arrived(errand(to)),
+        planner::Status::Unreachable(to) => wire::Status::Unreachable(errand(to)),
         planner::Status::Finished(finish) => wire::Status::Finished(match finish {
             planner::Finish::Explored => wire::Finish::Explored,
             planner::Finish::BoxedIn => wire::Finish::BoxedIn,
@@ -253,6 +317,7 @@ pub fn wire_status(status: planner::Status) -> wire::Status {
             planner::Fault::Stuck => wire::Fault::Stuck,
             planner::Fault::PoseLost => wire::Fault::PoseLost,
             planner::Fault::Trapped => wire::Fault::Trapped,
+            planner::Fault::StartForbidden => wire::Fault::StartForbidden,
         }),
     }
 }

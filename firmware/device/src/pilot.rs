@@ -5,9 +5,11 @@
 //!  Idle ─────────► Exploring ─────► Paused    Exploring ─────► Finished / Fault
 //!                         ◄─────              any ──Stop──► Finished(Stopped)
 //!                         Resume              any ──input──► EmergencyStop
+//!
+//!  any ──Home, GoTo──► Going ──planner──► Arrived / Unreachable          ──Explore──► Exploring
 //! ```
 //!
-//! Only in Exploring does an observation step the planner, and only then may a command move the
+//! Only in Exploring and Going does an observation step the planner, and only then may a command move the
 //! robot. The emergency stop is latched: releasing the input does not end it, and neither does a
 //! new observation. Only Resume or Start from the host ends it, and only when the input is
 //! released. After Resume the session explores, also if it was paused before the stop. A session
@@ -99,7 +101,7 @@ impl Pilot {
     pub const fn status(&self) -> Status {
         match self.planned {
             _ if self.latched => Status::EmergencyStop,
-            Status::Exploring | Status::NoScan if self.paused => Status::Paused,
+            status if self.paused && status.goes_on() => Status::Paused,
             status => status,
         }
     }
@@ -140,8 +142,27 @@ impl Pilot {
                 self.latched = self.pressed;
             }
             Control::Stop => self.planned = Status::Finished(Finish::Stopped),
+            Control::Home | Control::GoTo { .. } | Control::Explore => {
+                self.order(memory, control)?;
+            }
         }
         Ok(self.status())
+    }
+
+    /// Takes an order to drive.
+    fn order<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        memory: &mut Memory<'_, TILES, SLOTS>,
+        control: &Control,
+    ) -> Result<(), Refusal> {
+        let is_stopped = self.planned == Status::Finished(Finish::Stopped);
+        let config = self.config.as_ref().filter(|_| !is_stopped);
+        let (config, task) = config
+            .zip(convert::task(control))
+            .ok_or(Refusal::NotStarted)?;
+        let ordered = memory.state.order(config, task);
+        self.planned = convert::wire_status(ordered.map_err(convert::wire_task_error)?);
+        Ok(())
     }
 
     fn start<const TILES: usize, const SLOTS: usize>(
@@ -198,7 +219,7 @@ impl Pilot {
             warning!("the scans of an observation do not match the lasers");
             return Ok(stopped(Status::Fault(Fault::BadObservation)));
         };
-        if !matches!(self.status(), Status::Exploring | Status::NoScan) {
+        if !self.status().goes_on() {
             memory.state.stand(config, &input);
             return Ok(stopped(self.status()));
         }
@@ -212,8 +233,8 @@ impl Pilot {
             });
         }
         self.planned = convert::wire_status(output.status);
-        if !matches!(self.planned, Status::Exploring | Status::NoScan) {
-            info!("exploration ended");
+        if !self.planned.goes_on() {
+            info!("exploration or errand ended");
         }
         let location = config.localises().then(|| memory.state.location());
         Ok(Command {
@@ -309,7 +330,7 @@ impl Pilot {
         let said = memory.state.say(config);
         Ok(said.map(|packet| {
             let mut packet = convert::wire_packet(&packet);
-            if let (Body::Beacon(beacon), Some(activity)) = (&mut packet.body, self.order()) {
+            if let (Body::Beacon(beacon), Some(activity)) = (&mut packet.body, self.activity()) {
                 beacon.activity = activity;
             }
             packet
@@ -324,7 +345,7 @@ impl Pilot {
     }
 
     /// Returns what the robot does by order, whatever its planner would do.
-    const fn order(&self) -> Option<Activity> {
+    const fn activity(&self) -> Option<Activity> {
         match self.status() {
             Status::Finished(Finish::Stopped) => Some(Activity::Gone),
             Status::Paused | Status::EmergencyStop => Some(Activity::Standing),
@@ -425,7 +446,7 @@ fn stopped(status: Status) -> Command {
 /// Converts the output of a step for the wire.
 fn command(output: &Output, status: Status) -> Command {
     // Only an exploring planner may move the robot. The velocity of another output is ignored.
-    let velocity = if status == Status::Exploring {
+    let velocity = if status.drives() {
         convert::wire_twist(&output.velocity)
     } else {
         Twist::default()

@@ -144,7 +144,7 @@ impl Session {
     pub fn tick(&mut self, now_ms: u32) {
         self.now_ms = now_ms;
         let silent = now_ms.wrapping_sub(self.heard_ms) > u32::from(STALE_MS);
-        if silent && !self.stale && self.pilot.status() == Status::Exploring {
+        if silent && !self.stale && self.pilot.status().drives() {
             warning!("stale stop: no request for {=u16} ms", STALE_MS);
             self.stale = true;
             self.counters.stale_stops = self.counters.stale_stops.wrapping_add(1);

@@ -33,11 +33,11 @@ impl Signal {
     pub const fn of(status: Status) -> Self {
         match status {
             Status::Idle => Self::Ready,
-            Status::Exploring | Status::NoScan => Self::Exploring,
+            Status::Exploring | Status::NoScan | Status::Going(_) => Self::Exploring,
             Status::Paused => Self::Paused,
             Status::EmergencyStop => Self::EmergencyStop,
-            Status::Finished(_) => Self::Finished,
-            Status::Fault(_) => Self::Trouble,
+            Status::Finished(_) | Status::Arrived(_) => Self::Finished,
+            Status::Fault(_) | Status::Unreachable(_) => Self::Trouble,
         }
     }
 

@@ -38,6 +38,8 @@ mod config;
 #[cfg(not(feature = "internals"))]
 mod drive;
 #[cfg(not(feature = "internals"))]
+mod fence;
+#[cfg(not(feature = "internals"))]
 mod field;
 #[cfg(not(feature = "internals"))]
 mod geometry;
@@ -75,6 +77,8 @@ pub mod config;
 #[cfg(feature = "internals")]
 pub mod drive;
 #[cfg(feature = "internals")]
+pub mod fence;
+#[cfg(feature = "internals")]
 pub mod field;
 #[cfg(feature = "internals")]
 pub mod geometry;
@@ -108,22 +112,23 @@ pub mod strategy;
 pub mod team;
 
 pub use config::{
-    Area, Config, ConfigBuilder, ConfigError, FieldTuning, Goal, GoalLevel, GroundTuning,
+    Area, Budget, Config, ConfigBuilder, ConfigError, FieldTuning, Goal, GoalLevel, GroundTuning,
     LocaliseTuning, LoopLimits, MapTuning, Member, Method, Order, OrderTuning, OuroborosTuning,
     Parameter, PreferenceMode, SbpfTuning, SolverConfig, SpaceField, Strategy, TdbvpTuning,
     TeamPlace, Tuned, Tuning, TuningError, UnevenGround,
 };
+pub use fence::Fence;
 pub use field::SIDE as FIELD_SIDE;
 pub use geometry::{CELL_M, Cell, MapPose, Point, Pose, Twist};
 pub use input::{INVALID_MM, Input, InputError, InputFaults, NO_RETURN_MM};
 pub use localise::{Location, Quality};
 pub use planner::{
     Capacity, CellKind, CorrectedTile, Correction, CorrectionError, CorrectionProgress, F405,
-    FieldRow, LoopCounts, Memory, Output, Planner, State, Workspace, step,
+    FieldRow, LoopCounts, Memory, Output, Planner, State, Task, TaskError, Workspace, step,
 };
 pub use profiling::{Stage, StageTimer};
 pub use robot::{LaserMount, MAX_BEAMS, RobotShape};
-pub use status::{Fault, Finish, ResidualFrontier, ResidualReason, Status};
+pub use status::{Errand, Fault, Finish, ResidualFrontier, ResidualReason, Status};
 pub use team::packet::{
     Activity, Beacon, Body, DIGEST_TILES, Digest, Packet, ROAD_POINTS, TeamTile, TileVersion,
     WANTED_TILES, Wanted,

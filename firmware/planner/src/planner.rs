@@ -18,6 +18,7 @@ mod charge;
 mod correction;
 mod door;
 mod ending;
+mod errand;
 mod ground_model;
 #[cfg(feature = "internals")]
 pub mod host_copy;
@@ -33,6 +34,7 @@ mod team;
 mod workspace;
 
 pub use correction::{CorrectedTile, Correction, CorrectionError, CorrectionProgress};
+pub use errand::{Task, TaskError};
 pub use memory::{Capacity, F405, Memory, Planner};
 pub use readout::LoopCounts;
 pub use state::State;
@@ -40,13 +42,15 @@ pub use workspace::{CellKind, FieldRow, Workspace};
 
 use crate::config::Config;
 use crate::field::{SolverConfig, Stop, solve};
-use crate::geometry::{MapPose, OdomPose, Twist};
+use crate::geometry::{CELL_M, MapPose, OdomPose, Point, Pose, Twist};
 use crate::input::{INVALID_MM, Input, InputError};
+use crate::math;
 use crate::profiling::{Stage, StageTimer};
 use crate::roadmap::configuration_space::Footprint;
 use crate::robot::LaserMount;
 use crate::status::{Fault, Status};
 use charge::{charge_path, charge_rails};
+use errand::{approach, measure_way_home};
 use make_way::{Way, make_way};
 use plan::{end_now, replan, search_viewpoints};
 use prefer::{note_flatness, prefer};
@@ -173,7 +177,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
 /// not know, and zero unless the status is one that drives.
 fn commanded(config: &Config, status: Status, wish: Twist) -> Twist {
     let is_number = wish.linear_mps.is_finite() && wish.angular_radps.is_finite();
-    if status != Status::Exploring || !is_number {
+    if !status.drives() || !is_number {
         return Twist::default();
     }
     let (linear, angular) = (config.max_linear_mps, config.max_angular_radps);
@@ -211,11 +215,15 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         state.status = Status::Fault(Fault::PoseLost);
     }
     let plans = !state.localiser.is_lost() && !config.survey;
-    if plans {
+    if plans && !state.errands.is_going() {
         tell_strategy(config, state, &input);
     }
+    state.errands.note_driven(state.localiser.odom().0.point());
+    if plans {
+        state.mind_budget(config, input.time_ms);
+    }
     timer.mark(Stage::Sense);
-    if !plans || state.status != Status::Exploring {
+    if !plans || !state.status.drives() {
         return Output::standing(state.status);
     }
     state.dark_steps = if tells(&input) {
@@ -234,7 +242,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     // A search for a recovery owns the scratch: the robot stands and plans nothing until it is
     // over.
     if state.drive.is_searching() {
-        let lead_rad = state.strategy.heading_rad();
+        let lead_rad = state.lead_rad();
         let output = steer(config, state, workspace, &input, lead_rad);
         timer.mark(Stage::Drive);
         return output;
@@ -244,7 +252,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         search_viewpoints(config, state, workspace, &footprint, &input);
         timer.mark(Stage::Plan);
         return Output {
-            velocity: if state.status == Status::Exploring {
+            velocity: if state.status.drives() {
                 look_about(config, state, &input)
             } else {
                 Twist::default()
@@ -253,7 +261,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         };
     }
     let planned = advance_plan(config, state, workspace, &footprint, &input, timer);
-    if state.status != Status::Exploring {
+    if !state.status.drives() {
         return Output::standing(state.status);
     }
     let frontier = &mut state.strategy.frontier;
@@ -282,7 +290,10 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     }
     if matches!(way, Way::Retreat) {
         // The window is charged with the way already.
-    } else if let Some(heading_rad) = state.strategy.heading_rad() {
+    } else if let Some(output) = approach(config, state, workspace, &footprint, &input) {
+        timer.mark(Stage::Drive);
+        return output;
+    } else if let Some(heading_rad) = state.lead_rad() {
         let output = steer(config, state, workspace, &input, Some(heading_rad));
         timer.mark(Stage::Drive);
         return output;
@@ -338,7 +349,12 @@ fn advance_plan<const TILES: usize, const SLOTS: usize>(
     let planned = state.has_new_skeleton;
     if planned {
         state.has_new_skeleton = !replan(config, state, workspace, footprint, input);
+        state.errands.note_planned(config);
         timer.mark(Stage::Plan);
+    } else if state.errands.take_due() {
+        measure_way_home(state, workspace, footprint, input);
+        timer.mark(Stage::Plan);
+        return true;
     } else {
         state.has_new_skeleton = state.skeleton.advance(
             state.map.tiles(),
@@ -372,11 +388,14 @@ fn sense<const TILES: usize, const SLOTS: usize>(
     let input = &Input { pose, ..*input };
     if !state.started {
         state.started = config.survey || tells(input);
+        state
+            .errands
+            .begin_at(pose, state.localiser.odom().0.point());
         state.status = match state.started {
             false => Status::NoScan,
-            true if !config.survey && starts_blocked(config, input) => {
-                Status::Fault(Fault::StartBlocked)
-            }
+            true if config.survey => Status::Exploring,
+            true if starts_blocked(config, input) => Status::Fault(Fault::StartBlocked),
+            true if !may_stand(config, &input.pose) => Status::Fault(Fault::StartForbidden),
             true => Status::Exploring,
         };
         if state.started {
@@ -448,6 +467,24 @@ fn level_scans<'a>(
 ) -> impl Iterator<Item = (&'a LaserMount, &'a [u16])> {
     let scans = config.lasers.iter().zip(input.scans);
     scans.filter(|(laser, _)| laser.is_level())
+}
+
+/// Returns true if the fence allows every cell under the hull of a robot at `pose`.
+#[must_use]
+pub fn may_stand(config: &Config, pose: &Pose) -> bool {
+    let (length_m, width_m) = (config.robot.half_length_m, config.robot.half_width_m);
+    // Places across a hull, at most half a cell apart, its edges included.
+    let parts = |half_m: f32| math::floor(4.0 * half_m / CELL_M) + 1;
+    let at = |k: i32, half_m: f32| half_m * (2.0 * k as f32 / parts(half_m) as f32 - 1.0);
+    let is_free = |i: i32, j: i32| {
+        let place = Point {
+            x_m: at(i, length_m),
+            y_m: at(j, width_m),
+        };
+        config.fence.allows(pose.to_map(place).cell())
+    };
+    config.fence.is_empty()
+        || (0..=parts(length_m)).all(|i| (0..=parts(width_m)).all(|j| is_free(i, j)))
 }
 
 /// Returns true if a beam tells anything.

@@ -28,13 +28,34 @@ pub enum Status {
     Fault(Fault),
     /// No beam has told anything yet. The robot stands until one does.
     NoScan,
+    /// The robot is on the way, by order.
+    Going(Errand),
+    /// The robot is where it was ordered to go, and stands.
+    Arrived(Errand),
+    /// The robot cannot get where it was ordered to go, and stands.
+    Unreachable(Errand),
+}
+
+/// Where a robot was ordered to go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Errand {
+    /// To the pose at which the session began.
+    Home,
+    /// To a point of the map.
+    Goal,
 }
 
 impl Status {
     /// Returns true if the planner goes on with the next observation.
     #[must_use]
     pub const fn goes_on(self) -> bool {
-        matches!(self, Self::Exploring | Self::NoScan)
+        matches!(self, Self::Exploring | Self::NoScan | Self::Going(_))
+    }
+
+    /// Returns true if the robot may be driven.
+    #[must_use]
+    pub const fn drives(self) -> bool {
+        matches!(self, Self::Exploring | Self::Going(_))
     }
 }
 
@@ -66,6 +87,8 @@ pub enum Fault {
     PoseLost,
     /// The forces of a space-based potential field led the robot to no new cell for too long.
     Trapped,
+    /// The robot started with a part of its hull where the fence forbids it to be.
+    StartForbidden,
 }
 
 /// The reason why a frontier was left.
@@ -110,7 +133,20 @@ impl fmt::Display for Status {
             Self::Finished(finish) => write!(f, "finished: {finish}"),
             Self::Fault(fault) => write!(f, "fault: {fault}"),
             Self::NoScan => f.write_str("no scan yet"),
+            Self::Going(errand) => write!(f, "on the way {errand}"),
+            Self::Arrived(Errand::Home) => f.write_str("at home"),
+            Self::Arrived(Errand::Goal) => f.write_str("at the goal"),
+            Self::Unreachable(errand) => write!(f, "cannot get {errand}"),
         }
+    }
+}
+
+impl fmt::Display for Errand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Home => "home",
+            Self::Goal => "to the goal",
+        })
     }
 }
 
@@ -134,6 +170,7 @@ impl fmt::Display for Fault {
             Self::Stuck => "the robot is stuck",
             Self::PoseLost => "the robot does not know where it is",
             Self::Trapped => "the forces lead nowhere",
+            Self::StartForbidden => "the robot started where it must not be",
         })
     }
 }

@@ -325,6 +325,9 @@ impl<S: Strategy> Link for Session<S> {
             Control::Pause => self.paused = true,
             Control::Resume => self.paused = false,
             Control::Stop => self.status = Status::Finished(Finish::Stopped),
+            Control::Home | Control::GoTo { .. } | Control::Explore => {
+                return Err(refused(Refusal::NotReady));
+            }
         }
         Ok(self.status())
     }

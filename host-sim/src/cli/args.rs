@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::baseline::bvp_papers::Precision;
+use host_sim::fence::Polygon;
 use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
 use host_sim::network::spec::TeamSpec;
@@ -23,8 +24,8 @@ use super::sessions::{ReplaySessionArgs, SessionsArgs};
 use super::strategies;
 use super::team::TeamArgs;
 use super::values::{
-    area, failing, ground_parameters, impatience, imu_noise, laser_noise, patrol_for, people, seed,
-    slam_place, snapshots, start, sweeps, time_limit, until, wait, working,
+    area, budget, failing, ground_parameters, impatience, imu_noise, laser_noise, patrol_for,
+    people, place, seed, slam_place, snapshots, start, sweeps, time_limit, until, wait, working,
 };
 
 /// Explore simulated worlds with the Fieldline planner; without a command, explore the built-in
@@ -174,9 +175,36 @@ pub(super) struct ExploreArgs {
     #[arg(long, value_name = "SHARE", value_parser = until)]
     pub(super) until: Option<u16>,
     /// Known area to explore, least x and y, width and height in metres, as in 0.2,0.2,10,8; for
-    /// sbpf and esbpf [default: the bounds of the world's floor]
+    /// sbpf and esbpf. It is also the bounds, unless --bounds gives others [default: the bounds of
+    /// the world's floor, which bound nothing]
     #[arg(long, value_name = "X,Y,W,H", value_parser = area, allow_negative_numbers = true)]
     pub(super) area: Option<Area>,
+    /// Polygon that the robot stays inside: corners x0,y0,x1,y1,... in metres of the world's frame,
+    /// or two corners of a rectangle; given again, the robot stays inside of all
+    #[arg(long, value_name = "CORNERS", allow_hyphen_values = true)]
+    pub(super) bounds: Vec<Polygon>,
+    /// Polygon that the robot stays out of, as --bounds; may be given again. All polygons together
+    /// have at most 32 corners
+    #[arg(long, value_name = "CORNERS", allow_hyphen_values = true)]
+    pub(super) no_go: Vec<Polygon>,
+    /// Places to drive to after the exploration, in metres of the world's frame
+    #[arg(
+        long,
+        value_name = "X,Y[;X,Y]",
+        value_delimiter = ';',
+        value_parser = place,
+        allow_hyphen_values = true
+    )]
+    pub(super) goto: Vec<Place>,
+    /// What the robot does at the very end: drive home, to its start and first heading
+    #[arg(long, value_enum, value_name = "WHAT")]
+    pub(super) then: Option<ThenArg>,
+    /// Metres that the robot may drive: it turns home in time
+    #[arg(long, value_name = "M", value_parser = budget)]
+    pub(super) range_m: Option<u16>,
+    /// Simulated seconds that the robot may take: it turns home in time
+    #[arg(long, value_name = "S", value_parser = budget)]
+    pub(super) time_s: Option<u16>,
     /// Simulated seconds without a newly covered cell after which sbpf or esbpf follows a path to
     /// a frontier, or never [default: never for sbpf, 5 for esbpf]
     #[arg(long, value_name = "S", value_parser = impatience)]
@@ -280,6 +308,12 @@ impl Default for ExploreArgs {
             patrol_for: 0,
             until: None,
             area: None,
+            bounds: Vec::new(),
+            no_go: Vec::new(),
+            goto: Vec::new(),
+            then: None,
+            range_m: None,
+            time_s: None,
             sbpf_impatience: None,
             tdbvp_impatience: None,
             bvp_sweeps: None,
@@ -302,6 +336,16 @@ impl Default for ExploreArgs {
         }
     }
 }
+
+/// What follows the exploration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ThenArg {
+    /// Drive home
+    Home,
+}
+
+/// A place, metres.
+pub(super) type Place = [f64; 2];
 
 /// Seconds without a new place; `None` for never.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

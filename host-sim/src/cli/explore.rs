@@ -5,20 +5,22 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Error, Result, bail};
 
-use fieldline_protocol::message::UnevenGround;
+use fieldline_protocol::message::{Budget, UnevenGround};
 use host_sim::baseline::bvp_papers::Relaxation;
+use host_sim::fence::{Fence, Polygon};
 use host_sim::link::spec::LinkSpec;
 use host_sim::report::{MadeBy, Report, folder};
 use host_sim::robot::Limits;
 use host_sim::slam::SlamPlace;
 use host_sim::trial::Record;
+use host_sim::trial::itinerary::Orders;
 use host_sim::trial::mission::{self, IMPATIENCE_S, Mission, on_device};
 use host_sim::trial::space::SpaceMission;
 use host_sim::trial::surprises::surprises;
 use host_sim::trial::uneven;
 use host_sim::world::World;
 
-use super::args::{ExploreArgs, GroundArg, OdometryArg, SwitchArg};
+use super::args::{ExploreArgs, GroundArg, OdometryArg, SwitchArg, ThenArg};
 use super::pictures::Album;
 use super::prepared::Prepared;
 use super::progress::{Interrupt, Onlooker};
@@ -282,6 +284,8 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         time_limit_ms: args.time_limit,
         patrol_s: args.patrol_for,
         space: space(args),
+        fence: fence(args)?,
+        orders: orders(args)?,
         relaxation: relaxation(args),
         impatience_s: args.tdbvp_impatience.map_or(IMPATIENCE_S, |it| it.0),
         check_field: args.check_field,
@@ -300,6 +304,51 @@ fn space(args: &ExploreArgs) -> SpaceMission {
         until_permille: args.until.unwrap_or(1_000),
         impatience_s: args.sbpf_impatience.map(|it| it.0),
     }
+}
+
+/// Returns the bounds and the no-go polygons. An area that was asked for is bounds as well: a robot
+/// that is told what to explore has nothing to do elsewhere.
+fn fence(args: &ExploreArgs) -> Result<Fence> {
+    let mut bounds = args.bounds.clone();
+    if bounds.is_empty() {
+        bounds.extend(args.area.map(Polygon::rectangle));
+    }
+    let no_go = args.no_go.clone();
+    let fence = Fence { bounds, no_go };
+    if fence.is_empty() {
+        return Ok(fence);
+    }
+    if on_device(&args.strategy).is_none() {
+        bail!(
+            "--strategy {} knows no bounds; leave --bounds and --no-go out, or take a strategy on \
+             the device",
+            args.strategy
+        );
+    }
+    match fence.check() {
+        Ok(()) => Ok(fence),
+        Err(reason) => bail!("--bounds and --no-go: {reason}"),
+    }
+}
+
+/// Returns what the robot does after its exploration.
+fn orders(args: &ExploreArgs) -> Result<Orders> {
+    let orders = Orders {
+        goals_m: args.goto.clone(),
+        home: args.then == Some(ThenArg::Home),
+        budget: Budget {
+            range_m: args.range_m,
+            time_s: args.time_s,
+        },
+    };
+    if orders != Orders::default() && on_device(&args.strategy).is_none() {
+        bail!(
+            "--strategy {} takes no orders; leave --goto, --then, --range-m and --time-s out, or \
+             take a strategy on the device",
+            args.strategy
+        );
+    }
+    Ok(orders)
 }
 
 /// Returns how the stored potential of a baseline is relaxed.

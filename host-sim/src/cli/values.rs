@@ -75,6 +75,21 @@ pub(super) fn area(text: &str) -> Result<Area, String> {
     }
 }
 
+/// Parses what a robot may drive, metres or seconds.
+pub(super) fn budget(text: &str) -> Result<u16, String> {
+    let number = text.parse().ok().filter(|number| *number > 0);
+    number.ok_or_else(|| "give a whole number from 1 to 65535".into())
+}
+
+/// Parses a place.
+pub(super) fn place(text: &str) -> Result<[f64; 2], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|it| it.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y]) if x.abs().max(y.abs()) <= 3_200.0 => Ok([x, y]),
+        _ => Err("give x,y in metres, within 3200 m; several with ; between".into()),
+    }
+}
+
 /// Parses a share; returns thousandths.
 pub(super) fn until(text: &str) -> Result<u16, String> {
     match text.parse::<f64>() {

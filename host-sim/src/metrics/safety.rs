@@ -18,6 +18,8 @@ pub struct Safety {
     pub person_contacts: u32,
     /// Least distance between the footprint and a person, metres, at most [`FARTHEST_M`].
     pub min_person_gap_m: f64,
+    /// Greatest depth of the true hull in what the fence forbids, metres.
+    pub deepest_forbidden_m: f64,
 }
 
 impl Default for Safety {
@@ -29,6 +31,7 @@ impl Default for Safety {
             min_clearance_m: FARTHEST_M,
             person_contacts: 0,
             min_person_gap_m: FARTHEST_M,
+            deepest_forbidden_m: 0.0,
         }
     }
 }

@@ -62,6 +62,12 @@ pub struct Report {
     pub worth: Option<f64>,
     /// Area, target and impatience of strategies sbpf and esbpf; `null` for other strategies.
     pub space_field: Option<SpaceField>,
+    /// Where the robot had to stay; the key is missing if it might be everywhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fence: Option<Fence>,
+    /// Drives by order after the exploration; the key is missing without any.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub trips: Vec<Trip>,
     /// How strategy bvp-papers relaxes its potential; the key is missing for other strategies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relaxation: Option<Relaxation>,
@@ -141,6 +147,42 @@ pub struct Report {
     /// What a particle filter beside the run told; the key is missing without `--particles`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub particles: Option<ParticleReport>,
+}
+
+/// A drive by order after the exploration.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trip {
+    /// `home` or `goal`.
+    pub to: String,
+    /// The place, odometry frame.
+    pub to_m: [f64; 2],
+    /// True if the device said that the robot arrived.
+    pub reached: bool,
+    /// The device's reason if it refused the order.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refused: Option<String>,
+    /// Distance from the place at the end, by the pose that the device took for the true one.
+    pub error_m: f64,
+    /// Difference from the first heading at the end, by that pose; the key is missing for a goal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error_deg: Option<f64>,
+    /// Distance of the true robot from the place at the end.
+    pub true_error_m: f64,
+    /// Where the robot stood at the end, by its own pose.
+    pub stands_m: [f64; 2],
+    /// Simulated seconds of the drive.
+    pub time_s: f64,
+}
+
+/// Bounds and no-go polygons, and whether the robot kept to them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fence {
+    /// Corners of the polygons that the robot had to stay inside, world frame.
+    pub bounds_m: Vec<Vec<[f64; 2]>>,
+    /// Corners of the polygons that the robot had to stay out of.
+    pub no_go_m: Vec<Vec<[f64; 2]>>,
+    /// Greatest depth of the true hull in what was forbidden, metres.
+    pub deepest_m: f64,
 }
 
 /// The relaxation of a stored potential.

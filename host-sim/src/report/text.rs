@@ -69,6 +69,31 @@ impl Report {
                 patrol.max_rail_age_s, patrol.mean_rail_age_s
             ));
         }
+        if let Some(fence) = &self.fence {
+            lines.push(format!(
+                "  fence     {} polygons; the hull was {:.3} m beyond them at most",
+                fence.bounds_m.len() + fence.no_go_m.len(),
+                fence.deepest_m,
+            ));
+        }
+        for trip in &self.trips {
+            let [x, y] = trip.stands_m;
+            let turned = trip.error_deg.map(|deg| format!(", {deg:.1} deg"));
+            let why = trip.refused.as_ref().map(|why| format!("; {why}"));
+            lines.push(format!(
+                "  {:<9} {}: stands at ({x:.2}, {y:.2}), {:.2} m{} off, after {:.0} s{}",
+                trip.to,
+                if trip.reached {
+                    "reached"
+                } else {
+                    "not reached"
+                },
+                trip.error_m,
+                turned.unwrap_or_default(),
+                trip.time_s,
+                why.unwrap_or_default(),
+            ));
+        }
         if let Some(ground) = &self.true_ground {
             lines.push(format!(
                 "  ground    {:.1} m up and down; pitch {:.1} deg, roll {:.1} deg at most; \
@@ -129,9 +154,12 @@ impl Report {
     }
 
     /// Returns true if the run ended as explored with less than 97 % of the ground truly seen.
+    /// Behind a fence nothing says how much may be seen.
     #[must_use]
     pub fn is_falsely_explored(&self) -> bool {
-        self.outcome.reason == "explored" && self.coverage.fraction < LEAST_SEEN
+        self.fence.is_none()
+            && self.outcome.reason == "explored"
+            && self.coverage.fraction < LEAST_SEEN
     }
 
     /// Returns one word or two: `explored`, `boxed-in`, `fault (stuck)`, `time-limit` ...

@@ -6,6 +6,7 @@
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, FieldRow, Observation, Packet, Start, Status,
 };
+use fixed::types::I16F16;
 use serde::{Deserialize, Serialize};
 
 use crate::link::{Link, LinkError};
@@ -26,6 +27,17 @@ pub enum Ask {
     Stop,
     /// Reboots the device.
     Reset,
+    /// Drives home.
+    Home,
+    /// Drives to a point.
+    GoTo {
+        /// Metres.
+        x: I16F16,
+        /// Metres.
+        y: I16F16,
+    },
+    /// Goes on exploring.
+    Explore,
     /// Reports what the robot sensed.
     Observation(Box<Observation>),
     /// Passes on a packet of another robot.
@@ -94,6 +106,9 @@ impl Ask {
             Self::Resume => control(&Control::Resume),
             Self::Stop => control(&Control::Stop),
             Self::Reset => control(&Control::Reset),
+            Self::Home => control(&Control::Home),
+            Self::GoTo { x, y } => control(&Control::GoTo { x: *x, y: *y }),
+            Self::Explore => control(&Control::Explore),
             Self::Hello => link.hello().map(|_| Answer::Done),
             Self::Observation(observation) => {
                 let command = link.observe(observation)?;

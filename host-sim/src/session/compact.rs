@@ -5,8 +5,8 @@
 //! field of a message. A field that no message has is an error.
 
 use fieldline_protocol::message::{
-    Beacon, Correct, CorrectedTiles, Digest, Hull, Laser, LoopLimits, Member, Motion, Observation,
-    Pose, SpaceField, Start, Team, TeamTile, Twist, UnevenGround, Wanted,
+    Beacon, Budget, Correct, CorrectedTiles, Digest, Fence, Hull, Laser, LoopLimits, Member,
+    Motion, Observation, Pose, SpaceField, Start, Team, TeamTile, Twist, UnevenGround, Wanted,
 };
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
@@ -27,6 +27,8 @@ fn default_of(key: &str) -> Option<Map<String, Value>> {
         "lasers" => json(Laser::default()),
         "hull" => json(Hull::default()),
         "loops" => json(LoopLimits::default()),
+        "fence" => json(Fence::default()),
+        "budget" => json(Budget::default()),
         "uneven_ground" => json(UnevenGround::default()),
         "team" => json(Team::default()),
         "member" | "from" => json(Member::default()),

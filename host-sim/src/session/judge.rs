@@ -9,9 +9,7 @@ use core::fmt;
 use core::time::Duration;
 
 use fieldline_planner::Location;
-use fieldline_protocol::message::{
-    Body, Command, Cost, FieldRow, Packet, Stages, Start, Status, Twist,
-};
+use fieldline_protocol::message::{Body, Command, Cost, FieldRow, Packet, Stages, Start, Twist};
 use fixed::types::I16F16;
 
 use super::ask::{Answer, Ask};
@@ -180,7 +178,7 @@ impl Judge {
                 verdicts.push((Kind::MovesInSurvey, figures()));
             }
         }
-        if command.status != Status::Exploring && command.velocity != Twist::default() {
+        if !command.status.drives() && command.velocity != Twist::default() {
             verdicts.push((Kind::MovesUnasked, figures()));
         }
         self.numbers(command, verdicts);
@@ -191,7 +189,7 @@ impl Judge {
     fn numbers(&self, command: &Command, verdicts: &mut Vec<Verdict>) {
         let is_end = |number: I16F16| number == I16F16::MAX || number == I16F16::MIN;
         let turns = |angle: I16F16| self.turns(angle.to_num());
-        if command.status == Status::Exploring && turns(command.heading) {
+        if command.status.drives() && turns(command.heading) {
             verdicts.push((Kind::BadNumber("heading"), command.heading.to_string()));
         }
         let Some(at) = &command.location else { return };

@@ -1,5 +1,6 @@
 //! Parameters of a simulated run.
 
+use crate::fence::Fence;
 use crate::robot::{
     Disturbances, DriveLimits, Footprint, Lidar, Limits, OdometryModel, RADIUS_M, Traction,
     usual_lidars,
@@ -41,6 +42,8 @@ pub struct SimConfig {
     pub substep_ms: u32,
     /// Age at which a command no longer counts, milliseconds. Default: 500.
     pub stale_ms: u32,
+    /// Where the robot may be: whether it stays there is measured. Default: everywhere.
+    pub fence: Fence,
 }
 
 impl Default for SimConfig {
@@ -62,6 +65,7 @@ impl Default for SimConfig {
             period_ms: 200,
             substep_ms: 10,
             stale_ms: 500,
+            fence: Fence::default(),
         }
     }
 }

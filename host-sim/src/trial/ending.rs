@@ -1,6 +1,6 @@
 //! Ends of a run, and their words in the report.
 
-use fieldline_protocol::message::{Fault, Finish};
+use fieldline_protocol::message::{Errand, Fault, Finish};
 
 use super::wording;
 use crate::link::LinkError;
@@ -13,6 +13,10 @@ pub enum Ending {
     Finished(Finish),
     /// The planner cannot go on.
     Fault(Fault),
+    /// The robot's budget was spent, and it is home.
+    AtHome,
+    /// The robot could not get where it was ordered to go after its exploration.
+    Unreachable(Errand),
     /// The link failed; the robot's own watchdog stopped it.
     Link(LinkError),
     /// The robot fell or tipped over.
@@ -34,8 +38,8 @@ impl Ending {
     #[must_use]
     pub fn status(&self) -> &'static str {
         match self {
-            Self::Finished(_) => "finished",
-            Self::Fault(_) | Self::Link(_) => "fault",
+            Self::Finished(_) | Self::AtHome => "finished",
+            Self::Fault(_) | Self::Unreachable(_) | Self::Link(_) => "fault",
             Self::Lost(_) => "lost",
             Self::TimeLimit => "time-limit",
             Self::Frozen | Self::NoScan => "frozen",
@@ -50,6 +54,9 @@ impl Ending {
         match self {
             Self::Finished(why) => wording::finish(*why),
             Self::Fault(why) => wording::fault(*why),
+            Self::AtHome => "at-home",
+            Self::Unreachable(Errand::Home) => "cannot-get-home",
+            Self::Unreachable(Errand::Goal) => "cannot-get-to-goal",
             Self::Link(LinkError::Silent) => "link-silent",
             Self::Link(LinkError::Reset) => "device-reset",
             Self::Link(LinkError::Crashed(_)) => "device-crashed",
@@ -90,6 +97,16 @@ impl Ending {
             }
             Self::Finished(Finish::Stopped) => "the device was told to stop".into(),
             Self::Fault(why) => fault_advice(*why).into(),
+            Self::AtHome => "the budget was spent before everything was explored; \
+                 allow more with --range-m and --time-s"
+                .into(),
+            Self::Unreachable(to) => format!(
+                "the robot found no way {}; trips of report.json says where it stands",
+                match to {
+                    Errand::Home => "home",
+                    Errand::Goal => "to a goal of --goto",
+                }
+            ),
             Self::Link(why) if why.lost().is_empty() => why.to_string(),
             Self::Link(why) => format!(
                 "{why}; the run's folder keeps the trajectory, the commands and the pictures"
@@ -124,6 +141,10 @@ fn fault_advice(fault: Fault) -> &'static str {
         Fault::MapFull => "the device's map is full; use a larger image or a smaller world",
         Fault::OutOfBox => "the world is larger than the map, which ends 403 m from its start",
         Fault::BadObservation => "an observation did not match the lasers of the start message",
+        Fault::StartForbidden => {
+            "the start pose lies out of the bounds or in a no-go polygon; \
+             change --bounds and --no-go, or choose another --start"
+        }
         Fault::Trapped => {
             "the forces of the field lead nowhere; --sbpf-impatience 5 lets the robot follow a path"
         }

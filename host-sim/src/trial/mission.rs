@@ -12,9 +12,11 @@ use fieldline_protocol::message::{
 use fixed::types::I16F16;
 
 use super::account::Account;
+use super::itinerary::Orders;
 use super::space::SpaceMission;
 use super::{Cast, Corrector, Record, Setup, Watch, run, summary};
 use crate::baseline::bvp_papers::Relaxation;
+use crate::fence::Fence;
 use crate::link::{Link, LinkError};
 use crate::report::Report;
 use crate::report::tum::Stamped;
@@ -101,6 +103,10 @@ pub struct Mission {
     pub relaxation: Relaxation,
     /// Time from one observation to the next, milliseconds.
     pub period_ms: u32,
+    /// Bounds and no-go polygons; for strategies on the device.
+    pub fence: Fence,
+    /// What the robot does after its exploration; for strategies on the device.
+    pub orders: Orders,
     /// Compare every heading with that of the converged window.
     pub check_field: bool,
     /// Number of pictures during the run.
@@ -145,6 +151,8 @@ impl Default for Mission {
             space: SpaceMission::default(),
             relaxation: Relaxation::DEFAULT,
             period_ms: SimConfig::default().period_ms,
+            fence: Fence::default(),
+            orders: Orders::default(),
             check_field: false,
             snapshots: 0,
             resumes: false,
@@ -356,17 +364,25 @@ impl Mission {
             radius_m: self.radius_m,
             working: self.working,
             failing: self.failing,
+            fence: self.fence.clone(),
             ..SimConfig::default()
         }
     }
 }
 
-/// Checks that the robot can stand at the mission's start. Costs little, so it comes first.
+/// Checks that the robot can and may stand at the mission's start. Costs little, so it comes first.
 ///
 /// # Errors
 /// As [`WorldError::Start`].
 pub fn check(mission: &Mission, world: &World) -> Result<(), WorldError> {
-    Simulator::new(world, mission.sim_config()).map(|_| ())
+    let simulator = Simulator::new(world, mission.sim_config())?;
+    let pose = simulator.pose();
+    let may_stand = mission.fence.check_start(&mission.hull, pose);
+    may_stand.map_err(|reason| WorldError::Start {
+        file: world.name().into(),
+        index: mission.start,
+        reason,
+    })
 }
 
 /// Returns the settings of a run.
@@ -377,12 +393,15 @@ pub(super) fn setup(mission: &Mission, simulator: &Simulator<'_>) -> Setup {
             order: mission.order(),
             loops: mission.loops,
             localise: mission.localises(),
+            fence: mission.fence.message(),
+            budget: mission.orders.budget,
             ..simulator.start_message(mission.strategy_in(simulator.world()))
         },
         time_limit_ms: mission.time_limit_ms,
         check_field: mission.check_field,
         snapshots: mission.snapshots,
         resumes: mission.resumes,
+        orders: mission.orders.clone(),
         corrects: false,
     }
 }

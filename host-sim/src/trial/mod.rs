@@ -10,6 +10,7 @@ mod body;
 pub mod corrector;
 pub mod ending;
 pub mod freeze;
+pub mod itinerary;
 pub mod map_copy;
 pub mod mirror;
 pub mod mission;
@@ -35,6 +36,7 @@ use fieldline_protocol::message::{
 use crate::link::{Link, LinkError};
 use crate::report::tum::Stamped;
 use freeze::FreezeDetector;
+use itinerary::{Itinerary, Orders};
 use mirror::Mirror;
 use relief::Relief;
 use series::Series;
@@ -124,6 +126,8 @@ pub struct Setup {
     pub snapshots: usize,
     /// A device that was reset gets its map back, and the run goes on.
     pub resumes: bool,
+    /// What the robot does after its exploration.
+    pub orders: Orders,
     /// The map is corrected during the run, so coverage is judged by a map of the true poses.
     pub corrects: bool,
 }
@@ -165,13 +169,32 @@ fn explore(
     series: &mut Series<Snapshot>,
 ) -> Ending {
     let mut freeze = FreezeDetector::default();
+    let mut itinerary = Itinerary::new(&setup.orders);
+    let ending = drive(setup, cast, record, series, (&mut freeze, &mut itinerary));
+    record.trips = itinerary.report();
+    ending
+}
+
+fn drive(
+    setup: &Setup,
+    cast: &mut Cast<'_>,
+    record: &mut Record,
+    series: &mut Series<Snapshot>,
+    (freeze, itinerary): (&mut FreezeDetector, &mut Itinerary),
+) -> Ending {
     loop {
         let command = match step(setup, cast, record, series) {
             Ok(command) => command,
             Err(error) => return Ending::Link(error),
         };
-        if let Some(ending) = ended(setup, cast.watch, &mut freeze, record, &command) {
-            return ending;
+        let ended = match ended(setup, cast.watch, freeze, record, &command) {
+            Some(ending) => itinerary.end_or_go_on(ending, record, cast.link),
+            None => itinerary.note(&command, record, cast.link),
+        };
+        match ended {
+            Ok(None) => {}
+            Ok(Some(ending)) => return ending,
+            Err(error) => return Ending::Link(error),
         }
         cast.body.drive(Some(command.velocity));
         if let Some(loss) = cast.body.loss() {
@@ -230,19 +253,23 @@ fn ended(
     }
 }
 
-/// Returns true if the planner says that it explores, or waits for a scan. A lost robot that
-/// searches for its place says so and may stand.
+/// Returns true if the planner says that it explores, drives by order, or waits for a scan. A lost
+/// robot that searches for its place says so and may stand.
 fn explores(status: Status, command: &Command) -> bool {
     let is_lost = |location: &Location| location.quality == Quality::Lost;
-    matches!(status, Status::Exploring | Status::NoScan)
-        && !command.location.as_ref().is_some_and(is_lost)
+    status.goes_on() && !command.location.as_ref().is_some_and(is_lost)
 }
 
 /// Stops the robot. After a broken link it gets no command and drives on until its watchdog stops
 /// it.
 fn bring_to_rest(cast: &mut Cast<'_>, record: &Record) {
     let broken = matches!(record.ending, Ending::Link(_));
-    if !broken && !matches!(record.ending, Ending::Finished(_)) {
+    if !broken
+        && !matches!(
+            record.ending,
+            Ending::Finished(_) | Ending::AtHome | Ending::Unreachable(_)
+        )
+    {
         // If the device does not hear this, its own time limit stops it.
         let _ = cast.link.control(&Control::Stop);
     }

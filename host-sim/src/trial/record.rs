@@ -59,6 +59,8 @@ pub struct Record {
     pub relief: Option<Relief>,
     /// Residual frontiers.
     pub frontiers: Vec<ResidualFrontier>,
+    /// Drives by order after the exploration.
+    pub trips: Vec<report::Trip>,
     /// Map and window during the run, for pictures.
     pub snapshots: Vec<Snapshot>,
     /// Map and window before and after the largest corrections of the map, for pictures.
@@ -90,6 +92,7 @@ impl Default for Record {
             planned_path: PlannedPath::default(),
             relief: None,
             frontiers: Vec::new(),
+            trips: Vec::new(),
             snapshots: Vec::new(),
             corrections: Vec::new(),
             corrected: Vec::new(),

@@ -5,6 +5,7 @@ use fieldline_protocol::message::{Finish, Order, Strategy};
 use super::account::Account;
 use super::mission::{BVP_PAPERS, Mission, on_device};
 use super::{Ending, Record, wording};
+use crate::fence::Polygon;
 use crate::metrics::patrol::{Patrol, without_spurs};
 use crate::metrics::{CellSet, Loops, map_error, walls_share};
 use crate::report::true_ground::{ClassScores, TrueGround, degrees};
@@ -43,6 +44,8 @@ pub(super) fn report(
             _ => None,
         },
         space_field: space_field(mission, world),
+        fence: fence(mission, simulator),
+        trips: record.trips.clone(),
         relaxation: relaxation(mission),
         link: mission.link.clone(),
         made_by: None,
@@ -118,6 +121,19 @@ fn impatience(mission: &Mission) -> Option<String> {
         }
         _ => None,
     }
+}
+
+/// Returns the fence and how far the robot went beyond it; `None` without one.
+fn fence(mission: &Mission, simulator: &Simulator<'_>) -> Option<report::Fence> {
+    let corners = |polygons: &[Polygon]| {
+        let corners = polygons.iter().map(|polygon| polygon.corners().to_vec());
+        corners.collect()
+    };
+    (!mission.fence.is_empty()).then(|| report::Fence {
+        bounds_m: corners(&mission.fence.bounds),
+        no_go_m: corners(&mission.fence.no_go),
+        deepest_m: simulator.safety().deepest_forbidden_m,
+    })
 }
 
 fn space_field(mission: &Mission, world: &World) -> Option<report::SpaceField> {

@@ -7,6 +7,7 @@ use fieldline_protocol::message::{
 };
 use fixed::types::{I4F12, I16F16};
 
+use super::itinerary::Orders;
 use super::{Body, Cast, Ending, Flow, Progress, Record, Setup, Survey, Watch, run};
 use crate::link::{Link, LinkError, LinkStats};
 use crate::report::tum::Stamped;
@@ -175,6 +176,7 @@ fn trial(link: &mut Script, body: &mut Point, interrupt_ms: u32) -> Record {
         check_field: false,
         snapshots: 2,
         resumes: false,
+        orders: Orders::default(),
         corrects: false,
     };
     let mut cast = Cast {

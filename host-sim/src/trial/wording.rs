@@ -1,6 +1,8 @@
 //! Words for the wire's enums in reports, tables and progress lines. They are part of the schema.
 
-use fieldline_protocol::message::{Fault, Finish, Order, Preference, ResidualReason, Status};
+use fieldline_protocol::message::{
+    Errand, Fault, Finish, Order, Preference, ResidualReason, Status,
+};
 
 /// Returns `exploring`, `finished(explored)`, `fault(stuck)` ...
 #[must_use]
@@ -13,6 +15,18 @@ pub fn status(status: Status) -> String {
         Status::EmergencyStop => "emergency-stop".into(),
         Status::Finished(why) => format!("finished({})", finish(why)),
         Status::Fault(why) => format!("fault({})", fault(why)),
+        Status::Going(to) => format!("going({})", errand(to)),
+        Status::Arrived(at) => format!("arrived({})", errand(at)),
+        Status::Unreachable(to) => format!("unreachable({})", errand(to)),
+    }
+}
+
+/// Returns where a robot was ordered to go.
+#[must_use]
+pub fn errand(errand: Errand) -> &'static str {
+    match errand {
+        Errand::Home => "home",
+        Errand::Goal => "goal",
     }
 }
 
@@ -39,6 +53,7 @@ pub fn fault(fault: Fault) -> &'static str {
         Fault::Stuck => "stuck",
         Fault::PoseLost => "pose-lost",
         Fault::Trapped => "trapped",
+        Fault::StartForbidden => "start-forbidden",
     }
 }
 

@@ -461,3 +461,30 @@ fn a_bad_particle_filter_is_refused_in_one_line() {
     ];
     refused(&folder, &uneven, &["--particles", "--ground flat"]);
 }
+
+#[test]
+fn fences_orders_and_budgets_that_are_none() {
+    let folder = folder();
+    let explore = |options: &[&str], words: &[&str]| {
+        refused(&folder, &[&["explore", "office"], options].concat(), words);
+    };
+    explore(&["--bounds", "0,0,1"], &["--bounds", "corners x0,y0"]);
+    explore(&["--no-go", "0,0,nan,1"], &["--no-go", "corners x0,y0"]);
+    explore(&["--no-go", "0,0,1,1,1,0,0,1"], &["crossings"]);
+    explore(&["--no-go", "0,0,0,1"], &["area of a polygon"]);
+    explore(
+        &["--bounds", "0,0,5,5"],
+        &["robots[0]", "out of the bounds"],
+    );
+    explore(&["--no-go", "11,6,13,8"], &["robots[0]", "no-go"]);
+    explore(
+        &["--strategy", "bvp", "--bounds", "6,3,18,11"],
+        &["bvp knows no bounds"],
+    );
+    explore(
+        &["--strategy", "greedy-frontier", "--then", "home"],
+        &["greedy-frontier takes no orders"],
+    );
+    explore(&["--goto", "1"], &["--goto", "x,y in metres"]);
+    explore(&["--range-m", "0"], &["--range-m", "1 to 65535"]);
+}

@@ -553,3 +553,43 @@ fn a_team_with_rough_starts_reports_what_its_maps_agree_on() {
     assert!(team["agreement"]["median_m"].as_f64().unwrap() < 0.1);
     assert!(team["agreement"]["median_deg"].as_f64().unwrap() < 1.0);
 }
+
+#[test]
+fn a_robot_keeps_to_its_bounds_drives_to_a_goal_and_home() {
+    let folder = folder();
+    let args = [
+        "explore",
+        "office",
+        "--json",
+        "--bounds=6,3,18,11",
+        "--no-go=13.5,8,14.5,9",
+        "--goto=8,5",
+        "--then=home",
+    ];
+    let (status, stdout, stderr) = outcome(&folder, &args);
+    assert_eq!(status, 0, "{stderr}");
+    let report: Value = serde_json::from_str(&stdout).expect("one report");
+    assert_eq!(report["outcome"]["reason"], "explored");
+    assert!(report["fence"]["deepest_m"].as_f64().expect("metres") < 0.1);
+    let trips = report["trips"].as_array().expect("two trips");
+    let to: Vec<&Value> = trips.iter().map(|trip| &trip["to"]).collect();
+    assert_eq!(to, ["goal", "home"]);
+    for trip in trips {
+        assert_eq!(trip["reached"], true, "{trip}");
+        assert!(trip["error_m"].as_f64().expect("metres") <= 0.2, "{trip}");
+    }
+    assert!(trips[1]["error_deg"].as_f64().expect("degrees") <= 10.0);
+}
+
+#[test]
+fn a_robot_with_a_budget_is_home_before_it_is_spent() {
+    let folder = folder();
+    let args = ["explore", "office", "--json", "--range-m=40"];
+    let (status, stdout, stderr) = outcome(&folder, &args);
+    assert_eq!(status, 1, "{stderr}");
+    let report: Value = serde_json::from_str(&stdout).expect("one report");
+    assert_eq!(report["outcome"]["reason"], "at-home");
+    assert_eq!(report["trips"][0]["reached"], true);
+    let driven_m = report["path_length_m"].as_f64().expect("metres");
+    assert!((20.0..=40.0).contains(&driven_m), "{driven_m}");
+}

@@ -4,8 +4,8 @@
 #![allow(dead_code, reason = "each test file uses its part")]
 
 use fieldline_protocol::message::{
-    Command, Control, Hull, Laser, LoopLimits, NO_RETURN_MM, Observation, Order, Pose, Scan, Start,
-    Status, Strategy, Twist,
+    Budget, Command, Control, Fence, Hull, Laser, LoopLimits, NO_RETURN_MM, Observation, Order,
+    Pose, Scan, Start, Status, Strategy, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 use host_sim::link::digest::Digest;
@@ -50,6 +50,8 @@ pub(crate) fn start() -> Start {
         team: None,
         localise: false,
         survey: false,
+        fence: Fence::default(),
+        budget: Budget::default(),
     }
 }
 

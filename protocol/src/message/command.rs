@@ -5,7 +5,7 @@ use postcard_schema::Schema;
 use serde::{Deserialize, Serialize};
 
 #[cfg(doc)]
-use super::Identity;
+use super::{Control, Identity};
 use super::{Location, Twist};
 
 /// State of the planner.
@@ -26,6 +26,35 @@ pub enum Status {
     Fault(Fault),
     /// No beam has told anything yet. The robot stands until one does.
     NoScan,
+    /// The robot is on the way, by order.
+    Going(Errand),
+    /// The robot is where it was ordered to go, and stands.
+    Arrived(Errand),
+    /// The robot cannot get where it was ordered to go, and stands.
+    Unreachable(Errand),
+}
+
+/// Where a robot was ordered to go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum Errand {
+    /// To the pose at which the session began ([`Control::Home`]).
+    Home,
+    /// To a point of the map ([`Control::GoTo`]).
+    Goal,
+}
+
+impl Status {
+    /// Returns true if the planner makes a step with the next observation.
+    #[must_use]
+    pub const fn goes_on(self) -> bool {
+        matches!(self, Self::Exploring | Self::NoScan | Self::Going(_))
+    }
+
+    /// Returns true if a command with this status may move the robot.
+    #[must_use]
+    pub const fn drives(self) -> bool {
+        matches!(self, Self::Exploring | Self::Going(_))
+    }
 }
 
 /// Why an exploration ended.
@@ -62,6 +91,8 @@ pub enum Fault {
     PoseLost,
     /// The forces of a space-based potential field led the robot to no new cell for too long.
     Trapped,
+    /// The robot started with a part of its hull where the fence forbids it to be.
+    StartForbidden,
 }
 
 /// Counters of the device since its boot.

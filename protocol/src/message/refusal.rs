@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 #[cfg(doc)]
 use super::{
-    Laser, MAX_BEAMS, MOST_CORRECTED, NO_RETURN_MM, Order, SpaceField, Start, UnevenGround,
+    Control, Laser, MAX_BEAMS, MOST_CORRECTED, NO_RETURN_MM, Order, SpaceField, Start, UnevenGround,
 };
 
 /// A parameter of [`Start`], with its accepted range.
@@ -54,6 +54,9 @@ pub enum Parameter {
     Coverage,
     /// [`Start::team`]: the origin within 400 m and a hundred turns.
     Team,
+    /// [`Start::fence`]: the polygons have all corners, each at least 3 of them, an area and no
+    /// crossing; corners within 3200 m.
+    Fence,
 }
 
 /// Why the device refused a request.
@@ -76,4 +79,10 @@ pub enum Refusal {
     BadCorrection,
     /// The cells of a tile are not those of a tile.
     BadTile,
+    /// The robot takes no order to drive: it has seen nothing yet, does not know where it is, must
+    /// not be where it started, or only surveys.
+    NotReady,
+    /// The goal of [`Control::GoTo`] is farther than 3200 m from the map's origin, or forbidden by
+    /// [`Start::fence`].
+    BadGoal,
 }

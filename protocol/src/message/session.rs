@@ -199,6 +199,42 @@ impl Default for LoopLimits {
     }
 }
 
+/// Maximum number of corners of all polygons of a fence.
+pub const FENCE_CORNERS: usize = 32;
+/// Maximum number of polygons of a fence.
+pub const FENCE_POLYGONS: usize = FENCE_CORNERS / 3;
+
+/// A polygon of a fence.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct FencePolygon {
+    /// Number of its corners in [`Fence::corners`], after those of the polygons before it; at least
+    /// 3.
+    pub corners: u8,
+    /// True if the robot stays inside, false if it stays out.
+    pub bounds: bool,
+}
+
+/// Where the robot may be: inside of all bounds, and out of all other polygons. A polygon is
+/// simple; its corners go round in either direction.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Fence {
+    /// The corners of one polygon after the other: x and y in the odometry's coordinates, in a team
+    /// in the team's, metres.
+    pub corners: Vec<(I16F16, I16F16), FENCE_CORNERS>,
+    /// The polygons; without any, the robot may be everywhere.
+    pub polygons: Vec<FencePolygon, FENCE_POLYGONS>,
+}
+
+/// What the robot may drive. When the way home takes as much as is left, the robot drives home by
+/// itself: the status is [`Status::Going`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Budget {
+    /// Metres; `None` for any.
+    pub range_m: Option<u16>,
+    /// Seconds; `None` for any.
+    pub time_s: Option<u16>,
+}
+
 /// The parameters of a session.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
 pub struct Start {
@@ -235,6 +271,10 @@ pub struct Start {
     /// True if the device only localises and maps. It plans nothing, every velocity is zero, and
     /// the status stays [`Status::Exploring`].
     pub survey: bool,
+    /// Where the robot may be. What lies elsewhere is mapped and not explored.
+    pub fence: Fence,
+    /// What the robot may drive before it must be home.
+    pub budget: Budget,
 }
 
 /// A change of the session's state.
@@ -254,4 +294,16 @@ pub enum Control {
     Stop,
     /// Reboot the device.
     Reset,
+    /// Drive to the pose at which the session began, with its heading. The session need not have
+    /// ended: its exploration goes on with [`Control::Explore`].
+    Home,
+    /// Drive to a point in the map's coordinates.
+    GoTo {
+        /// Metres.
+        x: I16F16,
+        /// Metres.
+        y: I16F16,
+    },
+    /// Go on exploring.
+    Explore,
 }

@@ -3,7 +3,7 @@
 use fieldline_protocol::SCHEMA;
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::message::{
-    Cause, Command, Cost, Counters, Crash, Fault, FieldRow, Finish, Identity, InputFaults,
+    Cause, Command, Cost, Counters, Crash, Errand, Fault, FieldRow, Finish, Identity, InputFaults,
     Location, Loops, Parameter, Path, Quality, Refusal, Reply, ResidualFrontier, ResidualReason,
     Stages, Status, TILE_BYTES, TILE_SKELETON_BYTES, Tile, Twist,
 };
@@ -85,7 +85,12 @@ fn reply_control_with_every_status() {
         (Status::Fault(Fault::Stuck), &[2, 5, 4]),
         (Status::Fault(Fault::PoseLost), &[2, 5, 5]),
         (Status::Fault(Fault::Trapped), &[2, 5, 6]),
+        (Status::Fault(Fault::StartForbidden), &[2, 5, 7]),
         (Status::NoScan, &[2, 6]),
+        (Status::Going(Errand::Home), &[2, 7, 0]),
+        (Status::Going(Errand::Goal), &[2, 7, 1]),
+        (Status::Arrived(Errand::Home), &[2, 8, 0]),
+        (Status::Unreachable(Errand::Goal), &[2, 9, 1]),
     ] {
         reply_is(Reply::Control(status), body);
     }
@@ -284,10 +289,13 @@ fn reply_refused() {
         (Refusal::BadParameter(Parameter::Area), &[7, 3, 17]),
         (Refusal::BadParameter(Parameter::Coverage), &[7, 3, 18]),
         (Refusal::BadParameter(Parameter::Team), &[7, 3, 19]),
+        (Refusal::BadParameter(Parameter::Fence), &[7, 3, 20]),
         (Refusal::NoTeam, &[7, 4]),
         (Refusal::NoCorrection, &[7, 5]),
         (Refusal::BadCorrection, &[7, 6]),
         (Refusal::BadTile, &[7, 7]),
+        (Refusal::NotReady, &[7, 8]),
+        (Refusal::BadGoal, &[7, 9]),
     ] {
         reply_is(Reply::Refused(refusal), body);
     }

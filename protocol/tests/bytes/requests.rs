@@ -2,9 +2,10 @@
 
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::message::{
-    Control, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress, Hull, INVALID_MM, Laser,
-    LoopLimits, Member, Motion, NO_RETURN_MM, Observation, Order, Pose, Preference, Reply, Request,
-    Scan, SpaceField, Start, Strategy, Team, TeamTile, Twist, UnevenGround,
+    Budget, Control, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress, Fence,
+    FencePolygon, Hull, INVALID_MM, Laser, LoopLimits, Member, Motion, NO_RETURN_MM, Observation,
+    Order, Pose, Preference, Reply, Request, Scan, SpaceField, Start, Strategy, Team, TeamTile,
+    Twist, UnevenGround,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -133,6 +134,22 @@ fn request_control_start() {
             }),
             localise: true,
             survey: false,
+            fence: Fence {
+                corners: [(0.0, 0.0), (1.0, 0.0), (0.0, -1.0)]
+                    .into_iter()
+                    .map(|(x, y)| (long(x), long(y)))
+                    .collect(),
+                polygons: [FencePolygon {
+                    corners: 3,
+                    bounds: true,
+                }]
+                .into_iter()
+                .collect(),
+            },
+            budget: Budget {
+                range_m: None,
+                time_s: Some(600),
+            },
         })),
         &[
             1, 0, // Control, Start
@@ -166,6 +183,9 @@ fn request_control_start() {
             0xac, 0x02, 87, // within 300 mm and 87 mrad
             1,  // localise
             0,  // survey
+            3, 0, 0, 0x80, 0x80, 0x08, 0, 0, 0xff, 0xff, 0x07, // three corners of a fence
+            1, 3, 1, // one polygon of three corners: bounds
+            0, 1, 0xd8, 0x04, // any range, 600 s
         ],
     );
 }
@@ -176,6 +196,17 @@ fn request_control_without_parameters() {
     request_is(Request::Control(Control::Resume), &[1, 2]);
     request_is(Request::Control(Control::Stop), &[1, 3]);
     request_is(Request::Control(Control::Reset), &[1, 4]);
+    request_is(Request::Control(Control::Home), &[1, 5]);
+    request_is(Request::Control(Control::Explore), &[1, 7]);
+}
+
+#[test]
+fn request_control_go_to() {
+    let (x, y) = (long(1.0), long(-0.5));
+    request_is(
+        Request::Control(Control::GoTo { x, y }),
+        &[1, 6, 0x80, 0x80, 0x08, 0xff, 0xff, 0x03],
+    );
 }
 
 #[test]

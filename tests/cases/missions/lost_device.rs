@@ -8,6 +8,7 @@ use host_sim::link::Link;
 use host_sim::report::tum::Stamped;
 use host_sim::robot::Velocity;
 use host_sim::sim::{SimConfig, Simulator};
+use host_sim::trial::itinerary::Orders;
 use host_sim::trial::{self, Body, Cast, Record, Setup, Survey};
 use host_sim::world::World;
 
@@ -65,6 +66,7 @@ fn witnessed(link: &mut dyn Link, world: &World) -> (Record, Vec<Period>) {
         check_field: false,
         snapshots: 0,
         resumes: false,
+        orders: Orders::default(),
         corrects: false,
     };
     let mut body = Witness {

@@ -5,6 +5,7 @@ mod corrections;
 mod data;
 mod disturbed;
 mod endings;
+mod fences;
 mod full;
 mod generated;
 mod links;

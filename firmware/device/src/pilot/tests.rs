@@ -4,8 +4,9 @@ use std::boxed::Box;
 
 use fieldline_planner::{State, Tuning, Workspace};
 use fieldline_protocol::message::{
-    Activity, Beacon, Body, Control, Fault, Finish, Hull, Laser, LoopLimits, Member, Observation,
-    Order, Packet, Parameter, Refusal, Scan, SpaceField, Start, Status, Strategy, Team, Twist,
+    Activity, Beacon, Body, Budget, Control, Errand, Fault, Fence, FencePolygon, Finish, Hull,
+    Laser, LoopLimits, Member, Observation, Order, Packet, Parameter, Refusal, Scan, SpaceField,
+    Start, Status, Strategy, Team, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -45,6 +46,8 @@ pub(crate) fn start() -> Start {
         team: None,
         localise: false,
         survey: false,
+        fence: Fence::default(),
+        budget: Budget::default(),
     }
 }
 
@@ -331,4 +334,97 @@ fn peers_are_heard_and_the_own_packets_are_not() {
     assert_eq!(bench.state.peers().count(), 0);
     pilot.hear(&mut bench.memory(), &of_another(1)).unwrap();
     assert_eq!(bench.state.peers().count(), 1);
+}
+
+/// Returns a square with the middle at the start and this half side.
+fn square(half_m: i32, bounds: bool) -> Fence {
+    let at = I16F16::from_num::<i32>(half_m);
+    let corners = [(-at, -at), (at, -at), (at, at), (-at, at)];
+    Fence {
+        corners: corners.into_iter().collect(),
+        polygons: [FencePolygon { corners: 4, bounds }].into_iter().collect(),
+    }
+}
+
+#[test]
+fn a_fence_that_is_none_is_refused_and_a_start_outside_ends() {
+    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let mut crossed = square(3, true);
+    crossed.corners.swap(0, 1);
+    let mut short = square(3, true);
+    short.corners.pop();
+    let mut long = square(3, true);
+    long.corners.extend([(I16F16::ZERO, I16F16::ZERO)]);
+    for fence in [crossed, short, long] {
+        let fenced = Control::Start(Start { fence, ..start() });
+        let refused = pilot.control(&mut bench.memory(), &fenced);
+        assert_eq!(refused, Err(Refusal::BadParameter(Parameter::Fence)));
+    }
+    for (fence, status) in [
+        (square(2, true), Status::Exploring),
+        (square(2, false), Status::Fault(Fault::StartForbidden)),
+    ] {
+        let fenced = Control::Start(Start { fence, ..start() });
+        pilot.control(&mut bench.memory(), &fenced).unwrap();
+        let command = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
+        assert_eq!(command.unwrap().status, status);
+    }
+    let refused = pilot.control(&mut bench.memory(), &Control::Home);
+    assert_eq!(refused, Err(Refusal::NotReady));
+}
+
+#[test]
+fn orders_are_taken_once_there_is_a_scan_and_say_why_not() {
+    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let go_to = |x: i32| Control::GoTo {
+        x: I16F16::from_num(x),
+        y: I16F16::ZERO,
+    };
+    let order = |pilot: &mut Pilot, bench: &mut Bench, control: &Control| {
+        pilot.control(&mut bench.memory(), control)
+    };
+    assert_eq!(
+        order(&mut pilot, &mut bench, &Control::Home),
+        Err(Refusal::NotStarted)
+    );
+    let fence = square(3, true);
+    let fenced = Control::Start(Start { fence, ..start() });
+    pilot.control(&mut bench.memory(), &fenced).unwrap();
+    assert_eq!(
+        order(&mut pilot, &mut bench, &Control::Home),
+        Err(Refusal::NotReady)
+    );
+    pilot
+        .observe(&mut bench.memory(), &observation(0), &mut ())
+        .unwrap();
+    for far in [4, 30_000] {
+        assert_eq!(
+            order(&mut pilot, &mut bench, &go_to(far)),
+            Err(Refusal::BadGoal)
+        );
+    }
+    let going = Status::Going(Errand::Goal);
+    assert_eq!(order(&mut pilot, &mut bench, &go_to(2)), Ok(going));
+    assert_eq!(
+        order(&mut pilot, &mut bench, &Control::Pause),
+        Ok(Status::Paused)
+    );
+    assert_eq!(order(&mut pilot, &mut bench, &Control::Resume), Ok(going));
+    let home = order(&mut pilot, &mut bench, &Control::Home);
+    assert_eq!(home, Ok(Status::Going(Errand::Home)));
+    // The robot has not moved.
+    let command = pilot.observe(&mut bench.memory(), &observation(200), &mut ());
+    let mut status = command.unwrap().status;
+    for step in 2..20 {
+        let command = pilot.observe(&mut bench.memory(), &observation(200 * step), &mut ());
+        status = command.unwrap().status;
+    }
+    assert_eq!(status, Status::Arrived(Errand::Home));
+    let explore = order(&mut pilot, &mut bench, &Control::Explore);
+    assert_eq!(explore, Ok(Status::Exploring));
+    order(&mut pilot, &mut bench, &Control::Stop).unwrap();
+    assert_eq!(
+        order(&mut pilot, &mut bench, &Control::Home),
+        Err(Refusal::NotStarted)
+    );
 }

@@ -4,10 +4,12 @@
 
 use heapless::Vec;
 
+use crate::config::fence::check_fence;
 use crate::config::{
-    Area, Config, ConfigError, GoalLevel, LoopLimits, Order, Parameter, SolverConfig, SpaceField,
-    Strategy, TeamPlace, Tuning, UnevenGround,
+    Area, Budget, Config, ConfigError, GoalLevel, LoopLimits, Order, Parameter, SolverConfig,
+    SpaceField, Strategy, TeamPlace, Tuning, UnevenGround,
 };
+use crate::fence::Fence;
 use crate::geometry::{CELL_M, Pose};
 use crate::input::NO_RETURN_MM;
 use crate::math::PI;
@@ -20,7 +22,7 @@ const POSITIVE: f32 = 1e-4;
 const TEAM_M: f32 = 400.0;
 const TEAM_RAD: f32 = 628.0;
 /// The greatest value of a quantity that has no limit of its own.
-const ANY: f32 = 1e6;
+pub(super) const ANY: f32 = 1e6;
 /// Planning radii, metres: half a map cell, and the most that the configuration space can grow
 /// obstacles by.
 const RADII_M: (f32, f32) = (0.5 * CELL_M, Config::MAX_RADIUS_M);
@@ -186,6 +188,21 @@ impl ConfigBuilder {
         self
     }
 
+    /// Sets where the robot may be, in the map's frame. Its hull leaves no bounds and enters no
+    /// no-go polygon, and what lies there counts as explored. Default: it may be everywhere.
+    #[must_use]
+    pub fn fence(mut self, fence: Fence) -> Self {
+        self.config.fence = fence;
+        self
+    }
+
+    /// Sets what the robot may drive before it must be home. Default: anything.
+    #[must_use]
+    pub const fn budget(mut self, budget: Budget) -> Self {
+        self.config.budget = budget;
+        self
+    }
+
     /// Checks every parameter and returns the configuration.
     ///
     /// On uneven ground the greatest speed becomes at most one map cell per period, so that two
@@ -204,6 +221,7 @@ impl ConfigBuilder {
         check(Parameter::Radius, config.robot_radius_m, RADII_M)?;
         check(Parameter::Period, config.period_s, Config::PERIODS_S)?;
         check_loops(&config.loops)?;
+        check_fence(&config.fence)?;
         if let Some(team) = &config.team {
             check_place(team)?;
         }
@@ -227,7 +245,11 @@ impl ConfigBuilder {
 }
 
 /// Returns an error if a value is outside its range or not a number.
-fn check(parameter: Parameter, value: f32, (least, most): (f32, f32)) -> Result<(), ConfigError> {
+pub(super) fn check(
+    parameter: Parameter,
+    value: f32,
+    (least, most): (f32, f32),
+) -> Result<(), ConfigError> {
     if value >= least && value <= most {
         return Ok(());
     }

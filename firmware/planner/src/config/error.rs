@@ -59,6 +59,14 @@ pub enum Parameter {
     Solver,
     /// A parameter of [`TeamPlace`](crate::TeamPlace), metres and radians.
     TeamPlace,
+    /// Corners of a [`Fence`](crate::Fence), of a polygon or of all together.
+    FenceCorners,
+    /// Coordinate of a corner of a fence, metres.
+    FenceCorner,
+    /// Area of a polygon of a fence, square metres.
+    FenceArea,
+    /// Crossings of the sides of a polygon of a fence.
+    FenceCrossings,
 }
 
 impl fmt::Display for Parameter {
@@ -91,6 +99,10 @@ impl fmt::Display for Parameter {
             Self::Worth => "worth",
             Self::TeamPlace => "place in the team (m, rad)",
             Self::Solver => "parameter of the solver",
+            Self::FenceCorners => "corners of a fence",
+            Self::FenceCorner => "corner of a fence (m)",
+            Self::FenceArea => "area of a polygon of a fence (m²)",
+            Self::FenceCrossings => "crossings of a polygon of a fence",
         })
     }
 }

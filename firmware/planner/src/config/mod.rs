@@ -4,8 +4,10 @@
 //!
 //! Units: as the names say.
 
+mod budget;
 mod builder;
 mod error;
+mod fence;
 mod goal;
 mod ground;
 mod loops;
@@ -15,6 +17,7 @@ mod space;
 mod team;
 mod tuning;
 
+pub use budget::Budget;
 pub use builder::ConfigBuilder;
 pub use error::{ConfigError, Parameter};
 pub use goal::{Goal, GoalLevel};
@@ -31,6 +34,7 @@ pub use tuning::{
 
 use heapless::Vec;
 
+use crate::fence::Fence;
 use crate::geometry::Twist;
 use crate::robot::{LaserMount, RobotShape};
 
@@ -104,6 +108,10 @@ pub struct Config {
     pub(crate) ground: Option<UnevenGround>,
     /// The robot's place in a team; `None` for a robot alone.
     pub(crate) team: Option<TeamPlace>,
+    /// Where the robot may be. Default: everywhere.
+    pub(crate) fence: Fence,
+    /// What the robot may drive before it must be home. Default: anything.
+    pub(crate) budget: Budget,
     /// The planner corrects odometry by the level scan. Default: false.
     pub(crate) localise: bool,
     /// The planner only localises and maps. Default: false.
@@ -149,6 +157,11 @@ impl Config {
             tuning: &Tuning::DEFAULT,
             ground: None,
             team: None,
+            fence: Fence::new(),
+            budget: Budget {
+                range_m: None,
+                time_s: None,
+            },
             localise: false,
             survey: false,
         }
@@ -239,6 +252,12 @@ impl Config {
     #[must_use]
     pub const fn team(&self) -> Option<&TeamPlace> {
         self.team.as_ref()
+    }
+
+    /// Returns where the robot may be.
+    #[must_use]
+    pub const fn fence(&self) -> &Fence {
+        &self.fence
     }
 
     /// Returns true if the planner corrects odometry by the level scan.

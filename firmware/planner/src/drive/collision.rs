@@ -18,6 +18,7 @@ use heapless::Vec;
 use crate::config::Config;
 use crate::drive::hull::{Hull, Place};
 use crate::drive::incline::Incline;
+use crate::fence::Fence;
 use crate::geometry::{CELL_M, Point, Pose, RobotFrame, Twist};
 use crate::map::obstacle_points::MAX_POINTS;
 use crate::math;
@@ -181,6 +182,27 @@ impl CollisionChecker {
                 let _ = self.threats.push(Threat { at, clearance_m });
             }
         }
+    }
+
+    /// Adds forbidden cells (their centres), each inflated by half a cell. A robot that a
+    /// correction of its pose put over one may leave it, and come no deeper. In a full list they
+    /// take the place of what is farthest off.
+    pub(crate) fn fence_off(&mut self, pose: &Pose, fence: &Fence, reach: i32) {
+        let frame = RobotFrame::of(pose);
+        fence.for_each_rim(pose.point().cell(), reach, |cell| {
+            let at = inflated(frame.to_robot(cell.centre()), 0.0);
+            let clearance_m = self.hull.overhang(at.x_m, at.y_m);
+            let threat = Threat { at, clearance_m };
+            if self.threats.push(threat).is_ok() {
+                return;
+            }
+            let farther =
+                |a: &&mut Threat, b: &&mut Threat| a.clearance_m.total_cmp(&b.clearance_m);
+            let farthest = self.threats.iter_mut().max_by(farther);
+            if let Some(farthest) = farthest.filter(|it| it.clearance_m > clearance_m) {
+                *farthest = threat;
+            }
+        });
     }
 
     /// Adds the obstacle cells of the map (their centres) that are out of view and have no obstacle

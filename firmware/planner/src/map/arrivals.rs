@@ -74,7 +74,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         let mut known = 0;
         for &key in self.tiles.keys() {
             let (x, y) = self.tiles.directory.tile(key);
-            let mut reader = self.tiles.reader(x * TILE_SIDE);
+            let mut reader = self.tiles.measured(x * TILE_SIDE);
             for y in y * TILE_SIDE..(y + 1) * TILE_SIDE {
                 known += (!reader.row(y).unknown() as u32).count_ones();
             }
@@ -121,7 +121,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
             return lone;
         }
         let first_y = tile_y * TILE_SIDE;
-        let mut reader = self.tiles.reader(tile_x * TILE_SIDE - 2);
+        let mut reader = self.tiles.measured(tile_x * TILE_SIDE - 2);
         // What keeps the cells of the last rows from being lone: unknown cells, and walls.
         let (mut unknown, mut walls) = ([0; 5], [0; 5]);
         let mut came = [0; 3];

@@ -93,6 +93,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Clears the map and begins a session.
     pub fn begin(&mut self, config: &Config) {
         self.reset();
+        self.tiles.set_fence(&config.fence);
         if config.ground.is_some() {
             self.lend_memory_to_elevation(config.localise);
         }

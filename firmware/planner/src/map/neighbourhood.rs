@@ -56,9 +56,11 @@ impl<'a, const TILES: usize, const SLOTS: usize> Neighbourhood<'a, TILES, SLOTS>
         Class::from_bits(low >> bit & 1, high >> bit & 1)
     }
 
-    /// Returns true if at most one of a coarse cell's four map cells was never measured.
+    /// Returns true if at most one of a coarse cell's four map cells was never measured and is not
+    /// forbidden.
     pub(crate) fn is_explored(&mut self, least: Cell) -> bool {
-        let unknown = |part: &Cell| self.class(*part) == Class::Unknown;
+        let fence = self.tiles.fence();
+        let unknown = |part: &Cell| self.class(*part) == Class::Unknown && fence.allows(*part);
         least.quarters().filter(unknown).count() < 2
     }
 

@@ -1,5 +1,9 @@
 //! Rows of the map, 64 cells at a time. All planning reads the map this way.
 //!
+//! To planning a cell that the [`Fence`](crate::fence::Fence) forbids is an obstacle, whatever
+//! stands there: [`Tiles::reader`]. The map's own rooms read what was measured:
+//! [`Tiles::measured`].
+//!
 //! A reader goes up through the map row by row, so it looks tiles up once in 32 rows. Bit k of a
 //! word is column x + k.
 //!
@@ -9,7 +13,7 @@ use crate::grid::Row;
 use crate::grid::bits::twice;
 use crate::grid::masked;
 use crate::map::compaction::{ONES, ZEROS};
-use crate::map::tiles::{NO_TRAIL, Plane, Tiles, Visited};
+use crate::map::tiles::{NO_TRAIL, Plane, TILE_SIDE, Tiles, Visited};
 
 /// Columns of the halo to the left of a [`Line`].
 pub(crate) const HALO: i32 = 16;
@@ -81,6 +85,10 @@ pub(crate) struct RowReader<'a, const TILES: usize, const SLOTS: usize> {
     columns: [Column<'a>; 3],
     /// A tile without room reads as free: nothing of it can be explored.
     only_room: bool,
+    /// Forbidden cells read as obstacles.
+    is_fenced: bool,
+    /// The forbidden cells of each row of the present tiles, if all are alike.
+    steady: Option<u64>,
 }
 
 impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
@@ -92,7 +100,15 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
             tile_y: i32::MIN,
             columns: [Column::EMPTY; 3],
             only_room: false,
+            is_fenced: false,
+            steady: None,
         }
+    }
+
+    /// Returns the reader of what planning may use: forbidden cells read as obstacles.
+    pub(super) fn fenced(self) -> Self {
+        let is_fenced = !self.tiles.fence.is_empty();
+        Self { is_fenced, ..self }
     }
 
     /// Returns the reader of what may be explored, if `only_room`: a tile that the map has no room
@@ -113,6 +129,10 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
     #[inline(never)]
     fn look_up_tiles(&mut self, tile_y: i32) {
         self.tile_y = tile_y;
+        if self.is_fenced {
+            let corner = (self.x, tile_y << 5);
+            self.steady = self.tiles.fence.steady_row(corner, TILE_SIDE);
+        }
         for (k, column) in (0..).zip(&mut self.columns) {
             let tile_x = (self.x >> 5) + k;
             let found = self.tiles.column(tile_x, tile_y);
@@ -126,14 +146,27 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
         }
     }
 
+    /// Returns the forbidden ones of the 64 cells of row `y`.
+    #[inline(always)]
+    fn forbidden(&self, y: i32) -> u64 {
+        if !self.is_fenced {
+            return 0;
+        }
+        match self.steady {
+            Some(row) => row,
+            None => self.tiles.fence.row(self.x, y),
+        }
+    }
+
     /// Returns the 64 cells of row `y`.
     pub(crate) fn row(&mut self, y: i32) -> Row {
         let (row, shift) = self.tile_row(y);
         let [first, second, third] = self.columns.map(|column| column.classes(row));
         let visited = self.columns.map(|column| twice(column.blocks(row)));
+        let forbidden = self.forbidden(y);
         Row {
-            low: join(first[0], second[0], third[0], shift),
-            high: join(first[1], second[1], third[1], shift),
+            low: join(first[0], second[0], third[0], shift) & !forbidden,
+            high: join(first[1], second[1], third[1], shift) | forbidden,
             visited: join(visited[0], visited[1], visited[2], shift),
         }
     }
@@ -143,7 +176,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
     pub(crate) fn line(&mut self, y: i32) -> Line {
         let (row, shift) = self.tile_row(y);
         let [first, second, third] = self.columns.map(|column| column.classes(row));
-        let around = join(first[1], second[1], third[1], shift);
+        let around = join(first[1], second[1], third[1], shift) | self.forbidden(y);
         // The cells begin in the first tile or in the second, and end in the next.
         let from = shift + HALO as u32;
         let [left, middle, right] = &self.columns;
@@ -183,6 +216,39 @@ mod tests {
     use super::*;
     use crate::geometry::Cell;
     use crate::map::Class;
+
+    #[test]
+    fn a_forbidden_cell_is_an_obstacle_to_planning_and_what_it_is_to_the_map() {
+        let mut tiles = Tiles::<16, 16>::new();
+        tiles.reset();
+        for (x, y) in (0..40).flat_map(|x| (0..40).map(move |y| (x, y))) {
+            tiles.set(Cell { x, y }, Class::Free).unwrap();
+        }
+        tiles.mark_visited(Cell { x: 21, y: 21 });
+        let corners = [(-0.5, 2.0), (5.0, 2.0), (5.0, 3.0), (-0.5, 3.0)];
+        let corners = corners.map(|(x_m, y_m)| crate::geometry::Point { x_m, y_m });
+        tiles.set_fence(&crate::fence::Fence::new().no_go(&corners));
+        let (mut planned, mut measured) = (tiles.reader(-10), tiles.measured(-10));
+        for y in -2..45 {
+            let forbidden = if (20..30).contains(&y) {
+                u64::MAX >> 4 << 5 & u64::MAX >> 4
+            } else {
+                0
+            };
+            let (row, seen) = (planned.row(y), measured.row(y));
+            assert_eq!(row.obstacle(), forbidden, "row {y}");
+            assert_eq!(row.unknown(), seen.unknown() & !forbidden, "row {y}");
+            assert_eq!(row.free(), seen.free() & !forbidden, "row {y}");
+            assert_eq!(seen.obstacle(), 0);
+            let line = tiles.reader(-10).line(y);
+            assert_eq!(line.around, forbidden);
+            assert_eq!(line.unknown, (row.unknown() >> HALO) as u32);
+        }
+        let inside = Cell { x: 3, y: 25 };
+        assert_eq!(tiles.class(inside), Class::Free);
+        assert_eq!(tiles.planned_class(inside), Class::Obstacle);
+        assert_eq!(tiles.planned_class(Cell { x: 3, y: 30 }), Class::Free);
+    }
 
     #[test]
     fn a_line_is_the_middle_of_a_row() {

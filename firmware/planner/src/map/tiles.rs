@@ -10,6 +10,7 @@
 //!
 //! Units: cells of [`crate::geometry::CELL_M`].
 
+use crate::fence::Fence;
 use crate::geometry::Cell;
 use crate::grid::{Class, Row, TileKey, TileMap, inside, inside_mut, masked, masked_mut};
 use crate::map::compaction::{Entry, FreeList, ONES, ZEROS};
@@ -48,6 +49,8 @@ pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     lent: u16,
     /// Number of changes of any cell; wraps.
     pub(super) edits: u32,
+    /// Where the robot may be. Only planning knows it.
+    pub(super) fence: Fence,
 }
 
 impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
@@ -62,6 +65,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             free: FreeList::EMPTY,
             lent: 0,
             edits: 0,
+            fence: Fence::new(),
         }
     }
 
@@ -277,13 +281,37 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// Returns the 64 cells of row `y` from column `x` on.
-    pub(crate) fn row(&self, x: i32, y: i32) -> Row {
-        self.reader(x).row(y)
+    /// Sets where the robot may be. A reset keeps it.
+    pub(crate) fn set_fence(&mut self, fence: &Fence) {
+        self.fence.clone_from(fence);
     }
 
-    /// Returns a reader of rows of 64 cells from column `x` on.
-    pub(crate) const fn reader(&self, x: i32) -> RowReader<'_, TILES, SLOTS> {
+    /// Returns the fence.
+    pub(crate) const fn fence(&self) -> &Fence {
+        &self.fence
+    }
+
+    /// Returns the class of a cell for planning: a forbidden one is an obstacle.
+    pub(crate) fn planned_class(&self, cell: Cell) -> Class {
+        match self.fence.allows(cell) {
+            true => self.class(cell),
+            false => Class::Obstacle,
+        }
+    }
+
+    /// Returns the 64 cells of row `y` from column `x` on, as measured.
+    pub(crate) fn row(&self, x: i32, y: i32) -> Row {
+        self.measured(x).row(y)
+    }
+
+    /// Returns a reader of rows of 64 cells from column `x` on, for planning: a forbidden cell is
+    /// an obstacle.
+    pub(crate) fn reader(&self, x: i32) -> RowReader<'_, TILES, SLOTS> {
+        self.measured(x).fenced()
+    }
+
+    /// Returns a reader of rows of 64 cells from column `x` on, as measured.
+    pub(crate) const fn measured(&self, x: i32) -> RowReader<'_, TILES, SLOTS> {
         RowReader::new(self, x)
     }
 

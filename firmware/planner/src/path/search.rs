@@ -77,8 +77,24 @@ pub(crate) fn path_to<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
-    let mut search = PathSearch::open(context.centres()?, scratch)?;
-    let (nearest, _) = search.centres.nearest(place, search.local_grid, |_| true)?;
+    path_between(
+        context.pose.point().cell(),
+        place,
+        context.centres()?,
+        scratch,
+    )
+}
+
+/// Returns the path from a place to the centre cell nearest to another.
+#[inline(never)]
+pub(crate) fn path_between<const TILES: usize, const SLOTS: usize>(
+    from: Cell,
+    to: Cell,
+    centres: Centres<'_, TILES, SLOTS>,
+    scratch: &mut PlanningScratch<'_>,
+) -> Option<Path> {
+    let mut search = PathSearch::open(centres, scratch)?;
+    let (nearest, _) = search.centres.nearest(to, search.local_grid, |_| true)?;
     search.spread(core::iter::once(nearest));
-    search.path(context.pose.point().cell())
+    search.path(from)
 }

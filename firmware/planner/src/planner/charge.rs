@@ -58,6 +58,7 @@ fn local_goal<const TILES: usize, const SLOTS: usize>(
         let blocked = state.strategy.frontier.blocked();
         blocked.read(grid, (tiles, footprint), robot.cell(), scale);
         let shield = state.strategy.shield();
+        let shield = shield.filter(|_| !state.errands.is_going());
         if let Some(shield) = shield {
             shield.cells().for_each(|cell| grid.block(cell));
         }
@@ -99,6 +100,9 @@ pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
     footprint: &Footprint,
     input: &Input<'_>,
 ) -> Option<()> {
+    if state.errands.is_going() {
+        return None;
+    }
     state.strategy.tdbvp()?;
     let robot = input.pose.point().cell();
     let local_grid = &mut workspace.local_grid;

@@ -22,6 +22,7 @@
 //! | progress towards goals, skeleton | | always: begun anew |
 //! | chances that are spent, time without a move | they are no places | |
 //! | search for viewpoints or a recovery, lane, retreat | | always: begun anew |
+//! | home, goal of an errand | by shift | |
 //! | drive's track | with the robot, by the motion | |
 //! | breadcrumbs, tractor point, shield, revisit | by shift | |
 //! | closed and pending regions | to the region that holds the moved middle | |
@@ -299,6 +300,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.skeleton
             .reset(Strategist::<SLOTS>::space(config.strategy));
         self.strategy.correct(shifts, pose.point(), spare);
+        self.errands.correct(shifts);
         self.viewpoints = viewpoint::Search::new();
         self.drive.correct(&motion);
         self.has_new_skeleton = false;

@@ -7,7 +7,7 @@ use crate::config::Config;
 use crate::geometry::Cell;
 use crate::input::{Input, InputFaults};
 use crate::localise::Location;
-use crate::planner::{Output, State, Workspace, step};
+use crate::planner::{Output, State, Task, TaskError, Workspace, step};
 use crate::profiling::StageTimer;
 use crate::status::{ResidualFrontier, Status};
 use crate::team::packet::Packet;
@@ -105,6 +105,14 @@ impl<M: Memory> Planner<M> {
             *input,
             timer,
         )
+    }
+
+    /// Takes an order to drive. Returns the status that follows.
+    ///
+    /// # Errors
+    /// [`TaskError`]. Nothing has changed then.
+    pub fn order(&mut self, task: Task) -> Result<Status, TaskError> {
+        sealed::Planning::order(&mut self.state, &self.config, task)
     }
 
     /// Takes a packet that another robot of the team said.
@@ -210,7 +218,7 @@ mod sealed {
 
     use super::{
         Capacity, Cell, Config, Input, InputFaults, Location, Output, Packet, Peers,
-        ResidualFrontier, StageTimer, State, Status, Workspace, step,
+        ResidualFrontier, StageTimer, State, Status, Task, TaskError, Workspace, step,
     };
 
     /// A capacity.
@@ -234,6 +242,7 @@ mod sealed {
             input: Input<'_>,
             timer: &mut impl StageTimer,
         ) -> Output;
+        fn order(&mut self, config: &Config, task: Task) -> Result<Status, TaskError>;
         fn hear(&mut self, config: &Config, packet: &Packet);
         fn say(&mut self, config: &Config) -> Option<Packet>;
         fn peers(&self) -> &Peers;
@@ -262,6 +271,10 @@ mod sealed {
             timer: &mut impl StageTimer,
         ) -> Output {
             step(config, self, workspace, input, timer)
+        }
+
+        fn order(&mut self, config: &Config, task: Task) -> Result<Status, TaskError> {
+            Self::order(self, config, task)
         }
 
         fn hear(&mut self, config: &Config, packet: &Packet) {

@@ -60,13 +60,20 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         known_cells: state.map.known_cells(),
         openings_were_tried: state.strategy.frontier.has_further_chance(),
     };
-    let Some(outcome) = state.strategy.advance(context, scratch) else {
+    let outcome = match state.errands.goal() {
+        Some(goal) => Some(state.strategy.go_to(goal, context, scratch)),
+        None => state.strategy.advance(context, scratch),
+    };
+    let Some(outcome) = outcome else {
         return false;
     };
     if config.ground.is_some() {
         resolve_unmeasured(config, state, &input.pose);
     }
     match outcome {
+        RoundOutcome::Nothing | RoundOutcome::Stuck if state.errands.is_going() => {
+            state.end_errand(false);
+        }
         RoundOutcome::Nothing if may_search_viewpoints(state) => state.viewpoints.begin(),
         RoundOutcome::Nothing => end(config, state, workspace, footprint, input),
         RoundOutcome::Stuck => state.status = Status::Fault(Fault::Stuck),

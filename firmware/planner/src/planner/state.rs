@@ -6,6 +6,7 @@
 
 use super::correction::Correcting;
 use super::door::Door;
+use super::errand::Errands;
 use super::ground_model::GroundModel;
 use super::workspace::{RING, SCRATCH};
 use crate::config::{Config, Order};
@@ -60,6 +61,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     pub(super) forgot_arrivals: bool,
     /// What corrects the map.
     pub(super) correcting: Correcting,
+    /// Where the robot is ordered to go.
+    pub(super) errands: Errands,
 }
 
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
@@ -102,6 +105,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             ends: false,
             forgot_arrivals: false,
             correcting: Correcting::new(),
+            errands: Errands::new(),
         }
     }
 
@@ -126,6 +130,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.ends = false;
         self.forgot_arrivals = false;
         self.correcting = Correcting::new();
+        self.errands = Errands::new();
     }
 
     /// Returns the planner's status after the last step.

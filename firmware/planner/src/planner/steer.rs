@@ -7,7 +7,7 @@ use crate::drive::side_slope::Hysteresis;
 use crate::drive::{CollisionChecker, Incline, Place, SearchQuery};
 use crate::field::local_grid;
 use crate::field::{Window, descent};
-use crate::geometry::{Cell, MapPose, Point, Pose, Twist};
+use crate::geometry::{CELL_M, Cell, MapPose, Point, Pose, Twist};
 use crate::input::Input;
 use crate::math;
 use crate::planner::Output;
@@ -163,6 +163,7 @@ pub(super) fn retreat<const TILES: usize, const SLOTS: usize>(
     let odom = state.localiser.odom();
     state.ground.obstruct_measured(&odom, &mut checker);
     keep_off_peers(&mut checker, state, config, input);
+    keep_inside(&mut checker, state, config, input);
     let pose = MapPose(input.pose);
     let velocity = state.drive.retreat(config, &pose, &checker, input.velocity);
     obstruct(&mut checker, state, config, input);
@@ -171,9 +172,10 @@ pub(super) fn retreat<const TILES: usize, const SLOTS: usize>(
     velocity
 }
 
-/// Adds what the drive must not touch: the obstacles near by, and the other robots.
+/// Adds what the drive must not touch: the obstacles near by, the other robots, and what is
+/// forbidden.
 #[inline(never)]
-fn obstruct<const TILES: usize, const SLOTS: usize>(
+pub(super) fn obstruct<const TILES: usize, const SLOTS: usize>(
     checker: &mut CollisionChecker,
     state: &State<TILES, SLOTS>,
     config: &Config,
@@ -183,6 +185,25 @@ fn obstruct<const TILES: usize, const SLOTS: usize>(
     let poses = (&input.pose, &state.localiser.odom());
     state.ground.obstruct(config, tiles, poses, checker);
     keep_off_peers(checker, state, config, input);
+    keep_inside(checker, state, config, input);
+}
+
+/// Adds the forbidden cells at the fence within the way that the robot needs to stop.
+#[inline(never)]
+fn keep_inside<const TILES: usize, const SLOTS: usize>(
+    checker: &mut CollisionChecker,
+    state: &State<TILES, SLOTS>,
+    config: &Config,
+    input: &Input<'_>,
+) {
+    let fence = state.map.tiles().fence();
+    if fence.is_empty() {
+        return;
+    }
+    let (speed, accel) = (config.max_linear_mps, config.linear_accel_mps2);
+    let stop_m = speed * (config.period_s + 0.5 * speed / accel);
+    let reach_m = config.robot.half_diagonal_m + stop_m;
+    checker.fence_off(&input.pose, fence, math::floor(reach_m / CELL_M) + 1);
 }
 
 /// Adds the other robots.

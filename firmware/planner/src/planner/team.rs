@@ -39,6 +39,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.localiser.move_map(by, &motion.covariance);
         let MapPose(pose) = self.localiser.to_map(&self.localiser.odom());
         self.map.turn(by, pose.point().cell());
+        self.errands.turn(by);
         self.skeleton
             .reset(Strategist::<SLOTS>::space(config.strategy));
         self.strategy.reset(config);
@@ -81,8 +82,8 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let robot = &config.robot;
         let path = self.strategy.frontier.path();
         let activity = match self.status {
-            Status::Exploring | Status::NoScan => self.team.way.activity(),
-            Status::Finished(_) => Activity::Finished,
+            Status::Exploring | Status::NoScan | Status::Going(_) => self.team.way.activity(),
+            Status::Finished(_) | Status::Arrived(_) | Status::Unreachable(_) => Activity::Finished,
             Status::Fault(_) => Activity::Faulted,
         };
         let (stance, refuge) = (self.team.way.stance(), self.team.way.refuge());

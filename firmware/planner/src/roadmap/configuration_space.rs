@@ -3,8 +3,8 @@
 //!
 //! A cell is *passable* if no obstacle cell lies in the disc of the robot's radius around it, or if
 //! the robot has been there; unknown cells obstruct nothing. All planning (skeleton, local grid)
-//! works on passable cells. So a gap that the robot does not fit through is no way, and a door of
-//! 0.8 m keeps a lane of two or three cells.
+//! works on passable cells. A cell that the fence forbids is an obstacle. So a gap that the robot
+//! does not fit through is no way, and a door of 0.8 m keeps a lane of two or three cells.
 //!
 //! Bit-parallel: 32 columns at a time over rows of 64 bits.
 //!
@@ -12,8 +12,8 @@
 
 use crate::geometry::CELL_M;
 use crate::grid::{wrapped, wrapped_mut};
+use crate::map::Tiles;
 use crate::map::rows::{HALO, Line};
-use crate::map::{Class, Tiles};
 use crate::math;
 
 /// Greatest radius of a footprint, cells; less than a line's halo.
@@ -174,7 +174,7 @@ pub fn is_passable<const TILES: usize, const SLOTS: usize>(
     footprint: &Footprint,
     cell: crate::geometry::Cell,
 ) -> bool {
-    let stands = |cell| matches!(tiles.class(cell), Class::Obstacle | Class::Negative);
+    let stands = |cell| !tiles.planned_class(cell).is_open();
     if tiles.row(cell.x, cell.y).visited() & 1 == 1 {
         return !stands(cell);
     }
@@ -190,7 +190,7 @@ pub fn is_passable<const TILES: usize, const SLOTS: usize>(
                     x: cell.x + dx,
                     y: cell.y + dy,
                 };
-                !matches!(tiles.class(near), Class::Obstacle | Class::Negative)
+                !stands(near)
             })
         })
     })
@@ -200,6 +200,7 @@ pub fn is_passable<const TILES: usize, const SLOTS: usize>(
 mod tests {
     use super::*;
     use crate::geometry::Cell;
+    use crate::map::Class;
 
     fn scattered() -> Tiles<9, 24> {
         let mut tiles = Tiles::new();
@@ -223,21 +224,29 @@ mod tests {
 
     #[test]
     fn strips_agree_with_the_cell_by_cell_twin() {
-        let tiles = scattered();
+        let mut tiles = scattered();
+        strips_agree(&tiles);
+        let corners = [(-1.3, -2.0), (3.1, 0.4), (1.7, 2.2)];
+        let corners = corners.map(|(x_m, y_m)| crate::geometry::Point { x_m, y_m });
+        tiles.set_fence(&crate::fence::Fence::new().no_go(&corners));
+        strips_agree(&tiles);
+    }
+
+    fn strips_agree(tiles: &Tiles<9, 24>) {
         for radius in [0.1, 0.15, 0.2, 0.3, 0.35, 0.45] {
             let footprint = Footprint::new(radius);
             for x in [-40, -7, 32] {
-                for_each_strip(&tiles, &footprint, (x, -31), 62, |y, strip| {
+                for_each_strip(tiles, &footprint, (x, -31), 62, |y, strip| {
                     for k in 0..32 {
                         let cell = Cell { x: x + k, y };
                         assert_eq!(
                             strip.passable >> k & 1 == 1,
-                            is_passable(&tiles, &footprint, cell),
+                            is_passable(tiles, &footprint, cell),
                             "radius {radius}, {cell:?}"
                         );
                         assert_eq!(
                             strip.unknown >> k & 1 == 1,
-                            tiles.class(cell) == Class::Unknown
+                            tiles.planned_class(cell) == Class::Unknown
                         );
                     }
                 });

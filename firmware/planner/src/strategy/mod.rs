@@ -23,7 +23,7 @@ pub(crate) use tdbvp::Tdbvp;
 use crate::config::{Config, Strategy, Tuning};
 use crate::field::Window;
 use crate::field::local_grid::LocalGrid;
-use crate::geometry::{Point, Pose};
+use crate::geometry::{Cell, Point, Pose};
 use crate::grid::Shifts;
 use crate::map::Tiles;
 use crate::path::nearest::Centres;
@@ -211,6 +211,22 @@ impl<const SLOTS: usize> Strategist<SLOTS> {
     /// Returns true if the exploration is over and the robot patrols.
     pub(crate) fn is_patrolling(&self) -> bool {
         self.tdbvp().is_some_and(Tdbvp::is_patrolling)
+    }
+
+    /// Begins to drive by order, or goes on exploring: what failed before may be tried again.
+    pub(crate) fn begin_errand(&mut self) {
+        self.frontier.go_on();
+    }
+
+    /// Plans a round to a place of the map on the published skeleton.
+    pub(crate) fn go_to<const TILES: usize>(
+        &mut self,
+        place: Cell,
+        round: PlanningContext<'_, TILES, SLOTS>,
+        scratch: PlanningScratch<'_>,
+    ) -> RoundOutcome {
+        self.frontier.cut(round.skeleton);
+        self.frontier.go_to(place, &round, scratch)
     }
 
     /// Continues a round on the published skeleton; `None` if it needs another call on it.

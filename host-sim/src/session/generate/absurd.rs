@@ -6,6 +6,7 @@ use fieldline_protocol::message::{Observation, Pose, Scan, Start, Twist};
 use fixed::types::I16F16;
 
 use super::corrections::Corrections;
+use super::fences;
 use super::packets::Team;
 use super::quantities::{angle, centimetres, narrow, origin_ms, wide, wide_within};
 use super::scans::scan;
@@ -149,7 +150,7 @@ impl<C: Choices> Absurd<C> {
         }
         let has_team = self.start.as_ref().is_some_and(|it| it.team.is_some());
         let choices = &mut self.choices;
-        match choices.below(64) {
+        match choices.below(66) {
             // An ordinary observation is the smallest number, which a fuzzer's zeros are.
             0..31 => Ask::Observation(Box::new(self.observation())),
             31..42 if has_team => {
@@ -185,6 +186,7 @@ impl<C: Choices> Absurd<C> {
                 self.queue.extend(self.corrections.requests(choices));
                 self.queue.pop_front().unwrap_or(Ask::Say)
             }
+            64 => fences::order(choices),
             63 if choices.once_in(4) => Ask::Hear(Box::new(self.team.packet(choices))),
             _ => Ask::Observation(Box::new(self.observation())),
         }

@@ -12,6 +12,7 @@
 mod absurd;
 mod companion;
 mod corrections;
+mod fences;
 mod packets;
 mod plausible;
 mod quantities;

@@ -10,6 +10,7 @@ use fieldline_protocol::message::{
 
 use super::companion::Companion;
 use super::corrections::Corrections;
+use super::fences;
 use super::packets::Team;
 use super::quantities::{centimetres, origin_ms};
 use super::spoil::{Fate, Faults};
@@ -48,6 +49,8 @@ const NAMES: [&str; 20] = [
 const READ_EVERY: u64 = 100;
 /// Steps between two corrections.
 const CORRECT_EVERY: u64 = 150;
+/// Steps between two orders to drive.
+const ORDER_EVERY: u64 = 80;
 /// Steps that a session goes on after the robot has finished.
 const AFTER_END: usize = 20;
 /// Packets of this robot that its peers repeat.
@@ -160,6 +163,9 @@ impl<C: Choices> Plausible<C> {
             let asks = self.corrections.requests(&mut self.choices);
             self.queue.extend(asks);
         }
+        if self.choices.once_in(ORDER_EVERY) {
+            self.queue.push_back(fences::order(&mut self.choices));
+        }
     }
 
     fn report(&mut self, observation: Observation, fate: Fate) {
@@ -219,6 +225,9 @@ impl<C: Choices> Plausible<C> {
             command.status,
             Status::Exploring
                 | Status::NoScan
+                | Status::Going(_)
+                | Status::Arrived(_)
+                | Status::Unreachable(_)
                 | Status::Paused
                 | Status::Fault(Fault::BadObservation)
         );

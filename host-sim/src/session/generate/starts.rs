@@ -8,6 +8,7 @@ use fieldline_protocol::message::{
 };
 use fixed::types::{I4F12, I16F16};
 
+use super::fences;
 use super::quantities::{angle, narrow, narrow_within, wide, wide_within};
 use crate::session::choices::Choices;
 use crate::sim::{SimConfig, Simulator};
@@ -38,6 +39,8 @@ pub(super) fn any(choices: &mut impl Choices) -> Start {
         team: choices.once_in(2).then(|| team(choices)),
         localise: choices.once_in(2),
         survey: choices.once_in(12),
+        fence: fences::fence(choices),
+        budget: fences::budget(choices),
     };
     start.linear_accel = acceleration(choices, start.max_linear);
     start.angular_accel = acceleration(choices, start.max_angular);
@@ -71,6 +74,8 @@ pub(super) fn pioneer(choices: &mut impl Choices) -> Start {
     start.survey = choices.once_in(12);
     start.uneven_ground = choices.once_in(3).then_some(TABLE_I);
     start.team = choices.once_in(2).then(|| ordinary_team(choices));
+    start.fence = fences::fence(choices);
+    start.budget = fences::budget(choices);
     start
 }
 

@@ -1,9 +1,9 @@
 //! What a device answers.
 
 use fieldline_protocol::message::{
-    Cause, Command, CorrectionProgress, Cost, Counters, Crash, Fault, FieldRow, Finish, Identity,
-    InputFaults, Location, Loops, Parameter, Path, Quality, Refusal, Reply, ResidualFrontier,
-    ResidualReason, Stages, Status, Tile,
+    Cause, Command, CorrectionProgress, Cost, Counters, Crash, Errand, Fault, FieldRow, Finish,
+    Identity, InputFaults, Location, Loops, Parameter, Path, Quality, Refusal, Reply,
+    ResidualFrontier, ResidualReason, Stages, Status, Tile,
 };
 use proptest::prelude::*;
 
@@ -26,13 +26,18 @@ fn status() -> impl Strategy<Value = Status> {
         Fault::Stuck,
         Fault::PoseLost,
         Fault::Trapped,
+        Fault::StartForbidden,
     ]);
+    let errand = prop::sample::select(vec![Errand::Home, Errand::Goal]);
     prop_oneof![
         Just(Status::Idle),
         Just(Status::Exploring),
         Just(Status::Paused),
         Just(Status::EmergencyStop),
         Just(Status::NoScan),
+        errand.clone().prop_map(Status::Going),
+        errand.clone().prop_map(Status::Arrived),
+        errand.prop_map(Status::Unreachable),
         finish.prop_map(Status::Finished),
         fault.prop_map(Status::Fault),
     ]

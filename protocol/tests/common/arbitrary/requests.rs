@@ -1,8 +1,8 @@
 //! What a host asks and tells.
 
 use fieldline_protocol::message::{
-    self, Control, Correct, CorrectedTile, CorrectedTiles, Hull, Laser, LoopLimits, Motion,
-    Observation, Order, Preference, Request, Scan, Start, UnevenGround,
+    self, Budget, Control, Correct, CorrectedTile, CorrectedTiles, Fence, FencePolygon, Hull,
+    Laser, LoopLimits, Motion, Observation, Order, Preference, Request, Scan, Start, UnevenGround,
 };
 use proptest::prelude::*;
 
@@ -76,6 +76,17 @@ fn space_field() -> impl Strategy<Value = message::SpaceField> {
     )
 }
 
+fn fence() -> impl Strategy<Value = Fence> {
+    let polygon = any::<(u8, bool)>();
+    let polygon = polygon.prop_map(|(corners, bounds)| FencePolygon { corners, bounds });
+    (list((long(), long())), list(polygon))
+        .prop_map(|(corners, polygons)| Fence { corners, polygons })
+}
+
+fn budget() -> impl Strategy<Value = Budget> {
+    any::<(Option<u16>, Option<u16>)>().prop_map(|(range_m, time_s)| Budget { range_m, time_s })
+}
+
 fn start() -> impl Strategy<Value = Start> {
     let strategy = prop_oneof![
         Just(message::Strategy::Frontier),
@@ -93,7 +104,7 @@ fn start() -> impl Strategy<Value = Start> {
             any::<(bool, bool)>(),
             prop::option::of(uneven_ground()),
             prop::option::of(team()),
-            order(),
+            (order(), fence(), budget()),
         ),
         list(laser()),
         (any::<[u16; 4]>(), [long(), long(), long(), long(), long()]),
@@ -102,7 +113,7 @@ fn start() -> impl Strategy<Value = Start> {
     )
         .prop_map(
             |(
-                (strategy, (localise, survey), uneven_ground, team, order),
+                (strategy, (localise, survey), uneven_ground, team, (order, fence, budget)),
                 lasers,
                 (sizes, loops),
                 period_ms,
@@ -137,6 +148,8 @@ fn start() -> impl Strategy<Value = Start> {
                     team,
                     localise,
                     survey,
+                    fence,
+                    budget,
                 }
             },
         )
@@ -156,6 +169,9 @@ fn control() -> impl Strategy<Value = Control> {
         Just(Control::Resume),
         Just(Control::Stop),
         Just(Control::Reset),
+        Just(Control::Home),
+        Just(Control::Explore),
+        (long(), long()).prop_map(|(x, y)| Control::GoTo { x, y }),
     ]
 }
 

@@ -73,3 +73,35 @@ fn cells_in_view_or_under_the_robot_are_not_remembered() {
     checker.remember(&Pose::default(), cells.into_iter());
     assert_eq!(checker.points(), 0);
 }
+
+/// The same with a border of the bounds ahead, at 45° and not; and a hull that a correction of the
+/// pose put over the border.
+#[test]
+fn a_fence_stops_the_hull_and_lets_it_back_in() {
+    let fence = |most_x_m: f32| {
+        let corners = [(-9.0, -9.0), (most_x_m, -9.0), (most_x_m, 9.0), (-9.0, 9.0)];
+        Fence::new().bounds(&corners.map(|(x_m, y_m)| Point { x_m, y_m }))
+    };
+    let checker = |most_x_m: f32, yaw_rad: f32| {
+        let pose = Pose {
+            yaw_rad,
+            ..Pose::default()
+        };
+        let mut checker = CollisionChecker::empty(&ROBOT);
+        checker.fence_off(&pose, &fence(most_x_m), 15);
+        checker
+    };
+    let at = |length| Place::default().after(length, 0.0);
+    let half = ROBOT.half_length_m;
+    let near = checker(1.0, 0.0);
+    assert!(near.points() > 20);
+    assert!(near.is_clear(at(1.0 - half - 0.03), 0.016));
+    assert!(!near.is_clear(at(1.0 - half + 0.01), 0.016));
+    let turned = checker(1.0, 0.25 * math::PI);
+    let room = (1.0 - half * math::sqrt(2.0)) * math::sqrt(2.0);
+    assert!(turned.is_clear(at(room - 0.08), 0.016));
+    assert!(!turned.is_clear(at(room + 0.06), 0.016));
+    let over = checker(0.2, 0.0);
+    assert!(over.is_arc_clear(Place::default(), -0.1, 0.0, 0.016));
+    assert!(!over.is_arc_clear(Place::default(), 0.1, 0.0, 0.016));
+}

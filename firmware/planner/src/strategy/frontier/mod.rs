@@ -13,6 +13,7 @@
 mod blocking;
 mod chances;
 mod correcting;
+mod going;
 mod looking;
 
 use crate::config::Order;

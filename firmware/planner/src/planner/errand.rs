@@ -1,0 +1,468 @@
+//! Errands: the robot drives to a place by order, and stands there.
+//!
+//! ```text
+//! order ─► on the way ──────────────► approach ───────► turn ─────► arrived
+//!          path, window, progress     straight, brakes  on the spot
+//!              └── no path, no progress ──┴── no room ──┘──────────► unreachable
+//! ```
+//!
+//! The way there is a path to a chosen goal, as to a frontier: the skeleton, the window's field,
+//! the progress checker, retreats, right of way. The field leads to a coarse cell of 20 cm. So the
+//! robot drives the last metre straight, where that is open, and brakes for the place itself.
+//!
+//! *Home* is the pose of the session's first scan, with its heading. It is a pose of the map: a
+//! correction moves it with its tile.
+//!
+//! A robot with a [`Budget`](crate::Budget) gives itself the order to drive home. The way home is
+//! measured in the step after each plan, on the same skeleton.
+//!
+//! Invariant: each errand ends, because the progress checker's chances and the time for the turn
+//! have an end.
+//! Units: metres, radians, milliseconds, in the map's frame.
+
+use crate::clock::since;
+use crate::config::Config;
+use crate::drive::{CollisionChecker, Place};
+use crate::geometry::{CELL_M, Cell, MapFromOdom, MapPose, OdomPose, Point, Pose, Twist};
+use crate::grid::Shifts;
+use crate::input::Input;
+use crate::math;
+use crate::path::context::STEP_M;
+use crate::path::nearest::Centres;
+use crate::path::search::path_between;
+use crate::path::{PlanningScratch, viewpoint};
+use crate::planner::Output;
+use crate::planner::state::State;
+use crate::planner::steer::{obstruct, steer};
+use crate::planner::workspace::Workspace;
+use crate::roadmap::configuration_space::{Footprint, is_passable};
+use crate::status::{Errand, Fault, Status};
+
+/// Greatest coordinate of a goal, metres: as of a fence.
+const MOST_M: f32 = 3_200.0;
+/// A robot this near to the goal is there, metres. It may end 0.2 m off: braking ends within a map
+/// cell, and a turn on the spot slips.
+const THERE_M: f32 = 0.1;
+/// A robot that has been there and is no farther off than this stays, metres.
+const STAYS_M: f32 = 0.18;
+/// Distance from which the robot drives straight to the goal, metres.
+const STRAIGHT_M: f32 = 1.0;
+/// A heading this near to the one asked for is that, radians: half of the 10° that are promised.
+const TURNED_RAD: f32 = 0.087;
+/// Turn rates on the spot, radians per second: the most, the least, and the one for each radian
+/// that is left.
+const TURN_RADPS: (f32, f32) = (0.6, 0.12);
+const TURN_GAIN_HZ: f32 = 1.5;
+/// Clearance of the turn, metres: that of a creeping robot.
+const TURN_MARGIN_M: f32 = 0.02;
+/// Time without a turn, because there is no room, after which the errand ends, milliseconds.
+const NO_ROOM_MS: u32 = 10_000;
+
+/// An order to drive.
+///
+/// ```
+/// use fieldline_planner::{
+///     Capacity, Config, Errand, Input, LaserMount, Planner, Point, Pose, RobotShape, Status, Task,
+///     TaskError, Twist,
+/// };
+///
+/// let config = Config::builder(RobotShape::PIONEER_3AT)
+///     .laser(LaserMount::level(0.10, 0.40))
+///     .build()?;
+/// let mut planner = Box::new(Planner::<Capacity<16, 20>>::new(&config));
+/// assert_eq!(planner.order(Task::Home), Err(TaskError::NotReady), "nothing was seen yet");
+/// planner.step(&Input {
+///     time_ms: 0,
+///     pose: Pose::default(),
+///     velocity: Twist::default(),
+///     scans: [&[2_000; 181], &[]],
+/// });
+/// let there = Task::GoTo(Point { x_m: 1.0, y_m: 0.0 });
+/// assert_eq!(planner.order(there).unwrap(), Status::Going(Errand::Goal));
+/// assert_eq!(planner.order(Task::Explore).unwrap(), Status::Exploring);
+/// # Ok::<(), fieldline_planner::ConfigError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Task {
+    /// Go on exploring.
+    Explore,
+    /// Drive to the pose of the first scan, and take its heading.
+    Home,
+    /// Drive to a point of the map.
+    GoTo(Point),
+}
+
+/// The reason why an order is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TaskError {
+    /// The robot has seen nothing yet, does not know where it is, or only surveys.
+    NotReady,
+    /// The goal is no number, farther than 3200 m from the map's origin, or forbidden.
+    BadGoal,
+}
+
+/// The errand, and where home is.
+#[derive(Debug)]
+pub(super) struct Errands {
+    home: Pose,
+    /// The robot is on the errand `last`. It is no option: the initial value is all zeros, and a
+    /// static one costs no flash.
+    is_going: bool,
+    last: Going,
+    /// The way driven so far, by odometry, and where it ends, metres.
+    driven_m: f32,
+    driven_to: Point,
+    /// The way home when it was last measured, and the way driven until then, metres.
+    measured_m: (f32, f32),
+    /// A path was planned since.
+    is_due: bool,
+}
+
+/// An errand on which the robot is.
+#[derive(Clone, Copy, Debug)]
+struct Going {
+    errand: Errand,
+    to: Point,
+    yaw_rad: Option<f32>,
+    /// The robot has been there, and only its heading is missing.
+    is_there: bool,
+    /// The heading of the straight way.
+    straight_rad: Option<f32>,
+    /// When the robot last could turn.
+    turned_ms: u32,
+}
+
+impl Errands {
+    /// Returns the state at the start of a session.
+    pub(super) const fn new() -> Self {
+        Self {
+            home: Pose {
+                x_m: 0.0,
+                y_m: 0.0,
+                z_m: 0.0,
+                roll_rad: 0.0,
+                pitch_rad: 0.0,
+                yaw_rad: 0.0,
+            },
+            is_going: false,
+            last: Going {
+                errand: Errand::Home,
+                to: Point { x_m: 0.0, y_m: 0.0 },
+                yaw_rad: None,
+                is_there: false,
+                straight_rad: None,
+                turned_ms: 0,
+            },
+            driven_m: 0.0,
+            driven_to: Point { x_m: 0.0, y_m: 0.0 },
+            measured_m: (0.0, 0.0),
+            is_due: false,
+        }
+    }
+
+    /// Notes where the session began: in the map, and by odometry.
+    pub(super) const fn begin_at(&mut self, home: Pose, driven_to: Point) {
+        (self.home, self.driven_to) = (home, driven_to);
+    }
+
+    /// Notes where the robot is, by odometry.
+    pub(super) fn note_driven(&mut self, to: Point) {
+        self.driven_m += to.distance_m(self.driven_to);
+        self.driven_to = to;
+    }
+
+    /// Returns the way home, metres: as measured last, or back to where that was and on.
+    fn way_home_m(&self) -> f32 {
+        let (way_m, at_m) = self.measured_m;
+        way_m + self.driven_m - at_m
+    }
+
+    /// Notes that a path was planned: the way home may be measured on the same skeleton.
+    pub(super) const fn note_planned(&mut self, config: &Config) {
+        self.is_due = !config.budget.is_empty();
+    }
+
+    /// Returns true once after each path.
+    pub(super) const fn take_due(&mut self) -> bool {
+        core::mem::replace(&mut self.is_due, false)
+    }
+
+    /// Returns true on an errand.
+    pub(super) const fn is_going(&self) -> bool {
+        self.is_going
+    }
+
+    /// Returns the errand on which the robot is.
+    const fn going(&self) -> Option<Going> {
+        if self.is_going { Some(self.last) } else { None }
+    }
+
+    /// Returns the errand on which the robot is.
+    const fn going_mut(&mut self) -> Option<&mut Going> {
+        if self.is_going {
+            Some(&mut self.last)
+        } else {
+            None
+        }
+    }
+
+    /// Returns the heading of the straight way to the goal, radians, while the robot drives it.
+    pub(super) fn straight_rad(&self) -> Option<f32> {
+        self.going()?.straight_rad
+    }
+
+    /// Returns the cell that the robot drives to.
+    pub(super) fn goal(&self) -> Option<Cell> {
+        self.going().map(|going| going.to.cell())
+    }
+
+    /// Moves home and goal with the tiles that they lie in.
+    pub(super) fn correct(&mut self, shifts: Shifts<'_>) {
+        let moved = |point: Point| {
+            let (from, to) = (point.cell(), shifts.moved(point.cell()));
+            Point {
+                x_m: point.x_m + (to.x - from.x) as f32 * CELL_M,
+                y_m: point.y_m + (to.y - from.y) as f32 * CELL_M,
+            }
+        };
+        let Point { x_m, y_m } = moved(self.home.point());
+        self.home = Pose {
+            x_m,
+            y_m,
+            ..self.home
+        };
+        if let Some(going) = self.going_mut() {
+            going.to = moved(going.to);
+        }
+    }
+
+    /// Moves home into the team's coordinates, in which a goal is given already.
+    pub(super) fn turn(&mut self, by: &MapFromOdom) {
+        let MapPose(home) = by.apply(&OdomPose(self.home));
+        self.home = home;
+        if let Some(going) = self.going_mut()
+            && going.errand == Errand::Home
+        {
+            (going.to, going.yaw_rad) = (home.point(), Some(home.yaw_rad));
+        }
+    }
+}
+
+impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
+    /// Returns home: the pose of the first scan, in the map.
+    #[must_use]
+    pub const fn home(&self) -> Pose {
+        self.errands.home
+    }
+
+    /// Takes an order to drive. Returns the status that follows. A robot that is stuck or has
+    /// finished takes it as well.
+    ///
+    /// # Errors
+    /// [`TaskError`]. Nothing has changed then.
+    #[inline(never)]
+    pub fn order(&mut self, config: &Config, task: Task) -> Result<Status, TaskError> {
+        let is_ready = match self.status {
+            Status::NoScan => false,
+            Status::Fault(fault) => !matches!(
+                fault,
+                Fault::StartBlocked | Fault::StartForbidden | Fault::PoseLost
+            ),
+            _ => self.started && !config.survey,
+        };
+        if !is_ready {
+            return Err(TaskError::NotReady);
+        }
+        let (errand, to, yaw_rad) = match task {
+            Task::Explore => {
+                self.plan_anew(None);
+                return Ok(self.status);
+            }
+            Task::Home => {
+                let home = self.errands.home;
+                (Errand::Home, home.point(), Some(home.yaw_rad))
+            }
+            Task::GoTo(to) => (Errand::Goal, to, None),
+        };
+        let is_near = to.x_m.abs() <= MOST_M && to.y_m.abs() <= MOST_M;
+        if !is_near || !self.map.tiles().fence().allows(to.cell()) {
+            return Err(TaskError::BadGoal);
+        }
+        self.plan_anew(Some(Going {
+            errand,
+            to,
+            yaw_rad,
+            is_there: false,
+            straight_rad: None,
+            turned_ms: 0,
+        }));
+        Ok(self.status)
+    }
+
+    /// Sends the robot home if its budget says so.
+    pub(super) fn mind_budget(&mut self, config: &Config, time_ms: u32) {
+        let is_on_the_way = matches!(self.status, Status::Exploring | Status::Going(Errand::Goal));
+        if config.budget.is_empty() || !is_on_the_way {
+            return;
+        }
+        let used = (self.errands.driven_m, time_ms);
+        let way_m = self.errands.way_home_m();
+        if config.budget.is_spent(used, way_m, config.max_linear_mps) {
+            // The robot explores, so it takes the order.
+            let _ = self.order(config, Task::Home);
+        }
+    }
+
+    /// Begins an errand, or goes on exploring. What was begun before is given up.
+    fn plan_anew(&mut self, going: Option<Going>) {
+        self.status = going.map_or(Status::Exploring, |it| Status::Going(it.errand));
+        self.errands.is_going = going.is_some();
+        self.errands.last = going.unwrap_or(self.errands.last);
+        self.strategy.begin_errand();
+        self.viewpoints = viewpoint::Search::new();
+        self.ends = false;
+    }
+
+    /// Ends the errand: the robot is there, or cannot get there.
+    pub(super) fn end_errand(&mut self, arrived: bool) {
+        if let Some(Going { errand, .. }) = self.errands.going() {
+            self.errands.is_going = false;
+            self.status = match arrived {
+                true => Status::Arrived(errand),
+                false => Status::Unreachable(errand),
+            };
+        }
+    }
+
+    /// Returns the heading that needs no window, radians: that of the strategy's own forces, or of
+    /// the straight way to the goal of an errand.
+    pub(super) fn lead_rad(&self) -> Option<f32> {
+        match self.errands.is_going() {
+            true => self.errands.straight_rad(),
+            false => self.strategy.heading_rad(),
+        }
+    }
+}
+
+/// Measures the way home on the published skeleton. Without one the robot knows its track.
+#[inline(never)]
+pub(super) fn measure_way_home<const TILES: usize, const SLOTS: usize>(
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    footprint: &Footprint,
+    input: &Input<'_>,
+) {
+    let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
+    let (residues, queue) = words.split_at_mut(SLOTS * 16);
+    let (residues, _) = residues.as_chunks_mut::<2>();
+    let mut scratch = PlanningScratch {
+        residues,
+        queue,
+        local_grid: &mut workspace.local_grid,
+    };
+    let blocked = state.strategy.frontier.blocked();
+    let centres = Centres::of(&state.skeleton, state.map.tiles(), footprint, blocked);
+    let (robot, home) = (input.pose.point().cell(), state.errands.home.point().cell());
+    let path = centres.and_then(|centres| path_between(robot, home, centres, &mut scratch));
+    if let Some(path) = path {
+        state.errands.measured_m = (path.steps() as f32 * STEP_M, state.errands.driven_m);
+    }
+}
+
+/// Drives the last metre of an errand: straight to the goal, and then to the heading asked for.
+/// Returns `None` as long as the path leads.
+#[inline(never)]
+pub(super) fn approach<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    workspace: &mut Workspace,
+    footprint: &Footprint,
+    input: &Input<'_>,
+) -> Option<Output> {
+    let going = state.errands.going_mut()?;
+    let robot = input.pose.point();
+    let left_m = robot.distance_m(going.to);
+    if !going.is_there {
+        going.turned_ms = input.time_ms;
+    }
+    going.is_there = left_m <= THERE_M || (going.is_there && left_m <= STAYS_M);
+    going.straight_rad = None;
+    if going.is_there {
+        return Some(turn(config, state, input));
+    }
+    let tiles = state.map.tiles();
+    if left_m > STRAIGHT_M || !is_open(robot, going.to, |cell| is_passable(tiles, footprint, cell))
+    {
+        return None;
+    }
+    let lead_rad = math::atan2(going.to.y_m - robot.y_m, going.to.x_m - robot.x_m);
+    going.straight_rad = Some(lead_rad);
+    // The zero command is always safe, so the robot brakes by it.
+    let speed = input.velocity.linear_mps.abs();
+    let stop_m = speed * (config.period_s + 0.5 * speed / config.linear_accel_mps2);
+    if speed > 0.0 && stop_m + 0.5 * THERE_M >= left_m {
+        return Some(Output::default());
+    }
+    Some(steer(config, state, workspace, input, Some(lead_rad)))
+}
+
+/// Returns true if all cells on the way between two points, which are near each other, are open.
+/// The robot may stand nearer to an obstacle than it plans for: its own cell does not count.
+fn is_open(from: Point, to: Point, passable: impl Fn(Cell) -> bool) -> bool {
+    let parts = math::floor(2.0 * from.distance_m(to) / CELL_M) + 1;
+    (1..=parts).all(|k| {
+        let part = k as f32 / parts as f32;
+        let at = Point {
+            x_m: from.x_m + part * (to.x_m - from.x_m),
+            y_m: from.y_m + part * (to.y_m - from.y_m),
+        };
+        at.cell() == from.cell() || passable(at.cell())
+    })
+}
+
+/// Turns to the heading that the errand asks for, on the side where there is room, and ends the
+/// errand once the robot stands.
+fn turn<const TILES: usize, const SLOTS: usize>(
+    config: &Config,
+    state: &mut State<TILES, SLOTS>,
+    input: &Input<'_>,
+) -> Output {
+    let Some(going) = state.errands.going() else {
+        return Output::default();
+    };
+    let wanted = going.yaw_rad.unwrap_or(input.pose.yaw_rad);
+    let error = math::wrap(wanted - input.pose.yaw_rad);
+    if error.abs() <= TURNED_RAD {
+        let stands = input.velocity.linear_mps.abs() < 0.05;
+        if stands && input.velocity.angular_radps.abs() < 0.1 {
+            state.end_errand(true);
+        }
+        return Output::default();
+    }
+    let mut checker = CollisionChecker::empty(&config.robot);
+    obstruct(&mut checker, state, config, input);
+    let (most, least) = TURN_RADPS;
+    let rate = (TURN_GAIN_HZ * error.abs()).clamp(least, most);
+    let sides = [rate.min(most) * error.signum(), -most * error.signum()];
+    // All the way round, or the robot would turn to and fro before what is in the way.
+    let turns = [error, error - math::PI * 2.0 * error.signum()];
+    let mut sides = sides.into_iter().zip(turns);
+    let found = sides.find_map(|(angular_radps, turn_rad)| {
+        let twist = Twist {
+            linear_mps: 0.0,
+            angular_radps,
+        };
+        let is_free = checker.is_arc_clear(Place::default(), 0.0, turn_rad, TURN_MARGIN_M)
+            && checker.admits(twist, input.velocity, config, TURN_MARGIN_M);
+        is_free.then_some(twist)
+    });
+    match (found, state.errands.going_mut()) {
+        (Some(_), Some(going)) => going.turned_ms = input.time_ms,
+        _ if since(input.time_ms, going.turned_ms) > NO_ROOM_MS => state.end_errand(false),
+        _ => {}
+    }
+    Output {
+        velocity: found.unwrap_or_default(),
+        ..Output::default()
+    }
+}
