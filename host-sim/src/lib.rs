@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod baseline;
+pub mod bringup;
 pub mod campaign;
 pub mod link;
 pub mod metrics;

@@ -34,7 +34,9 @@ mod residual;
 mod session;
 mod team;
 
-pub use command::{Command, Cost, Counters, Fault, Finish, InputFaults, Loops, Stages, Status};
+pub use command::{
+    Command, Cost, Counters, Fault, Finish, InputFaults, Loops, Mistake, Stages, Status,
+};
 pub use correction::{
     CORRECTED_BYTES, CORRECTED_TILES, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress,
     MOST_CORRECTED, Motion,

@@ -123,7 +123,7 @@ pub use planner::{
 };
 pub use profiling::{Stage, StageTimer};
 pub use robot::{LaserMount, MAX_BEAMS, RobotShape};
-pub use status::{Fault, Finish, ResidualFrontier, ResidualReason, Status};
+pub use status::{Fault, Finish, Mistake, ResidualFrontier, ResidualReason, Status};
 pub use team::packet::{
     Activity, Beacon, Body, DIGEST_TILES, Digest, Packet, ROAD_POINTS, TeamTile, TileVersion,
     WANTED_TILES, Wanted,

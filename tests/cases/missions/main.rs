@@ -18,3 +18,4 @@ mod replay;
 mod robots;
 mod space;
 mod whole;
+mod wiring;

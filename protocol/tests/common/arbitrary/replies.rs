@@ -2,8 +2,8 @@
 
 use fieldline_protocol::message::{
     Cause, Command, CorrectionProgress, Cost, Counters, Crash, Fault, FieldRow, Finish, Identity,
-    InputFaults, Location, Loops, Parameter, Path, Quality, Refusal, Reply, ResidualFrontier,
-    ResidualReason, Stages, Status, Tile,
+    InputFaults, Location, Loops, Mistake, Parameter, Path, Quality, Refusal, Reply,
+    ResidualFrontier, ResidualReason, Stages, Status, Tile,
 };
 use proptest::prelude::*;
 
@@ -26,6 +26,8 @@ fn status() -> impl Strategy<Value = Status> {
         Fault::Stuck,
         Fault::PoseLost,
         Fault::Trapped,
+        Fault::Miswired(Mistake::ScanMirrored),
+        Fault::Miswired(Mistake::ClockFast),
     ]);
     prop_oneof![
         Just(Status::Idle),
