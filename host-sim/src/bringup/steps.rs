@@ -9,6 +9,7 @@ use fieldline_protocol::message::{
 
 use super::{Bench, Finding, Step, Stopped, config, measure, shift_m, turned_rad};
 use crate::link::Link;
+use crate::robot::wrap;
 use crate::trial::ending::wiring_advice;
 
 /// The quarter turn, radians, and the way, metres.
@@ -128,6 +129,7 @@ fn scan(bench: &mut Bench<'_>) -> Result<Finding, Stopped> {
         .filter(|(_, mm)| **mm != INVALID_MM && **mm < limit_mm);
     let nearest = nearest.min_by_key(|(_, mm)| **mm).map(|(number, mm)| {
         let bearing = laser.first_bearing_rad + f32::from(number) * laser.bearing_step_rad;
+        let bearing = wrap(bearing.into());
         let side = if bearing < 0.0 { "right" } else { "left" };
         let deg = bearing.to_degrees().abs();
         format!(
@@ -235,10 +237,15 @@ fn agrees(one: f64, other: f64) -> bool {
     (AGREES..=1.0 / AGREES).contains(&ratio)
 }
 
+/// What to do where the scan tells nothing.
+const UNDECIDED: &str = "the scan does not tell how the robot moved: put it in a room, with a corner \
+                         in view, and begin again";
+
 /// Judges a quarter turn to the left.
 fn judge_turn(odometry: f64, scan: Option<f64>) -> Option<String> {
     let nothing = 0.1 * QUARTER_RAD;
     let mistake = match scan {
+        None => return Some(UNDECIDED.into()),
         Some(scan) if odometry.abs() < nothing && scan.abs() < nothing => {
             return Some(
                 "the robot does not turn: are the motors powered, does it hear its commands?"
@@ -321,7 +328,12 @@ fn drive(bench: &mut Bench<'_>) -> Result<Finding, Stopped> {
             .zip(part)
             .map(|(sum, part)| [sum[0] + f64::from(part[0]), sum[1] + f64::from(part[1])]);
     }
-    let words = |[ahead, left]: [f64; 2]| format!("{ahead:.2} m ahead and {left:.2} m left");
+    let words = |[ahead, left]: [f64; 2]| {
+        // Adding 0 turns a negative zero into a positive one.
+        let rounded = |metres: f64| (100.0 * metres).round() / 100.0 + 0.0;
+        let (ahead, left) = (rounded(ahead), rounded(left));
+        format!("{ahead:.2} m ahead and {left:.2} m left")
+    };
     let text = format!(
         "command 0.50 m ahead, odometry {}, scan {}",
         words(odometry),
@@ -335,6 +347,7 @@ fn judge_way([ahead, left]: [f64; 2], scan: Option<[f64; 2]>) -> Option<String> 
     let (nothing, odometry) = (0.1 * WAY_M, ahead.hypot(left));
     let length = |[x, y]: [f64; 2]| x.hypot(y);
     let mistake = match scan {
+        None => return Some(UNDECIDED.into()),
         Some(scan) if odometry < nothing && length(scan) < nothing => {
             return Some(
                 "the robot does not drive: are the motors powered, does it hear its commands?"
@@ -410,11 +423,10 @@ mod tests {
     fn two_witnesses_of_a_turn_name_the_third() {
         let quarter = QUARTER_RAD;
         assert_eq!(judge_turn(quarter, Some(0.95 * quarter)), None);
-        assert_eq!(judge_turn(quarter, None), None, "the scan may be undecided");
+        assert!(word(judge_turn(quarter, None), "corner"));
         assert!(word(judge_turn(quarter, Some(-quarter)), "mirrored"));
         assert!(word(judge_turn(-quarter, Some(quarter)), "change its sign"));
         assert!(word(judge_turn(-quarter, Some(-quarter)), "swapped"));
-        assert!(word(judge_turn(-quarter, None), "swapped"));
         assert!(word(judge_turn(0.0, Some(0.0)), "powered"));
         assert!(word(judge_turn(0.0, Some(quarter)), "smaller turn"));
         assert!(word(judge_turn(quarter, Some(0.0)), "repeat"));
@@ -432,7 +444,7 @@ mod tests {
     fn two_witnesses_of_a_way_name_the_third() {
         let way = [WAY_M, 0.0];
         assert_eq!(judge_way(way, Some([0.45, 0.05])), None);
-        assert_eq!(judge_way(way, None), None);
+        assert!(word(judge_way(way, None), "corner"));
         assert!(word(judge_way(way, Some([0.0, 0.5])), "right"));
         assert!(word(judge_way(way, Some([0.0, -0.5])), "to the left"));
         assert!(word(judge_way(way, Some([-0.5, 0.0])), "backwards"));
@@ -444,7 +456,7 @@ mod tests {
             judge_way([-0.5, 0.0], Some([-0.5, 0.0])),
             "motors reversed"
         ));
-        assert!(word(judge_way([500.0, 0.0], None), "millimetres"));
+        assert!(word(judge_way([500.0, 0.0], Some(way)), "millimetres"));
         assert!(word(judge_way([0.0, 0.0], Some([0.5, 0.0])), "shorter way"));
         assert!(word(judge_way(way, Some([0.0, 0.0])), "repeat"));
     }

@@ -25,11 +25,11 @@ pub(super) struct BringupArgs {
     /// World in which the simulated robot stands
     #[arg(long, value_name = "WORLD", default_value = "office")]
     world: String,
-    /// Index of the world's start pose, from 0
+    /// Index of the world's start pose, from 0; that of the default is in a room
     #[arg(
         long,
         value_name = "N",
-        default_value = "0",
+        default_value = "1",
         value_parser = start,
         allow_negative_numbers = true
     )]

@@ -214,30 +214,34 @@ fn nobody_is_accused_who_is_wired_rightly() {
     assert_eq!(accusations(&jobs), "");
 }
 
-#[test]
-#[ignore = "takes minutes: 550 runs; tests/run --full runs it"]
-fn full_nobody_is_accused_who_is_wired_rightly() {
-    let names = [
-        "office",
-        "cave",
-        "loop",
-        "cluttered",
-        "hall",
-        "empty-hall",
-        "narrow-doors",
-        "unreachable-room",
-        "ouroboros-a",
-        "ouroboros-b",
-        "maze:3",
-    ];
-    let worlds = names.map(|name| World::open(name).expect("a world"));
-    // The wide robot does not fit into the maze's cells.
-    let (all, maze) = (&worlds[..10], &worlds[10..]);
-    let mut jobs = healthy(&presets::names(), all, 5);
-    jobs.extend(healthy(
-        &["pioneer-3at", "round-0.35", "turtlebot3-burger"],
-        maze,
-        5,
-    ));
-    assert_eq!(accusations(&jobs), "");
+mod full {
+    use super::*;
+
+    #[test]
+    #[ignore = "takes minutes: 550 runs; tests/run --full runs it"]
+    fn nobody_is_accused_who_is_wired_rightly() {
+        let names = [
+            "office",
+            "cave",
+            "loop",
+            "cluttered",
+            "hall",
+            "empty-hall",
+            "narrow-doors",
+            "unreachable-room",
+            "ouroboros-a",
+            "ouroboros-b",
+            "maze:3",
+        ];
+        let worlds = names.map(|name| World::open(name).expect("a world"));
+        // The wide robot does not fit into the maze's cells.
+        let (all, maze) = (&worlds[..10], &worlds[10..]);
+        let mut jobs = healthy(&presets::names(), all, 5);
+        jobs.extend(healthy(
+            &["pioneer-3at", "round-0.35", "turtlebot3-burger"],
+            maze,
+            5,
+        ));
+        assert_eq!(accusations(&jobs), "");
+    }
 }
