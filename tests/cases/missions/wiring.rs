@@ -19,7 +19,7 @@ use host_sim::trial::mission::{Mission, OdometryProfile};
 use host_sim::world::World;
 
 /// Simulated time of a run, milliseconds.
-const UNTIL_MS: u32 = 40_000;
+const UNTIL_MS: u32 = 30_000;
 /// Mistakes, the words with which a run ends, and if every run must end so.
 const MISTAKES: [(&str, &str, bool); 18] = [
     ("mirrored", "scan-mirrored", true),
@@ -41,14 +41,7 @@ const MISTAKES: [(&str, &str, bool); 18] = [
     ("yaw-times=2", "turn-too-great", false),
     ("yaw-times=0.5", "turn-too-small", false),
 ];
-const WORLDS: [&str; 6] = [
-    "office",
-    "cave",
-    "cluttered",
-    "hall",
-    "rooms:5",
-    "narrow-doors",
-];
+const WORLDS: [&str; 4] = ["office", "cave", "cluttered", "rooms:5"];
 
 /// A run.
 #[derive(Clone)]
@@ -102,14 +95,14 @@ fn mistakes_are_told_in_the_first_metre() {
     let mut jobs = Vec::new();
     for (mistake, ..) in MISTAKES {
         for world in &worlds {
-            jobs.extend((0..2).map(|seed| Job {
+            jobs.push(Job {
                 world,
                 robot: RobotSpec::default(),
                 mistake,
                 odometry: OdometryProfile::Noisy,
                 disturbances: "",
-                seed,
-            }));
+                seed: 0,
+            });
         }
     }
     let results = in_parallel(&jobs, Job::go);
@@ -194,7 +187,7 @@ fn healthy<'a>(robots: &[&str], worlds: &'a [World], seeds: u64) -> Vec<Job<'a>>
 #[test]
 fn nobody_is_accused_who_is_wired_rightly() {
     let worlds = ["office", "cave", "loop", "narrow-doors"].map(worlds::builtin);
-    let mut jobs = healthy(&["pioneer-3at", "round-0.35"], &worlds, 2);
+    let mut jobs = healthy(&["pioneer-3at", "round-0.35"], &worlds, 1);
     for disturbances in [
         "restart@2",
         "slip@2",
@@ -202,14 +195,14 @@ fn nobody_is_accused_who_is_wired_rightly() {
         "dark@1-3",
         "slip@1,dark@3-4",
     ] {
-        jobs.extend((0..2).map(|seed| Job {
+        jobs.push(Job {
             world: &worlds[0],
             robot: RobotSpec::default(),
             mistake: "",
             odometry: OdometryProfile::Noisy,
             disturbances,
-            seed,
-        }));
+            seed: 0,
+        });
     }
     assert_eq!(accusations(&jobs), "");
 }

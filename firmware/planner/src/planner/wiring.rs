@@ -460,7 +460,9 @@ impl Wiring {
         let (turn, way) = (self.turns.agrees(LEAST.0), self.ways.agrees(LEAST.1));
         let turn_ends = (turn && turned == Some(true)) || self.legs.0 >= MOST_LEGS;
         let way_ends = (way && driven == Some(true)) || self.legs.1 >= MOST_LEGS;
-        self.is_over = turn_ends && way_ends;
+        // A clock that is wrong is counted for longer than a short drive takes.
+        let clock_ends = self.standing == 0 && self.racing == 0;
+        self.is_over = turn_ends && way_ends && clock_ends;
         of_turn.or(of_way)
     }
 }
