@@ -211,7 +211,7 @@ mod full {
     use super::*;
 
     #[test]
-    #[ignore = "takes minutes: 550 runs; tests/run --full runs it"]
+    #[ignore = "takes minutes: 530 runs; tests/run --full runs it"]
     fn nobody_is_accused_who_is_wired_rightly() {
         let names = [
             "office",
