@@ -175,7 +175,8 @@ fn stand(bench: &mut Bench<'_>) -> Result<Finding, Stopped> {
     let period_ms = f64::from(last.time_ms.wrapping_sub(first.time_ms)) / reports as f64;
     let due_ms = f64::from(bench.body.period_ms());
     let text = format!(
-        "odometry moved {:.1} mm and {:.2} degrees; the clock goes on by {period_ms:.0} ms a report",
+        "odometry moved {:.1} mm and {:.2} degrees; the clock goes on by {period_ms:.0} ms a \
+         report",
         1e3 * way_m,
         turn_rad.to_degrees()
     );
@@ -238,8 +239,8 @@ fn agrees(one: f64, other: f64) -> bool {
 }
 
 /// What to do where the scan tells nothing.
-const UNDECIDED: &str = "the scan does not tell how the robot moved: put it in a room, with a corner \
-                         in view, and begin again";
+const UNDECIDED: &str = "the scan does not tell how the robot moved: put it in a room, with a \
+                         corner in view, and begin again";
 
 /// Judges a quarter turn to the left.
 fn judge_turn(odometry: f64, scan: Option<f64>) -> Option<String> {
