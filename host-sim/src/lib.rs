@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod baseline;
+pub mod bringup;
 pub mod campaign;
 pub mod fence;
 pub mod link;

@@ -50,6 +50,8 @@ pub struct Simulator<'w> {
     time_ms: u32,
     commanded_ms: u32,
     start_z_m: f64,
+    /// The true pose at the start.
+    first: Pose,
     pose: Pose,
     drive: Drive,
     odometry: Odometry,
@@ -88,16 +90,21 @@ impl<'w> Simulator<'w> {
     pub fn new(world: &'w World, config: SimConfig) -> Result<Self, WorldError> {
         let pose = start_pose(world, &config)?;
         let lidars = config.lidars.iter().zip(SOURCES);
-        let lasers = lidars
+        let mut lasers: Vec<LaserScanner> = lidars
             .map(|(lidar, sources)| {
                 LaserScanner::of(lidar, &config.footprint, config.seed, sources)
             })
             .collect();
+        if let Some(level) = lasers.first_mut() {
+            let wrong = &config.miswiring;
+            level.misplace(wrong.laser_turned_rad, wrong.mirrored);
+        }
         let mut simulator = Self {
             world,
             time_ms: 0,
             commanded_ms: 0,
             start_z_m: pose.z_m,
+            first: pose,
             pose,
             drive: Drive::new(config.limits),
             odometry: Odometry::new(config.odometry, pose, config.seed),
@@ -129,10 +136,11 @@ impl<'w> Simulator<'w> {
 
     /// Measures an observation. Every call draws new noise.
     pub fn observe(&mut self) -> Observation {
+        let miswiring = self.config.miswiring;
         let mut observation = Observation {
             time_ms: self.time_ms,
             pose: self.told_pose().to_wire(),
-            velocity: self.odometry.velocity().to_wire(),
+            velocity: miswiring.measured(self.odometry.velocity()).to_wire(),
             ..Observation::default()
         };
         for laser in 0..self.lasers.len() {
@@ -148,12 +156,15 @@ impl<'w> Simulator<'w> {
             // The vector holds two scans, and there are at most two lasers.
             let _ = observation.scans.push(scan);
         }
+        miswiring.spoil(&mut observation);
         observation
     }
 
     /// Returns the pose that odometry tells: once it began anew, the motion since then.
     fn told_pose(&mut self) -> Pose {
         let pose = self.above_start(self.odometry.pose());
+        let first = self.above_start(&self.first);
+        let pose = self.config.miswiring.told(pose, &first);
         if !self.config.disturbances.has_restarted(self.time_ms) {
             return pose;
         }
@@ -196,7 +207,8 @@ impl<'w> Simulator<'w> {
     /// Takes the command of a period.
     fn begin_period(&mut self, command: Option<Twist>) {
         if let Some(twist) = command {
-            self.drive.command(twist.into());
+            self.drive
+                .command(self.config.miswiring.heard(twist.into()));
             self.commanded_ms = self.time_ms;
         }
         self.wheels = [0.0; 2];

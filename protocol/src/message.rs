@@ -35,7 +35,7 @@ mod session;
 mod team;
 
 pub use command::{
-    Command, Cost, Counters, Errand, Fault, Finish, InputFaults, Loops, Stages, Status,
+    Command, Cost, Counters, Errand, Fault, Finish, InputFaults, Loops, Mistake, Stages, Status,
 };
 pub use correction::{
     CORRECTED_BYTES, CORRECTED_TILES, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress,

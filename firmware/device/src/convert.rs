@@ -318,7 +318,31 @@ pub fn wire_status(status: planner::Status) -> wire::Status {
             planner::Fault::PoseLost => wire::Fault::PoseLost,
             planner::Fault::Trapped => wire::Fault::Trapped,
             planner::Fault::StartForbidden => wire::Fault::StartForbidden,
+            planner::Fault::Miswired(mistake) => wire::Fault::Miswired(wire_mistake(mistake)),
         }),
+    }
+}
+
+const fn wire_mistake(mistake: planner::Mistake) -> wire::Mistake {
+    use planner::Mistake;
+    match mistake {
+        Mistake::ScanMirrored => wire::Mistake::ScanMirrored,
+        Mistake::LaserTurnedLeft => wire::Mistake::LaserTurnedLeft,
+        Mistake::LaserTurnedBack => wire::Mistake::LaserTurnedBack,
+        Mistake::LaserTurnedRight => wire::Mistake::LaserTurnedRight,
+        Mistake::ScanStands => wire::Mistake::ScanStands,
+        Mistake::YawReversed => wire::Mistake::YawReversed,
+        Mistake::WayReversed => wire::Mistake::WayReversed,
+        Mistake::TurnsReversed => wire::Mistake::TurnsReversed,
+        Mistake::DriveReversed => wire::Mistake::DriveReversed,
+        Mistake::WayTooLong => wire::Mistake::WayTooLong,
+        Mistake::WayTooShort => wire::Mistake::WayTooShort,
+        Mistake::TurnTooGreat => wire::Mistake::TurnTooGreat,
+        Mistake::TurnTooSmall => wire::Mistake::TurnTooSmall,
+        Mistake::RangesTooShort => wire::Mistake::RangesTooShort,
+        Mistake::LasersSwapped => wire::Mistake::LasersSwapped,
+        Mistake::ClockStands => wire::Mistake::ClockStands,
+        Mistake::ClockFast => wire::Mistake::ClockFast,
     }
 }
 

@@ -128,7 +128,7 @@ pub use planner::{
 };
 pub use profiling::{Stage, StageTimer};
 pub use robot::{LaserMount, MAX_BEAMS, RobotShape};
-pub use status::{Errand, Fault, Finish, ResidualFrontier, ResidualReason, Status};
+pub use status::{Errand, Fault, Finish, Mistake, ResidualFrontier, ResidualReason, Status};
 pub use team::packet::{
     Activity, Beacon, Body, DIGEST_TILES, Digest, Packet, ROAD_POINTS, TeamTile, TileVersion,
     WANTED_TILES, Wanted,

@@ -31,6 +31,10 @@ mod sight;
 mod state;
 mod steer;
 mod team;
+#[cfg(not(feature = "internals"))]
+mod wiring;
+#[cfg(feature = "internals")]
+pub mod wiring;
 mod workspace;
 
 pub use correction::{CorrectedTile, Correction, CorrectionError, CorrectionProgress};
@@ -132,6 +136,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     input: Input<'_>,
     timer: &mut impl StageTimer,
 ) -> Output {
+    let host_ms = input.time_ms;
     let input = match state.door.admit(config, &input) {
         Ok(input) => input,
         Err(error) => {
@@ -145,6 +150,12 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         // The last session's field is no start of this one's.
         workspace.window_at = None;
     }
+    let told = (host_ms, state.door.faults().jumps);
+    if let Some(mistake) = state.wiring.watch(config, &input, told)
+        && state.status.goes_on()
+    {
+        state.status = Status::Fault(Fault::Miswired(mistake));
+    }
     let pose = state.team.to_map(&input.pose);
     let input = Input { pose, ..input };
     let MapPose(corrected) = state.localiser.to_map(&OdomPose(pose));
@@ -154,6 +165,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     if state.correcting.is_open() {
         state.strategy.frontier.hold(config.period_ms());
         state.drive.tell(Twist::default());
+        state.wiring.tell(Twist::default());
         return Output::standing(state.status);
     }
     let output = match state.team.take_motion(&mut state.map) {
@@ -165,6 +177,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     };
     let velocity = commanded(config, state.status, output.velocity);
     state.drive.tell(velocity);
+    state.wiring.tell(velocity);
     Output {
         velocity,
         status: state.status,

@@ -89,6 +89,56 @@ pub enum Fault {
     Trapped,
     /// The robot started with a part of its hull where the fence forbids it to be.
     StartForbidden,
+    /// Command, odometry, scan and clock contradict each other in the first metre or the first
+    /// quarter turn.
+    Miswired(Mistake),
+}
+
+/// What a first day with a robot may have wrong. A laser is *turned* if it looks elsewhere than its
+/// mount says, or if another laser's scan stands in its place.
+///
+/// ```
+/// use fieldline_planner::Mistake;
+///
+/// let told = Mistake::ScanMirrored.to_string();
+/// assert_eq!(told, "the scan turns against the odometry: is it mirrored?");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mistake {
+    /// The scan turns against odometry and command.
+    ScanMirrored,
+    /// The laser looks 90° to the left of where its mount says.
+    LaserTurnedLeft,
+    /// The laser looks 180° away from where its mount says.
+    LaserTurnedBack,
+    /// The laser looks 90° to the right of where its mount says.
+    LaserTurnedRight,
+    /// The scan does not change although odometry moves.
+    ScanStands,
+    /// Odometry turns against command and scan.
+    YawReversed,
+    /// Odometry drives against command and scan.
+    WayReversed,
+    /// Odometry and scan turn against the command.
+    TurnsReversed,
+    /// Odometry and scan drive against the command.
+    DriveReversed,
+    /// Odometry counts twice the way of the scan, or far more than the robot can drive.
+    WayTooLong,
+    /// Odometry counts half the way of the scan, or nothing.
+    WayTooShort,
+    /// Odometry counts twice the turn of the scan.
+    TurnTooGreat,
+    /// Odometry counts half the turn of the scan, or nothing.
+    TurnTooSmall,
+    /// Every range is below a thousandth of the laser's greatest one.
+    RangesTooShort,
+    /// The level laser sees the ground that the tilted one should see.
+    LasersSwapped,
+    /// The host's clock does not go on.
+    ClockStands,
+    /// The host's clock goes on fifty periods or more from report to report.
+    ClockFast,
 }
 
 /// The reason why a frontier was left.
@@ -164,6 +214,7 @@ impl fmt::Display for Finish {
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
+            Self::Miswired(mistake) => return mistake.fmt(f),
             Self::StartBlocked => "the robot started inside an obstacle",
             Self::MapFull => "the map is full",
             Self::OutOfBox => "a path leads out of the map's range",
@@ -171,6 +222,30 @@ impl fmt::Display for Fault {
             Self::PoseLost => "the robot does not know where it is",
             Self::Trapped => "the forces lead nowhere",
             Self::StartForbidden => "the robot started where it must not be",
+        })
+    }
+}
+
+impl fmt::Display for Mistake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::ScanMirrored => "the scan turns against the odometry: is it mirrored?",
+            Self::LaserTurnedLeft => "the laser seems turned by 90 degrees to the left",
+            Self::LaserTurnedBack => "the laser seems turned by 180 degrees",
+            Self::LaserTurnedRight => "the laser seems turned by 90 degrees to the right",
+            Self::ScanStands => "the scan stands while the odometry moves",
+            Self::YawReversed => "the odometry turns against command and scan",
+            Self::WayReversed => "the odometry drives against command and scan",
+            Self::TurnsReversed => "the robot turns against the command",
+            Self::DriveReversed => "the robot drives against the command",
+            Self::WayTooLong => "the odometry counts too long a way",
+            Self::WayTooShort => "the odometry counts too short a way",
+            Self::TurnTooGreat => "the odometry counts too great a turn",
+            Self::TurnTooSmall => "the odometry counts too small a turn",
+            Self::RangesTooShort => "all ranges are a few millimetres",
+            Self::LasersSwapped => "the two lasers seem swapped",
+            Self::ClockStands => "the clock stands",
+            Self::ClockFast => "the clock runs too fast",
         })
     }
 }

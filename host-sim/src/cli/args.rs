@@ -11,12 +11,13 @@ use host_sim::fence::Polygon;
 use host_sim::link::fault::{Faults, FaultsError};
 use host_sim::link::spec::LinkSpec;
 use host_sim::network::spec::TeamSpec;
-use host_sim::robot::{Disturbances, Limits};
+use host_sim::robot::{Disturbances, Limits, Miswiring};
 use host_sim::slam::SlamPlace;
 use host_sim::slam::particles::ParticleSpec;
 use host_sim::trial::mission::OdometryProfile;
 use host_sim::trial::space::Area;
 
+use super::bringup::BringupArgs;
 use super::campaign::CampaignArgs;
 use super::replay::ReplayArgs;
 use super::robot::RobotArgs;
@@ -41,6 +42,9 @@ pub(super) struct Cli {
 pub(super) enum Command {
     /// Explore worlds; write a folder with report, map, trajectory, commands and picture of each
     Explore(Box<ExploreArgs>),
+    /// Bring up a device and its robot in six steps, each with what to do, what is seen and the
+    /// remedy
+    Bringup(BringupArgs),
     /// Compare strategies, worlds and options over starts and seeds; write every trial, tables and
     /// plots into a folder, and go on there after a kill
     Campaign(Box<CampaignArgs>),
@@ -251,6 +255,11 @@ pub(super) struct ExploreArgs {
     /// slip@60,spin@70-73,push@80-83,dark@90-92,missing=0.3
     #[arg(long, value_name = "SPEC")]
     pub(super) disturb: Option<Disturbances>,
+    /// What is wired wrongly, one or more of mirrored, laser-turned=DEG, lasers-swapped, yaw-sign,
+    /// way-sign, wheels-swapped, reversed, millimetres, odometry-times=F, yaw-times=F,
+    /// ranges-times=F, clock-stands, clock-times=F
+    #[arg(long, value_name = "SPEC")]
+    pub(super) miswire: Option<Miswiring>,
     /// Number of people who walk about, 0 to 50, on flat ground
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = people)]
     pub(super) people: usize,
@@ -325,6 +334,7 @@ impl Default for ExploreArgs {
             team: None,
             fault: None,
             disturb: None,
+            miswire: None,
             people: 0,
             check_field: false,
             resume: false,

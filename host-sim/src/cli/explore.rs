@@ -258,6 +258,13 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     if args.particles.is_some() && uneven_ground.is_some() {
         bail!("--particles takes level scans; leave it out, or say --ground flat");
     }
+    if args.miswire.is_some() && on_device(&args.strategy).is_none() {
+        bail!(
+            "--miswire is noticed by a device, and --strategy {} runs on the host; take a strategy \
+             on the device, or leave --miswire out",
+            args.strategy
+        );
+    }
     let disturbances = args.disturb.unwrap_or_default();
     if disturbances.needs_wheels() && odometry == OdometryArg::Truth {
         bail!(
@@ -267,6 +274,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     }
     Ok(args.robot.applied(Mission {
         disturbances,
+        miswiring: args.miswire.unwrap_or_default(),
         people: args.people,
         order: args.robot.order(&args.strategy)?,
         strategy: args.strategy.clone(),

@@ -7,6 +7,7 @@
 //! text, or with `--json` one JSON object a line.
 
 mod args;
+mod bringup;
 mod campaign;
 mod explore;
 mod made_by;
@@ -70,6 +71,7 @@ fn run(cli: &Cli) -> Result<bool> {
     match &cli.command {
         None => explore::run(&ExploreArgs::default()),
         Some(Command::Explore(args)) => explore::run(args),
+        Some(Command::Bringup(args)) => bringup::run(args),
         Some(Command::Campaign(args)) => campaign::run(args),
         Some(Command::Team(args)) => team::run(args),
         Some(Command::Replay(args)) => replay::run(args),

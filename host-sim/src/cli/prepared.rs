@@ -106,7 +106,11 @@ impl Prepared {
 }
 
 /// Says hello until the board answers, for some time. A board that still boots hears nothing.
-fn await_board(planner: &mut dyn Link, port: &str, wait: Duration) -> Result<(), LinkError> {
+pub(super) fn await_board(
+    planner: &mut dyn Link,
+    port: &str,
+    wait: Duration,
+) -> Result<(), LinkError> {
     let begun = Instant::now();
     let mut is_told = false;
     loop {

@@ -90,6 +90,9 @@ pub struct Report {
     /// Faults of wheels and lasers, as given to `--disturb`; the key is missing without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disturbances: Option<String>,
+    /// Wiring mistakes, as given to `--miswire`; the key is missing without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub miswiring: Option<String>,
     /// Number of people who walk about, as given to `--people`; the key is missing without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub people: Option<usize>,

@@ -130,6 +130,16 @@ impl LaserScanner {
         self.sectors.laser()
     }
 
+    /// Mirrors the beams at the axis ahead, and turns them to the left, radians. What is announced
+    /// stays as it is.
+    pub fn misplace(&mut self, turn_rad: f64, is_mirrored: bool) {
+        let (sin, cos) = (libm::sin(turn_rad), libm::cos(turn_rad));
+        for [x, y, _] in &mut self.directions {
+            let side = if is_mirrored { -*y } else { *y };
+            [*x, *y] = [cos * *x - sin * side, sin * *x + cos * side];
+        }
+    }
+
     /// Measures one sweep from a pose.
     pub fn scan(&mut self, world: &World, pose: &Pose) -> Scan {
         self.scan_among(world, |_, _| None, pose)

@@ -2,8 +2,8 @@
 
 use crate::fence::Fence;
 use crate::robot::{
-    Disturbances, DriveLimits, Footprint, Lidar, Limits, OdometryModel, RADIUS_M, Traction,
-    usual_lidars,
+    Disturbances, DriveLimits, Footprint, Lidar, Limits, Miswiring, OdometryModel, RADIUS_M,
+    Traction, usual_lidars,
 };
 use crate::world::Start;
 
@@ -22,6 +22,8 @@ pub struct SimConfig {
     pub lidars: Vec<Lidar>,
     /// Faults of wheels and lasers. Default: none.
     pub disturbances: Disturbances,
+    /// Wiring mistakes. Default: none.
+    pub miswiring: Miswiring,
     /// Number of people who walk about. Default: 0.
     pub people: usize,
     /// The robot's hull. Default: a Pioneer 3-AT.
@@ -55,6 +57,7 @@ impl Default for SimConfig {
             odometry: OdometryModel::Truth,
             lidars: usual_lidars(),
             disturbances: Disturbances::default(),
+            miswiring: Miswiring::default(),
             people: 0,
             footprint: Footprint::PIONEER_3AT,
             radius_m: RADIUS_M,

@@ -22,8 +22,8 @@ use crate::report::Report;
 use crate::report::tum::Stamped;
 use crate::robot::presets::DEFAULT;
 use crate::robot::{
-    Disturbances, DriveLimits, Footprint, Lidar, Limits, OdometryModel, OdometryNoise, RADIUS_M,
-    RobotSpec, usual_lidars,
+    Disturbances, DriveLimits, Footprint, Lidar, Limits, Miswiring, OdometryModel, OdometryNoise,
+    RADIUS_M, RobotSpec, usual_lidars,
 };
 use crate::sim::{SimConfig, Simulator};
 use crate::slam::particles::{Beside, ParticleSpec};
@@ -68,6 +68,8 @@ pub struct Mission {
     pub laser_m: Option<f64>,
     /// Faults of wheels and lasers.
     pub disturbances: Disturbances,
+    /// Wiring mistakes of the robot.
+    pub miswiring: Miswiring,
     /// Number of people who walk about.
     pub people: usize,
     /// Name of the robot, for the report.
@@ -134,6 +136,7 @@ impl Default for Mission {
             imu_rad: None,
             laser_m: None,
             disturbances: Disturbances::default(),
+            miswiring: Miswiring::default(),
             people: 0,
             robot: DEFAULT.into(),
             drive: DriveLimits::default(),
@@ -338,7 +341,8 @@ impl Mission {
     }
 
     /// Returns the simulator's configuration.
-    pub(super) fn sim_config(&self) -> SimConfig {
+    #[must_use]
+    pub fn sim_config(&self) -> SimConfig {
         let mut lidars = self.lidars.clone();
         for lidar in &mut lidars {
             lidar.noise.sigma_m = self.laser_m.unwrap_or(lidar.noise.sigma_m);
@@ -359,6 +363,7 @@ impl Mission {
             lidars,
             limits: self.drive,
             disturbances: self.disturbances,
+            miswiring: self.miswiring,
             people: self.people,
             footprint: self.hull,
             radius_m: self.radius_m,

@@ -55,6 +55,7 @@ pub(super) fn report(
         injected_faults: mission.fault.clone(),
         robot_name: Some(mission.robot.clone()).filter(|name| name != DEFAULT),
         disturbances: disturbances(mission),
+        miswiring: miswiring(mission),
         people: Some(mission.people).filter(|count| *count > 0),
         noise: noise(simulator.config()),
         world_notes: world.notes().to_vec(),
@@ -87,6 +88,11 @@ pub(super) fn report(
             .as_ref()
             .map(|it| it.report(account.coverage.fraction())),
     }
+}
+
+/// Returns the wiring mistakes, as on the command line; `None` without any.
+fn miswiring(mission: &Mission) -> Option<String> {
+    Some(mission.miswiring.to_string()).filter(|text| !text.is_empty())
 }
 
 /// Returns the disturbances, as on the command line; `None` without any.

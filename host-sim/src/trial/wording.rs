@@ -1,7 +1,7 @@
 //! Words for the wire's enums in reports, tables and progress lines. They are part of the schema.
 
 use fieldline_protocol::message::{
-    Errand, Fault, Finish, Order, Preference, ResidualReason, Status,
+    Errand, Fault, Finish, Mistake, Order, Preference, ResidualReason, Status,
 };
 
 /// Returns `exploring`, `finished(explored)`, `fault(stuck)` ...
@@ -54,6 +54,31 @@ pub fn fault(fault: Fault) -> &'static str {
         Fault::PoseLost => "pose-lost",
         Fault::Trapped => "trapped",
         Fault::StartForbidden => "start-forbidden",
+        Fault::Miswired(what) => mistake(what),
+    }
+}
+
+/// Returns what is wired wrongly.
+#[must_use]
+pub fn mistake(mistake: Mistake) -> &'static str {
+    match mistake {
+        Mistake::ScanMirrored => "scan-mirrored",
+        Mistake::LaserTurnedLeft => "laser-turned-left",
+        Mistake::LaserTurnedBack => "laser-turned-back",
+        Mistake::LaserTurnedRight => "laser-turned-right",
+        Mistake::ScanStands => "scan-stands",
+        Mistake::YawReversed => "yaw-reversed",
+        Mistake::WayReversed => "way-reversed",
+        Mistake::TurnsReversed => "turns-reversed",
+        Mistake::DriveReversed => "drive-reversed",
+        Mistake::WayTooLong => "way-too-long",
+        Mistake::WayTooShort => "way-too-short",
+        Mistake::TurnTooGreat => "turn-too-great",
+        Mistake::TurnTooSmall => "turn-too-small",
+        Mistake::RangesTooShort => "ranges-too-short",
+        Mistake::LasersSwapped => "lasers-swapped",
+        Mistake::ClockStands => "clock-stands",
+        Mistake::ClockFast => "clock-fast",
     }
 }
 

@@ -93,6 +93,48 @@ pub enum Fault {
     Trapped,
     /// The robot started with a part of its hull where the fence forbids it to be.
     StartForbidden,
+    /// Command, odometry, scan and clock contradict each other in the first metre or the first
+    /// quarter turn.
+    Miswired(Mistake),
+}
+
+/// What a first day with a robot may have wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub enum Mistake {
+    /// The scan turns against odometry and command.
+    ScanMirrored,
+    /// The laser looks 90° to the left of where its mount says.
+    LaserTurnedLeft,
+    /// The laser looks 180° away from where its mount says.
+    LaserTurnedBack,
+    /// The laser looks 90° to the right of where its mount says.
+    LaserTurnedRight,
+    /// The scan does not change although odometry moves.
+    ScanStands,
+    /// Odometry turns against command and scan.
+    YawReversed,
+    /// Odometry drives against command and scan.
+    WayReversed,
+    /// Odometry and scan turn against the command.
+    TurnsReversed,
+    /// Odometry and scan drive against the command.
+    DriveReversed,
+    /// Odometry counts twice the way of the scan, or far more than the robot can drive.
+    WayTooLong,
+    /// Odometry counts half the way of the scan, or nothing.
+    WayTooShort,
+    /// Odometry counts twice the turn of the scan.
+    TurnTooGreat,
+    /// Odometry counts half the turn of the scan, or nothing.
+    TurnTooSmall,
+    /// Every range is below a thousandth of the laser's greatest one.
+    RangesTooShort,
+    /// The level laser sees the ground that the tilted one should see.
+    LasersSwapped,
+    /// The host's clock does not go on.
+    ClockStands,
+    /// The host's clock goes on fifty periods or more from report to report.
+    ClockFast,
 }
 
 /// Counters of the device since its boot.

@@ -4,8 +4,8 @@ use fieldline_protocol::SCHEMA;
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::message::{
     Cause, Command, Cost, Counters, Crash, Errand, Fault, FieldRow, Finish, Identity, InputFaults,
-    Location, Loops, Parameter, Path, Quality, Refusal, Reply, ResidualFrontier, ResidualReason,
-    Stages, Status, TILE_BYTES, TILE_SKELETON_BYTES, Tile, Twist,
+    Location, Loops, Mistake, Parameter, Path, Quality, Refusal, Reply, ResidualFrontier,
+    ResidualReason, Stages, Status, TILE_BYTES, TILE_SKELETON_BYTES, Tile, Twist,
 };
 
 use super::common::replies;
@@ -86,6 +86,14 @@ fn reply_control_with_every_status() {
         (Status::Fault(Fault::PoseLost), &[2, 5, 5]),
         (Status::Fault(Fault::Trapped), &[2, 5, 6]),
         (Status::Fault(Fault::StartForbidden), &[2, 5, 7]),
+        (
+            Status::Fault(Fault::Miswired(Mistake::ScanMirrored)),
+            &[2, 5, 8, 0],
+        ),
+        (
+            Status::Fault(Fault::Miswired(Mistake::ClockFast)),
+            &[2, 5, 8, 16],
+        ),
         (Status::NoScan, &[2, 6]),
         (Status::Going(Errand::Home), &[2, 7, 0]),
         (Status::Going(Errand::Goal), &[2, 7, 1]),

@@ -20,3 +20,4 @@ mod robots;
 mod space;
 mod starts;
 mod whole;
+mod wiring;

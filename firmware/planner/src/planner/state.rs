@@ -8,6 +8,7 @@ use super::correction::Correcting;
 use super::door::Door;
 use super::errand::Errands;
 use super::ground_model::GroundModel;
+use super::wiring::Wiring;
 use super::workspace::{RING, SCRATCH};
 use crate::config::{Config, Order};
 use crate::drive::side_slope::SlopeDirection;
@@ -32,6 +33,8 @@ use crate::team::Team;
 pub struct State<const TILES: usize, const SLOTS: usize> {
     /// What the host reported, checked.
     pub(super) door: Door,
+    /// The check of the first moves.
+    pub(super) wiring: Wiring,
     pub(super) localiser: Localiser,
     pub(super) map: Map<TILES, SLOTS>,
     /// All that differs between flat and uneven ground.
@@ -87,6 +90,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let () = Self::CHECK;
         Self {
             door: Door::new(),
+            wiring: Wiring::new(),
             localiser: Localiser::new(),
             map: Map::new(),
             ground: GroundModel::new(),
@@ -112,6 +116,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// Forgets everything and begins a session with `config`.
     pub fn reset(&mut self, config: &Config) {
         self.door = Door::new();
+        put(&mut self.wiring, Wiring::new);
         put(&mut self.localiser, Localiser::new);
         self.map.begin(config);
         put(&mut self.preferences, Preferences::new);

@@ -55,6 +55,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let Ok(input) = &self.door.admit(config, input) else {
             return;
         };
+        self.wiring.release();
         let odom = OdomPose(self.team.to_map(&input.pose));
         let MapPose(pose) = self.localiser.to_map(&odom);
         let motion = (&pose, input.velocity);

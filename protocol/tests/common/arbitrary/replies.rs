@@ -2,7 +2,7 @@
 
 use fieldline_protocol::message::{
     Cause, Command, CorrectionProgress, Cost, Counters, Crash, Errand, Fault, FieldRow, Finish,
-    Identity, InputFaults, Location, Loops, Parameter, Path, Quality, Refusal, Reply,
+    Identity, InputFaults, Location, Loops, Mistake, Parameter, Path, Quality, Refusal, Reply,
     ResidualFrontier, ResidualReason, Stages, Status, Tile,
 };
 use proptest::prelude::*;
@@ -27,6 +27,8 @@ fn status() -> impl Strategy<Value = Status> {
         Fault::PoseLost,
         Fault::Trapped,
         Fault::StartForbidden,
+        Fault::Miswired(Mistake::ScanMirrored),
+        Fault::Miswired(Mistake::ClockFast),
     ]);
     let errand = prop::sample::select(vec![Errand::Home, Errand::Goal]);
     prop_oneof![
