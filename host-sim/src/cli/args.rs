@@ -44,7 +44,7 @@ pub(super) enum Command {
     Explore(Box<ExploreArgs>),
     /// Bring up a device and its robot in six steps, each with what to do, what is seen and the
     /// remedy
-    Bringup(BringupArgs),
+    Bringup(Box<BringupArgs>),
     /// Compare strategies, worlds and options over starts and seeds; write every trial, tables and
     /// plots into a folder, and go on there after a kill
     Campaign(Box<CampaignArgs>),
@@ -233,7 +233,7 @@ pub(super) struct ExploreArgs {
     /// out/WORLD-STRATEGY-SEED, on uneven ground out/WORLD-STRATEGY-uneven-SEED]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Replace the run of the folder, though it was made with other options
+    /// Replace the run of the folder --out, though it was made with other options
     #[arg(long)]
     pub(super) force: bool,
     /// Run no faster than real time

@@ -108,7 +108,7 @@ fn runs(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Run>> {
                 Some(out) => out.join(name),
                 None => Path::new("out").join(name),
             };
-            if !args.force {
+            if args.out.is_some() && !args.force {
                 made_by.may_replace(&folder).map_err(Error::msg)?;
             }
             Ok(Run {

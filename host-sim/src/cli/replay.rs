@@ -88,7 +88,7 @@ pub(super) struct ReplayArgs {
     /// Folder of the replay [default: out/LOG-replay-SEED]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace the run of the folder, though it was made with other options
+    /// Replace the run of the folder --out, though it was made with other options
     #[arg(long)]
     force: bool,
     #[command(flatten)]
@@ -126,7 +126,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     let interrupt = Interrupt::listen()?;
     let robot = args.robot.as_ref().map_or("", |robot| &robot.name);
     let made_by = made_by::of_run(robot, &[]);
-    if !args.force {
+    if args.out.is_some() && !args.force {
         made_by.may_replace(&folder).map_err(Error::msg)?;
     }
     folder::make(&folder)?;

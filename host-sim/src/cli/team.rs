@@ -122,7 +122,7 @@ pub(super) struct TeamArgs {
     /// Folder of the run [default: out/WORLD-STRATEGY-team-ROBOTS-SEED]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace the run of the folder, though it was made with other options
+    /// Replace the run of the folder --out, though it was made with other options
     #[arg(long)]
     force: bool,
     /// Run no faster than real time
@@ -174,7 +174,7 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
     });
     let own = [("world", args.world.clone())];
     let made_by = made_by::of_run(&team.mission.robot, &own);
-    if !args.force {
+    if args.out.is_some() && !args.force {
         made_by.may_replace(&folder).map_err(Error::msg)?;
     }
     folder::prepare(&folder)?;

@@ -136,7 +136,7 @@ fn the_enhanced_field_leads_where_the_plain_one_fails() {
                 world: &world,
                 until_permille: paper.until_permille,
                 strategy,
-                impatience_s: NEVER,
+                impatience_s: None,
                 tuning: &Tuning::DEFAULT,
                 seed: 0,
             })

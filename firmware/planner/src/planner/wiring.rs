@@ -321,9 +321,7 @@ impl Wiring {
     fn odometry(&mut self, config: &Config, input: &Input<'_>, jumps: u32) -> Option<Mistake> {
         let last = self.last.replace((input.time_ms, input.pose));
         let jumped = jumps != core::mem::replace(&mut self.jumps.0, jumps);
-        let Some((last_ms, last)) = last else {
-            return None;
-        };
+        let (last_ms, last) = last?;
         let [before, told] = self.told;
         let elapsed_ms = since(input.time_ms, last_ms).min(2 * config.period_ms());
         let elapsed_s = elapsed_ms as f32 * 1e-3;
