@@ -9,9 +9,9 @@
 //!  any ──Home, GoTo──► Going ──planner──► Arrived / Unreachable          ──Explore──► Exploring
 //! ```
 //!
-//! Only in Exploring and Going does an observation step the planner, and only then may a command move the
-//! robot. The emergency stop is latched: releasing the input does not end it, and neither does a
-//! new observation. Only Resume or Start from the host ends it, and only when the input is
+//! Only in Exploring and Going does an observation step the planner, and only then may a command
+//! move the robot. The emergency stop is latched: releasing the input does not end it, and neither
+//! does a new observation. Only Resume or Start from the host ends it, and only when the input is
 //! released. After Resume the session explores, also if it was paused before the stop. A session
 //! that had ended stays ended.
 //!

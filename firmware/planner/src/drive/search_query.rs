@@ -37,8 +37,8 @@ pub struct SearchQuery<'a, H> {
     pub squeezes: bool,
     /// The robot goes through no gap that leaves it little clearance.
     pub is_careful: bool,
-    /// The robot has just started, and a turn on the spot would sweep what it has not seen: it drives
-    /// straight ahead if it can.
+    /// The robot has just started, and a turn on the spot would sweep what it has not seen: it
+    /// drives straight ahead if it can.
     pub is_surrounded: bool,
     /// The lane that the robot follows instead of the field.
     pub(super) lane: Option<Lane>,

@@ -39,9 +39,10 @@
 //! | what it felt when it turned | 0 | 1 |
 //!
 //! An *unseen* point lies beside the hull of a robot that starts. Nothing tells that there is room:
-//! the robot may stand on its dock, or in a corner. So it drives straight ahead, where the laser has
-//! looked, until a turn on the spot sweeps no unseen point. Unseen points go as others do: when a beam passes or the robot leaves them
-//! behind. A robot that is wedged among them removes them, because it has to try.
+//! the robot may stand on its dock, or in a corner. So it drives straight ahead, where the laser
+//! has looked, until a turn on the spot sweeps no unseen point. Unseen points go as others do: when
+//! a beam passes or the robot leaves them behind. A robot that is wedged among them removes them,
+//! because it has to try.
 //!
 //! Invariants: at most `MAX_POINTS` points, of which the farthest gives way; as many counts as
 //! points.
@@ -64,8 +65,8 @@ pub(crate) const MAX_POINTS: usize = 256;
 const FELT: u8 = 0;
 /// The count of an unseen point: more than any number of returns.
 const UNSEEN: u8 = u8::MAX;
-/// Distance of an unseen point from the hull, metres. A robot with less room cannot move off without
-/// a touch.
+/// Distance of an unseen point from the hull, metres. A robot with less room cannot move off
+/// without a touch.
 const UNSEEN_M: f32 = 0.03;
 /// Greatest distance between two unseen points, metres.
 const UNSEEN_EVERY_M: f32 = 0.05;
@@ -200,8 +201,8 @@ impl ObstaclePoints {
         felt.for_each(|point| self.insert(centre, point, FELT));
     }
 
-    /// Removes the points of a trap, and the unseen ones that surround a robot at `pose`. Returns true
-    /// if there were any.
+    /// Removes the points of a trap, and the unseen ones that surround a robot at `pose`. Returns
+    /// true if there were any.
     pub(crate) fn open_trap(&mut self, pose: &Pose, robot: &RobotShape) -> bool {
         let is_trap = core::mem::replace(&mut self.is_trap, false);
         let is_surrounded = self.is_surrounded(pose, robot);

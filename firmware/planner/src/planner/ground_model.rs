@@ -142,8 +142,8 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
-    /// Opens the trap of what a turning robot at `odom` felt on all sides, or of what was never seen
-    /// around it. Returns true if there was one.
+    /// Opens the trap of what a turning robot at `odom` felt on all sides, or of what was never
+    /// seen around it. Returns true if there was one.
     pub(super) fn open_trap(&mut self, odom: &OdomPose, robot: &RobotShape) -> bool {
         match self {
             Self::Flat(points) => points.open_trap(&odom.0, robot),
