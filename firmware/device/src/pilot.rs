@@ -155,11 +155,10 @@ impl Pilot {
         memory: &mut Memory<'_, TILES, SLOTS>,
         control: &Control,
     ) -> Result<(), Refusal> {
+        let config = self.config.as_ref().ok_or(Refusal::NotStarted)?;
         let is_stopped = self.planned == Status::Finished(Finish::Stopped);
-        let config = self.config.as_ref().filter(|_| !is_stopped);
-        let (config, task) = config
-            .zip(convert::task(control))
-            .ok_or(Refusal::NotStarted)?;
+        let task = convert::task(control).filter(|_| !is_stopped);
+        let task = task.ok_or(Refusal::NotReady)?;
         let ordered = memory.state.order(config, task);
         self.planned = convert::wire_status(ordered.map_err(convert::wire_task_error)?);
         Ok(())

@@ -80,7 +80,7 @@ pub enum Refusal {
     /// The cells of a tile are not those of a tile.
     BadTile,
     /// The robot takes no order to drive: it has seen nothing yet, does not know where it is, must
-    /// not be where it started, or only surveys.
+    /// not be where it started, only surveys, or its session was stopped.
     NotReady,
     /// The goal of [`Control::GoTo`] is farther than 3200 m from the map's origin, or forbidden by
     /// [`Start::fence`].
