@@ -59,6 +59,8 @@ fn request_control_start_on_uneven_ground() {
             0x80, 0x80, 0x50, 0x80, 0x80, 0x10, 0x80, 0x80, 0xa0, 0x01, //
             0, 0x80, 0x10, // by gain, worth 0.25 = 1024/4096
             0, 0, 0, // no team, no localisation, no survey
+            0, 0, // no corner and no polygon of a fence
+            0, 0, // no budget of way or time
         ],
     );
 }

@@ -425,6 +425,6 @@ fn orders_are_taken_once_there_is_a_scan_and_say_why_not() {
     order(&mut pilot, &mut bench, &Control::Stop).unwrap();
     assert_eq!(
         order(&mut pilot, &mut bench, &Control::Home),
-        Err(Refusal::NotStarted)
+        Err(Refusal::NotReady)
     );
 }

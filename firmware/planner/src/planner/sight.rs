@@ -192,7 +192,7 @@ mod tests {
         let GroundModel::Flat(points) = &state.ground else {
             panic!("the ground is flat");
         };
-        let is_ahead = |point: &&Point| point.y_m.abs() < 0.1;
+        let is_ahead = |point: &&Point| point.x_m > 0.0 && point.y_m.abs() < 0.1;
         let ahead = points.points().iter().find(is_ahead).expect("a point");
         assert!((ahead.x_m - 1.0).abs() < 0.01, "{ahead:?}");
     }
