@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! due  = towards(measured a period ago, told, acceleration · period)
-//! held = |told| ≥ least   and   due > 0   and   measured < due / 3, towards the side told
+//! held = |told| > standing   and   due > 0   and   measured < due / 3, towards the side told
 //! ```
 //!
 //! After [`HELD_PERIODS`] held periods in a row the robot feels a contact at the edge with which it
@@ -12,15 +12,12 @@
 
 use crate::config::Config;
 use crate::drive::collision::towards;
+use crate::drive::{STANDING_MPS, STANDING_RADPS};
 use crate::geometry::{Point, Twist};
 use crate::robot::RobotShape;
 
 /// Held periods in a row that make a contact: one may be a command that came late.
 const HELD_PERIODS: u8 = 3;
-/// Least speed that counts as told, metres per second.
-const LEAST_MPS: f32 = 0.05;
-/// Least turn rate that counts as told, radians per second.
-const LEAST_RADPS: f32 = 0.1;
 /// A robot that has less than this part of its due speed is held.
 const HELD_PART: f32 = 1.0 / 3.0;
 /// Distance of a felt point from the hull, metres: what the drive may still approach.
@@ -92,7 +89,7 @@ impl ContactSense {
             due > 0.0 && now * told.signum() < HELD_PART * due
         };
         let (v, w) = (self.told.linear_mps, self.told.angular_radps);
-        if v.abs() >= LEAST_MPS {
+        if v.abs() > STANDING_MPS {
             let side = if v > 0.0 {
                 Contact::Front
             } else {
@@ -102,7 +99,7 @@ impl ContactSense {
             let is_held = is_held(v, speeds, config.linear_accel_mps2);
             return Some((side, is_held));
         }
-        (w.abs() >= LEAST_RADPS).then(|| {
+        (w.abs() > STANDING_RADPS).then(|| {
             let side = if w > 0.0 {
                 Contact::TurnLeft
             } else {

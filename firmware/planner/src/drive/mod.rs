@@ -201,7 +201,9 @@ impl Drive {
         checker: &CollisionChecker,
         now: Twist,
     ) -> Twist {
+        // A wish that hardly moves the robot is the track's end: nothing would tell that it is held.
         let wish = self.track.back(pose, config.period_s);
+        let wish = wish.filter(|&wish| is_moving(wish));
         let least_m = if checker.has_robots() {
             LEAST_MARGIN_M
         } else {
