@@ -151,7 +151,9 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         workspace.window_at = None;
     }
     let told = (host_ms, state.door.faults().jumps);
-    if let Some(mistake) = state.wiring.watch(config, &input, told)
+    if let Some(mistake) = state
+        .wiring
+        .watch(config, &input, told, state.has_new_skeleton)
         && state.status.goes_on()
     {
         state.status = Status::Fault(Fault::Miswired(mistake));

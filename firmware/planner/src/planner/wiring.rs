@@ -278,13 +278,15 @@ impl Wiring {
     }
 
     /// Takes an input that the door let in, with the host's own clock and the number of jumps of
-    /// its odometry. Returns the mistake, once it is certain.
+    /// its odometry. Returns the mistake, once it is certain. A leg ends only in a step that plans
+    /// nothing: both are long.
     #[inline(never)]
     pub(super) fn watch(
         &mut self,
         config: &Config,
         input: &Input<'_>,
         (host_ms, jumps): (u32, u32),
+        plans: bool,
     ) -> Option<Mistake> {
         if self.is_over || config.survey {
             return None;
@@ -292,7 +294,7 @@ impl Wiring {
         let mistake = self
             .clock(config, host_ms)
             .or_else(|| self.odometry(config, input, jumps))
-            .or_else(|| self.scan(config, input));
+            .or_else(|| self.scan(config, input, plans));
         self.is_over |= mistake.is_some();
         mistake
     }
@@ -345,7 +347,7 @@ impl Wiring {
     }
 
     /// Compares the scan with the key scan at the end of a leg.
-    fn scan(&mut self, config: &Config, input: &Input<'_>) -> Option<Mistake> {
+    fn scan(&mut self, config: &Config, input: &Input<'_>, plans: bool) -> Option<Mistake> {
         let mut level = config.lasers.iter().zip(input.scans);
         let (laser, ranges_mm) = level.find(|(laser, _)| laser.is_level())?;
         if is_too_short(laser, ranges_mm) {
@@ -370,7 +372,7 @@ impl Wiring {
         let turns_unseen = told_rad >= TOLD_LEG.0 && turn_rad.abs() < NOTHING * told_rad;
         let drives_unseen = told_m >= TOLD_LEG.1 && way_m < NOTHING * told_m;
         let is_moved = turn_rad.abs() >= LEG.0 || way_m >= LEG.1;
-        if !is_moved && !turns_unseen && !drives_unseen {
+        if plans || (!is_moved && !turns_unseen && !drives_unseen) {
             return None;
         }
         let scans = (laser, self.key.as_slice(), ranges_mm);

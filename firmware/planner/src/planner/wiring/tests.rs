@@ -138,7 +138,7 @@ impl Robot {
             scans: [&ranges, &[]],
         };
         let host_ms = self.time_ms * self.wrong.clock;
-        self.check.watch(&self.config, &input, (host_ms, 0))
+        self.check.watch(&self.config, &input, (host_ms, 0), false)
     }
 
     /// Drives so many periods; returns the mistake that is told.
@@ -355,7 +355,7 @@ fn ranges_of_metres_that_are_taken_for_millimetres_are_told_at_once() {
         velocity: Twist::default(),
         scans: [&ranges, &[]],
     };
-    let told = robot.check.watch(&robot.config, &input, (0, 0));
+    let told = robot.check.watch(&robot.config, &input, (0, 0), false);
     assert_eq!(told, Some(Mistake::RangesTooShort));
 }
 
