@@ -201,7 +201,7 @@ impl Drive {
         checker: &CollisionChecker,
         now: Twist,
     ) -> Twist {
-        // A wish that hardly moves the robot is the track's end: nothing would tell that it is held.
+        // A wish that hardly moves the robot ends the retreat: nothing would tell that it is held.
         let wish = self.track.back(pose, config.period_s);
         let wish = wish.filter(|&wish| is_moving(wish));
         let least_m = if checker.has_robots() {

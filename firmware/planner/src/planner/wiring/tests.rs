@@ -322,8 +322,8 @@ fn each_mistake_is_told_in_the_first_metre_and_quarter_turn() {
         } else {
             robot.turn_rad
         };
-        // Odometry that counts half has turned twice as far; one that counts nothing takes four legs
-        // of the command.
+        // Odometry that counts half has turned twice as far; one that counts nothing takes four
+        // legs of the command.
         let most_rad = if (0.0..1.0).contains(&wrong.odometry[1]) {
             2.8
         } else {
