@@ -151,7 +151,7 @@ mod known_red {
     use super::*;
 
     #[test]
-    #[ignore = "four of five seeds know 92 to 97 %: looks through the gap are each not worth the trip"]
+    #[ignore = "four of five seeds know 92 to 97 %: no look through the gap is worth it"]
     fn a_room_that_is_seen_through_a_gap_is_known() {
         let worlds = worlds::builtins(&["unreachable-room"]);
         assert_explored(&runs::sweep(&runs::each(&worlds, SEEDS, 0..0)));
