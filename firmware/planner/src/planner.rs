@@ -262,7 +262,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         timer.mark(Stage::Drive);
         return output;
     }
-    let footprint = state.footprint(config);
+    let footprint = Footprint::new(config.passage_radius_m());
     if state.viewpoints.is_running() {
         search_viewpoints(config, state, workspace, &footprint, &input);
         timer.mark(Stage::Plan);

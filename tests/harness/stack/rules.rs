@@ -19,15 +19,11 @@ pub struct Rules {
 }
 
 /// The statements for the image. Its sessions set no level of goals (`Config::goal_level`), so the
-/// two functions that would call one call nobody.
+/// function that would call one calls nobody.
 pub const RULES: Rules = Rules {
     indirect: &[
         (
             "fieldline_planner::path::goal_choice::Choice<_,_>::utility_above",
-            &[],
-        ),
-        (
-            "fieldline_planner::path::goal_cost::GoalCost<_,_>::class",
             &[],
         ),
         (

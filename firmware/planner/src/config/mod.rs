@@ -276,18 +276,6 @@ impl Config {
     /// 0.30: half its width less the error of a map cell. Another robot's is in proportion. A gap
     /// that the robot just fits through may look narrower at 10 cm a cell, so a wider disc would
     /// close it. The drive keeps the hull clear.
-    ///
-    /// With the nearest goal first, paths are planned for the robot's disc up to the second chance:
-    /// such a robot turns into the next tight gap as soon as it may.
-    ///
-    /// `frontier`, before the power of a gain was 0.8: 51 runs in 17 buildings of others and 64 in
-    /// built-in and generated worlds with true odometry, as ratios to `greedy-frontier`, the 64 in
-    /// the last four columns:
-    ///
-    /// | radius, m | T90 | T95 | T99 | end | known % | T90 | T99 | end | known % |
-    /// | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |
-    /// | 0.30, later 0.22 | 0.90 | 0.91 | 0.92 | 1.12 | 99.58 | 0.89 | 0.99 | 1.05 | 99.61 |
-    /// | 0.22 | 0.87 | 0.90 | 0.95 | 1.04 | 99.54 | 0.90 | 0.96 | 1.04 | 99.65 |
     #[must_use]
     pub const fn passage_radius_m(&self) -> f32 {
         self.robot_radius_m * (0.22 / 0.30)

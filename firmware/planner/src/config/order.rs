@@ -2,6 +2,8 @@
 //!
 //! Units: square metres for each metre.
 
+use crate::config::OrderTuning;
+
 /// The order in which frontiers are taken.
 ///
 /// ```
@@ -23,11 +25,28 @@ pub enum Order {
         /// trip is left; 0 leaves nothing.
         worth: f32,
     },
-    /// First the nearest frontier, as in the papers.
+    /// First the nearest frontier, as in the papers: all gains are equal, and every trip is worth
+    /// it.
     Nearest,
 }
 
 impl Order {
     /// By gain, with the default worth.
     pub const GAIN: Self = Self::Gain { worth: 0.25 };
+
+    /// Returns the least gain of a trip, square metres for each metre of way.
+    pub(crate) const fn worth(self) -> f32 {
+        match self {
+            Self::Gain { worth } => worth,
+            Self::Nearest => 0.0,
+        }
+    }
+
+    /// Returns the power of a gain in a goal's utility.
+    pub(crate) const fn power(self, tuning: &OrderTuning) -> f32 {
+        match self {
+            Self::Gain { .. } => tuning.power,
+            Self::Nearest => 0.0,
+        }
+    }
 }

@@ -62,10 +62,6 @@ const SEARCH_MARGINS_M: [f32; 2] = [0.03, 0.02];
 /// | 0.03 | 96.3, 97.7 | 99.31, 1.09 | 1, 1 |
 /// | 0.04 | 97.3, 97.9 | 99.58, 1.11 | 0, 0 |
 /// | 0.05 | 98.0, 97.9 | 99.60, 1.09 | 0, 0 |
-///
-/// It is for the order by gain. With the nearest goal first, the robot turns into the next tight
-/// gap as soon as it may: in the three buildings with true odometry `ouroboros` then knows 87.6 %
-/// instead of 97.4, and `tdbvp` 97.7 instead of 98.3.
 const CAREFUL_MARGINS_M: [f32; 1] = [0.05];
 
 /// Turn rate of a robot that looks around, radians per second.

@@ -5,7 +5,7 @@
 //!
 //! Units: map cells, metres; steps along the skeleton.
 
-use crate::config::{GoalLevel, LoopLimits, Order, Tuning};
+use crate::config::{GoalLevel, LoopLimits, Tuning};
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{CELL_M, Cell, Pose};
 use crate::grid::Site;
@@ -14,6 +14,7 @@ use crate::path::Path;
 use crate::path::blocked_passages::BlockedPassages;
 use crate::path::height_levels::LevelCost;
 use crate::path::nearest::Centres;
+use crate::path::utility::GoalOrder;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::Skeleton;
 use crate::roadmap::{Barrier, Residues, WaveSpace, Wavefront};
@@ -47,24 +48,15 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     /// The user's own order of goals.
     pub(crate) goal_level: Option<GoalLevel>,
     /// The order in which goals are taken.
-    pub(crate) order: Order,
+    pub(crate) order: GoalOrder<'a>,
     /// The tuned constants.
     pub(crate) tuning: &'a Tuning,
     /// The cost of goals by height, where height levels are on.
     pub(crate) levels: Option<LevelCost<'a, TILES>>,
     /// The team; `None` for a robot alone.
     pub(crate) team: Option<&'a Team>,
-    /// True if a peer stands in the way that may drive on, or, by gain, the robot still goes back
-    /// out of a passage: without a path nothing is decided yet. With the nearest goal first a
-    /// further chance begins on the way back. `ouroboros` in two buildings in which it meets tight
-    /// gaps, known in per cent at the end:
-    ///
-    /// | nearest first: | `aria_columbia`, seed 2 | seed 4 | `willow_full`, seed 3 |
-    /// | --- | --- | --- | --- |
-    /// | waits for a retreat, and begins goals anew as by gain | 49.2 | 92.9 | 92.4 |
-    /// | waits | 99.2 | 92.9 | 91.8 |
-    /// | begins goals anew | 49.3 | 99.3 | 92.4 |
-    /// | neither | 99.2 | 99.3 | 98.7 |
+    /// True if a peer stands in the way that may drive on, or the robot still goes back out of a
+    /// passage: without a path nothing is decided yet.
     pub(crate) must_wait: bool,
     /// True if the robot can go back along its track through a blocked passage.
     pub(crate) came_through_blocked: bool,

@@ -1,17 +1,18 @@
 //! The choice of the next frontier by gain over cost.
 //!
 //! ```text
-//! U = G^0.8 / (t + 1 m)      t = path + turn · (1 − cos θ) / 2 + 10 m · level
+//! t = path + turn · (1 − cos θ) / 2 + 10 m · level
 //! ```
 //!
-//! G is the unexplored area that may be seen from the goal ([`crate::path::gain`]). θ is the angle
+//! A goal's utility follows from its gain and this length of the trip ([`crate::path::utility`]).
+//! The gain is the unexplored area that may be seen from it ([`crate::path::gain`]). θ is the angle
 //! from the robot's heading to the first metre of the path. The level is that of
-//! [`crate::path::height_levels`] and of the user's own order. The present goal's gain counts more,
+//! [`crate::path::goal_level`]. The present goal's gain counts more,
 //! so the robot keeps it until another one is clearly better. What another robot claims counts less
 //! ([`crate::path::claims`]). A goal with an *opening* that was not tried counts as if it gained at
 //! least 4.5 m² ([`View::is_open`]): it will be visited anyway, and later that may cost a trip of
-//! its own. A goal is *worth* its trip if G ≥ worth · max(t, 1 m), if it has an opening, or
-//! together with others ([`crate::path::shared_trip`]).
+//! its own. A goal is *worth* its trip for its gain, if it has an opening, or together with
+//! others ([`crate::path::shared_trip`]).
 //!
 //! Frontier cells near each other are one *candidate*: the nearest by path stands for them. A wave
 //! from the robot finds them, the nearest first, with their paths ([`crate::path::robot_wave`],
@@ -23,52 +24,27 @@
 
 use core::ops::{ControlFlow, Range};
 
-use crate::config::OrderTuning;
 use crate::geometry::{Cell, Point};
 use crate::grid::{Plane, Site};
+use crate::map::Tiles;
 use crate::math;
 use crate::path::candidates::{self, Candidate, Candidates};
 use crate::path::claims::Claims;
 use crate::path::context::STEP_M;
-use crate::path::frontier_path::{cells_on_level, unexplored_beside};
 use crate::path::gain::View;
-use crate::path::goal_cost::{PresentGoal, goal_level};
+use crate::path::goal_level::{PresentGoal, goal_level};
 use crate::path::height_levels::LEVEL_STEPS;
-use crate::path::nearest::Centres;
+use crate::path::level_path::stay_on_level;
 use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::search::PathSearch;
 use crate::path::shared_trip::{AllJudged, Judged, begin_of_trip};
+use crate::path::utility::utility;
 use crate::path::{Path, PlanningContext, PlanningScratch};
 
 /// Maximum number of candidates that a round judges: a gain costs about 50,000 instructions.
 pub(crate) const MOST_JUDGED: usize = 24;
 /// Distance from the robot at which the direction of a path is taken, metres.
 const AHEAD_M: f32 = 1.0;
-/// Length that is added to every trip, metres, so that a goal at the robot is worth no more than
-/// its gain.
-const NEAR_M: f32 = 1.0;
-
-/// Returns the value of a gain.
-pub(crate) fn value(tuning: &OrderTuning, gain_m2: f32) -> f32 {
-    math::powf(gain_m2, tuning.power)
-}
-
-/// Returns the utility of a trip for a value.
-pub(crate) fn utility(value: f32, trip_m: f32) -> f32 {
-    value / (trip_m + NEAR_M)
-}
-
-/// Returns the greatest value that a goal can have: of the whole square within reach.
-pub(crate) fn most_value(tuning: &OrderTuning) -> f32 {
-    let side_m = 2.0 * tuning.gain_m;
-    value(tuning, tuning.keep * side_m * side_m)
-}
-
-/// Returns true if a gain is worth a trip, at so many square metres for each metre.
-pub(crate) fn is_worth(gain_m2: f32, trip_m: f32, worth: f32) -> bool {
-    gain_m2 >= worth * trip_m.max(NEAR_M)
-}
-
 /// Returns the path to the frontier of the greatest utility; `None` if none that this round judges
 /// is worth the trip: then it lists them. `judged` counts the candidates that the rounds before
 /// judged in vain; it is 0 again after the last of them.
@@ -77,7 +53,6 @@ pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
     context: &PlanningContext<'_, TILES, SLOTS>,
     residual: &mut ResidualFrontiers,
     present: Option<PresentGoal>,
-    worth: f32,
     judged: &mut usize,
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
@@ -89,12 +64,12 @@ pub(crate) fn path_to_best<const TILES: usize, const SLOTS: usize>(
         local_grid: &mut *scratch.local_grid,
     };
     let mut search = PathSearch::open(context.centres()?, &mut rest)?;
-    let judging = (present, worth, words);
+    let judging = (present, words);
     let (best, shares_trip) = best_candidate(&mut search, context, residual, judging, judged)?;
     let mut path = search.path_from_robot(best.site, best.steps.into());
     path.set_shares_trip(shares_trip);
     stay_on_level(&mut path, best.site, context, scratch);
-    path.extend(unexplored_beside(path.goal(), context.tiles, false));
+    path.extend(unexplored_beside(path.goal(), context.tiles));
     Some(path)
 }
 
@@ -105,7 +80,7 @@ fn best_candidate<const TILES: usize, const SLOTS: usize>(
     search: &mut PathSearch<'_, TILES, SLOTS>,
     context: &PlanningContext<'_, TILES, SLOTS>,
     residual: &mut ResidualFrontiers,
-    (present, worth, words): (Option<PresentGoal>, f32, &mut [u32]),
+    (present, words): (Option<PresentGoal>, &mut [u32]),
     judged: &mut usize,
 ) -> Option<(Candidate, bool)> {
     if *judged == 0 {
@@ -133,8 +108,7 @@ fn best_candidate<const TILES: usize, const SLOTS: usize>(
         context,
         frontier,
         present,
-        worth,
-        most_value: most_value(&context.tuning.order),
+        most_value: context.order.most_value(),
         claims: &claims,
         search,
         robot: Heading::of(context),
@@ -200,7 +174,6 @@ struct Choice<'a, const TILES: usize, const SLOTS: usize> {
     context: &'a PlanningContext<'a, TILES, SLOTS>,
     frontier: Plane<'a>,
     present: Option<PresentGoal>,
-    worth: f32,
     most_value: f32,
     claims: &'a Claims,
     search: &'a PathSearch<'a, TILES, SLOTS>,
@@ -221,7 +194,7 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
             }
         }
         let alone = best.map(|(_, candidate, shares)| (candidate, shares));
-        alone.or_else(|| Some((begin_of_trip(&judged, self.worth)?, true)))
+        alone.or_else(|| Some((begin_of_trip(&judged, &self.context.order)?, true)))
     }
 
     /// Returns a candidate's utility if it is greater than `least` and worth the trip, and true if
@@ -235,7 +208,8 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
         candidate: Candidate,
         judged: &mut AllJudged,
     ) -> Option<(f32, bool)> {
-        let tuning: &OrderTuning = &self.context.tuning.order;
+        let order = &self.context.order;
+        let tuning = order.tuning;
         let cell = self.search.centres.cell(candidate.site);
         let level = goal_level(self.context, self.frontier, self.present, candidate.site);
         let path_m = (u32::from(candidate.steps) + LEVEL_STEPS * level) as f32 * STEP_M;
@@ -248,7 +222,7 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
         let gain_m2 = kept * view.gain_m2();
         let is_claimed = self.claims.hold(candidate.site, candidate.steps);
         let claimed = if is_claimed { tuning.claimed } else { 1.0 };
-        let counted = |gain_m2| value(tuning, claimed * gain_m2);
+        let counted = |gain_m2| order.value(claimed * gain_m2);
         let promised = gain_m2.max(tuning.opening_m2);
         if utility(counted(promised), path_m) <= least {
             return None;
@@ -267,11 +241,11 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
         }
         let shares_trip = self.present.is_some_and(|present| present.shares_trip);
         let promises = || counts_more || (gain_m2 >= promised && is_open());
-        if is_worth(gain_m2, trip_m, self.worth) || promises() {
+        if order.is_worth(gain_m2, trip_m) || promises() {
             return Some((utility, false));
         }
         // A trip that was worth it goes on as long as there is something to see at its goal.
-        if is_present && shares_trip && is_worth(gain_m2, 0.0, self.worth) {
+        if is_present && shares_trip && order.is_worth(gain_m2, 0.0) {
             return Some((utility, true));
         }
         // There is room for all of a round.
@@ -290,45 +264,23 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
     }
 }
 
-/// Replaces a path that crosses other levels by one to the same goal that does not, if there is one
-/// and it is not too long.
-#[inline(never)]
-fn stay_on_level<const TILES: usize, const SLOTS: usize>(
-    path: &mut Path,
-    goal: Site,
-    context: &PlanningContext<'_, TILES, SLOTS>,
-    scratch: &mut PlanningScratch<'_>,
-) {
-    if let Some(mut detour) = path_on_level(path, goal, context, scratch) {
-        detour.set_shares_trip(path.shares_trip());
-        *path = detour;
-    }
-}
-
-/// Returns the path to the same goal on its level.
-fn path_on_level<const TILES: usize, const SLOTS: usize>(
-    path: &Path,
-    goal: Site,
-    context: &PlanningContext<'_, TILES, SLOTS>,
-    scratch: &mut PlanningScratch<'_>,
-) -> Option<Path> {
-    let mut level = cells_on_level(path, context, scratch)?;
-    let centres = Centres {
-        cells: level.cells,
-        ..context.centres()?
+/// Returns the coarse cell at a side of `cell` that holds the most unexplored map cells, if any.
+/// What the map has no room for does not count.
+fn unexplored_beside<const TILES: usize, const SLOTS: usize>(
+    cell: Cell,
+    tiles: &Tiles<TILES, SLOTS>,
+) -> Option<Cell> {
+    let row = |x, y| tiles.reader(x).of_room(true).row(y);
+    let unknown = |cell: Cell| {
+        (0..2)
+            .map(|dy| (row(cell.x, cell.y + dy).unknown() & 3).count_ones())
+            .sum::<u32>()
     };
-    let mut search = PathSearch::open(centres, &mut level.scratch)?;
-    let robot = context.pose.point().cell();
-    let mut found = None;
-    search.spread_from(robot, context.skeleton.frontier()?, |site, steps| {
-        if site != goal {
-            return ControlFlow::Continue(());
-        }
-        found = Some(steps);
-        ControlFlow::Break(())
-    });
-    let steps = found.filter(|&steps| steps <= level.most_steps)?;
-    Some(search.path_from_robot(goal, steps))
+    [(2, 0), (-2, 0), (0, 2), (0, -2)]
+        .into_iter()
+        .map(|(dx, dy)| cell.offset(dx, dy))
+        .max_by_key(|&beside| unknown(beside))
+        .filter(|&beside| unknown(beside) > 0)
 }
 
 #[cfg(test)]

@@ -14,8 +14,9 @@
 //! | [`shared_trip`] | goals that are worth a trip together only |
 //! | [`claims`] | goals that another robot is nearer to |
 //! | [`gain`], [`rays`] | what a robot at a goal would see |
-//! | [`frontier_path`] | the path to the frontier of the least cost |
-//! | [`goal_cost`] | the delay after which a frontier cell's wave starts |
+//! | [`utility`] | what a trip gains for what it costs |
+//! | [`goal_level`] | the level of a goal, which counts as way |
+//! | [`level_path`] | the path to a goal that stays on its level |
 //! | [`height_levels`] | the height of the ground, and the level of goals |
 //! | [`progress`] | the progress checker: when to give up a goal or block a passage |
 //! | [`blocked_passages`] | passages that the robot could not drive through |
@@ -34,11 +35,11 @@ pub(crate) mod cell_path;
 pub(crate) mod centres;
 pub(crate) mod claims;
 pub(crate) mod context;
-pub(crate) mod frontier_path;
 pub(crate) mod gain;
 pub(crate) mod goal_choice;
-pub(crate) mod goal_cost;
+pub(crate) mod goal_level;
 pub(crate) mod height_levels;
+pub(crate) mod level_path;
 pub(crate) mod map_exits;
 pub(crate) mod nearest;
 pub(crate) mod open_stretch;
@@ -49,6 +50,7 @@ pub(crate) mod robot_wave;
 pub(crate) mod search;
 pub(crate) mod second_look;
 pub(crate) mod shared_trip;
+pub(crate) mod utility;
 pub(crate) mod viewpoint;
 
 pub use cell_path::Path;

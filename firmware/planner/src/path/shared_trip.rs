@@ -5,8 +5,7 @@
 //! ```
 //!
 //! G is a goal's gain, t the length of the trip to it, and d the distance of two goals in a
-//! straight
-//! line. So a goal's trip is paid by its own gain, and by what is worth a trip from there. Without
+//! straight line. So a goal's trip is paid by its own gain, and by what is worth a trip from there. Without
 //! this rule the far end of a building is left, because each of its frontiers is small.
 //!
 //! Units: metres, square metres.
@@ -15,7 +14,8 @@ use heapless::Vec;
 
 use crate::geometry::Cell;
 use crate::path::candidates::Candidate;
-use crate::path::goal_choice::{MOST_JUDGED, is_worth, utility};
+use crate::path::goal_choice::MOST_JUDGED;
+use crate::path::utility::{GoalOrder, utility};
 
 /// A candidate that was judged.
 #[derive(Clone, Copy, Debug)]
@@ -33,11 +33,11 @@ pub(crate) type AllJudged = Vec<Judged, { MOST_JUDGED + 1 }>;
 
 /// Returns the goal that is best to begin with, of those that are worth their trip together with
 /// others: that of the greatest S for its trip.
-pub(crate) fn begin_of_trip(judged: &AllJudged, worth: f32) -> Option<Candidate> {
+pub(crate) fn begin_of_trip(judged: &AllJudged, order: &GoalOrder<'_>) -> Option<Candidate> {
     let together = |one: &Judged| {
         let others = judged.iter().map(|other| {
             let hop_m = one.cell.distance_m(other.cell);
-            (other.gain_m2 - worth * hop_m).max(0.0)
+            (other.gain_m2 - order.worth * hop_m).max(0.0)
         });
         // The goal itself is at no distance.
         others.sum::<f32>()
@@ -46,7 +46,7 @@ pub(crate) fn begin_of_trip(judged: &AllJudged, worth: f32) -> Option<Candidate>
     for one in judged {
         let sum_m2 = together(one);
         let score = utility(sum_m2, one.trip_m);
-        if is_worth(sum_m2, one.trip_m, worth) && best.is_none_or(|(most, _)| score > most) {
+        if order.is_worth(sum_m2, one.trip_m) && best.is_none_or(|(most, _)| score > most) {
             best = Some((score, one.candidate));
         }
     }
@@ -56,9 +56,10 @@ pub(crate) fn begin_of_trip(judged: &AllJudged, worth: f32) -> Option<Candidate>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::config::{Order, Tuning};
     use crate::grid::Site;
 
-    const WORTH: f32 = 0.3;
+    const ORDER: GoalOrder<'_> = GoalOrder::new(Order::Gain { worth: 0.3 }, &Tuning::DEFAULT.order);
 
     /// Goals on a line, by metres from the robot, each with this gain.
     fn goals<const N: usize>(gain_m2: f32, at_m: [u16; N]) -> AllJudged {
@@ -79,7 +80,7 @@ mod tests {
     }
 
     fn begin<const N: usize>(gain_m2: f32, at_m: [u16; N]) -> Option<u16> {
-        begin_of_trip(&goals(gain_m2, at_m), WORTH).map(|candidate| candidate.site.x / 5)
+        begin_of_trip(&goals(gain_m2, at_m), &ORDER).map(|candidate| candidate.site.x / 5)
     }
 
     #[test]

@@ -5,8 +5,7 @@
 //! search looks through the map for *gaps*: free cells with an unexplored one at a side. From each
 //! gap a ray leads back, away from the unexplored cells, through free cells, to the first one that
 //! the robot can reach. There the robot can stand and look along the ray. The gap of the greatest
-//! utility wins, as among frontiers ([`crate::path::goal_choice`]), or that of the least cost if
-//! goals are taken nearest first:
+//! utility wins, as among frontiers ([`crate::path::utility`]):
 //!
 //! ```text
 //! gap      free, with an unexplored cell at a side
@@ -21,16 +20,15 @@
 //!
 //! Units: map cells.
 
-use crate::config::{Order, OrderTuning};
 use crate::geometry::Cell;
 use crate::grid::Tiling;
 use crate::map::neighbourhood::Neighbourhood;
 use crate::map::{Class, Tiles};
 use crate::path::blocked_passages::BlockedPassages;
 use crate::path::gain::View;
-use crate::path::goal_choice::{is_worth, most_value, utility, value};
 use crate::path::rays::{RAYS, along, ray};
 use crate::path::residual_frontiers::ResidualFrontiers;
+use crate::path::utility::{GoalOrder, utility};
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::Reachability;
 use crate::roadmap::skeleton::Frame;
@@ -101,10 +99,8 @@ pub(crate) struct Inputs<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) robot: Cell,
     /// Passages that the robot could not drive through.
     pub(crate) blocked: &'a BlockedPassages,
-    /// The order in which viewpoints are taken: also by gain, or the nearest first.
-    pub(crate) order: Order,
-    /// The tuned constants of the order.
-    pub(crate) tuning: &'a OrderTuning,
+    /// The order in which viewpoints are taken.
+    pub(crate) order: GoalOrder<'a>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -293,11 +289,7 @@ impl Search {
         gap: Cell,
     ) -> bool {
         let least_m = inputs.robot.distance_m(gap);
-        let most = match inputs.order {
-            Order::Gain { .. } => utility(most_value(inputs.tuning), least_m),
-            Order::Nearest => -least_m,
-        };
-        !self.found || most > self.score
+        !self.found || utility(inputs.order.most_value(), least_m) > self.score
     }
 
     /// Takes a viewpoint if it is the best so far; leaves its gap if that is not worth the trip.
@@ -309,23 +301,18 @@ impl Search {
     ) {
         let Viewpoint { stand, gap, beyond } = viewpoint;
         let trip_m = inputs.robot.distance_m(stand) + stand.distance_m(gap);
-        let score = match inputs.order {
-            Order::Gain { worth } => {
-                let view = View::of(
-                    inputs.tiles,
-                    stand,
-                    inputs.tuning.gain_m,
-                    inputs.footprints[0].reach(),
-                );
-                let gain_m2 = view.gain_towards_m2((beyond.x - stand.x, beyond.y - stand.y));
-                if !is_worth(gain_m2, trip_m, worth) {
-                    residual.list_not_worth_it(gap, 1);
-                    return;
-                }
-                utility(value(inputs.tuning, gain_m2), trip_m)
-            }
-            Order::Nearest => -trip_m,
-        };
+        let view = View::of(
+            inputs.tiles,
+            stand,
+            inputs.order.tuning.gain_m,
+            inputs.footprints[0].reach(),
+        );
+        let gain_m2 = view.gain_towards_m2((beyond.x - stand.x, beyond.y - stand.y));
+        if !inputs.order.is_worth(gain_m2, trip_m) {
+            residual.list_not_worth_it(gap, 1);
+            return;
+        }
+        let score = utility(inputs.order.value(gain_m2), trip_m);
         if !self.found || score > self.score {
             (self.found, self.score, self.best) = (true, score, viewpoint);
         }

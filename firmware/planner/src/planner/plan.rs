@@ -3,9 +3,10 @@
 //!
 //! Units: metres, map cells.
 
-use crate::config::{Config, Order};
+use crate::config::Config;
 use crate::geometry::{Point, Pose};
 use crate::input::Input;
+use crate::path::utility::GoalOrder;
 use crate::path::viewpoint::{Found, Inputs};
 use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::planner::ending::finish;
@@ -40,7 +41,6 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     let came_past = |place, within_m| state.drive.came_past(place, within_m);
     let came_through_blocked = blocked.any(came_past);
     let disc = Footprint::new(config.robot_radius_m);
-    let by_gain = config.order() != Order::Nearest;
     let context = PlanningContext {
         skeleton: &mut state.skeleton,
         tiles: state.map.tiles(),
@@ -51,11 +51,11 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
         time_ms: input.time_ms,
         limits: &config.loops,
         goal_level: config.goal_level,
-        order: config.order(),
+        order: GoalOrder::of(config),
         tuning: config.tuning,
         levels: state.ground.level_cost(config, &state.preferences),
         team: state.team.is_member().then_some(&state.team),
-        must_wait: waits_for_peers || (by_gain && state.drive.is_retreating()),
+        must_wait: waits_for_peers || state.drive.is_retreating(),
         came_through_blocked,
         known_cells: state.map.known_cells(),
         openings_were_tried: state.strategy.frontier.has_further_chance(),
@@ -135,8 +135,7 @@ pub(super) fn search_viewpoints<const TILES: usize, const SLOTS: usize>(
         footprints: [&disc, footprint],
         robot,
         blocked,
-        order: config.order(),
-        tuning: &config.tuning.order,
+        order: GoalOrder::of(config),
     };
     let scratch = bytemuck::cast_slice_mut(&mut workspace.scratch);
     match state.viewpoints.advance(&inputs, residual, scratch) {

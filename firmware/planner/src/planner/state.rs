@@ -10,7 +10,7 @@ use super::errand::Errands;
 use super::ground_model::GroundModel;
 use super::wiring::Wiring;
 use super::workspace::{RING, SCRATCH};
-use crate::config::{Config, Order};
+use crate::config::Config;
 use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{self, Drive};
 use crate::field::preference::Preferences;
@@ -155,17 +155,6 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     #[must_use]
     pub const fn input_faults(&self) -> InputFaults {
         self.door.faults()
-    }
-
-    /// Returns the footprint that paths are planned for ([`Config::passage_radius_m`]).
-    pub(super) fn footprint(&self, config: &Config) -> Footprint {
-        let is_narrow =
-            config.order() != Order::Nearest || self.strategy.frontier.has_second_chance();
-        Footprint::new(if is_narrow {
-            config.passage_radius_m()
-        } else {
-            config.robot_radius_m
-        })
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Units: metres, seconds, radians; milliseconds where a name says so.
 
-use crate::config::{Config, Order};
+use crate::config::Config;
 use crate::drive::side_slope::Hysteresis;
 use crate::drive::{CollisionChecker, Incline, Place, SearchQuery};
 use crate::field::local_grid;
@@ -79,7 +79,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
         let mut query = SearchQuery::new(&checker, heading_at, potential_at);
         // A gap that is hardly wider than the hull may let the robot in and not out again.
         query.squeezes = state.strategy.frontier.has_second_chance();
-        query.is_careful = !query.squeezes && config.order() != Order::Nearest;
+        query.is_careful = !query.squeezes;
         query.is_surrounded = state.ground.is_surrounded(&odom, &config.robot);
         let rested = state.drive.is_resting();
         let velocity = state.drive.follow(

@@ -11,6 +11,7 @@ use crate::map::{Class, Tiles};
 use crate::path::blocked_passages::BlockedPassages;
 use crate::path::rays::along;
 use crate::path::residual_frontiers::ResidualFrontiers;
+use crate::path::utility::GoalOrder;
 use crate::path::viewpoint::{Found, Inputs, Search, Viewpoint};
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::scratch_words;
@@ -69,8 +70,7 @@ fn search_in(scratch: &mut [u32], tiles: &Map, robot: Cell, gone: &[Cell]) -> Op
         frame,
         footprints: [&Footprint::new(0.3), &Footprint::new(0.22)],
         robot,
-        order: Order::Nearest,
-        tuning: &Tuning::DEFAULT.order,
+        order: GoalOrder::new(Order::Nearest, &Tuning::DEFAULT.order),
     };
     let mut residual = ResidualFrontiers::new();
     for &cell in gone {

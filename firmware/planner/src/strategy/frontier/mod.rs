@@ -1,7 +1,7 @@
 //! Strategy *frontier*: drive to the nearest unexplored centre cell along the skeleton, until none
 //! can be reached \[Jorge15, Algorithm 1 without loop closing: lines 3, 4, 22–28\].
 //!
-//! Goals are chosen by [`crate::path::goal_cost`]. The progress checker gives up a goal that is
+//! Goals are chosen by [`crate::path::goal_choice`]. The progress checker gives up a goal that is
 //! reached and stays unexplored, or that comes no nearer, and blocks a passage that cannot be
 //! driven; so no run hangs on a cell that cannot be seen. A robot that blocked what it came through
 //! goes back along its track if no other path is left. When no goal is left, everything that failed
@@ -16,12 +16,11 @@ mod correcting;
 mod going;
 mod looking;
 
-use crate::config::Order;
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::Cell;
 use crate::path::blocked_passages::BlockedPassages;
-use crate::path::frontier_path::path_to_next;
-use crate::path::goal_cost::{PresentGoal, level};
+use crate::path::goal_choice::path_to_best;
+use crate::path::goal_level::{PresentGoal, level};
 use crate::path::progress::{ProgressChecker, Verdict};
 use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::second_look::SecondLook;
@@ -219,7 +218,7 @@ impl Frontier {
         }
         let present = self.present_goal();
         let (residual, judged) = (&mut self.residual, &mut self.judged);
-        path_to_next(context, residual, present, judged, scratch)
+        path_to_best(context, residual, present, judged, scratch)
     }
 
     /// Follows a path to a frontier. The present height becomes the goal's reference if the goal is
@@ -247,10 +246,7 @@ impl Frontier {
         context: &PlanningContext<'_, TILES, SLOTS>,
         mut scratch: PlanningScratch<'_>,
     ) -> RoundOutcome {
-        // Nearest first, `ouroboros` lost wings by it: the table of `PlanningContext::must_wait`.
-        if context.order != Order::Nearest {
-            self.progress.note_known(context.known_cells);
-        }
+        self.progress.note_known(context.known_cells);
         self.progress
             .note_motion(context.pose.point(), context.time_ms);
         self.goes_back = false;

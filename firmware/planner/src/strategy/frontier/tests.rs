@@ -3,19 +3,18 @@
 
 mod gain;
 
+use core::f32::consts::FRAC_PI_2;
 use std::boxed::Box;
 use std::vec;
 
 use crate::config::{LoopLimits, Order, Tuning, UnevenGround};
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Point, Pose};
-use crate::grid::Site;
 use crate::ground::elevation::tests::OwnedWindow;
 use crate::map::{Class, Tiles};
 use crate::path::blocked_passages::BlockedPassages;
-use crate::path::goal_cost::GoalCost;
 use crate::path::height_levels::{HeightLevels, LevelCost};
-use crate::path::residual_frontiers::ResidualFrontiers;
+use crate::path::utility::GoalOrder;
 use crate::path::{PlanningContext, PlanningScratch, RoundOutcome};
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
@@ -135,7 +134,7 @@ impl Scene {
             time_ms: 0,
             limits: &self.limits,
             goal_level: None,
-            order: self.order,
+            order: GoalOrder::new(self.order, &Tuning::DEFAULT.order),
             tuning: &Tuning::DEFAULT,
             levels: reference_m.map(|reference_m| LevelCost {
                 heights: &self.heights,
@@ -266,7 +265,11 @@ fn is_at(goal: i32, end: i32) -> bool {
 fn goals<const N: usize>(references_m: [Option<f32>; N]) -> [i32; N] {
     let tiles = corridor();
     let heights = slope(&tiles);
-    let mut scene = Scene::new(tiles, heights);
+    let mut scene = Scene {
+        // Both ends are to one side.
+        yaw_rad: FRAC_PI_2,
+        ..Scene::new(tiles, heights)
+    };
     let mut frontier = Frontier::new();
     references_m.map(|reference_m| {
         scene.replan(&mut frontier, reference_m, 64 * 8);
@@ -337,41 +340,4 @@ fn a_path_across_other_levels_gives_way_to_one_on_the_goals() {
     assert!(northmost(0.5, room) < 8, "0.5 m is no other level");
     assert!(northmost(1.5, room) > 30, "round a dip of 1.5 m");
     assert!(northmost(1.5, 1) < 8, "no memory for a second way");
-}
-
-/// The frontier cells of each cost class with the class's delay, with a cache of so many words.
-fn costs(words: usize) -> vec::Vec<(u32, vec::Vec<Site>)> {
-    let tiles = corridor();
-    let heights = slope(&tiles);
-    let mut scene = Scene::new(tiles, heights);
-    let context = scene.context(Some(0.0));
-    let mut cache = vec![u32::MAX; words];
-    let given_up = ResidualFrontiers::new();
-    let cost = GoalCost::new(&context, &given_up, None, &mut cache).expect("it was published");
-    let sites = |class| cost.sites(class).collect();
-    let delays = cost.delays();
-    delays.map(|(class, delay)| (delay, sites(class))).collect()
-}
-
-#[test]
-fn each_frontier_cell_has_one_cost_and_those_without_room_in_the_cache_that_of_a_large_frontier() {
-    let all = costs(100);
-    assert!(all.len() > 1, "{all:?}");
-    assert!(all.is_sorted_by_key(|(delay, _)| *delay));
-    let sites = |costs: &[(u32, vec::Vec<Site>)]| {
-        let mut sites: vec::Vec<_> = costs.iter().flat_map(|(_, sites)| sites).copied().collect();
-        sites.sort_by_key(|site| (site.y, site.x));
-        sites
-    };
-    let every = sites(&all);
-    assert!(every.len() > 6, "more than a word holds: {every:?}");
-    for words in 0..2 {
-        let some = costs(words);
-        assert_eq!(sites(&some), every, "{words} words: each once");
-        let large = some
-            .iter()
-            .find(|(delay, _)| *delay == 10)
-            .expect("a large one");
-        assert!(large.1.len() >= every.len() - 6 * words, "{words} words");
-    }
 }

@@ -13,6 +13,7 @@ use std::vec::Vec;
 use crate::config::{LoopLimits, Order, Tuning};
 use crate::geometry::{Cell, Pose};
 use crate::map::{Class, Tiles};
+use crate::path::utility::GoalOrder;
 use crate::path::{PlanningContext, RoundOutcome};
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::skeleton::{Skeleton, Space};
@@ -150,7 +151,7 @@ impl Exploration {
                 time_ms,
                 limits: &self.limits,
                 goal_level: None,
-                order: Order::Nearest,
+                order: GoalOrder::new(Order::Nearest, &Tuning::DEFAULT.order),
                 tuning: &Tuning::DEFAULT,
                 levels: None,
                 team: None,
@@ -188,9 +189,14 @@ impl Exploration {
         let Some(nearest) = (0..cells.len().min(20)).min_by_key(|&k| far(&cells[k])) else {
             return;
         };
-        let goal = cells[(nearest + STRIDE).min(cells.len() - 1)];
-        let goal = (goal.x / 2, goal.y / 2);
-        for step in self.steps_to(goal).into_iter().take(STRIDE) {
+        // The last cell of a path is unexplored, and may be an obstacle.
+        let ahead = &cells[nearest..=(nearest + STRIDE).min(cells.len() - 1)];
+        let ways = ahead
+            .iter()
+            .rev()
+            .map(|goal| self.steps_to((goal.x / 2, goal.y / 2)));
+        let way = ways.into_iter().find(|way| !way.is_empty());
+        for step in way.into_iter().flatten().take(STRIDE) {
             self.step_to(step);
         }
     }

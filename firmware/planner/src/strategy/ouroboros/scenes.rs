@@ -20,6 +20,7 @@ use crate::grid::Site;
 use crate::map::{Class, Tiles};
 use crate::path::blocked_passages::NONE;
 use crate::path::nearest::Centres;
+use crate::path::utility::GoalOrder;
 use crate::path::{PlanningContext, PlanningScratch};
 use crate::roadmap::Residues;
 use crate::roadmap::branches::surroundings;
@@ -92,7 +93,7 @@ impl Memory {
     pub(super) fn new() -> Self {
         Self {
             residues: std::vec![[0; 2]; SLOTS * 8],
-            queue: std::vec![0; 256],
+            queue: std::vec![0; 2048],
             local_grid: LocalGrid::new(),
         }
     }
@@ -169,7 +170,7 @@ impl Scene {
             time_ms: 0,
             limits: &self.limits,
             goal_level: None,
-            order: Order::Nearest,
+            order: GoalOrder::new(Order::Nearest, &Tuning::DEFAULT.order),
             tuning: &Tuning::DEFAULT,
             levels: None,
             team: None,
