@@ -60,6 +60,11 @@ pub fn variants() -> Vec<Variant> {
             worth: I4F12::from_num(worth),
         })
     };
+    let nearest = |worth: f64| {
+        Some(Order::Nearest {
+            worth: I4F12::from_num(worth),
+        })
+    };
     let with = |name, tuned| Variant { name, tuned, ..own };
     let by = |name, order| Variant { name, order, ..own };
     let baseline = |name| Variant {
@@ -71,11 +76,8 @@ pub fn variants() -> Vec<Variant> {
         own,
         by("everything seen (worth 0)", worth(0.0)),
         by("worth 0.1", worth(0.1)),
-        by("nearest first", Some(Order::Nearest)),
-        Variant {
-            order: worth(0.0),
-            ..with("same gain everywhere, worth 0", &[("order.power", 0.0)])
-        },
+        by("nearest first", nearest(0.25)),
+        by("nearest first, worth 0", nearest(0.0)),
         with("a gain counts in full", &[("order.power", 1.0)]),
         with("a gain counts by its root", &[("order.power", 0.5)]),
         with("gain within 2 m", &[("order.gain_m", 2.0)]),

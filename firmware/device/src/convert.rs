@@ -140,7 +140,9 @@ fn order(order: wire::Order) -> Order {
         wire::Order::Gain { worth } => Order::Gain {
             worth: float(worth),
         },
-        wire::Order::Nearest => Order::Nearest,
+        wire::Order::Nearest { worth } => Order::Nearest {
+            worth: worth.to_num(),
+        },
     }
 }
 

@@ -41,7 +41,7 @@ pub(super) struct RobotArgs {
     #[arg(long, value_name = "ORDER")]
     order: Option<OrderArg>,
     /// Least gain of a trip, square metres for each metre of way: what is not worth it is left; 0
-    /// for everything that can be seen. With the order gain only [default: 0.25]
+    /// for everything that can be seen [default: 0.25; 0 for sbpf and esbpf]
     #[arg(long, value_name = "M2_PER_M", value_parser = worth)]
     worth: Option<I4F12>,
     #[command(flatten)]
@@ -116,7 +116,7 @@ impl RobotArgs {
     /// Returns the order of frontiers for a strategy.
     ///
     /// # Errors
-    /// If the strategy has none, or a worth was given without the order by gain.
+    /// If the strategy has none.
     pub(super) fn order(&self, strategy: &str) -> Result<Option<Order>> {
         if self.order.is_none() && self.worth.is_none() {
             return Ok(None);
@@ -124,15 +124,11 @@ impl RobotArgs {
         let Some(known) = on_device(strategy) else {
             bail!("--strategy {strategy} has an order of its own; leave --order and --worth out");
         };
-        let order = match self.order {
-            None => known.order(),
-            Some(OrderArg::Gain) => Order::default(),
-            Some(OrderArg::Nearest) => Order::Nearest,
-        };
-        Ok(Some(match (order, self.worth) {
-            (Order::Gain { .. }, Some(worth)) => Order::Gain { worth },
-            (Order::Nearest, Some(_)) => bail!("--worth needs --order gain"),
-            (order, None) => order,
+        let own = known.order();
+        let worth = self.worth.unwrap_or(own.worth());
+        Ok(Some(match (self.order, own) {
+            (Some(OrderArg::Gain), _) | (None, Order::Gain { .. }) => Order::Gain { worth },
+            _ => Order::Nearest { worth },
         }))
     }
 

@@ -1,6 +1,6 @@
 //! The report of a run, put together from its mission, simulator, account and record.
 
-use fieldline_protocol::message::{Finish, Order, Strategy};
+use fieldline_protocol::message::{Finish, Strategy};
 
 use super::account::Account;
 use super::mission::{BVP_PAPERS, Mission, on_device};
@@ -39,10 +39,7 @@ pub(super) fn report(
         levels: mission.levels(),
         tdbvp_impatience: impatience(mission),
         order: order.map(|it| wording::order(it).into()),
-        worth: match order {
-            Some(Order::Gain { worth }) => Some(worth.to_num()),
-            _ => None,
-        },
+        worth: order.map(|it| it.worth().to_num()),
         space_field: space_field(mission, world),
         fence: fence(mission, simulator),
         trips: record.trips.clone(),

@@ -87,7 +87,7 @@ pub fn mistake(mistake: Mistake) -> &'static str {
 pub fn order(order: Order) -> &'static str {
     match order {
         Order::Gain { .. } => "gain",
-        Order::Nearest => "nearest",
+        Order::Nearest { .. } => "nearest",
     }
 }
 

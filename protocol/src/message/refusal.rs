@@ -46,7 +46,7 @@ pub enum Parameter {
     Hull,
     /// [`Start::loops`]: at least 0.
     LoopLimits,
-    /// [`Order::Gain`]: 0 to 7.
+    /// The worth of an [`Order`]: 0 to 7.
     Worth,
     /// [`SpaceField::size`]: 0.1 to 128 m. [`SpaceField::origin`]: within 3200 m.
     Area,

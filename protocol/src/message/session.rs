@@ -76,7 +76,10 @@ impl Strategy {
     pub fn order(self) -> Order {
         match self {
             Self::Frontier => Order::default(),
-            Self::Ouroboros | Self::Tdbvp { .. } | Self::Sbpf(_) | Self::Esbpf(_) => Order::Nearest,
+            Self::Ouroboros | Self::Tdbvp { .. } => Order::Nearest {
+                worth: I4F12::lit("0.25"),
+            },
+            Self::Sbpf(_) | Self::Esbpf(_) => Order::Nearest { worth: I4F12::ZERO },
         }
     }
 }
@@ -91,7 +94,20 @@ pub enum Order {
         worth: I4F12,
     },
     /// First the nearest frontier.
-    Nearest,
+    Nearest {
+        /// As for [`Gain`](Self::Gain).
+        worth: I4F12,
+    },
+}
+
+impl Order {
+    /// Returns the least gain of a trip, square metres for each metre of way.
+    #[must_use]
+    pub const fn worth(self) -> I4F12 {
+        match self {
+            Self::Gain { worth } | Self::Nearest { worth } => worth,
+        }
+    }
 }
 
 impl Default for Order {

@@ -126,7 +126,7 @@ fn request_control_start() {
             period_ms: 200,
             uneven_ground: None,
             loops: LoopLimits::default(),
-            order: Order::Nearest,
+            order: Order::Nearest { worth: I4F12::ZERO },
             team: Some(Team {
                 member: Member { id: 2, boot: 128 },
                 origin: (long(1.0), long(-0.5)),

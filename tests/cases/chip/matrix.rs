@@ -104,7 +104,7 @@ fn flat() -> Vec<Case> {
         strategy("", "c-room", "esbpf"),
         patrol,
         of("--order nearest", "office", |it| {
-            it.order = Some(Order::Nearest);
+            it.order = Some(Order::Nearest { worth: I4F12::ZERO });
         }),
         of("--worth 0", "office", |it| {
             let worth = I4F12::ZERO;
@@ -228,7 +228,7 @@ fn teams() -> Vec<TeamCase> {
         }),
         case("team --apart", "frontier", |it| it.apart = true),
         case("team --order nearest", "frontier", |it| {
-            it.mission.order = Some(Order::Nearest);
+            it.mission.order = Some(Order::Nearest { worth: I4F12::ZERO });
         }),
         case("team --radio lossy", "frontier", lossy),
         case("team --leave 0@4 --join 0@8", "frontier", timetable),

@@ -225,9 +225,7 @@ impl ConfigBuilder {
         if let Some(team) = &config.team {
             check_place(team)?;
         }
-        if let Order::Gain { worth } = config.order() {
-            check(Parameter::Worth, worth, (0.0, MOST_WORTH))?;
-        }
+        check(Parameter::Worth, config.order().worth(), (0.0, MOST_WORTH))?;
         if let Strategy::Sbpf(field) | Strategy::Esbpf(field) = &config.strategy {
             check_field(field)?;
         }

@@ -53,7 +53,7 @@ pub enum Parameter {
     Coverage,
     /// A parameter of [`LoopLimits`](crate::LoopLimits).
     LoopLimits,
-    /// The worth of [`Order::Gain`](crate::Order::Gain).
+    /// The worth of an [`Order`](crate::Order).
     Worth,
     /// A parameter of [`SolverConfig`](crate::SolverConfig).
     Solver,

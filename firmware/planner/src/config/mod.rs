@@ -185,7 +185,8 @@ impl Config {
         match (self.order, self.strategy) {
             (Some(order), _) => order,
             (None, Strategy::Frontier) => Order::GAIN,
-            (None, _) => Order::Nearest,
+            (None, Strategy::Ouroboros | Strategy::Tdbvp { .. }) => Order::NEAREST,
+            (None, Strategy::Sbpf(_) | Strategy::Esbpf(_)) => Order::ALL,
         }
     }
 

@@ -25,20 +25,25 @@ pub enum Order {
         /// trip is left; 0 leaves nothing.
         worth: f32,
     },
-    /// First the nearest frontier, as in the papers: all gains are equal, and every trip is worth
-    /// it.
-    Nearest,
+    /// First the nearest frontier, as in the papers: all gains are equal.
+    Nearest {
+        /// As for [`Gain`](Self::Gain).
+        worth: f32,
+    },
 }
 
 impl Order {
     /// By gain, with the default worth.
     pub const GAIN: Self = Self::Gain { worth: 0.25 };
+    /// The nearest first, with the default worth.
+    pub const NEAREST: Self = Self::Nearest { worth: 0.25 };
+    /// The nearest first, and every trip is worth it.
+    pub const ALL: Self = Self::Nearest { worth: 0.0 };
 
     /// Returns the least gain of a trip, square metres for each metre of way.
     pub(crate) const fn worth(self) -> f32 {
         match self {
-            Self::Gain { worth } => worth,
-            Self::Nearest => 0.0,
+            Self::Gain { worth } | Self::Nearest { worth } => worth,
         }
     }
 
@@ -46,7 +51,7 @@ impl Order {
     pub(crate) const fn power(self, tuning: &OrderTuning) -> f32 {
         match self {
             Self::Gain { .. } => tuning.power,
-            Self::Nearest => 0.0,
+            Self::Nearest { .. } => 0.0,
         }
     }
 }

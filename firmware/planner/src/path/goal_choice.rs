@@ -25,7 +25,7 @@
 use core::ops::{ControlFlow, Range};
 
 use crate::geometry::{Cell, Point};
-use crate::grid::{Plane, Site};
+use crate::grid::Plane;
 use crate::map::Tiles;
 use crate::math;
 use crate::path::candidates::{self, Candidate, Candidates};

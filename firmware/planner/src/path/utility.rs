@@ -5,8 +5,8 @@
 //! ```
 //!
 //! G is the unexplored area that may be seen from the goal, t the length of the trip to it. The
-//! [order](Order) of a session gives the power p and the worth: by gain 0.8 and 0.25 m² for each
-//! metre, nearest first 0 and 0, so that all goals gain the same and every trip is worth it.
+//! [order](Order) of a session gives the worth and the power p: by gain 0.8, nearest first 0, so
+//! that all goals gain the same.
 //!
 //! Units: metres, square metres.
 
@@ -76,7 +76,7 @@ mod tests {
 
     #[test]
     fn nearest_first_all_gains_are_equal_and_every_trip_is_worth_it() {
-        let nearest = GoalOrder::new(Order::Nearest, ORDER);
+        let nearest = GoalOrder::new(Order::ALL, ORDER);
         for gain_m2 in [0.0, 0.01, 4.0, 36.0] {
             assert!((nearest.value(gain_m2) - 1.0).abs() < 1e-6, "{gain_m2}");
             assert!(nearest.is_worth(gain_m2, 500.0));

@@ -18,7 +18,6 @@ use crate::input::InputFaults;
 use crate::localise::{Localiser, Location};
 use crate::map::Map;
 use crate::path::viewpoint;
-use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability;
 use crate::roadmap::skeleton::Skeleton;
 use crate::status::Status;

@@ -252,7 +252,7 @@ fn loops(choices: &mut impl Choices) -> LoopLimits {
 
 fn order(choices: &mut impl Choices) -> Order {
     match choices.below(3) {
-        0 => Order::Nearest,
+        0 => Order::Nearest { worth: I4F12::ZERO },
         1 => Order::Gain { worth: I4F12::ZERO },
         _ => Order::Gain {
             worth: narrow_within(choices, 0, 7 << 12),

@@ -158,7 +158,7 @@ fn start() -> impl Strategy<Value = Start> {
 fn order() -> impl Strategy<Value = Order> {
     prop_oneof![
         short().prop_map(|worth| Order::Gain { worth }),
-        Just(Order::Nearest),
+        short().prop_map(|worth| Order::Nearest { worth }),
     ]
 }
 

@@ -70,7 +70,7 @@ fn search_in(scratch: &mut [u32], tiles: &Map, robot: Cell, gone: &[Cell]) -> Op
         frame,
         footprints: [&Footprint::new(0.3), &Footprint::new(0.22)],
         robot,
-        order: GoalOrder::new(Order::Nearest, &Tuning::DEFAULT.order),
+        order: GoalOrder::new(Order::ALL, &Tuning::DEFAULT.order),
     };
     let mut residual = ResidualFrontiers::new();
     for &cell in gone {

@@ -110,7 +110,7 @@ impl Scene {
             footprint,
             blocked: BlockedPassages::new(),
             limits: LoopLimits::default(),
-            order: Order::Nearest,
+            order: Order::ALL,
             yaw_rad: 0.0,
             came_through_blocked: false,
             openings_were_tried: false,

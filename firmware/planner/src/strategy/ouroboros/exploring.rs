@@ -151,7 +151,7 @@ impl Exploration {
                 time_ms,
                 limits: &self.limits,
                 goal_level: None,
-                order: GoalOrder::new(Order::Nearest, &Tuning::DEFAULT.order),
+                order: GoalOrder::new(Order::ALL, &Tuning::DEFAULT.order),
                 tuning: &Tuning::DEFAULT,
                 levels: None,
                 team: None,

@@ -170,7 +170,7 @@ impl Scene {
             time_ms: 0,
             limits: &self.limits,
             goal_level: None,
-            order: GoalOrder::new(Order::Nearest, &Tuning::DEFAULT.order),
+            order: GoalOrder::new(Order::ALL, &Tuning::DEFAULT.order),
             tuning: &Tuning::DEFAULT,
             levels: None,
             team: None,
