@@ -25,6 +25,7 @@
 
 mod command;
 mod correction;
+mod doing;
 mod identity;
 mod location;
 mod observation;
@@ -41,6 +42,7 @@ pub use correction::{
     CORRECTED_BYTES, CORRECTED_TILES, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress,
     MOST_CORRECTED, Motion,
 };
+pub use doing::{Doing, Event, Events};
 pub use identity::{BUILD_BYTES, CRASH_FILE_BYTES, Cause, Crash, Identity};
 pub use location::{Location, Quality};
 pub use observation::{

@@ -297,6 +297,25 @@ pub const fn wire_task_error(error: TaskError) -> wire::Refusal {
     }
 }
 
+/// Converts what the robot does for the wire.
+#[must_use]
+pub const fn wire_doing(doing: planner::Doing) -> wire::Doing {
+    match doing {
+        planner::Doing::Stands => wire::Doing::Stands,
+        planner::Doing::Waits => wire::Doing::Waits,
+        planner::Doing::Explores => wire::Doing::Explores,
+        planner::Doing::FollowsForces => wire::Doing::FollowsForces,
+        planner::Doing::GoesToLook => wire::Doing::GoesToLook,
+        planner::Doing::GoesByOrder => wire::Doing::GoesByOrder,
+        planner::Doing::Searches => wire::Doing::Searches,
+        planner::Doing::Recovers => wire::Doing::Recovers,
+        planner::Doing::GoesBack => wire::Doing::GoesBack,
+        planner::Doing::LooksForGaps => wire::Doing::LooksForGaps,
+        planner::Doing::LooksAbout => wire::Doing::LooksAbout,
+        planner::Doing::MakesWay => wire::Doing::MakesWay,
+    }
+}
+
 /// Converts the planner's status for the wire.
 #[must_use]
 pub fn wire_status(status: planner::Status) -> wire::Status {

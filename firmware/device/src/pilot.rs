@@ -23,7 +23,7 @@ use fieldline_planner::{
     Workspace, step,
 };
 use fieldline_protocol::message::{
-    Activity, Body, Command, Control, Correct, CorrectedTiles, CorrectionProgress, Cost,
+    Activity, Body, Command, Control, Correct, CorrectedTiles, CorrectionProgress, Cost, Events,
     FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS, MAX_SCANS, Observation, Packet, Path,
     Refusal, ResidualFrontier, Start, Status, Tile, Twist,
 };
@@ -453,6 +453,8 @@ fn command(output: &Output, status: Status) -> Command {
     Command {
         velocity,
         status,
+        doing: convert::wire_doing(output.doing),
+        events: Events(output.events.bits()),
         heading: convert::quantity(output.heading_rad),
         forgot_arrivals: output.forgot_arrivals,
         cost: Cost {

@@ -36,6 +36,8 @@ mod clock;
 #[cfg(not(feature = "internals"))]
 mod config;
 #[cfg(not(feature = "internals"))]
+mod doing;
+#[cfg(not(feature = "internals"))]
 mod drive;
 #[cfg(not(feature = "internals"))]
 mod fence;
@@ -74,6 +76,8 @@ mod team;
 
 #[cfg(feature = "internals")]
 pub mod config;
+#[cfg(feature = "internals")]
+pub mod doing;
 #[cfg(feature = "internals")]
 pub mod drive;
 #[cfg(feature = "internals")]
@@ -117,6 +121,7 @@ pub use config::{
     Parameter, PreferenceMode, SbpfTuning, SolverConfig, SpaceField, Strategy, TdbvpTuning,
     TeamPlace, Tuned, Tuning, TuningError, UnevenGround,
 };
+pub use doing::{Doing, Event, Events};
 pub use fence::Fence;
 pub use field::SIDE as FIELD_SIDE;
 pub use geometry::{CELL_M, Cell, MapPose, Point, Pose, Twist};

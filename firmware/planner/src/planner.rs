@@ -45,6 +45,7 @@ pub use state::State;
 pub use workspace::{CellKind, FieldRow, Workspace};
 
 use crate::config::Config;
+use crate::doing::{Doing, Event, Events};
 use crate::field::{SolverConfig, Stop, solve};
 use crate::geometry::{CELL_M, MapPose, OdomPose, Point, Pose, Twist};
 use crate::input::{INVALID_MM, Input, InputError};
@@ -77,6 +78,10 @@ pub struct Output {
     pub velocity: Twist,
     /// The planner's status.
     pub status: Status,
+    /// What the robot does.
+    pub doing: Doing,
+    /// What happened in this step.
+    pub events: Events,
     /// The field's heading at the robot, radians.
     pub heading_rad: f32,
     /// Number of multigrid cycles (or Gauss–Seidel sweeps) spent on the window.
@@ -96,6 +101,22 @@ impl Output {
     fn standing(status: Status) -> Self {
         Self {
             status,
+            ..Self::default()
+        }
+    }
+
+    /// Returns a zero velocity, for a robot on the last metre of its way by order.
+    fn going() -> Self {
+        Self {
+            doing: Doing::GoesByOrder,
+            ..Self::default()
+        }
+    }
+
+    /// Returns a zero velocity, for a robot that has no path yet, or must let another one pass.
+    fn waiting() -> Self {
+        Self {
+            doing: Doing::Waits,
             ..Self::default()
         }
     }
@@ -184,6 +205,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
         velocity,
         status: state.status,
         forgot_arrivals: core::mem::take(&mut state.forgot_arrivals),
+        events: state.take_events(),
         ..output
     }
 }
@@ -266,13 +288,13 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     if state.viewpoints.is_running() {
         search_viewpoints(config, state, workspace, &footprint, &input);
         timer.mark(Stage::Plan);
+        if !state.status.drives() {
+            return Output::standing(state.status);
+        }
         return Output {
-            velocity: if state.status.drives() {
-                look_about(config, state, &input)
-            } else {
-                Twist::default()
-            },
-            ..Output::standing(state.status)
+            velocity: look_about(config, state, &input),
+            doing: Doing::LooksForGaps,
+            ..Output::default()
         };
     }
     let planned = advance_plan(config, state, workspace, &footprint, &input, timer);
@@ -288,6 +310,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         timer.mark(Stage::Drive);
         return Output {
             velocity,
+            doing: Doing::GoesBack,
             ..Output::default()
         };
     }
@@ -301,7 +324,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
     }
     if matches!(way, Way::Hold) {
         timer.mark(Stage::Window);
-        return Output::default();
+        return Output::waiting();
     }
     if matches!(way, Way::Retreat) {
         // The window is charged with the way already.
@@ -318,10 +341,7 @@ fn explore<const TILES: usize, const SLOTS: usize>(
                 state.strategy.frontier.note_closed();
             }
             timer.mark(Stage::Window);
-            return Output {
-                velocity: look_about(config, state, &input),
-                ..Output::default()
-            };
+            return without_path(look_about(config, state, &input));
         };
         if is_closed {
             state.strategy.frontier.note_closed();
@@ -337,13 +357,30 @@ fn explore<const TILES: usize, const SLOTS: usize>(
         note_flatness(state, workspace, &input);
     }
     timer.mark(Stage::Solve);
-    let output = Output {
+    let output = steer(config, state, workspace, &input, None);
+    timer.mark(Stage::Drive);
+    let doing = match (way, output.doing) {
+        (Way::Retreat, Doing::Explores | Doing::GoesToLook) => Doing::MakesWay,
+        (_, doing) => doing,
+    };
+    Output {
         cycles: solution.cycles + solution.sweeps,
         budget_exhausted: solution.stop == Stop::Budget,
-        ..steer(config, state, workspace, &input, None)
-    };
-    timer.mark(Stage::Drive);
-    output
+        doing,
+        ..output
+    }
+}
+
+/// Returns the output of a step without a path: the robot looks about, or stands.
+fn without_path(look: Twist) -> Output {
+    if look == Twist::default() {
+        return Output::waiting();
+    }
+    Output {
+        velocity: look,
+        doing: Doing::LooksAbout,
+        ..Output::default()
+    }
 }
 
 /// Plans on a new skeleton, or continues to thin the next one. Planning on a skeleton begins in the
@@ -449,6 +486,7 @@ fn note_surroundings<const TILES: usize, const SLOTS: usize>(
         && let Some(contact) = state.drive.feel(config, input.velocity)
     {
         state.ground.feel(&odom, &config.robot, contact);
+        state.events.add(Event::Touched);
     }
 }
 

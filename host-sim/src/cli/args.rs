@@ -290,6 +290,9 @@ pub(super) struct ExploreArgs {
     pub(super) snapshots: usize,
     #[command(flatten)]
     pub(super) robot: RobotArgs,
+    /// Print during the run what the robot does and why, as in the file mission.log
+    #[arg(long, value_name = "WHAT")]
+    pub(super) log: Option<LogArg>,
     /// Print only the reports, one JSON object a line
     #[arg(long)]
     pub(super) json: bool,
@@ -342,9 +345,17 @@ impl Default for ExploreArgs {
             particles: None,
             snapshots: 0,
             robot: RobotArgs::default(),
+            log: None,
             json: false,
         }
     }
+}
+
+/// A log that is printed during a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum LogArg {
+    /// What the robot does and why
+    Mission,
 }
 
 /// What follows the exploration.

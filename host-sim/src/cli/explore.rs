@@ -20,7 +20,7 @@ use host_sim::trial::surprises::surprises;
 use host_sim::trial::uneven;
 use host_sim::world::World;
 
-use super::args::{ExploreArgs, GroundArg, OdometryArg, SwitchArg, ThenArg};
+use super::args::{ExploreArgs, GroundArg, LogArg, OdometryArg, SwitchArg, ThenArg};
 use super::pictures::Album;
 use super::prepared::Prepared;
 use super::progress::{Interrupt, Onlooker};
@@ -157,7 +157,8 @@ fn explore(prepared: &Prepared, run: &Run, interrupt: &Interrupt) -> Result<bool
     }
     let pace = args.team.as_ref().map(|team| team.pace);
     let pace = pace.or(args.realtime.then_some(1.0));
-    let mut onlooker = Onlooker::new(name, pace, interrupt.clone());
+    let mut onlooker =
+        Onlooker::new(name, pace, interrupt.clone()).logging(args.log == Some(LogArg::Mission));
     let result = prepared.play_mission(&run.mission, &run.world, &mut onlooker);
     onlooker.finish();
     let (mut report, record) = result?;

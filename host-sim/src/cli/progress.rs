@@ -8,6 +8,7 @@ use std::time::Instant;
 use anyhow::{Context as _, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use host_sim::report::mission_log::MissionLog;
 use host_sim::trial::{Flow, Progress, Watch, wording};
 
 use super::note;
@@ -44,6 +45,8 @@ impl Interrupt {
 pub(super) struct Onlooker {
     bar: ProgressBar,
     interrupt: Interrupt,
+    /// The log that is printed.
+    log: Option<MissionLog>,
     /// Real time of the start, and the simulated seconds that one second may have at most.
     began: Option<(Instant, f64)>,
 }
@@ -63,8 +66,15 @@ impl Onlooker {
         Self {
             bar,
             interrupt,
+            log: None,
             began: pace.map(|pace| (Instant::now(), pace)),
         }
+    }
+
+    /// Prints what the robot does and why, as it comes.
+    pub(super) fn logging(self, is_on: bool) -> Self {
+        let log = is_on.then(MissionLog::new);
+        Self { log, ..self }
     }
 
     /// Removes the line.
@@ -78,6 +88,10 @@ impl Watch for Onlooker {
         self.bar
             .set_position((progress.coverage * TICKS as f64) as u64);
         self.bar.set_message(message(progress));
+        let log = self.log.as_mut();
+        if let Some(entry) = log.and_then(|it| it.note(&progress.estimate, &progress.command)) {
+            self.bar.suspend(|| note(&entry.to_string()));
+        }
         if let Some((began, pace)) = self.began {
             let due = Duration::from_millis(progress.time_ms.into()).div_f64(pace);
             std::thread::sleep(due.saturating_sub(began.elapsed()));
@@ -172,8 +186,8 @@ fn message(progress: &Progress) -> String {
 
 /// Returns the status, and loops if there are any.
 fn doing(progress: &Progress) -> String {
-    let mut words = wording::status(progress.status);
-    let loops = progress.loops;
+    let mut words = wording::status(progress.command.status);
+    let loops = progress.command.loops;
     if loops.closing {
         words += ", closing a loop";
     }
@@ -189,7 +203,8 @@ fn doing(progress: &Progress) -> String {
 mod tests {
     use super::{message, time_left};
     use core::time::Duration;
-    use fieldline_protocol::message::{Loops, Status};
+    use fieldline_protocol::message::{Command, Loops, Status};
+    use host_sim::report::tum::Stamped;
     use host_sim::trial::Progress;
 
     #[test]
@@ -198,8 +213,11 @@ mod tests {
             time_ms: 83_400,
             coverage: 0.4567,
             path_m: 31.26,
-            status: Status::Exploring,
-            loops: Loops::default(),
+            estimate: Stamped::default(),
+            command: Command {
+                status: Status::Exploring,
+                ..Command::default()
+            },
         };
         assert_eq!(
             message(&progress),
@@ -210,7 +228,14 @@ mod tests {
             closed: 0,
             given_up: 2,
         };
-        let progress = Progress { loops, ..progress };
+        let command = Command {
+            loops,
+            ..progress.command
+        };
+        let progress = Progress {
+            command,
+            ..progress
+        };
         assert!(message(&progress).ends_with("m  exploring, closing a loop, 2 given up"));
     }
 

@@ -7,7 +7,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{GridMap, Report, TeamReport, commands, ros_map, tum};
+use super::{GridMap, Report, TeamReport, commands, mission_log, ros_map, tum};
 use crate::trial::Record;
 
 /// Folder of the pictures during the run.
@@ -85,7 +85,13 @@ pub fn write(
         let corrected = tum::text(&record.corrected);
         put(folder, CORRECTED, corrected.as_bytes())?;
     }
-    put(folder, "commands.csv", commands::text(rows).as_bytes())?;
+    put(
+        folder,
+        "commands.csv",
+        commands::text(rows.clone()).as_bytes(),
+    )?;
+    let log = mission_log::text(&mission_log::entries(rows));
+    put(folder, "mission.log", log.as_bytes())?;
     put(folder, "run.png", picture)?;
     end(folder, &report.to_json_pretty())
 }

@@ -12,6 +12,7 @@ mod input_faults;
 mod localization;
 pub mod loop_closing;
 pub mod made_by;
+pub mod mission_log;
 pub mod ros_map;
 pub mod team;
 mod text;
@@ -102,6 +103,9 @@ pub struct Report {
     pub world_notes: Vec<String>,
     /// End of the run.
     pub outcome: Outcome,
+    /// The last changes of what the robot did, and why; the key is missing for baselines.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mission: Vec<mission_log::Entry>,
     /// Simulated seconds.
     pub sim_time_s: f64,
     /// Length of the true path, metres.

@@ -30,7 +30,7 @@ pub mod wording;
 use std::time::Instant;
 
 use fieldline_protocol::message::{
-    Command, Control, Location, Loops, Observation, Quality, Start, Status, Twist,
+    Command, Control, Location, Observation, Quality, Start, Status, Twist,
 };
 
 use crate::link::{Link, LinkError};
@@ -107,10 +107,10 @@ pub struct Progress {
     pub coverage: f64,
     /// Metres driven.
     pub path_m: f64,
-    /// The planner's status.
-    pub status: Status,
-    /// Loops closed and given up.
-    pub loops: Loops,
+    /// Where the planner takes the robot to be.
+    pub estimate: Stamped,
+    /// The last command.
+    pub command: Command,
 }
 
 /// Settings of a run.

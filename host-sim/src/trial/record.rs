@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use fieldline_protocol::message::{
-    Command, Cost, Loops, Observation, Pose, Quality, ResidualFrontier, Status, Tile,
+    Command, Cost, Observation, Pose, Quality, ResidualFrontier, Tile,
 };
 use fixed::types::I16F16;
 
@@ -182,8 +182,8 @@ impl Record {
             time_ms: last.map_or(0, |step| step.truth.time_ms),
             coverage: self.coverage,
             path_m: self.path_m,
-            status: last.map_or(Status::Idle, |step| step.command.status),
-            loops: last.map_or_else(Loops::default, |step| step.command.loops),
+            estimate: last.map_or_else(Stamped::default, |step| step.estimate),
+            command: last.map_or_else(Command::default, |step| step.command),
         }
     }
 

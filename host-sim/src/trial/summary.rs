@@ -8,6 +8,7 @@ use super::{Ending, Record, wording};
 use crate::fence::Polygon;
 use crate::metrics::patrol::{Patrol, without_spurs};
 use crate::metrics::{CellSet, Loops, map_error, walls_share};
+use crate::report::mission_log::{self, Entry};
 use crate::report::true_ground::{ClassScores, TrueGround, degrees};
 use crate::report::{self, Report, SCHEMA_VERSION};
 use crate::robot::OdometryModel;
@@ -57,6 +58,7 @@ pub(super) fn report(
         noise: noise(simulator.config()),
         world_notes: world.notes().to_vec(),
         outcome: record.outcome(),
+        mission: mission_log(mission, record),
         sim_time_s: f64::from(record.progress().time_ms) / 1000.0,
         path_length_m: simulator.path_length_m(),
         path_overlap: Some(simulator.overlap()),
@@ -85,6 +87,17 @@ pub(super) fn report(
             .as_ref()
             .map(|it| it.report(account.coverage.fraction())),
     }
+}
+
+/// Returns the last changes of what the robot did. A planner on the host tells none.
+fn mission_log(mission: &Mission, record: &Record) -> Vec<Entry> {
+    if on_device(&mission.strategy).is_none() {
+        return Vec::new();
+    }
+    let steps = record.steps.iter();
+    mission_log::last(mission_log::entries(
+        steps.map(|step| (&step.estimate, &step.command)),
+    ))
 }
 
 /// Returns the wiring mistakes, as on the command line; `None` without any.

@@ -1,7 +1,7 @@
 //! Words for the wire's enums in reports, tables and progress lines. They are part of the schema.
 
 use fieldline_protocol::message::{
-    Errand, Fault, Finish, Mistake, Order, Preference, ResidualReason, Status,
+    Doing, Errand, Fault, Finish, Mistake, Order, Preference, ResidualReason, Status,
 };
 
 /// Returns `exploring`, `finished(explored)`, `fault(stuck)` ...
@@ -18,6 +18,25 @@ pub fn status(status: Status) -> String {
         Status::Going(to) => format!("going({})", errand(to)),
         Status::Arrived(at) => format!("arrived({})", errand(at)),
         Status::Unreachable(to) => format!("unreachable({})", errand(to)),
+    }
+}
+
+/// Returns what the robot does.
+#[must_use]
+pub const fn doing(doing: Doing) -> &'static str {
+    match doing {
+        Doing::Stands => "stands",
+        Doing::Waits => "waits",
+        Doing::Explores => "explores",
+        Doing::FollowsForces => "follows the forces",
+        Doing::GoesToLook => "goes to look",
+        Doing::GoesByOrder => "goes by order",
+        Doing::Searches => "searches a motion",
+        Doing::Recovers => "recovers",
+        Doing::GoesBack => "goes back",
+        Doing::LooksForGaps => "looks for gaps",
+        Doing::LooksAbout => "looks about",
+        Doing::MakesWay => "makes way",
     }
 }
 

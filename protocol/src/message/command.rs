@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 #[cfg(doc)]
 use super::{Control, Identity};
-use super::{Location, Twist};
+use super::{Doing, Events, Location, Twist};
 
 /// State of the planner.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
@@ -216,6 +216,10 @@ pub struct Command {
     pub velocity: Twist,
     /// State of the planner.
     pub status: Status,
+    /// What the robot does.
+    pub doing: Doing,
+    /// What happened in this step.
+    pub events: Events,
     /// Heading of the robot that the field asks for, radians; it has a meaning only while
     /// exploring.
     pub heading: I16F16,

@@ -3,9 +3,9 @@
 use fieldline_protocol::SCHEMA;
 use fieldline_protocol::check::Kind;
 use fieldline_protocol::message::{
-    Cause, Command, Cost, Counters, Crash, Errand, Fault, FieldRow, Finish, Identity, InputFaults,
-    Location, Loops, Mistake, Parameter, Path, Quality, Refusal, Reply, ResidualFrontier,
-    ResidualReason, Stages, Status, TILE_BYTES, TILE_SKELETON_BYTES, Tile, Twist,
+    Cause, Command, Cost, Counters, Crash, Doing, Errand, Events, Fault, FieldRow, Finish,
+    Identity, InputFaults, Location, Loops, Mistake, Parameter, Path, Quality, Refusal, Reply,
+    ResidualFrontier, ResidualReason, Stages, Status, TILE_BYTES, TILE_SKELETON_BYTES, Tile, Twist,
 };
 
 use super::common::replies;
@@ -113,6 +113,8 @@ fn reply_command() {
                 angular: short(-1.0),
             },
             status: Status::Exploring,
+            doing: Doing::GoesBack,
+            events: Events(0x81),
             heading: long(-0.5),
             loops: Loops {
                 closing: true,
@@ -162,6 +164,7 @@ fn reply_command() {
             3, // Command
             0x80, 0x10, 0xff, 0x3f, // velocity
             1,    // exploring
+            8, 0x81, 0x01, // goes back; two events
             0xff, 0xff, 0x03, // heading −0.5 rad = −32768/65536
             1, 0xac, 0x02, 2, // loops
             1, // what came is forgotten

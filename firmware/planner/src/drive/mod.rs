@@ -158,6 +158,11 @@ impl Drive {
         (self.retreats, self.wedged) = (false, false);
     }
 
+    /// Returns true while the robot drives motions that a search found.
+    pub(crate) fn is_recovering(&self) -> bool {
+        !self.recovery.is_empty()
+    }
+
     /// Returns true while the robot goes back along its track.
     pub(crate) const fn is_retreating(&self) -> bool {
         self.retreats

@@ -401,7 +401,7 @@ pub(super) fn approach<const TILES: usize, const SLOTS: usize>(
     let speed = input.velocity.linear_mps.abs();
     let stop_m = speed * (config.period_s + 0.5 * speed / config.linear_accel_mps2);
     if speed > 0.0 && stop_m + 0.5 * THERE_M >= left_m {
-        return Some(Output::default());
+        return Some(Output::going());
     }
     Some(steer(config, state, workspace, input, Some(lead_rad)))
 }
@@ -428,7 +428,7 @@ fn turn<const TILES: usize, const SLOTS: usize>(
     input: &Input<'_>,
 ) -> Output {
     let Some(going) = state.errands.going() else {
-        return Output::default();
+        return Output::going();
     };
     let wanted = going.yaw_rad.unwrap_or(input.pose.yaw_rad);
     let error = math::wrap(wanted - input.pose.yaw_rad);
@@ -437,7 +437,7 @@ fn turn<const TILES: usize, const SLOTS: usize>(
         if stands && input.velocity.angular_radps.abs() < 0.1 {
             state.end_errand(true);
         }
-        return Output::default();
+        return Output::going();
     }
     let mut checker = CollisionChecker::empty(&config.robot);
     obstruct(&mut checker, state, config, input);
@@ -463,6 +463,6 @@ fn turn<const TILES: usize, const SLOTS: usize>(
     }
     Output {
         velocity: found.unwrap_or_default(),
-        ..Output::default()
+        ..Output::going()
     }
 }

@@ -11,6 +11,7 @@ use super::ground_model::GroundModel;
 use super::wiring::Wiring;
 use super::workspace::{RING, SCRATCH};
 use crate::config::Config;
+use crate::doing::{Doing, Events};
 use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{self, Drive};
 use crate::field::preference::Preferences;
@@ -61,6 +62,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     pub(super) ends: bool,
     /// This step took what came for gone.
     pub(super) forgot_arrivals: bool,
+    /// What happened in this step, but for what the strategy tells.
+    pub(super) events: Events,
     /// What corrects the map.
     pub(super) correcting: Correcting,
     /// Where the robot is ordered to go.
@@ -107,6 +110,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             has_new_skeleton: false,
             ends: false,
             forgot_arrivals: false,
+            events: Events::NONE,
             correcting: Correcting::new(),
             errands: Errands::new(),
         }
@@ -133,6 +137,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.has_new_skeleton = false;
         self.ends = false;
         self.forgot_arrivals = false;
+        self.events = Events::NONE;
         self.correcting = Correcting::new();
         self.errands = Errands::new();
     }
@@ -141,6 +146,28 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     #[must_use]
     pub const fn status(&self) -> Status {
         self.status
+    }
+
+    /// Returns what happened in this step.
+    pub(super) const fn take_events(&mut self) -> Events {
+        self.events.take().and(self.strategy.frontier.take_events())
+    }
+
+    /// Returns what a robot does that follows a field or a heading.
+    pub(super) fn follows(&self) -> Doing {
+        if self.drive.is_searching() {
+            Doing::Searches
+        } else if self.drive.is_recovering() {
+            Doing::Recovers
+        } else if self.errands.is_going() {
+            Doing::GoesByOrder
+        } else if self.strategy.heading_rad().is_some() {
+            Doing::FollowsForces
+        } else if self.strategy.frontier.goes_to_look() {
+            Doing::GoesToLook
+        } else {
+            Doing::Explores
+        }
     }
 
     /// Returns the location after the last step.

@@ -3,6 +3,7 @@
 //! Units: metres, seconds, radians; milliseconds where a name says so.
 
 use crate::config::Config;
+use crate::doing::Doing;
 use crate::drive::side_slope::Hysteresis;
 use crate::drive::{CollisionChecker, Incline, Place, SearchQuery};
 use crate::field::local_grid;
@@ -37,7 +38,7 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
     } = workspace;
     let lead = lead_rad.map(|lead_rad| math::wrap(lead_rad - input.pose.yaw_rad));
     let Some((origin, scale)) = window_at.or(lead.map(|_| (input.pose.point().cell(), 1))) else {
-        return Output::default();
+        return Output::waiting();
     };
     let heights = state.map.heights();
     // A robot that is stalled within its roll limit leaves the limit rather than stand there for
@@ -111,13 +112,16 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
             frontier.note_wedged(input.pose.point(), input.time_ms);
         }
     }
-    let velocity = if should_look(state, velocity, input.time_ms) {
-        state.drive.look_around(config, &checker, input.velocity)
+    let doing = state.follows();
+    let (velocity, doing) = if should_look(state, velocity, input.time_ms) {
+        let look = state.drive.look_around(config, &checker, input.velocity);
+        (look, Doing::LooksAbout)
     } else {
-        velocity
+        (velocity, doing)
     };
     Output {
         velocity,
+        doing,
         heading_rad: math::wrap(input.pose.yaw_rad + here.unwrap_or(0.0)),
         ..Output::default()
     }

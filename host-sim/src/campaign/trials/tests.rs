@@ -1,11 +1,12 @@
 use core::sync::atomic::{AtomicUsize, Ordering};
 
-use fieldline_protocol::message::{Loops, Status};
+use fieldline_protocol::message::Command;
 
 use super::{Crew, Explore, run};
 use crate::campaign::store::Finished;
 use crate::campaign::store::tests::plan;
 use crate::report::Report;
+use crate::report::tum::Stamped;
 use crate::trial::{Flow, Progress, Record, Watch};
 
 /// Steps of a run of [`Fake`].
@@ -37,8 +38,8 @@ impl Explore for Fake {
                 time_ms: step * 1_000,
                 coverage: f64::from(step) / f64::from(STEPS),
                 path_m: 0.0,
-                status: Status::Exploring,
-                loops: Loops::default(),
+                estimate: Stamped::default(),
+                command: Command::default(),
             });
             if flow == Flow::Interrupt {
                 break;

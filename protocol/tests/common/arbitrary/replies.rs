@@ -1,14 +1,31 @@
 //! What a device answers.
 
 use fieldline_protocol::message::{
-    Cause, Command, CorrectionProgress, Cost, Counters, Crash, Errand, Fault, FieldRow, Finish,
-    Identity, InputFaults, Location, Loops, Mistake, Parameter, Path, Quality, Refusal, Reply,
-    ResidualFrontier, ResidualReason, Stages, Status, Tile,
+    Cause, Command, CorrectionProgress, Cost, Counters, Crash, Doing, Errand, Events, Fault,
+    FieldRow, Finish, Identity, InputFaults, Location, Loops, Mistake, Parameter, Path, Quality,
+    Refusal, Reply, ResidualFrontier, ResidualReason, Stages, Status, Tile,
 };
 use proptest::prelude::*;
 
 use super::team::packet;
 use super::{list, long, short, text, twist};
+
+fn doing() -> impl Strategy<Value = Doing> {
+    prop::sample::select(vec![
+        Doing::Stands,
+        Doing::Waits,
+        Doing::Explores,
+        Doing::FollowsForces,
+        Doing::GoesToLook,
+        Doing::GoesByOrder,
+        Doing::Searches,
+        Doing::Recovers,
+        Doing::GoesBack,
+        Doing::LooksForGaps,
+        Doing::LooksAbout,
+        Doing::MakesWay,
+    ])
+}
 
 fn status() -> impl Strategy<Value = Status> {
     let finish = prop::sample::select(vec![
@@ -143,7 +160,7 @@ fn input_faults() -> impl Strategy<Value = InputFaults> {
 fn command() -> impl Strategy<Value = Command> {
     (
         twist(),
-        status(),
+        (status(), doing(), any::<u16>().prop_map(Events)),
         (
             long(),
             loops(),
@@ -158,7 +175,7 @@ fn command() -> impl Strategy<Value = Command> {
         .prop_map(
             |(
                 velocity,
-                status,
+                (status, doing, events),
                 (heading, loops, forgot_arrivals, input_faults, (map_epoch, location)),
                 counters,
                 stages,
@@ -166,6 +183,8 @@ fn command() -> impl Strategy<Value = Command> {
             )| Command {
                 velocity,
                 status,
+                doing,
+                events,
                 heading,
                 loops,
                 forgot_arrivals,

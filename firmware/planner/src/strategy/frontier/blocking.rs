@@ -12,6 +12,7 @@
 //!
 //! Units: map cells, milliseconds.
 
+use crate::doing::Event;
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Point};
 use crate::path::PlanningContext;
@@ -60,9 +61,13 @@ impl Frontier {
     ) {
         let passage = match verdict {
             Verdict::GoOn | Verdict::Drop(_) => return,
-            Verdict::BlockUnreachable => first_unreachable(&self.path, context, grid),
+            Verdict::BlockUnreachable => {
+                self.events.add(Event::PathClosed);
+                first_unreachable(&self.path, context, grid)
+            }
             Verdict::BlockAhead => {
                 self.stalled = true;
+                self.events.add(Event::Stalled);
                 ahead(&self.path, context.pose.point())
             }
         };
@@ -83,6 +88,7 @@ impl Frontier {
     pub(crate) fn note_wedged(&mut self, robot: Point, time_ms: u32) {
         self.progress.note_blocked(time_ms);
         self.stalled = true;
+        self.events.add(Event::Wedged);
         self.block_from(ahead(&self.path, robot));
     }
 }

@@ -4,6 +4,7 @@
 //! nearer. The robot may enter a gap that is hardly wider than its hull. After the second chance
 //! and its repetitions it only looks from viewpoints.
 
+use crate::doing::Event;
 use crate::path::RoundOutcome;
 use crate::strategy::frontier::Frontier;
 
@@ -38,6 +39,7 @@ impl Frontier {
         self.only_looks = true;
         self.immobile = !self.progress.moved();
         self.progress.begin_looking();
+        self.events.add(Event::OnlyLooks);
         self.path.clear();
         RoundOutcome::Nothing
     }
@@ -97,6 +99,7 @@ impl Frontier {
 
     fn begin_second_chance(&mut self) -> RoundOutcome {
         self.second_chance = true;
+        self.events.add(Event::TriesAgain);
         self.progress.begin_next_try();
         self.blocked.open_all();
         self.residual.retry_without_progress();

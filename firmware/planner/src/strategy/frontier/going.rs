@@ -34,11 +34,7 @@ impl Frontier {
                 self.path.clear();
                 RoundOutcome::Unsure
             }
-            None if context.came_through_blocked => {
-                self.goes_back = true;
-                self.path.clear();
-                RoundOutcome::Unsure
-            }
+            None if context.came_through_blocked => self.go_back_through_blocked(),
             None => self.do_without(),
         }
     }

@@ -7,6 +7,7 @@
 //! Invariant: a run has at most `MOST_VIEWPOINTS` viewpoints, so it ends.
 //! Units: map cells, coarse steps of 20 cm.
 
+use crate::doing::Event;
 use crate::field::local_grid::LocalGrid;
 use crate::map::Class;
 use crate::math;
@@ -31,6 +32,7 @@ impl Frontier {
     pub(crate) fn look_from(&mut self, viewpoint: Viewpoint) {
         (self.viewpoint, self.waits) = (Some(viewpoint), false);
         self.viewpoints = self.viewpoints.saturating_add(1);
+        self.events.add(Event::FoundGap);
     }
 
     /// Goes to the viewpoint, as long as there is something to see from it, a path leads there, and

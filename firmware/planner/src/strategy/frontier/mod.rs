@@ -16,6 +16,7 @@ mod correcting;
 mod going;
 mod looking;
 
+use crate::doing::{Event, Events};
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::Cell;
 use crate::path::blocked_passages::BlockedPassages;
@@ -63,6 +64,8 @@ pub(crate) struct Frontier {
     /// See [`PresentGoal::reference_m`].
     reference_m: f32,
     second_look: SecondLook,
+    /// What happened since the last call of [`Self::take_events`].
+    events: Events,
 }
 
 impl Frontier {
@@ -86,6 +89,7 @@ impl Frontier {
             goes_back: false,
             reference_m: 0.0,
             second_look: SecondLook::new(),
+            events: Events::NONE,
         }
     }
 
@@ -107,6 +111,16 @@ impl Frontier {
     /// Takes a goal that was reached and stayed unexplored off the list of those given up.
     pub(crate) fn take_unobservable(&mut self) -> Option<Cell> {
         self.residual.take_unobservable()
+    }
+
+    /// Returns what happened since the last call.
+    pub(crate) const fn take_events(&mut self) -> Events {
+        self.events.take()
+    }
+
+    /// Returns true if the path leads to a viewpoint.
+    pub(crate) const fn goes_to_look(&self) -> bool {
+        self.viewpoint.is_some()
     }
 
     /// Returns true if the robot stalled since the last call.
@@ -189,6 +203,7 @@ impl Frontier {
         self.residual.retry_unreachable();
         self.waits = true;
         self.path.clear();
+        self.events.add(Event::SecondLook);
     }
 
     /// Returns true if the robot waits that what is in the way goes.
@@ -258,9 +273,7 @@ impl Frontier {
             self.path.clear();
             return RoundOutcome::Unsure;
         } else if context.came_through_blocked {
-            self.goes_back = true;
-            self.path.clear();
-            return RoundOutcome::Unsure;
+            return self.go_back_through_blocked();
         } else {
             return self.do_without();
         }
@@ -301,6 +314,14 @@ impl Frontier {
         self.progress.note_closed();
     }
 
+    /// Goes back through a passage that was blocked, along the track.
+    fn go_back_through_blocked(&mut self) -> RoundOutcome {
+        self.goes_back = true;
+        self.path.clear();
+        self.events.add(Event::BackThroughBlocked);
+        RoundOutcome::Unsure
+    }
+
     #[inline(never)]
     fn forget_path(&mut self) {
         self.progress.forget(self.path.goal());
@@ -309,6 +330,11 @@ impl Frontier {
 
     /// Gives up a goal: no other one is taken near it.
     fn give_up(&mut self, goal: Cell, reason: ResidualReason) {
+        self.events.add(match reason {
+            ResidualReason::Unobservable => Event::GoalSaysNothing,
+            ResidualReason::NoProgress => Event::GoalNoNearer,
+            _ => Event::NoPathToLook,
+        });
         self.residual.give_up(goal, reason);
         self.forget_path();
     }
