@@ -7,10 +7,11 @@ use serde_json::Value;
 
 use crate::{folder, outcome, reports};
 
-const FILES: [&str; 7] = [
+const FILES: [&str; 8] = [
     "commands.csv",
     "map.pgm",
     "map.yaml",
+    "mission.log",
     "report.json",
     "run.png",
     "trajectory.tum",
@@ -592,4 +593,39 @@ fn a_robot_with_a_budget_is_home_before_it_is_spent() {
     assert_eq!(report["trips"][0]["reached"], true);
     let driven_m = report["path_length_m"].as_f64().expect("metres");
     assert!((20.0..=40.0).contains(&driven_m), "{driven_m}");
+}
+
+/// The log tells the end and its reasons. Printed lines, file and report are one, on every link.
+#[test]
+fn the_log_of_the_mission_is_printed_and_kept() {
+    let folder = folder();
+    let log = |link: &str| {
+        let arguments = [
+            "explore",
+            "unreachable-room",
+            "--link",
+            link,
+            "--out",
+            link,
+            "--log",
+            "mission",
+            "--json",
+        ];
+        let (status, stdout, stderr) = outcome(&folder, &arguments);
+        assert_eq!(status, 0, "{stderr}");
+        let kept = fs::read_to_string(folder.path().join(link).join("mission.log"));
+        let kept = kept.expect("a log");
+        let printed: Vec<&str> = stderr.lines().filter(|it| it.contains(" s  (")).collect();
+        assert_eq!(printed, kept.lines().collect::<Vec<_>>());
+        let report = reports(&stdout).remove(0);
+        let entries = report["mission"].as_array().expect("entries");
+        assert_eq!(entries.len(), kept.lines().count().min(20));
+        kept
+    };
+    let told = log("direct");
+    assert_eq!(told, log("loopback"));
+    let last = told.lines().last().expect("a line");
+    assert!(last.ends_with("finished(explored)"), "{told}");
+    let why = "nothing is left to drive to, so it goes to look through a gap";
+    assert!(told.contains(why), "{told}");
 }
