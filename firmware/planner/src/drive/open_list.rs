@@ -16,7 +16,8 @@ use crate::drive::motion::MOTIONS;
 use crate::grid::at;
 use crate::math;
 
-/// Capacity of a search, poses (measured: docs/MEASURED.md, "Capacities of a search").
+/// Capacity of a search, poses. With too few a search gives up in worlds that can be explored
+/// (measured: docs/MEASURED.md, "Capacities of a search").
 pub(super) const MOST_NODES: usize = 1770;
 /// Capacity of the heap: fewer poses than these wait at a time (measured: as above).
 const MOST_WAITING: usize = 720;
