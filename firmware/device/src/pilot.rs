@@ -186,7 +186,7 @@ impl Pilot {
         Ok(())
     }
 
-    /// Makes one step. `laps` receives the end of each stage.
+    /// Makes one step. `timer` receives the end of each stage.
     ///
     /// An observation whose scans do not match the session's lasers, or with a number that no robot
     /// reports, makes no step. Its answer has zero velocity and [`Fault::BadObservation`]. The
@@ -198,9 +198,9 @@ impl Pilot {
         &mut self,
         memory: &mut Memory<'_, TILES, SLOTS>,
         observation: &Observation,
-        laps: &mut impl StageTimer,
+        timer: &mut impl StageTimer,
     ) -> Result<Command, Refusal> {
-        let command = self.step(memory, observation, laps)?;
+        let command = self.step(memory, observation, timer)?;
         Ok(Command {
             map_epoch: memory.state.map_epoch(),
             ..command
@@ -211,7 +211,7 @@ impl Pilot {
         &mut self,
         memory: &mut Memory<'_, TILES, SLOTS>,
         observation: &Observation,
-        laps: &mut impl StageTimer,
+        timer: &mut impl StageTimer,
     ) -> Result<Command, Refusal> {
         let config = self.config.as_ref().ok_or(Refusal::NotStarted)?;
         let Some(input) = convert::input(observation, config.lasers()) else {
@@ -223,7 +223,7 @@ impl Pilot {
             return Ok(stopped(self.status()));
         }
         let (state, workspace) = (&mut *memory.state, &mut *memory.workspace);
-        let output = step(config, state, workspace, input, laps);
+        let output = step(config, state, workspace, input, timer);
         if output.refused.is_some() {
             warning!("an observation has a number that no robot reports");
             return Ok(Command {

@@ -30,8 +30,8 @@ use crate::slam::particles::{Beside, ParticleSpec};
 use crate::slam::{LoopCloser, SlamPlace};
 use crate::world::{Start, World, WorldError};
 
-/// The usual impatience of strategy tdbvp, seconds. With 60 s, three adjacent loops took 378 s
-/// instead of 343 s (means of four starts), and rooms without a loop 810 s instead of 584 s.
+/// The usual impatience of strategy tdbvp, seconds (measured: docs/MEASURED.md, "Impatience of
+/// tdbvp").
 pub const IMPATIENCE_S: Option<u16> = Some(15);
 
 /// The baseline that stores its potential from step to step.

@@ -167,5 +167,5 @@ fn at_a_t_the_robot_turns_to_the_side_with_openings() {
 
 #[test]
 fn at_a_cross_the_robot_turns_to_the_side_with_openings() {
-    assert_follows_preference(Fork::Cross, 20, 19);
+    assert_follows_preference(Fork::Cross, 20, 18);
 }

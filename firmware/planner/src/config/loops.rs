@@ -15,8 +15,9 @@
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopLimits {
     /// Least length that is worth closing, metres: a shorter loop corrects nothing. Default: 20, a
-    /// circle of 6.4 m diameter: a laser of twice that range has all of it in view. At 10 m a robot
-    /// among trees drives around most of them and takes twice the time.
+    /// circle of 6.4 m diameter: a laser of twice that range has all of it in view. With less, a
+    /// robot among trees drives around most of them (measured: docs/MEASURED.md, "Least length of a
+    /// loop").
     pub least_m: f32,
     /// Greatest length that is worth closing when no frontier is left, metres. Default: 120.
     pub most_m: f32,

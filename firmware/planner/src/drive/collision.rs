@@ -25,14 +25,8 @@ use crate::math;
 use crate::robot::RobotShape;
 
 /// Least clearance of the robot, metres: while it drives a recovery, and of a point after repeated
-/// losses. In 36 runs of three strategies through three tight buildings (`aria_columbia`,
-/// `ipa_lab_intel_furnitures`, `willow_full`, four seeds), with searches of 1,770 poses:
-///
-/// | clearances of searches, and of the drive, m | places checked | touches | known % |
-/// | --- | --- | --- | --- |
-/// | 0.03, 0.012, 0.008 | each 5 to 10 cm | 4 | 94.0 |
-/// | 0.03, 0.012, 0.008 | each two margins | 1 | 95.9 |
-/// | 0.03, 0.02, 0.016 | each two margins | 0 | 95.4 |
+/// losses. With less, runs touch something (measured: docs/MEASURED.md, "Clearances of searches
+/// and of the drive").
 pub(super) const LEAST_MARGIN_M: f32 = 0.016;
 /// Capacity for map cells beside the obstacle points.
 const MOST_CELLS: usize = 64;

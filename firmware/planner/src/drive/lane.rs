@@ -12,8 +12,8 @@
 //! heading   = the lane's − 4/m · v
 //! ```
 //!
-//! Where the field's own heading has more than 10 cm of clearance, there is none. From 62 places
-//! before it, a gap of 57 cm takes 15 s in the mean instead of 19 s; one of 60 cm 7 s instead of 9.
+//! Where the field's own heading has more than 10 cm of clearance, there is none. Measured:
+//! docs/MEASURED.md, "Lanes through gaps".
 //!
 //! Units: metres, radians; robot frame.
 

@@ -51,17 +51,8 @@ use track::Track;
 /// hardly more than what the robot keeps while it drives the recovery.
 const SEARCH_MARGINS_M: [f32; 2] = [0.03, 0.02];
 /// The only clearance while something else is left to explore, metres. A gap with less may let the
-/// robot in and not out again. `frontier`: 12 runs through three tight buildings with noisy and
-/// with true odometry (`aria_columbia`, `willow_full`, `ipa_lab_intel_furnitures`, four seeds), 64
-/// runs in built-in and generated worlds with the time to the end against `greedy-frontier`, and
-/// 25 generated worlds in which runs ended stuck or knew too little:
-///
-/// | clearance, m | known: noisy, true % | known %, end | stuck, touches of 25 |
-/// | --- | --- | --- | --- |
-/// | 0.02 | 86.2, 97.7 | 98.98, 1.09 | 2, 1 |
-/// | 0.03 | 96.3, 97.7 | 99.31, 1.09 | 1, 1 |
-/// | 0.04 | 97.3, 97.9 | 99.58, 1.11 | 0, 0 |
-/// | 0.05 | 98.0, 97.9 | 99.60, 1.09 | 0, 0 |
+/// robot in and not out again (measured: docs/MEASURED.md, "Clearance while something else is
+/// left").
 const CAREFUL_MARGINS_M: [f32; 1] = [0.05];
 
 /// Turn rate of a robot that looks around, radians per second.
@@ -86,12 +77,8 @@ const RETREATS: [(f32, f32); 3] = [(1.0, LEAST_MARGIN_M), (0.5, LEAST_MARGIN_M),
 const REST_STEPS: u8 = 20;
 /// Steps for which the robot creeps on as far as it goes, after a search that found nothing: time
 /// for a hull's length. The points of a tight gap are often seen better from within. It does so
-/// only when nothing else is left to explore, because the gap may not let it out again. In
-/// `aria_columbia`, five seeds, lanes followed:
-///
-/// | the robot creeps on | at once | when nothing else is left |
-/// | --- | --- | --- |
-/// | runs of five that know 90 % at the end | 3 | 4 |
+/// only when nothing else is left to explore, because the gap may not let it out again (measured:
+/// docs/MEASURED.md, "When a robot creeps on").
 const SQUEEZE_STEPS: u8 = 30;
 /// Greatest speed of a robot that counts as standing, metres per second.
 const STANDING_MPS: f32 = 0.02;

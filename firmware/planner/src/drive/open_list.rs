@@ -16,9 +16,10 @@ use crate::drive::motion::MOTIONS;
 use crate::grid::at;
 use crate::math;
 
-/// Capacity of a search, poses. With 1,100 the built-in world `slope` was not explored.
+/// Capacity of a search, poses. With too few a search gives up in worlds that can be explored
+/// (measured: docs/MEASURED.md, "Capacities of a search").
 pub(super) const MOST_NODES: usize = 1770;
-/// Capacity of the heap. In 2,220 searches in three tight buildings at most 598 poses waited.
+/// Capacity of the heap: fewer poses than these wait at a time (measured: as above).
 const MOST_WAITING: usize = 720;
 const NODE_WORDS: usize = 3;
 

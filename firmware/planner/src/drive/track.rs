@@ -12,23 +12,9 @@
 //! loop in between is forgotten. So the track leads out of every place that the robot drove into,
 //! also after it drove to and fro in there.
 //!
-//! A straight way is one difference. `frontier`, 12 runs through three tight buildings with noisy
-//! and with true odometry, and 25 generated worlds in which runs ended stuck or knew too little:
-//!
-//! | a straight way is | known: noisy, true, generated % |
-//! | --- | --- |
-//! | a difference each 5 cm | 98.0, 97.9, 97.8 |
-//! | one difference | 98.0, 97.9, 98.3 |
-//!
-//! A robot without a path that blocked what it came through goes back along its track, up to where
-//! a path leads on. 36 runs of three strategies through three tight buildings, with true odometry:
-//!
-//! | the robot | known, mean and least % | not over after an hour |
-//! | --- | --- | --- |
-//! | retreats to where it can turn | 98.0, 88.9 | 3 |
-//! | goes back through what it came through | 97.7, 61.9 | 7 |
-//! | and its track forgets loops | 96.8, 42.1 | 4 |
-//! | and it retreats with no clearance at last, and tries all again if stuck | 98.7, 96.2 | 8 |
+//! A straight way is one difference, so the track is longer. A robot without a path that blocked
+//! what it came through goes back along its track, up to where a path leads on. Measured:
+//! docs/MEASURED.md, "A straight way of the track", "A robot without a path goes back".
 //!
 //! Invariant: the older poses are those that were recorded, within 2 mm and 0.3°, but those on a
 //! straight way.

@@ -25,7 +25,7 @@ use crate::field::runs::Runs;
 use crate::field::window::{SIDE, STRIDE, Window, index};
 
 /// Part of its best neighbour's value that a raised cell takes: about the field's ratio from cell
-/// to cell indoors. With 1, a flat start, the heading behind doors takes a third more cycles.
+/// to cell indoors (measured: docs/MEASURED.md, "Value of a cell in a cold window").
 const PART: f32 = 0.85;
 
 /// Greatest ratio of a neighbour to a cell in a field that was right before the boundary moved. A

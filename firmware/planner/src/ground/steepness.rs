@@ -17,13 +17,8 @@
 //! rule for edges finds the upper end of an edge that the beams smeared over several cells.
 //!
 //! A cell that holds an edge has a height between its two sides, so the whole edge shows over two
-//! cells only. An allowance of `climb` there let the robot creep against edges of 12 cm. The case
-//! `drift::full::drift` of the test `terrain`, nine worlds, three seeds:
-//!
-//! | over two cells | true odometry: seen %, touches | noisy: seen %, error m, falls |
-//! | --- | --- | --- |
-//! | `climb`, and 1.4 `climb` along both axes | 99.58, 2 | 99.65, 0.71, 1 |
-//! | `climb / 2` | 99.61, 0 | 99.57, 0.44, 2 |
+//! cells only. An allowance of `climb` there lets the robot creep against edges (measured:
+//! docs/MEASURED.md, "Edges over two cells").
 //!
 //! Departs from \[Maffei20, III-B\]: the paper compares a cell only with the mean of the kernel.
 //!

@@ -13,19 +13,8 @@
 //!
 //! A scan enters the map with the error of its pose, and the next one is matched with it. So the
 //! errors of beams do not average out, and a beam's information is less than the width of its cell
-//! says. With less still, the map drifts less in simulated buildings and more in recorded ones.
-//! With 5 two of the ten pushed robots of `disturbed::full` are over 0.3 m wrong at the end, with 6
-//! one is. Mean and greatest error of the runs, metres:
-//!
-//! | `beam_information` | simulated | recorded, noise once | four times |
-//! | --- | --- | --- | --- |
-//! | 6 | 0.184, 0.91 | 0.044, 0.045 | 0.044, 0.048 |
-//! | 5 | 0.151, 1.00 | 0.045, 0.048 | 0.045, 0.049 |
-//! | 3 | 0.119, 0.35 | 0.045, 0.046 | 0.060, 0.130 |
-//!
-//! Simulated: `explore --odometry noisy --tune localise.beam_information=5`, seeds 0 to 4 of
-//! `office`, `cave`, `cluttered`, `ouroboros-a`, `ouroboros-b` and three maps drawn by others.
-//! Recorded: ten seeds of `freiburg-079`, see `replay::data` of the test `missions`.
+//! says. With less still, the map drifts less in simulated buildings and more in recorded ones
+//! (measured: docs/MEASURED.md, "Information of a beam").
 //!
 //! The last term is odometry: it is all that holds a direction that no beam observes. Its weight v
 //! falls where the beams agree on a pose far from it, because wheels slip. An unobserved direction

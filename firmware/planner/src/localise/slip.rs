@@ -14,8 +14,8 @@
 //! gains about −100. If the robot does stand, it gains 6 to 20 in a corridor, more in a room.
 //!
 //! Odometry is aligned before it is compared. Without that the other two fit better wherever
-//! odometry errs across a corridor, and then nothing holds the pose along it: the mean error of six
-//! runs in `ouroboros-a` with `papers` is 7.5 m instead of 0.5 m.
+//! odometry errs across a corridor, and then nothing holds the pose along it (measured:
+//! docs/MEASURED.md, "Odometry aligned before a slip is judged").
 //!
 //! A beam tells two predictions apart if its ends differ across their surface. So a wall along
 //! which the robot drives, and that is seen for the first time, speaks for none. Without an

@@ -47,8 +47,8 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 
     /// Takes the lone arrivals for gone that are farther from the robot than obstacle points reach.
     /// One that is nearer and still stands would be touched before it is seen: in front of the
-    /// robot beams judge it anyway, behind it nothing does. Two of 36 runs through three tight
-    /// buildings touched such a thing, none does since. For flat ground.
+    /// robot beams judge it anyway, behind it nothing does (measured: docs/MEASURED.md, "Arrivals
+    /// near the robot"). For flat ground.
     pub fn forget_arrivals(&mut self, config: &Config, robot: Cell) {
         let reach_m = config.tuning.map.reach_m;
         // The tiles stay the same: only their cells change.

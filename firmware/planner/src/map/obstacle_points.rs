@@ -20,23 +20,12 @@
 //!
 //! A *felt* point is where the hull met something that the laser does not see. No beam removes it.
 //! The next contact does, because one thing holds the robot at a time: a robot that is held ahead
-//! and then behind is not in a trap but, say, pushed, or on wheels that slip. Ten robots that are
-//! pushed for 3 s (`disturbed::full`):
-//!
-//! | felt points of an earlier contact | robots that end *stuck* |
-//! | --- | --- |
-//! | stay | 8 |
-//! | go | 0 |
+//! and then behind is not in a trap but, say, pushed, or on wheels that slip (measured:
+//! docs/MEASURED.md, "Felt points of an earlier contact").
 //!
 //! What a turning robot feels lies on all four sides, and only one of them is true. Such points are
-//! a *trap*: a wedged robot removes them. Ten teams without a radio (`dropout::full`), ten robots
-//! that are pushed (`disturbed::full`):
-//!
-//! | a wedged robot removes | teams of 10 with a *stuck* robot | pushed robots of 10 deceived |
-//! | --- | --- | --- |
-//! | nothing | 1 | 1 |
-//! | what it felt | 0 | 3 |
-//! | what it felt when it turned | 0 | 1 |
+//! a *trap*: a wedged robot removes them (measured: docs/MEASURED.md, "Felt points that a wedged
+//! robot removes").
 //!
 //! An *unseen* point lies beside the hull of a robot that starts. Nothing tells that there is room:
 //! the robot may stand on its dock, or in a corner. So it drives straight ahead, where the laser

@@ -4,15 +4,8 @@
 //! for, so that no path leads around the cut and none is found that another part holds for closed.
 //! It is never closed where the robot stands, or farther from its middle than that. A passage is
 //! blocked at the first path cell that the local grid has no way to, or, ahead of a robot that
-//! stands, [`AHEAD_M`] from its centre in the direction of the path.
-//!
-//! 25 generated worlds in which runs ended stuck or knew too little:
-//!
-//! | blocked passages are closed | runs that end explored | known, % |
-//! | --- | --- | --- |
-//! | in the skeleton | 12 | 95.1 |
-//! | everywhere | 19 | 98.2 |
-//! | everywhere, and the robot retreats wherever it blocks one | 24 | 97.9 |
+//! stands, [`AHEAD_M`] from its centre in the direction of the path (measured: docs/MEASURED.md,
+//! "Where blocked passages are closed").
 //!
 //! A full list loses its oldest passage: what was blocked long ago may be tried again, and no goal
 //! is lost for want of room.
@@ -31,13 +24,8 @@ use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::Reachability;
 use crate::roadmap::skeleton::Skeleton;
 
-/// Maximum number of blocked passages. On scanned buildings, two of `aria_columbia` and two of
-/// `willow_full`, the mean share known at the end is 78 % if a goal is given up for want of a ninth
-/// place. If the oldest gives way, it is
-///
-/// | passages | 8 | 24 | 64 |
-/// | --- | --- | --- | --- |
-/// | known, % | 78.8 | 97.9 | 97.3 |
+/// Maximum number of blocked passages. In a full list the oldest gives way (measured:
+/// docs/MEASURED.md, "Number of blocked passages").
 const MOST_PASSAGES: usize = 24;
 /// Radius of the cut in the skeleton around a blocked passage, metres: half the width of a door.
 const CUT_RADIUS_M: f32 = 0.4;

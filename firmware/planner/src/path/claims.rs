@@ -13,14 +13,7 @@
 //! that drive to one goal the nearer one keeps it, and both know which. A peer that is silent,
 //! stands by order, is stuck or has finished claims nothing.
 //!
-//! How much faster than one robot a team has seen 99 %; means over seven worlds, starts side by
-//! side and apart, five seeds (`office`, `hall`, `cave`, `ipa_lab_intel_furnitures`,
-//! `nav2_warehouse`, `patrol_cumberland`, `stage_autolab`):
-//!
-//! | a peer claims, of the goals it is nearer to | 2 robots | 3 | 4 |
-//! | --- | --- | --- | --- |
-//! | those within 3 m of its own | 1.81 | 2.55 | 3.11 |
-//! | all | 1.83 | 2.67 | 3.31 |
+//! Measured: docs/MEASURED.md, "Goals that a peer claims".
 //!
 //! Units: coarse steps of 20 cm; sites of the skeleton's plane.
 

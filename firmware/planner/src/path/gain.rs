@@ -12,22 +12,15 @@
 //! for visible. Most gaps that a robot does not fit through are pieces of a wall that were not seen
 //! yet. So unexplored cells behind such a gap whose far side was not seen count only as deep as the
 //! robot is wide. Counted in full, they promise several square metres outside of a building, and
-//! the robot drives there for nothing. Ratios to `greedy-frontier`, means of 60 runs in built-in
-//! and generated worlds:
-//!
-//! | behind narrow gaps | worth, m²/m | T90 | T95 | T99 | end | known % |
-//! | --- | --- | --- | --- | --- | --- | --- |
-//! | all counts | 0.3 | 0.91 | 0.87 | 0.93 | 1.09 | 99.56 |
-//! | as deep as the robot is wide | 0.3 | 0.91 | 0.89 | 0.94 | 0.97 | 99.48 |
-//! | as deep as the robot is wide | 0.25 | 0.91 | 0.89 | 0.94 | 1.01 | 99.56 |
+//! the robot drives there for nothing (measured: docs/MEASURED.md, "Unexplored cells behind narrow
+//! gaps").
 //!
 //! What the map has no room for counts nothing: a frontier from which only that would be seen is no
 //! goal. So a robot whose map is full explores what its tiles still take, and then ends.
 //!
 //! A round reads the squares of up to 25 places, so their cells lie in words of 32: a core of 32
 //! bits takes several instructions to shift a longer word. A square and its gain take 53,000
-//! instructions on the chip, and took 90,000 in words of 64, with a square of the cells too near to
-//! obstacles that was made for each place.
+//! instructions on the chip (measured: "Words of a square of cells").
 //!
 //! Units: map cells, square metres.
 

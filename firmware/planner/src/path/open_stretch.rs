@@ -20,15 +20,8 @@ use crate::geometry::Cell;
 use crate::grid::flood;
 
 /// Length by which a way in the local grid may exceed the path's, map cells: 2 m, the radius around
-/// the robot that holds the local goal. Two scanned buildings, `host-sim explore WORLD --odometry
-/// truth`, seeds 1 to 8: runs that end explored with 90 % and more, and the mean share known, %:
-///
-/// | the way to a goal | `aria_columbia` | `willow_full` | known there |
-/// | --- | --- | --- | --- |
-/// | need not exist | 2 | 8 | 94.6 |
-/// | of any length | 1 | 7 | 95.0 |
-/// | 10 cells longer at most | 2 | 6 | 91.3 |
-/// | 20 cells longer at most | 3 | 8 | 95.2 |
+/// the robot that holds the local goal (measured: docs/MEASURED.md, "Length of a way to a local
+/// goal").
 const DETOUR_CELLS: u32 = 20;
 /// Most steps of the flood that measures the ways, which bounds its time. A path that winds through
 /// the window for longer ends there.

@@ -4,24 +4,9 @@
 //! looks showed less than [`LEAST_MORE_CELLS`] more for [`PATIENCE_MS`]. Each that shows more shows
 //! more of a finite map, so there is a last one.
 //!
-//! The wait, with noisy odometry: 45 runs among ten people (office, hall, cave), of whom some stop
-//! in front of the robot, and 16 through four tight buildings, where nothing moves:
-//!
-//! | wait, s | people: ends with less than 99 % | tight: mean end, s |
-//! | --- | --- | --- |
-//! | 10 | 2 (39 %, 39 %) | 1420 |
-//! | 30 | 0 | 1427 |
-//! | 60 | 0 | 1434, and four robots stand for a minute |
-//!
 //! While it waits the robot turns on the spot. Otherwise it may stand with its back to what is in
-//! the way, and never see that it has gone. 105 runs among ten people (seeds 0 to 34), and the same
-//! 16 runs through tight buildings:
-//!
-//! | while it waits the robot | people: ends with less than 97 % | tight: mean end, s |
-//! | --- | --- | --- |
-//! | stands | 2 (50 %, 76 %) | 1341 |
-//! | stands, and all blocked passages are open | 1 (76 %) | 1581, and two last over an hour |
-//! | turns | 0 | 1388 |
+//! the way, and never see that it has gone. Measured: docs/MEASURED.md, "Wait at the end", "A robot
+//! that waits turns about".
 //!
 //! Units: map cells, milliseconds.
 

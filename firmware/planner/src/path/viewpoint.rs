@@ -47,9 +47,9 @@ const ALONG: u16 = 32 / BLOCK as u16;
 const LEAST_EDGE: u32 = 3;
 /// Gaps of a block from which rays start.
 const TRIES: u32 = 4;
-/// Limits of an instalment: tiles loaded, tiles flooded, cells on rays. With 60,000 cells the
-/// longest step of `cluttered` took 8.5 million instructions. The last block may add
-/// [`MOST_OVER`] cells and a gap's: `RAYS · (MOST_ON + MOST_BACK)` = 6,000.
+/// Limits of an instalment: tiles loaded, tiles flooded, cells on rays. With more cells a step
+/// takes too long (measured: docs/MEASURED.md, "Instalments of a search for viewpoints"). The last
+/// block may add [`MOST_OVER`] cells and a gap's: `RAYS · (MOST_ON + MOST_BACK)` = 6,000.
 const TILES_PER_STEP: u16 = 120;
 /// A flood of a tile takes some 3,000 instructions.
 const FLOODS_PER_STEP: u32 = 300;

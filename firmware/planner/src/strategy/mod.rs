@@ -3,7 +3,7 @@
 //!
 //! | file | what it holds |
 //! | --- | --- |
-//! | [`frontier`] | drive to the nearest frontier, until none can be reached |
+//! | [`frontier`] | drive to the frontier of the greatest utility, until none is worth its trip |
 //! | [`ouroboros`] | close every loop on the way \[Jorge15, Algorithm 1\] |
 //! | [`sbpf`] | follow the forces of an area's cells \[Kenealy15\] |
 //! | [`tdbvp`] | follow rails of time, and patrol \[Maffei14, IV and V\] |

@@ -7,13 +7,8 @@
 //! ```
 //!
 //! With a rough start this is several metres, and a wall there ends as many beams as the peer. So
-//! things that are larger than the peer, grown by all but the 2 sd, count as the map's. Three
-//! robots with starts known to 0.3 m and 5°, 15 runs (`teams -- --ignored drift::full`):
-//!
-//! | a wall where a peer may be | mean end s | frozen | contacts | aligned, of 30 robots |
-//! | --- | --- | --- | --- | --- |
-//! | is hidden | 129 | 1 | 8 | 26 |
-//! | is seen | 92 | 0 | 3 | 28 |
+//! things that are larger than the peer, grown by all but the 2 sd, count as the map's (measured:
+//! docs/MEASURED.md, "Walls where a peer may be").
 //!
 //! The obstacle points of a peer whose place is known stay only as long as they are in view.
 //!

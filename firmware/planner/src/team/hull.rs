@@ -62,8 +62,8 @@ impl Hull {
     /// Returns the place that a peer may take by turning on the spot: its hull's circle. A peer
     /// that stands for good does not turn.
     ///
-    /// With a square around the circle two robots that start 0.8 m apart wait for each other: in
-    /// the hall they know 99 % after 47.9 s instead of 37.2 s (five seeds).
+    /// With a square around the circle two robots that start side by side wait for each other
+    /// (measured: docs/MEASURED.md, "Place that a peer turns in").
     fn turning(peer: &Peer, now_ms: u32) -> Self {
         let sd_m = f32::from(peer.beacon.sd_cm) * 0.01;
         let hull = Self::of(peer, now_ms, sd_m);

@@ -16,8 +16,8 @@
 //!
 //! The cells of the map may leave a way past a peer that the hull does not fit through. If the
 //! drive finds none, the way is *shut* until the peer moves, and the robot takes a stance as if
-//! cells barred it. Without this rule two robots that want out by one door from the same side stood
-//! for ever in 3 of 100 meetings (`teams -- --ignored meetings::full`, *abreast*).
+//! cells barred it. Otherwise two robots that want out by one door from the same side may stand for
+//! ever (measured: docs/MEASURED.md, "A way past a peer that is shut").
 //!
 //! Units: milliseconds, metres.
 

@@ -1,4 +1,6 @@
 //! Tuned constants of the space-based potential field.
+//!
+//! Measured: docs/MEASURED.md, "Repulsion of cells that a peer visited".
 
 tuning! {
     /// Tuned constants of strategies SBPF and ESBPF \[Kenealy15\], which gives the twist only.
@@ -12,9 +14,7 @@ tuning! {
         range_m: f32 = 8.0, 0.5..=50.0, "m";
         /// Angle of the conveyor belt, α: 30° \[Kenealy15, 3.3\].
         twist_rad: f32 = core::f32::consts::FRAC_PI_6, -3.2..=3.2, "rad";
-        /// Repulsion of a cell that a peer visited, beside an obstacle's of 1. With 0.1 and 3 all
-        /// runs of two robots reach their target in three worlds, in the same time; with 0 they
-        /// take longer, and with 0.3, 1 and 10 not all reach it.
+        /// Repulsion of a cell that a peer visited, beside an obstacle's of 1.
         peer: f32 = 3.0, 0.0..=10.0, "1";
         /// Repulsion of a covered cell beside an obstacle's of 1: 1 in \[Kenealy15, eq. 3\], which
         /// sums over every cell with a level. 0 leaves them out.

@@ -1,4 +1,7 @@
 //! Tuned constants of strategy TDBVP.
+//!
+//! Measured: docs/MEASURED.md, "Side preference at a fork", "Free cells around a robot that follows
+//! rails".
 
 tuning! {
     /// Tuned constants of strategy TDBVP \[Maffei14\].
@@ -12,8 +15,7 @@ tuning! {
         /// that attracts it cannot be reached.
         linger_visit_m: f32 = 2.0, 0.5..=5.0, "m";
         /// Distance from an exploring robot within which centre cells are free, so that the nearest
-        /// rail attracts from there. At 0.5 m the half disc has no room for a preferred side: at a
-        /// cross 10 of 20 robots drove straight on, at 1 m 10 of 100.
+        /// rail attracts from there. At 0.5 m the half disc has no room for a preferred side.
         free_m: f32 = 1.2, 0.2..=3.0, "m";
         /// Time that a tour of all rails takes for the 20 cm of a centre cell, at 0.5 m/s. On
         /// patrol a rail is overdue if the robot did not visit it for as long as a tour takes.
@@ -43,8 +45,7 @@ tuning! {
         /// ahead is that of the last such distance driven, so that the disc does not turn with a
         /// robot that turns into it.
         disc_m: f32 = 2.0, 0.5..=5.0, "m";
-        /// Preference ε of the preferred side, and minus that of the other. The header of the file
-        /// `sides` has the measurements.
+        /// Preference ε of the preferred side, and minus that of the other.
         side_preference: f32 = 0.2, 0.0..=2.0, "1";
     }
 }

@@ -6,27 +6,11 @@
 //! so an open place is worth any trip until it was tried.
 //!
 //! The footprint is the robot's disc. Paths lead through gaps that are narrower, but most of those
-//! are pieces of a wall that was not seen yet, and noise makes more of them. 16 runs in four tight
-//! buildings with noisy odometry, and 120 in generated worlds with the true one:
+//! are pieces of a wall that was not seen yet, and noise makes more of them (measured:
+//! docs/MEASURED.md, "Footprint that an opening is for").
 //!
-//! | open to | noisy: known % | end, s | lost or *stuck* | touches | generated: known % | end, s |
-//! | --- | --- | --- | --- | --- | --- | --- |
-//! | what paths are planned for | 98.22 | 1,440 | 2 | 2 | 99.37 | 461 |
-//! | the robot's disc | 98.56 | 1,330 | 0 | 0 | 99.31 | 455 |
-//!
-//! The first noisy runs waited 1.8 s less at the end.
-//!
-//! A straight line does not do: none leads through a door as narrow as the robot, and `frontier`
-//! called itself *explored* with whole wings left behind such doors. Means of 58 runs in built-in
-//! and generated worlds, as ratios to `greedy-frontier`, and of the 11 generated worlds of 1,002 in
-//! which least was known:
-//!
-//! | open is | T90 | T95 | T99 | end | known % | least | of 11 | least |
-//! | --- | --- | --- | --- | --- | --- | --- | --- | --- |
-//! | a straight line | 0.96 | 0.96 | 0.97 | 1.07 | 99.52 | 92.81 | 80.4 | 24.9 |
-//! | a way | 0.96 | 0.96 | 0.97 | 1.09 | 99.63 | 98.26 | 98.1 | 91.9 |
-//! | a way, all of it over any cells | 0.96 | 0.96 | 0.97 | 1.18 | 99.74 | 98.46 | | |
-//! | a way, unexplored as wide as the robot | 0.96 | 0.96 | 0.97 | 1.10 | 99.63 | 98.26 | | |
+//! A straight line does not do. None leads through a door as narrow as the robot, so whole wings
+//! behind such doors would count as seen (measured: "Ways and straight lines through openings").
 //!
 //! Units: map cells.
 

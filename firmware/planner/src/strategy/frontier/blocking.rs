@@ -1,14 +1,8 @@
 //! Blocking: closing passages that the robot could not drive on through.
 //!
 //! A passage is blocked by a verdict of the progress checker, or because the drive is wedged. If
-//! the goal is nearer than the passage would be, the goal itself is blocked. `pass` on uneven
-//! ground with noisy odometry, seeds 0, 1 and 2, and 36 runs of three strategies through three
-//! tight buildings:
-//!
-//! | a wedged robot whose goal is nearer | `pass`: seen %, 90 % after s | tight: known % |
-//! | --- | --- | --- |
-//! | tries again | 99.2, 99.1, 52.5; 378, 389, never | 98.69 |
-//! | blocks the goal | 99.5, 99.5, 99.6; 308, 347, 244 | 98.78 |
+//! the goal is nearer than the passage would be, the goal itself is blocked (measured:
+//! docs/MEASURED.md, "A wedged robot whose goal is near").
 //!
 //! Units: map cells, milliseconds.
 

@@ -63,35 +63,12 @@ impl Frontier {
     ///
     /// One blocked passage may close the only way: a narrow one that the robot came through, or
     /// ground that was measured from one side only. So the passages are opened again up to
-    /// [`MOST_RETRIES`] times. Mean shares known at the end, five seeds, in per cent:
+    /// [`MOST_RETRIES`] times. Every opening was tried by then, so it alone is worth no trip any
+    /// more. One such round is enough: noise may close a way for a moment, but to wait until it
+    /// opens again buys nothing.
     ///
-    /// | | on uneven ground only | always |
-    /// | --- | --- | --- |
-    /// | `willow_full` | 92.8 | 95.6 |
-    /// | `aria_columbia` | 68.0 | 68.2 |
-    ///
-    /// Every opening was tried by then, so it alone is worth no trip any more. `frontier` with
-    /// noisy odometry, four seeds each in `aria_columbia`, `willow_full`,
-    /// `ipa_lab_intel_furnitures` and `patrol_cumberland`:
-    ///
-    /// | an opening at a further chance | end, s | path, m | known % | *stuck* of 16 |
-    /// | --- | --- | --- | --- | --- |
-    /// | is worth any trip | 1,435 | 594 | 98.37 | 2 |
-    /// | is worth what it shows | 1,315 | 551 | 98.31 | 1 |
-    ///
-    /// One such round is enough: noise may close a way for a moment, but to wait until it opens
-    /// again bought nothing. `frontier`, 51 runs in 17 buildings of others, 64 and 120 in
-    /// built-in and generated worlds with true odometry, the first two as ratios to
-    /// `greedy-frontier`, and 16 in four tight buildings with noisy odometry:
-    ///
-    /// | | end | end | generated: end, s | known % | noisy: end, s | known % | touches |
-    /// | --- | --- | --- | --- | --- | --- | --- | --- |
-    /// | for 2.4 s | 1.045 | 1.003 | 455.1 | 99.31 | 1,330 | 98.56 | 0 |
-    /// | for 0.6 s | 1.034 | 0.986 | 454.2 | 99.31 | 1,351 | 98.57 | 0 |
-    /// | one round | 1.030 | 0.982 | 452.4 | 99.32 | 1,328 | 98.57 | 1 |
-    ///
-    /// With six seeds more in three of the four buildings neither of the last two touches
-    /// anything.
+    /// Measured: docs/MEASURED.md, "Passages that are opened again", "Openings at a further
+    /// chance", "Wait for a way that noise closed".
     pub(super) fn do_without(&mut self) -> RoundOutcome {
         self.path.clear();
         self.try_again().unwrap_or(RoundOutcome::Nothing)

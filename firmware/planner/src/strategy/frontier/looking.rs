@@ -38,8 +38,8 @@ impl Frontier {
     /// Goes to the viewpoint, as long as there is something to see from it, a path leads there, and
     /// no robot that has finished is in the way. `None` without such a viewpoint.
     ///
-    /// Without the last condition a robot stood for 77 s in an opening (meetings at a door, seed
-    /// 86): searches for a way past one that had finished behind it followed each other.
+    /// Without the last condition searches for a way past the robot that has finished follow each
+    /// other (measured: docs/MEASURED.md, "Viewpoints behind a robot that has finished").
     #[inline(never)]
     pub(super) fn look<const TILES: usize, const SLOTS: usize>(
         &mut self,

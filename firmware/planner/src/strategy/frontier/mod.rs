@@ -1,12 +1,13 @@
-//! Strategy *frontier*: drive to the nearest unexplored centre cell along the skeleton, until none
-//! can be reached \[Jorge15, Algorithm 1 without loop closing: lines 3, 4, 22–28\].
+//! Strategy *frontier*: drive to a frontier along the skeleton, until none is left that can be
+//! reached and is worth its trip \[Jorge15, Algorithm 1 without loop closing: lines 3, 4, 22–28\].
 //!
-//! Goals are chosen by [`crate::path::goal_choice`]. The progress checker gives up a goal that is
-//! reached and stays unexplored, or that comes no nearer, and blocks a passage that cannot be
-//! driven; so no run hangs on a cell that cannot be seen. A robot that blocked what it came through
-//! goes back along its track if no other path is left. When no goal is left, everything that failed
-//! gets a *second chance*. After that the robot looks from [`Viewpoint`]s at what it cannot drive
-//! to. At the end a second look ([`SecondLook`]) tries what came in the way in the meantime.
+//! Goals are chosen by gain over cost ([`crate::path::goal_choice`]); *nearest first*, the paper's
+//! order, is the one with power 0. The progress checker gives up a goal that is reached and stays
+//! unexplored, or that comes no nearer, and blocks a passage that cannot be driven; so no run hangs
+//! on a cell that cannot be seen. A robot that blocked what it came through goes back along its
+//! track if no other path is left. When no goal is left, everything that failed gets a *second
+//! chance*. After that the robot looks from [`Viewpoint`]s at what it cannot drive to. At the end a
+//! second look ([`SecondLook`]) tries what came in the way in the meantime.
 //!
 //! Units: map cells, coarse steps of 20 cm, milliseconds.
 
@@ -45,8 +46,8 @@ pub(crate) struct Frontier {
     second_chance: bool,
     /// Further second chances so far.
     retries: u8,
-    /// The robot got stuck at both chances. It only looks from viewpoints until it has moved. 36
-    /// runs through three tight buildings know 97.4 % then, and 97.0 % if it only looks for good.
+    /// The robot got stuck at both chances. It only looks from viewpoints until it has moved
+    /// (measured: docs/MEASURED.md, "A robot that got stuck at both chances").
     only_looks: bool,
     /// The robot waits that what is in the way goes.
     waits: bool,

@@ -14,19 +14,14 @@
 //! level, so it repels from covered cells too; 1 is its form.
 //!
 //! Departs from \[Kenealy15, eq. 5\] in a team: without *w* the farthest cells attract all robots
-//! alike, and two that start side by side stay so. How much faster than one robot a team has seen
-//! 99 %, `esbpf`; means over `office`, `hall` and `cave`, starts side by side and apart, two seeds:
-//!
-//! | claimed | 2 robots | 3 | 4 |
-//! | --- | --- | --- | --- |
-//! | 1 | 1.69 | 2.26 | 3.60 |
-//! | 0.2, as for goals | 1.87 | 3.67 | 4.30 |
+//! alike, and two that start side by side stay so (measured: docs/MEASURED.md, "Claimed cells in a
+//! team").
 //!
 //! Departs from \[Kenealy15, eqs. 2 and 5\]: the attraction has magnitude 1. The paper weighs
 //! `F_rep` with `1/(2 c k_rep)` and `F_att` with `k_att/c`, where c is the coverage. In the
 //! direction of their sum c cancels, and only `1/(2 k_rep k_att)` is left. No value of it serves:
-//! `F_att` falls by a factor of thousands from the first cells to the last. With 10 m⁶ the robot
-//! enters the two rooms and is caught at the C-shaped room, with 100 m⁶ it is the other way round.
+//! `F_att` falls by a factor of thousands from the first cells to the last (measured:
+//! docs/MEASURED.md, "Weights of attraction and repulsion").
 //!
 //! Units: metres.
 

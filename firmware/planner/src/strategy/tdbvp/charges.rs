@@ -7,10 +7,9 @@
 //!
 //! Departs from \[Maffei14, IV\], where the unexplored holds 0 and attracts: every centre cell in
 //! the window is charged, also those on the frontier, which the skeleton has only as anchors. A
-//! frontier that the robot has not visited holds −0.5. Measured with frontier cells free instead:
-//! explorations of four worlds, 15 starts each, take as long within 4 %. They leave out corners
-//! that the robot has only seen, and the patrol drives into them late: on 15 patrols of the nested
-//! loops the oldest rail waits for 551 s, against 341 s with frontier cells charged.
+//! frontier that the robot has not visited holds −0.5. If frontier cells were free, explorations
+//! would leave out corners that the robot has only seen, and the patrol would drive into them late
+//! (measured: docs/MEASURED.md, "Frontier cells charged as rails").
 //!
 //! Departs from \[Maffei14, IV\]: centre cells near the robot and those in its pending visits are
 //! free. The robot is visiting them now; with the potential of the newest, p = 1, they would be a

@@ -10,24 +10,12 @@
 //! two openings on its left turns left at the next fork, which closes a loop. Openings on both
 //! sides at once are no vote.
 //!
-//! The paper gives neither ε nor the disc's radius. Measured on a symmetric T and a symmetric
-//! cross, in 20 approaches each with openings on the left and 20 with openings on the right; how
-//! many turned to that side:
-//!
-//! | ε | T | cross |
-//! | --- | --- | --- |
-//! | 0 | 6, 13 | 0, 9 |
-//! | 0.1 | 20, 20 | 3, 11 |
-//! | 0.2 | 20, 20 | 20, 20 |
-//! | 0.3 | 20, 20 | 20, 20 |
-//! | 0.6 | 14, 12 | 14, 13 |
-//!
-//! With ε = 0.2 and 100 approaches, 100 and 100 turn at the T, 99 and 99 at the cross. A larger ε
-//! draws the robot past the arms.
+//! The paper gives neither ε nor the disc's radius. A smaller ε does not turn every robot at a
+//! cross, and a larger one draws it past the arms (measured: docs/MEASURED.md, "Side preference at
+//! a fork").
 //!
 //! Departs from \[Maffei14, V\]: the preference acts only where the skeleton has a junction in the
-//! disc. In a corridor it drew the robot to a wall, turned the disc with it and made it swing: a
-//! third of the time went into turns on the spot.
+//! disc. In a corridor it draws the robot to a wall, turns the disc with it and makes it swing.
 //!
 //! Units: metres, radians.
 
