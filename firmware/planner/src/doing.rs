@@ -19,6 +19,13 @@
 //! [stalled](Event::Stalled).
 
 /// What the robot does in a step.
+///
+/// ```
+/// use fieldline_planner::{Doing, Output};
+///
+/// let output = Output::default();
+/// assert_eq!(output.doing, Doing::Stands, "no step was made yet");
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Doing {
     /// It stands: the session does not drive, no scan tells anything, the robot is lost, or the map

@@ -115,9 +115,8 @@ fn a_strategy_that_closes_loops_corrects_its_map() {
         let run = format!("{} {} {}", report.strategy, report.start, place(report));
         assert_eq!(report.debug.map_matches_mirror, Some(true), "{run}");
     }
-    // With wheels that turn so badly some robots touch a wall: see docs/LIMITATIONS.md.
     let touches: u32 = reports.iter().map(|it| it.safety.collisions).sum();
-    assert!(touches <= 1, "{touches}");
+    assert_eq!(touches, 0);
     let of = |strategy: &str, slam: &str| {
         let chosen = reports.iter().filter(|report| report.strategy == strategy);
         let chosen: Vec<&Report> = chosen.filter(|report| place(report) == slam).collect();
