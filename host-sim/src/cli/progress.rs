@@ -46,6 +46,8 @@ pub(super) struct Onlooker {
     interrupt: Interrupt,
     /// Real time of the start, and the simulated seconds that one second may have at most.
     began: Option<(Instant, f64)>,
+    /// Simulated time up to which the run is made again, milliseconds.
+    after_ms: u32,
 }
 
 impl Onlooker {
@@ -64,7 +66,13 @@ impl Onlooker {
             bar,
             interrupt,
             began: pace.map(|pace| (Instant::now(), pace)),
+            after_ms: 0,
         }
+    }
+
+    /// Counts the pace from this simulated time on, milliseconds: what is before is made again.
+    pub(super) const fn begin_after(&mut self, time_ms: u32) {
+        self.after_ms = time_ms;
     }
 
     /// Removes the line.
@@ -78,8 +86,12 @@ impl Watch for Onlooker {
         self.bar
             .set_position((progress.coverage * TICKS as f64) as u64);
         self.bar.set_message(message(progress));
-        if let Some((began, pace)) = self.began {
-            let due = Duration::from_millis(progress.time_ms.into()).div_f64(pace);
+        if let Some((began, pace)) = &mut self.began {
+            let ahead_ms = progress.time_ms.saturating_sub(self.after_ms);
+            if ahead_ms == 0 {
+                *began = Instant::now();
+            }
+            let due = Duration::from_millis(ahead_ms.into()).div_f64(*pace);
             std::thread::sleep(due.saturating_sub(began.elapsed()));
         }
         if self.interrupt.pressed() {
