@@ -44,6 +44,26 @@ impl Polygon {
         }
     }
 
+    /// Returns the polygon with these corners; two are those of a rectangle.
+    ///
+    /// # Errors
+    /// A sentence with what to give.
+    pub fn of(corners: &[[f64; 2]]) -> Result<Self, String> {
+        let is_finite = corners.as_flattened().iter().all(|it| it.is_finite());
+        match corners {
+            &[[x0, y0], [x1, y1]] if is_finite => {
+                let (x, y) = (x0.min(x1), y0.min(y1));
+                Ok(Self::rectangle([x, y, (x1 - x0).abs(), (y1 - y0).abs()]))
+            }
+            all if is_finite && all.len() >= 3 => Ok(Self {
+                corners: all.to_vec(),
+            }),
+            _ => {
+                Err("give corners x0,y0,x1,y1,... in metres, or two corners of a rectangle".into())
+            }
+        }
+    }
+
     /// Returns the corners.
     #[must_use]
     pub fn corners(&self) -> &[[f64; 2]] {
@@ -83,20 +103,9 @@ impl core::str::FromStr for Polygon {
     /// Parses `x0,y0,x1,y1,…`; two corners are those of a rectangle.
     fn from_str(text: &str) -> Result<Self, String> {
         let numbers: Result<Vec<f64>, _> = text.split(',').map(|it| it.trim().parse()).collect();
-        let numbers = numbers
-            .ok()
-            .filter(|all| all.iter().all(|it: &f64| it.is_finite()));
-        match numbers.as_deref() {
-            Some(&[x0, y0, x1, y1]) => {
-                let (x, y) = (x0.min(x1), y0.min(y1));
-                Ok(Self::rectangle([x, y, (x1 - x0).abs(), (y1 - y0).abs()]))
-            }
-            Some(all) if all.len() >= 6 && all.len() % 2 == 0 => Ok(Self {
-                corners: all.as_chunks::<2>().0.to_vec(),
-            }),
-            _ => {
-                Err("give corners x0,y0,x1,y1,... in metres, or two corners of a rectangle".into())
-            }
+        match numbers.as_deref().map(<[f64]>::as_chunks::<2>) {
+            Ok((corners, [])) => Self::of(corners),
+            _ => Self::of(&[]),
         }
     }
 }

@@ -5,6 +5,7 @@
 //! | [`golden`] | committed files: compare, or rewrite with `BLESS=1` |
 //! | [`digests`] | digests of command streams, all in `golden/digests.txt` |
 //! | [`random`] | the one source of seeded numbers |
+//! | [`random_missions`] | missions drawn at random, with resets of the device and kills of its host |
 //! | [`table`] | columns of text |
 //! | [`runs`] | whole explorations, several at a time |
 //! | [`flat`] | tables of explorations of flat worlds |
@@ -55,6 +56,7 @@ pub mod orders;
 pub mod places;
 pub mod plot;
 pub mod random;
+pub mod random_missions;
 pub mod runs;
 pub mod sessions;
 pub mod stack;

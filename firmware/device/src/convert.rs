@@ -288,6 +288,17 @@ pub fn task(control: &wire::Control) -> Option<Task> {
     }
 }
 
+/// Converts home, a pose of the map.
+#[must_use]
+pub fn home((x, y): (I16F16, I16F16), yaw: I16F16) -> Pose {
+    Pose {
+        x_m: float(x),
+        y_m: float(y),
+        yaw_rad: float(yaw),
+        ..Pose::default()
+    }
+}
+
 /// Converts the reason for which an order to drive is refused, for the wire.
 #[must_use]
 pub const fn wire_task_error(error: TaskError) -> wire::Refusal {

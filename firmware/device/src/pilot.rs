@@ -145,6 +145,10 @@ impl Pilot {
             Control::Home | Control::GoTo { .. } | Control::Explore => {
                 self.order(memory, control)?;
             }
+            Control::SetHome { x, y, yaw } => {
+                let set = memory.state.set_home(convert::home((*x, *y), *yaw));
+                set.map_err(convert::wire_task_error)?;
+            }
         }
         Ok(self.status())
     }

@@ -446,6 +446,8 @@ fn sense<const TILES: usize, const SLOTS: usize>(
         state.status = match state.started {
             false => Status::NoScan,
             true if config.survey => Status::Exploring,
+            // A session that was given a map goes on where another one was: it is no start.
+            true if state.map_epoch() != 0 => Status::Exploring,
             true if starts_blocked(config, input) => Status::Fault(Fault::StartBlocked),
             true if !may_stand(config, &input.pose) => Status::Fault(Fault::StartForbidden),
             true => Status::Exploring,

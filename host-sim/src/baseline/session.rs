@@ -325,7 +325,7 @@ impl<S: Strategy> Link for Session<S> {
             Control::Pause => self.paused = true,
             Control::Resume => self.paused = false,
             Control::Stop => self.status = Status::Finished(Finish::Stopped),
-            Control::Home | Control::GoTo { .. } | Control::Explore => {
+            Control::Home | Control::GoTo { .. } | Control::Explore | Control::SetHome { .. } => {
                 return Err(refused(Refusal::NotReady));
             }
         }

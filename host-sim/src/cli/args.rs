@@ -14,6 +14,7 @@ use host_sim::network::spec::TeamSpec;
 use host_sim::robot::{Disturbances, Limits, Miswiring};
 use host_sim::slam::SlamPlace;
 use host_sim::slam::particles::ParticleSpec;
+use host_sim::trial::itinerary::Pause;
 use host_sim::trial::mission::OdometryProfile;
 use host_sim::trial::space::Area;
 
@@ -25,8 +26,9 @@ use super::sessions::{ReplaySessionArgs, SessionsArgs};
 use super::strategies;
 use super::team::TeamArgs;
 use super::values::{
-    area, budget, failing, ground_parameters, impatience, imu_noise, laser_noise, patrol_for,
-    people, place, seed, slam_place, snapshots, start, sweeps, time_limit, until, wait, working,
+    area, budget, failing, ground_parameters, home_at, impatience, imu_noise, laser_noise,
+    patrol_for, pause, people, place, seed, slam_place, snapshots, start, sweeps, time_limit,
+    until, wait, working,
 };
 
 /// Explore simulated worlds with the Fieldline planner; without a command, explore the built-in
@@ -57,6 +59,14 @@ pub(super) enum Command {
     Sessions(SessionsArgs),
     /// Replay a session from a file and judge every answer
     ReplaySession(ReplaySessionArgs),
+    /// Print what the state of a run holds from which explore --resume goes on
+    State {
+        /// File session.state, or the folder that has it
+        path: PathBuf,
+        /// Print one JSON object
+        #[arg(long)]
+        json: bool,
+    },
     /// List the built-in worlds and the kinds of generated ones
     Worlds {
         /// Print one JSON object a line
@@ -209,6 +219,16 @@ pub(super) struct ExploreArgs {
     /// Simulated seconds that the robot may take: it turns home in time
     #[arg(long, value_name = "S", value_parser = budget)]
     pub(super) time_s: Option<u16>,
+    /// Simulated seconds after which the robot drives home, whatever it does
+    #[arg(long, value_name = "S", value_parser = home_at, allow_negative_numbers = true)]
+    pub(super) home_at: Option<u32>,
+    /// Simulated seconds from which to which the robot stands and waits; may be given again
+    #[arg(long, value_name = "A-B", value_parser = pause)]
+    pub(super) pause: Vec<Pause>,
+    /// File of a mission: bounds, no-go polygons, goals, way home, budget and pauses, as the
+    /// options say them (docs/MISSIONS.md)
+    #[arg(long, value_name = "FILE")]
+    pub(super) mission: Option<PathBuf>,
     /// Simulated seconds without a newly covered cell after which sbpf or esbpf follows a path to
     /// a frontier, or never [default: never for sbpf, 5 for esbpf]
     #[arg(long, value_name = "S", value_parser = impatience)]
@@ -266,9 +286,10 @@ pub(super) struct ExploreArgs {
     /// Compare every step's heading with that of the converged window
     #[arg(long)]
     pub(super) check_field: bool,
-    /// Give a device that was reset its map back, and go on
-    #[arg(long)]
-    pub(super) resume: bool,
+    /// Give a device that was reset its map back, and go on; with a folder, go on there with a run
+    /// that was killed or interrupted
+    #[arg(long, value_name = "DIR", num_args = 0..=1)]
+    pub(super) resume: Option<Option<PathBuf>>,
     /// Close loops by a pose graph, and correct the device's map: off, or host, beside the device
     #[arg(long, value_name = "WHERE", default_value = "off", value_parser = slam_place)]
     pub(super) slam: SlamPlace,
@@ -326,6 +347,9 @@ impl Default for ExploreArgs {
             then: None,
             range_m: None,
             time_s: None,
+            home_at: None,
+            pause: Vec::new(),
+            mission: None,
             sbpf_impatience: None,
             tdbvp_impatience: None,
             bvp_sweeps: None,
@@ -340,7 +364,7 @@ impl Default for ExploreArgs {
             miswire: None,
             people: 0,
             check_field: false,
-            resume: false,
+            resume: None,
             slam: SlamPlace::Off,
             particles: None,
             snapshots: 0,

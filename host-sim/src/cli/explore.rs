@@ -12,6 +12,7 @@ use host_sim::link::spec::LinkSpec;
 use host_sim::report::{MadeBy, Report, folder};
 use host_sim::robot::Limits;
 use host_sim::slam::SlamPlace;
+use host_sim::state::{self, State};
 use host_sim::trial::Record;
 use host_sim::trial::itinerary::Orders;
 use host_sim::trial::mission::{self, IMPATIENCE_S, Mission, on_device};
@@ -24,23 +25,27 @@ use super::args::{ExploreArgs, GroundArg, LogArg, OdometryArg, SwitchArg, ThenAr
 use super::pictures::Album;
 use super::prepared::Prepared;
 use super::progress::{Interrupt, Onlooker};
+use super::resume;
 use super::strategies::{self, FRONTIER, TERRAIN};
 use super::{made_by, note, say};
 
 /// A run to make.
-struct Run {
+pub(super) struct Run {
     world: World,
     mission: Mission,
-    folder: PathBuf,
-    made_by: MadeBy,
+    pub(super) folder: PathBuf,
+    pub(super) made_by: MadeBy,
+    /// The state from which it goes on.
+    pub(super) resumed: Option<State>,
 }
 
 /// Explores every world; returns true if every run ended explored.
 pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     let prepared = Prepared::new(&without_alias(args)?)?;
-    let runs = runs(&prepared.args, &prepared.mission)?;
+    let runs = runs(&prepared)?;
     for run in &runs {
         folder::prepare(&run.folder)?;
+        resume::clear(run)?;
     }
     let interrupt = Interrupt::listen()?;
     let mut all_explored = true;
@@ -69,7 +74,8 @@ fn without_alias(args: &ExploreArgs) -> Result<ExploreArgs> {
 }
 
 /// Opens every world and checks every folder, before the first run.
-fn runs(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Run>> {
+fn runs(prepared: &Prepared) -> Result<Vec<Run>> {
+    let (args, mission) = (&prepared.args, &prepared.mission);
     let open = |text: &String| {
         let (name, start) = with_start(text);
         let world = World::open(name)?;
@@ -78,10 +84,12 @@ fn runs(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Run>> {
             ..mission.clone()
         };
         mission::check(&mission, &world)?;
-        let own = [
+        let mut own = vec![
             ("worlds", name.to_owned()),
             ("start", mission.start.to_string()),
         ];
+        let text = prepared.mission_text.as_ref();
+        own.extend(text.map(|text| ("mission-text", text.clone())));
         let made_by = made_by::of_run(&mission.robot, &own);
         Ok((world, mission, made_by))
     };
@@ -99,16 +107,21 @@ fn runs(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Run>> {
         format!("{world}{start}-{strategy}{ground}-{seed}")
     }));
     let single = worlds.len() == 1;
+    let from = resume::folder(args)?;
     worlds
         .into_iter()
         .zip(names)
         .map(|((world, mission, made_by), name)| {
-            let folder = match &args.out {
-                Some(out) if single => out.clone(),
+            let resumed = from
+                .map(|from| resume::state(from, args, &made_by))
+                .transpose()?;
+            let folder = match args.out.as_deref().or(from) {
+                Some(out) if single => out.to_owned(),
                 Some(out) => out.join(name),
                 None => Path::new("out").join(name),
             };
-            if args.out.is_some() && !args.force {
+            let goes_on = from.is_some_and(|from| from == folder);
+            if args.out.is_some() && !args.force && !goes_on {
                 made_by.may_replace(&folder).map_err(Error::msg)?;
             }
             Ok(Run {
@@ -116,6 +129,7 @@ fn runs(args: &ExploreArgs, mission: &Mission) -> Result<Vec<Run>> {
                 mission,
                 folder,
                 made_by,
+                resumed,
             })
         })
         .collect()
@@ -159,9 +173,25 @@ fn explore(prepared: &Prepared, run: &Run, interrupt: &Interrupt) -> Result<bool
     let pace = pace.or(args.realtime.then_some(1.0));
     let mut onlooker =
         Onlooker::new(name, pace, interrupt.clone()).logging(args.log == Some(LogArg::Mission));
-    let result = prepared.play_mission(&run.mission, &run.world, &mut onlooker);
+    if let Some(state) = &run.resumed {
+        onlooker.begin_after(state.time_ms);
+        note(&format!(
+            "host-sim: {name}: goes on {}",
+            resume::place(state)
+        ));
+    }
+    let mut keeping = resume::keeping(args, run);
+    let result = prepared.play_kept(&run.mission, &run.world, &mut onlooker, keeping.as_mut());
     onlooker.finish();
     let (mut report, record) = result?;
+    if let Some(error) = keeping.and_then(|it| it.failure) {
+        let file = run.folder.join(state::NAME);
+        note(&format!(
+            "host-sim: {name}: {} could not be written: {error}; the run cannot be resumed from \
+             its end",
+            file.display()
+        ));
+    }
     report.made_by = Some(run.made_by.clone());
     let album = Album::new(&run.world, &report, &record);
     folder::write(&run.folder, &report, &record, &album.end())?;
@@ -299,7 +329,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         impatience_s: args.tdbvp_impatience.map_or(IMPATIENCE_S, |it| it.0),
         check_field: args.check_field,
         snapshots: args.snapshots,
-        resumes: args.resume,
+        resumes: args.resume.is_some(),
         slam: args.slam,
         particles: args.particles,
         ..Mission::default()
@@ -349,11 +379,13 @@ fn orders(args: &ExploreArgs) -> Result<Orders> {
             range_m: args.range_m,
             time_s: args.time_s,
         },
+        home_at_ms: args.home_at,
+        pauses: args.pause.clone(),
     };
     if orders != Orders::default() && on_device(&args.strategy).is_none() {
         bail!(
-            "--strategy {} takes no orders; leave --goto, --then, --range-m and --time-s out, or \
-             take a strategy on the device",
+            "--strategy {} takes no orders; leave --goto, --then, --range-m, --time-s, --home-at \
+             and --pause out, or take a strategy on the device",
             args.strategy
         );
     }

@@ -11,14 +11,17 @@ mod bringup;
 mod campaign;
 mod explore;
 mod made_by;
+mod mission_file;
 mod pictures;
 mod prepared;
 mod progress;
 mod replay;
+mod resume;
 mod robot;
 mod robots;
 mod sessions;
 mod solve;
+mod state;
 mod strategies;
 mod team;
 mod tuning;
@@ -77,6 +80,7 @@ fn run(cli: &Cli) -> Result<bool> {
         Some(Command::Replay(args)) => replay::run(args),
         Some(Command::Sessions(args)) => sessions::run(args),
         Some(Command::ReplaySession(args)) => sessions::replay(args),
+        Some(Command::State { path, json }) => state::run(path, *json).map(|()| true),
         Some(Command::Worlds { json }) => worlds::run(*json).map(|()| true),
         Some(Command::Robots { name, json }) => robots::run(name.as_deref(), *json).map(|()| true),
         Some(Command::Tuning { json }) => tuning::run(*json).map(|()| true),

@@ -16,12 +16,14 @@ use host_sim::network::udp::Udp;
 use host_sim::network::{self, Networked};
 use host_sim::report::Report;
 use host_sim::slam::SlamPlace;
+use host_sim::state::Keeping;
 use host_sim::trial::mission::{self, Mission, MissionError, on_device};
 use host_sim::trial::{Record, Watch};
 use host_sim::world::World;
 
 use super::args::ExploreArgs;
 use super::explore;
+use super::mission_file;
 use super::strategies;
 use super::{note, note_build};
 
@@ -30,11 +32,14 @@ pub(super) struct Prepared {
     pub(super) args: ExploreArgs,
     link: LinkSpec,
     pub(super) mission: Mission,
+    /// What the file of `--mission` says.
+    pub(super) mission_text: Option<String>,
 }
 
 impl Prepared {
     /// Checks that the arguments fit together. Opens no world and no link.
     pub(super) fn new(args: &ExploreArgs) -> Result<Self> {
+        let (args, mission_text) = &mission_file::applied(args)?;
         let link = strategies::link_of(&args.strategy, args.robot.link(args.link.as_ref()))?;
         strategies::check(&args.strategy, args.check_field, args.fault.is_some())?;
         strategies::check_rails(
@@ -54,6 +59,7 @@ impl Prepared {
             args: args.clone(),
             link,
             mission,
+            mission_text: mission_text.clone(),
         })
     }
 
@@ -64,15 +70,16 @@ impl Prepared {
 
     /// Makes the run of these arguments in `world`.
     pub(super) fn play(&self, world: &World, watch: &mut dyn Watch) -> Result<(Report, Record)> {
-        self.play_mission(&self.mission, world, watch)
+        self.play_kept(&self.mission, world, watch, None)
     }
 
-    /// As [`Prepared::play`], with another mission.
-    pub(super) fn play_mission(
+    /// As [`Prepared::play`], with another mission, and keeps the run or goes on with it.
+    pub(super) fn play_kept(
         &self,
         mission: &Mission,
         world: &World,
         watch: &mut dyn Watch,
+        keeping: Option<&mut Keeping>,
     ) -> Result<(Report, Record)> {
         let (args, link) = (&self.args, &self.link);
         let options = Options {
@@ -92,7 +99,12 @@ impl Prepared {
             answer.map_err(|error| anyhow!("--link {link}: {error}"))?;
         }
         let (mut planner, network) = join(args, planner)?;
-        let (mut report, record) = match mission::explore(mission, world, planner.as_mut(), watch) {
+        let planner = planner.as_mut();
+        let result = match keeping {
+            Some(keeping) => mission::explore_kept(mission, world, planner, watch, keeping),
+            None => mission::explore(mission, world, planner, watch),
+        };
+        let (mut report, record) = match result {
             Err(MissionError::Link(error)) => bail!("--link {link}: {error}"),
             result => result?,
         };

@@ -49,6 +49,8 @@ pub(super) struct Onlooker {
     log: Option<MissionLog>,
     /// Real time of the start, and the simulated seconds that one second may have at most.
     began: Option<(Instant, f64)>,
+    /// Simulated time up to which the run is made again, milliseconds.
+    after_ms: u32,
 }
 
 impl Onlooker {
@@ -68,6 +70,7 @@ impl Onlooker {
             interrupt,
             log: None,
             began: pace.map(|pace| (Instant::now(), pace)),
+            after_ms: 0,
         }
     }
 
@@ -75,6 +78,11 @@ impl Onlooker {
     pub(super) fn logging(self, is_on: bool) -> Self {
         let log = is_on.then(MissionLog::new);
         Self { log, ..self }
+    }
+
+    /// Counts the pace from this simulated time on, milliseconds: what is before is made again.
+    pub(super) const fn begin_after(&mut self, time_ms: u32) {
+        self.after_ms = time_ms;
     }
 
     /// Removes the line.
@@ -92,8 +100,12 @@ impl Watch for Onlooker {
         if let Some(entry) = log.and_then(|it| it.note(&progress.estimate, &progress.command)) {
             self.bar.suspend(|| note(&entry.to_string()));
         }
-        if let Some((began, pace)) = self.began {
-            let due = Duration::from_millis(progress.time_ms.into()).div_f64(pace);
+        if let Some((began, pace)) = &mut self.began {
+            let ahead_ms = progress.time_ms.saturating_sub(self.after_ms);
+            if ahead_ms == 0 {
+                *began = Instant::now();
+            }
+            let due = Duration::from_millis(ahead_ms.into()).div_f64(*pace);
             std::thread::sleep(due.saturating_sub(began.elapsed()));
         }
         if self.interrupt.pressed() {

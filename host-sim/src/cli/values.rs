@@ -5,6 +5,7 @@ use core::time::Duration;
 use fieldline_protocol::message::UnevenGround;
 use host_sim::robot::{Limits, LimitsError};
 use host_sim::slam::SlamPlace;
+use host_sim::trial::itinerary::Pause;
 use host_sim::trial::space::Area;
 use host_sim::trial::uneven::{self, ParameterError};
 
@@ -79,6 +80,24 @@ pub(super) fn area(text: &str) -> Result<Area, String> {
 pub(super) fn budget(text: &str) -> Result<u16, String> {
     let number = text.parse().ok().filter(|number| *number > 0);
     number.ok_or_else(|| "give a whole number from 1 to 65535".into())
+}
+
+/// Parses seconds from 0 on; returns milliseconds.
+pub(super) fn home_at(text: &str) -> Result<u32, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (0.0..=4e6).contains(&seconds) => Ok((seconds * 1000.0).round() as u32),
+        _ => Err("give simulated seconds, 0 to 4000000".into()),
+    }
+}
+
+/// Parses a pause.
+pub(super) fn pause(text: &str) -> Result<Pause, String> {
+    let parts = text.split_once('-');
+    let times = parts.and_then(|(from, to)| Some((home_at(from).ok()?, home_at(to).ok()?)));
+    match times {
+        Some((from_ms, to_ms)) if from_ms < to_ms => Ok(Pause { from_ms, to_ms }),
+        _ => Err("give from-to in simulated seconds, as in 60-80".into()),
+    }
 }
 
 /// Parses a place.
@@ -188,6 +207,11 @@ mod tests {
         ] {
             assert!(area(bad).is_err(), "{bad}");
         }
+        assert_eq!((home_at("0"), home_at("90.5")), (Ok(0), Ok(90_500)));
+        assert!(home_at("-1").is_err() && home_at("nan").is_err() && home_at("5e6").is_err());
+        let (from_ms, to_ms) = (60_000, 80_500);
+        assert_eq!(pause("60-80.5"), Ok(Pause { from_ms, to_ms }));
+        assert!(pause("60").is_err() && pause("80-60").is_err() && pause("5-5").is_err());
         assert_eq!((snapshots("0"), snapshots("500")), (Ok(0), Ok(500)));
         assert_eq!((sweeps("1"), sweeps("10000")), (Ok(1), Ok(10_000)));
         assert!(sweeps("0").is_err() && sweeps("10001").is_err() && sweeps("-1").is_err());

@@ -58,6 +58,22 @@ impl MadeBy {
         ))
     }
 
+    /// Returns how a run and another one were made, if they differ in more than some options: first
+    /// the other one, then this one.
+    #[must_use]
+    pub fn difference(&self, other: &Self, but_for: &[&str]) -> Option<[String; 2]> {
+        let cut = |made: &Self| {
+            let options = made.options.iter();
+            let options = options.filter(|(name, _)| !but_for.contains(&name.as_str()));
+            Self {
+                options: options.map(|(a, b)| (a.clone(), b.clone())).collect(),
+                ..made.clone()
+            }
+        };
+        let (own, its) = (cut(self), cut(other));
+        (own.options != its.options).then(|| [its.against(&own), own.against(&its)])
+    }
+
     /// Returns the command: `explore`, `team` or `replay`.
     fn command(&self) -> Option<&str> {
         self.options.get("command").map(String::as_str)

@@ -5,11 +5,15 @@
 //! the map is read before and after the largest corrections.
 //!
 //! A device that was reset has lost its session. If the run resumes, it gets the same session, and
-//! its map back by a correction with every tile of the copy. The state of its strategy is not
-//! restored: goals that were given up are tried again, and loops and visits begin anew.
+//! its map back by a correction with every tile of the copy, and is told where home is, what is
+//! left of its budget and which drive is in hand. The state of its strategy is not restored: goals
+//! that were given up are tried again, and loops and visits begin anew.
 
-use fieldline_protocol::message::{Command, Control, Observation};
+use fieldline_device::convert::quantity;
+use fieldline_planner::geometry::Pose;
+use fieldline_protocol::message::{Command, Control, Observation, Start};
 
+use super::itinerary::Itinerary;
 use super::map_copy::MapCopy;
 use super::snapshot::{self, Snapshot};
 use super::{Cast, Record, Setup};
@@ -103,6 +107,7 @@ fn leave_out_smallest(wanted: usize, corrections: &mut Vec<Corrected>) {
 pub(super) fn observe(
     setup: &Setup,
     cast: &mut Cast<'_>,
+    (record, itinerary): (&Record, &mut Itinerary),
     observation: &Observation,
 ) -> Result<Command, LinkError> {
     let mut answer = cast.link.observe(observation);
@@ -110,18 +115,54 @@ pub(super) fn observe(
         if !setup.resumes || answer != Err(LinkError::Reset) {
             break;
         }
-        answer = resume(setup, cast).and_then(|()| cast.link.observe(observation));
+        let resumed = resume(setup, cast, (record, itinerary));
+        answer = resumed.and_then(|()| cast.link.observe(observation));
     }
     answer
 }
 
-fn resume(setup: &Setup, cast: &mut Cast<'_>) -> Result<(), LinkError> {
+/// Gives a device that was reset its session, its map and its orders back, however often it is
+/// reset meanwhile.
+pub(super) fn restore(
+    setup: &Setup,
+    cast: &mut Cast<'_>,
+    (record, itinerary): (&Record, &mut Itinerary),
+) -> Result<(), LinkError> {
+    let mut answer = Err(LinkError::Reset);
+    for _ in 0..MOST_RESETS {
+        if answer != Err(LinkError::Reset) {
+            break;
+        }
+        answer = resume(setup, cast, (record, itinerary));
+    }
+    answer
+}
+
+fn resume(
+    setup: &Setup,
+    cast: &mut Cast<'_>,
+    (record, itinerary): (&Record, &mut Itinerary),
+) -> Result<(), LinkError> {
     let Some(mirror) = cast.survey.mirror() else {
         return Err(LinkError::Reset);
     };
-    cast.link.control(&Control::Start(setup.start.clone()))?;
+    cast.link.control(&Control::Start(Start {
+        budget: itinerary.budget_left(record),
+        ..setup.start.clone()
+    }))?;
     let correction = mirror.whole();
     cast.link.correct(&correction)?;
     mirror.resume(&correction);
-    Ok(())
+    if let Some(home) = mirror.home() {
+        cast.link.control(&set_home(&home))?;
+    }
+    itinerary.take_up(cast.link)
+}
+
+fn set_home(home: &Pose) -> Control {
+    Control::SetHome {
+        x: quantity(home.x_m),
+        y: quantity(home.y_m),
+        yaw: quantity(home.yaw_rad),
+    }
 }

@@ -13,7 +13,7 @@ pub enum Ending {
     Finished(Finish),
     /// The planner cannot go on.
     Fault(Fault),
-    /// The robot's budget was spent, and it is home.
+    /// The robot's budget was spent, or it was time to drive home, and it is home.
     AtHome,
     /// The robot could not get where it was ordered to go after its exploration.
     Unreachable(Errand),
@@ -97,8 +97,8 @@ impl Ending {
             }
             Self::Finished(Finish::Stopped) => "the device was told to stop".into(),
             Self::Fault(why) => fault_advice(*why).into(),
-            Self::AtHome => "the budget was spent before everything was explored; \
-                 allow more with --range-m and --time-s"
+            Self::AtHome => "the budget was spent, or it was time to be home, before everything \
+                 was explored; allow more with --range-m, --time-s and --home-at"
                 .into(),
             Self::Unreachable(to) => format!(
                 "the robot found no way {}; trips of report.json says where it stands",

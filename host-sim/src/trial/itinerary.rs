@@ -2,13 +2,18 @@
 //!
 //! ```text
 //! explore ─► goal ─► goal ─► … ─► home ─► end
-//!    └──────────┴── the budget is spent ──┘
+//!    └──────────┴── the budget is spent, ─┘
+//!                   or it is time
 //! ```
 //!
 //! A goal that is refused or cannot be reached is left, and the next one is tried. The exploration
-//! may have ended in any way that leaves the robot where it knows its place.
+//! may have ended in any way that leaves the robot where it knows its place. During a pause the
+//! robot stands and waits.
 //!
-//! Units: metres and radians in the device's map; in reports degrees.
+//! A device that was reset and got its map back has forgotten its orders: home, the drive in hand,
+//! a pause, and what of its budget is used. It is told them again.
+//!
+//! Units: metres and radians in the device's map; milliseconds; in reports degrees.
 
 use std::collections::VecDeque;
 
@@ -29,6 +34,28 @@ pub struct Orders {
     pub home: bool,
     /// What it may drive before it must be home. The device turns home by itself.
     pub budget: Budget,
+    /// Time at which it drives home at the latest, whatever it does.
+    pub home_at_ms: Option<u32>,
+    /// When it stands and waits.
+    pub pauses: Vec<Pause>,
+}
+
+/// Most pauses of a run.
+pub const MOST_PAUSES: usize = 100;
+
+/// A time in which the robot stands and waits, milliseconds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pause {
+    /// Its beginning.
+    pub from_ms: u32,
+    /// Its end, which is later.
+    pub to_ms: u32,
+}
+
+impl Pause {
+    const fn holds(&self, now_ms: u32) -> bool {
+        self.from_ms <= now_ms && now_ms < self.to_ms
+    }
 }
 
 /// A place to drive to.
@@ -47,7 +74,8 @@ struct Trip {
     /// The device's reason if it refused the order.
     refused: Option<String>,
     begun_ms: u32,
-    ended_ms: u32,
+    /// `None` while it lasts.
+    ended_ms: Option<u32>,
     /// Where the robot thought it was at the end, and where it was.
     estimate: Stamped,
     truth: Stamped,
@@ -62,16 +90,28 @@ pub(super) struct Itinerary {
     explored: Option<Ending>,
     /// Where the session began.
     home: Option<Stamped>,
-    /// The device turned home by itself.
-    is_spent: bool,
+    /// The robot went home before the end: its budget was spent, or it was time.
+    is_early: bool,
+    home_at_ms: Option<u32>,
+    pauses: Vec<Pause>,
+    is_paused: bool,
+    /// The device was reset, and has not been told the drive in hand again.
+    is_owed: bool,
+    /// What the device was told that the robot may drive, and the way so far, metres.
+    budget: Budget,
+    driven_m: f64,
 }
 
 impl Itinerary {
     /// Makes the itinerary of these orders.
     pub(super) fn new(orders: &Orders) -> Self {
         let goals = orders.goals_m.iter().map(|goal| Leg::Goal(*goal));
+        let home = orders.home || orders.home_at_ms.is_some();
         Self {
-            left: goals.chain(orders.home.then_some(Leg::Home)).collect(),
+            left: goals.chain(home.then_some(Leg::Home)).collect(),
+            home_at_ms: orders.home_at_ms,
+            pauses: orders.pauses.clone(),
+            budget: orders.budget,
             ..Self::default()
         }
     }
@@ -92,6 +132,9 @@ impl Itinerary {
             Ending::Fault(_) => true,
             _ => false,
         };
+        if may_drive && self.is_owed && self.in_hand().is_some() {
+            return self.repeat(record, link);
+        }
         if self.explored.is_some() || !may_drive || self.left.is_empty() {
             return Ok(Some(ending));
         }
@@ -112,20 +155,111 @@ impl Itinerary {
         if self.home.is_none() {
             self.home = record.steps.first().map(|step| step.estimate);
         }
+        if let [.., before, now] = &record.steps[..] {
+            let (before, now) = (before.estimate, now.estimate);
+            self.driven_m += (now.x_m - before.x_m).hypot(now.y_m - before.y_m);
+        }
         match command.status {
             Status::Going(Errand::Home) if !self.is_on_the_way_home() => {
-                self.finish(None, None, record);
-                self.is_spent = true;
+                self.turn_home(record);
                 self.left.clear();
                 self.begin(Leg::Home, record);
-                Ok(None)
             }
             status @ (Status::Arrived(_) | Status::Unreachable(_)) => {
                 self.finish(Some(status), None, record);
-                self.next(record, link)
+                return self.next(record, link);
             }
-            _ => Ok(None),
+            _ => {}
         }
+        self.pause_or_resume(now_ms(record), link)?;
+        // A device that has seen nothing takes no order.
+        if self.is_paused || command.status == Status::NoScan {
+            return Ok(None);
+        }
+        if self.is_owed {
+            return self.repeat(record, link);
+        }
+        if self.is_time(record) {
+            self.turn_home(record);
+            self.left = VecDeque::from([Leg::Home]);
+            return self.next(record, link);
+        }
+        Ok(None)
+    }
+
+    /// Orders the drive in hand again.
+    fn repeat(
+        &mut self,
+        record: &Record,
+        link: &mut dyn Link,
+    ) -> Result<Option<Ending>, LinkError> {
+        if let Some(leg) = self.in_hand()
+            && let Some(refused) = tell(leg, link)?
+        {
+            self.is_owed = false;
+            self.finish(None, Some(refused), record);
+            return self.next(record, link);
+        }
+        self.is_owed = false;
+        Ok(None)
+    }
+
+    /// Returns true once it is time to drive home, if the robot is not on its way there.
+    fn is_time(&self, record: &Record) -> bool {
+        let is_late = self.home_at_ms.is_some_and(|at_ms| now_ms(record) >= at_ms);
+        is_late && !self.is_early && !self.is_on_the_way_home()
+    }
+
+    /// Ends the drive in hand, because the robot turns home.
+    fn turn_home(&mut self, record: &Record) {
+        if self.in_hand().is_some() {
+            self.finish(None, None, record);
+        }
+        self.is_early = true;
+    }
+
+    /// Lets the robot stand, or go on.
+    fn pause_or_resume(&mut self, now_ms: u32, link: &mut dyn Link) -> Result<(), LinkError> {
+        let is_due = self.pauses.iter().any(|pause| pause.holds(now_ms));
+        if is_due != self.is_paused {
+            link.control(if is_due {
+                &Control::Pause
+            } else {
+                &Control::Resume
+            })?;
+            self.is_paused = is_due;
+        }
+        Ok(())
+    }
+
+    /// Returns the drive in hand.
+    fn in_hand(&self) -> Option<Leg> {
+        let trip = self.trips.last()?;
+        trip.ended_ms.is_none().then_some(trip.leg)
+    }
+
+    /// Returns what is left of the budget, for a device that begins anew. A device counts what it
+    /// drives and how long it takes from the beginning of its session.
+    pub(super) fn budget_left(&self, record: &Record) -> Budget {
+        let less = |all: u16, used: f64| all.saturating_sub(used.ceil() as u16).max(1);
+        let used_s = f64::from(now_ms(record)) / 1000.0;
+        Budget {
+            range_m: self.budget.range_m.map(|all| less(all, self.driven_m)),
+            time_s: self.budget.time_s.map(|all| less(all, used_s)),
+        }
+    }
+
+    /// Notes that the device was reset and got its map back. A pause goes on, and the drive in hand
+    /// is ordered again after the next step.
+    ///
+    /// # Errors
+    /// [`LinkError`] if the link fails.
+    pub(super) fn take_up(&mut self, link: &mut dyn Link) -> Result<(), LinkError> {
+        self.is_owed = true;
+        if self.is_paused {
+            link.control(&Control::Pause)?;
+        }
+        Ok(())
     }
 
     fn is_on_the_way_home(&self) -> bool {
@@ -134,14 +268,12 @@ impl Itinerary {
 
     /// Enters the beginning of a drive.
     fn begin(&mut self, leg: Leg, record: &Record) {
-        let step = record.steps.last();
-        let now_ms = step.map_or(0, |step| step.truth.time_ms);
         self.trips.push(Trip {
             leg,
             end: None,
             refused: None,
-            begun_ms: now_ms,
-            ended_ms: now_ms,
+            begun_ms: now_ms(record),
+            ended_ms: None,
             estimate: Stamped::default(),
             truth: Stamped::default(),
         });
@@ -154,24 +286,23 @@ impl Itinerary {
         };
         (trip.end, trip.refused) = (end, refused);
         (trip.estimate, trip.truth) = (step.estimate, step.truth);
-        trip.ended_ms = step.truth.time_ms;
+        trip.ended_ms = Some(step.truth.time_ms);
     }
 
     /// Orders the next drive that the device takes. Returns what ends the run if none is left.
     fn next(&mut self, record: &Record, link: &mut dyn Link) -> Result<Option<Ending>, LinkError> {
         while let Some(leg) = self.left.pop_front() {
             self.begin(leg, record);
-            match link.control(&leg.control()) {
-                Ok(_) => return Ok(None),
-                Err(LinkError::Refused(reason)) => self.finish(None, Some(reason), record),
-                Err(error) => return Err(error),
+            match tell(leg, link)? {
+                None => return Ok(None),
+                Some(reason) => self.finish(None, Some(reason), record),
             }
         }
-        // With a budget that is spent only home counts.
-        let counts = |trip: &&Trip| !self.is_spent || trip.leg == Leg::Home;
+        // Of a robot that went home before the end only home counts.
+        let counts = |trip: &&Trip| !self.is_early || trip.leg == Leg::Home;
         let mut failed = self.trips.iter().filter(counts);
         let ending = match failed.find(|trip| !trip.has_arrived()) {
-            None if self.is_spent => Some(Ending::AtHome),
+            None if self.is_early => Some(Ending::AtHome),
             Some(trip) => Some(Ending::Unreachable(trip.leg.errand())),
             None => self.explored.clone(),
         };
@@ -182,6 +313,20 @@ impl Itinerary {
     pub(super) fn report(&self) -> Vec<report::Trip> {
         let home = self.home.unwrap_or_default();
         self.trips.iter().map(|trip| trip.report(&home)).collect()
+    }
+}
+
+/// Returns the time of the last step, milliseconds.
+fn now_ms(record: &Record) -> u32 {
+    record.steps.last().map_or(0, |step| step.truth.time_ms)
+}
+
+/// Orders a drive. Returns the device's reason if it refuses.
+fn tell(leg: Leg, link: &mut dyn Link) -> Result<Option<String>, LinkError> {
+    match link.control(&leg.control()) {
+        Ok(_) => Ok(None),
+        Err(LinkError::Refused(reason)) => Ok(Some(reason)),
+        Err(error) => Err(error),
     }
 }
 
@@ -227,7 +372,7 @@ impl Trip {
             error_deg: matches!(self.leg, Leg::Home).then_some(off_deg),
             true_error_m: off_m(&self.truth),
             stands_m: [self.estimate.x_m, self.estimate.y_m],
-            time_s: f64::from(self.ended_ms - self.begun_ms) / 1000.0,
+            time_s: f64::from(self.ended_ms.unwrap_or(self.begun_ms) - self.begun_ms) / 1000.0,
         }
     }
 }

@@ -19,6 +19,10 @@ use super::relief::Relief;
 use super::snapshot::Window;
 use crate::link::correction::{Classes, CorrectedTile, MapCorrection, Motion};
 
+/// Cells along a tile's side, and the side of a cell in metres.
+const TILE_CELLS: i32 = 32;
+const CELL_M: f32 = 0.1;
+
 /// The copy of a device's map.
 #[derive(Debug)]
 pub struct Mirror {
@@ -27,6 +31,8 @@ pub struct Mirror {
     localiser: Localiser,
     map: Box<Map<TILES, SLOTS>>,
     pose: Pose,
+    /// Where the session began, in the map.
+    home: Option<Pose>,
     epoch: u16,
 }
 
@@ -51,6 +57,7 @@ impl Mirror {
             localiser: Localiser::new(),
             map,
             pose,
+            home: None,
             epoch: 0,
         }
     }
@@ -70,6 +77,9 @@ impl Mirror {
         };
         let MapPose(pose) = self.localiser.locate(config, &self.map, &input);
         self.pose = pose;
+        if status != Status::NoScan {
+            self.home.get_or_insert(pose);
+        }
         if self.localiser.may_enter() {
             self.map.observe(config, &Input { pose, ..input });
         }
@@ -95,6 +105,18 @@ impl Mirror {
     #[must_use]
     pub const fn pose(&self) -> Pose {
         self.pose
+    }
+
+    /// Returns the robot's last pose by odometry, in its own frame.
+    #[must_use]
+    pub fn odometry(&self) -> Pose {
+        self.localiser.odom().0
+    }
+
+    /// Returns home: the pose of the session's first scan, in the map; `None` before it.
+    #[must_use]
+    pub const fn home(&self) -> Option<Pose> {
+        self.home
     }
 
     /// Returns the last correction; 0 if there was none.
@@ -133,6 +155,7 @@ impl Mirror {
             self.map.expand(at, &mut ());
             self.map.replace(at, &tile.classes, false);
         }
+        self.home = self.home.map(|home| moved(home, correction));
         let motion = convert::correction(&correction.opening());
         let MapPose(before) = self.localiser.to_map(&self.localiser.odom());
         self.localiser.correct_pose(&MapFromOdom {
@@ -218,6 +241,19 @@ impl Mirror {
                 }
             })
         })
+    }
+}
+
+/// Returns a place that goes with its tile.
+fn moved(place: Pose, by: &MapCorrection) -> Pose {
+    let cell = place.point().cell();
+    let key = [cell.x, cell.y].map(|at| at.div_euclid(TILE_CELLS));
+    let tile = |tile: &&CorrectedTile| [tile.key.0, tile.key.1].map(i32::from) == key;
+    let shift = by.tiles.iter().find(tile).map_or((0, 0), |it| it.shift);
+    Pose {
+        x_m: place.x_m + f32::from(shift.0) * CELL_M,
+        y_m: place.y_m + f32::from(shift.1) * CELL_M,
+        ..place
     }
 }
 

@@ -14,7 +14,7 @@ use fixed::types::I16F16;
 use super::account::Account;
 use super::itinerary::Orders;
 use super::space::SpaceMission;
-use super::{Cast, Corrector, Record, Setup, Watch, run, summary};
+use super::{Cast, Corrector, Ending, Record, Setup, Watch, run, summary};
 use crate::baseline::bvp_papers::Relaxation;
 use crate::fence::Fence;
 use crate::link::{Link, LinkError};
@@ -28,6 +28,7 @@ use crate::robot::{
 use crate::sim::{SimConfig, Simulator};
 use crate::slam::particles::{Beside, ParticleSpec};
 use crate::slam::{LoopCloser, SlamPlace};
+use crate::state::{Keeping, Recorder, StateKeeper};
 use crate::world::{Start, World, WorldError};
 
 /// The usual impatience of strategy tdbvp, seconds (measured: docs/MEASURED.md, "Impatience of
@@ -421,7 +422,21 @@ pub fn explore(
     link: &mut dyn Link,
     watch: &mut dyn Watch,
 ) -> Result<(Report, Record), MissionError> {
-    explored(mission, world, link, watch, None)
+    explored(mission, world, link, watch, (None, None))
+}
+
+/// As [`explore`], and keeps the state of the run, or goes on from one.
+///
+/// # Errors
+/// As [`explore`]; [`LinkError::Io`] if the state is that of another run. Nothing is kept then.
+pub fn explore_kept(
+    mission: &Mission,
+    world: &World,
+    link: &mut dyn Link,
+    watch: &mut dyn Watch,
+    keeping: &mut Keeping,
+) -> Result<(Report, Record), MissionError> {
+    explored(mission, world, link, watch, (None, Some(keeping)))
 }
 
 /// As [`explore`], with a corrector of the map.
@@ -435,7 +450,7 @@ pub fn explore_corrected(
     watch: &mut dyn Watch,
     corrector: &mut dyn Corrector,
 ) -> Result<(Report, Record), MissionError> {
-    explored(mission, world, link, watch, Some(corrector))
+    explored(mission, world, link, watch, (Some(corrector), None))
 }
 
 fn explored(
@@ -443,7 +458,7 @@ fn explored(
     world: &World,
     link: &mut dyn Link,
     watch: &mut dyn Watch,
-    corrector: Option<&mut dyn Corrector>,
+    (corrector, keeping): (Option<&mut dyn Corrector>, Option<&mut Keeping>),
 ) -> Result<(Report, Record), MissionError> {
     let mut simulator = Simulator::new(world, mission.sim_config())?;
     link.hello()?;
@@ -462,16 +477,19 @@ fn explored(
     };
     let mut account = Account::new(&setup, &simulator);
     account.particles = beside(mission, &setup, &simulator);
-    let mut record = run(
-        &setup,
-        &mut Cast {
-            link,
-            body: &mut simulator,
-            survey: &mut account,
-            watch,
-            corrector: corrector.unwrap_or(&mut ()),
-        },
-    );
+    let mut nothing = ();
+    let mut cast = Cast {
+        link,
+        body: &mut simulator,
+        survey: &mut account,
+        watch,
+        corrector: corrector.unwrap_or(&mut nothing),
+        keeper: &mut (),
+    };
+    let mut record = match keeping {
+        Some(keeping) => run_kept(&setup, &mut cast, keeping)?,
+        None => run(&setup, &mut cast),
+    };
     record.ground = account.ground.take();
     let mut report = summary::report(mission, &simulator, &account, &record);
     if let Some(closer) = closer {
@@ -479,6 +497,43 @@ fn explored(
         report.slam = Some(closer.report());
     }
     Ok((report, record))
+}
+
+/// As [`run`], and keeps the run.
+fn run_kept(
+    setup: &Setup,
+    cast: &mut Cast<'_>,
+    keeping: &mut Keeping,
+) -> Result<Record, MissionError> {
+    let resumed = keeping.resumed.as_ref().map(|state| state.steps as usize);
+    let (mut keeper, journal) = StateKeeper::new(keeping, setup.start.clone());
+    let mut link = Recorder::new(&mut *cast.link, journal);
+    let mut record = run(
+        setup,
+        &mut Cast {
+            link: &mut link,
+            body: &mut *cast.body,
+            survey: &mut *cast.survey,
+            watch: &mut *cast.watch,
+            corrector: &mut *cast.corrector,
+            keeper: &mut keeper,
+        },
+    );
+    let is_short = resumed.is_some_and(|steps| record.steps.len() < steps);
+    if is_short && record.ending == Ending::Interrupted {
+        return Err(MissionError::Link(LinkError::Io(
+            "interrupted before the run was where its state is; nothing has changed".into(),
+        )));
+    }
+    if keeper.strays || is_short {
+        return Err(MissionError::Link(LinkError::Io(
+            "the state was kept in another world, or by another build of this program; resume it \
+             with those, or leave --resume out to make the run again"
+                .into(),
+        )));
+    }
+    record.replayed = resumed.unwrap_or(0);
+    Ok(record)
 }
 
 /// Returns the particle filter beside a run; `None` if there is to be none, or the robot has no

@@ -76,6 +76,34 @@ pub trait Survey {
     }
 }
 
+/// Keeps what a run knows, so that it can go on after its host was killed.
+pub trait Keeper {
+    /// Called after every step, and at the end of the run before the robot is brought to rest.
+    /// `mirror` is the copy of a lone robot's map.
+    ///
+    /// # Errors
+    /// [`LinkError::Io`] if the run that is resumed is not the one that was kept.
+    fn keep(&mut self, at: Moment, record: &Record, mirror: &Mirror) -> Result<(), LinkError>;
+}
+
+/// Keeps nothing.
+impl Keeper for () {
+    fn keep(&mut self, _: Moment, _: &Record, _: &Mirror) -> Result<(), LinkError> {
+        Ok(())
+    }
+}
+
+/// When a [`Keeper`] is called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moment {
+    /// After a step, before the robot drives.
+    Step,
+    /// After the last step.
+    End,
+    /// After the link failed in the step that follows the last one.
+    Broken,
+}
+
 /// Watches a run and may end it: a progress line, a pacer, the interrupt key.
 pub trait Watch {
     /// Called after every step; the answer says if the run goes on.
@@ -145,6 +173,8 @@ pub struct Cast<'a> {
     pub watch: &'a mut dyn Watch,
     /// What corrects the map.
     pub corrector: &'a mut dyn Corrector,
+    /// What keeps the run.
+    pub keeper: &'a mut dyn Keeper,
 }
 
 /// Runs until something ends the run. The record is complete up to the end.
@@ -156,6 +186,13 @@ pub fn run(setup: &Setup, cast: &mut Cast<'_>) -> Record {
         Ok(_) => explore(setup, cast, &mut record, &mut series),
         Err(error) => Ending::Link(error),
     };
+    let moment = match record.ending {
+        Ending::Link(_) => Moment::Broken,
+        _ => Moment::End,
+    };
+    if let Err(error) = keep(cast, moment, &record) {
+        record.ending = Ending::Link(error);
+    }
     record.snapshots = series.pick();
     bring_to_rest(cast, &record);
     read_out(cast, &mut record);
@@ -183,7 +220,7 @@ fn drive(
     (freeze, itinerary): (&mut FreezeDetector, &mut Itinerary),
 ) -> Ending {
     loop {
-        let command = match step(setup, cast, record, series) {
+        let command = match step(setup, cast, (record, itinerary), series) {
             Ok(command) => command,
             Err(error) => return Ending::Link(error),
         };
@@ -191,7 +228,16 @@ fn drive(
             Some(ending) => itinerary.end_or_go_on(ending, record, cast.link),
             None => itinerary.note(&command, record, cast.link),
         };
-        match ended {
+        let ended = match ended {
+            Err(LinkError::Reset) if setup.resumes => {
+                corrector::restore(setup, cast, (record, itinerary)).map(|()| None)
+            }
+            ended => ended,
+        };
+        match ended.and_then(|ended| match ended {
+            None => keep(cast, Moment::Step, record).map(|()| None),
+            ended => Ok(ended),
+        }) {
             Ok(None) => {}
             Ok(Some(ending)) => return ending,
             Err(error) => return Ending::Link(error),
@@ -203,16 +249,24 @@ fn drive(
     }
 }
 
+/// Lets the keeper see the run.
+fn keep(cast: &mut Cast<'_>, moment: Moment, record: &Record) -> Result<(), LinkError> {
+    match cast.survey.mirror() {
+        Some(mirror) => cast.keeper.keep(moment, record, mirror),
+        None => Ok(()),
+    }
+}
+
 /// Observes, asks the planner, and enters both in the record. Takes a snapshot if one is due.
 fn step(
     setup: &Setup,
     cast: &mut Cast<'_>,
-    record: &mut Record,
+    (record, itinerary): (&mut Record, &mut Itinerary),
     series: &mut Series<Snapshot>,
 ) -> Result<Command, LinkError> {
     let (observation, truth) = (cast.body.observe(), cast.body.truth());
     let asked = Instant::now();
-    let command = corrector::observe(setup, cast, &observation)?;
+    let command = corrector::observe(setup, cast, (record, itinerary), &observation)?;
     let round_trip_us = asked.elapsed().as_secs_f64() * 1e6;
     let coverage = cast.survey.note(&observation, &truth, &command);
     let step = Step::new(&observation, truth, command, round_trip_us);

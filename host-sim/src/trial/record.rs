@@ -39,6 +39,8 @@ pub struct Record {
     pub ending: Ending,
     /// Every answered observation.
     pub steps: Vec<Step>,
+    /// Number of the first steps whose answers were kept from before the run went on.
+    pub replayed: usize,
     /// Fraction known after the last step.
     pub coverage: f64,
     /// Length of the true path, metres.
@@ -82,6 +84,7 @@ impl Default for Record {
         Self {
             ending: Ending::Interrupted,
             steps: Vec::new(),
+            replayed: 0,
             coverage: 0.0,
             path_m: 0.0,
             height_change_m: 0.0,
@@ -245,7 +248,8 @@ impl Record {
     /// Returns the report's part on cost.
     #[must_use]
     pub fn planner(&self) -> report::Planner {
-        let round_trips: Vec<f64> = self.steps.iter().map(|step| step.round_trip_us).collect();
+        let live = self.steps.iter().skip(self.replayed);
+        let round_trips: Vec<f64> = live.map(|step| step.round_trip_us).collect();
         let costs = self.steps.iter().map(|step| step.command.cost);
         let counted: Vec<Cost> = costs.clone().filter(|cost| cost.instructions > 0).collect();
         let of = |part: fn(&Cost) -> u32| {

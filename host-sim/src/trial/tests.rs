@@ -185,6 +185,7 @@ fn trial(link: &mut Script, body: &mut Point, interrupt_ms: u32) -> Record {
         survey: &mut Counting(0),
         watch: &mut Until(interrupt_ms),
         corrector: &mut (),
+        keeper: &mut (),
     };
     run(&setup, &mut cast)
 }

@@ -2,8 +2,10 @@
 
 mod campaigns;
 mod commands;
+mod mission_files;
 mod refusals;
 mod replay;
+mod resumes;
 mod robots;
 mod runs;
 mod sessions;

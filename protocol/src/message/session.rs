@@ -322,4 +322,14 @@ pub enum Control {
     },
     /// Go on exploring.
     Explore,
+    /// Home is this pose of the map, whatever the first scan's is. A device that was reset is told
+    /// so where its session truly began.
+    SetHome {
+        /// Metres.
+        x: I16F16,
+        /// Metres.
+        y: I16F16,
+        /// Radians.
+        yaw: I16F16,
+    },
 }

@@ -212,6 +212,15 @@ fn request_control_go_to() {
 }
 
 #[test]
+fn request_control_set_home() {
+    let (x, y, yaw) = (long(1.0), long(-0.5), long(0.25));
+    request_is(
+        Request::Control(Control::SetHome { x, y, yaw }),
+        &[1, 8, 0x80, 0x80, 0x08, 0xff, 0xff, 0x03, 0x80, 0x80, 0x02],
+    );
+}
+
+#[test]
 fn request_observation() {
     request_is(
         Request::Observation(Observation {

@@ -81,6 +81,7 @@ fn witnessed(link: &mut dyn Link, world: &World) -> (Record, Vec<Period>) {
             survey: &mut Nobody,
             watch: &mut (),
             corrector: &mut (),
+            keeper: &mut (),
         },
     );
     assert_eq!(body.robot.safety().collisions, 0);

@@ -15,6 +15,7 @@ mod lost_device;
 mod orders;
 mod people;
 mod periods;
+mod random_missions;
 mod replay;
 mod robots;
 mod space;

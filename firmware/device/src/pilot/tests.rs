@@ -4,9 +4,9 @@ use std::boxed::Box;
 
 use fieldline_planner::{State, Tuning, Workspace};
 use fieldline_protocol::message::{
-    Activity, Beacon, Body, Budget, Control, Errand, Fault, Fence, FencePolygon, Finish, Hull,
-    Laser, LoopLimits, Member, Observation, Order, Packet, Parameter, Refusal, Scan, SpaceField,
-    Start, Status, Strategy, Team, Twist,
+    Activity, Beacon, Body, Budget, Control, Correct, CorrectedTiles, Errand, Fault, Fence,
+    FencePolygon, Finish, Hull, Laser, LoopLimits, Member, Observation, Order, Packet, Parameter,
+    Refusal, Scan, SpaceField, Start, Status, Strategy, Team, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -371,6 +371,64 @@ fn a_fence_that_is_none_is_refused_and_a_start_outside_ends() {
     }
     let refused = pilot.control(&mut bench.memory(), &Control::Home);
     assert_eq!(refused, Err(Refusal::NotReady));
+}
+
+/// A session that was given a map goes on: the robot may stand where a start is refused.
+#[test]
+fn a_session_with_a_map_is_no_start() {
+    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let fence = square(2, false);
+    let fenced = Control::Start(Start { fence, ..start() });
+    pilot.control(&mut bench.memory(), &fenced).unwrap();
+    let opening = Correct {
+        epoch: 1,
+        ..Correct::default()
+    };
+    pilot.correct(&mut bench.memory(), &opening).unwrap();
+    let last = CorrectedTiles {
+        epoch: 1,
+        last: true,
+        ..CorrectedTiles::default()
+    };
+    let progress = pilot.tiles(&mut bench.memory(), &last).unwrap();
+    assert!(progress.closed);
+    let command = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
+    assert_eq!(command.unwrap().status, Status::Exploring);
+    let home = pilot.control(&mut bench.memory(), &Control::Home);
+    assert_eq!(
+        home,
+        Err(Refusal::BadGoal),
+        "home lies in the no-go polygon"
+    );
+}
+
+/// A device that was reset begins its session where the robot is, and is told where home is.
+#[test]
+fn home_is_where_it_is_set_and_no_longer_where_the_session_began() {
+    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let set = |x: f32| Control::SetHome {
+        x: I16F16::from_num(x),
+        y: I16F16::ZERO,
+        yaw: I16F16::ZERO,
+    };
+    let refused = pilot.control(&mut bench.memory(), &set(0.0));
+    assert_eq!(refused, Err(Refusal::NotStarted));
+    let go = Control::Start(start());
+    pilot.control(&mut bench.memory(), &go).unwrap();
+    let far = pilot.control(&mut bench.memory(), &set(4_000.0));
+    assert_eq!(far, Err(Refusal::BadGoal));
+    pilot.control(&mut bench.memory(), &set(-7.5)).unwrap();
+    pilot
+        .observe(&mut bench.memory(), &observation(0), &mut ())
+        .unwrap();
+    assert_eq!(bench.memory().state.home().x_m, -7.5);
+    let home = pilot.control(&mut bench.memory(), &Control::Home);
+    assert_eq!(home, Ok(Status::Going(Errand::Home)));
+    pilot.control(&mut bench.memory(), &go).unwrap();
+    pilot
+        .observe(&mut bench.memory(), &observation(0), &mut ())
+        .unwrap();
+    assert_eq!(bench.memory().state.home().x_m, 0.0, "a new session");
 }
 
 #[test]

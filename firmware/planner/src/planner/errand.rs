@@ -10,8 +10,9 @@
 //! the progress checker, retreats, right of way. The field leads to a coarse cell of 20 cm. So the
 //! robot drives the last metre straight, where that is open, and brakes for the place itself.
 //!
-//! *Home* is the pose of the session's first scan, with its heading. It is a pose of the map: a
-//! correction moves it with its tile.
+//! *Home* is the pose of the session's first scan, with its heading, or the one that is set: a
+//! device that was reset is told where its session began. It is a pose of the map: a correction
+//! moves it with its tile.
 //!
 //! A robot with a [`Budget`](crate::Budget) gives itself the order to drive home. The way home is
 //! measured in the step after each plan, on the same skeleton.
@@ -105,6 +106,8 @@ pub enum TaskError {
 #[derive(Debug)]
 pub(super) struct Errands {
     home: Pose,
+    /// Home was set, so the first scan does not tell it.
+    is_home_set: bool,
     /// The robot is on the errand `last`. It is no option: the initial value is all zeros, and a
     /// static one costs no flash.
     is_going: bool,
@@ -144,6 +147,7 @@ impl Errands {
                 pitch_rad: 0.0,
                 yaw_rad: 0.0,
             },
+            is_home_set: false,
             is_going: false,
             last: Going {
                 errand: Errand::Home,
@@ -162,7 +166,10 @@ impl Errands {
 
     /// Notes where the session began: in the map, and by odometry.
     pub(super) const fn begin_at(&mut self, home: Pose, driven_to: Point) {
-        (self.home, self.driven_to) = (home, driven_to);
+        if !self.is_home_set {
+            self.home = home;
+        }
+        self.driven_to = driven_to;
     }
 
     /// Notes where the robot is, by odometry.
@@ -249,7 +256,20 @@ impl Errands {
 }
 
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
-    /// Returns home: the pose of the first scan, in the map.
+    /// Sets home, a pose of the map, in the place of the first scan's. An order to drive home that
+    /// was given before keeps its goal.
+    ///
+    /// # Errors
+    /// [`TaskError::BadGoal`] if it is no number, or too far away. Nothing has changed then.
+    pub fn set_home(&mut self, home: Pose) -> Result<(), TaskError> {
+        if !is_near(home.point()) || !home.yaw_rad.is_finite() {
+            return Err(TaskError::BadGoal);
+        }
+        (self.errands.home, self.errands.is_home_set) = (home, true);
+        Ok(())
+    }
+
+    /// Returns home: the pose of the first scan, in the map, or the one that was set.
     #[must_use]
     pub const fn home(&self) -> Pose {
         self.errands.home
@@ -284,8 +304,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             }
             Task::GoTo(to) => (Errand::Goal, to, None),
         };
-        let is_near = to.x_m.abs() <= MOST_M && to.y_m.abs() <= MOST_M;
-        if !is_near || !self.map.tiles().fence().allows(to.cell()) {
+        if !is_near(to) || !self.map.tiles().fence().allows(to.cell()) {
             return Err(TaskError::BadGoal);
         }
         self.plan_anew(Some(Going {
@@ -342,6 +361,11 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             false => self.strategy.heading_rad(),
         }
     }
+}
+
+/// Returns true if a place is a number and not too far away.
+fn is_near(place: Point) -> bool {
+    place.x_m.abs() <= MOST_M && place.y_m.abs() <= MOST_M
 }
 
 /// Measures the way home on the published skeleton. Without one the robot knows its track.

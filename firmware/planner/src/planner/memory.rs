@@ -4,7 +4,7 @@
 //! [`step`]. Both ways give the same bits.
 
 use crate::config::Config;
-use crate::geometry::Cell;
+use crate::geometry::{Cell, Pose};
 use crate::input::{Input, InputFaults};
 use crate::localise::Location;
 use crate::planner::{Output, State, Task, TaskError, Workspace, step};
@@ -115,6 +115,15 @@ impl<M: Memory> Planner<M> {
         sealed::Planning::order(&mut self.state, &self.config, task)
     }
 
+    /// Sets home, a pose of the map, in the place of the first scan's: for a map that was given to
+    /// the planner, or a dock elsewhere.
+    ///
+    /// # Errors
+    /// [`TaskError::BadGoal`] if it is no number, or farther than 3200 m from the map's origin.
+    pub fn set_home(&mut self, home: Pose) -> Result<(), TaskError> {
+        sealed::Planning::set_home(&mut self.state, home)
+    }
+
     /// Takes a packet that another robot of the team said.
     ///
     /// ```
@@ -217,7 +226,7 @@ mod sealed {
     use core::fmt::Debug;
 
     use super::{
-        Capacity, Cell, Config, Input, InputFaults, Location, Output, Packet, Peers,
+        Capacity, Cell, Config, Input, InputFaults, Location, Output, Packet, Peers, Pose,
         ResidualFrontier, StageTimer, State, Status, Task, TaskError, Workspace, step,
     };
 
@@ -243,6 +252,7 @@ mod sealed {
             timer: &mut impl StageTimer,
         ) -> Output;
         fn order(&mut self, config: &Config, task: Task) -> Result<Status, TaskError>;
+        fn set_home(&mut self, home: Pose) -> Result<(), TaskError>;
         fn hear(&mut self, config: &Config, packet: &Packet);
         fn say(&mut self, config: &Config) -> Option<Packet>;
         fn peers(&self) -> &Peers;
@@ -275,6 +285,10 @@ mod sealed {
 
         fn order(&mut self, config: &Config, task: Task) -> Result<Status, TaskError> {
             Self::order(self, config, task)
+        }
+
+        fn set_home(&mut self, home: Pose) -> Result<(), TaskError> {
+            Self::set_home(self, home)
         }
 
         fn hear(&mut self, config: &Config, packet: &Packet) {

@@ -18,6 +18,7 @@ use fieldline_protocol::packet::decode_packet;
 
 use super::super::account::Account;
 use super::super::freeze::FreezeDetector;
+use super::super::itinerary::Itinerary;
 use super::super::record::{self, Record};
 use super::super::series::Series;
 use super::super::snapshot::{self, Snapshot};
@@ -257,9 +258,12 @@ impl<'a> Member<'a> {
             },
             watch: &mut (),
             corrector,
+            keeper: &mut (),
         };
         let mut series: Series<Snapshot> = Series::new(0);
-        let command = step(&self.setup, &mut cast, &mut self.record, &mut series)?;
+        // A team takes no orders.
+        let orders = (&mut self.record, &mut Itinerary::default());
+        let command = step(&self.setup, &mut cast, orders, &mut series)?;
         let ending = ended(
             &self.setup,
             &mut (),

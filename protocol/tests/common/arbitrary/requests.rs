@@ -171,6 +171,7 @@ fn control() -> impl Strategy<Value = Control> {
         Just(Control::Reset),
         Just(Control::Home),
         Just(Control::Explore),
+        (long(), long(), long()).prop_map(|(x, y, yaw)| Control::SetHome { x, y, yaw }),
         (long(), long()).prop_map(|(x, y)| Control::GoTo { x, y }),
     ]
 }
