@@ -15,6 +15,7 @@ use fieldline_protocol::message::{self as wire, FENCE_CORNERS, FENCE_POLYGONS, F
 use fixed::types::I16F16;
 
 use crate::robot::{Footprint, Pose};
+use crate::spec::{self, SpecError};
 
 /// Spacing of the places in the hull that are looked at, metres.
 const SPACING_M: f64 = 0.05;
@@ -78,15 +79,11 @@ impl Polygon {
 }
 
 impl core::str::FromStr for Polygon {
-    type Err = String;
+    type Err = SpecError;
 
     /// Parses `x0,y0,x1,y1,…`; two corners are those of a rectangle.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Result<Vec<f64>, _> = text.split(',').map(|it| it.trim().parse()).collect();
-        let numbers = numbers
-            .ok()
-            .filter(|all| all.iter().all(|it: &f64| it.is_finite()));
-        match numbers.as_deref() {
+    fn from_str(text: &str) -> Result<Self, SpecError> {
+        match spec::numbers(text).as_deref() {
             Some(&[x0, y0, x1, y1]) => {
                 let (x, y) = (x0.min(x1), y0.min(y1));
                 Ok(Self::rectangle([x, y, (x1 - x0).abs(), (y1 - y0).abs()]))
@@ -94,9 +91,9 @@ impl core::str::FromStr for Polygon {
             Some(all) if all.len() >= 6 && all.len() % 2 == 0 => Ok(Self {
                 corners: all.as_chunks::<2>().0.to_vec(),
             }),
-            _ => {
-                Err("give corners x0,y0,x1,y1,... in metres, or two corners of a rectangle".into())
-            }
+            _ => Err(SpecError::new(
+                "give corners x0,y0,x1,y1,... in metres, or two corners of a rectangle",
+            )),
         }
     }
 }

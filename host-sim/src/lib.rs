@@ -20,5 +20,6 @@ pub mod session;
 pub mod sim;
 pub mod slam;
 pub mod solve;
+pub mod spec;
 pub mod trial;
 pub mod world;

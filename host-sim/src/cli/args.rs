@@ -8,12 +8,13 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::baseline::bvp_papers::Precision;
 use host_sim::fence::Polygon;
-use host_sim::link::fault::{Faults, FaultsError};
+use host_sim::link::fault::Faults;
 use host_sim::link::spec::LinkSpec;
 use host_sim::network::spec::TeamSpec;
 use host_sim::robot::{Disturbances, Limits, Miswiring};
 use host_sim::slam::SlamPlace;
 use host_sim::slam::particles::ParticleSpec;
+use host_sim::spec::SpecError;
 use host_sim::trial::mission::OdometryProfile;
 use host_sim::trial::space::Area;
 
@@ -369,9 +370,9 @@ pub(super) struct FaultArg {
 }
 
 impl core::str::FromStr for FaultArg {
-    type Err = FaultsError;
+    type Err = SpecError;
 
-    fn from_str(text: &str) -> Result<Self, FaultsError> {
+    fn from_str(text: &str) -> Result<Self, SpecError> {
         Ok(Self {
             text: text.into(),
             faults: text.parse()?,
