@@ -13,6 +13,7 @@ use crate::report::{self, Report, SCHEMA_VERSION};
 use crate::robot::OdometryModel;
 use crate::robot::presets::DEFAULT;
 use crate::sim::{SimConfig, Simulator};
+use crate::slam::particles::ParticleReport;
 use crate::world::{Start, World};
 
 /// Returns the report.
@@ -24,25 +25,17 @@ pub(super) fn report(
 ) -> Report {
     let world = simulator.world();
     let ground = mission.uneven_ground.map_or("flat", |_| "uneven");
-    let closes_loops = mission.strategy() == Strategy::Ouroboros;
     let order = on_device(&mission.strategy).map(|_| mission.order());
-    // The host's copy of the map has no door, which lets odometry begin anew.
-    let is_mirrored = !record.tiles.is_empty() && mission.disturbances.restart_ms.is_none();
     Report {
         schema_version: SCHEMA_VERSION,
         world: world.name().into(),
         strategy: mission.strategy.clone(),
         ground: ground.into(),
-        preference: mission
-            .preference()
-            .map(|it| wording::preference(it).into()),
+        preference: preference(mission),
         levels: mission.levels(),
         tdbvp_impatience: impatience(mission),
         order: order.map(|it| wording::order(it).into()),
-        worth: match order {
-            Some(Order::Gain { worth }) => Some(worth.to_num()),
-            _ => None,
-        },
+        worth: order.and_then(worth),
         space_field: space_field(mission, world),
         fence: fence(mission, simulator),
         trips: record.trips.clone(),
@@ -67,7 +60,7 @@ pub(super) fn report(
         steps: record.steps.len() as u64,
         coverage: coverage(account),
         loops: loops(simulator, record),
-        loop_closing: closes_loops.then(|| record.loop_closing()),
+        loop_closing: closes_loops(mission).then(|| record.loop_closing()),
         patrol: patrol(mission, record),
         safety: safety(simulator),
         true_ground: true_ground(simulator, record),
@@ -78,16 +71,41 @@ pub(super) fn report(
         link_stats: record.link_stats,
         input_faults: record.input_faults(),
         digest: record.digest.to_string(),
-        debug: report::Debug {
-            map_matches_mirror: is_mirrored.then(|| account.mirror.equals(&record.tiles)),
-        },
+        debug: debug(mission, account, record),
         network: None,
         slam: None,
-        particles: account
-            .particles
-            .as_ref()
-            .map(|it| it.report(account.coverage.fraction())),
+        particles: particles(account),
     }
+}
+
+fn preference(mission: &Mission) -> Option<String> {
+    let preference = mission.preference();
+    preference.map(|it| wording::preference(it).into())
+}
+
+/// Returns what a trip must be worth, m²/m.
+fn worth(order: Order) -> Option<f64> {
+    match order {
+        Order::Gain { worth } => Some(worth.to_num()),
+        _ => None,
+    }
+}
+
+fn closes_loops(mission: &Mission) -> bool {
+    mission.strategy() == Strategy::Ouroboros
+}
+
+fn debug(mission: &Mission, account: &Account, record: &Record) -> report::Debug {
+    // The host's copy of the map has no door, which lets odometry begin anew.
+    let is_mirrored = !record.tiles.is_empty() && mission.disturbances.restart_ms.is_none();
+    report::Debug {
+        map_matches_mirror: is_mirrored.then(|| account.mirror.equals(&record.tiles)),
+    }
+}
+
+fn particles(account: &Account) -> Option<ParticleReport> {
+    let particles = account.particles.as_ref();
+    particles.map(|it| it.report(account.coverage.fraction()))
 }
 
 /// Returns the wiring mistakes, as on the command line; `None` without any.
