@@ -101,7 +101,7 @@ fn png_of_every_kind_reads_the_same() {
     assert_eq!(drawn(&world), ["??", ".?"]);
 }
 
-/// `faults.txt` has a world file in a line, with `\n` between its own lines, and below it the error.
+/// `faults.txt` has a world file in a line, with `\n` between its lines, and below it the error.
 #[test]
 fn each_fault_has_its_error_line() {
     let folder = Folder::new("mistakes");

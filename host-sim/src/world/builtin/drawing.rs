@@ -5,7 +5,7 @@
 //! | `floor`, `block` | rectangles [x0, y0, x1, y1] with floor, or with wall |
 //! | `disc` | discs [x, y, radius] with wall |
 //! | `loops` | corridors 2 m wide around blocks [x, y, width, height], and then the blocks |
-//! | `rough-floor`, `rough-block` | discs, and lines [x0, y0, x1, y1, half width], with a rough edge |
+//! | `rough-floor`, `rough-block` | discs, lines [x0, y0, x1, y1, half width] with a rough edge |
 //! | `scatter` | wall: boxes and posts at random places with gaps between |
 //! | `border` | a wall of this thickness all around |
 //! | `funnel` | floor: an entrance at [x, y] that widens to the north |
