@@ -15,6 +15,7 @@ use fieldline_protocol::message::{self as wire, FENCE_CORNERS, FENCE_POLYGONS, F
 use fixed::types::I16F16;
 
 use crate::robot::{Footprint, Pose};
+use crate::spec::{self, SpecError};
 
 /// Spacing of the places in the hull that are looked at, metres.
 const SPACING_M: f64 = 0.05;
@@ -48,7 +49,7 @@ impl Polygon {
     ///
     /// # Errors
     /// A sentence with what to give.
-    pub fn of(corners: &[[f64; 2]]) -> Result<Self, String> {
+    pub fn of(corners: &[[f64; 2]]) -> Result<Self, SpecError> {
         let is_finite = corners.as_flattened().iter().all(|it| it.is_finite());
         match corners {
             &[[x0, y0], [x1, y1]] if is_finite => {
@@ -58,9 +59,9 @@ impl Polygon {
             all if is_finite && all.len() >= 3 => Ok(Self {
                 corners: all.to_vec(),
             }),
-            _ => {
-                Err("give corners x0,y0,x1,y1,... in metres, or two corners of a rectangle".into())
-            }
+            _ => Err(SpecError::new(
+                "give corners x0,y0,x1,y1,... in metres, or two corners of a rectangle",
+            )),
         }
     }
 
@@ -98,13 +99,12 @@ impl Polygon {
 }
 
 impl core::str::FromStr for Polygon {
-    type Err = String;
+    type Err = SpecError;
 
     /// Parses `x0,y0,x1,y1,…`; two corners are those of a rectangle.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Result<Vec<f64>, _> = text.split(',').map(|it| it.trim().parse()).collect();
-        match numbers.as_deref().map(<[f64]>::as_chunks::<2>) {
-            Ok((corners, [])) => Self::of(corners),
+    fn from_str(text: &str) -> Result<Self, SpecError> {
+        match spec::numbers(text).as_deref().map(<[f64]>::as_chunks::<2>) {
+            Some((corners, [])) => Self::of(corners),
             _ => Self::of(&[]),
         }
     }

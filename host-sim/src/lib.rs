@@ -21,6 +21,7 @@ pub mod session;
 pub mod sim;
 pub mod slam;
 pub mod solve;
+pub mod spec;
 pub mod state;
 pub mod trial;
 pub mod world;

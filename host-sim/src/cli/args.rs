@@ -8,12 +8,14 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use fieldline_protocol::message::{Preference, UnevenGround};
 use host_sim::baseline::bvp_papers::Precision;
 use host_sim::fence::Polygon;
-use host_sim::link::fault::{Faults, FaultsError};
+use host_sim::link::fault::Faults;
 use host_sim::link::spec::LinkSpec;
 use host_sim::network::spec::TeamSpec;
 use host_sim::robot::{Disturbances, Limits, Miswiring};
 use host_sim::slam::SlamPlace;
 use host_sim::slam::particles::ParticleSpec;
+use host_sim::solve::Solver;
+use host_sim::spec::SpecError;
 use host_sim::trial::itinerary::Pause;
 use host_sim::trial::mission::OdometryProfile;
 use host_sim::trial::space::Area;
@@ -320,58 +322,14 @@ pub(super) struct ExploreArgs {
 }
 
 impl Default for ExploreArgs {
+    /// What an empty command line gives.
     fn default() -> Self {
-        Self {
-            worlds: vec!["office".into()],
-            strategy: strategies::FRONTIER.into(),
-            ground: None,
-            preference: None,
-            levels: None,
-            ground_parameters: None,
-            link: None,
-            seed: 0,
-            start: 0,
-            odometry: None,
-            localise: None,
-            imu_noise: None,
-            laser_noise: None,
-            working_limits: None,
-            failing_limits: None,
-            time_limit: 3_600_000,
-            patrol_for: 0,
-            until: None,
-            area: None,
-            bounds: Vec::new(),
-            no_go: Vec::new(),
-            goto: Vec::new(),
-            then: None,
-            range_m: None,
-            time_s: None,
-            home_at: None,
-            pause: Vec::new(),
-            mission: None,
-            sbpf_impatience: None,
-            tdbvp_impatience: None,
-            bvp_sweeps: None,
-            bvp_precision: None,
-            out: None,
-            force: false,
-            realtime: false,
-            wait: Duration::from_secs(15),
-            team: None,
-            fault: None,
-            disturb: None,
-            miswire: None,
-            people: 0,
-            check_field: false,
-            resume: None,
-            slam: SlamPlace::Off,
-            particles: None,
-            snapshots: 0,
-            robot: RobotArgs::default(),
-            log: None,
-            json: false,
+        #[derive(Parser)]
+        struct Bare {
+            #[command(flatten)]
+            args: ExploreArgs,
         }
+        Bare::parse_from(["host-sim"]).args
     }
 }
 
@@ -404,9 +362,9 @@ pub(super) struct FaultArg {
 }
 
 impl core::str::FromStr for FaultArg {
-    type Err = FaultsError;
+    type Err = SpecError;
 
-    fn from_str(text: &str) -> Result<Self, FaultsError> {
+    fn from_str(text: &str) -> Result<Self, SpecError> {
         Ok(Self {
             text: text.into(),
             faults: text.parse()?,
@@ -500,22 +458,14 @@ pub(super) struct SolveArgs {
     #[arg(long, value_name = "EPS.csv")]
     pub(super) preference: Option<PathBuf>,
     /// Solver
-    #[arg(long, value_enum, default_value_t = SolverArg::Multigrid)]
-    pub(super) solver: SolverArg,
+    #[arg(long, value_enum, default_value_t = Solver::Multigrid)]
+    pub(super) solver: Solver,
     /// File for q = 1 - p of every cell
     #[arg(long, value_name = "FIELD.csv")]
     pub(super) out: Option<PathBuf>,
     /// Print the answer as one JSON object
     #[arg(long)]
     pub(super) json: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum SolverArg {
-    /// Multigrid; Gauss-Seidel under strong preferences
-    Multigrid,
-    /// Gauss-Seidel from q = 0
-    GaussSeidel,
 }
 
 #[cfg(test)]
@@ -534,6 +484,12 @@ mod tests {
         let Some(super::Command::Explore(args)) = cli.command else {
             panic!("explore");
         };
-        assert_eq!(format!("{args:?}"), format!("{:?}", ExploreArgs::default()));
+        let usual = ExploreArgs::default();
+        assert_eq!(format!("{args:?}"), format!("{usual:?}"));
+        assert_eq!(
+            (usual.worlds, usual.strategy),
+            (vec!["office".into()], "frontier".into())
+        );
+        assert_eq!((usual.time_limit, usual.wait.as_secs()), (3_600_000, 15));
     }
 }

@@ -253,6 +253,33 @@ fn default_odometry(args: &ExploreArgs, is_flat: bool) -> OdometryArg {
     }
 }
 
+/// Refuses options that need a device, or level ground, where there is none.
+fn check_device(args: &ExploreArgs, is_uneven: bool) -> Result<()> {
+    if args.slam != SlamPlace::Off && on_device(&args.strategy).is_none() {
+        bail!(
+            "--slam corrects the map of a device; take a strategy on the device, or say --slam off"
+        );
+    }
+    if args.localise == Some(SwitchArg::On) && on_device(&args.strategy).is_none() {
+        bail!(
+            "--localise corrects the pose on the device, and --strategy {} runs on the host; \
+             take a strategy on the device, or leave --localise out",
+            args.strategy
+        );
+    }
+    if args.particles.is_some() && is_uneven {
+        bail!("--particles takes level scans; leave it out, or say --ground flat");
+    }
+    if args.miswire.is_some() && on_device(&args.strategy).is_none() {
+        bail!(
+            "--miswire is noticed by a device, and --strategy {} runs on the host; take a strategy \
+             on the device, or leave --miswire out",
+            args.strategy
+        );
+    }
+    Ok(())
+}
+
 /// Returns the settings of a run.
 pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     let working = args.working_limits.unwrap_or(Limits::WORKING);
@@ -270,32 +297,11 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
     let odometry = args
         .odometry
         .unwrap_or_else(|| default_odometry(args, uneven_ground.is_none()));
-    if args.slam != SlamPlace::Off && on_device(&args.strategy).is_none() {
-        bail!(
-            "--slam corrects the map of a device; take a strategy on the device, or say --slam off"
-        );
-    }
+    check_device(args, uneven_ground.is_some())?;
     let is_localised = match args.localise {
         Some(switch) => switch == SwitchArg::On,
         None => odometry != OdometryArg::Truth,
     };
-    if args.localise == Some(SwitchArg::On) && on_device(&args.strategy).is_none() {
-        bail!(
-            "--localise corrects the pose on the device, and --strategy {} runs on the host; \
-             take a strategy on the device, or leave --localise out",
-            args.strategy
-        );
-    }
-    if args.particles.is_some() && uneven_ground.is_some() {
-        bail!("--particles takes level scans; leave it out, or say --ground flat");
-    }
-    if args.miswire.is_some() && on_device(&args.strategy).is_none() {
-        bail!(
-            "--miswire is noticed by a device, and --strategy {} runs on the host; take a strategy \
-             on the device, or leave --miswire out",
-            args.strategy
-        );
-    }
     let disturbances = args.disturb.unwrap_or_default();
     if disturbances.needs_wheels() && odometry == OdometryArg::Truth {
         bail!(

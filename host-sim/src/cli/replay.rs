@@ -13,6 +13,7 @@ use host_sim::replay::relations::{self, Pose, Relation, RelationError};
 use host_sim::replay::report::{
     self, Files, ParticlePath, ReadLaser, RelationErrors, ReplayReport,
 };
+use host_sim::replay::run::Replayed;
 use host_sim::replay::sweep::{self, By};
 use host_sim::replay::wire::LogLaser;
 use host_sim::replay::{carmen, clock, run};
@@ -108,20 +109,10 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     let mut log = carmen::log(&args.log.display().to_string(), &text).map_err(Error::msg)?;
     note_late(args, &log);
     let (laser, known) = laser(args, &mut log)?;
-    let scans = log.scans;
-    let times = || scans.iter().map(|scan| scan.time);
-    let own: Vec<(f64, Pose)> = times()
-        .zip(scans.iter().map(|scan| scan.odometry))
-        .collect();
-    let truth = args.relations.as_ref();
-    let truth = truth.map(|file| with_times(args, file, &own)).transpose()?;
+    let input = Input::new(args, log, laser)?;
     let link = args.tune.link(args.link.as_ref()).cloned();
     let link = link.unwrap_or_default();
     let tuning = args.tune.tuning(&link)?;
-    let options = Options {
-        tuning,
-        ..Options::default()
-    };
     let folder = args.out.clone().unwrap_or_else(|| usual_folder(args));
     let interrupt = Interrupt::listen()?;
     let robot = args.robot.as_ref().map_or("", |robot| &robot.name);
@@ -131,70 +122,47 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     }
     folder::make(&folder)?;
     note_build(&link);
-    let context = || format!("--link {link}");
-    let mut planner = link.open(&options).with_context(context)?;
-    let odometry = run::odometry(&scans, args.degrade, args.seed);
-    let mut step = |_| !interrupt.pressed();
-    let noise = args
-        .slam_noise
-        .or(args.degrade)
-        .unwrap_or(UNKNOWN_WHEELS)
-        .max(1.0);
-    let motion = Motion::WHEELS.times(noise as f32);
-    let slam = (args.slam == SlamPlace::Host).then_some(motion);
-    let replayed = run::run(&laser, &scans, &odometry, planner.as_mut(), slam, &mut step);
-    let replayed = replayed.with_context(context)?;
-    if replayed.poses.len() < scans.len() {
-        bail!("interrupted after {} scans", replayed.poses.len());
-    }
-    let estimated: Vec<(f64, Pose)> = times().zip(replayed.poses.iter().copied()).collect();
-    let errors = truth
-        .as_ref()
-        .map(|truth| relations::errors(truth, &estimated));
-    let particles = args.particles.as_ref().map(|spec| {
-        let wheels = OdometryNoise::default().times(spec.noise.unwrap_or(noise));
-        let observations = run::observations(&laser, &scans, &odometry);
-        let told = (laser.announced(), wheels);
-        let poses = particles::path(spec, told, &observations, args.seed);
-        let path: Vec<(f64, Pose)> = times().zip(poses.iter().copied()).collect();
-        let errors = truth.as_ref().map(|truth| relations::errors(truth, &path));
-        ParticlePath {
-            filter: spec.to_string(),
-            relations: errors.as_deref().and_then(spread),
-            occupied_cells_5cm: report::occupied_cells(&laser, &scans, &poses),
-        }
-    });
+    let replayed = input.replay(&link, tuning, &interrupt)?;
+    let errors = input.errors(&replayed.poses);
     let report = ReplayReport {
         log: args.log.display().to_string(),
         link: link.to_string(),
         seed: args.seed,
         degrade: args.degrade,
-        steps: scans.len(),
+        steps: input.log.scans.len(),
         relations: errors.as_deref().and_then(spread),
-        occupied_cells_5cm: report::occupied_cells(&laser, &scans, &replayed.poses),
+        occupied_cells_5cm: report::occupied_cells(&input.laser, &input.log.scans, &replayed.poses),
         quality: QualityShares::of(&replayed.qualities),
         input_faults: replayed.input_faults,
-        late_scans: log.late,
-        skipped: log.left_out,
-        resampled: log.resampled,
-        laser: ReadLaser::of(&laser, known),
-        map_full_at: run::is_default_pool(replayed.tile_pool)
-            .then(|| {
-                let tuning = tuning.unwrap_or(&Tuning::DEFAULT);
-                run::map_full_at(&laser, &scans, &odometry, tuning)
-            })
-            .flatten(),
+        late_scans: input.log.late,
+        skipped: input.log.left_out.clone(),
+        resampled: input.log.resampled,
+        laser: ReadLaser::of(&input.laser, known),
+        map_full_at: input.map_full_at(&replayed, tuning),
         slam: replayed.slam.clone(),
         made_by: Some(made_by),
-        particles,
+        particles: args.particles.as_ref().map(|spec| input.particles(spec)),
     };
+    write(&input, &report, &replayed, errors.as_deref(), &folder)?;
+    Ok(replayed.status == Status::Exploring)
+}
+
+/// Writes the files of a replay, and says how it went.
+fn write(
+    input: &Input<'_>,
+    report: &ReplayReport,
+    replayed: &Replayed,
+    relations: Option<&[(Relation, RelationError)]>,
+    folder: &Path,
+) -> Result<()> {
+    let args = input.args;
     let files = Files {
-        report: &report,
-        scans: &scans,
-        replayed: &replayed,
-        relations: errors.as_deref(),
+        report,
+        scans: &input.log.scans,
+        replayed,
+        relations,
     };
-    files.write(&folder)?;
+    files.write(folder)?;
     say(&if args.json {
         report.to_json_line()
     } else {
@@ -208,9 +176,91 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
         ));
     }
     note(&format!("{log}: files in {}", folder.display()));
-    Ok(replayed.status == Status::Exploring)
+    Ok(())
 }
 
+/// A log made ready to be replayed.
+struct Input<'a> {
+    args: &'a ReplayArgs,
+    log: carmen::Log,
+    laser: LogLaser,
+    odometry: Vec<Pose>,
+    truth: Option<Vec<Relation>>,
+    /// Variances of the odometry's random walk, as a multiple of the usual ones.
+    noise: f64,
+}
+
+impl<'a> Input<'a> {
+    fn new(args: &'a ReplayArgs, log: carmen::Log, laser: LogLaser) -> Result<Self> {
+        let own = log.scans.iter().map(|scan| (scan.time, scan.odometry));
+        let own: Vec<(f64, Pose)> = own.collect();
+        let truth = args.relations.as_ref();
+        let truth = truth.map(|file| with_times(args, file, &own)).transpose()?;
+        let noise = args.slam_noise.or(args.degrade).unwrap_or(UNKNOWN_WHEELS);
+        Ok(Self {
+            odometry: run::odometry(&log.scans, args.degrade, args.seed),
+            args,
+            log,
+            laser,
+            truth,
+            noise: noise.max(1.0),
+        })
+    }
+
+    fn replay(
+        &self,
+        link: &LinkSpec,
+        tuning: Option<&'static Tuning>,
+        interrupt: &Interrupt,
+    ) -> Result<Replayed> {
+        let options = Options {
+            tuning,
+            ..Options::default()
+        };
+        let context = || format!("--link {link}");
+        let mut planner = link.open(&options).with_context(context)?;
+        let mut step = |_| !interrupt.pressed();
+        let motion = Motion::WHEELS.times(self.noise as f32);
+        let slam = (self.args.slam == SlamPlace::Host).then_some(motion);
+        let (laser, scans) = (&self.laser, &self.log.scans);
+        let link = planner.as_mut();
+        let replayed = run::run(laser, scans, &self.odometry, link, slam, &mut step);
+        let replayed = replayed.with_context(context)?;
+        if replayed.poses.len() < scans.len() {
+            bail!("interrupted after {} scans", replayed.poses.len());
+        }
+        Ok(replayed)
+    }
+
+    /// Returns the errors of a path against the relations, if there are any.
+    fn errors(&self, poses: &[Pose]) -> Option<Vec<(Relation, RelationError)>> {
+        let times = self.log.scans.iter().map(|scan| scan.time);
+        let path: Vec<(f64, Pose)> = times.zip(poses.iter().copied()).collect();
+        let truth = self.truth.as_ref()?;
+        Some(relations::errors(truth, &path))
+    }
+
+    fn particles(&self, spec: &ParticleSpec) -> ParticlePath {
+        let (laser, scans) = (&self.laser, &self.log.scans);
+        let wheels = OdometryNoise::default().times(spec.noise.unwrap_or(self.noise));
+        let observations = run::observations(laser, scans, &self.odometry);
+        let told = (laser.announced(), wheels);
+        let poses = particles::path(spec, told, &observations, self.args.seed);
+        ParticlePath {
+            filter: spec.to_string(),
+            relations: self.errors(&poses).as_deref().and_then(spread),
+            occupied_cells_5cm: report::occupied_cells(laser, scans, &poses),
+        }
+    }
+
+    fn map_full_at(&self, replayed: &Replayed, tuning: Option<&'static Tuning>) -> Option<usize> {
+        if !run::is_default_pool(replayed.tile_pool) {
+            return None;
+        }
+        let tuning = tuning.unwrap_or(&Tuning::DEFAULT);
+        run::map_full_at(&self.laser, &self.log.scans, &self.odometry, tuning)
+    }
+}
 /// Returns the laser that made the scans, and how its sweep is known.
 fn laser(args: &ReplayArgs, log: &mut carmen::Log) -> Result<(LogLaser, By)> {
     let file = args.log.display();

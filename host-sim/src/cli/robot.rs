@@ -9,6 +9,7 @@ use fixed::types::{I4F12, I16F16};
 use host_sim::link::spec::LinkSpec;
 use host_sim::near;
 use host_sim::robot::{Footprint, RobotSpec, Sweep};
+use host_sim::spec::{Form, SpecError};
 use host_sim::trial::mission::{Mission, on_device};
 
 #[derive(Clone, Debug, Default, Args)]
@@ -214,7 +215,7 @@ pub(super) fn robot(text: &str) -> Result<RobotSpec, String> {
     RobotSpec::open(text).map_err(|error| error.to_string())
 }
 
-pub(super) fn sweep(text: &str) -> Result<Sweep, String> {
+pub(super) fn sweep(text: &str) -> Result<Sweep, SpecError> {
     text.parse()
 }
 
@@ -249,40 +250,36 @@ fn worth(text: &str) -> Result<I4F12, String> {
     Err("the worth of a trip must be 0 to 7 m²/m".into())
 }
 
-fn loops(text: &str) -> Result<Loops, String> {
+/// The limits of loops and whether closed ones are driven again.
+const LOOPS: Form = Form {
+    what: "limit",
+    usage: "least, most, per_frontier, detour and slack as in least=20, or revisits=off, separated \
+            by commas",
+    repeated: "",
+};
+
+fn loops(text: &str) -> Result<Loops, SpecError> {
     let mut limits = LoopLimits::default();
     let mut revisits = true;
-    for part in text.split(',') {
-        let (name, value) = part
-            .split_once('=')
-            .ok_or_else(|| format!("'{part}' has no value; say least=20"))?;
-        let field = match name {
-            "least" => &mut limits.least,
-            "most" => &mut limits.most,
-            "per_frontier" => &mut limits.most_per_frontier,
-            "detour" => &mut limits.detour,
-            "slack" => &mut limits.slack,
-            "revisits" => {
-                revisits = switch(value)?;
-                continue;
+    LOOPS.read(text, |word| {
+        let field = match word.key.as_str() {
+            "least=" => &mut limits.least,
+            "most=" => &mut limits.most,
+            "per_frontier=" => &mut limits.most_per_frontier,
+            "detour=" => &mut limits.detour,
+            "slack=" => &mut limits.slack,
+            "revisits=" => {
+                revisits = match word.value {
+                    "on" => true,
+                    "off" => false,
+                    _ => return Err(word.bad("on or off")),
+                };
+                return Ok(());
             }
-            _ => {
-                return Err(format!(
-                    "unknown limit '{name}'; use least, most, per_frontier, detour, slack, revisits"
-                ));
-            }
+            _ => return Err(word.unknown()),
         };
-        *field = I16F16::checked_from_num(number(value)?)
-            .filter(|limit| *limit >= I16F16::ZERO)
-            .ok_or_else(|| format!("{name} must be 0 to 32767"))?;
-    }
+        *field = I16F16::saturating_from_num(word.number(0.0..=32_767.0, "from 0 to 32767")?);
+        Ok(())
+    })?;
     Ok(Loops { limits, revisits })
-}
-
-fn switch(text: &str) -> Result<bool, String> {
-    match text {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err(format!("'{text}' is neither on nor off")),
-    }
 }

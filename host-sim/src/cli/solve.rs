@@ -5,10 +5,10 @@ use std::path::Path;
 
 use anyhow::{Context as _, Result, anyhow};
 
+use host_sim::solve;
 use host_sim::solve::sheet::{self, Sheet};
-use host_sim::solve::{self, Solver};
 
-use super::args::{SolveArgs, SolverArg};
+use super::args::SolveArgs;
 use super::{note, say};
 
 /// Solves one window.
@@ -22,11 +22,7 @@ pub(super) fn run(args: &SolveArgs) -> Result<()> {
             Some(rows.with_context(|| path.display().to_string())?)
         }
     };
-    let solver = match args.solver {
-        SolverArg::Multigrid => Solver::Multigrid,
-        SolverArg::GaussSeidel => Solver::GaussSeidel,
-    };
-    let solved = solve::run(&sheet, epsilon.as_deref(), solver);
+    let solved = solve::run(&sheet, epsilon.as_deref(), args.solver);
     if let Some(path) = &args.out {
         fs::write(path, solved.csv()).map_err(|error| {
             anyhow!(

@@ -189,7 +189,7 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
     let mut onlooker = Onlooker::new(world.name(), args.realtime.then_some(1.0), interrupt);
     let result = explore(&team, &world, &mut planners, &mut onlooker);
     onlooker.finish();
-    let (report, record) = match result {
+    let (mut report, record) = match result {
         Err(TeamError::Robot { robot, error }) => {
             let link = links.get(robot).map(ToString::to_string);
             bail!(
@@ -199,7 +199,6 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
         }
         result => result?,
     };
-    let mut report = report;
     report.whole.made_by = Some(made_by);
     write(&folder, &world, &report, &record)?;
     print(args, &report, &record, &folder)?;

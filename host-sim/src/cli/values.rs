@@ -3,11 +3,12 @@
 use core::time::Duration;
 
 use fieldline_protocol::message::UnevenGround;
-use host_sim::robot::{Limits, LimitsError};
+use host_sim::robot::Limits;
 use host_sim::slam::SlamPlace;
+use host_sim::spec::{self, SpecError};
 use host_sim::trial::itinerary::Pause;
 use host_sim::trial::space::Area;
-use host_sim::trial::uneven::{self, ParameterError};
+use host_sim::trial::uneven;
 
 use super::args::Impatience;
 
@@ -29,12 +30,9 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
 }
 
 /// Parses where loops are closed.
-pub(super) fn slam_place(text: &str) -> Result<SlamPlace, String> {
-    match text {
-        "off" => Ok(SlamPlace::Off),
-        "host" => Ok(SlamPlace::Host),
-        _ => Err("give off or host".into()),
-    }
+pub(super) fn slam_place(text: &str) -> Result<SlamPlace, SpecError> {
+    let places = [("off", SlamPlace::Off), ("host", SlamPlace::Host)];
+    spec::choice("place", text, places)
 }
 
 /// Parses the index of a start.
@@ -59,16 +57,11 @@ pub(super) fn patrol_for(text: &str) -> Result<u16, String> {
 
 /// Parses an area.
 pub(super) fn area(text: &str) -> Result<Area, String> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .filter_map(|part| part.trim().parse().ok())
-        .collect();
-    match numbers[..] {
-        [x, y, width, height]
+    match spec::numbers(text).as_deref() {
+        Some(&[x, y, width, height])
             if x.abs().max(y.abs()) <= 3_200.0
-                && [width, height]
-                    .iter()
-                    .all(|side| (0.1..=128.0).contains(side)) =>
+                && (0.1..=128.0).contains(&width)
+                && (0.1..=128.0).contains(&height) =>
         {
             Ok([x, y, width, height])
         }
@@ -102,9 +95,8 @@ pub(super) fn pause(text: &str) -> Result<Pause, String> {
 
 /// Parses a place.
 pub(super) fn place(text: &str) -> Result<[f64; 2], String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|it| it.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok(&[x, y]) if x.abs().max(y.abs()) <= 3_200.0 => Ok([x, y]),
+    match spec::numbers(text).as_deref() {
+        Some(&[x, y]) if x.abs().max(y.abs()) <= 3_200.0 => Ok([x, y]),
         _ => Err("give x,y in metres, within 3200 m; several with ; between".into()),
     }
 }
@@ -147,17 +139,17 @@ pub(super) fn time_limit(text: &str) -> Result<u32, String> {
 }
 
 /// Parses changes of the usual working limits.
-pub(super) fn working(text: &str) -> Result<Limits, LimitsError> {
+pub(super) fn working(text: &str) -> Result<Limits, SpecError> {
     Limits::WORKING.changed(text)
 }
 
 /// Parses changes of the usual failing limits.
-pub(super) fn failing(text: &str) -> Result<Limits, LimitsError> {
+pub(super) fn failing(text: &str) -> Result<Limits, SpecError> {
     Limits::FAILING.changed(text)
 }
 
 /// Parses changes of the usual parameters.
-pub(super) fn ground_parameters(text: &str) -> Result<UnevenGround, ParameterError> {
+pub(super) fn ground_parameters(text: &str) -> Result<UnevenGround, SpecError> {
     uneven::changed(uneven::TABLE_I, text)
 }
 

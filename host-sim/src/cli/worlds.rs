@@ -27,7 +27,7 @@ pub(super) fn run(json: bool) -> Result<()> {
             let starts = world.starts().iter();
             Some(Listing {
                 name: builtin.name,
-                description: builtin.description,
+                description: &builtin.description,
                 size_m: world.size_m().map(|m| (m * 100.0).round() / 100.0),
                 starts: starts.map(|s| [s.x_m, s.y_m, s.yaw_rad]).collect(),
             })

@@ -12,7 +12,7 @@
 //! The last three are an [`endpoint::Endpoint`] over a [`line::Line`]. [`fault`] injects faults
 //! into a line, and [`spec`] opens a link by name.
 
-use core::fmt;
+use thiserror::Error;
 
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
@@ -39,19 +39,25 @@ pub mod spec;
 pub mod stream;
 
 /// Errors of a link; every one ends the run.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum LinkError {
     /// No answer came in time after all retries; by then the robot has stopped.
+    #[error("the device does not answer; check its power, the wiring and the baud rate")]
     Silent,
     /// The device rebooted during the run.
+    #[error("the device rebooted during the run; {LOSS}; check its power supply and start again")]
     Reset,
     /// The device's program crashed, at this place.
+    #[error("the device's program crashed: {0}; {LOSS}")]
     Crashed(String),
     /// The peer has another protocol or schema, or is not a Fieldline device.
+    #[error("{0}")]
     Incompatible(String),
     /// The device refused a request.
+    #[error("the device refused a request: {0}")]
     Refused(String),
     /// The port or process under the link failed.
+    #[error("{0}")]
     Io(String),
 }
 
@@ -69,26 +75,6 @@ impl LinkError {
         }
     }
 }
-
-impl fmt::Display for LinkError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Silent => f.write_str(
-                "the device does not answer; check its power, the wiring and the baud rate",
-            ),
-            Self::Reset => write!(
-                f,
-                "the device rebooted during the run; {LOSS}; check its power supply and start again"
-            ),
-            Self::Crashed(place) => write!(f, "the device's program crashed: {place}; {LOSS}"),
-            Self::Incompatible(why) => f.write_str(why),
-            Self::Refused(why) => write!(f, "the device refused a request: {why}"),
-            Self::Io(what) => f.write_str(what),
-        }
-    }
-}
-
-impl core::error::Error for LinkError {}
 
 /// Counters of a link since its hello, as in a report.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

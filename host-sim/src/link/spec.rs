@@ -17,6 +17,8 @@ use super::loopback::LocalDevice;
 use super::qemu;
 use super::stream::fresh_nonce;
 use super::{Link, LinkError, serial};
+use crate::near;
+use crate::spec::SpecError;
 
 /// A link by name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -37,60 +39,36 @@ pub enum LinkSpec {
     },
 }
 
-/// Why a link's name is invalid.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum LinkSpecError {
-    /// There is no such link.
-    Unknown(String),
-    /// `serial:` without a port.
-    NoDevice,
-    /// The text after `@` is not a baud rate.
-    BadBaud(String),
-}
-
-impl fmt::Display for LinkSpecError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown(name) => write!(
-                f,
-                "unknown link '{name}'; use direct, loopback, qemu or serial:DEVICE[@BAUD]"
-            ),
-            Self::NoDevice => f.write_str(
-                "the serial port is missing; use serial:DEVICE[@BAUD], as in serial:/dev/ttyUSB0",
-            ),
-            Self::BadBaud(baud) => {
-                write!(
-                    f,
-                    "bad baud rate '{baud}'; leave it out to use the image's {BAUD}"
-                )
-            }
-        }
-    }
-}
-
-impl core::error::Error for LinkSpecError {}
-
 impl FromStr for LinkSpec {
-    type Err = LinkSpecError;
+    type Err = SpecError;
 
-    fn from_str(text: &str) -> Result<Self, LinkSpecError> {
-        match text {
+    fn from_str(text: &str) -> Result<Self, SpecError> {
+        let port = match text {
             "direct" => return Ok(Self::Direct),
             "loopback" => return Ok(Self::Loopback),
             "qemu" => return Ok(Self::Qemu),
-            _ => {}
-        }
-        let port = text
-            .strip_prefix("serial:")
-            .ok_or_else(|| LinkSpecError::Unknown(text.into()))?;
+            _ => text.strip_prefix("serial:"),
+        };
+        let port = port.ok_or_else(|| {
+            SpecError::new(format!(
+                "unknown link '{text}'; use direct, loopback, qemu or serial:DEVICE[@BAUD]{}",
+                near::hint(text, ["direct", "loopback", "qemu", "serial"])
+            ))
+        })?;
         let (device, baud) = port.rsplit_once('@').unwrap_or((port, ""));
         if device.is_empty() {
-            return Err(LinkSpecError::NoDevice);
+            let reason = "the serial port is missing; use serial:DEVICE[@BAUD], as in \
+                          serial:/dev/ttyUSB0";
+            return Err(SpecError::new(reason));
         }
         let baud = match (port.contains('@'), baud.parse()) {
             (false, _) => BAUD,
             (true, Ok(baud)) if baud > 0 => baud,
-            _ => return Err(LinkSpecError::BadBaud(baud.into())),
+            _ => {
+                return Err(SpecError::new(format!(
+                    "bad baud rate '{baud}'; leave it out to use the image's {BAUD}"
+                )));
+            }
         };
         Ok(Self::Serial {
             device: device.into(),
@@ -184,11 +162,12 @@ fn end<L: Line + 'static>(
 mod tests {
     use fieldline_protocol::BAUD;
 
-    use super::{LinkSpec, LinkSpecError, Options};
+    use super::{LinkSpec, Options};
     use crate::link::LinkError;
     use crate::link::fault::Faults;
+    use crate::spec::SpecError;
 
-    fn port(device: &str, baud: u32) -> Result<LinkSpec, LinkSpecError> {
+    fn port(device: &str, baud: u32) -> Result<LinkSpec, SpecError> {
         Ok(LinkSpec::Serial {
             device: device.into(),
             baud,
@@ -208,20 +187,19 @@ mod tests {
 
     #[test]
     fn an_invalid_name_is_explained() {
-        let error = |text: &str| text.parse::<LinkSpec>().unwrap_err();
-        assert_eq!(error("tcp"), LinkSpecError::Unknown("tcp".into()));
-        assert_eq!(error(""), LinkSpecError::Unknown(String::new()));
-        assert_eq!(error("serial:"), LinkSpecError::NoDevice);
-        assert_eq!(error("serial:@9600"), LinkSpecError::NoDevice);
-        assert_eq!(
-            error("serial:/dev/a@fast"),
-            LinkSpecError::BadBaud("fast".into())
-        );
-        assert_eq!(error("serial:/dev/a@0"), LinkSpecError::BadBaud("0".into()));
-        assert_eq!(
-            error("serial:/dev/a@"),
-            LinkSpecError::BadBaud(String::new())
-        );
+        for (text, words) in [
+            ("tcp", "unknown link 'tcp'"),
+            ("loopbak", "did you mean loopback?"),
+            ("", "unknown link ''"),
+            ("serial:", "port is missing"),
+            ("serial:@9600", "port is missing"),
+            ("serial:/dev/a@fast", "bad baud rate 'fast'"),
+            ("serial:/dev/a@0", "bad baud rate '0'"),
+            ("serial:/dev/a@", "bad baud rate ''"),
+        ] {
+            let error = text.parse::<LinkSpec>().unwrap_err().to_string();
+            assert!(error.contains(words), "{text}: {error}");
+        }
     }
 
     #[test]

@@ -12,13 +12,13 @@
 //! | `key=FILE` | file with the team's key, 16 bytes or more | none |
 //! | `pace=N` | simulated seconds in one second | 1 |
 
-use core::fmt;
 use core::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use core::str::FromStr;
 use std::net::ToSocketAddrs as _;
 use std::path::{Path, PathBuf};
 
 use super::envelope::{Key, ROBOTS};
+use crate::spec::{Form, SpecError, Word};
 
 /// Port of robot 0 if none is given.
 pub const PORT: u16 = 47_000;
@@ -50,83 +50,35 @@ pub struct TeamSpec {
     pub pace: f64,
 }
 
-/// Why a specification is invalid.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum TeamSpecError {
-    /// `id` is missing.
-    NoId,
-    /// Nobody can be reached: none of `peers`, `find` and the zenoh words is given.
-    NoPeers,
-    /// Words of UDP stand beside words of zenoh.
-    TwoCarriers,
-    /// A word is not known.
-    Unknown(String),
-    /// A word is given twice.
-    Twice(String),
-    /// A value is not of its kind.
-    Value {
-        /// The word.
-        word: String,
-        /// What it must be.
-        kind: &'static str,
-    },
-    /// The key cannot be read, or is too short.
-    Key {
-        /// The file.
-        file: PathBuf,
-        /// The reason.
-        reason: String,
-    },
-}
-
-impl fmt::Display for TeamSpecError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoId => f.write_str("the robot's number is missing; say id=0 to id=7"),
-            Self::NoPeers => f.write_str(
-                "nobody can be reached; say peers=ADDRESS:PORT+ADDRESS:PORT, \
-                 or find=GROUP:PORT as in find=239.70.76.1:47100",
-            ),
-            Self::TwoCarriers => f.write_str(
-                "packets go over UDP or over zenoh; \
-                 leave bind, peers, find and interface out, or zenoh and zenoh-listen",
-            ),
-            Self::Unknown(word) => write!(
-                f,
-                "unknown word '{word}'; use id=N, bind=A:P, peers=A:P+A:P, find=GROUP:PORT, \
-                 interface=A, zenoh=LOCATOR, zenoh-listen=LOCATOR, key=FILE, pace=N, \
-                 separated by commas"
-            ),
-            Self::Twice(name) => write!(f, "'{name}' is given twice; keep one"),
-            Self::Value { word, kind } => write!(f, "bad value in '{word}'; it must be {kind}"),
-            Self::Key { file, reason } => {
-                write!(
-                    f,
-                    "key {}: {reason}; give a file of {LEAST_KEY} bytes or more",
-                    file.display()
-                )
-            }
-        }
-    }
-}
-
-impl core::error::Error for TeamSpecError {}
+const FORM: Form = Form {
+    what: "word",
+    usage: "id=N, bind=A:P, peers=A:P+A:P, find=GROUP:PORT, interface=A, zenoh=LOCATOR, \
+            zenoh-listen=LOCATOR, key=FILE, pace=N, separated by commas",
+    repeated: "",
+};
 
 impl FromStr for TeamSpec {
-    type Err = TeamSpecError;
+    type Err = SpecError;
 
-    fn from_str(text: &str) -> Result<Self, TeamSpecError> {
+    fn from_str(text: &str) -> Result<Self, SpecError> {
         let mut words = Words::default();
-        for word in text.split(',').map(str::trim).filter(|it| !it.is_empty()) {
-            words.read(word)?;
-        }
-        let id = words.id.ok_or(TeamSpecError::NoId)?;
+        FORM.read(text, |word| words.read(word))?;
+        let refuse = |reason: &str| Err(SpecError::new(reason));
+        let Some(id) = words.id else {
+            return refuse("the robot's number is missing; say id=0 to id=7");
+        };
         let has_zenoh = words.zenoh.is_some() || words.zenoh_listen.is_some();
         if !has_zenoh && words.peers.is_none() && words.find.is_none() {
-            return Err(TeamSpecError::NoPeers);
+            return refuse(
+                "nobody can be reached; say peers=ADDRESS:PORT+ADDRESS:PORT, \
+                 or find=GROUP:PORT as in find=239.70.76.1:47100",
+            );
         }
         if has_zenoh && words.has_udp() {
-            return Err(TeamSpecError::TwoCarriers);
+            return refuse(
+                "packets go over UDP or over zenoh; \
+                 leave bind, peers, find and interface out, or zenoh and zenoh-listen",
+            );
         }
         let usual = SocketAddr::from((Ipv4Addr::UNSPECIFIED, PORT + u16::from(id)));
         Ok(Self {
@@ -147,14 +99,16 @@ impl TeamSpec {
     /// Reads the key; no key if none is given. Spaces and newlines around it do not count.
     ///
     /// # Errors
-    /// [`TeamSpecError::Key`].
-    pub fn read_key(&self) -> Result<Key, TeamSpecError> {
+    /// The key cannot be read, or is too short.
+    pub fn read_key(&self) -> Result<Key, SpecError> {
         let Some(file) = &self.key else {
             return Ok(Key::default());
         };
-        read_key(file).map_err(|reason| TeamSpecError::Key {
-            file: file.clone(),
-            reason,
+        read_key(file).map_err(|reason| {
+            let file = file.display();
+            SpecError::new(format!(
+                "key {file}: {reason}; give a file of {LEAST_KEY} bytes or more"
+            ))
         })
     }
 }
@@ -191,66 +145,39 @@ impl Words {
             || self.interface.is_some()
     }
 
-    fn read(&mut self, word: &str) -> Result<(), TeamSpecError> {
-        let unknown = || TeamSpecError::Unknown(word.into());
-        let (name, value) = word.split_once('=').ok_or_else(unknown)?;
-        let (name, value) = (name.trim(), value.trim());
-        let bad = |kind| TeamSpecError::Value {
-            word: word.into(),
-            kind,
+    fn read(&mut self, word: &Word<'_>) -> Result<(), SpecError> {
+        let address = |text: &str| text.to_socket_addrs().ok()?.next();
+        let locator = || {
+            let is_locator = |it: &String| it.starts_with("tcp/");
+            word.parse(is_locator, "a locator, as in tcp/10.0.0.1:7447")
+                .map(Some)
         };
-        let address = |text: &str| {
-            let mut found = text.to_socket_addrs().ok()?;
-            found.next()
-        };
-        const ADDRESS: &str = "an address and a port, as in 10.0.0.3:47003";
-        let again = match name {
-            "id" => {
-                let id = value.parse().ok().filter(|id| usize::from(*id) < ROBOTS);
-                let id = id.ok_or_else(|| bad("a number from 0 to 7"))?;
-                self.id.replace(id).is_some()
+        match word.key.as_str() {
+            "id=" => {
+                let fits = |id: &u8| usize::from(*id) < ROBOTS;
+                self.id = Some(word.parse(fits, "a number from 0 to 7")?);
             }
-            "bind" => {
-                let bind = address(value).ok_or_else(|| bad(ADDRESS))?;
-                self.bind.replace(bind).is_some()
+            "bind=" => {
+                let must = "an address and a port, as in 10.0.0.3:47003";
+                self.bind = Some(address(word.value).ok_or_else(|| word.bad(must))?);
             }
-            "peers" => {
-                let peers: Option<Vec<SocketAddr>> = value.split('+').map(address).collect();
+            "peers=" => {
+                let peers: Option<Vec<SocketAddr>> = word.value.split('+').map(address).collect();
                 let peers = peers.filter(|peers| peers.len() < ROBOTS);
-                let peers = peers.ok_or_else(|| bad("up to 7 addresses with ports, A:P+B:P"))?;
-                self.peers.replace(peers).is_some()
+                let must = "up to 7 addresses with ports, A:P+B:P";
+                self.peers = Some(peers.ok_or_else(|| word.bad(must))?);
             }
-            "find" => {
-                let group = value.parse().ok();
-                let group = group.filter(|group: &SocketAddrV4| group.ip().is_multicast());
-                let kind = "an IPv4 multicast group and a port, as in 239.70.76.1:47100";
-                self.find.replace(group.ok_or_else(|| bad(kind))?).is_some()
+            "find=" => {
+                let must = "an IPv4 multicast group and a port, as in 239.70.76.1:47100";
+                let fits = |group: &SocketAddrV4| group.ip().is_multicast();
+                self.find = Some(word.parse(fits, must)?);
             }
-            "interface" => {
-                let card = value.parse().map_err(|_| bad("an IPv4 address"))?;
-                self.interface.replace(card).is_some()
-            }
-            "zenoh" | "zenoh-listen" => {
-                let kind = "a locator, as in tcp/10.0.0.1:7447";
-                let locator = Some(value).filter(|it| it.starts_with("tcp/"));
-                let locator = locator.ok_or_else(|| bad(kind))?.to_owned();
-                let place = match name {
-                    "zenoh" => &mut self.zenoh,
-                    _ => &mut self.zenoh_listen,
-                };
-                place.replace(locator).is_some()
-            }
-            "key" => self.key.replace(PathBuf::from(value)).is_some(),
-            "pace" => {
-                let pace = value.parse().ok();
-                let pace = pace.filter(|pace: &f64| (0.01..=MOST_PACE).contains(pace));
-                let pace = pace.ok_or_else(|| bad("from 0.01 to 1000"))?;
-                self.pace.replace(pace).is_some()
-            }
-            _ => return Err(unknown()),
-        };
-        if again {
-            return Err(TeamSpecError::Twice(name.into()));
+            "interface=" => self.interface = Some(word.parse(|_| true, "an IPv4 address")?),
+            "zenoh=" => self.zenoh = locator()?,
+            "zenoh-listen=" => self.zenoh_listen = locator()?,
+            "key=" => self.key = Some(PathBuf::from(word.value)),
+            "pace=" => self.pace = Some(word.number(0.01..=MOST_PACE, "from 0.01 to 1000")?),
+            _ => return Err(word.unknown()),
         }
         Ok(())
     }
@@ -282,22 +209,26 @@ mod tests {
         assert_eq!(spec.zenoh_listen.as_deref(), Some("tcp/127.0.0.1:7447"));
         for udp in ["peers=127.0.0.1:1", "find=239.1.2.3:9", "bind=127.0.0.1:1"] {
             let error = format!("id=1,zenoh=tcp/a:1,{udp}").parse::<TeamSpec>();
-            assert_eq!(error.unwrap_err(), TeamSpecError::TwoCarriers, "{udp}");
+            assert!(
+                error.unwrap_err().to_string().contains("UDP or over zenoh"),
+                "{udp}"
+            );
         }
     }
 
     #[test]
     fn an_invalid_specification_is_named() {
-        let error = |text: &str| text.parse::<TeamSpec>().unwrap_err();
-        assert_eq!(error(""), TeamSpecError::NoId);
-        assert_eq!(error("peers=127.0.0.1:1"), TeamSpecError::NoId);
-        assert_eq!(error("id=1"), TeamSpecError::NoPeers);
-        assert_eq!(error("id=1,id=2"), TeamSpecError::Twice("id".into()));
-        assert_eq!(
-            error("id=1,colour=2"),
-            TeamSpecError::Unknown("colour=2".into())
-        );
-        assert_eq!(error("id"), TeamSpecError::Unknown("id".into()));
+        let error = |text: &str| text.parse::<TeamSpec>().unwrap_err().to_string();
+        for (text, words) in [
+            ("", "no word is named; use id=N"),
+            ("peers=127.0.0.1:1", "number is missing"),
+            ("id=1", "nobody can be reached"),
+            ("id=1,id=2", "'id' is given twice"),
+            ("id=1,colour=2", "unknown word 'colour=2'"),
+            ("id", "unknown word 'id'"),
+        ] {
+            assert!(error(text).contains(words), "{text}: {}", error(text));
+        }
         for text in [
             "id=8",
             "bind=here",
@@ -307,7 +238,11 @@ mod tests {
             "pace=0",
             "zenoh=10.0.0.1:7447",
         ] {
-            assert!(matches!(error(text), TeamSpecError::Value { .. }), "{text}");
+            let error = error(text);
+            assert!(
+                error.contains("bad value") && error.contains(text),
+                "{error}"
+            );
         }
     }
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::robot::{Noise, Source, distance_m};
 use crate::world::{GridTraversal, World};
-pub use spec::{HELD_MS, MOST_ROBOTS, Partition, RadioError, RadioSpec, Walls};
+pub use spec::{HELD_MS, MOST_ROBOTS, Partition, RadioSpec, Walls};
 
 /// What the radio did, in packets; as in a report.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -15,8 +15,9 @@
 //! `partition@60-120:0/12` has robot 0 in one group, and robots 1 and 2 in another. A robot that is
 //! in no group hears nobody. There may be several partitions.
 
-use core::fmt;
 use core::str::FromStr;
+
+use crate::spec::{Form, SpecError, Word};
 
 /// Greatest number of robots in a team: a beacon's receiver keeps seven others.
 pub const MOST_ROBOTS: usize = 8;
@@ -82,44 +83,17 @@ impl Default for RadioSpec {
     }
 }
 
-/// Why a radio specification is invalid.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum RadioError {
-    /// It names nothing.
-    Nothing,
-    /// A word is not known.
-    Unknown(String),
-    /// A word is given twice.
-    Twice(String),
-    /// A value is not in its range.
-    Value {
-        /// The word.
-        word: String,
-        /// The range.
-        range: &'static str,
-    },
-}
-
-impl fmt::Display for RadioError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const KNOWN: &str = "use off, or range=M, walls=M or walls=block, loss=P, duplicate=P, \
-                             delay=S, reorder=P, partition@A-B or partition@A-B:0/12, separated \
-                             by commas";
-        match self {
-            Self::Nothing => write!(f, "nothing is named; {KNOWN}"),
-            Self::Unknown(word) => write!(f, "unknown word '{word}'; {KNOWN}"),
-            Self::Twice(name) => write!(f, "'{name}' is given twice; keep one"),
-            Self::Value { word, range } => write!(f, "bad value in '{word}'; it must be {range}"),
-        }
-    }
-}
-
-impl core::error::Error for RadioError {}
+const FORM: Form = Form {
+    what: "word",
+    usage: "off, or range=M, walls=M or walls=block, loss=P, duplicate=P, delay=S, reorder=P, \
+            partition@A-B or partition@A-B:0/12, separated by commas",
+    repeated: "partition",
+};
 
 impl FromStr for RadioSpec {
-    type Err = RadioError;
+    type Err = SpecError;
 
-    fn from_str(text: &str) -> Result<Self, RadioError> {
+    fn from_str(text: &str) -> Result<Self, SpecError> {
         let words = text.split(',').map(str::trim);
         let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
         let mut spec = Self {
@@ -127,47 +101,32 @@ impl FromStr for RadioSpec {
             on: words != ["off"],
             ..Self::default()
         };
-        if words.is_empty() {
-            return Err(RadioError::Nothing);
-        }
-        let mut named = Vec::new();
-        let on = spec.on;
-        for word in words.into_iter().filter(|_| on) {
-            if let Some(times) = word.strip_prefix("partition@") {
-                spec.partitions.push(partition(word, times)?);
-                continue;
-            }
-            let (name, value) = word
-                .split_once('=')
-                .ok_or_else(|| RadioError::Unknown(word.into()))?;
-            spec.read(word, name.trim(), value.trim())?;
-            if named.contains(&name.trim()) {
-                return Err(RadioError::Twice(name.trim().into()));
-            }
-            named.push(name.trim());
+        if spec.on {
+            FORM.read(text, |word| spec.read(word))?;
         }
         Ok(spec)
     }
 }
 
 impl RadioSpec {
-    fn read(&mut self, word: &str, name: &str, value: &str) -> Result<(), RadioError> {
-        let share = || number(word, value, [0.0, 0.95], "a probability from 0 to 0.95");
-        match name {
-            "range" => self.range_m = number(word, value, [0.1, MOST], "from 0.1 to 10000 m")?,
-            "walls" if value == "block" => self.walls = Walls::Block,
-            "walls" => {
-                let metres = number(word, value, [0.0, MOST], "from 0 to 10000 m, or block")?;
+    fn read(&mut self, word: &Word<'_>) -> Result<(), SpecError> {
+        let share = || word.number(0.0..=0.95, "a probability from 0 to 0.95");
+        match word.key.as_str() {
+            "range=" => self.range_m = word.number(0.1..=MOST, "from 0.1 to 10000 m")?,
+            "walls=" if word.value == "block" => self.walls = Walls::Block,
+            "walls=" => {
+                let metres = word.number(0.0..=MOST, "from 0 to 10000 m, or block")?;
                 self.walls = Walls::Metres(metres);
             }
-            "loss" => self.loss = share()?,
-            "duplicate" => self.duplicate = share()?,
-            "reorder" => self.reorder = share()?,
-            "delay" => {
-                let seconds = number(word, value, [0.0, 60.0], "from 0 to 60 s")?;
+            "loss=" => self.loss = share()?,
+            "duplicate=" => self.duplicate = share()?,
+            "reorder=" => self.reorder = share()?,
+            "delay=" => {
+                let seconds = word.number(0.0..=60.0, "from 0 to 60 s")?;
                 self.delay_ms = (seconds * 1000.0).round() as u32;
             }
-            _ => return Err(RadioError::Unknown(word.into())),
+            "partition@" => self.partitions.push(partition(word)?),
+            _ => return Err(word.unknown()),
         }
         Ok(())
     }
@@ -199,44 +158,20 @@ impl Partition {
     }
 }
 
-fn number(
-    word: &str,
-    value: &str,
-    [least, most]: [f64; 2],
-    range: &'static str,
-) -> Result<f64, RadioError> {
-    let number = value.parse().ok();
-    number
-        .filter(|number: &f64| (least..=most).contains(number))
-        .ok_or_else(|| RadioError::Value {
-            word: word.into(),
-            range,
-        })
-}
-
 /// Parses `A-B` or `A-B:0/12`.
-fn partition(word: &str, times: &str) -> Result<Partition, RadioError> {
-    let bad = |range| RadioError::Value {
-        word: word.into(),
-        range,
-    };
-    let (span, groups) = times.split_once(':').unwrap_or((times, ""));
-    let (from, to) = span
-        .split_once('-')
-        .ok_or_else(|| bad("two times in seconds, as in partition@60-120"))?;
-    let second = |text: &str| number(word, text.trim(), [0.0, 4e6], "times from 0 to 4000000 s");
-    let span_ms = [second(from)?, second(to)?].map(|seconds| (seconds * 1000.0) as u32);
-    if span_ms[0] >= span_ms[1] {
-        return Err(bad("a time before the end, as in partition@60-120"));
-    }
+fn partition(word: &Word<'_>) -> Result<Partition, SpecError> {
+    let (span, groups) = word.value.split_once(':').unwrap_or((word.value, ""));
+    let span_ms = word
+        .span_s(span, 4e6)?
+        .map(|seconds| (seconds * 1000.0) as u32);
     let digit = |digit: char| {
         let robot = digit.to_digit(10).map(|robot| robot as usize);
         robot.filter(|robot| *robot < MOST_ROBOTS)
     };
     let group = |text: &str| text.chars().map(digit).collect::<Option<Vec<usize>>>();
-    let parts = groups.split('/').filter(|_| times.contains(':'));
+    let parts = groups.split('/').filter(|_| word.value.contains(':'));
     let groups = parts.map(group).collect::<Option<Vec<_>>>();
-    let groups = groups.ok_or_else(|| bad("groups of robots from 0 to 7, as in :0/12"))?;
+    let groups = groups.ok_or_else(|| word.bad("groups of robots from 0 to 7, as in :0/12"))?;
     Ok(Partition { span_ms, groups })
 }
 
@@ -284,17 +219,21 @@ mod tests {
 
     #[test]
     fn an_invalid_specification_is_named() {
-        let error = |text: &str| text.parse::<RadioSpec>().unwrap_err();
+        let error = |text: &str| text.parse::<RadioSpec>().unwrap_err().to_string();
         for text in ["", " , "] {
-            assert_eq!(error(text), RadioError::Nothing);
+            assert!(error(text).contains("no word is named"));
         }
-        for text in ["power=3", "loss", "range=10,off", "jam@3-4"] {
-            let RadioError::Unknown(word) = error(text) else {
-                panic!("{text}");
-            };
-            assert!(text.contains(&word));
+        for (text, word) in [
+            ("power=3", "'power=3'"),
+            ("loss", "'loss'"),
+            ("range=10,off", "'off'"),
+            ("jam@3-4", "'jam@3-4'"),
+        ] {
+            let error = error(text);
+            assert!(error.contains("unknown") && error.contains(word), "{error}");
         }
-        assert_eq!(error("loss=0.1,loss=0.2"), RadioError::Twice("loss".into()));
+        let twice = error("loss=0.1,loss=0.2");
+        assert!(twice.contains("'loss' is given twice"), "{twice}");
         for text in [
             "loss=1",
             "loss=-0.1",
@@ -309,8 +248,12 @@ mod tests {
             "partition@60-120:0/19",
             "partition@60-120:a",
         ] {
-            assert!(matches!(error(text), RadioError::Value { .. }), "{text}");
+            let error = error(text);
+            assert!(
+                error.contains("bad value") && error.contains(text),
+                "{error}"
+            );
         }
-        assert!(error("power=3").to_string().contains("range=M"));
+        assert!(error("power=3").contains("range=M"));
     }
 }

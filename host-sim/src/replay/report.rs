@@ -210,10 +210,8 @@ impl ReplayReport {
             self.occupied_cells_5cm
         );
         if let Some(scan) = self.map_full_at {
-            // Writing into a string does not fail.
             let _ = write!(out, "; map full at scan {scan} of {}", self.steps);
         }
-        // Writing into a string does not fail.
         let _ = write!(out, "\n  laser      {}", self.laser.line());
         if !self.skipped.is_empty() {
             let _ = write!(out, "\n  skipped    {}", self.skipped);

@@ -58,6 +58,25 @@ impl Report {
             ),
             format!("  planner   {}", self.cost()),
         ];
+        lines.extend(self.way());
+        lines.extend(self.surroundings());
+        if self.is_falsely_explored() {
+            lines.push(String::from(
+                "  false     calls itself explored, and saw less than 97 % of the ground",
+            ));
+        }
+        for left in &self.outcome.residual_frontiers {
+            lines.push(format!(
+                "  left      {} cells at ({:.1}, {:.1}): {}",
+                left.cells, left.x_m, left.y_m, left.reason
+            ));
+        }
+        lines.join("\n")
+    }
+
+    /// Returns lines about loops, patrol, fence and trips.
+    fn way(&self) -> Vec<String> {
+        let mut lines = Vec::new();
         let Loops { islands, circled } = self.loops;
         if islands > 0 {
             lines.push(format!("  loops     {circled} of {islands} closed"));
@@ -94,6 +113,12 @@ impl Report {
                 why.unwrap_or_default(),
             ));
         }
+        lines
+    }
+
+    /// Returns lines about the ground, the map and the inputs.
+    fn surroundings(&self) -> Vec<String> {
+        let mut lines = Vec::new();
         if let Some(ground) = &self.true_ground {
             lines.push(format!(
                 "  ground    {:.1} m up and down; pitch {:.1} deg, roll {:.1} deg at most; \
@@ -127,18 +152,7 @@ impl Report {
                 network.said, network.heard, network.replayed
             ));
         }
-        if self.is_falsely_explored() {
-            lines.push(String::from(
-                "  false     calls itself explored, and saw less than 97 % of the ground",
-            ));
-        }
-        for left in &self.outcome.residual_frontiers {
-            lines.push(format!(
-                "  left      {} cells at ({:.1}, {:.1}): {}",
-                left.cells, left.x_m, left.y_m, left.reason
-            ));
-        }
-        lines.join("\n")
+        lines
     }
 
     /// Returns a line if the map has far fewer of the walls than of the floor.

@@ -18,6 +18,8 @@
 use core::fmt;
 use core::str::FromStr;
 
+use crate::spec::{Form, SpecError, Word};
+
 /// Distance and turn that the wheels count too much in a slip, metres and radians.
 const SLIP: [f64; 2] = [0.5, 20.0 * core::f64::consts::PI / 180.0];
 /// Latest time of a disturbance, seconds.
@@ -95,72 +97,42 @@ impl Disturbances {
         self.slip_ms.is_some() || self.spin.is_some() || self.push.is_some()
     }
 
-    fn read(&mut self, word: &str) -> Option<()> {
-        if let Some(share) = word.strip_prefix("missing=") {
-            let share: f64 = share.trim().parse().ok()?;
-            self.missing = Some(share).filter(|share| (0.0..=0.9).contains(share))?;
-            return Some(());
-        }
-        let (name, times) = word.split_once('@')?;
-        let moment = match name {
-            "slip" => Some(&mut self.slip_ms),
-            "restart" => Some(&mut self.restart_ms),
-            _ => None,
+    fn read(&mut self, word: &Word<'_>) -> Result<(), SpecError> {
+        let to_ms = |seconds: f64| (seconds * 1000.0).round() as u32;
+        let moment = || {
+            let seconds = word.number(0.0..=LATEST_S, "a time from 0 to 86400 s")?;
+            Ok(Some(to_ms(seconds)))
         };
-        if let Some(moment) = moment {
-            *moment = Some(milliseconds(times)?);
-            return Some(());
-        }
-        let (from, to) = times.split_once('-')?;
-        let [from_ms, to_ms] = [milliseconds(from)?, milliseconds(to)?];
-        let span = Some(Span { from_ms, to_ms }).filter(|span| span.from_ms < span.to_ms)?;
-        let place = match name {
-            "spin" => &mut self.spin,
-            "push" => &mut self.push,
-            "dark" => &mut self.dark,
-            _ => return None,
+        let span = || {
+            let [from_ms, to_ms] = word.span_s(word.value, LATEST_S)?.map(to_ms);
+            Ok(Some(Span { from_ms, to_ms }))
         };
-        *place = Some(span);
-        Some(())
+        match word.key.as_str() {
+            "restart@" => self.restart_ms = moment()?,
+            "slip@" => self.slip_ms = moment()?,
+            "spin@" => self.spin = span()?,
+            "push@" => self.push = span()?,
+            "dark@" => self.dark = span()?,
+            "missing=" => self.missing = word.number(0.0..=0.9, "a share from 0 to 0.9")?,
+            _ => return Err(word.unknown()),
+        }
+        Ok(())
     }
 }
 
-fn milliseconds(text: &str) -> Option<u32> {
-    let seconds: f64 = text.trim().parse().ok()?;
-    let is_time = (0.0..=LATEST_S).contains(&seconds);
-    is_time.then(|| (seconds * 1000.0).round() as u32)
-}
-
-/// A word that is no disturbance.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct DisturbanceError(String);
-
-impl fmt::Display for DisturbanceError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "'{}' is no disturbance; use restart@T, slip@T, spin@A-B, push@A-B, dark@A-B (seconds, \
-             A below B) and missing=P (0 to 0.9), each once, separated by commas",
-            self.0
-        )
-    }
-}
-
-impl core::error::Error for DisturbanceError {}
+const FORM: Form = Form {
+    what: "disturbance",
+    usage: "restart@T, slip@T, spin@A-B, push@A-B, dark@A-B (seconds) and missing=P, separated by \
+            commas",
+    repeated: "",
+};
 
 impl FromStr for Disturbances {
-    type Err = DisturbanceError;
+    type Err = SpecError;
 
-    fn from_str(text: &str) -> Result<Self, DisturbanceError> {
+    fn from_str(text: &str) -> Result<Self, SpecError> {
         let mut disturbances = Self::default();
-        let mut named: Vec<&str> = Vec::new();
-        for word in text.split(',').map(str::trim) {
-            let name = word.split(['@', '=']).next().unwrap_or(word);
-            let is_new = !named.contains(&name);
-            let read = is_new.then(|| disturbances.read(word)).flatten();
-            read.ok_or_else(|| DisturbanceError(word.into()))?;
-            named.push(name);
-        }
+        FORM.read(text, |word| disturbances.read(word))?;
         Ok(disturbances)
     }
 }
@@ -223,21 +195,18 @@ mod tests {
     #[test]
     fn a_bad_word_is_named() {
         for (text, word) in [
-            ("", "''"),
+            ("", "slip@T"),
             ("slip", "'slip'"),
-            ("slip@60,slip@61", "'slip@61'"),
+            ("slip@60,slip@61", "'slip' is given twice"),
             ("spin@3", "'spin@3'"),
             ("dark@5-4", "'dark@5-4'"),
             ("push@-1-4", "'push@-1-4'"),
             ("missing=1", "'missing=1'"),
             ("missing=NaN", "'missing=NaN'"),
-            ("storm@1-2", "'storm@1-2'"),
+            ("storm@1-2", "'storm@1-2'; use restart@T, slip@T"),
         ] {
             let error = text.parse::<Disturbances>().expect_err(text).to_string();
-            assert!(
-                error.starts_with(word) && error.contains("slip@T"),
-                "{error}"
-            );
+            assert!(error.contains(word), "{error}");
         }
     }
 }

@@ -16,7 +16,8 @@
 //! `climb=20,roll=15,step=0.07,drop=0.07`.
 
 use core::fmt;
-use core::str::FromStr;
+
+use crate::spec::{Form, SpecError};
 
 /// Limits of the ground under a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,44 +72,31 @@ const DEGREE: f64 = core::f64::consts::PI / 180.0;
 /// Rounding errors of heights and angles that do not break a limit; metres or radians.
 pub(super) const SLACK: f64 = 1e-6;
 
-/// Why a text is not a set of limits.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LimitsError(String);
-
-impl fmt::Display for LimitsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let form = "write for instance climb=20,roll=15,step=0.07,drop=0.07";
-        write!(f, "{}; {form} (degrees and metres, any of them)", self.0)
-    }
-}
-
-impl core::error::Error for LimitsError {}
+const FORM: Form = Form {
+    what: "limit",
+    usage: "for instance climb=20,roll=15,step=0.07,drop=0.07 (degrees and metres, any of them)",
+    repeated: "",
+};
 
 impl Limits {
     /// Returns these limits with the changes that a text names.
     ///
     /// # Errors
-    /// [`LimitsError`] for an unknown name, a value that is no number, an angle beyond 60° or a
+    /// [`SpecError`] for an unknown name, a value that is no number, an angle beyond 60° or a
     /// length beyond 1 m.
-    pub fn changed(mut self, text: &str) -> Result<Self, LimitsError> {
-        for part in text.split(',').map(str::trim) {
-            let Some((name, number)) = part.split_once('=') else {
-                return Err(LimitsError(format!("'{part}' is not name=number")));
+    pub fn changed(mut self, text: &str) -> Result<Self, SpecError> {
+        FORM.read(text, |word| {
+            let (slot, most, unit) = match word.key.as_str() {
+                "climb=" => (&mut self.climb_rad, 60.0, DEGREE),
+                "roll=" => (&mut self.roll_rad, 60.0, DEGREE),
+                "step=" => (&mut self.step_m, 1.0, 1.0),
+                "drop=" => (&mut self.drop_m, 1.0, 1.0),
+                _ => return Err(word.unknown()),
             };
-            let value = f64::from_str(number.trim()).unwrap_or(f64::NAN);
-            let (slot, most, unit) = match name.trim() {
-                "climb" => (&mut self.climb_rad, 60.0, DEGREE),
-                "roll" => (&mut self.roll_rad, 60.0, DEGREE),
-                "step" => (&mut self.step_m, 1.0, 1.0),
-                "drop" => (&mut self.drop_m, 1.0, 1.0),
-                other => return Err(LimitsError(format!("there is no limit called '{other}'"))),
-            };
-            if !(value > 0.0 && value <= most) {
-                let reason = format!("{name} must be above 0 and at most {most}, not '{number}'");
-                return Err(LimitsError(reason));
-            }
-            *slot = value * unit;
-        }
+            let must = format!("above 0 and at most {most} (degrees and metres)");
+            *slot = word.parse(|value: &f64| *value > 0.0 && *value <= most, &must)? * unit;
+            Ok(())
+        })?;
         Ok(self)
     }
 }
@@ -148,19 +136,16 @@ mod tests {
     #[test]
     fn a_bad_limit_is_named() {
         for (text, word) in [
-            ("", "''"),
-            ("climb", "'climb'"),
-            ("climb=nan", "'nan'"),
+            ("", "climb=20"),
+            ("climb", "'climb'; use for instance climb=20"),
+            ("climb=nan", "'climb=nan'"),
             ("climb=61", "at most 60"),
-            ("step=-0.1", "'-0.1'"),
+            ("step=-0.1", "'step=-0.1'"),
             ("step=2", "at most 1"),
-            ("tilt=3", "'tilt'"),
+            ("tilt=3", "'tilt=3'; use for instance climb=20"),
         ] {
             let error = Limits::WORKING.changed(text).expect_err(text).to_string();
-            assert!(
-                error.contains(word) && error.contains("climb=20"),
-                "{error}"
-            );
+            assert!(error.contains(word), "{error}");
         }
     }
 

@@ -27,6 +27,7 @@ use core::str::FromStr;
 use fieldline_protocol::message::{INVALID_MM, NO_RETURN_MM, Observation};
 
 use super::pose::{Pose, Velocity, wrap};
+use crate::spec::{Form, SpecError, Word};
 
 /// Greatest factor.
 const MOST_TIMES: f64 = 1e6;
@@ -122,65 +123,48 @@ impl Miswiring {
         }
     }
 
-    fn read(&mut self, word: &str) -> Option<()> {
-        let number = |text: &str, most: f64| {
-            let number: f64 = text.trim().parse().ok()?;
-            (-most..=most).contains(&number).then_some(number)
+    fn read(&mut self, word: &Word<'_>) -> Result<(), SpecError> {
+        let factor = || {
+            let fits = |it: &f64| *it > 0.0 && *it <= MOST_TIMES;
+            word.parse(fits, "a factor above 0, at most 1000000")
         };
-        let factor = |text: &str| number(text, MOST_TIMES).filter(|it| *it > 0.0);
-        match word.split_once('=') {
-            None => match word {
-                "mirrored" => self.mirrored = true,
-                "lasers-swapped" => self.lasers_swapped = true,
-                "yaw-sign" => self.odometry[1] = -1.0,
-                "way-sign" => self.odometry[0] = -1.0,
-                "wheels-swapped" => self.wheels[1] = -1.0,
-                "reversed" => self.wheels = [-1.0; 2],
-                "millimetres" => self.odometry[0] = 1000.0,
-                "clock-stands" => self.clock_times = 0.0,
-                _ => return None,
-            },
-            Some(("laser-turned", deg)) => {
-                self.laser_turned_rad = number(deg, 360.0)?.to_radians();
+        match word.key.as_str() {
+            "mirrored" => self.mirrored = true,
+            "laser-turned=" => {
+                let deg = word.number(-360.0..=360.0, "degrees from -360 to 360")?;
+                self.laser_turned_rad = deg.to_radians();
             }
-            Some(("odometry-times", times)) => self.odometry[0] = factor(times)?,
-            Some(("yaw-times", times)) => self.odometry[1] = factor(times)?,
-            Some(("ranges-times", times)) => self.ranges_times = factor(times)?,
-            Some(("clock-times", times)) => self.clock_times = factor(times)?,
-            Some(_) => return None,
+            "lasers-swapped" => self.lasers_swapped = true,
+            "yaw-sign" => self.odometry[1] = -1.0,
+            "way-sign" => self.odometry[0] = -1.0,
+            "wheels-swapped" => self.wheels[1] = -1.0,
+            "reversed" => self.wheels = [-1.0; 2],
+            "millimetres" => self.odometry[0] = 1000.0,
+            "odometry-times=" => self.odometry[0] = factor()?,
+            "yaw-times=" => self.odometry[1] = factor()?,
+            "ranges-times=" => self.ranges_times = factor()?,
+            "clock-stands" => self.clock_times = 0.0,
+            "clock-times=" => self.clock_times = factor()?,
+            _ => return Err(word.unknown()),
         }
-        Some(())
+        Ok(())
     }
 }
 
-/// A word that is no mistake.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct MiswiringError(String);
-
-impl fmt::Display for MiswiringError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "'{}' is no wiring mistake; use one or more of mirrored, laser-turned=DEG, \
-             lasers-swapped, yaw-sign, way-sign, wheels-swapped, reversed, millimetres, \
-             odometry-times=F, yaw-times=F, ranges-times=F, clock-stands, clock-times=F",
-            self.0
-        )
-    }
-}
-
-impl core::error::Error for MiswiringError {}
+const FORM: Form = Form {
+    what: "wiring mistake",
+    usage: "one or more of mirrored, laser-turned=DEG, lasers-swapped, yaw-sign, way-sign, \
+            wheels-swapped, reversed, millimetres, odometry-times=F, yaw-times=F, ranges-times=F, \
+            clock-stands, clock-times=F, separated by commas",
+    repeated: "",
+};
 
 impl FromStr for Miswiring {
-    type Err = MiswiringError;
+    type Err = SpecError;
 
-    fn from_str(text: &str) -> Result<Self, MiswiringError> {
+    fn from_str(text: &str) -> Result<Self, SpecError> {
         let mut read = Self::default();
-        for word in text.split(',') {
-            let word = word.trim();
-            read.read(word)
-                .ok_or_else(|| MiswiringError(word.to_owned()))?;
-        }
+        FORM.read(text, |word| read.read(word))?;
         Ok(read)
     }
 }
@@ -229,19 +213,16 @@ mod tests {
 
     #[test]
     fn a_bad_word_is_named() {
-        for text in [
-            "",
-            "mirror",
-            "laser-turned",
-            "laser-turned=x",
-            "clock-times=0",
-            "yaw-times=NaN",
+        for (text, remedy) in [
+            ("", "lasers-swapped"),
+            ("mirror", "did you mean mirrored?"),
+            ("laser-turned", "lasers-swapped"),
+            ("laser-turned=x", "degrees from -360 to 360"),
+            ("clock-times=0", "a factor above 0"),
+            ("yaw-times=NaN", "a factor above 0"),
         ] {
             let error = text.parse::<Miswiring>().expect_err(text).to_string();
-            assert!(
-                error.contains(text) && error.contains("lasers-swapped"),
-                "{error}"
-            );
+            assert!(error.contains(text) && error.contains(remedy), "{error}");
         }
     }
 

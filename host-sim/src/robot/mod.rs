@@ -22,14 +22,14 @@ mod traction;
 
 pub use contact::{Contacts, Mishap};
 pub(crate) use contact::{fall_along_m, is_aground, rise_along_m};
-pub use disturbance::{DisturbanceError, Disturbances, Span};
+pub use disturbance::{Disturbances, Span};
 pub use drive::{Drive, DriveLimits};
 pub use file::RobotError;
 pub use footprint::{FARTHEST_M, Footprint};
 pub use laser::{LaserNoise, LaserScanner};
 pub use lidar::Lidar;
-pub use limits::{Limits, LimitsError};
-pub use miswiring::{Miswiring, MiswiringError};
+pub use limits::Limits;
+pub use miswiring::Miswiring;
 pub use noise::{Noise, Source};
 pub use odometry::{Odometry, OdometryModel, OdometryNoise};
 pub use other::{MAST_M, OtherRobot, nearest_m};

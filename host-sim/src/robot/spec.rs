@@ -20,6 +20,7 @@ use super::odometry::OdometryNoise;
 use super::presets::{self, DEFAULT};
 use super::{RADIUS_M, Sectors};
 use crate::near;
+use crate::spec::{self, SpecError};
 
 /// A robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -163,29 +164,31 @@ impl Sweep {
 
 /// Parses `FIRST,STEP,BEAMS,RANGE` in degrees and metres.
 impl core::str::FromStr for Sweep {
-    type Err = String;
+    type Err = SpecError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, SpecError> {
         let form = "give FIRST,STEP,BEAMS,RANGE in degrees and metres, as in -135,0.5,541,12";
-        let parts: Vec<&str> = text.split(',').map(str::trim).collect();
-        let [first, step, beams, range] = parts[..] else {
-            return Err(form.into());
-        };
-        let number = |text: &str| {
-            let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
-            number.ok_or_else(|| format!("'{text}' is not a number; {form}"))
-        };
-        let beams = beams.parse();
-        let sweep = Self {
-            first_rad: number(first)?.to_radians(),
-            step_rad: number(step)?.to_radians(),
-            beams: beams.map_err(|_| format!("'{}' is no number of beams; {form}", parts[2]))?,
-            most_m: number(range)?,
-        };
-        match sweep.fault() {
-            Some(fault) => Err(fault),
-            None => Ok(sweep),
+        let is_number = |part: &&str| spec::numbers(part).is_some_and(|it| it.len() == 1);
+        if let Some(part) = text.split(',').map(str::trim).find(|part| !is_number(part)) {
+            let reason = format!("'{part}' is not a number; {form}");
+            return Err(SpecError::new(reason));
         }
+        let Some(&[first, step, beams, most_m]) = spec::numbers(text).as_deref() else {
+            return Err(SpecError::new(form));
+        };
+        if beams.fract() != 0.0 || beams < 0.0 {
+            let reason = format!("'{beams}' is no number of beams; {form}");
+            return Err(SpecError::new(reason));
+        }
+        let sweep = Self {
+            first_rad: first.to_radians(),
+            step_rad: step.to_radians(),
+            beams: beams as usize,
+            most_m,
+        };
+        sweep
+            .fault()
+            .map_or(Ok(sweep), |fault| Err(SpecError::new(fault)))
     }
 }
 
@@ -211,7 +214,7 @@ mod tests {
             ("0,1,360,0", "0.1 to 100"),
             ("0,nan,360,12", "'nan'"),
         ] {
-            let error = text.parse::<Sweep>().expect_err(text);
+            let error = text.parse::<Sweep>().expect_err(text).to_string();
             assert!(error.contains(word), "{text}: {error}");
         }
         assert!("0,1,360,3.5".parse::<Sweep>().is_ok());

@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::link::endpoint::{Endpoint, RetryPolicy};
 use crate::link::loopback::LocalDevice;
-use crate::link::spec::{LinkSpec, LinkSpecError, Options};
+use crate::link::spec::{LinkSpec, Options};
 use crate::link::{Link, LinkError};
+use crate::spec::SpecError;
 
 /// Size of a device's map. A file that names none means the default image's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -86,9 +87,9 @@ pub enum TargetSpec {
 }
 
 impl FromStr for TargetSpec {
-    type Err = LinkSpecError;
+    type Err = SpecError;
 
-    fn from_str(text: &str) -> Result<Self, LinkSpecError> {
+    fn from_str(text: &str) -> Result<Self, SpecError> {
         match text {
             "device" => Ok(Self::Device),
             _ => text.parse().map(Self::Link),

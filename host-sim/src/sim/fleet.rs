@@ -6,8 +6,8 @@
 //! are [`CONTACT_OVER_M`] apart. It is no collision with the world, and is counted apart. A fleet
 //! of one robot is that robot alone, bit for bit.
 
-use core::fmt;
 use std::collections::BTreeSet;
+use thiserror::Error;
 
 use fieldline_protocol::message::{Observation, Twist};
 
@@ -16,9 +16,10 @@ use crate::robot::{FARTHEST_M, OtherRobot};
 use crate::world::{World, WorldError};
 
 /// Why robots cannot stand in a world together.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 pub enum FleetError {
     /// One of them cannot stand at its start.
+    #[error("robot {robot}: {error}")]
     Start {
         /// The robot's number, from 0.
         robot: usize,
@@ -26,25 +27,15 @@ pub enum FleetError {
         error: WorldError,
     },
     /// Two of them overlap at their starts.
+    #[error(
+        "robots {} and {} overlap at their starts; choose starts farther apart",
+        robots[0], robots[1]
+    )]
     Overlap {
         /// The robots' numbers, from 0.
         robots: [usize; 2],
     },
 }
-
-impl fmt::Display for FleetError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Start { robot, error } => write!(f, "robot {robot}: {error}"),
-            Self::Overlap { robots: [a, b] } => write!(
-                f,
-                "robots {a} and {b} overlap at their starts; choose starts farther apart"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for FleetError {}
 
 /// Robots in one world.
 #[derive(Clone, Debug)]

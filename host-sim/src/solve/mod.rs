@@ -7,6 +7,7 @@ pub mod sheet;
 
 use core::fmt::Write as _;
 
+use clap::ValueEnum;
 use fieldline_planner::field::{
     GOAL, Method, Preference, SCRATCH_FLOATS, SIDE, SWEEPS_PER_CYCLE, SolverConfig, Stop, Window,
     descent, preference, solve,
@@ -25,11 +26,11 @@ const MOST_IDLE: u32 = 40;
 const MOST_SWEEPS: u32 = 60_000;
 
 /// The requested solver.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Solver {
-    /// Multigrid, with Gauss–Seidel where multigrid is known to be weak.
+    /// Multigrid; Gauss-Seidel under strong preferences
     Multigrid,
-    /// Gauss–Seidel from q = 0, as in the papers.
+    /// Gauss-Seidel from q = 0
     GaussSeidel,
 }
 

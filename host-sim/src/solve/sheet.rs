@@ -8,6 +8,8 @@
 
 use core::fmt;
 
+use thiserror::Error;
+
 use fieldline_planner::field::SIDE;
 
 /// Class of a drawn cell.
@@ -30,140 +32,24 @@ pub struct Sheet {
     pub robot: Option<(usize, usize)>,
 }
 
-/// Why a drawn window or its preferences are invalid.
-#[derive(Clone, Debug, PartialEq)]
-pub enum SheetError {
-    /// The file has no cells.
-    Empty,
-    /// A character is no cell.
-    Character {
-        /// From 1.
-        line: usize,
-        /// From 1.
-        column: usize,
-        /// The character.
-        found: char,
-    },
-    /// A line is not as long as the first one.
-    Ragged {
-        /// From 1.
-        line: usize,
-        /// Its cells.
-        found: usize,
-        /// The first line's cells.
-        expected: usize,
-    },
-    /// There are more lines than a window has rows.
-    TooTall {
-        /// The first surplus line.
-        line: usize,
-    },
-    /// A line has more characters than a window has columns.
-    TooWide {
-        /// From 1.
-        line: usize,
-        /// Its cells.
-        found: usize,
-    },
-    /// There is a second robot.
-    SecondRobot {
-        /// From 1.
-        line: usize,
-        /// From 1.
-        column: usize,
-    },
-    /// A preference is not a number.
-    Number {
-        /// From 1.
-        line: usize,
-        /// From 1, in numbers.
-        column: usize,
-        /// The text.
-        found: String,
-    },
-    /// A preference is outside of ±2, where the field diverges.
-    Range {
-        /// From 1.
-        line: usize,
-        /// From 1, in numbers.
-        column: usize,
-        /// The preference.
-        found: f32,
-    },
-    /// The preferences have another number of lines than the window.
-    Shape {
-        /// Lines of the preferences.
-        lines: usize,
-        /// Lines of the window.
-        expected: usize,
-    },
+/// Why a drawn window or its preferences are invalid: the place, the fault and the remedy.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{0}")]
+pub struct SheetError(String);
+
+/// An error at a line and a column, both from 1.
+fn at<T>(line: usize, column: usize, fault: impl fmt::Display) -> Result<T, SheetError> {
+    Err(SheetError(format!("line {line}, column {column}: {fault}")))
 }
 
-impl fmt::Display for SheetError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty => write!(f, "the file is empty: draw at least one cell"),
-            Self::Character {
-                line,
-                column,
-                found,
-            } => write!(
-                f,
-                "line {line}, column {column}: {found:?} is no cell: \
-                 use # obstacle, G goal, . free, R robot"
-            ),
-            Self::Ragged {
-                line,
-                found,
-                expected,
-            } => write!(
-                f,
-                "line {line}, column {}: the line has {found} cells and the first one {expected}: \
-                 make them equal",
-                found.min(expected) + 1
-            ),
-            Self::TooTall { line } => write!(
-                f,
-                "line {line}, column 1: a window has at most {SIDE} lines: remove the rest"
-            ),
-            Self::TooWide { line, found } => write!(
-                f,
-                "line {line}, column {}: the line has {found} cells, a window at most {SIDE}: \
-                 remove the rest",
-                SIDE + 1
-            ),
-            Self::SecondRobot { line, column } => write!(
-                f,
-                "line {line}, column {column}: a second robot: keep one R"
-            ),
-            Self::Number {
-                line,
-                column,
-                found,
-            } => write!(
-                f,
-                "line {line}, column {column}: {found:?} is no number: \
-                 write preferences as 0.25,-0.5,..."
-            ),
-            Self::Range {
-                line,
-                column,
-                found,
-            } => write!(
-                f,
-                "line {line}, column {column}: preference {found} diverges: \
-                 keep it within -2 and 2"
-            ),
-            Self::Shape { lines, expected } => write!(
-                f,
-                "{lines} lines of preferences for {expected} lines of window: \
-                 give one number per cell"
-            ),
-        }
+/// Refuses a line that is not as long as the first one.
+fn check_length(line: usize, found: usize, expected: usize) -> Result<(), SheetError> {
+    if found == expected {
+        return Ok(());
     }
+    let fault = format!("the line has {found} cells and the first one {expected}: make them equal");
+    at(line, found.min(expected) + 1, fault)
 }
-
-impl core::error::Error for SheetError {}
 
 impl Sheet {
     /// Reads a drawn window.
@@ -176,21 +62,18 @@ impl Sheet {
         for (i, drawn) in text.lines().enumerate() {
             let line = i + 1;
             if line > SIDE {
-                return Err(SheetError::TooTall { line });
+                let fault = format!("a window has at most {SIDE} lines: remove the rest");
+                return at(line, 1, fault);
             }
             let row = parse_line(line, drawn, &mut robot)?;
             let expected = rows.first().map_or(row.len(), Vec::len);
-            if row.len() != expected {
-                return Err(SheetError::Ragged {
-                    line,
-                    found: row.len(),
-                    expected,
-                });
-            }
+            check_length(line, row.len(), expected)?;
             rows.push(row);
         }
         if rows.first().is_none_or(Vec::is_empty) {
-            return Err(SheetError::Empty);
+            return Err(SheetError(
+                "the file is empty: draw at least one cell".into(),
+            ));
         }
         let top = rows.len() - 1;
         rows.reverse();
@@ -223,23 +106,21 @@ fn parse_line(
             '#' => SheetCell::Obstacle,
             'G' => SheetCell::Goal,
             '.' => SheetCell::Free,
-            'R' if robot.is_some() => return Err(SheetError::SecondRobot { line, column }),
+            'R' if robot.is_some() => return at(line, column, "a second robot: keep one R"),
             'R' => {
                 *robot = Some((i, line - 1));
                 SheetCell::Free
             }
             _ => {
-                return Err(SheetError::Character {
-                    line,
-                    column,
-                    found,
-                });
+                let fault = "is no cell: use # obstacle, G goal, . free, R robot";
+                return at(line, column, format!("{found:?} {fault}"));
             }
         });
     }
     if row.len() > SIDE {
         let found = row.len();
-        return Err(SheetError::TooWide { line, found });
+        let fault = format!("the line has {found} cells, a window at most {SIDE}: remove the rest");
+        return at(line, SIDE + 1, fault);
     }
     Ok(row)
 }
@@ -258,20 +139,15 @@ pub fn preferences(text: &str, sheet: &Sheet) -> Result<Vec<Vec<f32>>, SheetErro
             .map(|(j, number)| preference(line, j + 1, number))
             .collect();
         let numbers = numbers?;
-        if numbers.len() != sheet.width() {
-            return Err(SheetError::Ragged {
-                line,
-                found: numbers.len(),
-                expected: sheet.width(),
-            });
-        }
+        check_length(line, numbers.len(), sheet.width())?;
         rows.push(numbers);
     }
     if rows.len() != sheet.height() {
-        return Err(SheetError::Shape {
-            lines: rows.len(),
-            expected: sheet.height(),
-        });
+        return Err(SheetError(format!(
+            "{} lines of preferences for {} lines of window: give one number per cell",
+            rows.len(),
+            sheet.height()
+        )));
     }
     rows.reverse();
     Ok(rows)
@@ -281,16 +157,14 @@ fn preference(line: usize, column: usize, written: &str) -> Result<f32, SheetErr
     let number = written.trim();
     match number.parse::<f32>() {
         Ok(found) if found.abs() <= 2.0 => Ok(found),
-        Ok(found) if !found.is_nan() => Err(SheetError::Range {
-            line,
-            column,
-            found,
-        }),
-        _ => Err(SheetError::Number {
-            line,
-            column,
-            found: number.into(),
-        }),
+        Ok(found) if !found.is_nan() => {
+            let fault = format!("preference {found} diverges: keep it within -2 and 2");
+            at(line, column, fault)
+        }
+        _ => {
+            let fault = "is no number: write preferences as 0.25,-0.5,...";
+            at(line, column, format!("{number:?} {fault}"))
+        }
     }
 }
 

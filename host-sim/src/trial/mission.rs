@@ -4,7 +4,7 @@
 //! hello → map box → Simulator, Account → run → Report
 //! ```
 
-use core::fmt;
+use thiserror::Error;
 
 use fieldline_protocol::message::{
     self as wire, LoopLimits, Order, Preference, SpaceField, Strategy, UnevenGround,
@@ -205,35 +205,14 @@ impl OdometryProfile {
 }
 
 /// Reason why a run could not begin.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 pub enum MissionError {
     /// The world or the start in it is bad.
-    World(WorldError),
+    #[error(transparent)]
+    World(#[from] WorldError),
     /// The device did not answer the hello.
-    Link(LinkError),
-}
-
-impl fmt::Display for MissionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::World(error) => error.fmt(f),
-            Self::Link(error) => error.fmt(f),
-        }
-    }
-}
-
-impl core::error::Error for MissionError {}
-
-impl From<WorldError> for MissionError {
-    fn from(error: WorldError) -> Self {
-        Self::World(error)
-    }
-}
-
-impl From<LinkError> for MissionError {
-    fn from(error: LinkError) -> Self {
-        Self::Link(error)
-    }
+    #[error(transparent)]
+    Link(#[from] LinkError),
 }
 
 /// Strategies on the device, by name.

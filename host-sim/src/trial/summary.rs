@@ -14,6 +14,7 @@ use crate::report::{self, Report, SCHEMA_VERSION};
 use crate::robot::OdometryModel;
 use crate::robot::presets::DEFAULT;
 use crate::sim::{SimConfig, Simulator};
+use crate::slam::particles::ParticleReport;
 use crate::world::{Start, World};
 
 /// Returns the report.
@@ -25,18 +26,13 @@ pub(super) fn report(
 ) -> Report {
     let world = simulator.world();
     let ground = mission.uneven_ground.map_or("flat", |_| "uneven");
-    let closes_loops = mission.strategy() == Strategy::Ouroboros;
     let order = on_device(&mission.strategy).map(|_| mission.order());
-    // The host's copy of the map has no door, which lets odometry begin anew.
-    let is_mirrored = !record.tiles.is_empty() && mission.disturbances.restart_ms.is_none();
     Report {
         schema_version: SCHEMA_VERSION,
         world: world.name().into(),
         strategy: mission.strategy.clone(),
         ground: ground.into(),
-        preference: mission
-            .preference()
-            .map(|it| wording::preference(it).into()),
+        preference: preference(mission),
         levels: mission.levels(),
         tdbvp_impatience: impatience(mission),
         order: order.map(|it| wording::order(it).into()),
@@ -66,7 +62,7 @@ pub(super) fn report(
         steps: record.steps.len() as u64,
         coverage: coverage(account),
         loops: loops(simulator, record),
-        loop_closing: closes_loops.then(|| record.loop_closing()),
+        loop_closing: closes_loops(mission).then(|| record.loop_closing()),
         patrol: patrol(mission, record),
         safety: safety(simulator),
         true_ground: true_ground(simulator, record),
@@ -77,15 +73,10 @@ pub(super) fn report(
         link_stats: record.link_stats,
         input_faults: record.input_faults(),
         digest: record.digest.to_string(),
-        debug: report::Debug {
-            map_matches_mirror: is_mirrored.then(|| account.mirror.equals(&record.tiles)),
-        },
+        debug: debug(mission, account, record),
         network: None,
         slam: None,
-        particles: account
-            .particles
-            .as_ref()
-            .map(|it| it.report(account.coverage.fraction())),
+        particles: particles(account),
     }
 }
 
@@ -98,6 +89,28 @@ fn mission_log(mission: &Mission, record: &Record) -> Vec<Entry> {
     mission_log::last(mission_log::entries(
         steps.map(|step| (&step.estimate, &step.command)),
     ))
+}
+
+fn preference(mission: &Mission) -> Option<String> {
+    let preference = mission.preference();
+    preference.map(|it| wording::preference(it).into())
+}
+
+fn closes_loops(mission: &Mission) -> bool {
+    mission.strategy() == Strategy::Ouroboros
+}
+
+fn debug(mission: &Mission, account: &Account, record: &Record) -> report::Debug {
+    // The host's copy of the map has no door, which lets odometry begin anew.
+    let is_mirrored = !record.tiles.is_empty() && mission.disturbances.restart_ms.is_none();
+    report::Debug {
+        map_matches_mirror: is_mirrored.then(|| account.mirror.equals(&record.tiles)),
+    }
+}
+
+fn particles(account: &Account) -> Option<ParticleReport> {
+    let particles = account.particles.as_ref();
+    particles.map(|it| it.report(account.coverage.fraction()))
 }
 
 /// Returns the wiring mistakes, as on the command line; `None` without any.

@@ -4,11 +4,10 @@
 //! (degrees) and `step` (metres) are the robot's own. A preference beyond ±2 is refused, because
 //! the relaxation of the field would diverge.
 
-use core::fmt;
-use core::str::FromStr;
-
 use fieldline_protocol::message::{Preference, UnevenGround};
 use fixed::types::{I4F12, I16F16};
+
+use crate::spec::{Form, SpecError};
 
 /// The values of \[Maffei20, Table I\], and the 3-AT's limits.
 pub const TABLE_I: UnevenGround = UnevenGround {
@@ -40,18 +39,11 @@ pub fn radians(degrees: f64) -> I4F12 {
     I4F12::saturating_from_num((degrees.to_radians() / step).round() * step)
 }
 
-/// Reason why a text is not a list of parameters.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ParameterError(String);
-
-impl fmt::Display for ParameterError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let form = "write for instance h_obs=0.3,h_hole=-0.6,eps_gmax=0.5";
-        write!(f, "{}; {form}", self.0)
-    }
-}
-
-impl core::error::Error for ParameterError {}
+const FORM: Form = Form {
+    what: "parameter",
+    usage: "for instance h_obs=0.3,h_hole=-0.6,eps_gmax=0.5",
+    repeated: "",
+};
 
 /// Returns the least and the greatest value of a parameter, and the reason.
 fn bounds(name: &str) -> Option<([f64; 2], &'static str)> {
@@ -73,23 +65,16 @@ fn bounds(name: &str) -> Option<([f64; 2], &'static str)> {
 /// Returns these parameters with the changes that a text names.
 ///
 /// # Errors
-/// [`ParameterError`] for an unknown name, a text that is no number, and a number out of range.
-pub fn changed(mut ground: UnevenGround, text: &str) -> Result<UnevenGround, ParameterError> {
-    for part in text.split(',').map(str::trim) {
-        let Some((name, number)) = part.split_once('=') else {
-            return Err(ParameterError(format!("'{part}' is not name=number")));
+/// [`SpecError`] for an unknown name, a text that is no number, and a number out of range.
+pub fn changed(mut ground: UnevenGround, text: &str) -> Result<UnevenGround, SpecError> {
+    FORM.read(text, |word| {
+        let Some(([least, most], reason)) = bounds(word.name()) else {
+            return Err(word.unknown());
         };
-        let name = name.trim();
-        let Some(([least, most], reason)) = bounds(name) else {
-            return Err(ParameterError(format!("there is no parameter '{name}'")));
-        };
-        let value = f64::from_str(number.trim()).unwrap_or(f64::NAN);
-        if !(value >= least && value <= most) {
-            let text = format!("{name} must be from {least} to {most}, not '{number}': {reason}");
-            return Err(ParameterError(text));
-        }
+        let must = format!("from {least} to {most}: {reason}");
+        let value = word.number(least..=most, &must)?;
         let short = I4F12::saturating_from_num(value);
-        match name {
+        match word.name() {
             "eps_hmin" => ground.least = short,
             "eps_gmax" => ground.most = short,
             "h_obs" => ground.obstacle = short,
@@ -101,7 +86,8 @@ pub fn changed(mut ground: UnevenGround, text: &str) -> Result<UnevenGround, Par
             "roll" => ground.roll = radians(value),
             _ => ground.step = short,
         }
-    }
+        Ok(())
+    })?;
     Ok(ground)
 }
 
@@ -126,7 +112,10 @@ mod tests {
         let limited = changed(TABLE_I, "roll=15").unwrap();
         assert!(limited.roll < limited.climb);
         let error = changed(TABLE_I, "roll=0").unwrap_err().to_string();
-        assert!(error.contains("roll must be from 1 to 45"), "{error}");
+        assert!(
+            error.contains("'roll=0'; it must be from 1 to 45"),
+            "{error}"
+        );
     }
 
     #[test]
@@ -145,17 +134,17 @@ mod tests {
     #[test]
     fn the_bad_part_is_named() {
         for (text, word) in [
-            ("", "''"),
-            ("h_obs", "'h_obs'"),
-            ("h_obs=-1", "'-1'"),
+            ("", "eps_gmax=0.5"),
+            ("h_obs", "'h_obs'; it must be"),
+            ("h_obs=-1", "'h_obs=-1'"),
             ("h_hole=0.6", "below the ground"),
-            ("gravity=9", "'gravity'"),
+            (
+                "gravity=9",
+                "'gravity=9'; use for instance h_obs=0.3,h_hole=-0.6,eps_gmax=0.5",
+            ),
         ] {
             let error = changed(TABLE_I, text).unwrap_err().to_string();
-            assert!(
-                error.contains(word) && error.contains("eps_gmax=0.5"),
-                "{error}"
-            );
+            assert!(error.contains(word), "{error}");
         }
     }
 }

@@ -1,14 +1,15 @@
 //! Errors of a world, each in one line that names the file, the fault and the remedy.
 
-use core::fmt;
+use thiserror::Error;
 
 use super::{KINDS, builtin};
 use crate::near;
 
 /// Why a world cannot be opened.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 pub enum WorldError {
     /// The world file is missing or unreadable; also an unknown built-in name.
+    #[error("{}", unreadable(file, reason))]
     Unreadable {
         /// File or name as given.
         file: String,
@@ -16,6 +17,7 @@ pub enum WorldError {
         reason: String,
     },
     /// The name of a generated world has a bad seed or size.
+    #[error("{name}: {reason}")]
     Generated {
         /// The name as given.
         name: String,
@@ -23,6 +25,7 @@ pub enum WorldError {
         reason: String,
     },
     /// Not YAML, or not one document of it.
+    #[error("{file}: {reason}; correct the YAML there")]
     Syntax {
         /// The world file.
         file: String,
@@ -30,6 +33,7 @@ pub enum WorldError {
         reason: String,
     },
     /// A key that is unknown or missing, or whose value is impossible.
+    #[error("{file}: {}{reason}", if key.is_empty() { String::new() } else { format!("{key}: ") })]
     Value {
         /// The world file.
         file: String,
@@ -39,6 +43,7 @@ pub enum WorldError {
         reason: String,
     },
     /// An image that is missing, damaged or of the wrong kind.
+    #[error("{file}: image {image}: {reason}")]
     Image {
         /// The world file.
         file: String,
@@ -48,6 +53,7 @@ pub enum WorldError {
         reason: String,
     },
     /// A start pose in which the robot does not fit.
+    #[error("{file}: robots[{index}]: {reason}")]
     Start {
         /// The world file or built-in name.
         file: String,
@@ -57,6 +63,7 @@ pub enum WorldError {
         reason: String,
     },
     /// People who cannot walk there.
+    #[error("{world}: {reason}")]
     People {
         /// The world's name.
         world: String,
@@ -65,37 +72,15 @@ pub enum WorldError {
     },
 }
 
-impl fmt::Display for WorldError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unreadable { file, .. } if file.is_empty() => {
-                write!(f, "the world has no name; give {}", accepted())
-            }
-            Self::Unreadable { file, reason } => write!(
-                f,
-                "{file}: cannot read this world ({reason}); give {}{}",
-                accepted(),
-                near::hint(file, builtin::names().into_iter().chain(kinds()))
-            ),
-            Self::Generated { name, reason } => write!(f, "{name}: {reason}"),
-            Self::Syntax { file, reason } => {
-                write!(f, "{file}: {reason}; correct the YAML there")
-            }
-            Self::Value { file, key, reason } if key.is_empty() => write!(f, "{file}: {reason}"),
-            Self::Value { file, key, reason } => write!(f, "{file}: {key}: {reason}"),
-            Self::Image {
-                file,
-                image,
-                reason,
-            } => write!(f, "{file}: image {image}: {reason}"),
-            Self::Start {
-                file,
-                index,
-                reason,
-            } => write!(f, "{file}: robots[{index}]: {reason}"),
-            Self::People { world, reason } => write!(f, "{world}: {reason}"),
-        }
+fn unreadable(file: &str, reason: &str) -> String {
+    if file.is_empty() {
+        return format!("the world has no name; give {}", accepted());
     }
+    let near = near::hint(file, builtin::names().into_iter().chain(kinds()));
+    format!(
+        "{file}: cannot read this world ({reason}); give {}{near}",
+        accepted()
+    )
 }
 
 /// Words that begin the name of a generated world.
@@ -112,5 +97,3 @@ fn accepted() -> String {
         generated.join(", ")
     )
 }
-
-impl core::error::Error for WorldError {}

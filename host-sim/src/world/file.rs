@@ -88,17 +88,11 @@ impl Loader<'_> {
     fn build(&self, document: &Node) -> Result<World, WorldError> {
         let keys = Table::new("", document, &KEYS).map_err(|bad| self.value(bad))?;
         let plan = Plan::read(&keys).map_err(|bad| self.value(bad))?;
-        let walls = match plan.image {
-            Some(name) => Some(self.walls(name, &plan)?),
-            None => None,
-        };
-        let mut notes = Vec::new();
-        let walls = match walls {
-            Some((walls, seen)) => {
-                notes.extend(seen);
-                Some(walls)
-            }
-            None => None,
+        let (walls, mut notes) = match plan.image {
+            Some(name) => self
+                .walls(name, &plan)
+                .map(|(walls, notes)| (Some(walls), notes))?,
+            None => (None, Vec::new()),
         };
         let elevation = match &plan.heights {
             Some(heights) => Some(self.elevation(heights, walls.as_ref(), &mut notes)?),
@@ -139,23 +133,18 @@ impl Loader<'_> {
 
     /// Refuses a world of which no start can be used. Notes those that cannot.
     fn check_starts(&self, world: &mut World) -> Result<(), WorldError> {
-        let checks = world.starts.iter().enumerate();
-        let checks = checks.map(|(index, start)| world.check_start(&self.file, index, *start));
-        let bad: Vec<WorldError> = checks.filter_map(Result::err).collect();
-        if bad.len() == world.starts.len()
-            && let Some(first) = bad.into_iter().next()
-        {
-            return Err(first);
+        let starts = world.starts.iter().enumerate();
+        let checks = starts.map(|(index, start)| world.check_start(&self.file, index, *start));
+        let mut bad: Vec<WorldError> = checks.filter_map(Result::err).collect();
+        if bad.len() == world.starts.len() && !bad.is_empty() {
+            return Err(bad.swap_remove(0));
         }
-        let checks = world.starts.iter().enumerate();
-        let checks = checks.map(|(index, start)| world.check_start(&self.file, index, *start));
-        let notes = checks.filter_map(|check| match check {
-            Err(WorldError::Start { index, reason, .. }) => Some(format!(
+        let notes = bad.into_iter().filter_map(|bad| match bad {
+            WorldError::Start { index, reason, .. } => Some(format!(
                 "robots[{index}]: {reason}; no run begins there, the other starts are good"
             )),
             _ => None,
         });
-        let notes: Vec<String> = notes.collect();
         world.notes.extend(notes);
         Ok(())
     }
@@ -339,12 +328,13 @@ impl<'a> Plan<'a> {
 
 /// A length above 0 m, if the key is present.
 pub(super) fn length(keys: &Table<'_>, key: &str) -> Result<Option<f64>, BadKey> {
-    match keys.number(key)? {
-        Some(metres) if !(metres.is_finite() && metres > 0.0) => Err(keys.bad(
-            key,
-            &format!("{metres} is not a length above 0 m; give metres"),
-        )),
-        other => Ok(other),
+    let metres = keys.number(key)?;
+    match metres.filter(|metres| !(metres.is_finite() && *metres > 0.0)) {
+        None => Ok(metres),
+        Some(bad) => {
+            let reason = format!("{bad} is not a length above 0 m; give metres");
+            Err(keys.bad(key, &reason))
+        }
     }
 }
 

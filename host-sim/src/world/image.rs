@@ -3,9 +3,9 @@
 //! A sample is the sum of the pixel's colour channels, so averaging loses nothing.
 //! `sample / full` is the shade, from 0 (black) to 1 (white).
 
-use core::fmt;
 use std::fs;
 use std::path::Path;
+use thiserror::Error;
 
 use super::{pgm, png_file};
 
@@ -30,13 +30,16 @@ pub struct Image {
 }
 
 /// Why an image cannot be read.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum ImageError {
     /// Missing or unreadable.
+    #[error("{0}; paths are relative to the world file")]
     Unreadable(String),
     /// Neither PGM nor PNG.
+    #[error("neither PGM (P2, P5) nor PNG; convert it to one of them")]
     UnknownFormat,
     /// Fewer pixels than the header promises.
+    #[error("truncated, {found} of {expected} pixels; copy the whole file")]
     Truncated {
         /// Pixels the header promises.
         expected: usize,
@@ -44,17 +47,25 @@ pub enum ImageError {
         found: usize,
     },
     /// The header claims samples of 16 bits, but there are only as many bytes as pixels.
+    #[error(
+        "its header claims samples of 16 bits (a greatest value above 255), but it holds one byte \
+         a pixel; set the greatest value to 255, or save it with 16 bits"
+    )]
     OneByteSamples,
     /// The file ends before its pixels, or before its trailer.
+    #[error("truncated; copy the whole file")]
     EndsEarly,
     /// More pixels than the header promises.
+    #[error("more data than the {expected} pixels of its header; correct the width and height")]
     Surplus {
         /// Pixels the header promises.
         expected: usize,
     },
     /// A header or content that makes no sense.
+    #[error("damaged, {0}; save the image anew")]
     Malformed(String),
     /// No pixels at all, or more than [`MAX_PIXELS`].
+    #[error("{width} x {height} pixels; save it with 1 to {MAX_PIXELS} pixels")]
     Size {
         /// Columns.
         width: usize,
@@ -62,41 +73,6 @@ pub enum ImageError {
         height: usize,
     },
 }
-
-impl fmt::Display for ImageError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unreadable(reason) => {
-                write!(f, "{reason}; paths are relative to the world file")
-            }
-            Self::UnknownFormat => {
-                write!(f, "neither PGM (P2, P5) nor PNG; convert it to one of them")
-            }
-            Self::Truncated { expected, found } => write!(
-                f,
-                "truncated, {found} of {expected} pixels; copy the whole file"
-            ),
-            Self::OneByteSamples => write!(
-                f,
-                "its header claims samples of 16 bits (a greatest value above 255), \
-                 but it holds one byte a pixel; \
-                 set the greatest value to 255, or save it with 16 bits"
-            ),
-            Self::EndsEarly => write!(f, "truncated; copy the whole file"),
-            Self::Surplus { expected } => write!(
-                f,
-                "more data than the {expected} pixels of its header; correct the width and height"
-            ),
-            Self::Malformed(reason) => write!(f, "damaged, {reason}; save the image anew"),
-            Self::Size { width, height } => write!(
-                f,
-                "{width} x {height} pixels; save it with 1 to {MAX_PIXELS} pixels"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for ImageError {}
 
 impl Image {
     /// Reads a PGM or PNG file; its first bytes tell the format.

@@ -2,19 +2,23 @@
 //!
 //! The parser knows the YAML syntax; this module checks the keys and their types.
 
-use crate::near;
 use core::fmt;
-use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use std::collections::BTreeMap;
 
-/// A value.
-#[derive(Clone, Debug, PartialEq)]
+use serde::Deserialize;
+
+use crate::near;
+
+/// A value; the first form that it has.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(untagged)]
 pub(super) enum Node {
     Null,
     Bool(bool),
     Number(f64),
     Text(String),
     List(Vec<Self>),
-    Table(Vec<(String, Self)>),
+    Table(BTreeMap<String, Self>),
 }
 
 /// A fault in a key or in its value.
@@ -29,7 +33,7 @@ pub(super) struct BadKey {
 /// The keys and values of one table, and the key of the table.
 pub(super) struct Table<'a> {
     path: &'a str,
-    entries: &'a [(String, Node)],
+    entries: &'a BTreeMap<String, Node>,
 }
 
 /// Parses one document.
@@ -62,12 +66,9 @@ impl<'a> Table<'a> {
             });
         };
         let table = Self { path, entries };
-        match entries
-            .iter()
-            .find(|(key, _)| !known.contains(&key.as_str()))
-        {
+        match entries.keys().find(|key| !known.contains(&key.as_str())) {
             None => Ok(table),
-            Some((key, _)) => {
+            Some(key) => {
                 let near = near::hint(key, known.iter().copied());
                 let known = known.join(", ");
                 Err(table.bad(key, &format!("unknown key; known are {known}{near}")))
@@ -76,10 +77,7 @@ impl<'a> Table<'a> {
     }
 
     pub(super) fn node(&self, key: &str) -> Option<&'a Node> {
-        self.entries
-            .iter()
-            .find(|(name, _)| name == key)
-            .map(|(_, node)| node)
+        self.entries.get(key)
     }
 
     pub(super) fn number(&self, key: &str) -> Result<Option<f64>, BadKey> {
@@ -161,69 +159,5 @@ impl fmt::Display for Node {
             Self::List(list) => write!(f, "a list of {}", list.len()),
             Self::Table(_) => write!(f, "a table"),
         }
-    }
-}
-
-impl<'de> Deserialize<'de> for Node {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(NodeVisitor)
-    }
-}
-
-struct NodeVisitor;
-
-impl<'de> Visitor<'de> for NodeVisitor {
-    type Value = Node;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a value")
-    }
-
-    fn visit_unit<E>(self) -> Result<Node, E> {
-        Ok(Node::Null)
-    }
-
-    fn visit_none<E>(self) -> Result<Node, E> {
-        Ok(Node::Null)
-    }
-
-    fn visit_some<D: Deserializer<'de>>(self, deserializer: D) -> Result<Node, D::Error> {
-        Node::deserialize(deserializer)
-    }
-
-    fn visit_bool<E>(self, flag: bool) -> Result<Node, E> {
-        Ok(Node::Bool(flag))
-    }
-
-    fn visit_i64<E>(self, number: i64) -> Result<Node, E> {
-        Ok(Node::Number(number as f64))
-    }
-
-    fn visit_u64<E>(self, number: u64) -> Result<Node, E> {
-        Ok(Node::Number(number as f64))
-    }
-
-    fn visit_f64<E>(self, number: f64) -> Result<Node, E> {
-        Ok(Node::Number(number))
-    }
-
-    fn visit_str<E>(self, text: &str) -> Result<Node, E> {
-        Ok(Node::Text(text.to_owned()))
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut access: A) -> Result<Node, A::Error> {
-        let mut list = Vec::new();
-        while let Some(node) = access.next_element()? {
-            list.push(node);
-        }
-        Ok(Node::List(list))
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut access: A) -> Result<Node, A::Error> {
-        let mut entries = Vec::new();
-        while let Some(entry) = access.next_entry()? {
-            entries.push(entry);
-        }
-        Ok(Node::Table(entries))
     }
 }

@@ -243,7 +243,7 @@ fn bad_campaigns_are_refused_in_one_line_with_file_and_line() {
             ["bad.toml:3: unknown field `wrlds`", "did you mean worlds?"],
         ),
         ("starts = 7", ["bad.toml:3: ", "only 2 starts"]),
-        ("slam = \"hosts\"", ["bad.toml:2: ", "give off or host"]),
+        ("slam = \"hosts\"", ["bad.toml:2: ", "use off or host"]),
         (
             "odometry = \"nosy\"",
             ["bad.toml:2: ", "a similar value exists: 'noisy'"],

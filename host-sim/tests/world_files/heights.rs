@@ -28,8 +28,8 @@ fn heights_are_linear_between_the_samples() {
     assert_eq!((world.starts()[0].x_m, world.starts()[0].y_m), (-0.5, 2.5));
 }
 
-#[test]
-fn each_fault_of_the_heights_has_its_error_line() {
+/// A folder with a floor of 6 × 4 pixels, and heights of which some are wrong.
+fn pictures() -> Folder {
     let folder = Folder::new("bad-heights");
     let white = |width: usize, height: usize| {
         let mut bytes = format!("P5 {width} {height} 255\n").into_bytes();
@@ -47,6 +47,12 @@ fn each_fault_of_the_heights_has_its_error_line() {
         "empty.pgm",
         b"P2 6 4 9\n0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n",
     );
+    folder
+}
+
+#[test]
+fn each_fault_of_the_heights_has_its_error_line() {
+    let folder = pictures();
     let world = |image: &str, rest: &str| {
         format!("image: map.pgm\n{KEYS}elevation: {{image: {image}, z_min: 0, z_max: 1{rest}}}\n")
     };
@@ -99,11 +105,8 @@ fn each_fault_of_the_heights_has_its_error_line() {
         ),
     ];
     for (text, error) in cases {
-        assert_eq!(
-            folder.error(&text),
-            format!("world.yaml: {error}"),
-            "{text}"
-        );
+        let error = format!("world.yaml: {error}");
+        assert_eq!(folder.error(&text), error, "{text}");
     }
 }
 

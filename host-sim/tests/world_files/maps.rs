@@ -101,6 +101,7 @@ fn png_of_every_kind_reads_the_same() {
     assert_eq!(drawn(&world), ["??", ".?"]);
 }
 
+/// `faults.txt` has a world file in a line, with `\n` between its lines, and below it the error.
 #[test]
 fn each_fault_has_its_error_line() {
     let folder = Folder::new("mistakes");
@@ -128,201 +129,21 @@ fn each_fault_has_its_error_line() {
     );
     folder.write("cut.png", &whole[..whole.len() - 20]);
     folder.write("tail.png", &whole[..whole.len() - 6]);
-    let good = format!("image: map.pgm\n{KEYS}");
-    let heights = |rest: &str| format!("{KEYS}elevation: {{image: map.pgm, {rest}}}");
     let known = "image, resolution, origin, negate, occupied_thresh, free_thresh, mode, \
                  wall_height, glass, low, elevation, robots";
-    let cases = [
-        (
-            format!("{good}robot: []"),
-            format!("robot: unknown key; known are {known}; did you mean robots?"),
-        ),
-        (
-            heights("z_min: 0, z_max: 1, nodata: 0"),
-            "elevation.nodata: unknown key; \
-             known are image, z_min, z_max, no_data, bits, resolution, origin; \
-             did you mean no_data?"
-                .into(),
-        ),
-        (
-            String::new(),
-            format!("nothing is not a table; write `key: value` with {known}"),
-        ),
-        (
-            "image: [".into(),
-            "unclosed bracket '[' at line 1, column 8; correct the YAML there".into(),
-        ),
-        (
-            format!("{good}resolution: 2"),
-            "duplicate mapping key: resolution not allowed here at line 4, column 1; \
-             correct the YAML there"
-                .into(),
-        ),
-        (
-            "image: map.pgm\nresolution: 1".into(),
-            "origin: missing; add for instance `origin: [0, 0, 0]`".into(),
-        ),
-        (
-            "image: map.pgm\norigin: [0, 0]".into(),
-            "resolution: missing; add for instance `resolution: 0.05`".into(),
-        ),
-        (
-            KEYS.into(),
-            "image: missing; give an image, an elevation, or both".into(),
-        ),
-        (
-            "resolution: wide\norigin: [0, 0]".into(),
-            "resolution: `wide` is not a number; give one".into(),
-        ),
-        (
-            "resolution: -1\norigin: [0, 0]".into(),
-            "resolution: -1 is not a length above 0 m; give metres".into(),
-        ),
-        (
-            "resolution: 1\norigin: [0, 0, 90]".into(),
-            "origin: a yaw of 90 is more than a turn; give radians".into(),
-        ),
-        (
-            "resolution: 1\norigin: [0, 0, -nan]".into(),
-            "origin: yaw is NaN (`-nan`); some map savers write that for an orientation of zeros; \
-             write 0"
-                .into(),
-        ),
-        (
-            "resolution: 1\norigin: [nan, 0, 0]".into(),
-            "origin: x is NaN (`nan`); write where the picture's lower left corner lies, metres"
-                .into(),
-        ),
-        (
-            "resolution: 1\norigin: [0, 0, .nan]".into(),
-            "value `.nan` is not a finite number at line 2, column 16; some map savers write NaN \
-             for the yaw of an origin: write 0 there; correct the YAML there"
-                .into(),
-        ),
-        (
-            format!(
-                "{}elevation: {{image: map.pgm}}",
-                KEYS.replace(", 0]", ", 0.5]")
-            ),
-            "origin: a yaw of 0.5 is not supported with an elevation; turn both pictures and set \
-             it to 0"
-                .into(),
-        ),
-        (
-            "resolution: 1\norigin: 3".into(),
-            "origin: 3 is not [x, y, yaw]; give metres and radians".into(),
-        ),
-        (
-            format!("{good}free_thresh: 0"),
-            "free_thresh: 0 is not between 0 and 1; the usual value is 0.196".into(),
-        ),
-        (
-            format!("{good}occupied_thresh: 1.5"),
-            "occupied_thresh: 1.5 is not between free_thresh (0.196) and 1; \
-             the usual value is 0.65"
-                .into(),
-        ),
-        (
-            format!("{good}free_thresh: 0.7"),
-            "occupied_thresh: 0.65 is not between free_thresh (0.7) and 1; \
-             the usual value is 0.65"
-                .into(),
-        ),
-        (
-            format!("{good}negate: 2"),
-            "negate: 2 is not 0 or 1; give one of them".into(),
-        ),
-        (
-            format!("{good}mode: grey"),
-            "mode: grey is not supported; use trinary, scale or raw".into(),
-        ),
-        (
-            format!("{good}mode: raw\nnegate: 1"),
-            "negate: 1 has no meaning with mode raw, whose values are occupancies; set it to 0"
-                .into(),
-        ),
-        (
-            format!("image: clear.png\n{KEYS}"),
-            "image clear.png: it has no free floor, and 75.0 % of its pixels are transparent, \
-             which count as unknown; flatten the picture onto white and save it without alpha"
-                .into(),
-        ),
-        (
-            heights("z_min: 2, z_max: 2"),
-            "elevation.z_max: 2 is not above z_min (2); swap or correct them".into(),
-        ),
-        (
-            heights("z_min: 0, z_max: 1, no_data: x"),
-            "elevation.no_data: `x` is not a number; give one".into(),
-        ),
-        (
-            format!("{KEYS}elevation: {{image: colour.png, z_min: 0, z_max: 1}}"),
-            "image colour.png: heights must be grey, and this image has colours; convert it".into(),
-        ),
-        (
-            format!("image: none.pgm\n{KEYS}"),
-            "image none.pgm: No such file or directory (os error 2); \
-             paths are relative to the world file"
-                .into(),
-        ),
-        (
-            format!("image: text.png\n{KEYS}"),
-            "image text.png: neither PGM (P2, P5) nor PNG; convert it to one of them".into(),
-        ),
-        (
-            format!("image: cut.pgm\n{KEYS}"),
-            "image cut.pgm: truncated, 2 of 9 pixels; copy the whole file".into(),
-        ),
-        (
-            format!("image: odd.pgm\n{KEYS}"),
-            "image odd.pgm: more data than the 2 pixels of its header; \
-             correct the width and height"
-                .into(),
-        ),
-        (
-            format!("image: cut.png\n{KEYS}"),
-            "image cut.png: truncated; copy the whole file".into(),
-        ),
-        (
-            format!("image: tail.png\n{KEYS}"),
-            "image tail.png: truncated; copy the whole file".into(),
-        ),
-        (
-            format!("{good}robots: []"),
-            "robots: a list of 0 is not a list of [x, y, yaw]; give at least one start".into(),
-        ),
-        (
-            format!("{good}robots: [[1]]"),
-            "robots[0]: a list of 1 is not [x, y, yaw]; give metres and radians".into(),
-        ),
-        (
-            format!("{good}robots: [[1.5, 2.5, 0]]"),
-            "robots[0]: (1.50, 2.50) lies in a wall; the most room is at (0.50, 3.50)".into(),
-        ),
-        (
-            format!("{good}robots: [[0.75, 2.5], [9, 2.5]]"),
-            "robots[0]: (0.75, 2.50) is too close to a wall, the robot overlaps it; \
-             the most room is at (0.50, 3.50)"
-                .into(),
-        ),
-        (
-            format!("{good}robots: [[9, 2.5]]"),
-            "robots[0]: (9.00, 2.50) lies outside of the map; the most room is at (0.50, 3.50)"
-                .into(),
-        ),
-        (
-            format!("image: dark.pgm\n{KEYS}"),
-            "robots[0]: (-0.50, 2.50) lies in a wall; \
-             no place in the world is free; check negate and the thresholds"
-                .into(),
-        ),
-    ];
-    for (text, error) in cases {
-        assert_eq!(
-            folder.error(&text),
-            format!("world.yaml: {error}"),
-            "{text}"
-        );
+    let filled = |text: &str| {
+        text.replace("{good}", "image: map.pgm\n{keys}")
+            .replace("{keys}", KEYS)
+            .replace("{turned}", &KEYS.replace(", 0]", ", 0.5]"))
+            .replace("{known}", known)
+            .replace("\\n", "\n")
+    };
+    let lines: Vec<&str> = include_str!("faults.txt").lines().collect();
+    let (cases, rest) = lines.as_chunks::<2>();
+    assert!(cases.len() > 30 && rest.is_empty());
+    for [text, error] in cases {
+        let error = format!("world.yaml: {}", filled(error.trim_start()));
+        assert_eq!(folder.error(&filled(text)), error, "{text}");
     }
 }
 

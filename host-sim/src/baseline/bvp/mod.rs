@@ -333,9 +333,7 @@ mod tests {
                 ..scene(&chart, robot, 0)
             };
             let mut bvp = Bvp::new();
-            for _ in 0..10 {
-                assert_eq!(bvp.plan(&scene), Outcome::Path);
-            }
+            assert!((0..10).all(|_| bvp.plan(&scene) == Outcome::Path));
             bvp.heading_at(&scene, robot).expect("a path")
         };
         assert!(

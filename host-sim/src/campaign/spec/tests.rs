@@ -150,14 +150,10 @@ fn bad_files_are_refused_with_their_line() {
     ] {
         refused(&format!("{base}{more}\n"), &words);
     }
-    refused(
-        "strategies = [\"bvp\"]",
-        &["c.toml", "missing field `worlds`"],
-    );
-    refused(
-        "worlds = [\"a\"]\nstrategies = []",
-        &["`strategies` is empty"],
-    );
+    let no_worlds = "strategies = [\"bvp\"]";
+    refused(no_worlds, &["c.toml", "missing field `worlds`"]);
+    let no_strategy = "worlds = [\"a\"]\nstrategies = []";
+    refused(no_strategy, &["`strategies` is empty"]);
     let twice = "worlds = [\"a\",\n\"a\"]\nstrategies = [\"bvp\"]";
     refused(twice, &["`worlds` has a twice"]);
 }

@@ -24,7 +24,7 @@ use fieldline_protocol::message::{Control, Request};
 
 use super::LinkError;
 use super::line::Line;
-pub use spec::{Faults, FaultsError};
+pub use spec::Faults;
 
 /// Longest delay of a frame.
 const MAX_DELAY: Duration = Duration::from_millis(300);

@@ -20,12 +20,12 @@ mod scans;
 mod spoil;
 mod starts;
 
-use core::fmt;
 use core::str::FromStr;
 
 use super::ask::{Answer, Ask};
 use super::choices::{Bytes, Choices};
 use super::target::Capacity;
+use crate::spec::{self, SpecError};
 
 /// Most requests of a session, or steps of a plausible one.
 pub const LONGEST: usize = 2_000;
@@ -65,28 +65,11 @@ pub enum Generator {
     Plausible,
 }
 
-/// Why a text names no generator.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnknownGenerator(String);
-
-impl fmt::Display for UnknownGenerator {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "unknown generator '{}'; use absurd, tame or plausible",
-            self.0
-        )
-    }
-}
-
-impl core::error::Error for UnknownGenerator {}
-
 impl FromStr for Generator {
-    type Err = UnknownGenerator;
+    type Err = SpecError;
 
-    fn from_str(text: &str) -> Result<Self, UnknownGenerator> {
-        let named = Self::ALL.into_iter().find(|it| it.name() == text);
-        named.ok_or_else(|| UnknownGenerator(text.into()))
+    fn from_str(text: &str) -> Result<Self, SpecError> {
+        spec::choice("generator", text, Self::ALL.map(|it| (it.name(), it)))
     }
 }
 

@@ -4,6 +4,7 @@ use core::fmt;
 use core::str::FromStr;
 
 use super::proposal::Proposal;
+use crate::spec::{Form, SpecError, Word};
 
 /// Most particles.
 pub const MOST_PARTICLES: usize = 1_000;
@@ -20,41 +21,40 @@ pub struct ParticleSpec {
     pub noise: Option<f64>,
 }
 
-impl FromStr for ParticleSpec {
-    type Err = String;
+const FORM: Form = Form {
+    what: "word",
+    usage: "proposal=motion, proposal=matched or noise=20, separated by commas",
+    repeated: "",
+};
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        let mut parts = text.split(',');
-        let count = parts.next().and_then(|count| count.parse().ok());
+impl FromStr for ParticleSpec {
+    type Err = SpecError;
+
+    fn from_str(text: &str) -> Result<Self, SpecError> {
+        let (count, words) = text.split_once(',').unwrap_or((text, ""));
+        let count = count.parse().ok();
         let count = count.filter(|count| (1..=MOST_PARTICLES).contains(count));
         let mut spec = Self {
             count: count.ok_or_else(|| {
-                format!("begin with a number of particles from 1 to {MOST_PARTICLES}, as in 300")
+                SpecError::new(format!(
+                    "begin with a number of particles from 1 to {MOST_PARTICLES}, as in 300"
+                ))
             })?,
             proposal: Proposal::default(),
             noise: None,
         };
-        for part in parts {
-            match part.split_once('=') {
-                Some(("proposal", "motion")) => spec.proposal = Proposal::Motion,
-                Some(("proposal", "matched")) => spec.proposal = Proposal::Matched,
-                Some(("proposal", other)) => {
-                    return Err(format!("unknown proposal '{other}'; use motion or matched"));
-                }
-                Some(("noise", factor)) => {
-                    let factor = factor
-                        .parse()
-                        .ok()
-                        .filter(|it| (0.0..=1_000.0).contains(it));
-                    spec.noise =
-                        Some(factor.ok_or("noise is a number from 0 to 1000, as in noise=20")?);
-                }
-                _ => {
-                    return Err(format!(
-                        "unknown '{part}'; use proposal=motion, proposal=matched or noise=20"
-                    ));
-                }
+        let read = |word: &Word<'_>| {
+            match (word.key.as_str(), word.value) {
+                ("proposal=", "motion") => spec.proposal = Proposal::Motion,
+                ("proposal=", "matched") => spec.proposal = Proposal::Matched,
+                ("proposal=", _) => return Err(word.bad("motion or matched")),
+                ("noise=", _) => spec.noise = Some(word.number(0.0..=1e3, "from 0 to 1000")?),
+                _ => return Err(word.unknown()),
             }
+            Ok(())
+        };
+        if !words.is_empty() {
+            FORM.read(words, read)?;
         }
         Ok(spec)
     }
@@ -100,7 +100,7 @@ mod tests {
             ("300,noise=NaN", "0 to 1000"),
             ("300,matched", "proposal=matched"),
         ] {
-            let error = text.parse::<ParticleSpec>().expect_err(text);
+            let error = text.parse::<ParticleSpec>().expect_err(text).to_string();
             assert!(error.contains(remedy), "{text}: {error}");
         }
     }

@@ -16,6 +16,7 @@ use fieldline_protocol::message as wire;
 use fixed::types::I16F16;
 
 use crate::robot::{Noise, Source};
+use crate::spec::{self, SpecError};
 use crate::world::Start;
 
 /// Standard deviations of the starts that the robots are told.
@@ -55,22 +56,19 @@ impl StartError {
 }
 
 impl FromStr for StartError {
-    type Err = String;
+    type Err = SpecError;
 
     /// Parses metres and degrees, as in `0.3,5`.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let usage = "give metres, 0.001 to 2, and degrees, 0.1 to 20, as in 0.3,5";
-        let parse = |(m, degrees): (&str, &str)| -> Option<Self> {
-            let (sd_m, degrees): (f64, f64) = (m.parse().ok()?, degrees.parse().ok()?);
-            let fits = (0.001..=2.0).contains(&sd_m) && (0.1..=20.0).contains(&degrees);
-            fits.then_some(Self {
-                sd_m,
-                sd_rad: degrees.to_radians(),
-            })
-        };
-        text.split_once(',')
-            .and_then(parse)
-            .ok_or_else(|| usage.into())
+    fn from_str(text: &str) -> Result<Self, SpecError> {
+        match spec::numbers(text).as_deref() {
+            Some(&[sd_m, deg]) if (0.001..=2.0).contains(&sd_m) && (0.1..=20.0).contains(&deg) => {
+                let sd_rad = deg.to_radians();
+                Ok(Self { sd_m, sd_rad })
+            }
+            _ => Err(SpecError::new(
+                "give metres, 0.001 to 2, and degrees, 0.1 to 20, as in 0.3,5",
+            )),
+        }
     }
 }
 

@@ -17,7 +17,7 @@ mod starts;
 mod summary;
 mod timetable;
 
-use core::fmt;
+use thiserror::Error;
 
 use fieldline_protocol::message as wire;
 
@@ -34,7 +34,7 @@ use crate::world::{Start, World, WorldError};
 use member::{Common, Member, Presence};
 pub use misplaced::StartError;
 use starts::Places;
-pub use timetable::{Appointment, AppointmentError, Timetable, TimetableError};
+pub use timetable::{Appointment, Timetable, TimetableError};
 
 /// Time for the last exchange after the team has ended, milliseconds. A digest of every tile of a
 /// full map takes 8 s.
@@ -100,11 +100,17 @@ fn seed_of(seed: u64, robot: usize) -> u64 {
 }
 
 /// Reason why a team's run could not begin.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Error, PartialEq)]
 pub enum TeamError {
     /// There are too few robots or too many.
+    #[error("a team of {0} robots is not possible; give 1 to {MOST_ROBOTS}")]
     Robots(usize),
     /// Not all robots find a place to start.
+    #[error(
+        "only {fitting} of {robots} robots find room {}; take fewer robots, or another --start{}",
+        if *apart { "apart" } else { "side by side" },
+        if *apart { "" } else { ", or say --apart" }
+    )]
     Room {
         /// Robots that do.
         fitting: usize,
@@ -114,12 +120,16 @@ pub enum TeamError {
         apart: bool,
     },
     /// The timetable is impossible.
+    #[error(transparent)]
     Timetable(TimetableError),
     /// The radio names a robot that the team does not have.
+    #[error("a partition of the radio names robot {0}, which the team does not have")]
     Stranger(usize),
     /// Robots do not fit at their starts.
+    #[error(transparent)]
     Fleet(FleetError),
     /// A robot cannot begin.
+    #[error("robot {robot}: {error}")]
     Robot {
         /// Its number.
         robot: usize,
@@ -127,39 +137,6 @@ pub enum TeamError {
         error: MissionError,
     },
 }
-
-impl fmt::Display for TeamError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Robots(robots) => write!(
-                f,
-                "a team of {robots} robots is not possible; give 1 to {MOST_ROBOTS}"
-            ),
-            Self::Room {
-                fitting,
-                robots,
-                apart,
-            } => {
-                let how = if *apart { "apart" } else { "side by side" };
-                let remedy = if *apart { "" } else { ", or say --apart" };
-                write!(
-                    f,
-                    "only {fitting} of {robots} robots find room {how}; \
-                     take fewer robots, or another --start{remedy}"
-                )
-            }
-            Self::Timetable(error) => error.fmt(f),
-            Self::Stranger(robot) => write!(
-                f,
-                "a partition of the radio names robot {robot}, which the team does not have"
-            ),
-            Self::Fleet(error) => error.fmt(f),
-            Self::Robot { robot, error } => write!(f, "robot {robot}: {error}"),
-        }
-    }
-}
-
-impl core::error::Error for TeamError {}
 
 impl From<WorldError> for TeamError {
     fn from(error: WorldError) -> Self {

@@ -1,7 +1,9 @@
 //! Who leaves the team and who joins it again, and when: `2@90`, robot 2 at 90 s.
 
-use core::fmt;
 use core::str::FromStr;
+use thiserror::Error;
+
+use crate::spec::SpecError;
 
 /// A robot leaves or joins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -12,38 +14,24 @@ pub struct Appointment {
     pub robot: usize,
 }
 
-/// Why a text is no appointment.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct AppointmentError(String);
-
-impl fmt::Display for AppointmentError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self(text) = self;
-        write!(
-            f,
-            "'{text}' is not ROBOT@SECONDS; write for instance 2@90 for robot 2 after 90 s"
-        )
-    }
-}
-
-impl core::error::Error for AppointmentError {}
-
 impl FromStr for Appointment {
-    type Err = AppointmentError;
+    type Err = SpecError;
 
-    fn from_str(text: &str) -> Result<Self, AppointmentError> {
+    fn from_str(text: &str) -> Result<Self, SpecError> {
         let parse = || {
             let (robot, seconds) = text.split_once('@')?;
             let seconds: f64 = seconds.trim().parse().ok()?;
-            let time_ms = (1e-3..=4e6)
-                .contains(&seconds)
-                .then_some(seconds * 1000.0)? as u32;
+            let is_time = (1e-3..=4e6).contains(&seconds);
             Some(Self {
-                time_ms,
+                time_ms: is_time.then_some(seconds * 1000.0)? as u32,
                 robot: robot.trim().parse().ok()?,
             })
         };
-        parse().ok_or_else(|| AppointmentError(text.into()))
+        parse().ok_or_else(|| {
+            SpecError::new(format!(
+                "'{text}' is not ROBOT@SECONDS; write for instance 2@90 for robot 2 after 90 s"
+            ))
+        })
     }
 }
 
@@ -57,9 +45,13 @@ pub struct Timetable {
 }
 
 /// Why a timetable is impossible.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum TimetableError {
     /// It names a robot that the team does not have.
+    #[error(
+        "there is no robot {robot}; the {robots} robots have the numbers 0 to {}",
+        robots.saturating_sub(1)
+    )]
     NoRobot {
         /// The number.
         robot: usize,
@@ -67,29 +59,12 @@ pub enum TimetableError {
         robots: usize,
     },
     /// A robot joins that has not left, or leaves that has not joined again.
+    #[error("robot {robot} must leave before it joins, and join before it leaves again")]
     Order {
         /// The robot.
         robot: usize,
     },
 }
-
-impl fmt::Display for TimetableError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoRobot { robot, robots } => write!(
-                f,
-                "there is no robot {robot}; the {robots} robots have the numbers 0 to {}",
-                robots.saturating_sub(1)
-            ),
-            Self::Order { robot } => write!(
-                f,
-                "robot {robot} must leave before it joins, and join before it leaves again"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for TimetableError {}
 
 impl Timetable {
     /// Checks that each robot of a team leaves and joins in turn.

@@ -5,7 +5,7 @@ use super::*;
 use crate::metrics::{Footing, HEADINGS};
 use crate::robot::{Limits, RADIUS_M};
 use crate::sim::{Loss, SimConfig, Simulator};
-use crate::world::{GridCell, Place, Start, World, place, places};
+use crate::world::{Class, GridCell, Place, Start, World, place, places};
 use core::f64::consts::{FRAC_PI_2, PI};
 use fieldline_planner::geometry::Cell;
 use fieldline_protocol::message::Twist;
