@@ -8,6 +8,8 @@ use std::time::Instant;
 use anyhow::{Context as _, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use host_sim::live::Observer;
+use host_sim::trial::sight::Sight;
 use host_sim::trial::{Flow, Progress, Watch, wording};
 
 use super::note;
@@ -46,6 +48,8 @@ pub(super) struct Onlooker {
     interrupt: Interrupt,
     /// Real time of the start, and the simulated seconds that one second may have at most.
     began: Option<(Instant, f64)>,
+    /// The live page, which keeps the pace then.
+    live: Option<Observer>,
 }
 
 impl Onlooker {
@@ -64,7 +68,19 @@ impl Onlooker {
             bar,
             interrupt,
             began: pace.map(|pace| (Instant::now(), pace)),
+            live: None,
         }
+    }
+
+    /// Lets a live page see the run, and keep its pace.
+    pub(super) fn show(&mut self, live: Option<Observer>) {
+        self.live = live;
+        self.began = self.began.filter(|_| self.live.is_none());
+    }
+
+    /// Returns the live page.
+    pub(super) const fn live(&mut self) -> Option<&mut Observer> {
+        self.live.as_mut()
     }
 
     /// Removes the line.
@@ -86,6 +102,12 @@ impl Watch for Onlooker {
             Flow::Interrupt
         } else {
             Flow::Continue
+        }
+    }
+
+    fn see(&mut self, sight: &mut Sight<'_>) {
+        if let Some(live) = &mut self.live {
+            live.see(sight);
         }
     }
 }

@@ -8,6 +8,9 @@
 //! A goal that is refused or cannot be reached is left, and the next one is tried. The exploration
 //! may have ended in any way that leaves the robot where it knows its place.
 //!
+//! A viewer's request to drive comes before all of this. The drive that it cuts short is made later,
+//! the robot stands where the request took it, and *resume* goes on with what was to be done.
+//!
 //! Units: metres and radians in the device's map; in reports degrees.
 
 use std::collections::VecDeque;
@@ -46,6 +49,8 @@ struct Trip {
     end: Option<Status>,
     /// The device's reason if it refused the order.
     refused: Option<String>,
+    /// It was a viewer's request, or one cut it short: no part of the orders' success.
+    is_aside: bool,
     begun_ms: u32,
     ended_ms: u32,
     /// Where the robot thought it was at the end, and where it was.
@@ -64,6 +69,12 @@ pub(super) struct Itinerary {
     home: Option<Stamped>,
     /// The device turned home by itself.
     is_spent: bool,
+    /// The last trip is in hand.
+    drives: bool,
+    /// The last trip was a viewer's, and the robot stands at its end.
+    waits: bool,
+    /// What ends the run with the next step: no order is left after a viewer's request.
+    ending: Option<Ending>,
 }
 
 impl Itinerary {
@@ -112,6 +123,9 @@ impl Itinerary {
         if self.home.is_none() {
             self.home = record.steps.first().map(|step| step.estimate);
         }
+        if let Some(ending) = self.ending.take() {
+            return Ok(Some(ending));
+        }
         match command.status {
             Status::Going(Errand::Home) if !self.is_on_the_way_home() => {
                 self.finish(None, None, record);
@@ -120,26 +134,112 @@ impl Itinerary {
                 self.begin(Leg::Home, record);
                 Ok(None)
             }
+            Status::Arrived(_) | Status::Unreachable(_) if self.waits => Ok(None),
             status @ (Status::Arrived(_) | Status::Unreachable(_)) => {
                 self.finish(Some(status), None, record);
-                self.next(record, link)
+                self.waits = self.is_a_viewers();
+                match self.waits {
+                    true => Ok(None),
+                    false => self.next(record, link),
+                }
             }
             _ => Ok(None),
         }
     }
 
+    /// Drives where a viewer asks for. A drive in hand is put off.
+    ///
+    /// # Errors
+    /// [`LinkError`]; if the device refuses, nothing changes.
+    pub(super) fn interject(
+        &mut self,
+        control: &Control,
+        record: &Record,
+        link: &mut dyn Link,
+    ) -> Result<Status, LinkError> {
+        let leg = match control {
+            Control::GoTo { x, y } => Leg::Goal([x, y].map(|at| at.to_num())),
+            _ => Leg::Home,
+        };
+        let status = link.control(control)?;
+        self.put_off(record);
+        self.begin(leg, record);
+        self.set_aside();
+        Ok(status)
+    }
+
+    /// Ends a pause; else goes on with what a viewer's request cut short.
+    ///
+    /// # Errors
+    /// As [`Itinerary::interject`].
+    pub(super) fn resume(
+        &mut self,
+        record: &Record,
+        link: &mut dyn Link,
+    ) -> Result<Status, LinkError> {
+        let status = record.steps.last().map(|step| step.command.status);
+        let status = status.unwrap_or_default();
+        if matches!(status, Status::Paused | Status::EmergencyStop) {
+            return link.control(&Control::Resume);
+        }
+        if !self.waits && !(self.drives && self.is_a_viewers()) {
+            return Err(LinkError::Refused("nothing was interrupted".into()));
+        }
+        if self.explored.is_none() {
+            let status = link.control(&Control::Explore)?;
+            self.put_off(record);
+            return Ok(status);
+        }
+        self.put_off(record);
+        self.ending = self.next(record, link)?;
+        Ok(status)
+    }
+
+    /// Returns true if the robot stands where a viewer's request took it.
+    pub(super) const fn waits(&self) -> bool {
+        self.waits
+    }
+
+    /// Leaves the drive in hand. One of the orders is made later.
+    fn put_off(&mut self, record: &Record) {
+        self.waits = false;
+        if !self.drives {
+            return;
+        }
+        if !self.is_a_viewers()
+            && let Some(trip) = self.trips.last()
+        {
+            self.left.push_front(trip.leg);
+            self.set_aside();
+        }
+        self.finish(None, None, record);
+    }
+
+    fn set_aside(&mut self) {
+        if let Some(trip) = self.trips.last_mut() {
+            trip.is_aside = true;
+        }
+    }
+
+    fn is_a_viewers(&self) -> bool {
+        self.trips.last().is_some_and(|trip| trip.is_aside)
+    }
+
     fn is_on_the_way_home(&self) -> bool {
-        self.trips.last().is_some_and(|trip| trip.leg == Leg::Home)
+        let last = self.trips.last().filter(|_| self.drives);
+        last.is_some_and(|trip| trip.leg == Leg::Home)
     }
 
     /// Enters the beginning of a drive.
     fn begin(&mut self, leg: Leg, record: &Record) {
         let step = record.steps.last();
         let now_ms = step.map_or(0, |step| step.truth.time_ms);
+        self.drives = true;
         self.trips.push(Trip {
             leg,
             end: None,
             refused: None,
+            is_aside: false,
             begun_ms: now_ms,
             ended_ms: now_ms,
             estimate: Stamped::default(),
@@ -149,6 +249,9 @@ impl Itinerary {
 
     /// Enters the end of the drive in hand.
     fn finish(&mut self, end: Option<Status>, refused: Option<String>, record: &Record) {
+        if !core::mem::take(&mut self.drives) {
+            return;
+        }
         let (Some(trip), Some(step)) = (self.trips.last_mut(), record.steps.last()) else {
             return;
         };
@@ -168,7 +271,7 @@ impl Itinerary {
             }
         }
         // With a budget that is spent only home counts.
-        let counts = |trip: &&Trip| !self.is_spent || trip.leg == Leg::Home;
+        let counts = |trip: &&Trip| !trip.is_aside && (!self.is_spent || trip.leg == Leg::Home);
         let mut failed = self.trips.iter().filter(counts);
         let ending = match failed.find(|trip| !trip.has_arrived()) {
             None if self.is_spent => Some(Ending::AtHome),

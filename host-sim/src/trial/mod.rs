@@ -19,6 +19,7 @@ pub mod planned_path;
 pub mod record;
 pub mod relief;
 pub mod series;
+pub mod sight;
 pub mod snapshot;
 pub mod space;
 mod summary;
@@ -40,6 +41,7 @@ use itinerary::{Itinerary, Orders};
 use mirror::Mirror;
 use relief::Relief;
 use series::Series;
+use sight::Sight;
 use snapshot::{Snapshot, Window};
 
 pub use body::Body;
@@ -76,10 +78,14 @@ pub trait Survey {
     }
 }
 
-/// Watches a run and may end it: a progress line, a pacer, the interrupt key.
+/// Watches a run and may end it: a progress line, a pacer, the interrupt key, a live page.
 pub trait Watch {
     /// Called after every step; the answer says if the run goes on.
     fn step(&mut self, progress: &Progress) -> Flow;
+
+    /// Called then with all that the step knows, before the robot drives. Whoever watches may look
+    /// and make requests of the device, as [`Sight::request`] does.
+    fn see(&mut self, _sight: &mut Sight<'_>) {}
 }
 
 /// Watches nothing; the run goes on.
@@ -183,18 +189,26 @@ fn drive(
     (freeze, itinerary): (&mut FreezeDetector, &mut Itinerary),
 ) -> Ending {
     loop {
-        let command = match step(setup, cast, record, series) {
-            Ok(command) => command,
+        let (observation, command) = match step(setup, cast, record, series) {
+            Ok(done) => done,
             Err(error) => return Ending::Link(error),
         };
         let ended = match ended(setup, cast.watch, freeze, record, &command) {
             Some(ending) => itinerary.end_or_go_on(ending, record, cast.link),
             None => itinerary.note(&command, record, cast.link),
         };
-        match ended {
-            Ok(None) => {}
-            Ok(Some(ending)) => return ending,
-            Err(error) => return Ending::Link(error),
+        let ended = ended.unwrap_or_else(|error| Some(Ending::Link(error)));
+        cast.watch.see(&mut Sight {
+            setup,
+            observation: &observation,
+            mirror: cast.survey.mirror().map(|mirror| &*mirror),
+            ending: ended.as_ref(),
+            record,
+            itinerary,
+            link: cast.link,
+        });
+        if let Some(ending) = ended {
+            return ending;
         }
         cast.body.drive(Some(command.velocity));
         if let Some(loss) = cast.body.loss() {
@@ -209,7 +223,7 @@ fn step(
     cast: &mut Cast<'_>,
     record: &mut Record,
     series: &mut Series<Snapshot>,
-) -> Result<Command, LinkError> {
+) -> Result<(Observation, Command), LinkError> {
     let (observation, truth) = (cast.body.observe(), cast.body.truth());
     let asked = Instant::now();
     let command = corrector::observe(setup, cast, &observation)?;
@@ -226,7 +240,7 @@ fn step(
         snapshot.relief = relief(cast, snapshot.window.as_ref());
         series.take(snapshot);
     }
-    Ok(command)
+    Ok((observation, command))
 }
 
 /// Returns the reason that ends the run after this step, if there is one.

@@ -61,6 +61,8 @@ pub struct Record {
     pub frontiers: Vec<ResidualFrontier>,
     /// Drives by order after the exploration.
     pub trips: Vec<report::Trip>,
+    /// Requests of whoever watched the run.
+    pub live_requests: Vec<report::LiveRequest>,
     /// Map and window during the run, for pictures.
     pub snapshots: Vec<Snapshot>,
     /// Map and window before and after the largest corrections of the map, for pictures.
@@ -93,6 +95,7 @@ impl Default for Record {
             relief: None,
             frontiers: Vec::new(),
             trips: Vec::new(),
+            live_requests: Vec::new(),
             snapshots: Vec::new(),
             corrections: Vec::new(),
             corrected: Vec::new(),
