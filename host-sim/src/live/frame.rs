@@ -5,7 +5,8 @@
 //!
 //! RUN       JSON: world, strategy, link, hull, laser, what is shown
 //! STEP      time ms u32; believed x, y, yaw f32; true x, y, yaw f32; speed, turn rate f32;
-//!           known share, path m f32; round trip µs, instructions u32; quality u8; flags u8;
+//!           known share, path m f32; round trip µs, instructions u32;
+//!           quality u8 (0 odometry, 1 tracking, 2 degenerate, 3 lost, 4 stands); flags u8;
 //!           loops closed, given up u16; covariance xx, xy, yy in m² f32
 //! STATUS    the planner's status in words, when it changes
 //! ROWS      tile x, y i16; mask u32 of the rows that changed; for each of them 8 bytes, 2 bits a
@@ -71,8 +72,9 @@ pub(super) fn json(out: &mut Vec<u8>, kind: Kind, value: &impl Serialize) {
     record(out, kind, &serde_json::to_vec(value).unwrap_or_default());
 }
 
-/// Appends a step, with the share of the world that is known and the metres driven.
-pub(super) fn step(out: &mut Vec<u8>, step: &Step, known: f64, path_m: f64) {
+/// Appends a step, with the share of the world that is known and the metres driven. A session that
+/// `localises` and says no pose stands.
+pub(super) fn step(out: &mut Vec<u8>, step: &Step, localises: bool, known: f64, path_m: f64) {
     let command = &step.command;
     let mut payload = Vec::with_capacity(72);
     payload.extend(step.truth.time_ms.to_le_bytes());
@@ -91,11 +93,13 @@ pub(super) fn step(out: &mut Vec<u8>, step: &Step, known: f64, path_m: f64) {
     );
     payload.extend((step.round_trip_us as u32).to_le_bytes());
     payload.extend(command.cost.instructions.to_le_bytes());
-    payload.push(command.location.map_or(0, |at| match at.quality {
-        Quality::Tracking => 1,
-        Quality::Degenerate { .. } => 2,
-        Quality::Lost => 3,
-    }));
+    payload.push(match command.location.map(|at| at.quality) {
+        None if !localises => 0,
+        Some(Quality::Tracking) => 1,
+        Some(Quality::Degenerate { .. }) => 2,
+        Some(Quality::Lost) => 3,
+        None => 4,
+    });
     let loops = command.loops;
     let flags = [loops.closing, command.cost.budget_exhausted];
     payload.push((0..).zip(flags).map(|(bit, is)| u8::from(is) << bit).sum());

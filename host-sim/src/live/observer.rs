@@ -163,7 +163,8 @@ impl Observer {
             self.told.tell_path(&mut out, inside.as_ref());
         }
         let record = sight.record();
-        frame::step(&mut out, step, record.coverage, record.path_m);
+        let localises = sight.setup.start.localise;
+        frame::step(&mut out, step, localises, record.coverage, record.path_m);
         let mut scan = Vec::new();
         if let Some(level) = sight.observation.scans.first() {
             frame::scan(&mut scan, &level.ranges_mm);

@@ -189,7 +189,8 @@ fn drive(
     (freeze, itinerary): (&mut FreezeDetector, &mut Itinerary),
 ) -> Ending {
     loop {
-        let (observation, command) = match step(setup, cast, record, series) {
+        let stands = itinerary.waits();
+        let (observation, command) = match step(setup, cast, record, series, stands) {
             Ok(done) => done,
             Err(error) => return Ending::Link(error),
         };
@@ -218,18 +219,33 @@ fn drive(
 }
 
 /// Observes, asks the planner, and enters both in the record. Takes a snapshot if one is due.
+///
+/// A device that `stands`, where a viewer sent its robot, enters no scan: as one that is paused.
 fn step(
     setup: &Setup,
     cast: &mut Cast<'_>,
     record: &mut Record,
     series: &mut Series<Snapshot>,
+    stands: bool,
 ) -> Result<(Observation, Command), LinkError> {
     let (observation, truth) = (cast.body.observe(), cast.body.truth());
     let asked = Instant::now();
     let command = corrector::observe(setup, cast, &observation)?;
     let round_trip_us = asked.elapsed().as_secs_f64() * 1e6;
-    let coverage = cast.survey.note(&observation, &truth, &command);
-    let step = Step::new(&observation, truth, command, round_trip_us);
+    let noted = Command {
+        status: if stands {
+            Status::Paused
+        } else {
+            command.status
+        },
+        ..command
+    };
+    let coverage = cast.survey.note(&observation, &truth, &noted);
+    let mut step = Step::new(&observation, truth, command, round_trip_us);
+    let is_held = stands || command.status == Status::Paused;
+    if is_held && let Some(mirror) = cast.survey.mirror() {
+        step.carry(mirror.carried(&observation));
+    }
     record.push(step, coverage);
     corrector::correct(setup, cast, (&observation, &command), record)?;
     if setup.check_field {

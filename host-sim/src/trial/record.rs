@@ -134,6 +134,17 @@ impl Step {
     }
 }
 
+impl Step {
+    /// Takes the map's pose of a robot that stands. Its device says none then.
+    pub(super) fn carry(&mut self, pose: Option<fieldline_planner::geometry::Pose>) {
+        if let Some(pose) = pose {
+            self.estimate.x_m = pose.x_m.into();
+            self.estimate.y_m = pose.y_m.into();
+            self.estimate.yaw_rad = pose.yaw_rad.into();
+        }
+    }
+}
+
 /// Converts a pose of the wire.
 #[must_use]
 pub fn stamped(time_ms: u32, pose: &Pose) -> Stamped {

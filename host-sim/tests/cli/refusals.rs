@@ -261,6 +261,16 @@ fn bad_arguments_are_refused_in_one_line() {
         &["--check-field", "say --preference off"],
     );
     explore(
+        &["--live", "hall"],
+        &["hall", "as 127.0.0.1:8047", "a world stands before --live"],
+    );
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let taken = taken.local_addr().expect("an address").to_string();
+    explore(
+        &["--live", &taken],
+        &["--live 127.0.0.1:", "no page can be served there"],
+    );
+    explore(
         &["--patrol-for", "9"],
         &["frontier", "leave --patrol-for out"],
     );

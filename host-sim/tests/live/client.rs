@@ -16,35 +16,39 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 /// What a viewer was told.
 #[derive(Debug, Default)]
-pub struct Told {
+pub(crate) struct Told {
     /// Bytes of the history.
-    pub history: Vec<u8>,
+    pub(crate) history: Vec<u8>,
     /// Time, believed x and y, true x and y, known share of each step.
-    pub steps: Vec<[f64; 6]>,
+    pub(crate) steps: Vec<[f64; 6]>,
     /// The cells of each tile, two bits each.
-    pub tiles: BTreeMap<(i16, i16), [u8; 256]>,
+    pub(crate) tiles: BTreeMap<(i16, i16), [u8; 256]>,
     /// Statuses, in order.
-    pub statuses: Vec<String>,
+    pub(crate) statuses: Vec<String>,
     /// Requests and answers.
-    pub notes: Vec<Value>,
+    pub(crate) notes: Vec<Value>,
     /// Number of path records with a cell, of skeletons with a cell, of scans.
-    pub seen: [usize; 3],
+    pub(crate) seen: [usize; 3],
     /// What was refused.
-    pub refused: Vec<String>,
+    pub(crate) refused: Vec<String>,
     /// The end.
-    pub end: Option<Value>,
+    pub(crate) end: Option<Value>,
     /// The run.
-    pub run: Option<Value>,
+    pub(crate) run: Option<Value>,
 }
 
 /// A viewer.
-pub struct Viewer {
-    pub socket: WebSocket<TcpStream>,
-    pub told: Told,
+pub(crate) struct Viewer {
+    pub(crate) socket: WebSocket<TcpStream>,
+    pub(crate) told: Told,
 }
 
 /// Asks for the websocket. Returns the status if it is refused.
-pub fn knock(address: SocketAddr, query: &str, origin: &str) -> Result<WebSocket<TcpStream>, u16> {
+pub(crate) fn knock(
+    address: SocketAddr,
+    query: &str,
+    origin: &str,
+) -> Result<WebSocket<TcpStream>, u16> {
     let stream = TcpStream::connect(address).expect("a connection");
     stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
     let url = format!("ws://{address}/ws{query}");
@@ -59,7 +63,7 @@ pub fn knock(address: SocketAddr, query: &str, origin: &str) -> Result<WebSocket
 }
 
 /// Returns the request of a websocket.
-pub fn request(url: &str, address: SocketAddr, origin: Option<&str>) -> Request<()> {
+pub(crate) fn request(url: &str, address: SocketAddr, origin: Option<&str>) -> Request<()> {
     let request = Request::get(url)
         .header("Host", address.to_string())
         .header("Connection", "Upgrade")
@@ -74,7 +78,7 @@ pub fn request(url: &str, address: SocketAddr, origin: Option<&str>) -> Request<
 }
 
 /// Sends a request and returns the body of the answer, which has a stated length.
-pub fn say_whole(address: SocketAddr, text: &str) -> String {
+pub(crate) fn say_whole(address: SocketAddr, text: &str) -> String {
     let mut stream = TcpStream::connect(address).expect("a connection");
     stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
     stream.write_all(text.as_bytes()).expect("sent");
@@ -99,7 +103,7 @@ pub fn say_whole(address: SocketAddr, text: &str) -> String {
 }
 
 /// Sends bytes and returns all that is answered.
-pub fn say(address: SocketAddr, text: &str) -> String {
+pub(crate) fn say(address: SocketAddr, text: &str) -> String {
     let mut stream = TcpStream::connect(address).expect("a connection");
     stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
     stream.write_all(text.as_bytes()).expect("sent");
@@ -111,7 +115,7 @@ pub fn say(address: SocketAddr, text: &str) -> String {
 
 impl Viewer {
     /// Comes by the page's own address.
-    pub fn come(address: SocketAddr) -> Self {
+    pub(crate) fn come(address: SocketAddr) -> Self {
         let socket = knock(address, "", &format!("http://{address}")).expect("let in");
         Self {
             socket,
@@ -120,12 +124,12 @@ impl Viewer {
     }
 
     /// Sends a message.
-    pub fn ask(&mut self, message: &str) {
+    pub(crate) fn ask(&mut self, message: &str) {
         self.socket.send(Message::text(message)).expect("sent");
     }
 
     /// Reads until something holds.
-    pub fn until(&mut self, what: &str, mut holds: impl FnMut(&Told) -> bool) -> &Told {
+    pub(crate) fn until(&mut self, what: &str, mut holds: impl FnMut(&Told) -> bool) -> &Told {
         let begun = Instant::now();
         while !holds(&self.told) {
             assert!(
@@ -139,7 +143,7 @@ impl Viewer {
     }
 
     /// Reads until the run has ended.
-    pub fn until_end(&mut self) -> &Told {
+    pub(crate) fn until_end(&mut self) -> &Told {
         self.until("end", |told| told.end.is_some())
     }
 

@@ -10,7 +10,7 @@ use host_sim::live::{Ask, Limits, Live};
 use tungstenite::Message;
 
 use crate::client::{Viewer, knock, say};
-use crate::{open, shown, unseen};
+use crate::{mission, open, shown, unseen};
 
 fn page_at(address: SocketAddr, query: &str) -> String {
     say(
@@ -134,7 +134,7 @@ fn oversized_and_broken_frames_cost_only_their_viewer() {
         good.until_end().end.as_ref().unwrap()["digest"],
         report.digest
     );
-    assert_eq!(report.digest, unseen().digest);
+    assert_eq!(report.digest, unseen(&mission()).digest);
 }
 
 #[test]

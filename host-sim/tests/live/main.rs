@@ -10,6 +10,7 @@ use std::net::SocketAddr;
 use std::thread;
 
 use client::{Viewer, say};
+use host_sim::fence::{Fence, Polygon};
 use host_sim::link::Link;
 use host_sim::link::LinkError;
 use host_sim::link::direct::Direct;
@@ -42,23 +43,26 @@ fn open(limits: Limits) -> Live {
 
 /// Makes a run that is shown.
 fn shown(live: &Live, link: &mut dyn Link) -> (Report, Record) {
+    shown_as(live, &mission(), link)
+}
+
+fn shown_as(live: &Live, mission: &Mission, link: &mut dyn Link) -> (Report, Record) {
     let about = About {
         world: WORLD.into(),
         ..About::default()
     };
     let mut observer = live.observer(about, || false);
     let world = World::builtin(WORLD).expect("a world");
-    let run = mission::explore(&mission(), &world, link, &mut observer).expect("a run");
+    let run = mission::explore(mission, &world, link, &mut observer).expect("a run");
     observer.end(&run.0);
     run
 }
 
 /// Makes a run that nobody sees.
-fn unseen() -> Report {
+fn unseen(mission: &Mission) -> Report {
     let world = World::builtin(WORLD).expect("a world");
-    mission::explore(&mission(), &world, &mut loopback(), &mut ())
-        .expect("a run")
-        .0
+    let run = mission::explore(mission, &world, &mut loopback(), &mut ());
+    run.expect("a run").0
 }
 
 #[test]
@@ -81,7 +85,7 @@ fn the_page_is_served_whole() {
 
 #[test]
 fn the_digest_is_the_same_with_any_number_of_viewers() {
-    let alone = unseen();
+    let alone = unseen(&mission());
     for number in [0, 1, 10] {
         let live = open(Limits::default());
         let viewers: Vec<_> = (0..number)
@@ -216,7 +220,7 @@ fn two_runs_after_each_other_are_told_apart() {
 }
 
 /// Runs with a viewer who holds the clock before the first step; `act` is what it does then.
-fn steered(act: impl FnOnce(&mut Viewer)) -> (Report, Record, client::Told) {
+fn steered(mission: &Mission, act: impl FnOnce(&mut Viewer)) -> (Report, Record, client::Told) {
     let live = open(Limits::default());
     let mut viewer = Viewer::come(live.address());
     live.ask(Ask::Hold { on: true }).expect("held");
@@ -225,7 +229,7 @@ fn steered(act: impl FnOnce(&mut Viewer)) -> (Report, Record, client::Told) {
             while live.counts().viewers == 0 {
                 thread::yield_now();
             }
-            shown(&live, &mut loopback())
+            shown_as(&live, mission, &mut loopback())
         });
         viewer.until("a first step", |told| !told.steps.is_empty());
         act(&mut viewer);
@@ -247,7 +251,7 @@ fn answered(told: &client::Told, request: &str) -> Option<(bool, String)> {
 #[test]
 fn a_click_takes_the_robot_to_a_place_and_resume_goes_on_exploring() {
     let mut place = [0.0; 2];
-    let (report, record, told) = steered(|viewer| {
+    let (report, record, told) = steered(&mission(), |viewer| {
         let [_, x, y, ..] = viewer.told.steps[0];
         place = [x + 1.5, y + 0.5];
         viewer.ask(&format!(
@@ -282,36 +286,39 @@ fn a_click_takes_the_robot_to_a_place_and_resume_goes_on_exploring() {
         trip.reached && trip.error_m < 0.3 && trip.true_error_m < 0.4,
         "{trip:?}"
     );
-    assert_ne!(report.digest, unseen().digest);
+    assert_ne!(report.digest, unseen(&mission()).digest);
+    assert_eq!(report.debug.map_matches_mirror, Some(true));
+    // Odometry alone would be off by far more when the robot stands.
+    let apart = |step: &[f64; 6]| (step[1] - step[3]).hypot(step[2] - step[4]);
+    assert!(told.steps.iter().map(apart).fold(0.0, f64::max) < 0.3);
     assert_eq!(told.steps.len(), record.steps.len());
 }
 
 #[test]
 fn a_refusal_is_told_with_its_reason_and_the_run_goes_on() {
-    let (report, _, told) = steered(|viewer| {
-        viewer.ask(r#"{"do":"go-to","x":-300,"y":5}"#);
+    let mission = Mission {
+        fence: Fence {
+            no_go: vec![Polygon::rectangle([4.0, 1.0, 0.5, 0.5])],
+            ..Fence::default()
+        },
+        ..mission()
+    };
+    let (report, _, told) = steered(&mission, |viewer| {
+        viewer.ask(r#"{"do":"go-to","x":4.25,"y":1.25}"#);
         viewer.ask(r#"{"do":"resume"}"#);
         viewer.ask(r#"{"do":"go-to","x":1e300,"y":5}"#);
         viewer.ask(r#"{"do":"reset"}"#);
         viewer.ask(r#"{"do":"hold","on":false}"#);
     });
-    let (done, reason) = answered(&told, "go to -300.00,5.00").expect("an answer");
+    let (done, reason) = answered(&told, "go to 4.25,1.25").expect("an answer");
     assert!(!done && reason.len() > 20, "{reason}");
     assert!(answered(&told, "resume").is_some_and(|(done, _)| !done));
-    assert!(
-        told.refused.iter().any(|it| it.contains("3200")),
-        "{:?}",
-        told.refused
-    );
-    assert!(
-        told.refused.iter().any(|it| it.contains("reset")),
-        "{:?}",
-        told.refused
-    );
+    let refused = |word: &str| told.refused.iter().any(|it| it.contains(word));
+    assert!(refused("3200") && refused("reset"), "{:?}", told.refused);
     assert!(report.explored());
+    let alone = unseen(&mission);
     assert_eq!(
-        report.digest,
-        unseen().digest,
+        report.digest, alone.digest,
         "what is refused changes nothing"
     );
     assert_eq!(
@@ -323,7 +330,7 @@ fn a_refusal_is_told_with_its_reason_and_the_run_goes_on() {
 
 #[test]
 fn a_robot_that_is_paused_stands_until_it_goes_on_or_is_stopped() {
-    let (report, record, told) = steered(|viewer| {
+    let (report, record, told) = steered(&mission(), |viewer| {
         viewer.ask(r#"{"do":"speed","factor":10}"#);
         viewer.ask(r#"{"do":"hold","on":false}"#);
         viewer.until("a drive", |told| {
@@ -351,6 +358,7 @@ fn a_robot_that_is_paused_stands_until_it_goes_on_or_is_stopped() {
         viewer.ask(r#"{"do":"stop"}"#);
     });
     assert_eq!(report.outcome.reason, "stopped");
+    assert_eq!(report.debug.map_matches_mirror, Some(true));
     assert_eq!(told.end.as_ref().unwrap()["requests"], 3);
     assert_eq!(told.steps.len(), record.steps.len());
 }

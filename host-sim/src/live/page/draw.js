@@ -124,7 +124,8 @@ function drawAll(context, view, history, cells, show) {
     if (scan) drawScan(context, view, history, scan);
     if (show.true) drawTrail(context, view, history, "true");
     drawTrail(context, view, history, "believed");
-    drawPath(context, view, history.shown.path);
+    // A robot that stands follows no path; the last one is still in its memory.
+    if (/^(exploring|going)/.test(history.shown.status)) drawPath(context, view, history.shown.path);
     if (history.end && history.at === history.steps.length - 1) drawLeft(context, view, history.end);
     if (show.true) drawRobot(context, view, history, step.true, "true");
     drawCovariance(context, view, step);

@@ -2,9 +2,10 @@
 
 const $ = id => document.getElementById(id);
 const say = (id, words) => { const at = $(id); if (at.textContent !== words) at.textContent = words; };
-const QUALITY = ["odometry", "tracking", "degenerate", "lost"];
+const QUALITY = ["odometry", "tracking", "degenerate", "lost", "standing"];
 const QUALITY_MEANS = ["The pose is that of the odometry", "The scan holds the pose",
-  "In some direction only odometry holds the pose", "The scan contradicts the map"];
+  "In some direction only odometry holds the pose", "The scan contradicts the map",
+  "The robot stands, and the pose is carried by the odometry"];
 
 function clock(ms) {
   const s = Math.floor(ms / 1000), pad = n => String(n).padStart(2, "0");
@@ -28,7 +29,7 @@ function showNumbers(history) {
   say("speed", step.v.toFixed(2) + " m/s");
   say("quality", QUALITY[step.quality]);
   $("quality").title = QUALITY_MEANS[step.quality];
-  $("quality").className = step.quality > 1 ? "bad" : "";
+  $("quality").className = step.quality === 2 || step.quality === 3 ? "bad" : "";
   showPoses(step);
   showBudget(step, run);
   const loops = [step.flags & 1 ? "closing a loop" : "", step.closed ? step.closed + " closed" : "",

@@ -259,7 +259,7 @@ impl<'a> Member<'a> {
             corrector,
         };
         let mut series: Series<Snapshot> = Series::new(0);
-        let (_, command) = step(&self.setup, &mut cast, &mut self.record, &mut series)?;
+        let (_, command) = step(&self.setup, &mut cast, &mut self.record, &mut series, false)?;
         let ending = ended(
             &self.setup,
             &mut (),
