@@ -1,7 +1,7 @@
 //! `--live`: opens the live page, and keeps it after the last run.
 
+use core::net::SocketAddr;
 use core::time::Duration;
-use std::net::SocketAddr;
 
 use anyhow::{Context as _, Result};
 

@@ -11,7 +11,7 @@
 //! Units: tiles of 32 × 32 map cells of 10 cm; metres.
 
 use fieldline_planner::planner::host_copy;
-use fieldline_planner::{CellKind, FIELD_SIDE, State, Workspace};
+use fieldline_planner::{FIELD_SIDE, State, Workspace};
 
 use crate::report::grid_map::CELL_M;
 use crate::trial::planned_path::PlannedPath;
@@ -77,36 +77,28 @@ impl<const TILES: usize, const SLOTS: usize> Inside for Look<'_, TILES, SLOTS> {
     }
 
     fn local_goal(&self) -> Vec<[f64; 2]> {
-        let rows = (0..FIELD_SIDE).filter_map(|y| {
-            let row = self.workspace.field_row(u8::try_from(y).ok()?)?;
-            Some((y, row))
-        });
-        let cells = rows.flat_map(|(y, row)| {
-            let side_m = CELL_M * f64::from(row.scale.max(1));
-            let [x0, y0] = [row.origin.x, row.origin.y].map(|at| f64::from(at) * CELL_M);
-            let goals: Vec<[f64; 2]> = (row.kinds.iter().enumerate())
-                .filter(|(_, kind)| **kind == CellKind::Goal)
-                .map(|(x, _)| {
-                    [
-                        x0 + (x as f64 + 0.5) * side_m,
-                        y0 + (y as f64 + 0.5) * side_m,
-                    ]
-                })
-                .collect();
-            goals
-        });
-        cells.take(GOAL_CELLS).collect()
+        let Some(first) = self.workspace.field_row(0) else {
+            return Vec::new();
+        };
+        let window = self.workspace.window();
+        let side_m = CELL_M * f64::from(first.scale.max(1));
+        let [x_m, y_m] = [first.origin.x, first.origin.y].map(|at| f64::from(at) * CELL_M);
+        let places = (0..FIELD_SIDE).flat_map(|y| (0..FIELD_SIDE).map(move |x| (x, y)));
+        let goals = places.filter(|&(x, y)| window.is_goal(x, y));
+        let middle = |at: usize| (at as f64 + 0.5) * side_m;
+        let middles = goals.map(|(x, y)| [x_m + middle(x), y_m + middle(y)]);
+        middles.take(GOAL_CELLS).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Inside as _;
     use crate::link::Link;
     use crate::link::direct::Direct;
     use crate::link::loopback::loopback;
     use crate::sim::{SimConfig, Simulator};
     use crate::trial::planned_path;
+    use crate::trial::snapshot::{self, WindowCell};
     use crate::world::World;
     use fieldline_protocol::message::{Control, Strategy};
 
@@ -144,6 +136,9 @@ mod tests {
             assert_eq!(rows, told.skeleton.as_slice());
         }
         assert_eq!(planned_path::read(link).unwrap(), path);
+        let window = snapshot::window(link).unwrap().expect("a window");
+        let goals = (window.cells.iter()).filter(|cell| **cell == WindowCell::Goal);
+        assert_eq!(goals.count().min(super::GOAL_CELLS), goal.len());
     }
 
     #[test]

@@ -8,9 +8,9 @@
 //!
 //! The clock is held only while someone is connected. The queue of requests is bounded.
 
+use core::time::Duration;
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
 use fieldline_protocol::message::Control;
 use fixed::types::I16F16;

@@ -7,7 +7,7 @@
 //! | `Host` is an IP address or `localhost`, unless there is a token | a foreign name that was bound to this address (DNS rebinding) | 403 |
 //! | `Origin` of a websocket is `http://` and the `Host` | scripts of foreign pages | 403 |
 
-use std::net::IpAddr;
+use core::net::IpAddr;
 
 use sha2::{Digest as _, Sha256};
 use tungstenite::handshake::server::Request;

@@ -1,16 +1,17 @@
 //! The observer of a run: tells each step to the log, keeps the pace, passes requests on.
 //!
-//! The map is compared with what was told, tile by tile, after every second step in which it
-//! changed; the path after every step. The scan of every third step stays in the history, the newest
-//! one beside it.
+//! After every third step the map is compared with what was told, tile by tile, if it changed, and
+//! the scan goes into the history. The path is told when it changes, and the newest scan lies beside
+//! the history.
 //!
 //! A robot that stands because a viewer said so is no faster than real time: the run's time limit
 //! would else be over before anyone could say more.
 
+use core::fmt;
+use core::time::Duration;
 use std::collections::BTreeMap;
-use std::fmt;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use fieldline_protocol::message::NO_RETURN_MM;
 use serde_json::json;
@@ -24,10 +25,8 @@ use crate::trial::planned_path::PlannedPath;
 use crate::trial::sight::{Sight, request_words};
 use crate::trial::{Flow, Progress, Watch, wording};
 
-/// Steps from one look at the map to the next.
-const MAP_STEPS: usize = 2;
-/// Steps from one scan of the history to the next.
-const SCAN_STEPS: usize = 3;
+/// Steps from one look at the map to the next, and from one scan of the history to the next.
+const LOOK_STEPS: usize = 3;
 /// Longest wait without a look at the interrupt key.
 const BLINK: Duration = Duration::from_millis(50);
 
@@ -152,7 +151,7 @@ impl Observer {
         }
         let inside = sight.inside();
         let is_last = sight.ending.is_some();
-        if self.steps.is_multiple_of(MAP_STEPS) || is_last {
+        if self.steps.is_multiple_of(LOOK_STEPS) || is_last {
             match (&inside, sight.mirror) {
                 (Some(inside), _) => self.told.tell_inside(&mut out, inside.as_ref()),
                 (None, Some(mirror)) => self.told.tell_mirror(&mut out, mirror),
@@ -169,7 +168,7 @@ impl Observer {
         if let Some(level) = sight.observation.scans.first() {
             frame::scan(&mut scan, &level.ranges_mm);
         }
-        if self.steps.is_multiple_of(SCAN_STEPS) || is_last {
+        if self.steps.is_multiple_of(LOOK_STEPS) || is_last {
             out.extend_from_slice(&scan);
         }
         self.steps += 1;

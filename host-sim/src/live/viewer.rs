@@ -4,10 +4,11 @@
 //! that takes nothing, or answers no ping, is dropped. One that breaks the protocol or sends more
 //! than it may is dropped too. Nobody else notices.
 
+use core::sync::atomic::Ordering;
+use core::time::Duration;
 use std::io::ErrorKind;
 use std::net::TcpStream;
-use std::sync::atomic::Ordering;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use serde_json::json;
 use tungstenite::error::Error;

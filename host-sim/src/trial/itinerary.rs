@@ -182,7 +182,8 @@ impl Itinerary {
         if matches!(status, Status::Paused | Status::EmergencyStop) {
             return link.control(&Control::Resume);
         }
-        if !self.waits && !(self.drives && self.is_a_viewers()) {
+        let is_aside = self.drives && self.is_a_viewers();
+        if !self.waits && !is_aside {
             return Err(LinkError::Refused("nothing was interrupted".into()));
         }
         if self.explored.is_none() {

@@ -4,12 +4,13 @@
 //! driven over its debugging port: a websocket too. Pictures go to the test's folder below
 //! `target/tmp`, with `BLESS=1` also to `docs/`.
 
+use core::time::Duration;
 use std::io::{BufRead as _, BufReader};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use host_sim::link::loopback::loopback;
 use host_sim::live::{About, Ask, Limits, Live};

@@ -1,8 +1,10 @@
 //! A viewer as a program: a websocket, and what it was told.
 
+use core::net::SocketAddr;
+use core::time::Duration;
 use std::io::{Read as _, Write as _};
-use std::net::{SocketAddr, TcpStream};
-use std::time::{Duration, Instant};
+use std::net::TcpStream;
+use std::time::Instant;
 
 use std::collections::BTreeMap;
 

@@ -1,9 +1,11 @@
 //! Visitors that a run must not notice: strangers, liars, sleepers, crowds.
 
+use core::net::SocketAddr;
+use core::time::Duration;
 use std::io::{Read as _, Write as _};
-use std::net::{SocketAddr, TcpStream};
+use std::net::TcpStream;
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use host_sim::link::loopback::loopback;
 use host_sim::live::{Ask, Limits, Live};

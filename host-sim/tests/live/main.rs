@@ -6,7 +6,7 @@ mod browser;
 mod client;
 mod hostile;
 
-use std::net::SocketAddr;
+use core::net::SocketAddr;
 use std::thread;
 
 use client::{Viewer, say};

@@ -9,6 +9,10 @@ const COLOUR = {
 const CELLS = [[205, 211, 218], [255, 255, 255], [29, 35, 43], [138, 90, 59]];
 const TILE = 32, CELL_M = 0.1, TILE_M = TILE * CELL_M;
 
+// Text grows with that of the page: on a projector too.
+let UNIT = 1;
+const font = (size, weight) => `${weight || 400} ${size * UNIT}px system-ui, sans-serif`;
+
 // The cells of the map as an image that grows with it.
 class CellImage {
   constructor() {
@@ -92,11 +96,13 @@ class View {
     const step = history.steps[history.steps.length - 1];
     if (step) for (const pose of [step.believed, step.true]) grow(pose[0], pose[1]);
     if (box[0] > box[2]) return;
-    const margin = 40;
-    const scale = Math.min((this.width - margin) / (box[2] - box[0] + 0.6),
-      (this.height - margin) / (box[3] - box[1] + 0.6));
+    // Room for the numbers on the left, the scale and the buttons below.
+    const [left, low, margin] = [28 * UNIT, 58 * UNIT, 12];
+    const scale = Math.min((this.width - left - margin) / (box[2] - box[0] + 0.4),
+      (this.height - low - margin) / (box[3] - box[1] + 0.4));
     this.scale = Math.max(2, Math.min(60, scale));
-    this.x = (box[0] + box[2]) / 2; this.y = (box[1] + box[3]) / 2;
+    this.x = (box[0] + box[2]) / 2 - (left - margin) / 2 / this.scale;
+    this.y = (box[1] + box[3]) / 2 - (low - margin) / 2 / this.scale;
   }
 }
 
@@ -167,28 +173,28 @@ function drawGrid(context, view) {
   }
   context.globalCompositeOperation = "source-over";
   context.fillStyle = "#3b4550";
-  context.font = "13px system-ui, sans-serif";
+  context.font = font(13);
   context.textAlign = "center";
   for (let x = Math.ceil(x0 / every) * every; x < x1; x += every) {
-    context.fillText(x, view.spot(x, 0)[0], view.height - 6);
+    context.fillText(x, view.spot(x, 0)[0], view.height - 6 * UNIT);
   }
   context.textAlign = "left";
   for (let y = Math.ceil(y0 / every) * every; y < y1; y += every) {
     const at = view.spot(0, y)[1];
-    if (at > 14 && at < view.height - 24) context.fillText(y, 5, at + 4);
+    if (at > 14 && at < view.height - 24 * UNIT) context.fillText(y, 5, at + 4 * UNIT);
   }
 }
 
 function drawScale(context, view) {
   const length = [1, 2, 5, 10, 20, 50].filter(m => m * view.scale <= view.width / 4).pop() || 1;
-  const wide = length * view.scale, top = view.height - 34;
+  const wide = length * view.scale, left = 34 * UNIT, top = view.height - 36 * UNIT;
   context.fillStyle = "#ffffffd0";
-  context.fillRect(30, top - 12, wide + 60, 24);
+  context.fillRect(left - 8, top - 12 * UNIT, wide + 56 * UNIT, 24 * UNIT);
   context.fillStyle = COLOUR.ink;
-  context.fillRect(38, top, wide, 4);
-  context.font = "14px system-ui, sans-serif";
+  context.fillRect(left, top - 2, wide, 4);
+  context.font = font(14);
   context.textAlign = "left";
-  context.fillText(length + " m", 44 + wide, top + 6);
+  context.fillText(length + " m", left + wide + 6, top + 5 * UNIT);
 }
 
 function drawFence(context, view, history) {
@@ -352,7 +358,7 @@ function drawCovariance(context, view, step) {
 }
 
 function drawNames(context, view, step, show) {
-  context.font = "600 14px system-ui, sans-serif";
+  context.font = font(14, 600);
   const name = (pose, words, colour, dx, dy, align) => {
     const [x, y] = view.spot(pose[0], pose[1]);
     context.textAlign = align;

@@ -72,7 +72,6 @@ function showState() {
   else if (!isOpen) banner(history_.steps.length ? "The program has ended or cannot be reached. What came stays here." : "Connecting …");
   else if (aims) banner("Click where the robot is to go; Escape leaves it");
   else if (isPast) banner("Looking back: " + clock(history_.steps[Math.max(0, history_.at)].ms) + ". End or Latest follows the run");
-  else if (isOver) banner(history_.end.short || history_.end.headline);
   else if (pace.held) banner("The clock is held");
   else banner("");
 }
@@ -87,6 +86,7 @@ function frame(now) {
   const slider = $("slider");
   slider.max = Math.max(0, last);
   slider.value = Math.max(0, history_.at);
+  UNIT = parseFloat(getComputedStyle(document.documentElement).fontSize) / 16;
   const [context, width, height] = fitted($("map"));
   view.size(width, height);
   if (view.fits) view.fit(history_);

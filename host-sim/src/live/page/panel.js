@@ -88,6 +88,7 @@ function showNotes(history) {
 function showEnd(history) {
   const end = history.end;
   $("report").hidden = !end;
+  say("headline", end ? end.short || end.headline : "");
   if (end) say("report-text", end.text);
 }
 
@@ -114,9 +115,9 @@ function drawCurve(history) {
   }
   context.fillStyle = COLOUR.ink;
   context.fillRect(x(Math.max(0, history.at)) - 1, 0, 2, height);
-  context.font = "13px system-ui, sans-serif";
+  context.font = font(13);
   context.textAlign = "left";
-  context.fillText("known area over time", inset + 4, 14);
+  context.fillText("known area over time", inset + 4, 14 * UNIT);
 }
 
 // Returns the context of a canvas in page pixels, and its size, for a sharp picture.
