@@ -6,6 +6,7 @@ pub mod bringup;
 pub mod campaign;
 pub mod fence;
 pub mod link;
+pub mod live;
 pub mod metrics;
 pub mod mission_file;
 pub mod near;

@@ -23,6 +23,7 @@ use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
     Packet, Path, Refusal, ResidualFrontier, Status, Tile, Twist,
 };
+use host_sim::link::inside::Inside;
 use host_sim::link::{Link, LinkError, LinkStats};
 use host_sim::report::TeamReport;
 use host_sim::trial::mission::Mission;
@@ -307,6 +308,10 @@ impl Link for Ordered {
     fn say(&mut self) -> Result<Option<Packet>, LinkError> {
         let config = self.config()?;
         Ok(self.state.say(&config).map(|it| convert::wire_packet(&it)))
+    }
+
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        None
     }
 
     fn stats(&self) -> LinkStats {

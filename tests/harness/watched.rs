@@ -5,6 +5,7 @@ use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
     Packet, Path, ResidualFrontier, Status, Tile,
 };
+use host_sim::link::inside::Inside;
 use host_sim::link::{Link, LinkError, LinkStats};
 
 /// A link, and the function called after each step.
@@ -74,6 +75,10 @@ where
         self.link.send_tiles(part)
     }
 
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        self.link.inside()
+    }
+
     fn stats(&self) -> LinkStats {
         self.link.stats()
     }
@@ -135,6 +140,10 @@ mod tests {
 
         fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
             Err(LinkError::Refused(format!("tile {}", part.first)))
+        }
+
+        fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+            None
         }
 
         fn stats(&self) -> LinkStats {

@@ -36,6 +36,7 @@ use fieldline_protocol::message::{
 use super::chart::Chart;
 use super::heights::HeightGrid;
 use super::strategy::{Outcome, Scene, Strategy, UnevenScene};
+use crate::link::inside::Inside;
 use crate::link::{Link, LinkError, LinkStats};
 
 /// Turn rate of a robot that looks around at its goal, radians per second; as in the planner.
@@ -400,6 +401,11 @@ impl<S: Strategy> Link for Session<S> {
 
     fn take_log(&mut self) -> Vec<u8> {
         Vec::new()
+    }
+
+    /// A baseline has neither path nor skeleton, and its map is the host's copy.
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        None
     }
 
     /// Counts every call as one frame sent and one received.

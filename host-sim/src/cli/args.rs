@@ -22,13 +22,14 @@ use host_sim::trial::space::Area;
 
 use super::bringup::BringupArgs;
 use super::campaign::CampaignArgs;
+use super::live::LiveArg;
 use super::replay::ReplayArgs;
 use super::robot::RobotArgs;
 use super::sessions::{ReplaySessionArgs, SessionsArgs};
 use super::strategies;
 use super::team::TeamArgs;
 use super::values::{
-    area, budget, failing, ground_parameters, home_at, impatience, imu_noise, laser_noise,
+    area, budget, failing, ground_parameters, home_at, impatience, imu_noise, laser_noise, live,
     patrol_for, pause, people, place, seed, slam_place, snapshots, start, sweeps, time_limit,
     until, wait, working,
 };
@@ -261,6 +262,17 @@ pub(super) struct ExploreArgs {
     /// Run no faster than real time
     #[arg(long)]
     pub(super) realtime: bool,
+    /// Serve a page that shows the run while it runs, and takes requests: with ADDR:PORT there,
+    /// else at 127.0.0.1:8047 or a free port. The page stays after the run while it is open, and
+    /// 60 s; Ctrl-C ends it. Another address than loopback gets a token
+    #[arg(
+        long,
+        value_name = "ADDR:PORT",
+        num_args = 0..=1,
+        default_missing_value = "usual",
+        value_parser = live
+    )]
+    pub(super) live: Option<LiveArg>,
     /// Seconds to wait for a board on a serial port that still boots, at most 600
     #[arg(long, value_name = "S", default_value = "15", value_parser = wait)]
     pub(super) wait: Duration,

@@ -9,6 +9,7 @@ use fieldline_protocol::message::{Budget, UnevenGround};
 use host_sim::baseline::bvp_papers::Relaxation;
 use host_sim::fence::{Fence, Polygon};
 use host_sim::link::spec::LinkSpec;
+use host_sim::live::Live;
 use host_sim::report::{MadeBy, Report, folder};
 use host_sim::robot::Limits;
 use host_sim::slam::SlamPlace;
@@ -27,7 +28,7 @@ use super::prepared::Prepared;
 use super::progress::{Interrupt, Onlooker};
 use super::resume;
 use super::strategies::{self, FRONTIER, TERRAIN};
-use super::{made_by, note, say};
+use super::{live, made_by, note, say};
 
 /// A run to make.
 pub(super) struct Run {
@@ -48,14 +49,26 @@ pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
         resume::clear(run)?;
     }
     let interrupt = Interrupt::listen()?;
+    let pace = pace(&prepared.args);
+    let live = prepared.args.live.map(|live| live::open(live, pace));
+    let live = live.transpose()?;
     let mut all_explored = true;
     for run in &runs {
-        all_explored &= explore(&prepared, run, &interrupt)?;
+        all_explored &= explore(&prepared, run, &interrupt, live.as_ref())?;
         if interrupt.pressed() {
             break;
         }
     }
+    if let Some(live) = &live {
+        live::stay(live, &interrupt);
+    }
     Ok(all_explored)
+}
+
+/// Returns the simulated seconds that one second may have at most.
+fn pace(args: &ExploreArgs) -> Option<f64> {
+    let team = args.team.as_ref().map(|team| team.pace);
+    team.or(args.realtime.then_some(1.0))
 }
 
 /// Replaces `--strategy terrain` by its meaning, and says so on standard error.
@@ -160,7 +173,12 @@ fn unique(names: impl Iterator<Item = String>) -> Vec<String> {
 }
 
 /// Makes one run, from hello to folder; returns true if it ended explored.
-fn explore(prepared: &Prepared, run: &Run, interrupt: &Interrupt) -> Result<bool> {
+fn explore(
+    prepared: &Prepared,
+    run: &Run,
+    interrupt: &Interrupt,
+    live: Option<&Live>,
+) -> Result<bool> {
     let args = &prepared.args;
     let name = run.world.name();
     for text in run.world.notes() {
@@ -169,10 +187,9 @@ fn explore(prepared: &Prepared, run: &Run, interrupt: &Interrupt) -> Result<bool
     for text in surprises(&run.mission, &run.world) {
         note(&format!("host-sim: {name}: {text}"));
     }
-    let pace = args.team.as_ref().map(|team| team.pace);
-    let pace = pace.or(args.realtime.then_some(1.0));
-    let mut onlooker =
-        Onlooker::new(name, pace, interrupt.clone()).logging(args.log == Some(LogArg::Mission));
+    let mut onlooker = Onlooker::new(name, pace(args), interrupt.clone());
+    onlooker.log(args.log == Some(LogArg::Mission));
+    onlooker.show(live.map(|live| live::observer(live, &run.mission, &run.world, interrupt)));
     if let Some(state) = &run.resumed {
         onlooker.begin_after(state.time_ms);
         note(&format!(
@@ -183,6 +200,7 @@ fn explore(prepared: &Prepared, run: &Run, interrupt: &Interrupt) -> Result<bool
     let mut keeping = resume::keeping(args, run);
     let result = prepared.play_kept(&run.mission, &run.world, &mut onlooker, keeping.as_mut());
     onlooker.finish();
+    live::end(onlooker.live(), &result);
     let (mut report, record) = result?;
     if let Some(error) = keeping.and_then(|it| it.failure) {
         let file = run.folder.join(state::NAME);

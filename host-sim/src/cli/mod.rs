@@ -10,6 +10,7 @@ mod args;
 mod bringup;
 mod campaign;
 mod explore;
+mod live;
 mod made_by;
 mod mission_file;
 mod pictures;

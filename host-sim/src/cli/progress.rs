@@ -8,7 +8,9 @@ use std::time::Instant;
 use anyhow::{Context as _, Result};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use host_sim::live::Observer;
 use host_sim::report::mission_log::MissionLog;
+use host_sim::trial::sight::Sight;
 use host_sim::trial::{Flow, Progress, Watch, wording};
 
 use super::note;
@@ -51,6 +53,8 @@ pub(super) struct Onlooker {
     began: Option<(Instant, f64)>,
     /// Simulated time up to which the run is made again, milliseconds.
     after_ms: u32,
+    /// The live page, which keeps the pace then.
+    live: Option<Observer>,
 }
 
 impl Onlooker {
@@ -71,18 +75,29 @@ impl Onlooker {
             log: None,
             began: pace.map(|pace| (Instant::now(), pace)),
             after_ms: 0,
+            live: None,
         }
     }
 
     /// Prints what the robot does and why, as it comes.
-    pub(super) fn logging(self, is_on: bool) -> Self {
-        let log = is_on.then(MissionLog::new);
-        Self { log, ..self }
+    pub(super) fn log(&mut self, is_on: bool) {
+        self.log = is_on.then(MissionLog::new);
     }
 
     /// Counts the pace from this simulated time on, milliseconds: what is before is made again.
     pub(super) const fn begin_after(&mut self, time_ms: u32) {
         self.after_ms = time_ms;
+    }
+
+    /// Lets a live page see the run, and keep its pace.
+    pub(super) fn show(&mut self, live: Option<Observer>) {
+        self.live = live;
+        self.began = self.began.filter(|_| self.live.is_none());
+    }
+
+    /// Returns the live page.
+    pub(super) const fn live(&mut self) -> Option<&mut Observer> {
+        self.live.as_mut()
     }
 
     /// Removes the line.
@@ -112,6 +127,12 @@ impl Watch for Onlooker {
             Flow::Interrupt
         } else {
             Flow::Continue
+        }
+    }
+
+    fn see(&mut self, sight: &mut Sight<'_>) {
+        if let Some(live) = &mut self.live {
+            live.see(sight);
         }
     }
 }

@@ -21,8 +21,8 @@ pub(super) fn folder(args: &ExploreArgs) -> Result<Option<&Path>> {
     }
     if !is_kept(args) {
         bail!(
-            "--resume DIR goes on with a strategy on the device, and without --team; no other run \
-             is kept"
+            "--resume DIR goes on with a strategy on the device, and without --team or --live; no \
+             other run is kept"
         );
     }
     if args.snapshots > 0 {
@@ -75,12 +75,13 @@ pub(super) fn clear(run: &Run) -> Result<()> {
     Ok(())
 }
 
-/// Returns the keeping of a run; `None` if it is not kept: a baseline, or a member of a team.
+/// Returns the keeping of a run; `None` if it is not kept: a baseline, a member of a team, or one
+/// that whoever looks at its page may steer.
 pub(super) fn keeping(args: &ExploreArgs, run: &Run) -> Option<Keeping> {
     let store = Box::new(Folder::new(&run.folder));
     is_kept(args).then(|| Keeping::new(run.made_by.clone(), store, run.resumed.clone()))
 }
 
 fn is_kept(args: &ExploreArgs) -> bool {
-    on_device(&args.strategy).is_some() && args.team.is_none()
+    on_device(&args.strategy).is_some() && args.team.is_none() && args.live.is_none()
 }

@@ -11,6 +11,7 @@ use host_sim::trial::space::Area;
 use host_sim::trial::uneven;
 
 use super::args::Impatience;
+use super::live::LiveArg;
 
 /// Most pictures during a run. Each is read over the link and held until the end.
 const MOST_SNAPSHOTS: u64 = 500;
@@ -43,6 +44,17 @@ pub(super) fn start(text: &str) -> Result<usize, String> {
 /// Parses seconds to wait for a board.
 pub(super) fn wait(text: &str) -> Result<Duration, String> {
     whole(text, 600).map(Duration::from_secs)
+}
+
+/// Parses where a live page is.
+pub(super) fn live(text: &str) -> Result<LiveArg, String> {
+    match text {
+        "usual" => Ok(LiveArg(None)),
+        _ => text.parse().map(|address| LiveArg(Some(address))).map_err(|_| {
+            "give an address and a port, as 127.0.0.1:8047, or nothing; a world stands before --live"
+                .into()
+        }),
+    }
 }
 
 /// Parses a number of people.

@@ -8,6 +8,7 @@ use fieldline_protocol::message::{
     Packet, Path, Refusal, ResidualFrontier, Status, Tile,
 };
 
+use super::inside::{Inside, Look};
 use super::{Link, LinkError, LinkStats};
 
 /// A pilot and its memory.
@@ -120,6 +121,13 @@ impl Link for Direct {
     fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
         self.with(|pilot, memory| pilot.tiles(memory, part))
             .map_err(refused)
+    }
+
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        Some(Box::new(Look {
+            state: &*self.state,
+            workspace: &self.workspace,
+        }))
     }
 
     /// Every call counts as one frame sent and one received.

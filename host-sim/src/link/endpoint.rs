@@ -18,6 +18,7 @@ use fieldline_protocol::message::{
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 
+use super::inside::Inside;
 use super::line::Line;
 use super::{Link, LinkError, LinkStats};
 
@@ -337,6 +338,10 @@ impl<L: Line> Link for Endpoint<L> {
             Reply::Corrected(progress) => Ok(progress),
             _ => Err(unexpected("a part of a correction")),
         }
+    }
+
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        self.line.inside()
     }
 
     fn stats(&self) -> LinkStats {

@@ -3,6 +3,7 @@
 use core::time::Duration;
 
 use super::LinkError;
+use super::inside::Inside;
 
 /// Bytes in both directions. A real line has wall-clock time; a simulated one counts its time and
 /// never waits.
@@ -19,6 +20,11 @@ pub trait Line {
     fn receive(&mut self, into: &mut Vec<u8>, wait: Duration) -> Result<(), LinkError>;
     /// Time since a fixed moment.
     fn now(&self) -> Duration;
+    /// Looks into the device at the far end, if it lives in this process. A line that wraps another
+    /// one passes this on.
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        None
+    }
 }
 
 impl<L: Line + ?Sized> Line for &mut L {
@@ -32,5 +38,9 @@ impl<L: Line + ?Sized> Line for &mut L {
 
     fn now(&self) -> Duration {
         (**self).now()
+    }
+
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        (**self).inside()
     }
 }

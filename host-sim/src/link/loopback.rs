@@ -12,6 +12,7 @@ use fieldline_planner::{State, Tuning, Workspace};
 
 use super::LinkError;
 use super::endpoint::{Endpoint, RetryPolicy};
+use super::inside::{Inside, Look};
 use super::line::Line;
 
 /// A whole device at the far end of a line. Its map has the default image's size if nothing else is
@@ -130,6 +131,13 @@ impl<const POOL: usize, const MOST: usize> Line for LocalDevice<POOL, MOST> {
 
     fn now(&self) -> Duration {
         self.now
+    }
+
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        Some(Box::new(Look {
+            state: &*self.state,
+            workspace: &self.workspace,
+        }))
     }
 }
 

@@ -21,6 +21,7 @@ use fieldline_protocol::message::{
 use serde::{Deserialize, Serialize};
 
 use correction::MapCorrection;
+use inside::Inside;
 
 pub mod correction;
 pub mod digest;
@@ -28,6 +29,7 @@ pub mod direct;
 pub mod endpoint;
 pub mod fault;
 pub mod image;
+pub mod inside;
 pub mod line;
 #[cfg(feature = "logs")]
 pub mod logs;
@@ -173,6 +175,8 @@ pub trait Link {
         }
         Ok(())
     }
+    /// Looks into the device, if it lives in this process.
+    fn inside(&self) -> Option<Box<dyn Inside + '_>>;
     /// The counters since the hello.
     fn stats(&self) -> LinkStats;
     /// Returns the device's log bytes (defmt) since the last call; empty if it has no log.

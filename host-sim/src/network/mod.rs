@@ -36,6 +36,7 @@ use fieldline_protocol::message::{
 use fieldline_protocol::packet::decode_packet;
 use serde::{Deserialize, Serialize};
 
+use crate::link::inside::Inside;
 use crate::link::said::Said;
 use crate::link::{Link, LinkError, LinkStats};
 use carrier::{Arrived, Carrier};
@@ -282,6 +283,10 @@ impl Link for Networked {
 
     fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
         self.link.send_tiles(part)
+    }
+
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        self.link.inside()
     }
 
     fn stats(&self) -> LinkStats {

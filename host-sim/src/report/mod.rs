@@ -69,6 +69,10 @@ pub struct Report {
     /// Drives by order after the exploration; the key is missing without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trips: Vec<Trip>,
+    /// What viewers of the live page asked of the device; the key is missing without any. Such a run
+    /// is not made again by its command line.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub live_requests: Vec<LiveRequest>,
     /// How strategy bvp-papers relaxes its potential; the key is missing for other strategies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relaxation: Option<Relaxation>,
@@ -179,6 +183,19 @@ pub struct Trip {
     pub stands_m: [f64; 2],
     /// Simulated seconds of the drive.
     pub time_s: f64,
+}
+
+/// A request of a viewer, and what became of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LiveRequest {
+    /// Simulated time, seconds.
+    pub time_s: f64,
+    /// `pause`, `resume`, `stop`, `home`, `explore` or `go to X,Y`.
+    pub request: String,
+    /// The status that the device answered, or why it refused.
+    pub answer: String,
+    /// True if it was done.
+    pub done: bool,
 }
 
 /// Bounds and no-go polygons, and whether the robot kept to them.

@@ -95,6 +95,12 @@ impl Report {
                 fence.deepest_m,
             ));
         }
+        if !self.live_requests.is_empty() {
+            lines.push(format!(
+                "  live      {} requests of viewers: the command line does not make this run again",
+                self.live_requests.len()
+            ));
+        }
         for trip in &self.trips {
             let [x, y] = trip.stands_m;
             let turned = trip.error_deg.map(|deg| format!(", {deg:.1} deg"));

@@ -21,6 +21,7 @@ use fieldline_protocol::message::{
 use serde::{Deserialize, Serialize};
 
 use crate::link::correction::MapCorrection;
+use crate::link::inside::Inside;
 use crate::link::{Link, LinkError, LinkStats};
 
 /// An answer of the planner, or why there was none.
@@ -224,6 +225,10 @@ impl Link for Recorder<'_> {
             |()| Answer::Done,
             |answer| (answer == Answer::Done).then_some(()),
         )
+    }
+
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        self.link.inside()
     }
 
     fn stats(&self) -> LinkStats {

@@ -13,6 +13,9 @@
 //! A device that was reset and got its map back has forgotten its orders: home, the drive in hand,
 //! a pause, and what of its budget is used. It is told them again.
 //!
+//! A viewer's request to drive comes before all of this. The drive that it cuts short is made later,
+//! the robot stands where the request took it, and *resume* goes on with what was to be done.
+//!
 //! Units: metres and radians in the device's map; milliseconds; in reports degrees.
 
 use std::collections::VecDeque;
@@ -73,6 +76,8 @@ struct Trip {
     end: Option<Status>,
     /// The device's reason if it refused the order.
     refused: Option<String>,
+    /// It was a viewer's request, or one cut it short: no part of the orders' success.
+    is_aside: bool,
     begun_ms: u32,
     /// `None` while it lasts.
     ended_ms: Option<u32>,
@@ -100,6 +105,10 @@ pub(super) struct Itinerary {
     /// What the device was told that the robot may drive, and the way so far, metres.
     budget: Budget,
     driven_m: f64,
+    /// The last trip was a viewer's, and the robot stands at its end.
+    waits: bool,
+    /// What ends the run with the next step: no order is left after a viewer's request.
+    ending: Option<Ending>,
 }
 
 impl Itinerary {
@@ -159,15 +168,22 @@ impl Itinerary {
             let (before, now) = (before.estimate, now.estimate);
             self.driven_m += (now.x_m - before.x_m).hypot(now.y_m - before.y_m);
         }
+        if let Some(ending) = self.ending.take() {
+            return Ok(Some(ending));
+        }
         match command.status {
             Status::Going(Errand::Home) if !self.is_on_the_way_home() => {
                 self.turn_home(record);
                 self.left.clear();
                 self.begin(Leg::Home, record);
             }
+            Status::Arrived(_) | Status::Unreachable(_) if self.waits => {}
             status @ (Status::Arrived(_) | Status::Unreachable(_)) => {
                 self.finish(Some(status), None, record);
-                return self.next(record, link);
+                self.waits = self.is_a_viewers();
+                if !self.waits {
+                    return self.next(record, link);
+                }
             }
             _ => {}
         }
@@ -212,10 +228,8 @@ impl Itinerary {
 
     /// Ends the drive in hand, because the robot turns home.
     fn turn_home(&mut self, record: &Record) {
-        if self.in_hand().is_some() {
-            self.finish(None, None, record);
-        }
-        self.is_early = true;
+        self.finish(None, None, record);
+        (self.is_early, self.waits) = (true, false);
     }
 
     /// Lets the robot stand, or go on.
@@ -262,8 +276,87 @@ impl Itinerary {
         Ok(())
     }
 
+    /// Drives where a viewer asks for. A drive in hand is put off.
+    ///
+    /// # Errors
+    /// [`LinkError`]; if the device refuses, nothing changes.
+    pub(super) fn interject(
+        &mut self,
+        control: &Control,
+        record: &Record,
+        link: &mut dyn Link,
+    ) -> Result<Status, LinkError> {
+        let leg = match control {
+            Control::GoTo { x, y } => Leg::Goal([x, y].map(|at| at.to_num())),
+            _ => Leg::Home,
+        };
+        let status = link.control(control)?;
+        self.put_off(record);
+        self.begin(leg, record);
+        self.set_aside();
+        Ok(status)
+    }
+
+    /// Ends a pause; else goes on with what a viewer's request cut short.
+    ///
+    /// # Errors
+    /// As [`Itinerary::interject`].
+    pub(super) fn resume(
+        &mut self,
+        record: &Record,
+        link: &mut dyn Link,
+    ) -> Result<Status, LinkError> {
+        let status = record.steps.last().map(|step| step.command.status);
+        let status = status.unwrap_or_default();
+        if matches!(status, Status::Paused | Status::EmergencyStop) {
+            return link.control(&Control::Resume);
+        }
+        let is_aside = self.in_hand().is_some() && self.is_a_viewers();
+        if !self.waits && !is_aside {
+            return Err(LinkError::Refused("nothing was interrupted".into()));
+        }
+        if self.explored.is_none() {
+            let status = link.control(&Control::Explore)?;
+            self.put_off(record);
+            return Ok(status);
+        }
+        self.put_off(record);
+        self.ending = self.next(record, link)?;
+        Ok(status)
+    }
+
+    /// Returns true if the robot stands where a viewer's request took it.
+    pub(super) const fn waits(&self) -> bool {
+        self.waits
+    }
+
+    /// Leaves the drive in hand. One of the orders is made later.
+    fn put_off(&mut self, record: &Record) {
+        self.waits = false;
+        if self.in_hand().is_none() {
+            return;
+        }
+        if !self.is_a_viewers()
+            && let Some(trip) = self.trips.last()
+        {
+            self.left.push_front(trip.leg);
+            self.set_aside();
+        }
+        self.finish(None, None, record);
+    }
+
+    fn set_aside(&mut self) {
+        if let Some(trip) = self.trips.last_mut() {
+            trip.is_aside = true;
+        }
+    }
+
+    fn is_a_viewers(&self) -> bool {
+        self.trips.last().is_some_and(|trip| trip.is_aside)
+    }
+
     fn is_on_the_way_home(&self) -> bool {
-        self.trips.last().is_some_and(|trip| trip.leg == Leg::Home)
+        self.in_hand() == Some(Leg::Home)
     }
 
     /// Enters the beginning of a drive.
@@ -272,6 +365,7 @@ impl Itinerary {
             leg,
             end: None,
             refused: None,
+            is_aside: false,
             begun_ms: now_ms(record),
             ended_ms: None,
             estimate: Stamped::default(),
@@ -281,6 +375,9 @@ impl Itinerary {
 
     /// Enters the end of the drive in hand.
     fn finish(&mut self, end: Option<Status>, refused: Option<String>, record: &Record) {
+        if self.in_hand().is_none() {
+            return;
+        }
         let (Some(trip), Some(step)) = (self.trips.last_mut(), record.steps.last()) else {
             return;
         };
@@ -299,7 +396,7 @@ impl Itinerary {
             }
         }
         // Of a robot that went home before the end only home counts.
-        let counts = |trip: &&Trip| !self.is_early || trip.leg == Leg::Home;
+        let counts = |trip: &&Trip| !trip.is_aside && (!self.is_early || trip.leg == Leg::Home);
         let mut failed = self.trips.iter().filter(counts);
         let ending = match failed.find(|trip| !trip.has_arrived()) {
             None if self.is_early => Some(Ending::AtHome),

@@ -9,11 +9,11 @@ use std::collections::BTreeMap;
 use fieldline_device::{SLOTS, TILES, convert};
 use fieldline_planner::Input;
 use fieldline_planner::config::{Config, Tuning};
-use fieldline_planner::geometry::{Cell, MapFromOdom, MapPose, Pose};
+use fieldline_planner::geometry::{Cell, MapFromOdom, MapPose, OdomPose, Pose};
 use fieldline_planner::localise::Localiser;
 use fieldline_planner::map::{Class, Map};
 use fieldline_planner::math;
-use fieldline_protocol::message::{Observation, Start, Status, Tile};
+use fieldline_protocol::message::{Finish, Observation, Start, Status, Tile};
 
 use super::relief::Relief;
 use super::snapshot::Window;
@@ -63,11 +63,14 @@ impl Mirror {
     }
 
     /// Enters an observation that the device answered with `status`. A device that is idle, paused
-    /// or stopped enters none.
+    /// or was stopped enters none.
     pub fn observe(&mut self, observation: &Observation, status: Status) {
         let held = matches!(
             status,
-            Status::Idle | Status::Paused | Status::EmergencyStop
+            Status::Idle
+                | Status::Paused
+                | Status::EmergencyStop
+                | Status::Finished(Finish::Stopped)
         );
         let Some(config) = self.config.as_ref().filter(|_| !held) else {
             return;
@@ -86,6 +89,14 @@ impl Mirror {
         if config.ground().is_some() {
             self.map.compact(&mut ());
         }
+    }
+
+    /// Returns where a device that stands takes its robot to be: by the odometry since its last step.
+    #[must_use]
+    pub fn carried(&self, observation: &Observation) -> Option<Pose> {
+        let input = convert::input(observation, self.config.as_ref()?.lasers())?;
+        let MapPose(pose) = self.localiser.to_map(&OdomPose(input.pose));
+        Some(pose)
     }
 
     /// Takes what came for gone, as the device did in this step.

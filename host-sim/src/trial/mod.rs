@@ -19,6 +19,7 @@ pub mod planned_path;
 pub mod record;
 pub mod relief;
 pub mod series;
+pub mod sight;
 pub mod snapshot;
 pub mod space;
 mod summary;
@@ -40,6 +41,7 @@ use itinerary::{Itinerary, Orders};
 use mirror::Mirror;
 use relief::Relief;
 use series::Series;
+use sight::Sight;
 use snapshot::{Snapshot, Window};
 
 pub use body::Body;
@@ -104,10 +106,14 @@ pub enum Moment {
     Broken,
 }
 
-/// Watches a run and may end it: a progress line, a pacer, the interrupt key.
+/// Watches a run and may end it: a progress line, a pacer, the interrupt key, a live page.
 pub trait Watch {
     /// Called after every step; the answer says if the run goes on.
     fn step(&mut self, progress: &Progress) -> Flow;
+
+    /// Called then with all that the step knows, before the robot drives. Whoever watches may look
+    /// and make requests of the device, as [`Sight::request`] does.
+    fn see(&mut self, _sight: &mut Sight<'_>) {}
 }
 
 /// Watches nothing; the run goes on.
@@ -220,8 +226,9 @@ fn drive(
     (freeze, itinerary): (&mut FreezeDetector, &mut Itinerary),
 ) -> Ending {
     loop {
-        let command = match step(setup, cast, (record, itinerary), series) {
-            Ok(command) => command,
+        let stands = itinerary.waits();
+        let (observation, command) = match step(setup, cast, (record, itinerary), series, stands) {
+            Ok(done) => done,
             Err(error) => return Ending::Link(error),
         };
         let ended = match ended(setup, cast.watch, freeze, record, &command) {
@@ -234,13 +241,22 @@ fn drive(
             }
             ended => ended,
         };
-        match ended.and_then(|ended| match ended {
+        let kept = ended.and_then(|ended| match ended {
             None => keep(cast, Moment::Step, record).map(|()| None),
             ended => Ok(ended),
-        }) {
-            Ok(None) => {}
-            Ok(Some(ending)) => return ending,
-            Err(error) => return Ending::Link(error),
+        });
+        let ended = kept.unwrap_or_else(|error| Some(Ending::Link(error)));
+        cast.watch.see(&mut Sight {
+            setup,
+            observation: &observation,
+            mirror: cast.survey.mirror().map(|mirror| &*mirror),
+            ending: ended.as_ref(),
+            record,
+            itinerary,
+            link: cast.link,
+        });
+        if let Some(ending) = ended {
+            return ending;
         }
         cast.body.drive(Some(command.velocity));
         if let Some(loss) = cast.body.loss() {
@@ -258,18 +274,33 @@ fn keep(cast: &mut Cast<'_>, moment: Moment, record: &Record) -> Result<(), Link
 }
 
 /// Observes, asks the planner, and enters both in the record. Takes a snapshot if one is due.
+///
+/// A device that `stands`, where a viewer sent its robot, enters no scan: as one that is paused.
 fn step(
     setup: &Setup,
     cast: &mut Cast<'_>,
     (record, itinerary): (&mut Record, &mut Itinerary),
     series: &mut Series<Snapshot>,
-) -> Result<Command, LinkError> {
+    stands: bool,
+) -> Result<(Observation, Command), LinkError> {
     let (observation, truth) = (cast.body.observe(), cast.body.truth());
     let asked = Instant::now();
     let command = corrector::observe(setup, cast, (record, itinerary), &observation)?;
     let round_trip_us = asked.elapsed().as_secs_f64() * 1e6;
-    let coverage = cast.survey.note(&observation, &truth, &command);
-    let step = Step::new(&observation, truth, command, round_trip_us);
+    let noted = Command {
+        status: if stands {
+            Status::Paused
+        } else {
+            command.status
+        },
+        ..command
+    };
+    let coverage = cast.survey.note(&observation, &truth, &noted);
+    let mut step = Step::new(&observation, truth, command, round_trip_us);
+    let is_held = stands || command.status == Status::Paused;
+    if is_held && let Some(mirror) = cast.survey.mirror() {
+        step.carry(mirror.carried(&observation));
+    }
     record.push(step, coverage);
     corrector::correct(setup, cast, (&observation, &command), record)?;
     if setup.check_field {
@@ -280,7 +311,7 @@ fn step(
         snapshot.relief = relief(cast, snapshot.window.as_ref());
         series.take(snapshot);
     }
-    Ok(command)
+    Ok((observation, command))
 }
 
 /// Returns the reason that ends the run after this step, if there is one.

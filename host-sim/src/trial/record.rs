@@ -63,6 +63,8 @@ pub struct Record {
     pub frontiers: Vec<ResidualFrontier>,
     /// Drives by order after the exploration.
     pub trips: Vec<report::Trip>,
+    /// Requests of whoever watched the run.
+    pub live_requests: Vec<report::LiveRequest>,
     /// Map and window during the run, for pictures.
     pub snapshots: Vec<Snapshot>,
     /// Map and window before and after the largest corrections of the map, for pictures.
@@ -96,6 +98,7 @@ impl Default for Record {
             relief: None,
             frontiers: Vec::new(),
             trips: Vec::new(),
+            live_requests: Vec::new(),
             snapshots: Vec::new(),
             corrections: Vec::new(),
             corrected: Vec::new(),
@@ -130,6 +133,17 @@ impl Step {
             truth,
             command,
             round_trip_us,
+        }
+    }
+}
+
+impl Step {
+    /// Takes the map's pose of a robot that stands. Its device says none then.
+    pub(super) fn carry(&mut self, pose: Option<fieldline_planner::geometry::Pose>) {
+        if let Some(pose) = pose {
+            self.estimate.x_m = pose.x_m.into();
+            self.estimate.y_m = pose.y_m.into();
+            self.estimate.yaw_rad = pose.yaw_rad.into();
         }
     }
 }

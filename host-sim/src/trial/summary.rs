@@ -40,6 +40,7 @@ pub(super) fn report(
         space_field: space_field(mission, world),
         fence: fence(mission, simulator),
         trips: record.trips.clone(),
+        live_requests: record.live_requests.clone(),
         relaxation: relaxation(mission),
         link: mission.link.clone(),
         made_by: None,

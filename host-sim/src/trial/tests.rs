@@ -9,6 +9,7 @@ use fixed::types::{I4F12, I16F16};
 
 use super::itinerary::Orders;
 use super::{Body, Cast, Ending, Flow, Progress, Record, Setup, Survey, Watch, run};
+use crate::link::inside::Inside;
 use crate::link::{Link, LinkError, LinkStats};
 use crate::report::tum::Stamped;
 use crate::sim::Loss;
@@ -128,6 +129,9 @@ impl Link for Script {
     }
     fn take_log(&mut self) -> Vec<u8> {
         Vec::new()
+    }
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        None
     }
     fn stats(&self) -> LinkStats {
         LinkStats {

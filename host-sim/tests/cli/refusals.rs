@@ -210,3 +210,15 @@ fn a_bad_particle_filter_is_refused_in_one_line() {
     ];
     refused(&folder, &uneven, &["--particles", "--ground flat"]);
 }
+
+#[test]
+fn a_port_that_is_taken_is_refused() {
+    let folder = folder();
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let taken = taken.local_addr().expect("an address").to_string();
+    refused(
+        &folder,
+        &["explore", "loop", "--live", &taken],
+        &["--live 127.0.0.1:", "no page can be served there"],
+    );
+}

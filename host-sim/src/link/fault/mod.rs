@@ -23,6 +23,7 @@ use fieldline_protocol::frame::{MAX_REQUEST_FRAME, Receiver, Side, encode_reques
 use fieldline_protocol::message::{Control, Request};
 
 use super::LinkError;
+use super::inside::Inside;
 use super::line::Line;
 pub use spec::Faults;
 
@@ -274,5 +275,9 @@ impl<L: Line> Line for Faulty<L> {
 
     fn now(&self) -> Duration {
         self.line.now()
+    }
+
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        self.line.inside()
     }
 }

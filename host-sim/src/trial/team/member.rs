@@ -263,7 +263,7 @@ impl<'a> Member<'a> {
         let mut series: Series<Snapshot> = Series::new(0);
         // A team takes no orders.
         let orders = (&mut self.record, &mut Itinerary::default());
-        let command = step(&self.setup, &mut cast, orders, &mut series)?;
+        let (_, command) = step(&self.setup, &mut cast, orders, &mut series, false)?;
         let ending = ended(
             &self.setup,
             &mut (),

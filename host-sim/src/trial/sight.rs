@@ -1,0 +1,123 @@
+//! What a watcher sees of a step, and the requests that it may make.
+//!
+//! ```text
+//! observe ─► device ─► record ─► ended? ─► see(Sight) ─► drive
+//!                                            │ request: pause, resume, stop, home, go to, explore
+//!                                            ▼
+//!                                          device, record.live_requests, itinerary
+//! ```
+//!
+//! A look changes nothing. A request goes over the same link as any other, acts from the next step
+//! on, and stands in the record with its answer.
+
+use fieldline_protocol::message::{Control, Observation, Status};
+
+use super::itinerary::Itinerary;
+use super::mirror::Mirror;
+use super::{Ending, Record, Setup, Step, wording};
+use crate::link::inside::Inside;
+use crate::link::{Link, LinkError};
+use crate::report::LiveRequest;
+
+/// Most requests that a record keeps. Later ones are done and not kept.
+const MOST_KEPT: usize = 10_000;
+
+/// A step as its watcher sees it.
+#[expect(missing_debug_implementations, reason = "borrowed trait objects")]
+pub struct Sight<'a> {
+    /// The settings of the run.
+    pub setup: &'a Setup,
+    /// What the robot measured.
+    pub observation: &'a Observation,
+    /// The host's copy of the map; `None` without one.
+    pub mirror: Option<&'a Mirror>,
+    /// What ends the run with this step; `None` if it goes on.
+    pub ending: Option<&'a Ending>,
+    pub(super) record: &'a mut Record,
+    pub(super) itinerary: &'a mut Itinerary,
+    pub(super) link: &'a mut dyn Link,
+}
+
+impl Sight<'_> {
+    /// Returns the record up to this step.
+    #[must_use]
+    pub const fn record(&self) -> &Record {
+        self.record
+    }
+
+    /// Returns the step.
+    #[must_use]
+    pub fn step(&self) -> Option<&Step> {
+        self.record.steps.last()
+    }
+
+    /// Looks into the device, if it lives in this process.
+    #[must_use]
+    pub fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        self.link.inside()
+    }
+
+    /// Returns true if the robot stands where a request took it, until the next request.
+    #[must_use]
+    pub fn waits(&self) -> bool {
+        let status = self.step().map(|step| step.command.status);
+        self.itinerary.waits() || status == Some(Status::Paused)
+    }
+
+    /// Makes a request of the device, and enters it in the record. *Resume* ends a pause; where the
+    /// robot stands or drives by an earlier request, it goes on with what it did before.
+    ///
+    /// # Errors
+    /// As [`LinkError`]; [`LinkError::Refused`] if the device says no, the run has ended, or the
+    /// request is none that a viewer may make. A link that fails ends the run with the next step.
+    pub fn request(&mut self, control: &Control) -> Result<Status, LinkError> {
+        let answer = self.ask(control);
+        let (words, done) = match &answer {
+            Ok(status) => (wording::status(*status), true),
+            Err(LinkError::Refused(reason)) => (reason.clone(), false),
+            Err(error) => (error.to_string(), false),
+        };
+        let time_ms = self.step().map_or(0, |step| step.truth.time_ms);
+        if self.record.live_requests.len() < MOST_KEPT {
+            self.record.live_requests.push(LiveRequest {
+                time_s: f64::from(time_ms) / 1000.0,
+                request: request_words(control),
+                answer: words,
+                done,
+            });
+        }
+        answer
+    }
+
+    fn ask(&mut self, control: &Control) -> Result<Status, LinkError> {
+        if self.ending.is_some() {
+            return Err(LinkError::Refused("the run has ended".into()));
+        }
+        match control {
+            Control::Pause | Control::Stop => self.link.control(control),
+            Control::Resume | Control::Explore => self.itinerary.resume(self.record, self.link),
+            Control::Home | Control::GoTo { .. } => {
+                self.itinerary.interject(control, self.record, self.link)
+            }
+            Control::Start(_) | Control::Reset | Control::SetHome { .. } => Err(
+                LinkError::Refused("a viewer neither begins a session nor moves its home".into()),
+            ),
+        }
+    }
+}
+
+/// Returns a request in words.
+#[must_use]
+pub fn request_words(control: &Control) -> String {
+    match control {
+        Control::Start(_) => "start".into(),
+        Control::Pause => "pause".into(),
+        Control::Resume => "resume".into(),
+        Control::Stop => "stop".into(),
+        Control::Reset => "reset".into(),
+        Control::Home => "home".into(),
+        Control::GoTo { x, y } => format!("go to {x:.2},{y:.2}"),
+        Control::Explore => "explore".into(),
+        Control::SetHome { x, y, .. } => format!("set home {x:.2},{y:.2}"),
+    }
+}
