@@ -11,9 +11,9 @@
 //!
 //! Units: metres, simulated milliseconds.
 
+use core::cell::RefCell;
 use core::f64::consts::TAU;
 use core::time::Duration;
-use std::cell::RefCell;
 use std::rc::Rc;
 
 use host_sim::fence::{Fence, Polygon};

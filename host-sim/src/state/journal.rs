@@ -11,7 +11,7 @@
 //! Reading map, field and path changes nothing, so it is not kept; while answers are given again
 //! there is nothing to read.
 
-use std::cell::RefCell;
+use core::cell::RefCell;
 use std::rc::Rc;
 
 use fieldline_protocol::message::{
@@ -247,8 +247,8 @@ mod tests {
     use crate::link::{Link, LinkError};
     use crate::sim::{SimConfig, Simulator};
     use crate::world::World;
+    use core::cell::RefCell;
     use fieldline_protocol::message::{Control, Status, Strategy};
-    use std::cell::RefCell;
     use std::rc::Rc;
 
     #[test]

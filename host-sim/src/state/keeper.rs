@@ -2,8 +2,8 @@
 //!
 //! Units: metres, radians, simulated milliseconds.
 
+use core::cell::RefCell;
 use core::fmt;
-use std::cell::RefCell;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};

@@ -188,8 +188,9 @@ impl Itinerary {
             _ => {}
         }
         self.pause_or_resume(now_ms(record), link)?;
-        // A device that has seen nothing takes no order.
-        if self.is_paused || command.status == Status::NoScan {
+        // A device that has seen nothing takes no order. One that was reset in a pause sees
+        // nothing until it is over.
+        if self.is_paused || matches!(command.status, Status::NoScan | Status::Paused) {
             return Ok(None);
         }
         if self.is_owed {

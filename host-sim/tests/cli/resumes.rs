@@ -1,9 +1,10 @@
 //! `explore --resume DIR`: a run goes on after its host was killed, and bad states are refused.
 
+use core::time::Duration;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use serde_json::Value;
 use tempfile::TempDir;

@@ -13,7 +13,7 @@ use fieldline_tests::table::Table;
 
 /// Missions of the golden table.
 const FEW: u64 = 20;
-/// Missions of the full table.
+/// Missions of the full table, which is printed.
 const MANY: u64 = 1_000;
 
 fn missions(seeds: Range<u64>) -> Vec<(Draw, Outcome)> {
@@ -117,20 +117,15 @@ fn a_few_missions_at_random() {
 mod full {
     use super::*;
 
-    /// `FIELDLINE_SEEDS=K` makes K missions and prints the table instead of comparing it.
+    /// Prints the table. `FIELDLINE_SEEDS=K` makes K missions.
     #[test]
     #[ignore = "takes an hour: 1000 missions; tests/run --full runs it"]
-    fn a_thousand_missions_at_random() {
+    fn many_missions_at_random() {
         let fewer = std::env::var("FIELDLINE_SEEDS").ok().map(|text| {
             text.parse().unwrap_or_else(|_| {
                 panic!("FIELDLINE_SEEDS must be a number of seeds, as in FIELDLINE_SEEDS=10")
             })
         });
-        let text = table(&missions(0..fewer.unwrap_or(MANY)));
-        if fewer.is_some() {
-            println!("{text}");
-        } else {
-            golden::compare("random-missions-full.txt", &text);
-        }
+        println!("{}", table(&missions(0..fewer.unwrap_or(MANY))));
     }
 }
