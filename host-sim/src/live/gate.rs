@@ -2,9 +2,9 @@
 //!
 //! | check | against | else |
 //! | --- | --- | --- |
-//! | the path is `/` or `/ws`; another method than `GET` is no request here | | 404, 400 |
-//! | the token of the address, on any other address than loopback | strangers in the network | 403 |
-//! | `Host` is an IP address or `localhost`, unless there is a token | a foreign name that was bound to this address (DNS rebinding) | 403 |
+//! | the path is `/` or `/ws` | | 404 |
+//! | the token, on another address than loopback | strangers in the network | 403 |
+//! | `Host` is an IP address or `localhost`, or there is a token | DNS rebinding | 403 |
 //! | `Origin` of a websocket is `http://` and the `Host` | scripts of foreign pages | 403 |
 
 use core::net::IpAddr;

@@ -8,7 +8,8 @@
 //! A goal that is refused or cannot be reached is left, and the next one is tried. The exploration
 //! may have ended in any way that leaves the robot where it knows its place.
 //!
-//! A viewer's request to drive comes before all of this. The drive that it cuts short is made later,
+//! A viewer's request to drive comes before all of this. The drive that it cuts short is made
+//! later,
 //! the robot stands where the request took it, and *resume* goes on with what was to be done.
 //!
 //! Units: metres and radians in the device's map; in reports degrees.
