@@ -4,7 +4,7 @@
 //! | --- | --- | --- |
 //! | `speed` with `factor` | simulated seconds a second at most; 0 as fast as it goes | no |
 //! | `hold` with `on`, `step` | the simulated clock stands; goes on for one step | no |
-//! | `pause`, `resume`, `stop`, `home`, `explore`, `go-to` with `x`, `y` | the same request on the wire | yes |
+//! | `pause`, `resume`, `stop`, `home`, `explore`, `go-to` | a request on the wire | yes |
 //!
 //! The clock is held only while someone is connected. The queue of requests is bounded.
 

@@ -2,9 +2,9 @@
 //!
 //! | check | against | else |
 //! | --- | --- | --- |
-//! | `GET /` or `GET /ws` | | 404, 405 |
-//! | the token of the address, on any other address than loopback | strangers in the network | 403 |
-//! | `Host` is an IP address or `localhost`, unless there is a token | a foreign name that was bound to this address (DNS rebinding) | 403 |
+//! | the path is `/` or `/ws` | | 404 |
+//! | the token, on another address than loopback | strangers in the network | 403 |
+//! | `Host` is an IP address or `localhost`, or there is a token | DNS rebinding | 403 |
 //! | `Origin` of a websocket is `http://` and the `Host` | scripts of foreign pages | 403 |
 
 use core::net::IpAddr;
@@ -33,9 +33,6 @@ pub(super) fn judge(request: &Request, token: Option<&str>) -> Result<Pass, Stat
         "/ws" => Pass::Socket,
         _ => return Err(StatusCode::NOT_FOUND),
     };
-    if request.method() != "GET" {
-        return Err(StatusCode::METHOD_NOT_ALLOWED);
-    }
     if token.is_some_and(|token| !has_token(request, token)) {
         return Err(StatusCode::FORBIDDEN);
     }
@@ -101,7 +98,6 @@ mod tests {
             Ok(Pass::Page)
         );
         assert_eq!(judged("GET /x HTTP/1.1\r\nHost: localhost", None), Err(404));
-        assert_eq!(judged("POST / HTTP/1.1\r\nHost: localhost", None), Err(405));
         assert_eq!(judged("GET / HTTP/1.1", None), Err(400));
         let twice = "GET / HTTP/1.1\r\nHost: localhost\r\nHost: evil.example";
         assert_eq!(judged(twice, None), Err(400));

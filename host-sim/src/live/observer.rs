@@ -1,7 +1,8 @@
 //! The observer of a run: tells each step to the log, keeps the pace, passes requests on.
 //!
 //! After every third step the map is compared with what was told, tile by tile, if it changed, and
-//! the scan goes into the history. The path is told when it changes, and the newest scan lies beside
+//! the scan goes into the history. The path is told when it changes, and the newest scan lies
+//! beside
 //! the history.
 //!
 //! A robot that stands because a viewer said so is no faster than real time: the run's time limit

@@ -13,7 +13,8 @@
 //! A device that was reset and got its map back has forgotten its orders: home, the drive in hand,
 //! a pause, and what of its budget is used. It is told them again.
 //!
-//! A viewer's request to drive comes before all of this. The drive that it cuts short is made later,
+//! A viewer's request to drive comes before all of this. The drive that it cuts short is made
+//! later,
 //! the robot stands where the request took it, and *resume* goes on with what was to be done.
 //!
 //! Units: metres and radians in the device's map; milliseconds; in reports degrees.

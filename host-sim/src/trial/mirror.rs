@@ -91,7 +91,8 @@ impl Mirror {
         }
     }
 
-    /// Returns where a device that stands takes its robot to be: by the odometry since its last step.
+    /// Returns where a device that stands takes its robot to be: by the odometry since its last
+    /// step.
     #[must_use]
     pub fn carried(&self, observation: &Observation) -> Option<Pose> {
         let input = convert::input(observation, self.config.as_ref()?.lasers())?;
