@@ -256,6 +256,7 @@ mod tests {
                 "commands.csv",
                 "map.pgm",
                 "map.yaml",
+                "mission.log",
                 "report.json",
                 "run.png",
                 "trajectory.tum",

@@ -18,6 +18,13 @@ const FILES: [&str; 8] = [
     "trajectory_truth.tum",
 ];
 
+/// The files of a run that may go on.
+fn kept_files() -> Vec<&'static str> {
+    let mut files = FILES.to_vec();
+    files.insert(6, "session.state");
+    files
+}
+
 fn files(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("a folder");
     let name = |entry: std::io::Result<fs::DirEntry>| {
@@ -171,7 +178,7 @@ fn one_world_goes_into_out_and_the_time_limit_ends_it() {
     let report = &reports(&stdout)[0];
     assert_eq!(report["outcome"]["status"], "time-limit");
     assert_eq!(report["sim_time_s"], 3.0);
-    assert_eq!(files(&folder.path().join("here")), FILES);
+    assert_eq!(files(&folder.path().join("here")), kept_files());
     assert!(stderr.contains("allow more with --time-limit"), "{stderr}");
 }
 
@@ -203,7 +210,7 @@ fn snapshots_of_an_uneven_run_change_no_result() {
             > 1_000
     );
     let home = folder.path().join("out/causeway@1-frontier-0");
-    assert_eq!(files(&home), FILES, "no snapshots by default");
+    assert_eq!(files(&home), kept_files(), "no snapshots by default");
     for link in ["direct", "loopback"] {
         let taken = run(&["--link", link, "--snapshots", "3"]);
         assert_eq!(taken["digest"], plain["digest"]);
@@ -312,7 +319,10 @@ fn silence_or_a_reset_ends_the_run_with_a_typed_fault() {
         assert_eq!(report["injected_faults"], fault);
         assert_eq!(report["safety"]["collisions"], 0, "{fault}");
         assert!(stderr.contains("host-sim: loop: "), "{stderr}");
-        assert_eq!(files(&folder.path().join("out/loop-frontier-0")), FILES);
+        assert_eq!(
+            files(&folder.path().join("out/loop-frontier-0")),
+            kept_files()
+        );
     }
 }
 
@@ -370,7 +380,7 @@ fn the_interrupt_key_ends_a_run_with_a_report() {
         time_s < 3.5,
         "{time_s} s: faster than the clock on the wall"
     );
-    assert_eq!(files(&folder.path().join("run")), FILES);
+    assert_eq!(files(&folder.path().join("run")), kept_files());
 }
 
 /// The key ends the run in hand, and no further one begins.
