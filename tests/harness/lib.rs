@@ -5,7 +5,7 @@
 //! | [`golden`] | committed files: compare, or rewrite with `BLESS=1` |
 //! | [`digests`] | digests of command streams, all in `golden/digests.txt` |
 //! | [`random`] | the one source of seeded numbers |
-//! | [`random_missions`] | missions drawn at random, with resets of the device and kills of its host |
+//! | [`random_missions`] | missions drawn at random, with resets of the device, kills of its host |
 //! | [`table`] | columns of text |
 //! | [`runs`] | whole explorations, several at a time |
 //! | [`flat`] | tables of explorations of flat worlds |

@@ -2,18 +2,18 @@
 //!
 //! | what it does | begins when | ends when |
 //! | --- | --- | --- |
-//! | [`Explores`](Doing::Explores) | a path leads to a frontier, or a loop is closed | the path ends or fails |
-//! | [`FollowsForces`](Doing::FollowsForces) | the forces of `sbpf` lead somewhere | they do not |
-//! | [`GoesToLook`](Doing::GoesToLook) | nothing but a look through a gap is left | the robot has looked |
-//! | [`GoesByOrder`](Doing::GoesByOrder) | the host orders it | it arrives, or cannot |
-//! | [`Searches`](Doing::Searches) | no motion along the field is admissible | a way out is found, or none |
-//! | [`Recovers`](Doing::Recovers) | a search found motions | they are driven, or not admissible |
-//! | [`GoesBack`](Doing::GoesBack) | a passage was blocked where it cannot turn | it can turn, or the track ends |
-//! | [`LooksForGaps`](Doing::LooksForGaps) | no frontier is left | the whole map was searched |
-//! | [`LooksAbout`](Doing::LooksAbout) | it has no path, or stands for long | there is a path |
-//! | [`MakesWay`](Doing::MakesWay) | another robot comes and goes first | its road is free |
-//! | [`Waits`](Doing::Waits) | it stands until another robot has passed, or has no path yet | |
-//! | [`Stands`](Doing::Stands) | the status does not drive, or nothing is seen or located | |
+//! | [`Doing::Explores`] | a path leads to a frontier, or a loop is closed | the path ends |
+//! | [`Doing::FollowsForces`] | the forces of `sbpf` lead somewhere | they do not |
+//! | [`Doing::GoesToLook`] | only a look through a gap is left | the robot has looked |
+//! | [`Doing::GoesByOrder`] | the host orders it | it arrives, or cannot |
+//! | [`Doing::Searches`] | no motion along the field is admissible | a way out is found, or none |
+//! | [`Doing::Recovers`] | a search found motions | they are driven, or not admissible |
+//! | [`Doing::GoesBack`] | a passage was blocked where it cannot turn | it can turn |
+//! | [`Doing::LooksForGaps`] | no frontier is left | the whole map was searched |
+//! | [`Doing::LooksAbout`] | it has no path, or stands for long | there is a path |
+//! | [`Doing::MakesWay`] | another robot comes and goes first | its road is free |
+//! | [`Doing::Waits`] | it has no path yet, or another robot must pass | there is a path |
+//! | [`Doing::Stands`] | the status does not drive, or nothing is seen or located | it drives |
 //!
 //! The [`Events`] of a step say why it changed: the robot goes back because it
 //! [stalled](Event::Stalled).

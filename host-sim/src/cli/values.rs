@@ -50,10 +50,14 @@ pub(super) fn wait(text: &str) -> Result<Duration, String> {
 pub(super) fn live(text: &str) -> Result<LiveArg, String> {
     match text {
         "usual" => Ok(LiveArg(None)),
-        _ => text.parse().map(|address| LiveArg(Some(address))).map_err(|_| {
-            "give an address and a port, as 127.0.0.1:8047, or nothing; a world stands before --live"
-                .into()
-        }),
+        _ => text
+            .parse()
+            .map(|address| LiveArg(Some(address)))
+            .map_err(|_| {
+                "give an address and a port, as 127.0.0.1:8047, or nothing; a world stands before \
+             --live"
+                    .into()
+            }),
     }
 }
 

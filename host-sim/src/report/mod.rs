@@ -69,8 +69,8 @@ pub struct Report {
     /// Drives by order after the exploration; the key is missing without any.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trips: Vec<Trip>,
-    /// What viewers of the live page asked of the device; the key is missing without any. Such a run
-    /// is not made again by its command line.
+    /// What viewers of the live page asked of the device; the key is missing without any. The
+    /// command line does not make such a run again.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub live_requests: Vec<LiveRequest>,
     /// How strategy bvp-papers relaxes its potential; the key is missing for other strategies.

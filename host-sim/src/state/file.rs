@@ -139,7 +139,7 @@ impl State {
     /// Reads the bytes of a file.
     ///
     /// # Errors
-    /// [`Fault`]: every cut and every damaged byte.
+    /// What is wrong with them: every cut and every damaged byte is found.
     pub fn of_bytes(bytes: &[u8]) -> Result<Self, Fault> {
         let cut = |want| Fault::Cut(bytes.len(), want);
         let known = MAGIC.len().min(bytes.len());

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! G is a goal's gain, t the length of the trip to it, and d the distance of two goals in a
-//! straight line. So a goal's trip is paid by its own gain, and by what is worth a trip from there. Without
-//! this rule the far end of a building is left, because each of its frontiers is small.
+//! straight line. So a goal's trip is paid by its own gain, and by what is worth a trip from there.
+//! Without this rule the far end of a building is left, because each of its frontiers is small.
 //!
 //! Units: metres, square metres.
 
