@@ -25,7 +25,7 @@ const MOST_M: f64 = 3_200.0;
 
 /// A message of a page.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(tag = "do", rename_all = "kebab-case", deny_unknown_fields)]
+#[serde(try_from = "Fields")]
 pub enum Ask {
     /// Run at most this many simulated seconds a second; 0 as fast as it goes.
     Speed {
@@ -56,6 +56,44 @@ pub enum Ask {
         /// Metres, map.
         y: f64,
     },
+}
+
+/// The fields of a message, of which each kind has its own. An enum with a tag would read them
+/// through a buffer, which numbers do not pass where `serde_json` keeps all of their digits.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fields {
+    r#do: String,
+    factor: Option<f64>,
+    on: Option<bool>,
+    x: Option<f64>,
+    y: Option<f64>,
+}
+
+impl TryFrom<Fields> for Ask {
+    type Error = &'static str;
+
+    fn try_from(fields: Fields) -> Result<Self, Self::Error> {
+        let Fields {
+            r#do,
+            factor,
+            on,
+            x,
+            y,
+        } = fields;
+        Ok(match (r#do.as_str(), factor, on, x, y) {
+            ("speed", Some(factor), None, None, None) => Self::Speed { factor },
+            ("hold", None, Some(on), None, None) => Self::Hold { on },
+            ("go-to", None, None, Some(x), Some(y)) => Self::GoTo { x, y },
+            ("step", None, None, None, None) => Self::Step,
+            ("pause", None, None, None, None) => Self::Pause,
+            ("resume", None, None, None, None) => Self::Resume,
+            ("stop", None, None, None, None) => Self::Stop,
+            ("home", None, None, None, None) => Self::Home,
+            ("explore", None, None, None, None) => Self::Explore,
+            _ => return Err("no request has this name and these fields"),
+        })
+    }
 }
 
 impl Ask {

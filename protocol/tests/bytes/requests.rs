@@ -178,7 +178,7 @@ fn request_control_start() {
             0x80, 0x80, 0x50, // 10 m more for each metre of frontier
             0x80, 0x80, 0x10, // twice the length
             0x80, 0x80, 0xa0, 0x01, // and 20 m
-            1,    // nearest first
+            1, 0, // nearest first, any worth
             1, 2, 0x80, 0x01, // a team's robot 2, boot 128
             0x80, 0x80, 0x08, 0xff, 0xff, 0x03,
             0, // odometry from (1 m, −0.5 m), not turned
