@@ -71,7 +71,7 @@ struct Fields {
 }
 
 impl TryFrom<Fields> for Ask {
-    type Error = &'static str;
+    type Error = String;
 
     fn try_from(fields: Fields) -> Result<Self, Self::Error> {
         let Fields {
@@ -91,7 +91,7 @@ impl TryFrom<Fields> for Ask {
             ("stop", None, None, None, None) => Self::Stop,
             ("home", None, None, None, None) => Self::Home,
             ("explore", None, None, None, None) => Self::Explore,
-            _ => return Err("no request has this name and these fields"),
+            (name, ..) => return Err(format!("no request is `{name}` with these fields")),
         })
     }
 }
