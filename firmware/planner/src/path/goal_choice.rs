@@ -7,12 +7,12 @@
 //! A goal's utility follows from its gain and this length of the trip ([`crate::path::utility`]).
 //! The gain is the unexplored area that may be seen from it ([`crate::path::gain`]). θ is the angle
 //! from the robot's heading to the first metre of the path. The level is that of
-//! [`crate::path::goal_level`]. The present goal's gain counts more,
-//! so the robot keeps it until another one is clearly better. What another robot claims counts less
-//! ([`crate::path::claims`]). A goal with an *opening* that was not tried counts as if it gained at
-//! least 4.5 m² ([`View::is_open`]): it will be visited anyway, and later that may cost a trip of
-//! its own. A goal is *worth* its trip for its gain, if it has an opening, or together with
-//! others ([`crate::path::shared_trip`]).
+//! [`crate::path::goal_level`]. The present goal's gain counts more, so the robot keeps it until
+//! another one is clearly better. What another robot claims counts less ([`crate::path::claims`]).
+//! A goal with an *opening* that was not tried counts as if it gained at least 4.5 m²
+//! ([`View::is_open`]): it will be visited anyway, and later that may cost a trip of its own. A
+//! goal is *worth* its trip for its gain, if it has an opening, or together with others
+//! ([`crate::path::shared_trip`]).
 //!
 //! Frontier cells near each other are one *candidate*: the nearest by path stands for them. A wave
 //! from the robot finds them, the nearest first, with their paths ([`crate::path::robot_wave`],

@@ -351,6 +351,12 @@ fn loops_in_a_row_of_halls_are_closed() {
     assert_closes_all(THREE_LOOPS);
 }
 
+#[test]
+#[ignore = "known to fail: the middle one of three adjacent loops is not closed"]
+fn known_red_every_adjacent_loop_is_closed() {
+    assert_closes_all(ADJACENT);
+}
+
 /// The loops on both sides of the middle one are closed, and their marks leave no tractor point for
 /// it.
 #[test]
