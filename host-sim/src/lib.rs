@@ -15,6 +15,8 @@ mod panics;
 pub mod people;
 pub mod picture;
 pub mod radio;
+#[cfg(feature = "record")]
+pub mod recording;
 pub mod replay;
 pub mod report;
 pub mod robot;

@@ -323,6 +323,10 @@ pub(super) struct ExploreArgs {
         allow_negative_numbers = true
     )]
     pub(super) snapshots: usize,
+    /// Record the run in a file that Foxglove, Lichtblick, Rerun and rosbags read, and that
+    /// `host-sim replay` runs again
+    #[arg(long, value_name = "FILE.mcap")]
+    pub(super) record: Option<PathBuf>,
     #[command(flatten)]
     pub(super) robot: RobotArgs,
     /// Print during the run what the robot does and why, as in the file mission.log

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use anyhow::{Error, Result, bail};
 
@@ -26,6 +27,7 @@ use super::args::{ExploreArgs, GroundArg, LogArg, OdometryArg, SwitchArg, ThenAr
 use super::pictures::Album;
 use super::prepared::Prepared;
 use super::progress::{Interrupt, Onlooker};
+use super::recording::Recorder;
 use super::resume;
 use super::strategies::{self, FRONTIER, TERRAIN};
 use super::{live, made_by, note, say};
@@ -197,9 +199,19 @@ fn explore(
             resume::place(state)
         ));
     }
+    let recorder = recorder(args, run)?.map(Rc::new);
+    onlooker.record(recorder.clone());
     let mut keeping = resume::keeping(args, run);
-    let result = prepared.play_kept(&run.mission, &run.world, &mut onlooker, keeping.as_mut());
+    let result = prepared.play_kept(
+        &run.mission,
+        &run.world,
+        &mut onlooker,
+        (keeping.as_mut(), recorder.as_deref()),
+    );
     onlooker.finish();
+    if let Some(recorder) = recorder {
+        recorder.end(result.as_ref().ok().map(|(report, _)| report));
+    }
     live::end(onlooker.live(), &result);
     let (mut report, record) = result?;
     if let Some(error) = keeping.and_then(|it| it.failure) {
@@ -217,6 +229,27 @@ fn explore(
     folder::write_corrections(&run.folder, album.corrections())?;
     print(args, &report, &record, &run.folder)?;
     Ok(report.explored())
+}
+
+/// Begins the recording of a run; `None` without `--record`.
+fn recorder(args: &ExploreArgs, run: &Run) -> Result<Option<Recorder>> {
+    let Some(file) = &args.record else {
+        return Ok(None);
+    };
+    if args.worlds.len() > 1 {
+        bail!(
+            "--record {}: a file holds one run; name one world",
+            file.display()
+        );
+    }
+    if run.resumed.is_some() {
+        bail!(
+            "--record {}: a run that goes on has no recorded beginning; leave --record or --resume \
+             out",
+            file.display()
+        );
+    }
+    Recorder::open(file, &run.made_by, args.force).map(Some)
 }
 
 /// Returns the parameters of uneven ground; `None` on flat ground.

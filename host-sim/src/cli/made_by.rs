@@ -10,7 +10,9 @@ use host_sim::report::MadeBy;
 use super::args::Cli;
 
 /// Options that make no other run: where its results go, and how they are shown.
-const SHOWN: [&str; 7] = ["out", "json", "force", "realtime", "live", "wait", "help"];
+const SHOWN: [&str; 8] = [
+    "out", "json", "force", "realtime", "live", "record", "wait", "help",
+];
 
 static GIVEN: OnceLock<MadeBy> = OnceLock::new();
 

@@ -16,6 +16,11 @@ mod mission_file;
 mod pictures;
 mod prepared;
 mod progress;
+#[cfg(not(feature = "record"))]
+#[path = "no_recording.rs"]
+mod recording;
+#[cfg(feature = "record")]
+mod recording;
 mod replay;
 mod resume;
 mod robot;

@@ -24,6 +24,7 @@ use host_sim::world::World;
 use super::args::ExploreArgs;
 use super::explore;
 use super::mission_file;
+use super::recording::Recorder;
 use super::strategies;
 use super::{note, note_build};
 
@@ -70,16 +71,17 @@ impl Prepared {
 
     /// Makes the run of these arguments in `world`.
     pub(super) fn play(&self, world: &World, watch: &mut dyn Watch) -> Result<(Report, Record)> {
-        self.play_kept(&self.mission, world, watch, None)
+        self.play_kept(&self.mission, world, watch, (None, None))
     }
 
-    /// As [`Prepared::play`], with another mission, and keeps the run or goes on with it.
+    /// As [`Prepared::play`], with another mission, and keeps the run or goes on with it, and
+    /// records it.
     pub(super) fn play_kept(
         &self,
         mission: &Mission,
         world: &World,
         watch: &mut dyn Watch,
-        keeping: Option<&mut Keeping>,
+        (keeping, recorder): (Option<&mut Keeping>, Option<&Recorder>),
     ) -> Result<(Report, Record)> {
         let (args, link) = (&self.args, &self.link);
         let options = Options {
@@ -100,9 +102,13 @@ impl Prepared {
         }
         let (mut planner, network) = join(args, planner)?;
         let planner = planner.as_mut();
-        let result = match keeping {
-            Some(keeping) => mission::explore_kept(mission, world, planner, watch, keeping),
-            None => mission::explore(mission, world, planner, watch),
+        let run = |link: &mut dyn Link| match keeping {
+            Some(keeping) => mission::explore_kept(mission, world, link, watch, keeping),
+            None => mission::explore(mission, world, link, watch),
+        };
+        let result = match recorder {
+            Some(recorder) => recorder.over(planner, run),
+            None => run(planner),
         };
         let (mut report, record) = match result {
             Err(MissionError::Link(error)) => bail!("--link {link}: {error}"),

@@ -2,6 +2,7 @@
 
 use core::sync::atomic::{AtomicBool, Ordering};
 use core::time::Duration;
+use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -14,6 +15,7 @@ use host_sim::trial::sight::Sight;
 use host_sim::trial::{Flow, Progress, Watch, wording};
 
 use super::note;
+use super::recording::Recorder;
 
 /// Ticks of the bar: tenths of a percent.
 const TICKS: u64 = 1_000;
@@ -55,6 +57,8 @@ pub(super) struct Onlooker {
     after_ms: u32,
     /// The live page, which keeps the pace then.
     live: Option<Observer>,
+    /// Where the run is recorded.
+    recorder: Option<Rc<Recorder>>,
 }
 
 impl Onlooker {
@@ -76,6 +80,7 @@ impl Onlooker {
             began: pace.map(|pace| (Instant::now(), pace)),
             after_ms: 0,
             live: None,
+            recorder: None,
         }
     }
 
@@ -93,6 +98,11 @@ impl Onlooker {
     pub(super) fn show(&mut self, live: Option<Observer>) {
         self.live = live;
         self.began = self.began.filter(|_| self.live.is_none());
+    }
+
+    /// Records what is seen.
+    pub(super) fn record(&mut self, recorder: Option<Rc<Recorder>>) {
+        self.recorder = recorder;
     }
 
     /// Returns the live page.
@@ -131,6 +141,9 @@ impl Watch for Onlooker {
     }
 
     fn see(&mut self, sight: &mut Sight<'_>) {
+        if let Some(recorder) = &self.recorder {
+            recorder.see(sight);
+        }
         if let Some(live) = &mut self.live {
             live.see(sight);
         }

@@ -24,13 +24,15 @@ use host_sim::slam::particles::{self, ParticleSpec};
 use host_sim::trial::wording;
 
 use super::progress::Interrupt;
+use super::recording;
 use super::robot::{self as robots, TuneArgs, robot};
 use super::values::{seed, slam_place};
 use super::{made_by, note, note_build, say};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct ReplayArgs {
-    /// CARMEN log with FLASER or ROBOTLASER1 lines, plain or gzip
+    /// CARMEN log with FLASER or ROBOTLASER1 lines, plain or gzip; or a recording of explore
+    /// --record, whose requests are made again
     #[arg(value_name = "LOG")]
     log: PathBuf,
     /// True motions between poses of the log, lines of `t1 t2 x y z roll pitch yaw`
@@ -105,6 +107,9 @@ const UNKNOWN_WHEELS: f64 = 20.0;
 
 /// Replays a log; returns true if the device went on up to the end.
 pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
+    if recording::is_recording(&args.log) {
+        return run_again(args);
+    }
     let text = carmen::read(&args.log).map_err(Error::msg)?;
     let mut log = carmen::log(&args.log.display().to_string(), &text).map_err(Error::msg)?;
     note_late(args, &log);
@@ -145,6 +150,34 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     };
     write(&input, &report, &replayed, errors.as_deref(), &folder)?;
     Ok(replayed.status == Status::Exploring)
+}
+
+/// Runs the device of a recording again.
+fn run_again(args: &ReplayArgs) -> Result<bool> {
+    let others = [
+        ("--relations", args.relations.is_some()),
+        ("--degrade", args.degrade.is_some()),
+        ("--robot", args.robot.is_some()),
+        ("--laser", args.laser.is_some()),
+        ("--slam", args.slam != SlamPlace::Off),
+        ("--slam-noise", args.slam_noise.is_some()),
+        ("--particles", args.particles.is_some()),
+        ("--out", args.out.is_some()),
+    ];
+    if let Some((name, _)) = others.iter().find(|(_, is_given)| *is_given) {
+        bail!(
+            "{name} is for CARMEN logs, and {} is a recording, whose requests are made again as \
+             they were; leave it out",
+            args.log.display()
+        );
+    }
+    let link = args.tune.link(args.link.as_ref()).cloned();
+    let link = link.unwrap_or_default();
+    let options = Options {
+        tuning: args.tune.tuning(&link)?,
+        ..Options::default()
+    };
+    recording::replay(&args.log, &link, &options, args.json)
 }
 
 /// Writes the files of a replay, and says how it went.

@@ -11,10 +11,11 @@
 //! Units: tiles of 32 × 32 map cells of 10 cm; metres.
 
 use fieldline_planner::planner::host_copy;
-use fieldline_planner::{FIELD_SIDE, State, Workspace};
+use fieldline_planner::{CellKind, FIELD_SIDE, State, Workspace};
 
 use crate::report::grid_map::CELL_M;
 use crate::trial::planned_path::PlannedPath;
+use crate::trial::snapshot::{Window, WindowCell};
 
 /// Column and row of a tile.
 pub type Key = (i16, i16);
@@ -37,6 +38,8 @@ pub trait Inside {
     fn path(&self) -> PlannedPath;
     /// Returns the middles of the window's goal cells, metres: where the field leads now.
     fn local_goal(&self) -> Vec<[f64; 2]>;
+    /// Returns the last window's field; `None` before the first window.
+    fn field(&self) -> Option<Window>;
 }
 
 /// The memory of a planner in this process.
@@ -88,6 +91,25 @@ impl<const TILES: usize, const SLOTS: usize> Inside for Look<'_, TILES, SLOTS> {
         let middle = |at: usize| (at as f64 + 0.5) * side_m;
         let middles = goals.map(|(x, y)| [x_m + middle(x), y_m + middle(y)]);
         middles.take(GOAL_CELLS).collect()
+    }
+
+    fn field(&self) -> Option<Window> {
+        let rows = (0..FIELD_SIDE as u8).filter_map(|row| self.workspace.field_row(row));
+        let rows: Vec<_> = rows.collect();
+        let first = rows.first()?;
+        let scale = i32::from(first.scale.max(1));
+        let kind = |kind| match kind {
+            CellKind::Free => WindowCell::Free,
+            CellKind::Obstacle => WindowCell::Obstacle,
+            CellKind::Goal => WindowCell::Goal,
+        };
+        Some(Window {
+            origin_x: first.origin.x.div_euclid(scale),
+            origin_y: first.origin.y.div_euclid(scale),
+            cell_m: CELL_M * f64::from(scale),
+            q: rows.iter().flat_map(|row| row.q).collect(),
+            cells: rows.iter().flat_map(|row| row.kinds.map(kind)).collect(),
+        })
     }
 }
 

@@ -13,11 +13,11 @@
 //!           cell: 0 unknown, 1 free, 2 obstacle, 3 negative obstacle
 //! SKELETON  tile x, y i16; 16 rows u16, one bit a roadmap cell
 //! SCAN      ranges of the level laser u16, mm
-//! PATH      flags u8 (1 tractor point, 2 shield); those places i16; number of path cells u16,
-//! cells
-//!           i16; local goals f32
+//! PATH      flags u8 (1 tractor point, 2 shield); those places i16; number of path cells u16;
+//!           cells i16; local goals f32
 //! NOTE      JSON: what a viewer asked for, and the answer
 //! END       JSON: the end of the run, its reason and the report's lines
+//! DOING     JSON: what the robot does and what happened, when it changes, as in `mission.log`
 //! ```
 //!
 //! Invariant: a tile or a skeleton is the sum of its records so far, so a record may be left out
@@ -59,6 +59,8 @@ pub enum Kind {
     Note = 8,
     /// The end.
     End = 9,
+    /// What the robot does, and why.
+    Doing = 10,
 }
 
 /// Appends a record.

@@ -162,6 +162,7 @@ struct KeyFrame {
     status: Vec<u8>,
     step: Vec<u8>,
     path: Vec<u8>,
+    doing: Vec<u8>,
 }
 
 impl KeyFrame {
@@ -182,6 +183,7 @@ impl KeyFrame {
             it if it == Kind::Status as u8 => keep(Kind::Status, &mut self.status),
             it if it == Kind::Step as u8 => keep(Kind::Step, &mut self.step),
             it if it == Kind::Path as u8 => keep(Kind::Path, &mut self.path),
+            it if it == Kind::Doing as u8 => keep(Kind::Doing, &mut self.doing),
             it if it == Kind::Rows as u8 => {
                 if let Some((key, rest)) = frame::key(payload) {
                     let tile = self.tiles.entry(key).or_insert_with(|| Box::new([0; 256]));
@@ -204,7 +206,7 @@ impl KeyFrame {
             frame::rows(&mut out, *key, &[0; 256], tile);
         }
         out.extend(self.skeletons.values().flatten());
-        for part in [&self.status, &self.step, &self.path] {
+        for part in [&self.status, &self.doing, &self.step, &self.path] {
             out.extend(part);
         }
         out

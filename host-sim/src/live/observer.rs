@@ -1,9 +1,8 @@
 //! The observer of a run: tells each step to the log, keeps the pace, passes requests on.
 //!
 //! After every third step the map is compared with what was told, tile by tile, if it changed, and
-//! the scan goes into the history. The path is told when it changes, and the newest scan lies
-//! beside
-//! the history.
+//! the scan goes into the history. The path is told when it changes, and so is what the robot does.
+//! The newest scan lies beside the history.
 //!
 //! A robot that stands because a viewer said so is no faster than real time: the run's time limit
 //! would else be over before anyone could say more.
@@ -21,7 +20,7 @@ use super::Shared;
 use super::frame::{self, Kind};
 use crate::link::inside::{Inside, Key};
 use crate::report::Report;
-use crate::trial::mirror::Mirror;
+use crate::report::mission_log::MissionLog;
 use crate::trial::planned_path::PlannedPath;
 use crate::trial::sight::{Sight, request_words};
 use crate::trial::{Flow, Progress, Watch, wording};
@@ -66,6 +65,7 @@ struct Told {
     path: PlannedPath,
     goals: Vec<[f64; 2]>,
     status: String,
+    mission: MissionLog,
 }
 
 impl fmt::Debug for Observer {
@@ -150,13 +150,19 @@ impl Observer {
             frame::record(&mut out, Kind::Status, status.as_bytes());
             self.told.status = status;
         }
+        if let Some(entry) = self.told.mission.note(&step.estimate, &step.command) {
+            frame::json(&mut out, Kind::Doing, &entry);
+        }
         let inside = sight.inside();
         let is_last = sight.ending.is_some();
         if self.steps.is_multiple_of(LOOK_STEPS) || is_last {
-            match (&inside, sight.mirror) {
-                (Some(inside), _) => self.told.tell_inside(&mut out, inside.as_ref()),
-                (None, Some(mirror)) => self.told.tell_mirror(&mut out, mirror),
-                (None, None) => {}
+            if let Some(inside) = &inside {
+                self.told.tell_skeleton(&mut out, inside.as_ref());
+            }
+            let edits = sight.map_edits();
+            if edits.is_some() && edits != self.told.edits {
+                self.told.edits = edits;
+                self.told.tell_tiles(&mut out, sight.map_tiles());
             }
         }
         if let Some(inside) = &inside {
@@ -270,40 +276,21 @@ impl Observer {
 }
 
 impl Told {
-    fn tell_inside(&mut self, out: &mut Vec<u8>, inside: &dyn Inside) {
-        let keys = inside.tiles();
-        for key in &keys {
-            let rows = inside.skeleton(*key);
-            let before = self.skeletons.entry(*key).or_default();
+    fn tell_skeleton(&mut self, out: &mut Vec<u8>, inside: &dyn Inside) {
+        for key in inside.tiles() {
+            let rows = inside.skeleton(key);
+            let before = self.skeletons.entry(key).or_default();
             if *before != rows {
-                frame::skeleton(out, *key, &rows);
+                frame::skeleton(out, key, &rows);
                 *before = rows;
             }
-        }
-        if self.edits.replace(inside.edits()) != Some(inside.edits()) {
-            let tiles = keys.into_iter();
-            self.tell_tiles(out, tiles.map(|key| (key, inside.cells(key))));
-        }
-    }
-
-    fn tell_mirror(&mut self, out: &mut Vec<u8>, mirror: &Mirror) {
-        let map = mirror.map();
-        if self.edits.replace(map.tiles().edits()) != Some(map.tiles().edits()) {
-            let tiles = map.tiles().touched();
-            let tiles = tiles.map(|(x, y)| ((x as i16, y as i16), map.shown(x, y)));
-            self.tell_tiles(out, tiles);
         }
     }
 
     /// Tells what changed. A tile that is there no more is unknown.
-    fn tell_tiles(
-        &mut self,
-        out: &mut Vec<u8>,
-        now: impl Iterator<Item = (Key, Option<[u8; 256]>)>,
-    ) {
+    fn tell_tiles(&mut self, out: &mut Vec<u8>, now: BTreeMap<Key, [u8; 256]>) {
         let mut before = core::mem::take(&mut self.tiles);
         for (key, cells) in now {
-            let cells = cells.unwrap_or([0; 256]);
             frame::rows(out, key, &before.remove(&key).unwrap_or([0; 256]), &cells);
             self.tiles.insert(key, cells);
         }

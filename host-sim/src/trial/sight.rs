@@ -10,12 +10,14 @@
 //! A look changes nothing. A request goes over the same link as any other, acts from the next step
 //! on, and stands in the record with its answer.
 
+use std::collections::BTreeMap;
+
 use fieldline_protocol::message::{Control, Observation, Status};
 
 use super::itinerary::Itinerary;
 use super::mirror::Mirror;
 use super::{Ending, Record, Setup, Step, wording};
-use crate::link::inside::Inside;
+use crate::link::inside::{Inside, Key};
 use crate::link::{Link, LinkError};
 use crate::report::LiveRequest;
 
@@ -55,6 +57,33 @@ impl Sight<'_> {
     #[must_use]
     pub fn inside(&self) -> Option<Box<dyn Inside + '_>> {
         self.link.inside()
+    }
+
+    /// Returns the number of the map's changes so far, which wraps; `None` without a map.
+    #[must_use]
+    pub fn map_edits(&self) -> Option<u32> {
+        let inside = self.inside().map(|inside| inside.edits());
+        inside.or_else(|| Some(self.mirror?.map().tiles().edits()))
+    }
+
+    /// Returns the map's tiles: the device's own, if it lives in this process, else the host's copy.
+    /// A cell has two bits, least x and y first, as [`Inside::cells`] tells them.
+    #[must_use]
+    pub fn map_tiles(&self) -> BTreeMap<Key, [u8; 256]> {
+        match (self.inside(), self.mirror) {
+            (Some(inside), _) => {
+                let keys = inside.tiles().into_iter();
+                keys.filter_map(|key| Some((key, inside.cells(key)?)))
+                    .collect()
+            }
+            (None, Some(mirror)) => {
+                let keys = mirror.map().tiles().touched();
+                let tiles = keys
+                    .filter_map(|(x, y)| Some(((x as i16, y as i16), mirror.map().shown(x, y)?)));
+                tiles.collect()
+            }
+            (None, None) => BTreeMap::new(),
+        }
     }
 
     /// Returns true if the robot stands where a request took it, until the next request.

@@ -3,6 +3,8 @@
 mod campaigns;
 mod commands;
 mod mission_files;
+#[cfg(feature = "record")]
+mod recordings;
 mod refusals;
 mod replay;
 mod resumes;

@@ -27,6 +27,8 @@ pub(crate) struct Told {
     pub(crate) tiles: BTreeMap<(i16, i16), [u8; 256]>,
     /// Statuses, in order.
     pub(crate) statuses: Vec<String>,
+    /// What the robot does, and why.
+    pub(crate) doings: Vec<Value>,
     /// Requests and answers.
     pub(crate) notes: Vec<Value>,
     /// Number of path records with a cell, of skeletons with a cell, of scans.
@@ -210,6 +212,7 @@ impl Told {
             7 => self.seen[0] += usize::from(bytes.len() > 3),
             8 => self.notes.push(json()),
             9 => self.end = Some(json()),
+            10 => self.doings.push(json()),
             other => panic!("a record of kind {other}"),
         }
     }

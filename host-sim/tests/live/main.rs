@@ -152,6 +152,15 @@ fn compare(told: &client::Told, report: &Report, record: &Record) {
     assert_eq!(end["reason"], report.outcome.reason);
     assert_eq!(end["digest"], report.digest);
     assert_eq!(told.statuses.first().map(String::as_str), Some("exploring"));
+    let mission = report
+        .mission
+        .iter()
+        .map(|entry| serde_json::to_value(entry).unwrap());
+    let mission: Vec<_> = mission.collect();
+    // What the robot began to do with the last step is in the report only.
+    let told = told.doings.as_slice();
+    assert!(!told.is_empty() && mission.len() <= told.len() + 1);
+    assert_eq!(told, &mission[..told.len()]);
 }
 
 /// A device behind a line that nobody looks into, as behind a serial port.

@@ -2,7 +2,8 @@
 //
 // A change keeps what was before it and what is after it, so the time line is walked either way.
 
-const KIND = { run: 1, step: 2, status: 3, rows: 4, skeleton: 5, scan: 6, path: 7, note: 8, end: 9 };
+const KIND = { run: 1, step: 2, status: 3, rows: 4, skeleton: 5, scan: 6, path: 7, note: 8, end: 9,
+  doing: 10 };
 const NO_PATH = { cells: [], goals: [], tractor: null, shield: null };
 
 class History {
@@ -13,6 +14,7 @@ class History {
     this.end = null;
     this.steps = [];
     this.notes = [];
+    this.doings = [];         // the log of the mission
     this.marks = [];          // changes of the status: [step, words]
     this.changes = [];        // of each step: [part, key, before, after]
     this.pending = [];        // changes before their step has come
@@ -46,6 +48,7 @@ class History {
     else if (kind === KIND.scan) this.scan(readScan(view));
     else if (kind === KIND.path) this.change("path", "", readPath(view));
     else if (kind === KIND.note) this.notes.push(JSON.parse(text()));
+    else if (kind === KIND.doing) this.doings.push(JSON.parse(text()));
     else if (kind === KIND.end) this.end = JSON.parse(text());
   }
 

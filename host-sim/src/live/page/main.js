@@ -94,6 +94,7 @@ function frame(now) {
   drawCurve(history_);
   showNumbers(history_);
   showStatus(history_);
+  showDoings(history_);
   showNotes(history_);
   showEnd(history_);
   showState();

@@ -70,6 +70,23 @@ function showStatus(history) {
   $("status").className = "pill" + (bad ? " bad" : good ? " good" : stands ? " stands" : "");
 }
 
+// What the robot does at the shown step, and what it did before, the newest first.
+function showDoings(history) {
+  const step = history.steps[history.at], list = $("doings");
+  const until = step ? step.ms / 1e3 + 1e-6 : 0;
+  const told = history.doings.filter(doing => doing.time_s <= until);
+  const shown = `${told.length} of ${history.doings.length}`;
+  if (list.dataset.shown === shown) return;
+  list.dataset.shown = shown;
+  list.replaceChildren(...told.slice(-6).reverse().map(doing => {
+    const item = document.createElement("li"), time = document.createElement("time");
+    time.textContent = clock(doing.time_s * 1e3) + " ";
+    const why = (doing.events || []).join("; ");
+    item.append(time, why ? `${words(doing.doing)}: ${why}` : words(doing.doing));
+    return item;
+  }));
+}
+
 function showNotes(history) {
   const list = $("notes");
   if (list.dataset.shown === String(history.notes.length)) return;

@@ -1,0 +1,282 @@
+//! The requests and answers of a recording, as its file has them, and the device made to do them
+//! again.
+//!
+//! ```text
+//! /fieldline/request   a request as postcard: every bit of it
+//! /fieldline/reply     its answer as JSON: {"command":{…}}, {"status":…}, "done", {"refused":"…"}
+//! ```
+//!
+//! Each request is followed by its answer. A file that was cut has them up to the cut. The decimals
+//! of JSON would not do for requests: of the 65,536 fractions of a quantity with 16 bits, `fixed`
+//! prints eight so that they are read one bit off.
+
+use std::path::Path;
+
+use fieldline_protocol::SCHEMA;
+use fieldline_protocol::message::{Command, Status};
+use mcap::read::{LinearReader, Options};
+use mcap::records::Record;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::{MADE_BY, REPLIES, REQUESTS, SCHEMA_KEY};
+use crate::link::digest::Digest;
+use crate::link::{Link, LinkError};
+use crate::session::ask::{Answer, Ask};
+
+/// The first bytes of a recording.
+const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+
+/// An answer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Told {
+    /// To an observation.
+    Command(Box<Command>),
+    /// To a change of the session.
+    Status(Status),
+    /// To anything else.
+    Done,
+    /// The device refused, for this reason.
+    Refused(String),
+    /// The link failed, for this reason.
+    Failed(String),
+}
+
+/// A request and its answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exchange {
+    /// Simulated milliseconds.
+    pub time_ms: u32,
+    /// The request.
+    pub ask: Ask,
+    /// The answer.
+    pub told: Told,
+}
+
+/// The requests and answers of a file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Exchanges {
+    /// In their order.
+    pub list: Vec<Exchange>,
+    /// The file ends before its end: it was cut, or its run was killed.
+    pub is_cut: bool,
+}
+
+/// Why a file is no recording.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum ReadError {
+    /// It cannot be read.
+    #[error("{0}")]
+    File(String),
+    /// It has no session.
+    #[error(
+        "there is no request of a session in it; name a file that `host-sim explore --record` wrote"
+    )]
+    NoSession,
+    /// Its requests are those of another version.
+    #[error(
+        "its requests have the schema {0}, and those of this program {SCHEMA:#010x}; replay it with \
+         the version that recorded it"
+    )]
+    Schema(String),
+    /// A message is none that this program knows.
+    #[error("message {at} of {topic}: {what}; the file is damaged")]
+    Message {
+        /// Its topic.
+        topic: String,
+        /// Its number on the topic, from 0.
+        at: usize,
+        /// What is wrong.
+        what: String,
+    },
+}
+
+/// Returns true if a file begins as an MCAP file does.
+#[must_use]
+pub fn is_recording(path: &Path) -> bool {
+    use std::io::Read as _;
+    let mut head = [0; MAGIC.len()];
+    let file = std::fs::File::open(path);
+    file.is_ok_and(|mut file| file.read_exact(&mut head).is_ok()) && head == MAGIC
+}
+
+/// Reads the requests and answers of a file, up to its end or to where it was cut.
+///
+/// # Errors
+/// [`ReadError`].
+pub fn read(path: &Path) -> Result<Exchanges, ReadError> {
+    let bytes = std::fs::read(path).map_err(|error| ReadError::File(error.to_string()))?;
+    check_schema(&bytes)?;
+    let messages = mcap::MessageStream::new_with_options(&bytes, Options::IgnoreEndMagic.into())
+        .map_err(|error| ReadError::File(error.to_string()))?;
+    let mut exchanges = Exchanges {
+        is_cut: !bytes.ends_with(MAGIC),
+        ..Exchanges::default()
+    };
+    let mut open: Option<(u32, Ask)> = None;
+    for message in messages {
+        // What is behind the cut cannot be read.
+        let Ok(message) = message else {
+            exchanges.is_cut = true;
+            break;
+        };
+        let at = exchanges.list.len();
+        let topic = &message.channel.topic;
+        let wrong = |what: String| ReadError::Message {
+            topic: topic.clone(),
+            at,
+            what,
+        };
+        if topic == REQUESTS {
+            let ask = postcard::from_bytes(&message.data).map_err(|it| wrong(it.to_string()))?;
+            let time_ms = u32::try_from(message.log_time / 1_000_000).unwrap_or(u32::MAX);
+            open = Some((time_ms, ask));
+        } else if topic == REPLIES
+            && let Some((time_ms, ask)) = open.take()
+        {
+            let told = serde_json::from_slice(&message.data);
+            let told = told.map_err(|it| wrong(it.to_string()))?;
+            exchanges.list.push(Exchange { time_ms, ask, told });
+        }
+    }
+    if exchanges.list.is_empty() {
+        return Err(ReadError::NoSession);
+    }
+    Ok(exchanges)
+}
+
+/// Refuses requests of another version.
+fn check_schema(bytes: &[u8]) -> Result<(), ReadError> {
+    let records = LinearReader::new_with_options(bytes, Options::IgnoreEndMagic.into())
+        .map_err(|error| ReadError::File(error.to_string()))?;
+    let made_by = records
+        .map_while(Result::ok)
+        .find_map(|record| match record {
+            Record::Metadata(found) if found.name == MADE_BY => Some(found.metadata),
+            _ => None,
+        });
+    let schema = made_by.and_then(|mut told| told.remove(SCHEMA_KEY));
+    let schema = schema.ok_or(ReadError::NoSession)?;
+    if schema == format!("{SCHEMA:#010x}") {
+        return Ok(());
+    }
+    Err(ReadError::Schema(schema))
+}
+
+/// What a device did with the requests of a recording.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Replayed {
+    /// Number of requests.
+    pub requests: usize,
+    /// Number of commands.
+    pub commands: usize,
+    /// Digest of the recorded commands.
+    #[serde(serialize_with = "as_text")]
+    pub recorded: Digest,
+    /// Digest of the commands now.
+    #[serde(serialize_with = "as_text")]
+    pub now: Digest,
+    /// Simulated milliseconds of the first answer that differs.
+    pub differs_at_ms: Option<u32>,
+}
+
+fn as_text<S: serde::Serializer>(digest: &Digest, to: S) -> Result<S::Ok, S::Error> {
+    to.collect_str(digest)
+}
+
+impl Replayed {
+    /// Returns true if the device did what it did before.
+    #[must_use]
+    pub fn is_same(&self) -> bool {
+        self.differs_at_ms.is_none() && self.recorded == self.now
+    }
+}
+
+/// Makes the requests of a recording again. It ends with the first answer that differs.
+///
+/// # Errors
+/// As [`LinkError`], where the recorded link did not fail.
+pub fn replay(exchanges: &Exchanges, link: &mut dyn Link) -> Result<Replayed, LinkError> {
+    let mut replayed = Replayed::default();
+    link.hello()?;
+    for Exchange { time_ms, ask, told } in &exchanges.list {
+        // A reboot, or a broken line, is no deed of the device.
+        if matches!(told, Told::Failed(_)) {
+            continue;
+        }
+        replayed.requests += 1;
+        let answer = ask.of(link)?;
+        let same = match (told, &answer) {
+            (Told::Command(before), Answer::Command(now)) => {
+                replayed.commands += 1;
+                replayed.recorded.add(before);
+                replayed.now.add(now);
+                replayed.recorded == replayed.now
+            }
+            (Told::Status(before), Answer::Status(now)) => before == now,
+            (Told::Refused(_), Answer::Refused(_)) => true,
+            (Told::Done, Answer::Done | Answer::Said(_)) => true,
+            _ => false,
+        };
+        if !same {
+            replayed.differs_at_ms = Some(*time_ms);
+            break;
+        }
+    }
+    Ok(replayed)
+}
+
+#[cfg(test)]
+mod tests {
+    use fieldline_protocol::message::{Observation, Pose, Status};
+    use fixed::types::I16F16;
+
+    use super::{Exchange, ReadError, Told, read};
+    use crate::recording::Recording;
+    use crate::report::MadeBy;
+    use crate::session::ask::Ask;
+
+    /// Records these requests; returns what is read of the file.
+    fn through_a_file(asks: &[Ask]) -> Vec<Exchange> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("run.mcap");
+        let mut recording = Recording::create(&path, &MadeBy::default()).expect("a file");
+        for ask in asks {
+            recording.exchange(ask, &Told::Status(Status::Exploring));
+        }
+        assert_eq!(recording.end(None), None);
+        let read = read(&path).expect("a recording");
+        assert!(!read.is_cut);
+        read.list
+    }
+
+    #[test]
+    fn every_bit_of_a_request_is_kept() {
+        // Among these is 5.0999908, which `fixed` prints as 5.1.
+        let asks = (0..65_536).step_by(7).chain([6_553]).map(|fraction| {
+            let x = I16F16::from_bits(5 << 16 | fraction);
+            let pose = Pose {
+                x,
+                ..Pose::default()
+            };
+            Ask::Observation(Box::new(Observation {
+                pose,
+                ..Observation::default()
+            }))
+        });
+        let asks: Vec<Ask> = asks.collect();
+        let kept: Vec<Ask> = through_a_file(&asks).into_iter().map(|it| it.ask).collect();
+        assert!(kept == asks);
+    }
+
+    #[test]
+    fn a_file_without_a_session_is_none() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("run.mcap");
+        let recording = Recording::create(&path, &MadeBy::default());
+        assert_eq!(recording.expect("a file").end(None), None);
+        assert_eq!(read(&path), Err(ReadError::NoSession));
+        assert!(matches!(read(folder.path()), Err(ReadError::File(_))));
+    }
+}

@@ -1,0 +1,173 @@
+//! `explore --record FILE.mcap`, and `replay FILE.mcap`: the run is the same, the file is whole or
+//! readable up to its cut, and a device does it again.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::PathBuf;
+
+use mcap::read::Options;
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::refusals::refused;
+use crate::{folder, outcome, reports};
+
+/// A run of a minute.
+const RUN: [&str; 7] = [
+    "explore",
+    "office",
+    "--seed",
+    "4",
+    "--time-limit",
+    "60",
+    "--json",
+];
+
+/// Makes the run with more options; returns its digest.
+fn run(folder: &TempDir, more: &[&str]) -> String {
+    let (_, stdout, stderr) = outcome(folder, &[&RUN[..], more].concat());
+    let reports = reports(&stdout);
+    let [report] = reports.as_slice() else {
+        panic!("one report: {stderr}");
+    };
+    report["digest"].as_str().expect("a digest").to_owned()
+}
+
+fn file(folder: &TempDir) -> PathBuf {
+    folder.path().join("run.mcap")
+}
+
+fn recorded(more: &[&str]) -> (TempDir, String) {
+    let folder = folder();
+    let digest = run(&folder, &[&["--record", "run.mcap"], more].concat());
+    (folder, digest)
+}
+
+fn replayed(folder: &TempDir, name: &str, more: &[&str]) -> (i32, Value, String) {
+    let (status, stdout, stderr) = outcome(folder, &[&["replay", name, "--json"], more].concat());
+    let replayed = serde_json::from_str(&stdout).unwrap_or(Value::Null);
+    (status, replayed, stderr)
+}
+
+/// Returns the number of messages of each topic, and of bytes that could be read.
+fn topics(bytes: &[u8]) -> BTreeMap<String, usize> {
+    let mut topics = BTreeMap::new();
+    let stream = mcap::MessageStream::new_with_options(bytes, Options::IgnoreEndMagic.into());
+    for message in stream.expect("a head").map_while(Result::ok) {
+        *topics.entry(message.channel.topic.clone()).or_default() += 1;
+    }
+    topics
+}
+
+#[test]
+fn a_recorded_run_is_the_same_and_a_device_does_it_again() {
+    let (folder, digest) = recorded(&[]);
+    assert_eq!(run(&folder, &[]), digest, "without a recording");
+    let bytes = fs::read(file(&folder)).expect("a file");
+    let summary = mcap::Summary::read(&bytes).expect("whole").expect("an end");
+    assert_eq!(summary.attachment_indexes.len(), 1, "the report");
+
+    let topics = topics(&bytes);
+    let steps = topics["/scan"];
+    assert!((290..=301).contains(&steps), "{steps}");
+    for topic in [
+        "/scan_2",
+        "/odom",
+        "/tf",
+        "/pose",
+        "/true_pose",
+        "/cmd_vel",
+        "/coverage",
+    ] {
+        assert_eq!(topics[topic], steps, "{topic}");
+    }
+    for (topic, least) in [("/map", 10), ("/plan", 10), ("/field", 50), ("/rosout", 1)] {
+        assert!(topics[topic] >= least, "{topic}: {}", topics[topic]);
+    }
+    assert!(topics["/fieldline/request"] > steps);
+    assert_eq!(topics["/fieldline/reply"], topics["/fieldline/request"]);
+
+    for link in ["direct", "loopback"] {
+        let (status, replayed, stderr) = replayed(&folder, "run.mcap", &["--link", link]);
+        assert_eq!((status, stderr.as_str()), (0, ""), "{link}");
+        assert_eq!(replayed["now"], digest, "{link}");
+        assert_eq!(replayed["commands"], steps, "{link}");
+    }
+}
+
+/// The device's map is corrected, and a reset gets it its map back: all that the session is told.
+#[test]
+fn corrections_and_resets_are_done_again() {
+    for more in [
+        &[
+            "--odometry",
+            "papers",
+            "--slam",
+            "host",
+            "--strategy",
+            "ouroboros",
+        ][..],
+        &["--fault", "reset@40", "--resume"],
+        &["--ground", "uneven"],
+    ] {
+        let (folder, digest) = recorded(more);
+        let (status, replayed, stderr) = replayed(&folder, "run.mcap", &[]);
+        assert_eq!((status, stderr.as_str()), (0, ""), "{more:?}");
+        assert_eq!(replayed["now"], digest, "{more:?}");
+    }
+}
+
+#[test]
+fn another_device_is_told_from_the_recorded_one() {
+    let (folder, _) = recorded(&[]);
+    let tuned = ["--tune", "map.free_count=3", "--link", "direct"];
+    let (status, replayed, stderr) = replayed(&folder, "run.mcap", &tuned);
+    assert_eq!(status, 1, "{stderr}");
+    assert!(replayed["differs_at_ms"].as_u64().is_some(), "{replayed}");
+    assert_ne!(replayed["now"], replayed["recorded"]);
+}
+
+/// A run that is killed leaves such a file.
+#[test]
+fn a_file_that_is_cut_anywhere_is_readable_up_to_the_cut() {
+    let (folder, _) = recorded(&[]);
+    let bytes = fs::read(file(&folder)).expect("a file");
+    let whole = topics(&bytes)["/scan"];
+    let mut before = 0;
+    // Beyond the cut at most one chunk of ten seconds is lost.
+    for part in 1..=40 {
+        let cut = &bytes[..bytes.len() * part / 40];
+        let seen = topics(cut).get("/scan").copied().unwrap_or(0);
+        assert!(seen >= before, "part {part}: {seen} after {before}");
+        let least = (whole * part / 40).saturating_sub(60 + whole / 20);
+        assert!(seen >= least, "part {part}: {seen} of {least}");
+        before = seen;
+    }
+    let half = folder.path().join("half.mcap");
+    fs::write(&half, &bytes[..bytes.len() / 2]).expect("a file");
+    let (status, replayed, stderr) = replayed(&folder, "half.mcap", &[]);
+    assert_eq!(status, 0, "{stderr}");
+    assert!(stderr.contains("the file was cut"), "{stderr}");
+    assert!(replayed["commands"].as_u64().is_some_and(|it| it > 50));
+}
+
+#[test]
+fn what_cannot_be_recorded_or_replayed_is_refused() {
+    let (folder, _) = recorded(&[]);
+    let is_there = ["explore", "loop", "--record", "run.mcap"];
+    refused(&folder, &is_there, &["run.mcap", "--force"]);
+    let two = ["explore", "loop", "hall", "--record", "two.mcap"];
+    refused(&folder, &two, &["two.mcap", "one world"]);
+    let nowhere = ["explore", "loop", "--record", "no/such/folder.mcap"];
+    refused(&folder, &nowhere, &["no/such/folder.mcap"]);
+    let log = ["replay", "run.mcap", "--relations", "x"];
+    refused(&folder, &log, &["--relations", "recording"]);
+
+    let mut bytes = fs::read(file(&folder)).expect("a file");
+    bytes.truncate(8);
+    bytes.extend([0; 64]);
+    fs::write(folder.path().join("no.mcap"), bytes).expect("a file");
+    let (status, _, stderr) = replayed(&folder, "no.mcap", &[]);
+    assert_eq!(status, 2, "{stderr}");
+    assert!(stderr.contains("no.mcap"), "{stderr}");
+}
