@@ -56,6 +56,8 @@ const NOTHING: f32 = 0.1;
 const PARTS: [f32; 3] = [0.5, 0.75, 1.0];
 /// Greatest turn of a leg that counts as a way, radians.
 const STRAIGHT_RAD: f32 = 0.2;
+/// Least radius of a curve that counts as a way, metres.
+const LEAST_RADIUS_M: f32 = 0.5;
 /// Least turn and way before anything is told, radians and metres: 45° and half a metre.
 const LEAST: (f32, f32) = (0.78, 0.5);
 /// Least legs before anything is told.
@@ -387,9 +389,11 @@ impl Wiring {
             };
             turn_unseen(&mut self.turns, scans, (&motion, &told));
         }
-        // In a curve the way counts only if the turn is right.
-        let is_straight = turn_rad.abs() <= STRAIGHT_RAD || self.turns.refutes(1);
-        if way_m >= SHORT_M && is_straight && self.legs.1 < MOST_LEGS {
+        // In a curve the way counts only if the turn is right and the curve is wide: wheels that
+        // turn a robot on the spot slip, and count a way that it did not go.
+        let is_wide = self.turns.refutes(1) && way_m >= LEAST_RADIUS_M * turn_rad.abs();
+        let is_drive = turn_rad.abs() <= STRAIGHT_RAD || is_wide;
+        if way_m >= SHORT_M && is_drive && self.legs.1 < MOST_LEGS {
             self.legs.1 = self.legs.1.saturating_add(1);
             way_leg(&mut self.ways, scans, &motion);
         } else if drives_unseen {

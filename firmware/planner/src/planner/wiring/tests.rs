@@ -195,6 +195,17 @@ fn a_robot_that_is_wired_rightly_passes_and_is_not_checked_again() {
     assert_eq!(robot.first_drive(), None, "it only looks at the beginning");
 }
 
+/// The scans stand while the odometry goes on, and rightly so. A corridor does not end the check.
+#[test]
+fn wheels_that_slip_while_the_robot_turns_on_the_spot_are_no_mistake() {
+    let mut robot = Robot::new(CORRIDOR, RIGHT);
+    assert_eq!(robot.drive(0.4, 0.0, 7), None);
+    for period in 0..60 {
+        assert_eq!(robot.drive(0.0, 1.2, 1), None, "period {period}");
+        robot.odometry = moved(&robot.odometry, 0.08, 0.0);
+    }
+}
+
 #[test]
 fn each_mistake_is_told_in_the_first_metre_and_quarter_turn() {
     let quarter = core::f32::consts::FRAC_PI_2;
