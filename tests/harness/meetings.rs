@@ -20,11 +20,9 @@ use fieldline_device::session::{self, Boot};
 use fieldline_device::{Memory, Pilot, SLOTS, State, TILES, convert};
 use fieldline_planner::{Config, Goal, GoalLevel, Order, Tuning, Workspace, step};
 use fieldline_protocol::message::{
-    Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
-    Packet, Path, Refusal, ResidualFrontier, Status, Tile, Twist,
+    Command, Control, Observation, Refusal, Reply, Request, Status, Twist,
 };
-use host_sim::link::inside::Inside;
-use host_sim::link::{Link, LinkError, LinkStats};
+use host_sim::link::{End, Link, LinkError, LinkStats};
 use host_sim::report::TeamReport;
 use host_sim::trial::mission::Mission;
 use host_sim::trial::team::{TeamMission, TeamRecord, explore};
@@ -235,20 +233,9 @@ impl Ordered {
     }
 }
 
-impl Link for Ordered {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        Ok(session::identity(Boot::default(), TILES, SLOTS))
-    }
-
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        if let Some(config) = self.configure(control) {
-            self.state.reset(&config);
-            (self.config, self.status) = (Some(config), Status::Exploring);
-        }
-        Ok(self.status)
-    }
-
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
+impl Ordered {
+    /// Makes a step, or stands once the exploration has ended.
+    fn command(&mut self, observation: &Observation) -> Result<Command, LinkError> {
         let config = self.config()?;
         let input = convert::input(observation, config.lasers()).expect("an observation");
         if self.status != Status::Exploring {
@@ -272,54 +259,49 @@ impl Link for Ordered {
             ..Command::default()
         })
     }
+}
 
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        Ok(Pilot::tile(&self.memory(), x, y))
+impl Link for Ordered {
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        Ok(match request {
+            Request::Hello { .. } => Reply::Hello(session::identity(Boot::default(), TILES, SLOTS)),
+            Request::Control(control) => {
+                if let Some(config) = self.configure(control) {
+                    self.state.reset(&config);
+                    (self.config, self.status) = (Some(config), Status::Exploring);
+                }
+                Reply::Control(self.status)
+            }
+            Request::Observation(observation) => Reply::Command(self.command(observation)?),
+            Request::Tile { x, y } => Reply::Tile(Pilot::tile(&self.memory(), *x, *y)),
+            Request::FieldRow { row } => Reply::FieldRow(Pilot::field_row(&self.memory(), *row)),
+            Request::Frontiers => Reply::Frontiers(Pilot::frontiers(&self.memory())),
+            Request::Path { from } => Reply::Path(Pilot::path(&self.memory(), *from)),
+            Request::Hear(packet) => {
+                let config = self.config()?;
+                if let Some(packet) = convert::packet(packet) {
+                    self.state.hear(&config, &packet);
+                }
+                Reply::Heard
+            }
+            Request::Say => {
+                let config = self.config()?;
+                Reply::Say(self.state.say(&config).map(|it| convert::wire_packet(&it)))
+            }
+            Request::Correct(_) | Request::Tiles(_) => {
+                return Err(LinkError::Refused("nobody corrects this map".into()));
+            }
+        })
     }
 
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
-        Ok(Pilot::field_row(&self.memory(), row))
+    fn end(&self) -> &dyn End {
+        self
     }
+}
 
-    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
-        Ok(Pilot::frontiers(&self.memory()).iter().copied().collect())
-    }
-
-    fn path(&mut self, from: u8) -> Result<Path, LinkError> {
-        Ok(Pilot::path(&self.memory(), from))
-    }
-
-    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
-        let config = self.config()?;
-        if let Some(packet) = convert::packet(packet) {
-            self.state.hear(&config, &packet);
-        }
-        Ok(())
-    }
-
-    fn open_correction(&mut self, _: &Correct) -> Result<CorrectionProgress, LinkError> {
-        Err(LinkError::Refused("nobody corrects this map".into()))
-    }
-
-    fn send_tiles(&mut self, _: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
-        Err(LinkError::Refused("nobody corrects this map".into()))
-    }
-
-    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
-        let config = self.config()?;
-        Ok(self.state.say(&config).map(|it| convert::wire_packet(&it)))
-    }
-
-    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-        None
-    }
-
+impl End for Ordered {
     fn stats(&self) -> LinkStats {
         LinkStats::default()
-    }
-
-    fn take_log(&mut self) -> Vec<u8> {
-        Vec::new()
     }
 }
 

@@ -28,16 +28,14 @@ use fieldline_planner::planner::{starts_blocked, tells};
 use fieldline_planner::roadmap::configuration_space::Footprint;
 use fieldline_planner::status::ResidualReason;
 use fieldline_protocol::message::{
-    Command, Control, Correct, CorrectedTiles, CorrectionProgress, Cost, Fault, FieldRow, Finish,
-    Identity, MAX_FRONTIERS, Observation, Packet, Path, Refusal, ResidualFrontier, Start, Status,
-    TILE_SKELETON_BYTES, TILE_STAMPS, Tile,
+    Command, Control, Cost, Fault, Finish, MAX_FRONTIERS, Observation, Path, Refusal, Reply,
+    Request, ResidualFrontier, Start, Status, TILE_SKELETON_BYTES, TILE_STAMPS, Tile,
 };
 
 use super::chart::Chart;
 use super::heights::HeightGrid;
 use super::strategy::{Outcome, Scene, Strategy, UnevenScene};
-use crate::link::inside::Inside;
-use crate::link::{Link, LinkError, LinkStats};
+use crate::link::{End, Link, LinkError, LinkStats};
 
 /// Turn rate of a robot that looks around at its goal, radians per second; as in the planner.
 const LOOK_AROUND_RADPS: f32 = 0.6;
@@ -309,13 +307,9 @@ fn refused(refusal: Refusal) -> LinkError {
     LinkError::Refused(refusal.to_string())
 }
 
-impl<S: Strategy> Link for Session<S> {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        Ok(session::identity(Boot::default(), TILES, SLOTS))
-    }
-
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        self.calls += 1;
+impl<S: Strategy> Session<S> {
+    /// Changes the session's state.
+    fn order(&mut self, control: &Control) -> Result<Status, LinkError> {
         match control {
             Control::Start(start) => self.start(start).map_err(refused)?,
             Control::Reset => {
@@ -333,8 +327,8 @@ impl<S: Strategy> Link for Session<S> {
         Ok(self.status())
     }
 
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        self.calls += 1;
+    /// Answers an observation.
+    fn command(&mut self, observation: &Observation) -> Result<Command, LinkError> {
         let Some(config) = self.config.take() else {
             return Err(refused(Refusal::NotStarted));
         };
@@ -349,10 +343,10 @@ impl<S: Strategy> Link for Session<S> {
         Ok(command)
     }
 
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        self.calls += 1;
+    /// Returns a tile as a planner shows it: a baseline has no skeleton and no regions.
+    fn shown(&self, x: i16, y: i16) -> Option<Tile> {
         let cells = self.map.shown(x.into(), y.into());
-        Ok(cells.map(|cells| Tile {
+        cells.map(|cells| Tile {
             x,
             y,
             cells: cells.into_iter().collect(),
@@ -360,54 +354,54 @@ impl<S: Strategy> Link for Session<S> {
             closed_regions: 0,
             given_up_regions: 0,
             visit_stamps: [0; TILE_STAMPS],
-        }))
+        })
     }
 
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
-        self.calls += 1;
-        Ok(self.strategy.field_row(row))
-    }
-
-    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
-        self.calls += 1;
+    /// Returns the goals that were given up.
+    fn dropped(&self) -> heapless::Vec<ResidualFrontier, MAX_FRONTIERS> {
         let dropped = self.strategy.dropped();
-        Ok(dropped
-            .iter()
-            .take(MAX_FRONTIERS)
-            .map(convert::wire_frontier)
-            .collect())
+        let shown = dropped.iter().take(MAX_FRONTIERS);
+        shown.map(convert::wire_frontier).collect()
+    }
+}
+
+impl<S: Strategy> Link for Session<S> {
+    /// A baseline has no path, no team and no map that a host may correct.
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        self.calls += u64::from(is_counted(request));
+        Ok(match request {
+            Request::Hello { .. } => Reply::Hello(session::identity(Boot::default(), TILES, SLOTS)),
+            Request::Control(control) => Reply::Control(self.order(control)?),
+            Request::Observation(observation) => Reply::Command(self.command(observation)?),
+            Request::Tile { x, y } => Reply::Tile(self.shown(*x, *y)),
+            Request::FieldRow { row } => Reply::FieldRow(self.strategy.field_row(*row)),
+            Request::Frontiers => Reply::Frontiers(self.dropped()),
+            Request::Path { .. } => Reply::Path(Path::default()),
+            Request::Hear(_) | Request::Say => return Err(refused(Refusal::NoTeam)),
+            Request::Correct(_) | Request::Tiles(_) => {
+                return Err(LinkError::Refused("a baseline corrects no map".into()));
+            }
+        })
     }
 
-    fn path(&mut self, _: u8) -> Result<Path, LinkError> {
-        Ok(Path::default())
+    fn end(&self) -> &dyn End {
+        self
     }
+}
 
-    fn hear(&mut self, _: &Packet) -> Result<(), LinkError> {
-        Err(refused(Refusal::NoTeam))
-    }
+/// Returns true for a request that a baseline does something about.
+const fn is_counted(request: &Request) -> bool {
+    matches!(
+        request,
+        Request::Control(_)
+            | Request::Observation(_)
+            | Request::Tile { .. }
+            | Request::FieldRow { .. }
+            | Request::Frontiers
+    )
+}
 
-    fn open_correction(&mut self, _: &Correct) -> Result<CorrectionProgress, LinkError> {
-        Err(LinkError::Refused("a baseline corrects no map".into()))
-    }
-
-    fn send_tiles(&mut self, _: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
-        Err(LinkError::Refused("a baseline corrects no map".into()))
-    }
-
-    /// A baseline has no team.
-    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
-        Err(refused(Refusal::NoTeam))
-    }
-
-    fn take_log(&mut self) -> Vec<u8> {
-        Vec::new()
-    }
-
-    /// A baseline has neither path nor skeleton, and its map is the host's copy.
-    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-        None
-    }
-
+impl<S: Strategy> End for Session<S> {
     /// Counts every call as one frame sent and one received.
     fn stats(&self) -> LinkStats {
         LinkStats {

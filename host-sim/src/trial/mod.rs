@@ -372,7 +372,7 @@ fn read_out(cast: &mut Cast<'_>, record: &mut Record) {
         record.read_out_error = Some(error);
     }
     record.relief = relief(cast, record.window.as_ref());
-    record.link_stats = cast.link.stats();
+    record.link_stats = cast.link.end().stats();
 }
 
 fn relief(cast: &Cast<'_>, window: Option<&Window>) -> Option<Relief> {

@@ -54,7 +54,7 @@ impl Sight<'_> {
     /// Looks into the device, if it lives in this process.
     #[must_use]
     pub fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-        self.link.inside()
+        self.link.end().inside()
     }
 
     /// Returns true if the robot stands where a request took it, until the next request.

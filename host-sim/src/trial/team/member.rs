@@ -336,7 +336,7 @@ impl<'a> Member<'a> {
         {
             self.record.read_out_error = Some(error);
         }
-        self.record.link_stats = self.link.stats();
+        self.record.link_stats = self.link.end().stats();
     }
 
     /// Returns the member of the wire with this number.
