@@ -22,6 +22,7 @@ use host_sim::trial::space::Area;
 
 use super::bringup::BringupArgs;
 use super::campaign::CampaignArgs;
+use super::common::{CommonArgs, FolderArgs, PaceArgs, SpaceArgs};
 use super::live::LiveArg;
 use super::replay::ReplayArgs;
 use super::robot::RobotArgs;
@@ -30,8 +31,7 @@ use super::strategies;
 use super::team::TeamArgs;
 use super::values::{
     area, budget, failing, ground_parameters, home_at, impatience, imu_noise, laser_noise, live,
-    patrol_for, pause, people, place, seed, slam_place, snapshots, start, sweeps, time_limit,
-    until, wait, working,
+    patrol_for, pause, people, place, slam_place, snapshots, start, sweeps, wait, working,
 };
 
 /// Explore simulated worlds with the Fieldline planner; without a command, explore the built-in
@@ -131,15 +131,6 @@ pub(super) struct ExploreArgs {
     /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback; direct for baselines]
     #[arg(long)]
     pub(super) link: Option<LinkSpec>,
-    /// Seed of every random number of the run
-    #[arg(
-        long,
-        value_name = "N",
-        default_value = "0",
-        value_parser = seed,
-        allow_negative_numbers = true
-    )]
-    pub(super) seed: u64,
     /// Index of the world's start pose, from 0; WORLD@N comes first
     #[arg(
         long,
@@ -170,15 +161,8 @@ pub(super) struct ExploreArgs {
     /// climb=30,roll=25,step=0.1,drop=0.15]
     #[arg(long, alias = "failing", value_name = "LIMITS", value_parser = failing)]
     pub(super) failing_limits: Option<Limits>,
-    /// Simulated seconds after which a run ends
-    #[arg(
-        long,
-        value_name = "S",
-        default_value = "3600",
-        value_parser = time_limit,
-        allow_negative_numbers = true
-    )]
-    pub(super) time_limit: u32,
+    #[command(flatten)]
+    pub(super) pace: PaceArgs,
     /// Simulated seconds of patrol after everything is explored; for tdbvp
     #[arg(
         long,
@@ -188,9 +172,8 @@ pub(super) struct ExploreArgs {
         allow_negative_numbers = true
     )]
     pub(super) patrol_for: u16,
-    /// Share of the area whose coverage ends the run, above 0, at most 1; for sbpf and esbpf
-    #[arg(long, value_name = "SHARE", value_parser = until)]
-    pub(super) until: Option<u16>,
+    #[command(flatten)]
+    pub(super) space: SpaceArgs,
     /// Known area to explore, least x and y, width and height in metres, as in 0.2,0.2,10,8; for
     /// sbpf and esbpf. It is also the bounds, unless --bounds gives others [default: the bounds of
     /// the world's floor, which bound nothing]
@@ -232,10 +215,6 @@ pub(super) struct ExploreArgs {
     /// options say them (docs/MISSIONS.md)
     #[arg(long, value_name = "FILE")]
     pub(super) mission: Option<PathBuf>,
-    /// Simulated seconds without a newly covered cell after which sbpf or esbpf follows a path to
-    /// a frontier, or never [default: never for sbpf, 5 for esbpf]
-    #[arg(long, value_name = "S", value_parser = impatience)]
-    pub(super) sbpf_impatience: Option<Impatience>,
     /// Simulated seconds without a new place after which tdbvp follows a path to what is left to
     /// explore [default: 15]
     #[arg(
@@ -252,16 +231,8 @@ pub(super) struct ExploreArgs {
     /// Type in which the potential is stored; for bvp-papers [default: f64]
     #[arg(long, value_enum, value_name = "TYPE")]
     pub(super) bvp_precision: Option<PrecisionArg>,
-    /// Folder of the run; with several runs, the folder of their folders [default:
-    /// out/WORLD-STRATEGY-SEED, on uneven ground out/WORLD-STRATEGY-uneven-SEED]
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
-    /// Replace the run of the folder --out, though it was made with other options
-    #[arg(long)]
-    pub(super) force: bool,
-    /// Run no faster than real time
-    #[arg(long)]
-    pub(super) realtime: bool,
+    #[command(flatten)]
+    pub(super) folder: FolderArgs,
     /// Serve a page that shows the run while it runs, and takes requests: with ADDR:PORT there,
     /// else at 127.0.0.1:8047 or a free port. The page stays after the run while it is open, and
     /// 60 s; Ctrl-C ends it. Another address than loopback gets a token
@@ -328,9 +299,8 @@ pub(super) struct ExploreArgs {
     /// Print during the run what the robot does and why, as in the file mission.log
     #[arg(long, value_name = "WHAT")]
     pub(super) log: Option<LogArg>,
-    /// Print only the reports, one JSON object a line
-    #[arg(long)]
-    pub(super) json: bool,
+    #[command(flatten)]
+    pub(super) common: CommonArgs,
 }
 
 impl Default for ExploreArgs {
@@ -502,6 +472,9 @@ mod tests {
             (usual.worlds, usual.strategy),
             (vec!["office".into()], "frontier".into())
         );
-        assert_eq!((usual.time_limit, usual.wait.as_secs()), (3_600_000, 15));
+        assert_eq!(
+            (usual.pace.time_limit, usual.wait.as_secs()),
+            (3_600_000, 15)
+        );
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Error, Result, bail};
+use anyhow::{Result, bail};
 
 use fieldline_protocol::message::{Budget, UnevenGround};
 use host_sim::baseline::bvp_papers::Relaxation;
@@ -68,7 +68,7 @@ pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
 /// Returns the simulated seconds that one second may have at most.
 fn pace(args: &ExploreArgs) -> Option<f64> {
     let team = args.team.as_ref().map(|team| team.pace);
-    team.or(args.realtime.then_some(1.0))
+    team.or(args.pace.realtime.then_some(1.0))
 }
 
 /// Replaces `--strategy terrain` by its meaning, and says so on standard error.
@@ -116,7 +116,7 @@ fn runs(prepared: &Prepared) -> Result<Vec<Run>> {
         let ground = mission.uneven_ground.map_or("", |_| "-uneven");
         // The colons of a generated world's name: some file systems do not allow them.
         let world = world.name().replace(':', "-");
-        let (strategy, seed) = (&args.strategy, args.seed);
+        let (strategy, seed) = (&args.strategy, args.common.seed);
         format!("{world}{start}-{strategy}{ground}-{seed}")
     }));
     let single = worlds.len() == 1;
@@ -128,14 +128,14 @@ fn runs(prepared: &Prepared) -> Result<Vec<Run>> {
             let resumed = from
                 .map(|from| resume::state(from, args, &made_by))
                 .transpose()?;
-            let folder = match args.out.as_deref().or(from) {
+            let folder = match args.folder.out.as_deref().or(from) {
                 Some(out) if single => out.to_owned(),
                 Some(out) => out.join(name),
                 None => Path::new("out").join(name),
             };
             let goes_on = from.is_some_and(|from| from == folder);
-            if args.out.is_some() && !args.force && !goes_on {
-                made_by.may_replace(&folder).map_err(Error::msg)?;
+            if !goes_on {
+                args.folder.check(&folder, &made_by)?;
             }
             Ok(Run {
                 world,
@@ -336,7 +336,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         uneven_ground,
         link: link.to_string(),
         fault: args.fault.as_ref().map(|fault| fault.text.clone()),
-        seed: args.seed,
+        seed: args.common.seed,
         start: args.start,
         odometry: odometry.into(),
         localise: is_localised,
@@ -344,7 +344,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         laser_m: args.laser_noise,
         working,
         failing,
-        time_limit_ms: args.time_limit,
+        time_limit_ms: args.pace.time_limit,
         patrol_s: args.patrol_for,
         space: space(args),
         fence: fence(args)?,
@@ -364,8 +364,8 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
 fn space(args: &ExploreArgs) -> SpaceMission {
     SpaceMission {
         area_m: args.area,
-        until_permille: args.until.unwrap_or(1_000),
-        impatience_s: args.sbpf_impatience.map(|it| it.0),
+        until_permille: args.space.until.unwrap_or(1_000),
+        impatience_s: args.space.sbpf_impatience.map(|it| it.0),
     }
 }
 
@@ -427,7 +427,7 @@ fn relaxation(args: &ExploreArgs) -> Relaxation {
 
 /// Prints the report on standard output, and advice on standard error.
 fn print(args: &ExploreArgs, report: &Report, record: &Record, folder: &Path) -> Result<()> {
-    if args.json {
+    if args.common.json {
         say(&report.to_json_line())?;
     } else {
         say(&report.to_text())?;

@@ -9,6 +9,7 @@
 mod args;
 mod bringup;
 mod campaign;
+mod common;
 mod explore;
 mod live;
 mod made_by;
