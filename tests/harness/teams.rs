@@ -230,31 +230,30 @@ pub fn table(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
     table
 }
 
+const DROPOUT_COLUMNS: [&str; 15] = [
+    "world",
+    "team",
+    "explored",
+    "equal maps",
+    "least known %",
+    "T99 s",
+    "end s",
+    "at most",
+    "stood s",
+    "at most",
+    "after another",
+    "hits",
+    "contacts",
+    "kB",
+    "lost",
+];
+
 /// Makes a table with one line for each kind of run, over its seeds; runs of a kind stand together.
 ///
 /// *Stood* is the longest time for which a robot stood while it explored, in the mean and at most.
 #[must_use]
 pub fn dropouts(runs: &[TeamRun<'_>], ended: &[(TeamReport, TeamRecord)]) -> Table {
-    let mut table = Table::new(
-        2,
-        &[
-            "world",
-            "team",
-            "explored",
-            "equal maps",
-            "least known %",
-            "T99 s",
-            "end s",
-            "at most",
-            "stood s",
-            "at most",
-            "after another",
-            "hits",
-            "contacts",
-            "kB",
-            "lost",
-        ],
-    );
+    let mut table = Table::new(2, &DROPOUT_COLUMNS);
     let all: Vec<_> = runs.iter().zip(ended).collect();
     let kind = |run: &TeamRun<'_>| (run.world.name().to_owned(), run.settings());
     for same in all.chunk_by(|(a, _), (b, _)| kind(a) == kind(b)) {
@@ -380,31 +379,30 @@ pub fn groups<'a>(
     runs
 }
 
+const SPEED_UP_COLUMNS: [&str; 14] = [
+    "world",
+    "starts",
+    "radio",
+    "robots",
+    "T90 s",
+    "speed-up",
+    "T99 s",
+    "speed-up",
+    "path m",
+    "after another",
+    "twice",
+    "hits",
+    "contacts",
+    "unfinished",
+];
+
 /// Makes a table with one line for each world, start, radio and number of robots, over the seeds.
 ///
 /// Runs of one line stand together, and the runs of one robot of a group come first. A *speed-up*
 /// is the mean time of one robot over that of the team; it needs the share in every run.
 #[must_use]
 pub fn speed_up(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
-    let mut table = Table::new(
-        3,
-        &[
-            "world",
-            "starts",
-            "radio",
-            "robots",
-            "T90 s",
-            "speed-up",
-            "T99 s",
-            "speed-up",
-            "path m",
-            "after another",
-            "twice",
-            "hits",
-            "contacts",
-            "unfinished",
-        ],
-    );
+    let mut table = Table::new(3, &SPEED_UP_COLUMNS);
     let all: Vec<(&TeamRun<'_>, &TeamReport)> = runs.iter().zip(reports).collect();
     let group = |it: &TeamRun<'_>| (it.world.name().to_owned(), it.apart, it.radio.to_owned());
     for same in all.chunk_by(|(a, _), (b, _)| group(a) == group(b)) {

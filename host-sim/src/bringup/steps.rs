@@ -10,7 +10,7 @@ use fieldline_protocol::message::{
 use super::{Bench, Finding, Step, Stopped, config, measure, shift_m, turned_rad};
 use crate::link::Link;
 use crate::robot::wrap;
-use crate::trial::ending::wiring_advice;
+use crate::trial::wiring_advice::wiring_advice;
 
 /// The quarter turn, radians, and the way, metres.
 const QUARTER_RAD: f64 = core::f64::consts::FRAC_PI_2;

@@ -26,6 +26,7 @@ mod summary;
 pub mod surprises;
 pub mod team;
 pub mod uneven;
+pub mod wiring_advice;
 pub mod wording;
 
 use std::time::Instant;
