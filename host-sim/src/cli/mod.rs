@@ -13,6 +13,7 @@ mod common;
 mod explore;
 mod live;
 mod made_by;
+mod mission;
 mod mission_file;
 mod pictures;
 mod prepared;

@@ -22,7 +22,6 @@ use host_sim::trial::{Record, Watch};
 use host_sim::world::World;
 
 use super::args::ExploreArgs;
-use super::explore;
 use super::mission_file;
 use super::strategies;
 use super::{note, note_build};
@@ -51,7 +50,7 @@ impl Prepared {
         strategies::check_space(&args.strategy, has_space)?;
         let has_relaxation = args.bvp_sweeps.is_some() || args.bvp_precision.is_some();
         strategies::check_relaxation(&args.strategy, has_relaxation)?;
-        let mission = explore::mission(args, &link)?;
+        let mission = super::mission::mission(args, &link)?;
         check_reference(&mission)?;
         check_team(args)?;
         Ok(Self {

@@ -22,7 +22,8 @@ use host_sim::world::World;
 
 use super::args::{ExploreArgs, GroundArg, OdometryArg};
 use super::common::{CommonArgs, FolderArgs, PaceArgs, SpaceArgs};
-use super::explore::{mission, with_start};
+use super::explore::with_start;
+use super::mission::mission;
 use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
 use super::robot::RobotArgs;
