@@ -1,7 +1,7 @@
 //! Drawn fences: star-shaped bounds and triangles that are no-go, around a world's first start.
 //!
-//! Corner k of n is drawn at the angle `turn + 2π·k/n` from the middle. Units: metres of the world's
-//! frame, radians.
+//! Corner k of n is drawn at the angle `turn + 2π·k/n` from the middle. Units: radians, metres of
+//! the world's frame.
 
 use core::f64::consts::TAU;
 

@@ -1,4 +1,4 @@
-//! A baseline as a [`Link`](crate::link::Link): only the strategy is its own, the rest is the code of the device.
+//! A baseline as a link: only the strategy is its own, the rest is the code of the device.
 //!
 //! ```text
 //! observation → Map, ObstaclePoints → Chart → Strategy → heading → Drive → command
