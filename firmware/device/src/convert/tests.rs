@@ -99,7 +99,7 @@ fn every_limit_of_the_strategy_and_the_team_is_checked() {
             with(|it| {
                 it.order = Order::Gain {
                     worth: -I4F12::DELTA,
-                }
+                };
             }),
             Parameter::Worth,
         ),
@@ -108,7 +108,7 @@ fn every_limit_of_the_strategy_and_the_team_is_checked() {
                 it.team = Some(Team {
                     origin: (I16F16::from_num(401), I16F16::ZERO),
                     ..Team::default()
-                })
+                });
             }),
             Parameter::Team,
         ),
